@@ -1,0 +1,397 @@
+"""The microcontroller: what firmware uses of `machine` on the RP2040, on virtual time.
+
+It executes no instructions: firmware runs as it is and takes no time. Names, arguments and limits
+are those of the port, except that a constructor takes the Chip first and readinto() never waits.
+Interrupt handlers run inside Clock.advance at their exact instant, hard ones with the heap locked,
+as on the chip. No method that firmware calls takes heap; constructors, deinit() and resets do.
+
+    chip = Chip(clock, wire)
+    uart = UART(chip, 19200)
+    driver_enable = Pin(chip)
+    Transceiver(wire, uart, driver_enable)
+    uart.irq(handler, UART.IRQ_RXIDLE, hard=True)
+    timer = Timer(chip)
+    timer.init(mode=Timer.ONE_SHOT, period=500, tick_hz=1_000_000, callback=handler)
+"""
+
+import sys
+
+from boards.sim.clock import Event
+from boards.sim.wire import BURST_LIMIT
+
+try:
+    from micropython import heap_lock, heap_unlock
+except ImportError:  # CPython has no heap to lock
+
+    def heap_lock():
+        pass
+
+    def heap_unlock():
+        pass
+
+
+# Past this instant virtual time is no longer a small integer, so that the simulator itself takes
+# heap: handlers then run with the heap unlocked. 17.5 minutes on the 32-bit build.
+_HEAP_LOCK_UNTIL_US = (sys.maxsize >> 1) - 25_000_000
+
+_ERROR_LIMIT = 16
+
+
+class Chip:
+    """The chip as a whole: its interrupts and its reset.
+
+    handler_errors   exceptions that interrupt handlers ended with, the first 16
+    on_bite          called when the watchdog bites: a reset, unless somebody puts another function
+    """
+
+    def __init__(self, clock, wire):
+        self.clock = clock
+        self.wire = wire
+        self.handler_errors = []
+        self.on_bite = self.reset
+        self.peripherals = []
+        self.pins = []
+        self._masked = False
+        self._in_handler = False
+        self._first_waiting = None
+        self._last_waiting = None
+
+    def reset(self):
+        """All at once: what is being sent stops, pins go low, timers and interrupts are gone.
+
+        Peripherals made before are dead: using them does nothing. The firmware makes new ones.
+        """
+        peripherals, self.peripherals = self.peripherals, []
+        pins, self.pins = self.pins, []
+        for peripheral in peripherals:
+            peripheral.die()
+        for pin in pins:
+            pin.die()
+        self._masked = False
+        self._first_waiting = None
+        self._last_waiting = None
+
+    def disable_irq(self):
+        """Interrupts wait from now on. Returns the state for enable_irq."""
+        state = self._masked
+        self._masked = True
+        return state
+
+    def enable_irq(self, state):
+        """Back to the `state` that disable_irq returned; interrupts that waited run at once."""
+        self._masked = state
+        self._serve()
+
+    def interrupt(self, interrupt):
+        """Run the handler of `interrupt` now, or as soon as interrupts are allowed."""
+        if interrupt.waiting:
+            return
+        interrupt.waiting = True
+        interrupt.next = None
+        if self._first_waiting is None:
+            self._first_waiting = interrupt
+        else:
+            self._last_waiting.next = interrupt
+        self._last_waiting = interrupt
+        self._serve()
+
+    def _serve(self):
+        # Handlers do not interrupt each other: all have one priority.
+        while self._first_waiting is not None and not (self._masked or self._in_handler):
+            interrupt = self._first_waiting
+            self._first_waiting = interrupt.next
+            interrupt.waiting = False
+            if not interrupt.is_due() or interrupt.handler is None:
+                continue
+            self._in_handler = True
+            try:
+                self._run(interrupt)
+            finally:
+                self._in_handler = False
+
+    def _run(self, interrupt):
+        locked = interrupt.hard and self.clock.now_us < _HEAP_LOCK_UNTIL_US
+        if locked:
+            heap_lock()
+        try:
+            interrupt.handler(interrupt.source)
+            error = None
+        except Exception as exception:
+            error = exception
+        finally:
+            if locked:
+                heap_unlock()
+        if error is not None:
+            interrupt.handler = None
+            if len(self.handler_errors) < _ERROR_LIMIT:
+                self.handler_errors.append(error)
+
+
+class Interrupt:
+    """One interrupt of one peripheral: the handler, and a place in the chip's queue.
+
+    is_due() tells, when the handler's turn comes, whether there is still a reason to call it.
+    """
+
+    def __init__(self, source, is_due):
+        self.source = source
+        self.is_due = is_due
+        self.handler = None
+        self.hard = False
+        self.waiting = False
+        self.next = None
+
+
+class UART:
+    """machine.UART, 8E1, as far as it is used, with the RP2040's ways.
+
+    Receiving: 256 characters of buffer and 32 of FIFO; what does not fit is lost. IRQ_RXIDLE comes
+    32 bit times after the last character, if characters are left in the FIFO: any() and readinto()
+    empty it, so whoever polls gets no interrupt.
+    """
+
+    IRQ_RXIDLE = 0x40
+
+    def __init__(self, chip, baudrate):
+        self.baud = baudrate
+        self.line = None  # the transceiver puts itself here
+        self._chip = chip
+        self._clock = chip.clock
+        self._buffer = bytearray(256 + 32)
+        self._head = 0
+        self._count = 0
+        self._undrained = 0  # how many of them are still in the FIFO
+        self._sent_us = chip.clock.now_us
+        self._sending = 0
+        self._interrupt = Interrupt(self, self._is_due)
+        self._timeout = Event(self._timed_out)
+        self._timeout_us = -(-32_000_000 // baudrate)
+        chip.peripherals.append(self)
+
+    def irq(self, handler=None, trigger=0, hard=False):
+        """Call handler(uart) on IRQ_RXIDLE; None stops that. Anything else: ValueError."""
+        if handler is not None and not callable(handler):
+            raise ValueError("handler must be None or callable")
+        if trigger & ~self.IRQ_RXIDLE:
+            raise ValueError("trigger 0x%04x unsupported" % trigger)
+        self._interrupt.handler = handler if trigger else None
+        self._interrupt.hard = bool(hard)
+
+    def any(self):
+        """How many characters wait. Empties the FIFO and so suppresses IRQ_RXIDLE."""
+        if self.line is not None:
+            self.line.collect()
+        self._undrained = 0
+        return self._count
+
+    def readinto(self, buffer, n=None):
+        """Take what waits, at most len(buffer) or `n`. Returns how many, or None for nothing."""
+        count = self.any()
+        size = len(buffer)
+        if n is not None and n < size:
+            size = n
+        if count > size:
+            count = size
+        if not count:
+            return None
+        data = self._buffer
+        at = self._head
+        for i in range(count):
+            buffer[i] = data[at]
+            at += 1
+            if at == 288:
+                at = 0
+        self._head = at
+        self._count -= count
+        return count
+
+    def write(self, data, n=None):
+        """Send `data`, or `n` characters of it, at once or behind what is still being sent.
+
+        Returns how many characters were taken; None if there is no room for a single one.
+        """
+        count = len(data)
+        if n is not None and n < count:
+            count = n
+        if self._sent_us <= self._clock.now_us:
+            self._sending = 0
+        if count > BURST_LIMIT - self._sending:
+            count = BURST_LIMIT - self._sending
+        if self.line is None or count <= 0:
+            return None
+        self._sent_us = self.line.send(data, count)
+        self._sending += count
+        return count
+
+    def txdone(self):
+        """Whether the last stop bit is over."""
+        return self._clock.now_us >= self._sent_us
+
+    def deinit(self):
+        """Off: stops sending, drops what waits, calls nobody."""
+        self._interrupt.handler = None
+        self._clock.cancel(self._timeout)
+        self._count = 0
+        self._undrained = 0
+        self._sent_us = self._clock.now_us
+        if self.line is not None:
+            self.line.unplug()
+
+    die = deinit
+
+    # The line's side
+
+    def receive(self, data, first, stop):
+        """Characters first...stop - 1 of `data` come in."""
+        buffer = self._buffer
+        at = self._head + self._count
+        if at >= 288:
+            at -= 288
+        count = stop - first
+        if count > 288 - self._count:
+            count = 288 - self._count
+        for i in range(first, first + count):
+            buffer[at] = data[i]
+            at += 1
+            if at == 288:
+                at = 0
+        self._count += count
+        self._undrained += count
+
+    def quiet_since(self, at_us):
+        """The last character ended at `at_us`."""
+        if self._undrained:
+            self._clock.schedule(self._timeout, at_us + self._timeout_us)
+
+    def _timed_out(self):
+        # Characters of the next burst have come already: its end will start the time-out anew.
+        if self.line is not None and self.line.receiving():
+            return
+        if self._undrained:
+            self._chip.interrupt(self._interrupt)
+
+    def _is_due(self):
+        due = self._undrained > 0
+        self._undrained = 0  # the interrupt empties the FIFO before it calls the handler
+        return due
+
+
+class Pin:
+    """machine.Pin, an output: `on_change(level)` tells the rest of the board. Low after a reset."""
+
+    def __init__(self, chip, value=0, on_change=None):
+        self.on_change = on_change
+        self._level = 0
+        self._alive = True
+        chip.pins.append(self)
+        self.value(value)
+
+    def value(self, level=None):
+        """The level, or set it."""
+        if level is None:
+            return self._level
+        if self._alive:
+            self._set(1 if level else 0)
+
+    __call__ = value
+
+    def on(self):
+        self.value(1)
+
+    def off(self):
+        self.value(0)
+
+    def die(self):
+        self._set(0)
+        self._alive = False
+
+    def _set(self, level):
+        if level != self._level:
+            self._level = level
+            if self.on_change is not None:
+                self.on_change(level)
+
+
+class Timer:
+    """machine.Timer, the virtual one: as many as are wanted."""
+
+    ONE_SHOT = 0
+    PERIODIC = 1
+
+    def __init__(self, chip):
+        self._chip = chip
+        self._clock = chip.clock
+        self._mode = self.PERIODIC
+        self._period_us = 0
+        self._interrupt = Interrupt(self, self._is_due)
+        self._alarm = Event(self._elapsed)
+        self._due = False
+        self._alive = True
+        chip.peripherals.append(self)
+
+    def init(self, *, mode=PERIODIC, period=0xFFFFFFFF, tick_hz=1000, callback=None, hard=False):
+        """Call callback(timer) after `period` ticks, or each time they have passed.
+
+        A running timer starts anew. Less than 1 us is 1 us. A hard callback takes no heap (RP2040
+        since MicroPython 1.26; 1.25 refuses the argument). TypeError: no integers.
+        """
+        if not (isinstance(mode, int) and isinstance(period, int) and isinstance(tick_hz, int)):
+            raise TypeError("can't convert to int")
+        self._mode = mode
+        if 1_000_000 % tick_hz == 0:  # without this, 32-bit integers would take heap
+            period_us = period * (1_000_000 // tick_hz)
+        else:
+            period_us = period * 1_000_000 // tick_hz
+        self._period_us = period_us if period_us > 0 else 1
+        self._interrupt.handler = callback
+        self._interrupt.hard = bool(hard)
+        self._due = False
+        if self._alive:
+            self._clock.schedule(self._alarm, self._clock.now_us + self._period_us)
+
+    def deinit(self):
+        """Stop; a callback that waits for its turn is forgotten."""
+        self._clock.cancel(self._alarm)
+        self._due = False
+
+    def die(self):
+        self.deinit()
+        self._alive = False
+
+    def _elapsed(self):
+        if self._mode != self.ONE_SHOT:
+            self._clock.schedule(self._alarm, self._alarm.at_us + self._period_us)
+        self._due = True
+        self._chip.interrupt(self._interrupt)
+
+    def _is_due(self):
+        due = self._due
+        self._due = False
+        return due
+
+
+class WDT:
+    """machine.WDT: cannot be stopped, only fed; a reset ends it. ValueError: over 8388 ms."""
+
+    def __init__(self, chip, timeout_ms=5000):
+        if not 0 < timeout_ms <= 8388:
+            raise ValueError("timeout exceeds 8388")
+        self._chip = chip
+        self._timeout_us = timeout_ms * 1000
+        self._alive = True
+        self._bite = Event(self._bitten)
+        chip.peripherals.append(self)
+        self.feed()
+
+    def feed(self):
+        """Another `timeout_ms` from now."""
+        if self._alive:
+            clock = self._chip.clock
+            clock.schedule(self._bite, clock.now_us + self._timeout_us)
+
+    def die(self):
+        self._alive = False
+        self._chip.clock.cancel(self._bite)
+
+    def _bitten(self):
+        self._chip.on_bite()

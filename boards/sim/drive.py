@@ -1,0 +1,298 @@
+"""A simulated drive on the line: the electronics, the inverter and the motor behind them.
+
+It behaves as the manuals and the USS specification say a MICROMASTER 420 does, written from those
+documents alone: it shares no code with the panel's protocol. It models no currents, no voltages and
+no torque. Everything happens at the instant it would, in virtual time.
+
+    drive = Drive(clock, wire, 1)           # set up for USS on its RS-485 terminals, address 1
+    drive.read(1082)                        # 50.0
+    drive.write(1120, 0, 5.0)               # as from its keypad: RAM and EEPROM
+    drive.fault(1)                          # trips with F0001
+    drive.report()                          # "address=1 state=fault hz=0.00 stw=047E ..."
+"""
+
+from boards.sim import mm420
+from boards.sim.clock import Event
+from boards.sim.drive_parameters import Parameters
+from boards.sim.parameter_channel import ParameterChannel
+from boards.sim.process import RUNNING, STOPPING, Process
+from boards.sim.slave import BROADCAST, MIRROR, Slave
+
+REPLY_DELAY_CHARACTERS = 3  # measured on a MICROMASTER 420 at 2400 baud
+
+USS_TIMEOUT_FAULT = 72  # F0072, telegram failure on the COM link
+SAVE = 971
+SUPERVISION = 2014
+
+
+class Drive:
+    """One drive. `parameters` are further settings of its commissioning, {number: value} or
+    {(number, index): value}; the wire tells the baud rate. ValueError where a value does not fit,
+    KeyError where there is no such parameter.
+
+    reply_delay_us  from the last character heard to the reply, 3 characters if None; any value may
+                    be set, illegal ones too
+    stale_replies   telegrams for which a new parameter task still gets the old reply
+    plugged         whether the RS-485 connector is in
+    powered         whether it has mains
+    """
+
+    def __init__(self, clock, wire, address, parameters=None, reply_delay_us=None):
+        self._clock = clock
+        self._wire = wire
+        self.name = "drive %d" % address
+        if reply_delay_us is None:
+            reply_delay_us = -(-REPLY_DELAY_CHARACTERS * 11_000_000 // wire.baud)
+        self.reply_delay_us = reply_delay_us
+        self.plugged = True
+        self.powered = False
+        self._connected = False
+        self._parameters = Parameters(mm420.ROWS, mm420.PERMITTED, self._reading)
+        self._process = Process(clock, self._parameters)
+        self._slave = Slave(wire)
+        self._channel = ParameterChannel(self._parameters, self._change_state, self._changed)
+        self._reply = Event(self._send_reply)
+        self._failure = Event(self._telegram_failure)
+        self._heard_us = None  # the last telegram, None before the first one
+        self._mirrored = None  # what to send back unchanged
+        self._with_pkw = True  # variable length: whether the request had PKW words
+        self._unsettled = False  # writes wait for the end of the exchange to take effect
+        self._buffer = bytearray(256)
+        self._commission(address, parameters or {})
+        self.power_on()
+
+    # Looking at it
+
+    @property
+    def address(self):
+        """The address it answers to now."""
+        return self._slave.address
+
+    @property
+    def state(self):
+        """inhibited, ready, ready to run, running, stopping, fault or off."""
+        self._process.hz()  # what time has done meanwhile
+        return self._process.state
+
+    @property
+    def starts(self):
+        """How often the motor went from not being driven to being driven."""
+        return self._process.starts
+
+    @property
+    def stale_replies(self):
+        return self._channel.stale_replies
+
+    @stale_replies.setter
+    def stale_replies(self, count):
+        self._channel.stale_replies = count
+
+    def hz(self):
+        """The frequency of the motor, negative to the left."""
+        return self._process.hz()
+
+    def report(self):
+        """One line of key=value, for people and for scripts."""
+        process = self._process
+        counters = self._slave.counters
+        fault = process.faults[0]
+        zsw, hiw = process.words(2) if self.powered else (0, 0)
+        return (
+            "address=%d state=%s hz=%.2f stw=%04X zsw=%04X hsw=%04X hiw=%04X good=%d rejected=%d "
+            "fault=%s starts=%d"
+        ) % (
+            self.address, self.state, round(self.hz(), 2) + 0.0, process.image[0], zsw,
+            process.image[1], hiw, counters[0], counters[1], "F%04d" % fault if fault else "-",
+            self.starts,
+        )  # fmt: skip
+
+    # What people do to it
+
+    def read(self, number, index=0):
+        """A parameter's value: an int, or a float. KeyError: no such number or index."""
+        return self._parameters.get(number, index)
+
+    def write(self, number, index, value):
+        """Change a parameter at the drive's own keypad: RAM and EEPROM, in any state, at once.
+
+        KeyError: no such number or index. ValueError: read-only, or not a value for it.
+        """
+        self._parameters.set(number, index, value)
+        self._changed(number)
+        self._settle()
+
+    def fault(self, number):
+        """Trip with this fault number; its cause is gone at once. ValueError: the drive is off."""
+        if not self.powered:
+            raise ValueError(self.name + " is off")
+        self._process.trip(number)
+
+    def plug(self):
+        """Put the RS-485 connector in."""
+        self.plugged = True
+        self._connect()
+
+    def unplug(self):
+        """Pull the RS-485 connector. The drive goes on as it was told last; P2014 applies."""
+        self.plugged = False
+        self._connect()
+
+    def power_off(self):
+        """Mains off: the motor coasts, RAM is lost."""
+        if self.powered:
+            self.powered = False
+            self._clock.cancel(self._reply)
+            self._clock.cancel(self._failure)
+            self._process.power_off()
+            self._connect()
+
+    def power_on(self):
+        """Mains on: parameters from the EEPROM, no process data yet, inhibited."""
+        if not self.powered:
+            self.powered = True
+            self._parameters.load()
+            self._slave.reset()
+            self._channel.reset()
+            self._heard_us = None
+            self._process.power_on()
+            self._configure_link()
+            self._connect()
+
+    # The line
+
+    def hear(self, burst):
+        """The end of a burst on the line: called by the wire."""
+        form = self._slave.hear(burst)
+        if form is None:
+            return
+        self._heard_us = self._clock.now_us
+        self._supervise()
+        if form == BROADCAST:
+            self._take_broadcast()
+            return
+        self._mirrored = None
+        if form == MIRROR:
+            self._mirrored = self._slave.telegram[: self._slave.length]
+        else:
+            self._take_request()
+        self._clock.schedule(self._reply, burst.end_us + self.reply_delay_us)
+
+    def _net_words(self):
+        """The PKW and the PZD words of the telegram received."""
+        telegram = self._slave.telegram
+        end = self._slave.length - 1
+        words = [telegram[i] << 8 | telegram[i + 1] for i in range(3, end, 2)]
+        pkw_count = len(words) - self._slave.pzd_words
+        return words[:pkw_count], words[pkw_count:]
+
+    def _take_request(self):
+        pkw, pzd = self._net_words()
+        self._process.accept(pzd)  # process data have priority
+        self._with_pkw = bool(pkw)
+        if pkw:
+            self._channel.accept(pkw, self._slave.pkw_words)
+
+    def _take_broadcast(self):
+        enable, pzd = self._net_words()
+        if len(enable) == 4:  # a broadcast exists only with a PKW area of 4 words
+            self._process.accept_broadcast(enable, pzd)
+
+    def _send_reply(self):
+        """Build the reply when it is sent, so that it carries the newest values."""
+        if self._mirrored is not None:
+            self._wire.talk(self, self._mirrored, len(self._mirrored))
+        else:
+            words = self._process.words(self._slave.pzd_words)
+            if self._with_pkw:
+                words = self._channel.reply(self._slave.pkw_words) + words
+            self._wire.talk(self, self._buffer, self._slave.frame(self._buffer, words))
+        self._settle()
+
+    def _connect(self):
+        """Be on the line while plugged and powered. What it is sending when it leaves is cut."""
+        connected = self.plugged and self.powered
+        if connected and not self._connected:
+            self._wire.attach(self)
+        elif self._connected and not connected:
+            self._wire.detach(self)
+        self._connected = connected
+
+    def _supervise(self):
+        """Start the telegram failure time anew; it runs from the first telegram on."""
+        limit_ms = self._parameters.ram[SUPERVISION][0]
+        if limit_ms and self._heard_us is not None:
+            self._clock.schedule(self._failure, self._heard_us + limit_ms * 1000)
+        else:
+            self._clock.cancel(self._failure)
+
+    def _telegram_failure(self):
+        self._process.trip(USS_TIMEOUT_FAULT)
+
+    # Parameters
+
+    def _commission(self, address, parameters):
+        """Set it up as delivered, then for USS at the line's baud rate, then as asked for."""
+        code = [code for code, baud in mm420.BAUD_CODES.items() if baud == self._wire.baud]
+        if not code:
+            raise ValueError("a %s has no code for %d baud" % (mm420.NAME, self._wire.baud))
+        settings = dict(mm420.COMMISSIONED)
+        settings[2010] = code[0]
+        settings[2011] = address
+        settings.update(parameters)
+        for number, value in settings.items():
+            index = 0
+            if isinstance(number, tuple):
+                number, index = number
+            self._parameters.set(number, index, value)
+
+    def _reading(self, number, index):
+        """The value of a read-only parameter."""
+        process = self._process
+        if number == 52:
+            return process.zsw()
+        if number == 53:
+            return process.zsw2()
+        if number == 54:
+            return process.command_word()
+        if number == 20:
+            return process.setpoint_hz()
+        if number == 947:
+            return process.faults[index]
+        if number == 2018:
+            return process.image[index]
+        if 2024 <= number <= 2031:
+            return 0 if index else self._slave.counters[number - 2024]  # [1] is the BOP link
+        return process.hz()  # r0021 and r0024, which differ only in their filters
+
+    def _change_state(self):
+        """C, U or T: what the parameter lists call commissioning, running and ready."""
+        if self.state in (RUNNING, STOPPING):
+            return "U"
+        return "C" if self._parameters.ram[10][0] else "T"
+
+    def _changed(self, number):
+        """A parameter was written: most take effect at once, some when the reply is out."""
+        if number == SAVE or 2010 <= number <= 2013:
+            self._unsettled = True
+        elif number == SUPERVISION:
+            self._supervise()
+        if self.powered:
+            self._process.refresh()
+
+    def _settle(self):
+        """What had to wait for the end of the exchange: the settings of the link, P0971."""
+        if not self._unsettled:
+            return
+        self._unsettled = False
+        if self._parameters.ram[SAVE][0]:
+            self._parameters.store(SAVE, 0, 0, False)
+            self._parameters.save()
+        self._configure_link()
+
+    def _configure_link(self):
+        slave = self._slave
+        ram = self._parameters.ram
+        slave.baud = mm420.BAUD_CODES[ram[2010][0]]
+        slave.address = ram[2011][0]
+        slave.pzd_words = ram[2012][0]
+        slave.pkw_words = ram[2013][0]

@@ -1,0 +1,124 @@
+"""The parameter store of a simulated drive: RAM, EEPROM, and what may be put into them.
+
+It knows numbers, indices, types and ranges from the rows of a family (mm420.py). It knows no bus:
+who may write, and when, is the business of parameter_channel.py.
+
+    store = Parameters(mm420.ROWS, mm420.PERMITTED, reading)
+    store.set(1120, 0, 5.0)         # as from the drive's own keypad: RAM and EEPROM
+    store.get(1120, 0)              # 5.0
+
+A word is an int, U32 as well, and a float has single precision, because that is what the drive keeps.
+"""
+
+import struct
+
+# Columns of a row.
+NUMBER, NAME, TYPE, UNIT, INDICES, MINIMUM, MAXIMUM, DEFAULT, CHANGE, LEVEL, NOTE = range(11)
+
+# Objections to a value, numbered as in a reply with AK 7 (USS.md 3.6).
+OUT_OF_LIMITS = 2
+NOT_PERMITTED = 104
+
+
+def single(value):
+    """`value` as a float of single precision."""
+    return struct.unpack(">f", struct.pack(">f", value))[0]
+
+
+class Parameters:
+    """rows, permitted: a family's tables. reading(number, index) is the value of a read-only number.
+
+    ram[number] is the list of the values in force, by index; look, and change it through store().
+    """
+
+    def __init__(self, rows, permitted, reading):
+        self.rows = {row[NUMBER]: row for row in rows}
+        self.numbers = sorted(self.rows)
+        self.ram = {}
+        self._eeprom = {}
+        self._permitted = permitted
+        self._reading = reading
+        for row in rows:
+            if row[CHANGE]:
+                default = row[DEFAULT]
+                if not isinstance(default, tuple):
+                    default = (default,) * row[INDICES]
+                self.ram[row[NUMBER]] = list(default)
+        self.save()
+
+    def value(self, number, index):
+        """The present value of a number and index that exist."""
+        if number in self.ram:
+            return self.ram[number][index]
+        return self._reading(number, index)
+
+    def objection(self, number, index, value):
+        """The error number that forbids `value` here, or None."""
+        row = self.rows[number]
+        if not row[MINIMUM] <= value <= row[MAXIMUM]:  # written so that a float "not a number" fails
+            return OUT_OF_LIMITS
+        if value not in self._permitted.get(number, (value,)):
+            return NOT_PERMITTED
+        return None
+
+    def store(self, number, index, value, permanently):
+        """Keep a value that was checked, in RAM and, if `permanently`, in the EEPROM."""
+        self.ram[number][index] = value
+        if permanently:
+            self._eeprom[number][index] = value
+
+    def save(self):
+        """RAM to EEPROM, as P0971 does."""
+        self._eeprom = {number: list(values) for number, values in self.ram.items()}
+
+    def load(self):
+        """EEPROM to RAM, as at power-up."""
+        for number, values in self._eeprom.items():
+            self.ram[number][:] = values
+
+    def next_number(self, number):
+        """The next number above one that does not exist; 0 above the last."""
+        for candidate in self.numbers:
+            if candidate > number:
+                return candidate
+        return 0
+
+    # Behind the bus's back
+
+    def get(self, number, index=0):
+        """KeyError: no such number or index."""
+        self._find(number, index)
+        return self.value(number, index)
+
+    def set(self, number, index, value):
+        """Set RAM and EEPROM. KeyError: no such number or index. ValueError: not a value for it."""
+        row = self._find(number, index)
+        label = self.label(number, index)
+        if not row[CHANGE]:
+            raise ValueError(label + " is read-only")
+        if row[TYPE] != "F" and not isinstance(value, int):
+            raise ValueError("%s is a whole number, not %r" % (label, value))
+        if not isinstance(value, (int, float)):
+            raise ValueError("%s is a number, not %r" % (label, value))
+        objection = self.objection(number, index, value)
+        if objection == OUT_OF_LIMITS:
+            limits = (label, row[MINIMUM], row[MAXIMUM], row[UNIT], value)
+            raise ValueError("%s goes from %s to %s %s: %s does not" % limits)
+        if objection == NOT_PERMITTED:
+            raise ValueError("%s cannot be %s" % (label, value))
+        self.store(number, index, single(value) if row[TYPE] == "F" else value, True)
+
+    def label(self, number, index):
+        """As in the manuals: P2010[0], r0021; an index only where there are several."""
+        row = self.rows[number]
+        text = "%s%04d" % ("P" if row[CHANGE] else "r", number)
+        return "%s[%d]" % (text, index) if row[INDICES] > 1 else text
+
+    def _find(self, number, index):
+        row = self.rows.get(number)
+        if row is None:
+            raise KeyError("there is no parameter %s" % number)
+        if not 0 <= index < row[INDICES]:
+            label = self.label(number, 0).split("[")[0]
+            raise KeyError("%s has no index %s" % (label, index))
+        return row

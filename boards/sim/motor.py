@@ -1,0 +1,66 @@
+"""The motor of a simulated drive: its frequency as a path through time.
+
+It decides nothing: process.py tells it where to go and how fast. The path is a few corners with
+straight lines between them, laid when a command changes and only read afterwards. So the frequency
+at an instant is the same however often, or seldom, somebody asks for it.
+
+    motor.ramp(now_us, 25.0, 50.0, 10.0, 5.0)   # to 25 Hz; 0...50 Hz takes 10 s, 50...0 Hz 5 s
+    motor.hz(now_us + 1_000_000)                # 5.0
+
+Frequencies are signed, negative turns left. Times are microseconds of virtual time.
+"""
+
+COAST_HZ_PER_S = 10.0  # friction alone, as of a small fan; a choice, no source
+
+
+class Motor:
+    """end_us   when the path ends: from then on the frequency stays"""
+
+    def __init__(self):
+        self.end_us = 0
+        self._corners = [(0, 0.0)]  # (instant, frequency), the first is where the path began
+        self._order = None
+
+    def hz(self, now_us):
+        """Frequency at `now_us`, which is not before the last command."""
+        from_us, from_hz = self._corners[0]
+        for to_us, to_hz in self._corners:
+            if now_us < to_us:
+                return from_hz + (to_hz - from_hz) * (now_us - from_us) / (to_us - from_us)
+            from_us, from_hz = to_us, to_hz
+        return from_hz
+
+    def ramp(self, now_us, target_hz, full_hz, up_s, down_s):
+        """Go to `target_hz`, through standstill if the direction changes.
+
+        0...full_hz takes `up_s`, full_hz...0 takes `down_s`; 0 s means at once.
+        """
+        order = (target_hz, full_hz, up_s, down_s)
+        if order == self._order:
+            return  # on its way: laying the path anew would only add rounding errors
+        hz = self.hz(now_us)
+        self._order = order
+        self._corners = [(now_us, hz)]
+        self.end_us = now_us
+        if hz * target_hz < 0:
+            self._go(0.0, hz, full_hz, down_s)
+            hz = 0.0
+        slowing = abs(target_hz) < abs(hz)
+        self._go(target_hz, target_hz - hz, full_hz, down_s if slowing else up_s)
+
+    def hold(self, now_us):
+        """Stay at the present frequency."""
+        self.ramp(now_us, self.hz(now_us), 1.0, 0.0, 0.0)
+
+    def jump(self, now_us, target_hz):
+        """Be at `target_hz` at once."""
+        self.ramp(now_us, target_hz, 1.0, 0.0, 0.0)
+
+    def coast(self, now_us):
+        """Pulses off: friction brings it to standstill."""
+        self.ramp(now_us, 0.0, COAST_HZ_PER_S, 1.0, 1.0)
+
+    def _go(self, target_hz, change_hz, full_hz, full_s):
+        if full_hz:
+            self.end_us += int(abs(change_hz) * full_s * 1e6 / full_hz + 0.5)
+        self._corners.append((self.end_us, target_hz))

@@ -1,0 +1,165 @@
+"""The script language of the simulated panel: one command a line, for people and for tests.
+
+    press START          # a tap; everything after # is a comment
+    wait 5000
+    expect RUNNING
+
+The commands are the table COMMANDS. A line that cannot be understood is a ScriptError that names
+script and line; an expectation that fails is an ExpectationFailed that shows the display.
+"""
+
+
+class ScriptError(Exception):
+    """A line that is no command. Text: script:line: what is wrong."""
+
+
+class ExpectationFailed(Exception):
+    """The display does not show what was expected. Text: script:line: what, and the display."""
+
+
+class Script:
+    """world: a `World`. name: of the script, for messages. show: takes each line of output."""
+
+    def __init__(self, world, name="script", show=print):
+        self.world = world
+        self.show = show
+        self._name = name
+        self._line = 0
+
+    def run(self, lines):
+        """Do what the lines say, one after the other."""
+        for line in lines:
+            self._line += 1
+            self.do(line)
+
+    def do(self, line):
+        """Do one line; blank lines and comments are nothing to do."""
+        words = line.split("#", 1)[0].split()
+        if not words:
+            return
+        name = words[0]
+        if name not in COMMANDS:
+            raise self._error("unknown command %s (there are: %s)" % (name, " ".join(ORDER)))
+        usage, readers, optional, command = COMMANDS[name]
+        arguments = words[1:]
+        if readers and readers[-1] is text:
+            arguments = arguments[: len(readers) - 1] + [" ".join(arguments[len(readers) - 1 :])]
+            if not arguments[-1]:
+                arguments.pop()
+        if not len(readers) - optional <= len(arguments) <= len(readers):
+            raise self._error("use: %s" % usage)
+        try:
+            values = [reader(self.world, word) for reader, word in zip(readers, arguments)]
+            command(self, *values)
+        except (ValueError, KeyError) as error:
+            raise self._error("%s (use: %s)" % (error.args[0], usage))
+
+    # --- what the commands do -------------------------------------------------------------------
+
+    def lcd(self):
+        for row in self.world.lcd():
+            self.show("|%s|" % row)
+
+    def bus(self, count):
+        for at_us, from_panel, characters in self.world.wire.log.last(count):
+            shown = " ".join("%02X" % character for character in characters)
+            self.show("%10d %s %s" % (at_us, ">" if from_panel else "<", shown))
+
+    def param(self, drive, parameter, value=None):
+        number, index = parameter
+        if value is not None:
+            drive.write(number, index, value)
+        self.show("%s=%s" % (parameter_name(number, index), drive.read(number, index)))
+
+    def expect(self, wanted):
+        if not self.world.reads(wanted):
+            raise ExpectationFailed(
+                "%s:%d: expected %s, the display shows\n|%s|\n|%s|"
+                % ((self._name, self._line, wanted) + self.world.lcd())
+            )
+
+    def _error(self, message):
+        return ScriptError("%s:%d: %s" % (self._name, self._line, message))
+
+
+# --- how arguments are read: the world and a word -> a value, or ValueError -----------------------
+
+
+def key(world, word):
+    if word not in world.keypad.names:
+        raise ValueError("no key %s: there are %s" % (word, " ".join(world.keypad.names)))
+    return word
+
+
+def milliseconds(world, word):
+    if not word.isdigit():
+        raise ValueError("%s is no number of milliseconds" % word)
+    return int(word)
+
+
+def count(world, word):
+    if not word.isdigit():
+        raise ValueError("%s is no number" % word)
+    return int(word)
+
+
+def drive(world, word):
+    if not word.isdigit() or int(word) not in world.drives:
+        there = " ".join(str(address) for address in sorted(world.drives))
+        raise ValueError("no drive at address %s: there are %s" % (word, there))
+    return world.drives[int(word)]
+
+
+def parameter(world, word):
+    """P0700, P0700[0], r0021: number and index."""
+    digits, _, rest = word[1:].partition("[")
+    index = rest[:-1] if rest.endswith("]") else "0" if not rest and "[" not in word else ""
+    if word[:1] not in ("P", "p", "r") or not digits.isdigit() or not index.isdigit():
+        raise ValueError("%s is no parameter like P0700[0]" % word)
+    return int(digits), int(index)
+
+
+def value(world, word):
+    try:
+        return float(word) if "." in word else int(word)
+    except ValueError:
+        raise ValueError("%s is no number" % word)
+
+
+def fault(world, word):
+    if word[:1] != "F" or not word[1:].isdigit():
+        raise ValueError("%s is no fault like F0001" % word)
+    return int(word[1:])
+
+
+def text(world, words):
+    return words
+
+
+def parameter_name(number, index):
+    return "P%04d[%d]" % (number, index)
+
+
+# Command: usage, readers of its arguments, how many of the last may be left out, what it does.
+COMMANDS = {
+    "press": ("press KEY", (key,), 0, lambda script, key: script.world.press(key)),
+    "hold": ("hold KEY MS", (key, milliseconds), 0, lambda script, key, ms: script.world.press(key, ms)),
+    "down": ("down KEY", (key,), 0, lambda script, key: script.world.down(key)),
+    "up": ("up KEY", (key,), 0, lambda script, key: script.world.up(key)),
+    "wait": ("wait MS", (milliseconds,), 0, lambda script, ms: script.world.run(ms)),
+    "lcd": ("lcd", (), 0, Script.lcd),
+    "bus": ("bus N", (count,), 0, Script.bus),
+    "drive": ("drive A", (drive,), 0, lambda script, drive: script.show(drive.report())),
+    "param": ("param A P0700[0] [VALUE]", (drive, parameter, value), 1, Script.param),
+    "fault": ("fault A F0001", (drive, fault), 0, lambda script, drive, number: drive.fault(number)),
+    "unplug": ("unplug A", (drive,), 0, lambda script, drive: drive.unplug()),
+    "plug": ("plug A", (drive,), 0, lambda script, drive: drive.plug()),
+    "hang": ("hang MS", (milliseconds,), 0, lambda script, ms: script.world.hang(ms)),
+    "reset": ("reset", (), 0, lambda script: script.world.reset()),
+    "expect": ("expect TEXT", (text,), 0, Script.expect),
+}  # fmt: skip
+
+ORDER = (
+    "press", "hold", "down", "up", "wait", "lcd", "expect", "bus", "drive", "param", "fault",
+    "unplug", "plug", "hang", "reset",
+)  # fmt: skip

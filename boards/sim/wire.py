@@ -1,0 +1,509 @@
+"""The RS-485 line: who talks when, exact to the character, and the rules of the line.
+
+It carries characters of 11 bits (8E1) between stations and judges their timing; what they mean is
+none of its business. A telegram costs one event, at its end: a station that wants to see single
+characters come in asks the burst how many have arrived by now.
+
+    wire = Wire(clock, 19200)
+    wire.attach(drive)
+    wire.talk(drive, reply, 16)
+    wire.violations                     # ["at 1146: ..."] when somebody broke a rule
+
+A station has these attributes, all but the first optional:
+    hear(burst)         called when somebody else's burst has ended
+    watch(burst)        called when it begins
+    name                for the texts of the violations
+    has_driver_enable   True: its driver is switched by Wire.drive, and judged; any other station's
+                        transceiver switches by itself, without fault
+    is_panel            True: its telegrams are the panel's in the log
+"""
+
+from array import array
+
+from boards.sim.clock import Event
+
+BURST_LIMIT = 260  # the longest telegram has 256 characters
+LOG_TELEGRAMS = 1000
+LOG_CHARACTERS = 32768
+VIOLATION_LIMIT = 100
+
+# Instants are whole microseconds, ends of characters are rounded down: a silence that was measured
+# may be this much shorter than the one that was kept.
+ROUNDING_US = 1
+
+# The rules of the line: what a breach reads like. {us} is the figure measured, {start} the start
+# interval and {character} one character, both in microseconds.
+SHORT_SILENCE = "{name} talks after {us} us of silence, the start interval is {start} us"
+COLLISION = "{name} talks while {other} talks, {us} us before the end of its last stop bit"
+DRIVER_ON_INTO = "{name} enables its driver while {other} talks, {us} us before its end"
+DRIVER_ON_UNDER = "{name} talks while {other} holds its driver enabled, since {us} us"
+DRIVER_MISSING = "{name} talks with its driver disabled, {us} us of characters are lost"
+DRIVER_CUTS = "{name} disables its driver {us} us before the end of its last stop bit"
+DRIVER_EARLY = (
+    "{name} has its driver enabled {us} us before the first start bit, allowed are {character} us"
+)
+DRIVER_LATE = (
+    "{name} has its driver enabled {us} us after its last stop bit, allowed are {character} us"
+)
+DRIVER_IDLE = "{name} has its driver enabled for {us} us without sending"
+
+
+class Burst:
+    """Characters back to back from one talker. It belongs to the wire, which will use it again.
+
+    data        as received: what a collision garbled has been inverted already
+    count       how many characters; a cut burst keeps those that were complete
+    start_us    first start bit; end_us: end of the last stop bit, or the cut
+    silence_us  how long nobody had talked before it
+    ends        ends[i] is the end of character i, in microseconds after start_us
+    garbled     somebody else talked, or held a driver enabled, at the same time
+    """
+
+    def __init__(self, ends, character_us):
+        self.data = bytearray(BURST_LIMIT)
+        self.count = 0
+        self.start_us = 0
+        self.end_us = 0
+        self.silence_us = 0
+        self.ends = ends
+        self.garbled = False
+        self._character_us = character_us
+
+    def arrived(self, now_us):
+        """How many characters are over, stop bit included, at `now_us`."""
+        if now_us >= self.end_us:
+            return self.count
+        elapsed = now_us - self.start_us
+        count = elapsed // self._character_us  # rounded up, so this is never too many
+        while self.ends[count] <= elapsed:
+            count += 1
+        return count
+
+    def append(self, data, count):
+        """Take `count` characters behind those that are there."""
+        mine = self.data
+        at = self.count
+        flip = 0xFF if self.garbled else 0
+        for i in range(count):
+            mine[at + i] = data[i] ^ flip
+        self.count = at + count
+        self.end_us = self.start_us + self.ends[at + count - 1]
+
+    def garble(self, now_us):
+        """Invert what has not arrived yet."""
+        if self.garbled:
+            return
+        for i in range(self.arrived(now_us), self.count):
+            self.data[i] ^= 0xFF
+        self.garbled = True
+
+
+class _Tap:
+    """A station's place on the line: its burst, and its driver if that one is switched."""
+
+    def __init__(self, wire, station):
+        self.wire = wire
+        self.station = station
+        self.name = getattr(station, "name", "a station")
+        self.from_panel = getattr(station, "is_panel", False)
+        self.hear = station.hear
+        self.watch = getattr(station, "watch", None)
+        self.attached_us = wire.clock.now_us
+        self.burst = Burst(wire.ends, wire.character_us)
+        self.talking = False  # the burst is on the line
+        self.end = Event(self.ended)
+        self.has_driver_enable = getattr(station, "has_driver_enable", False)
+        self.driving = False
+        self.driver_on_us = 0
+        self.driver_needed_us = 0  # until when there was a reason to have it enabled
+        self.driver_judged = False
+
+    def ended(self):
+        self.wire._ended(self)
+
+
+class Wire:
+    """The line and its referee.
+
+    baud                bits a second
+    character_us        one character, rounded up
+    start_interval_us   two characters, rounded up: silence that must precede a telegram (USS
+                        specification 5.1.2)
+    log                 the last 1000 telegrams
+    violation_count     how many breaches were noted; `violations` tells the first 100
+    """
+
+    def __init__(self, clock, baud):
+        self.clock = clock
+        self.baud = baud
+        self.character_us = -(-11_000_000 // baud)
+        self.start_interval_us = -(-22_000_000 // baud)
+        self.ends = array("i", [(i + 1) * 11_000_000 // baud for i in range(BURST_LIMIT)])
+        self.log = Log()
+        self._taps = {}
+        self._attached = []
+        self._talkers = 0
+        self._drivers = 0
+        # Before the world began the line was quiet for a second.
+        self._idle_since_us = -1_000_000
+        self.violation_count = 0
+        self._broken = [[0, None, "", "", 0] for _ in range(VIOLATION_LIMIT)]
+
+    # Stations
+
+    def attach(self, station):
+        """Put `station` on the line; it hears the bursts that begin from now on."""
+        if station in self._taps:
+            raise ValueError("the station is on the line already")
+        tap = _Tap(self, station)
+        self._taps[station] = tap
+        # A new list, because a station may come or go while the old one is being walked.
+        self._attached = self._attached + [tap]
+
+    def detach(self, station):
+        """Take `station` off the line; what it is sending is cut."""
+        tap = self._taps.get(station)
+        if tap is None:
+            return
+        self.silence(station)
+        self.drive(station, False)
+        del self._taps[station]
+        self._attached = [other for other in self._attached if other is not tap]
+
+    # Talking
+
+    def talk(self, station, data, count):
+        """Send data[:count] from now on, characters back to back; the burst ends by itself.
+
+        While the station's own burst is still going, the characters follow it without a gap.
+        Returns the Burst, whose end_us says when the last stop bit is over, also where the
+        characters do not reach the line; None where the station is not attached.
+        ValueError: no characters, or more than a burst holds.
+        """
+        tap = self._taps.get(station)
+        if tap is None:
+            return None
+        burst = tap.burst
+        now = self.clock.now_us
+        if burst.end_us > now:
+            return self._prolong(tap, data, count)
+        if not 0 < count <= BURST_LIMIT:
+            raise ValueError("a burst has 1...260 characters")
+        if tap.talking:  # it ends at this very instant
+            self._ended(tap)
+        self._begin(burst, now)
+        if tap.has_driver_enable and not tap.driving:
+            burst.append(data, count)
+            self._violate(DRIVER_MISSING, tap, burst.end_us - now)
+            return burst
+        self._judge_start(tap, now)
+        burst.append(data, count)
+        tap.driver_needed_us = burst.end_us
+        tap.driver_judged = False
+        tap.talking = True
+        self._talkers += 1
+        self.clock.schedule(tap.end, burst.end_us)
+        for other in self._attached:
+            if other.watch is not None and other is not tap:
+                other.watch(burst)
+        return burst
+
+    def _begin(self, burst, now):
+        burst.count = 0
+        burst.start_us = now
+        burst.end_us = now
+        burst.garbled = False
+        burst.silence_us = 0 if self._talkers else now - self._idle_since_us
+
+    def _prolong(self, tap, data, count):
+        burst = tap.burst
+        if not 0 < count <= BURST_LIMIT - burst.count:
+            raise ValueError("a burst has 1...260 characters")
+        burst.append(data, count)
+        if tap.talking:
+            tap.driver_needed_us = burst.end_us
+            self.clock.schedule(tap.end, burst.end_us)
+        return burst
+
+    def _judge_start(self, tap, now):
+        burst = tap.burst
+        if tap.has_driver_enable:
+            self._judge_driver(tap, DRIVER_EARLY, now)
+        if self._talkers:
+            self._settle(now)
+        if self._talkers:
+            other = self._talker()
+            self._violate(COLLISION, tap, other.burst.end_us - now, other)
+            self._garble(now)
+            burst.garbled = True
+        elif burst.silence_us < self.start_interval_us - ROUNDING_US:
+            self._violate(SHORT_SILENCE, tap, burst.silence_us)
+        if self._drivers > (1 if tap.driving else 0):
+            other = self._driver_but(tap)
+            self._violate(DRIVER_ON_UNDER, tap, now - other.driver_on_us, other)
+            burst.garbled = True
+
+    def silence(self, station):
+        """Cut what `station` is sending now: its power failed, its plug was pulled, its chip reset.
+
+        The characters that are complete by now were sent; what follows was not.
+        """
+        tap = self._taps.get(station)
+        if tap is not None:
+            self._cut(tap)
+
+    def _cut(self, tap):
+        burst = tap.burst
+        now = self.clock.now_us
+        if burst.end_us <= now:
+            return
+        burst.count = burst.arrived(now)
+        burst.end_us = now
+        tap.driver_needed_us = now
+        if tap.talking:
+            self.clock.cancel(tap.end)
+            self._ended(tap)
+
+    def _ended(self, tap):
+        self.clock.cancel(tap.end)
+        burst = tap.burst
+        tap.talking = False
+        self._talkers -= 1
+        self._idle_since_us = burst.end_us
+        if not burst.count:
+            return
+        self.log.add(burst, tap.from_panel)
+        for other in self._attached:
+            # Who was plugged in meanwhile has missed the beginning.
+            if other is not tap and other.attached_us <= burst.start_us:
+                other.hear(burst)
+
+    def _settle(self, now):
+        """End the bursts that are over at this very instant, though their event is yet to come."""
+        for tap in self._attached:
+            if tap.talking and tap.burst.end_us <= now:
+                self._ended(tap)
+
+    def _garble(self, now):
+        for tap in self._attached:
+            if tap.talking:
+                tap.burst.garble(now)
+
+    def _talker(self):
+        for tap in self._attached:
+            if tap.talking:
+                return tap
+
+    def _driver_but(self, talker):
+        for tap in self._attached:
+            if tap.driving and tap is not talker:
+                return tap
+
+    # Driver enable
+
+    def drive(self, station, on):
+        """The driver enable of `station`, which announced `has_driver_enable`, goes on or off."""
+        tap = self._taps.get(station)
+        if tap is None or tap.driving == on:
+            return
+        now = self.clock.now_us
+        tap.driving = on
+        if on:
+            self._drivers += 1
+            tap.driver_on_us = now
+            tap.driver_needed_us = now
+            tap.driver_judged = False
+            if self._talkers:
+                self._settle(now)
+            if self._talkers:
+                other = self._talker()
+                self._violate(DRIVER_ON_INTO, tap, other.burst.end_us - now, other)
+                self._garble(now)
+            return
+        self._drivers -= 1
+        if tap.talking and tap.burst.end_us > now:
+            self._violate(DRIVER_CUTS, tap, tap.burst.end_us - now)
+            self._cut(tap)
+        else:
+            self._judge_driver(tap, DRIVER_LATE, now)
+
+    def _judge_driver(self, tap, rule, now):
+        """The driver is enabled for one character, at the most, before and after what it sends."""
+        needless_us = now - tap.driver_needed_us
+        if needless_us <= self.character_us or tap.driver_judged:
+            return
+        tap.driver_judged = True
+        if rule is DRIVER_LATE and tap.driver_needed_us == tap.driver_on_us:
+            rule = DRIVER_IDLE
+        self._violate(rule, tap, needless_us)
+
+    # The referee's book
+
+    def _violate(self, rule, tap, us, other=None):
+        # Kept as figures and made into texts later: this may run in an interrupt handler.
+        if self.violation_count < VIOLATION_LIMIT:
+            entry = self._broken[self.violation_count]
+            entry[0] = self.clock.now_us
+            entry[1] = rule
+            entry[2] = tap.name
+            entry[3] = other.name if other is not None else ""
+            entry[4] = us
+        self.violation_count += 1
+
+    @property
+    def violations(self):
+        """Texts "at <us>: <who> <what, figure>" of the rules broken, the first 100.
+
+        A driver that is enabled for too long is noted when it goes off, or here.
+        """
+        for tap in self._attached:
+            if tap.driving and not tap.talking:
+                self._judge_driver(tap, DRIVER_LATE, self.clock.now_us)
+        texts = []
+        for at_us, rule, name, other, us in self._broken[: self.violation_count]:
+            text = rule.format(
+                name=name, other=other, us=us, start=self.start_interval_us,
+                character=self.character_us,
+            )
+            texts.append("at %d: %s" % (at_us, text))
+        return texts
+
+
+class Log:
+    """The last 1000 telegrams; fewer where they are longer than 32 characters on the average.
+
+    Their characters lie one behind the other in a ring, so that keeping them takes no heap.
+    """
+
+    def __init__(self):
+        self._ring = bytearray(LOG_CHARACTERS)
+        self._start_us = array("q", [0] * LOG_TELEGRAMS)
+        self._length = array("H", [0] * LOG_TELEGRAMS)
+        self._from_panel = bytearray(LOG_TELEGRAMS)
+        self._next = 0  # where the next telegram's row goes
+        self._head = 0  # where its first character goes
+        self.count = 0  # telegrams ever
+
+    def add(self, burst, from_panel):
+        row = self._next
+        self._start_us[row] = burst.start_us
+        self._length[row] = burst.count
+        self._from_panel[row] = from_panel
+        self._next = row + 1 if row + 1 < LOG_TELEGRAMS else 0
+        self.count += 1
+        ring = self._ring
+        data = burst.data
+        at = self._head
+        for i in range(burst.count):
+            ring[at] = data[i]
+            at += 1
+            if at == LOG_CHARACTERS:
+                at = 0
+        self._head = at
+
+    def last(self, n):
+        """The last `n` telegrams, oldest first, as tuples (start_us, from_panel, bytes)."""
+        telegrams = []
+        row = self._next
+        end = self._head
+        room = LOG_CHARACTERS
+        for _ in range(min(n, self.count, LOG_TELEGRAMS)):
+            row = row - 1 if row else LOG_TELEGRAMS - 1
+            length = self._length[row]
+            room -= length
+            if room < 0:
+                break
+            start = (end - length) % LOG_CHARACTERS
+            text = bytes(self._ring[start:end])
+            if start > end:
+                text = bytes(self._ring[start:]) + bytes(self._ring[:end])
+            telegrams.append((self._start_us[row], bool(self._from_panel[row]), text))
+            end = start
+        telegrams.reverse()
+        return telegrams
+
+
+class Transceiver:
+    """The RS-485 chip that joins a UART and its driver enable pin to the line: one station.
+
+    Receiver and driver share the enable pin, so the UART hears the line while the pin is low and
+    never itself.
+    """
+
+    has_driver_enable = True
+    is_panel = True
+
+    def __init__(self, wire, uart, enable_pin, name="panel"):
+        if uart.baud != wire.baud:
+            raise ValueError("the line runs at %d baud" % wire.baud)
+        self.name = name
+        self._wire = wire
+        self._clock = wire.clock
+        self._uart = uart
+        self._deaf = False
+        self._burst = None  # what is coming in
+        self._taken = 0  # how many of its characters the UART has had
+        wire.attach(self)
+        enable_pin.on_change = self._enable
+        self._enable(enable_pin.value())
+        uart.line = self
+
+    def send(self, data, count):
+        """Called by the UART. Returns when the last stop bit will be over, in virtual time."""
+        burst = self._wire.talk(self, data, count)
+        return burst.end_us
+
+    def unplug(self):
+        """The chip is gone: cut what it sends, leave the line."""
+        self._uart.line = None
+        self._wire.detach(self)
+
+    def _enable(self, on):
+        self.collect()
+        on = bool(on)
+        burst = self._burst
+        if burst is not None:
+            self._switch_within(burst, on)
+        self._deaf = on
+        self._wire.drive(self, on)
+
+    def _switch_within(self, burst, on):
+        if on and self._taken:
+            self._uart.quiet_since(burst.start_us + burst.ends[self._taken - 1])
+        if not on and self._taken < burst.count:
+            begun_us = burst.ends[self._taken - 1] if self._taken else 0
+            if burst.start_us + begun_us < self._clock.now_us:
+                self._taken += 1  # the character in which the receiver comes on is lost as well
+
+    def watch(self, burst):
+        # Of two talkers at once, the first one is watched character by character.
+        now = burst.start_us
+        if self._burst is None or self._burst is burst or self._burst.end_us <= now:
+            self._burst = burst
+            self._taken = 0
+
+    def hear(self, burst):
+        self.collect()
+        if burst is self._burst:
+            self._burst = None
+        elif not self._deaf:
+            # The other one of two talkers comes in as one piece of garbage.
+            self._uart.receive(burst.data, 0, burst.count)
+        if not self._deaf:
+            self._uart.quiet_since(burst.end_us)
+
+    def collect(self):
+        """Hand the UART the characters that have arrived by now."""
+        burst = self._burst
+        if burst is None:
+            return
+        arrived = burst.arrived(self._clock.now_us)
+        if arrived > self._taken:
+            if not self._deaf:
+                self._uart.receive(burst.data, self._taken, arrived)
+            self._taken = arrived
+
+    def receiving(self):
+        """Whether a burst is coming in and a character of it has arrived."""
+        self.collect()
+        return self._burst is not None and self._taken > 0 and not self._deaf

@@ -1,0 +1,99 @@
+"""The application: engine, panel and settings put together on a board.
+
+    app = App(board)
+    app.start()
+    while True: app.step()          # the main loop: keys, panel, a piece of the display
+    app.close()                     # every drive is stopped first
+
+The bus runs by interrupts beside the loop (`hal.pacer`), and each watches the other: the engine
+sends ON only while `step` refreshes it, and `step` feeds the watchdog only while the engine works.
+"""
+
+from micropython import const
+
+import settings as settings_module
+from hal.pacer import Pacer
+from panel.control import Control
+from panel.panel import Panel
+from uss.master import Master
+from uss.survey import Survey
+from uss.timing import Timing, elapsed
+
+ENGINE_DEAD_MS = const(500)  # the engine works at least every 300 ms
+CLOSE_MS = const(1_000)  # for the drives to answer their OFF1, and a little for each of them
+CLOSE_PER_DRIVE_MS = const(100)
+
+
+class App:
+    """board: contract of `hal`. Nothing is sent before `start`."""
+
+    def __init__(self, board):
+        self.board = board
+        self.settings = settings = settings_module.load(board.store)
+        mask = board.clock.ticks_mask
+        self.link = board.make_link(settings.baud)
+        timing = Timing(settings.baud, settings.reply_timeout_ms * 1000)
+        self.bus = Master(self.link, timing, mask, settings.lost_ms * 1000)
+        self.pacer = Pacer(
+            self.bus, self.link, board.clock, board.timer, board.disable_irq, board.enable_irq
+        )
+        controls = []
+        for address in settings.drives:
+            drive = self.bus.add(address)
+            controls.append(Control(drive, Survey(drive, mask), self.bus, mask, settings))
+        self.panel = Panel(controls, self.bus, board.keypad.names, settings, mask)
+        self._mask = mask
+        self._runs = 0  # pacer.runs as last seen, and when it moved
+        self._worked_at_ms = 0
+
+    def start(self):
+        self._worked_at_ms = self.board.clock.ticks_ms()
+        self.bus.refresh(self.board.clock.ticks_us())
+        self.pacer.start()
+
+    def step(self):
+        """One turn of the main loop, 2 ms of work at most; ends in the board's `idle`."""
+        board = self.board
+        clock = board.clock
+        now_ms = clock.ticks_ms()
+        self.bus.refresh(clock.ticks_us())
+        self.pacer.tend()
+        self.panel.step(board.keypad.read(), now_ms, clock.ticks_us())
+        board.display.show(self.panel.screen.picture)
+        if self._engine_works(now_ms):
+            board.watchdog.feed()
+        board.idle()
+
+    def close(self):
+        """Stop every drive, wait for its answer as long as it may take, and leave no interrupt.
+
+        Whatever interrupts the waiting, the link is closed in the end.
+        """
+        try:
+            self.bus.stop_all()
+            clock = self.board.clock
+            began_ms = clock.ticks_ms()
+            patience_ms = CLOSE_MS + CLOSE_PER_DRIVE_MS * len(self.bus.drives)
+            while not self._all_stopped():
+                if elapsed(clock.ticks_ms(), began_ms, self._mask) > patience_ms:
+                    break
+                self.pacer.tend()
+                self.board.watchdog.feed()
+                self.board.idle()
+        finally:
+            self.bus.close()
+            self.pacer.stop()
+
+    def _all_stopped(self):
+        """Whether every drive in contact has answered OFF1, and the others were sent it."""
+        for drive in self.bus.drives:
+            if drive.urgent != drive.served or (drive.contact and not drive.answered_off):
+                return False
+        return True
+
+    def _engine_works(self, now_ms):
+        if self.pacer.runs != self._runs:
+            self._runs = self.pacer.runs
+            self._worked_at_ms = now_ms
+            return True
+        return elapsed(now_ms, self._worked_at_ms, self._mask) < ENGINE_DEAD_MS

@@ -1,0 +1,59 @@
+"""What a board gives the panel: small contracts, and drivers that fulfil them.
+
+A driver is handed the objects of the chip (UART, Pin, Timer ...) and uses them; it imports no
+`machine` and can therefore run on the simulated chip, the same bytes. A board file
+(`boards/<name>/board.py`) builds the objects and is the only place that knows pins. The app takes
+the board as it is and builds no hardware.
+
+A contract is a duck type: whatever has these names and keeps these promises will do. "Interrupt"
+means that the caller may be a hard interrupt: such a method allocates nothing and uses no float.
+
+board
+    name                text, at most 16 characters
+    clock               see below
+    display, keypad, store, watchdog   see below
+    timer               a machine.Timer of its own for the bus, or None: then the main loop paces it
+    make_link(baud)     builds the link for that baud rate; called once
+    idle()              end of every step of the main loop: lets the rest of the machine work, <= 2 ms
+    disable_irq() -> state, enable_irq(state)    as in `machine`
+
+clock
+    ticks_us() -> int   interrupt. Microseconds since some instant; wraps to 0 after ticks_mask
+    ticks_ms() -> int   milliseconds, wraps to 0 after ticks_mask
+    ticks_mask          period - 1 of both: 2**n - 1, at most 2**30 - 1 (a 31-bit small integer)
+
+link                    half duplex; the driver enable is the link's affair
+    interrupts          True: on_activity is called without anyone asking; False: it must be polled
+    resolution_us       how much later than they happened received_at and sent_at may say things happened
+    on_activity         None or a function of no arguments; called (interrupt) when a burst of
+                        characters has ended and when sending has ended
+    send(buffer, count) interrupt. Begins to send the first `count` characters; buffer stays untouched
+                        by the caller until sending_us answers 0
+    sending_us(now)     interrupt. Microseconds until the last stop bit has left and the driver is
+                        off, at least 1; 0 when that is over
+    sent_at             clock.ticks_us() of that instant
+    receive(buffer, at) -> int   interrupt. Moves what was received to buffer[at:], as far as there
+                        is room, and answers how many characters. Whoever calls it processes them:
+                        a look may use up the interrupt that would have announced them.
+    received_at         clock.ticks_us() of the end of the last of them
+    close()             driver off, nothing sent any more, no interrupt left
+
+timer                   of the chip: init(mode=timer.ONE_SHOT, period=us, tick_hz=1_000_000,
+                        callback=function of the timer), deinit(); both may be called in an interrupt
+
+display
+    rows, columns       2 and 16
+    show(picture)       picture: bytearray of 32 character codes, row by row. Brings the display a
+                        bounded piece (<= 1 ms of work) nearer to it; answers whether it shows it all
+
+keypad
+    names               names of the keys, in the order of their bits: "START", "STOP", ...
+    read() -> int       the keys that are down now, as bits. A reading that is ambiguous is 0.
+
+store                   keeps one small file over power cuts
+    read() -> bytes or None
+    replace(data)       all or nothing: after a power cut either the old or the new data are there
+
+watchdog
+    feed()              the first call starts it; 2 s without a further call restart the chip
+"""

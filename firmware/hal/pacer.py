@@ -1,0 +1,106 @@
+"""Calls the bus engine when something is due, from whatever the port offers.
+
+The receive interrupt, a one-shot timer and the main loop all end in `run`, which enters the engine
+once at a time and re-arms the timer for what the engine asks. So interrupt and polled operation
+share one path. An exception in the engine must not get out: a hard interrupt that raises is
+disabled for good by MicroPython. It is counted, every ON is taken back, and the engine begins anew.
+
+    pacer = Pacer(bus, link, board.clock, board.timer, board.disable_irq, board.enable_irq)
+    pacer.start()
+    ... each step of the main loop: pacer.tend()
+    pacer.stop()
+"""
+
+from micropython import const
+
+POLL_US = const(1_000)  # how often a link without interrupts is looked at
+RETRY_US = const(10_000)  # after an exception in the engine
+OVERDUE_US = const(50_000)  # a timer that is so late is not waited for any more
+ROUNDS_MAX = const(4)  # entries in a row for events that came meanwhile; the timer takes the rest
+
+
+class Pacer:
+    """engine: has poll(now) -> microseconds, and recover(). link, clock, timer: contracts of `hal`.
+
+    Fields to look at: `runs` (entries into the engine, 16 bit, wraps) and `failure` (the exception
+    caught last; the engine counts them).
+    """
+
+    def __init__(self, engine, link, clock, timer, disable_irq, enable_irq):
+        self.runs = 0
+        self.failure = None
+        self._engine = engine
+        self._link = link
+        self._ticks_us = clock.ticks_us
+        self._mask = clock.ticks_mask
+        self._timer = timer
+        self._disable_irq = disable_irq
+        self._enable_irq = enable_irq
+        self._inside = False
+        self._again = False
+        self._stopped = True
+        self._due_at = 0
+        self._on_timer = self._timer_fired  # bound once: binding allocates
+        self._on_activity = self.run
+
+    def start(self):
+        self._stopped = False
+        self._link.on_activity = self._on_activity
+        self.run()
+
+    def stop(self):
+        """No interrupt enters the engine any more; the link is closed."""
+        self._stopped = True
+        if self._timer:
+            self._timer.deinit()
+        self._link.on_activity = None
+        self._link.close()
+
+    def tend(self):
+        """From the main loop: drives the engine where there is no timer, and wakes a stuck one."""
+        late_us = (self._ticks_us() - self._due_at) & self._mask
+        if self._timer is None or OVERDUE_US < late_us <= self._mask >> 1:
+            self.run()
+
+    def run(self):
+        """Enter the engine unless somebody is inside; then have it entered once more."""
+        irq = self._disable_irq()
+        if self._inside or self._stopped:
+            self._again = True
+            self._enable_irq(irq)
+            return
+        self._inside = True
+        self._enable_irq(irq)
+        rounds = 0
+        while True:
+            self._again = False
+            self._arm(self._enter())
+            rounds += 1
+            irq = self._disable_irq()
+            if not self._again or rounds == ROUNDS_MAX:
+                self._inside = False
+                self._enable_irq(irq)
+                return
+            self._enable_irq(irq)
+
+    def _enter(self):
+        self.runs = (self.runs + 1) & 0xFFFF
+        try:
+            return self._engine.poll(self._ticks_us())
+        except Exception as failure:
+            self.failure = failure
+            self._engine.recover()
+            return RETRY_US
+
+    def _arm(self, after_us):
+        if not self._link.interrupts and after_us > POLL_US:
+            after_us = POLL_US
+        self._due_at = (self._ticks_us() + after_us) & self._mask
+        timer = self._timer
+        if timer and not self._stopped:
+            timer.init(
+                mode=timer.ONE_SHOT, period=after_us, tick_hz=1_000_000, callback=self._on_timer
+            )
+
+    def _timer_fired(self, _timer):
+        self.run()

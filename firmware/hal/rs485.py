@@ -1,0 +1,121 @@
+"""A half-duplex RS-485 link over a UART, a driver-enable pin and a one-shot timer.
+
+Fulfils the contract `link` of `hal`. The timer ends the transmission: it fires when the last stop
+bit should have left, looks whether it has, and drops the driver enable. That is exact where timer
+callbacks run at once (the simulated chip, hard timers). A port whose timers wait for the garbage
+collector cannot promise it; wire a transceiver with automatic direction there.
+
+The pin must be low before the UART is made: a driver that is on while the chip boots blocks the line.
+"""
+
+from micropython import const
+
+# The RP2040 reports the end of a burst 32 bit times after its last character (PL011 manual,
+# receive time-out). The burst therefore ended that long before the interrupt.
+IDLE_BITS = const(32)
+
+POLLED_RESOLUTION_US = const(5_000)  # how late a polled link may be looked at
+RELEASES_MAX = const(16)  # looks at the transmitter, a quarter of a character apart, before giving up
+
+
+class Rs485Link:
+    """uart: 8E1 at `baud`, buffers of at least 256 characters. driver_enable: a Pin, 1 sends.
+
+    timer: its own, for the driver enable only. interrupts: False where the UART has none.
+    """
+
+    def __init__(self, uart, driver_enable, timer, clock, baud, interrupts=True):
+        self.on_activity = None
+        self.interrupts = interrupts
+        self.received_at = 0
+        self.sent_at = 0
+        self.late_releases = 0  # transmissions that did not end when they should have
+        self._idle_us = IDLE_BITS * 1_000_000 // baud
+        self.resolution_us = self._idle_us if interrupts else POLLED_RESOLUTION_US
+        self._uart = uart
+        self._driver_enable = driver_enable
+        self._timer = timer
+        self._ticks_us = clock.ticks_us
+        self._mask = clock.ticks_mask
+        # A table, because the product does not fit a small integer at every rate.
+        self._durations_us = [-(-11_000_000 * count // baud) for count in range(257)]
+        self._quarter_us = self._durations_us[1] // 4 + 1
+        self._sending = False
+        self._started_at = 0
+        self._duration_us = 0
+        self._releases = 0
+        self._burst_ended = False
+        self._burst_ended_at = 0
+        self._scratch = bytearray(64)
+        self._on_timer = self._release  # bound once: binding allocates
+        driver_enable.value(0)
+        if interrupts:
+            uart.irq(handler=self._on_idle, trigger=uart.IRQ_RXIDLE, hard=True)
+
+    def send(self, buffer, count):
+        self._sending = True
+        self._releases = 0
+        self._duration_us = self._durations_us[count]
+        self._driver_enable.value(1)
+        self._started_at = self._ticks_us()
+        self._uart.write(buffer, count)
+        self._arm(self._duration_us)
+
+    def sending_us(self, now):
+        if not self._sending:
+            return 0
+        passed_us = (now - self._started_at) & self._mask
+        return max(self._duration_us - passed_us, 1)
+
+    def receive(self, buffer, at):
+        count = self._uart.any()
+        if not count:
+            return 0
+        room = len(buffer) - at
+        if at == 0:
+            count = self._uart.readinto(buffer, min(count, room))
+        else:
+            scratch = self._scratch
+            count = self._uart.readinto(scratch, min(count, room, len(scratch)))
+            for index in range(count):
+                buffer[at + index] = scratch[index]
+        if self._burst_ended:
+            self._burst_ended = False
+            self.received_at = self._burst_ended_at
+        else:
+            self.received_at = self._ticks_us()
+        return count
+
+    def close(self):
+        self._timer.deinit()
+        if self.interrupts:
+            self._uart.irq(handler=None, trigger=0)
+        self._driver_enable.value(0)
+        self._sending = False
+        self._uart.deinit()
+
+    def _on_idle(self, _uart):
+        self._burst_ended_at = (self._ticks_us() - self._idle_us) & self._mask
+        self._burst_ended = True
+        if self.on_activity:
+            self.on_activity()
+
+    def _release(self, _timer):
+        if not self._uart.txdone() and self._releases < RELEASES_MAX:
+            # The UART's clock is a little slower than the timer's: look again in a moment.
+            self._releases += 1
+            self._arm(self._quarter_us)
+            return
+        self._driver_enable.value(0)
+        self.sent_at = self._ticks_us()
+        if self._releases == RELEASES_MAX:
+            self.late_releases = (self.late_releases + 1) & 0xFFFF
+        self._sending = False
+        if self.on_activity:
+            self.on_activity()
+
+    def _arm(self, after_us):
+        timer = self._timer
+        timer.init(
+            mode=timer.ONE_SHOT, period=after_us, tick_hz=1_000_000, callback=self._on_timer
+        )

@@ -1,0 +1,90 @@
+"""From the keys that are down now to what an operator did: pressed, repeated.
+
+    keys = Keys(keypad.names)
+    keys.update(keypad.read(), clock.ticks_ms())
+    if keys.pressed & keys.bit("START"): ...
+
+A key counts once it has been the same for DEBOUNCE_MS. Keys that are down when the panel starts do
+not count before they were seen up: a START that is jammed or leant on starts nothing.
+"""
+
+from micropython import const
+
+from uss.timing import elapsed
+
+DEBOUNCE_MS = const(20)
+REPEAT_DELAY_MS = const(400)
+REPEAT_MS = const(120)
+
+
+class Keys:
+    """names: of the keys, in the order of their bits. mask: the millisecond clock's period - 1.
+
+    After each `update`, as bits: `down`, the keys that are down; `pressed`, those that went down just
+    now; `repeated`, those held for another REPEAT_MS just now. `repeats`: how often the key that
+    repeats has done so. Only the key pressed last repeats.
+    """
+
+    def __init__(self, names, mask):
+        self.down = 0
+        self.pressed = 0
+        self.repeated = 0
+        self.repeats = 0
+        self._bits = {key: 1 << position for position, key in enumerate(names)}
+        self._mask = mask
+        self._raw = 0
+        self._changed_at = [0] * len(names)
+        self._all = (1 << len(names)) - 1
+        self._released = 0  # keys that were seen up since the start
+        self._last = 0  # the key pressed last, while it is down
+        self._repeat_at = 0
+        self._first = True
+
+    def bit(self, key):
+        """The bit of a key by name; 0 when this board has no such key."""
+        return self._bits.get(key, 0)
+
+    def update(self, raw, now_ms):
+        """raw: what the keypad reads now, as bits."""
+        if self._first:
+            self._first = False
+            self._raw = raw
+            for position in range(len(self._changed_at)):
+                self._changed_at[position] = now_ms
+        self.pressed = 0
+        self.repeated = 0
+        changed = raw ^ self._raw
+        self._raw = raw
+        if changed or raw != self.down or self._released != self._all:
+            self._debounce(raw, changed, now_ms)
+        if self._last:
+            self._repeat(now_ms)
+
+    def _debounce(self, raw, changed, now_ms):
+        bit = 1
+        for position in range(len(self._changed_at)):
+            if changed & bit:
+                self._changed_at[position] = now_ms
+            elif elapsed(now_ms, self._changed_at[position], self._mask) >= DEBOUNCE_MS:
+                self._settle(bit, raw & bit, now_ms)
+            bit <<= 1
+
+    def _settle(self, bit, is_down, now_ms):
+        if not is_down:
+            self._released |= bit
+            self.down &= ~bit
+            if self._last == bit:
+                self._last = 0
+        elif self._released & bit and not self.down & bit:
+            self.down |= bit
+            self.pressed |= bit
+            self._last = bit
+            self._repeat_at = now_ms
+            self.repeats = 0
+
+    def _repeat(self, now_ms):
+        wait_ms = REPEAT_MS if self.repeats else REPEAT_DELAY_MS
+        if elapsed(now_ms, self._repeat_at, self._mask) >= wait_ms:
+            self._repeat_at = now_ms
+            self.repeats += 1
+            self.repeated = self._last

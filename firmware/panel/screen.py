@@ -1,0 +1,79 @@
+"""The picture that a display shows: two rows of sixteen character codes.
+
+Drawing writes into the picture and allocates nothing; a display driver finds the differences.
+
+    screen.put(1, 0, 12, texts.RUNNING)         # in a field of 12, blanks after it
+    screen.number(0, 2, 5, -1000, 2)            # -10.00 in a field of 5: "-10.0"
+"""
+
+from micropython import const
+
+ROWS = const(2)
+COLUMNS = const(16)
+
+_BLANK = const(0x20)
+_MINUS = const(0x2D)
+_POINT = const(0x2E)
+_ZERO = const(0x30)
+_NINE = const(0x39)
+
+
+class Screen:
+    """picture: a bytearray of ROWS * COLUMNS codes, row by row."""
+
+    def __init__(self):
+        self.picture = bytearray(b" " * (ROWS * COLUMNS))
+
+    def put(self, row, column, width, text):
+        """Write `text` (bytes) into a field of `width`, cut or filled with blanks on the right."""
+        at = row * COLUMNS + column
+        for index in range(width):
+            self.picture[at + index] = text[index] if index < len(text) else _BLANK
+
+    def number(self, row, column, width, hundredths, decimals):
+        """Write a number right-aligned with up to `decimals` (0...2) decimals, rounded.
+
+        The rule for values that need more room: the field keeps its place and its width, and
+        decimals are given up, the last first, until the value fits. A value that does not fit even
+        then fills the field with 9s, so that it cannot be read as a small one.
+        """
+        magnitude = abs(hundredths)
+        negative = hundredths < 0
+        while True:
+            divisor = 1 if decimals == 2 else 10 if decimals == 1 else 100
+            digits = (magnitude + divisor // 2) // divisor
+            if self._digits(row * COLUMNS + column, width, digits, decimals, negative):
+                return
+            if decimals == 0:
+                break
+            decimals -= 1
+        for index in range(width):
+            self.picture[row * COLUMNS + column + index] = _NINE
+
+    def rows(self):
+        """Both rows as text, for people and tests."""
+        text = "".join(chr(code) for code in self.picture)
+        return text[:COLUMNS], text[COLUMNS:]
+
+    def _digits(self, at, width, digits, decimals, negative):
+        """Write `digits` with a point before the last `decimals`; False when the field is short."""
+        negative = negative and digits != 0  # -0.00 reads as if it turned
+        picture = self.picture
+        point = decimals > 0
+        position = at + width - 1
+        written = 0
+        while position >= at:
+            if point and written == decimals:
+                picture[position] = _POINT
+                point = False
+            elif digits or written <= decimals:  # at least one digit before the point
+                picture[position] = _ZERO + digits % 10
+                digits //= 10
+                written += 1
+            elif negative:
+                picture[position] = _MINUS
+                negative = False
+            else:
+                picture[position] = _BLANK
+            position -= 1
+        return not (digits or negative or point) and written > decimals

@@ -1,0 +1,218 @@
+"""The USS master: who talks when on the bus, and what becomes of it.
+
+`poll(now)` does whatever is due - take received characters, judge them, choose the next drive, build
+and send its telegram, time out - and answers in how many microseconds it has something to do again.
+It may be called at any time by anyone: the receive interrupt, a timer, the main loop. It allocates
+nothing, uses no float, and must not be entered twice at once (`hal.pacer` sees to that).
+
+Not a clock and not a driver: the time is an argument, and the link is a duck type (`hal.__init__`).
+
+    bus = Master(link, Timing(19200), clock.ticks_mask)
+    drive = bus.add(1)
+    bus.refresh(now)                # from the main loop, or every motor is stopped after 300 ms
+    wait_us = bus.poll(now)
+"""
+
+from micropython import const
+
+from uss import telegram
+from uss.drive import NET_COUNT, Drive
+from uss.receiver import WAITING, Receiver
+from uss.timing import elapsed
+
+LIST_MAX = const(255)  # entries of the circulating list
+LOST_US = const(1_000_000)  # without a valid reply for so long, contact with a drive is lost
+DEAD_MAN_US = const(300_000)  # without `refresh` for so long, the loop is taken for dead
+LISTEN_US = const(100_000)  # silence that must be heard before the first telegram
+BABBLE_US = const(500_000)  # a line that never falls silent is sent on all the same after this
+
+# What the engine is doing.
+LISTENING, RESTING, SENDING, AWAITING, CLOSED = range(5)
+
+
+class Master:
+    """The bus and its circulating list of drives.
+
+    link: what is sent on and received from. timing: `Timing` of its baud rate. mask: the clock's
+    period - 1, at most 2**30 - 1. All figures of counters are unsigned 16-bit and wrap.
+
+    Fields to look at: `exchanges` (telegrams sent), `dead_man_trips`, `failures` (exceptions in
+    `poll`), `foreign` (bursts heard while listening: another master is on the line), `phase`.
+    """
+
+    def __init__(self, link, timing, mask, lost_us=LOST_US):
+        self.drives = []  # each once, in the order added
+        self.list = []  # the circulating list; a drive may stand in it several times
+        self.timing = timing
+        self.phase = LISTENING
+        self.exchanges = 0
+        self.dead_man_trips = 0
+        self.failures = 0
+        self.foreign = 0
+        self._link = link
+        self._mask = mask
+        self._lost_us = lost_us
+        self._receiver = Receiver(timing, mask)
+        self._residual_us = timing.residual_us(NET_COUNT)
+        self._telegram = bytearray(telegram.SIZE_MAX)
+        self._drive = None  # the one whose turn it is
+        self._next = 0
+        self._first = True  # poll was never called
+        self._quiet_since = 0  # the last character on the line, either direction
+        self._resting_since = 0
+        self._refreshed_at = 0
+        self._dead_man = True  # tripped until the loop refreshes for the first time
+
+    # --- for the loop ---------------------------------------------------------------------------
+
+    def add(self, address):
+        """Put a drive at the end of the circulating list; answer its `Drive`.
+
+        The same address again gives the same drive one more turn. ValueError when the address is
+        not 0...31 or the list is full.
+        """
+        if len(self.list) >= LIST_MAX:
+            raise ValueError("the circulating list holds %d entries" % LIST_MAX)
+        for drive in self.drives:
+            if drive.address == address:
+                break
+        else:
+            drive = Drive(address, self._mask)
+            self.drives.append(drive)
+        self.list.append(drive)
+        return drive
+
+    def refresh(self, now):
+        """The loop says that it is alive. Whatever ran when it was not stays stopped."""
+        self._refreshed_at = now
+        self._dead_man = False
+
+    def stop_all(self):
+        """OFF1 to every drive by a telegram each; the engine takes those that run first."""
+        for drive in self.drives:
+            drive.stop()
+
+    def close(self):
+        """Send nothing any more. Stop the drives first."""
+        self.phase = CLOSED
+
+    # --- the engine -----------------------------------------------------------------------------
+
+    def poll(self, now):
+        """Do what is due; answer the microseconds until something is due again, at least 1."""
+        self._check_dead_man(now)
+        due_us = 0
+        while not due_us:  # each step answers 0 when the next one can follow at once
+            if self.phase == AWAITING:
+                due_us = self._await(now)
+            elif self.phase == SENDING:
+                due_us = self._finish_sending(now)
+            elif self.phase == RESTING:
+                due_us = self._rest(now)
+            elif self.phase == LISTENING:
+                due_us = self._listen(now)
+            else:
+                due_us = DEAD_MAN_US
+        return due_us
+
+    def recover(self):
+        """After an exception in `poll`: take ON back from every drive and begin with a silence."""
+        self.failures = (self.failures + 1) & 0xFFFF
+        self._revoke_all()
+        if self.phase != CLOSED:
+            self._begin_rest(self._quiet_since)
+
+    def _revoke_all(self):
+        for drive in self.drives:
+            drive.revoke()
+
+    def _check_dead_man(self, now):
+        if self._dead_man:
+            return
+        if elapsed(now, self._refreshed_at, self._mask) > DEAD_MAN_US:
+            self._dead_man = True
+            self.dead_man_trips = (self.dead_man_trips + 1) & 0xFFFF
+            self._revoke_all()
+
+    def _listen(self, now):
+        """Before the first telegram: traffic not asked for means that another master is there."""
+        if self._first:
+            self._first = False
+            self._quiet_since = now
+        if self._heard_something():
+            self.foreign = (self.foreign + 1) & 0xFFFF
+        left_us = LISTEN_US - elapsed(now, self._quiet_since, self._mask)
+        if left_us > 0:
+            return left_us
+        self._begin_rest(now)
+        return 0
+
+    def _begin_rest(self, now):
+        self._resting_since = now
+        self.phase = RESTING
+
+    def _rest(self, now):
+        """The start interval: the line is silent for two characters before every telegram."""
+        self._heard_something()
+        left_us = self.timing.start_interval_us - elapsed(now, self._quiet_since, self._mask)
+        if left_us > 0 and elapsed(now, self._resting_since, self._mask) < BABBLE_US:
+            return left_us
+        self._drive = self._choose()
+        if self._drive is None:
+            return DEAD_MAN_US
+        self._send(now)
+        return 0
+
+    def _heard_something(self):
+        """Swallow characters that nobody awaits; they move the beginning of the silence."""
+        receiver = self._receiver
+        heard = self._link.receive(receiver.buffer, 0)
+        if heard:
+            self._quiet_since = self._link.received_at
+        return heard
+
+    def _choose(self):
+        """The next drive: a command that matters goes before the list, a stop before a start."""
+        chosen = None
+        highest = 0
+        for drive in self.drives:
+            urgency = drive.urgency()
+            if urgency > highest:
+                highest = urgency
+                chosen = drive
+        if chosen is None and self.list:
+            position = self._next if self._next < len(self.list) else 0
+            self._next = position + 1
+            chosen = self.list[position]
+        return chosen
+
+    def _send(self, now):
+        drive = self._drive
+        drive.served = drive.urgent
+        drive.fill(self._telegram, telegram.NET, now)
+        count = telegram.seal(self._telegram, drive.address, NET_COUNT)
+        self.exchanges = (self.exchanges + 1) & 0xFFFF
+        self.phase = SENDING
+        self._link.send(self._telegram, count)
+
+    def _finish_sending(self, now):
+        left_us = self._link.sending_us(now)
+        if left_us > 0:
+            return left_us
+        self._quiet_since = self._link.sent_at
+        self._receiver.open(self._drive.address, NET_COUNT, self._residual_us, self._link.sent_at)
+        self.phase = AWAITING
+        return 0
+
+    def _await(self, now):
+        receiver = self._receiver
+        finding = receiver.take(self._link, now)
+        if finding == WAITING:
+            return receiver.due_us(now, self._link.resolution_us)
+        if finding == telegram.GOOD:
+            self._drive.take(receiver.buffer, telegram.NET, now)
+        else:
+            self._drive.miss(finding, now, self._lost_us)
+        self._quiet_since = receiver.heard_at
+        self._begin_rest(now)
+        return 0

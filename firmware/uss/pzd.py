@@ -1,0 +1,146 @@
+"""Process data: control word STW, status word ZSW, and the scaling of setpoint and actual value.
+
+Facts as tables; no telegram, no drive object. STW travels with the main setpoint HSW to the drive,
+ZSW with the main actual value HIW back (specification C-5).
+
+    ON, OFF1                          # whole control words a master sends
+    state(0xFB34)                     # RUNNING
+    Scaling(5000, False).hsw(1000)    # 10.00 Hz of 50.00 Hz as 0CCDh
+"""
+
+from micropython import const
+
+# --- control word -------------------------------------------------------------------------------
+
+# Bit, name, meaning of 1. Bits 0-10: specification C-5.2.1; from 11 on: MICROMASTER 4, r0054.
+STW_BITS = (
+    (0, "ON", "run; 0 is OFF1, ramp down and switch off"),
+    (1, "NO_OFF2", "0 coasts to a stop"),
+    (2, "NO_OFF3", "0 stops as fast as the drive can"),
+    (3, "PULSES", "enable the inverter"),
+    (4, "RAMP_OUTPUT", "0 forces the ramp's output to 0"),
+    (5, "RAMP_RUN", "0 holds the ramp"),
+    (6, "SETPOINT", "0 makes the setpoint 0"),
+    (7, "ACKNOWLEDGE", "its rising edge acknowledges a fault"),
+    (8, "JOG_RIGHT", ""),
+    (9, "JOG_LEFT", ""),
+    (10, "CONTROL", "these process data are valid; 0 leaves the old ones in force"),
+    (11, "REVERSE", "turn the other way"),
+    (13, "MOP_UP", ""),
+    (14, "MOP_DOWN", ""),
+    (15, "REMOTE", "local / remote, command data set bit 0"),
+)
+
+STW_ON = const(0x0001)
+OFF1 = const(0x047E)  # stop, and the first word any drive is sent; bit 10 is never 0
+ON = const(0x047F)
+
+# --- status word --------------------------------------------------------------------------------
+
+# Bit, name, whether 0 is the remarkable value. Bits 0-10: specification C-5.2.1; from 11 on: r0052.
+ZSW_BITS = (
+    (0, "READY_TO_SWITCH_ON", False),
+    (1, "READY_TO_RUN", False),
+    (2, "RUNNING", False),
+    (3, "FAULT", False),
+    (4, "OFF2", True),
+    (5, "OFF3", True),
+    (6, "INHIBIT", False),
+    (7, "WARNING", False),
+    (8, "DEVIATION", True),
+    (9, "CONTROL_REQUESTED", False),
+    (10, "MAXIMUM_REACHED", False),
+    (11, "CURRENT_LIMIT", True),
+    (12, "BRAKE", False),
+    (13, "MOTOR_OVERLOAD", True),
+    (14, "RUNS_RIGHT", False),
+    (15, "INVERTER_OVERLOAD", True),
+)
+
+ZSW_RUNNING = const(0x0004)
+ZSW_FAULT = const(0x0008)
+ZSW_INHIBIT = const(0x0040)
+ZSW_WARNING = const(0x0080)
+
+# What a status word says, in words. Whatever matches none of the rows is NOT_READY.
+NOT_READY, READY, RUNNING, FAULT, INHIBITED = range(5)
+
+# The first row that matches counts: a fault outranks all, then the inhibit. MM4 shows 31h when
+# ready and 34h when running, G120 31h and 37h: bits 0 to 2 are exclusive on the one, cumulative on
+# the other, so only the highest of them that is set is looked at.
+STATES = (  # mask, value, state
+    (0x0008, 0x0008, FAULT),
+    (0x0040, 0x0040, INHIBITED),
+    (0x0004, 0x0004, RUNNING),
+    (0x0031, 0x0031, READY),
+)
+
+
+def state(zsw):
+    """One of NOT_READY, READY, RUNNING, FAULT, INHIBITED for a status word."""
+    for mask, value, name in STATES:
+        if zsw & mask == value:
+            return name
+    return NOT_READY
+
+
+# --- scaling ------------------------------------------------------------------------------------
+
+FULL_SCALE = const(0x4000)  # 100 % of the reference frequency P2000
+REFERENCE_MIN = const(100)  # P2000 in centihertz (MICROMASTER 4 parameter list)
+REFERENCE_MAX = const(65000)
+HSW_MIN = const(-0x8000)
+HSW_MAX = const(0x7FFF)
+
+
+def signed(word):
+    """The two's complement value of a 16-bit word: 8000h...FFFFh are negative."""
+    return word - 0x10000 if word & 0x8000 else word
+
+
+class Scaling:
+    """Between frequencies and the words of PZD2, all in integers that fit 31 bits.
+
+    Frequencies are in centihertz (0.01 Hz): 1000 is 10.00 Hz.
+
+    reference_centihertz: P2000, 100...65000.
+    absolute: True when P2009 = 1, PZD2 is then the frequency itself in 0.01 Hz.
+    """
+
+    def __init__(self, reference_centihertz, absolute):
+        if not REFERENCE_MIN <= reference_centihertz <= REFERENCE_MAX:
+            raise ValueError("reference frequency of %d centihertz" % reference_centihertz)
+        self.reference_centihertz = reference_centihertz
+        self.absolute = absolute
+
+    def limit_centihertz(self):
+        """The largest frequency that a word can carry: 200 % of the reference, or 327.67 Hz."""
+        if self.absolute:
+            return HSW_MAX
+        return 2 * self.reference_centihertz - 1
+
+    def hsw(self, centihertz):
+        """The unsigned word for a frequency, rounded; beyond the word's range it is limited."""
+        if self.absolute:
+            count = centihertz
+        else:
+            magnitude = min(abs(centihertz), 2 * self.reference_centihertz)
+            # At most 65000 * 16384 fits a small integer; twice that is reached in two halves.
+            reference = self.reference_centihertz
+            whole = FULL_SCALE if magnitude >= reference else 0
+            rest = magnitude - reference if whole else magnitude
+            count = whole + (rest * FULL_SCALE + reference // 2) // reference
+            count = -count if centihertz < 0 else count
+        return max(HSW_MIN, min(HSW_MAX, count)) & 0xFFFF
+
+    def centihertz(self, hiw):
+        """The signed frequency that an actual value means, rounded to 0.01 Hz."""
+        count = signed(hiw)
+        if self.absolute:
+            return count
+        # count * reference in two parts: the product itself can exceed a small integer.
+        magnitude = abs(count)
+        high, low = magnitude >> 7, magnitude & 0x7F
+        reference = self.reference_centihertz
+        frequency = (high * reference + ((low * reference) >> 7) + 64) >> 7
+        return -frequency if count < 0 else frequency

@@ -1,0 +1,121 @@
+"""What must be known of a drive before it may be started, read from it again and again.
+
+Works on the loop's side, through parameter jobs, which cost the bus nothing: every telegram has a
+parameter channel. It reads the rows of `profiles.SURVEY` at once when contact is made and one every
+REREAD_US from then on, so that a change made at the drive itself is noticed. What was known is
+forgotten when contact is lost.
+
+    survey = Survey(drive)
+    survey.step(now)                # each step of the loop
+    if survey.complete: survey.scaling.hsw(1000)
+"""
+
+from micropython import const
+
+from uss import pkw, profiles, pzd
+from uss.timing import elapsed
+
+REREAD_US = const(200_000)
+UNKNOWN = const(-1)
+
+
+class Survey:
+    """drive: a `Drive`. mask: the clock's period - 1.
+
+    values: for each row of profiles.SURVEY the number read, or UNKNOWN.
+    complete: all rows are known. scaling: a `pzd.Scaling`, or None while it is not known.
+    unreadable: the drive refused one of them.
+    """
+
+    def __init__(self, drive, mask):
+        self.drive = drive
+        self.values = [UNKNOWN] * len(profiles.SURVEY)
+        self.complete = False
+        self.scaling = None
+        self.unreadable = False
+        self._mask = mask
+        self._job = pkw.read(0)
+        self._words = [UNKNOWN] * (2 * len(profiles.SURVEY))  # as last read: high, low, high ...
+        self._row = 0
+        self._asked = False
+        self._stale = False  # what was asked was asked before contact was lost
+        self._read_at = 0
+        self._contact = 0  # drive.contacts to which the values belong
+
+    def step(self, now):
+        """Take an answer that has come, ask for the next; allocates only when a value is new."""
+        drive = self.drive
+        if not drive.contact or drive.contacts != self._contact:
+            self._forget()
+            self._contact = drive.contacts
+            self._stale = self._asked
+        if self._asked:
+            if self._job.state != pkw.PENDING:
+                self._asked = False
+                self._read_at = now
+                if not self._stale:
+                    self._take()
+                self._stale = False
+        elif drive.contact:
+            if not self.complete or elapsed(now, self._read_at, self._mask) >= REREAD_US:
+                self._ask()
+
+    def _forget(self):
+        if not self.complete and self._row == 0 and not self.unreadable:
+            return
+        self.complete = False
+        self.scaling = None
+        self.unreadable = False
+        self._row = 0
+        for row in range(len(self.values)):
+            self.values[row] = UNKNOWN
+            self._words[2 * row] = UNKNOWN
+
+    def _ask(self):
+        number, index, _ = profiles.SURVEY[self._row]
+        self._job.aim(pkw.READ, number, index)
+        self.drive.ask(self._job)
+        self._asked = True
+
+    def _take(self):
+        job = self._job
+        row = self._row
+        kind = profiles.SURVEY[row][2]
+        if job.state != pkw.DONE:
+            self.values[row] = UNKNOWN
+            self._words[2 * row] = UNKNOWN
+            self.unreadable = True
+            self._judge()
+        elif job.high != self._words[2 * row] or job.low != self._words[2 * row + 1]:
+            self._words[2 * row] = job.high
+            self._words[2 * row + 1] = job.low
+            if kind == profiles.CENTIHERTZ:
+                self.values[row] = _centihertz(job.float_value())
+            else:
+                self.values[row] = job.low
+            self._judge()
+        self._row = row + 1 if row + 1 < len(profiles.SURVEY) else 0
+
+    def _judge(self):
+        """What the values amount to, after one of them changed."""
+        values = self.values
+        self.complete = UNKNOWN not in values
+        reference, absolute = values[profiles.REFERENCE], values[profiles.ABSOLUTE]
+        if reference < pzd.REFERENCE_MIN or absolute == UNKNOWN:
+            self.complete = False
+            self.scaling = None
+        elif (
+            self.scaling is None
+            or self.scaling.reference_centihertz != reference
+            or self.scaling.absolute != bool(absolute)
+        ):
+            self.scaling = pzd.Scaling(reference, bool(absolute))
+        if self.complete:
+            self.unreadable = False
+
+
+def _centihertz(hertz):
+    """A frequency as an integer in 0.01 Hz; UNKNOWN when it is none that a drive can have."""
+    if not 0 <= hertz <= 650:  # also true of a NaN, which compares with nothing
+        return UNKNOWN
+    return int(hertz * 100 + 0.5)

@@ -1,0 +1,189 @@
+"""Runs the test functions of one file, on MicroPython or on CPython, and reports each as it ends.
+
+pytest starts it (conftest.py, tiers.py), one process for each file and tier. By hand, from the
+top of the tree:
+
+    build/unix32/micropython host_tests/runner.py unix32 host_tests/test_telegram.py test_bcc
+
+Without function names it runs all of the file; without a file it only tells what it runs on.
+Before anything else it proves that the interpreter is what the tier promises.
+"""
+
+import io
+import sys
+
+# A report is a line that begins with this character (ASCII "record separator"), so that it cannot
+# be mistaken for what a test prints. Between "began" and "passed" or "failed" stands what the
+# function printed; the traceback stands between "raised" and "failed".
+MARK = "\x1e"
+
+# What each tier promises: implementation, bits of an integer that needs no heap, line tracing.
+PROMISES = {
+    "unix64": ("micropython", 63, False),
+    "unix32": ("micropython", 31, False),
+    "coverage": ("micropython", 63, True),
+    "cpython": ("cpython", 0, True),
+}
+
+# Relative to the top of the tree, which is the working directory.
+IMPORT_FOLDERS = ("", "firmware", "host_tests")
+TRACED_FOLDER = "firmware/"
+
+
+def main(tier, path=None, *names):
+    sys.path[:] = search_path()
+    version = prove(tier)
+    if path is None:
+        print(version)
+        return
+    lines = LineTracer() if tier == "coverage" else None
+    folder, _, file_name = path.rpartition("/")
+    if folder not in IMPORT_FOLDERS:
+        sys.path.insert(0, folder)
+    module = __import__(file_name[: -len(".py")])
+    for name in names or test_functions(module):
+        run(name, getattr(module, name))
+    if lines:
+        lines.report()
+
+
+def report(*words):
+    print(MARK + " ".join(words))
+
+
+def run(name, function):
+    report("began", name)
+    try:
+        function()
+    except BaseException as error:  # sys.exit() in a test is a failure too
+        unlock_heap()
+        report("raised", name)
+        print_traceback(error)
+        report("failed", name)
+    else:
+        report("passed", name)
+
+
+def test_functions(module):
+    return sorted(name for name in dir(module) if name.startswith("test_"))
+
+
+# ---- the interpreter ------------------------------------------------------------------------
+
+
+def search_path():
+    if sys.implementation.name == "micropython":
+        return list(IMPORT_FOLDERS) + [".frozen"]
+    return list(IMPORT_FOLDERS) + ["host_tests/cpython"] + sys.path
+
+
+def prove(tier):
+    """Returns a line about the interpreter; ends the process when it is not what `tier` promises."""
+    found = (sys.implementation.name, small_integer_bits(), hasattr(sys, "settrace"))
+    if found != PROMISES[tier]:
+        print("this is not %s: %r wanted, %r found" % (tier, PROMISES[tier], found))
+        sys.exit(1)
+    if found[0] == "cpython":
+        return "CPython " + sys.version.split()[0]
+    return "%s, small integers of %d bits" % (sys.version.split("; ")[-1], found[1])
+
+
+def small_integer_bits():
+    """Measures it: the first power of two that needs the heap, while the heap is locked."""
+    import micropython
+
+    if not hasattr(micropython, "heap_lock"):
+        return 0
+    power = 1
+    bits = 2  # 1 needs two bits, one of them for the sign
+    micropython.heap_lock()
+    try:
+        while True:
+            power += power
+            bits += 1
+    except MemoryError:
+        return bits
+    finally:
+        micropython.heap_unlock()
+
+
+def unlock_heap():
+    """A test that failed with the heap locked leaves it locked, but the report needs the heap."""
+    import micropython
+
+    while True:
+        try:
+            return bytearray(1)
+        except MemoryError:
+            micropython.heap_unlock()
+
+
+# ---- tracebacks -----------------------------------------------------------------------------
+
+
+def print_traceback(error):
+    """Prints the traceback with the source lines, and without the frames of this file."""
+    if sys.implementation.name == "cpython":
+        import traceback
+
+        traceback.print_exception(type(error), error, error.__traceback__.tb_next, file=sys.stdout)
+        return
+    text = io.StringIO()
+    sys.print_exception(error, text)
+    for line in text.getvalue().split("\n"):
+        if not line.startswith('  File "'):
+            print(line)
+            continue
+        path, number = line[len('  File "') :].split('", line ')
+        if path != sys.argv[0]:
+            print(line)
+            print("    " + source_line(path, int(number.split(",")[0])))
+
+
+def source_line(path, number):
+    try:
+        with open(path) as source:
+            for _ in range(number - 1):
+                source.readline()
+            return source.readline().strip()
+    except OSError:
+        return "(no source)"
+
+
+# ---- line coverage --------------------------------------------------------------------------
+
+
+class LineTracer:
+    """Notes which lines of the firmware ran. Notes in place, so that it works with the heap locked."""
+
+    def __init__(self):
+        self.seen = {}  # file name -> a byte for each line
+        self.tracers = {}  # file name -> the tracer of its lines, None when it is not traced
+        sys.settrace(self.trace_call)
+
+    def trace_call(self, frame, event, argument):
+        name = frame.f_code.co_filename
+        if name not in self.tracers:
+            self.tracers[name] = self.line_tracer(name)
+        return self.tracers[name]
+
+    def line_tracer(self, name):
+        if not name.startswith(TRACED_FOLDER):
+            return None
+        with open(name) as source:
+            seen = self.seen[name] = bytearray(1 + sum(1 for _ in source))
+
+        def trace_line(frame, event, argument):
+            seen[frame.f_lineno] = 1
+            return trace_line
+
+        return trace_line
+
+    def report(self):
+        sys.settrace(None)
+        for name, seen in self.seen.items():
+            report("lines", name, " ".join(str(line) for line, hit in enumerate(seen) if hit))
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -1,0 +1,179 @@
+"""The program that ./tools/panel runs: the panel's firmware on the virtual board, driven by a script.
+
+Runs on MicroPython. Exit status: 0, 1 when an expectation failed or a rule of the line was broken,
+2 when the command line or a script cannot be understood.
+"""
+
+import sys
+
+import main
+from boards.sim.script import COMMANDS, ORDER, ExpectationFailed, Script, ScriptError
+from boards.sim.world import World
+from uss.telegram import NODE_MAX
+from uss.timing import BAUD_RATES
+
+try:
+    from os import isatty
+except ImportError:  # MicroPython's os has none: asking for the terminal's settings tells
+
+    def isatty(descriptor):
+        import termios
+
+        try:
+            termios.tcgetattr(descriptor)
+        except OSError:
+            return False
+        return True
+
+
+FAILED = 1
+NOT_UNDERSTOOD = 2
+
+USAGE = """\
+usage: ./tools/panel [--script FILE|-] [--drives 1,2,5] [--baud 19200] [--seed N] [--polled]
+
+  --script FILE   do the commands in FILE, or from standard input (-), in virtual time
+  --drives LIST   addresses of the simulated drives, 0...31 (1)
+  --baud RATE     baud rate of the line (19200)
+  --seed N        other reply delays and loop times; 0 is the plain world (0)
+  --polled        no receive interrupt: the link is polled
+Without --script, in a terminal: commands from the keyboard; the display is shown after each."""
+
+
+class UsageError(Exception):
+    pass
+
+
+def addresses(word):
+    listed = word.split(",")
+    for address in listed:
+        if not address.isdigit() or int(address) > NODE_MAX:
+            raise UsageError("--drives %s: %s is no address 0...31" % (word, address or "nothing"))
+    numbers = tuple(int(address) for address in listed)
+    if len(set(numbers)) < len(numbers):
+        raise UsageError("--drives %s: an address stands there twice" % word)
+    return numbers
+
+
+def baud_rate(word):
+    if not word.isdigit() or int(word) not in BAUD_RATES:
+        rates = " ".join(str(rate) for rate in BAUD_RATES)
+        raise UsageError("--baud %s: USS knows %s" % (word, rates))
+    return int(word)
+
+
+def number(word):
+    if not word.isdigit():
+        raise UsageError("--seed %s is no number" % word)
+    return int(word)
+
+
+# Option: name of the value, default, reader. An option without a reader is a switch.
+OPTIONS = {
+    "--script": ("script", None, str),
+    "--drives": ("drives", (1,), addresses),
+    "--baud": ("baud", 19200, baud_rate),
+    "--seed": ("seed", 0, number),
+    "--polled": ("polled", False, None),
+    "--help": ("help", False, None),
+}
+
+
+def options(words):
+    """The values of OPTIONS that a command line means. UsageError when it means nothing."""
+    values = {name: default for name, default, _ in OPTIONS.values()}
+    words = list(words)
+    while words:
+        option, equals, given = words.pop(0).partition("=")
+        if option not in OPTIONS:
+            raise UsageError("unknown option %s" % option)
+        name, _, reader = OPTIONS[option]
+        if reader is None:
+            if equals:
+                raise UsageError("%s takes no value" % option)
+            values[name] = True
+        else:
+            if not equals and not words:
+                raise UsageError("%s wants a value" % option)
+            values[name] = reader(given if equals else words.pop(0))
+    return values
+
+
+def lines_of(name):
+    """The lines of a script. Those of standard input are done as they come."""
+    if name == "-":
+        return standard_input()
+    try:
+        with open(name) as script:
+            return script.read().split("\n")
+    except OSError as error:
+        raise UsageError("--script %s: cannot be read (%s)" % (name, error))
+    except UnicodeError:
+        raise UsageError("--script %s: is no text" % name)
+
+
+def standard_input():
+    while True:
+        line = sys.stdin.readline()
+        if not line:
+            return
+        yield line
+
+
+def run_script(world, name):
+    Script(world, "standard input" if name == "-" else name).run(lines_of(name))
+
+
+def run_terminal(world):
+    """Commands from the keyboard until the end of input; what is wrong is said, nothing ends."""
+    print("USS panel on the virtual board. Time passes only while a command does.")
+    print("Commands: %s" % "; ".join(COMMANDS[name][0] for name in ORDER))
+    script = Script(world, "keyboard")
+    script.do("wait 1000")
+    script.do("lcd")
+    while True:
+        try:
+            line = input("> ")
+        except EOFError:
+            return
+        try:
+            script.do(line)
+            if line.split()[:1] != ["lcd"]:
+                script.do("lcd")
+        except (ScriptError, ExpectationFailed) as error:
+            print(error)
+
+
+def panel(words):
+    """Do what the command line says; answer the exit status."""
+    try:
+        chosen = options(words)
+        if chosen["help"]:
+            print(USAGE)
+            return 0
+        if chosen["script"] is None and not (isatty(0) and isatty(1)):
+            raise UsageError("this is no terminal: give the panel a --script FILE, or --script -")
+        world = World(
+            main.start, chosen["drives"], chosen["baud"], None, chosen["seed"], chosen["polled"]
+        )
+        if chosen["script"] is None:
+            run_terminal(world)
+        else:
+            run_script(world, chosen["script"])
+        world.check()
+    except UsageError as error:
+        return complain("%s\n%s" % (error, USAGE), NOT_UNDERSTOOD)
+    except ScriptError as error:
+        return complain(error, NOT_UNDERSTOOD)
+    except (ExpectationFailed, AssertionError) as error:
+        return complain(error, FAILED)
+    return 0
+
+
+def complain(message, status):
+    print("panel: %s" % message, file=sys.stderr)
+    return status
+
+
+if __name__ == "__main__":
+    sys.exit(panel(sys.argv[1:]))

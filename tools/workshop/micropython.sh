@@ -1,0 +1,227 @@
+# The Unix port of MicroPython, in the builds that the panel and the tests run on.
+# To be sourced after folder.sh and packages.sh.
+#
+#   unix64     the one people use: 1.25 or newer, installed, or fetched
+#   unix32     small integers of 31 bits, as on the microcontrollers
+#   coverage   reports every line that it runs (sys.settrace)
+#
+# Each lands in build/NAME/micropython: a link to what is installed, a script that starts unpacked
+# packages, or a program built here.
+
+oldest=1.25
+
+# get_micropython NAME: sees to it that build/NAME/micropython is there. Returns 1, having said
+# why, when none of the ways leads to one.
+get_micropython() {
+    fill "$1" has_micropython make_micropython "$1"
+}
+
+# A link whose target was uninstalled is not executable, and so is replaced.
+has_micropython() {
+    [[ -x $1/micropython ]]
+}
+
+make_micropython() {
+    local name=$1 folder=$2 way started=$SECONDS
+    for way in $(ways_to "$name"); do
+        if "$way" "$name" "$folder"; then
+            if works "$folder/micropython"; then
+                say "    ready in build/$name after $((SECONDS - started)) s"
+                return
+            fi
+            say "    it does not run on this machine"
+        fi
+        rm -rf "${folder:?}"/*
+    done
+    return 1
+}
+
+ways_to() {
+    case $1 in
+        unix64) echo link_installed unpack_packages build_from_source ;;
+        unix32) echo unpack_packages build_from_source ;;
+        coverage) echo build_from_source ;;
+    esac
+}
+
+# Whether a program is MicroPython and new enough: it is asked itself, since it knows best. The
+# limit in time is for a program of that name that is something else and waits.
+works() {
+    timeout 10 "$1" -c "
+import sys
+name, version = sys.implementation[0], sys.implementation[1]
+sys.exit(0 if name == 'micropython' and tuple(version[:2]) >= (${oldest/./, }) else 1)
+" </dev/null >/dev/null 2>&1
+}
+
+# What to do when there is no way. $1 is the command to be tried again.
+no_micropython() {
+    say "$1: no MicroPython $oldest or newer is here, and none could be fetched (see above)."
+    say "One of these helps:"
+    say "  - install it:  apt-get install micropython   (Debian 13, Ubuntu 25.10, or newer),"
+    say "    or from wherever your system has it, so that 'micropython' is on the PATH;"
+    say "  - on Debian or Ubuntu, see that 'apt-get update' reaches its mirror, and run $1 again;"
+    say "  - where that has no packages for this machine:  apt-get install gcc libc6-dev make python3"
+}
+
+# ---- what is installed ----------------------------------------------------------------------
+
+link_installed() {
+    local folder=$2 installed
+    installed=$(type -P micropython) || return
+    [[ $installed == /* ]] || installed=$PWD/$installed
+    if ! works "$installed"; then
+        say "MicroPython: $installed is not MicroPython $oldest or newer, passed over"
+        return 1
+    fi
+    say "MicroPython: using $installed"
+    ln -s "$installed" "$folder/micropython"
+}
+
+# ---- Debian's packages, run through their own loader and libraries --------------------------
+
+unpack_packages() {
+    local name=$1 folder=$2 release architecture view=$2/view
+    type -P apt-get dpkg-deb >/dev/null || return
+    architecture=$(architecture_of "$name") || return
+    for release in $(releases); do
+        say "MicroPython $name: looking into the packages of $release ($architecture)"
+        packages_open "$view" deb "$release" "$architecture"
+        unpack_from_view "$view" "$folder" && rm -rf "$view" && return
+        rm -rf "$view"
+    done
+    return 1
+}
+
+# The architecture of the packages for a build, in Debian's words.
+architecture_of() {
+    case $1.$(dpkg --print-architecture) in
+        unix64.*) dpkg --print-architecture ;;
+        unix32.amd64) echo i386 ;;
+        unix32.arm64) echo armhf ;;
+        unix32.i386 | unix32.armhf) dpkg --print-architecture ;;
+        *) return 1 ;;
+    esac
+}
+
+unpack_from_view() {
+    local view=$1 folder=$2
+    offered "$view" || return
+    local libraries
+    libraries=$(packages_dependencies "$view" micropython)
+    # shellcheck disable=SC2086  # one word a package
+    if ! packages_unpack "$view" "$folder" micropython $libraries; then
+        say "    the download failed:"
+        say_end_of "$view/log"
+        return 1
+    fi
+    write_starter "$folder"
+}
+
+# Whether the view offers a MicroPython that is new enough; says which.
+offered() {
+    local view=$1 version
+    version=$(packages_version "$view" micropython)
+    if [[ -z $version ]]; then
+        say "    no MicroPython there"
+        grep -E '^(E|W|Err)' "$view/log" | head -n 3 | sed 's/^/    /' >&2 || true
+        return 1
+    fi
+    if ! dpkg --compare-versions "$version" ge "$oldest"; then
+        say "    only MicroPython $version there"
+        return 1
+    fi
+    say "    taking MicroPython $version"
+}
+
+# The starter finds the folder that it stands in, so that the tree can be moved.
+write_starter() {
+    local folder=$1 loader library
+    loader=$(cd "$folder" && find . -name 'ld-linux*.so.*' -path './*lib*' | head -n 1)
+    library=$(cd "$folder" && find . -name libc.so.6 -printf '%h\n' | head -n 1)
+    [[ -n $loader && -n $library ]] || return
+    cat >"$folder/micropython" <<STARTER
+#!/bin/sh
+# Runs MicroPython with the loader and the libraries it was packed for, not those of the machine.
+here=\${0%/*}
+exec "\$here/$loader" --library-path "\$here/$library" "\$here/usr/bin/micropython" "\$@"
+STARTER
+    chmod +x "$folder/micropython"
+}
+
+# ---- built here from the source package -----------------------------------------------------
+
+build_from_source() {
+    local name=$1 folder=$2 release view=$2/view
+    can_build "$name" && type -P apt-get dpkg >/dev/null || return
+    for release in $(releases); do
+        say "MicroPython $name: looking into the sources of $release"
+        packages_open "$view" deb-src "$release"
+        unpack_source "$view" && run_make "$name" "$view" &&
+            mv "$view/source/ports/unix/build-$name/micropython" "$folder/micropython" &&
+            rm -rf "$view" && return
+        rm -rf "$view"
+    done
+    return 1
+}
+
+# A compiler that finds its headers, for the word size in question; make; and python3, which the
+# build itself uses.
+can_build() {
+    type -P cc make python3 >/dev/null || return
+    # shellcheck disable=SC2046  # no word or one
+    echo '#include <stdio.h>' | cc $(word_size "$1") -xc -fsyntax-only - 2>/dev/null
+}
+
+word_size() {
+    [[ $1 == unix32 ]] && echo -m32
+    return 0
+}
+
+unpack_source() {
+    local view=$1 version
+    version=$(apt_cache "$view" showsrc micropython 2>/dev/null |
+        awk '$1 == "Version:" { print $2; exit }')
+    [[ -n $version ]] && dpkg --compare-versions "$version" ge "$oldest" || return
+    mkdir "$view/source" &&
+        (cd "$view" && apt_get "$view" source --download-only micropython) >"$view/log" 2>&1 &&
+        unpack_tar "$view"/micropython_*.orig.tar.xz "$view/source"
+}
+
+# Python takes the compression off, since it is needed anyhow and xz may be missing.
+unpack_tar() {
+    python3 -c '
+import lzma, shutil, sys
+shutil.copyfileobj(lzma.open(sys.argv[1]), sys.stdout.buffer)
+' "$1" | tar -x -C "$2" --strip-components=1
+}
+
+run_make() {
+    local name=$1 view=$2
+    say "    compiling it"
+    if ! make_port "$name" "$view/source/ports/unix" >"$view/log" 2>&1; then
+        say "    that failed:"
+        say_end_of "$view/log"
+        return 1
+    fi
+}
+
+# Nothing is frozen in, so that no cross compiler has to be built first; and what the panel does
+# not use is left out, so that a C library is all that has to be installed.
+make_port() {
+    local name=$1 flags=-Wno-error settings=(
+        MICROPY_PY_FFI=0 MICROPY_PY_SSL=0 MICROPY_SSL_MBEDTLS=0 MICROPY_PY_BTREE=0 FROZEN_MANIFEST=
+    )
+    case $name in
+        unix32)
+            settings+=(MICROPY_FORCE_32BIT=1)
+            ;;
+        coverage)
+            # Constants stay statements that run. With 64 bytes a block of the heap, the frame
+            # that every traced call allocates is one block: twenty times faster than two.
+            flags+=' -DMICROPY_PY_SYS_SETTRACE=1 -DMICROPY_COMP_CONST=0'
+            flags+=' -DMICROPY_BYTES_PER_GC_BLOCK=64'
+            ;;
+    esac
+    make -C "$2" -j"$(nproc)" "BUILD=build-$name" "CFLAGS_EXTRA=$flags" "${settings[@]}"
+}
