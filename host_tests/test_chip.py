@@ -122,7 +122,7 @@ def test_write_takes_what_there_is_room_for():
 def test_writing_nothing_sends_nothing():
     board = Board()
     board.enable(1)
-    board.uart.write(b"")
+    assert board.uart.write(b"") == 0 and board.uart.write(TELEGRAM, 0) == 0
     assert board.uart.txdone()
     board.clock.advance(20_000)
     assert board.heard == []
@@ -136,6 +136,18 @@ def test_the_uart_is_done_in_its_time_even_if_the_driver_is_off():
     board.clock.advance(1)
     assert board.uart.txdone()
     assert board.heard == [] and board.wire.violation_count == 1
+
+
+def test_the_uart_is_done_in_its_time_even_if_the_driver_cuts_it_short():
+    board = Board()
+    board.enable(1)
+    board.uart.write(TELEGRAM)
+    board.clock.advance(1000)
+    board.enable(0)
+    board.clock.advance(TELEGRAM_US - 1001)
+    assert not board.uart.txdone()
+    board.clock.advance(1)
+    assert board.uart.txdone() and board.heard == [(1000, TELEGRAM[:1])]
 
 
 # UART: receiving
@@ -528,7 +540,6 @@ def test_a_period_counts_ticks():
         (5, 1000, 5000),
         (5, 1_000_000, 5),
         (0, 1_000_000, 1),
-        (-3, 1000, 1),
         (1, 3, 333_333),
         (90, 60, 1_500_000),
     ):
@@ -576,11 +587,12 @@ def test_a_timer_started_anew_while_its_interrupt_waits_calls_after_the_new_peri
     assert board.interrupts == [7000]
 
 
-def test_arguments_that_are_no_integers_are_refused():
+def test_arguments_that_make_no_period_are_refused():
     timer = Timer(Chip(Clock(), None))
     for keywords in ({"period": 1.5}, {"period": None}, {"mode": "x"}, {"tick_hz": 1e6}):
         assert refused(TypeError, timer.init, **keywords)
     assert refused(TypeError, timer.init, Timer.ONE_SHOT)
+    assert refused(ValueError, timer.init, period=-1)
 
 
 # Watchdog and reset

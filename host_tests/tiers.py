@@ -21,6 +21,8 @@ from runner import MARK
 TOP = Path(__file__).resolve().parent.parent
 RUNNER = "host_tests/runner.py"
 SURVEY_TIMEOUT_S = 20
+OUTPUT_LIMIT = 10_000_000  # characters that one function may print
+REPORT = re.compile(rf"{MARK}(\w+) ?(.*)\n")
 
 
 class Tier(NamedTuple):
@@ -82,15 +84,14 @@ def survey() -> Survey:
 
 
 class FileRun:
-    """The run of functions of one file on one tier, in one process or, after a crash, in more.
+    """The run of functions of one file on one tier: in one process or, after a crash, in more.
 
-    `publish(name, verdict)` is called for every function, `note_lines(file, numbers)` with the
-    lines that the coverage tier saw. `run` is meant for a thread; `stop` may come from another.
+    `publish(name, verdict)` is called once for every function, `note_lines(file, numbers)` with
+    the lines that the coverage tier saw run. `run` is for a thread; `stop` may come from another.
     """
 
     def __init__(self, tier, path, names, timeout_s, publish, note_lines):
-        self.tier = tier
-        self.path = path.relative_to(TOP) if path.is_relative_to(TOP) else path
+        self.command = [*tier.command, RUNNER, tier.name, _from_top(path)]
         self.left = list(names)
         self.timeout_s = timeout_s
         self.publish = publish
@@ -108,41 +109,95 @@ class FileRun:
             self.process.kill()
 
     def _run_process(self):
-        """Runs what is left, until the process ends. At least one verdict comes of it."""
-        self.process = subprocess.Popen(
-            [*self.tier.command, RUNNER, self.tier.name, str(self.path), *self.left],
-            cwd=TOP,
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-        )
-        with self.process:
-            end_of_story = self._follow_process()
-        if self.stopped:
-            return
-        self._conclude(*end_of_story)
+        """Runs what is left until the process ends; at least one verdict comes of it.
 
-    def _follow_process(self):
-        """Turns reports into verdicts; returns what was under way when the process ended.
-
-        The verdict on a function is held back until the next report, because a process that dies
-        after its last function makes that function fail too.
+        A verdict is held back until the next function begins: should the process die before that,
+        the function that ended last is the one to look at, and fails.
         """
-        current = verdict = None
+        name = verdict = None
         output, began = "", 0.0
+        self.process = _start([*self.command, *self.left])
         for text, word, argument in _reports(self.process, self.timeout_s):
-            if verdict and word != "lines":
-                self._close(current, verdict)
-                current = verdict = None
             if word == "began":
-                current, output, began = argument, "", time.monotonic()
+                if verdict:
+                    self._conclude(name, verdict)
+                name, verdict, output, began = argument, None, "", time.monotonic()
             elif word == "raised":
                 output = text
-            elif word in ("passed", "failed"):
-                seconds = time.monotonic() - began
-                passed = word == "passed"
-                verdict = Verdict(passed, text if passed else output, "" if passed else text, seconds)
+            elif word == "passed":
+                verdict = Verdict(True, text, "", time.monotonic() - began)
+            elif word == "failed":
+                verdict = Verdict(False, output, text, time.monotonic() - began)
             elif word == "lines":
                 file, _, numbers = argument.partition(" ")
                 self.note_lines(file, map(int, numbers.split()))
-        raise AssertionError("reports end with an end")
+            elif word == "ended" and not self.stopped:
+                seconds = time.monotonic() - began
+                self._conclude_process(name, verdict, output + text, argument, seconds)
+
+    def _conclude(self, name, verdict):
+        self.left.remove(name)
+        self.publish(name, verdict)
+
+    def _conclude_process(self, name, verdict, output, death, seconds):
+        if name is None:  # most likely the file cannot even be imported
+            reason = f"{output}No function of this file could be run: {death or 'it ended'}."
+            for name in list(self.left):
+                self._conclude(name, Verdict(False, "", reason, 0.0))
+        elif verdict is None:
+            reason = f"In this function {death or 'the interpreter ended'}."
+            self._conclude(name, Verdict(False, output, reason, seconds))
+        elif death:
+            reason = f"{verdict.reason}After this function {death}."
+            self._conclude(name, verdict._replace(passed=False, reason=reason))
+        else:
+            self._conclude(name, verdict)
+
+
+def _from_top(path: Path) -> str:
+    return str(path.relative_to(TOP) if path.is_relative_to(TOP) else path)
+
+
+def _start(command):
+    return subprocess.Popen(
+        command,
+        cwd=TOP,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+    )
+
+
+def _reports(process, timeout_s):
+    """Yields (text before the report, word, argument); the last word is always "ended".
+
+    The argument of "ended" says what the process died of and is empty after a good end. A process
+    that reports nothing for `timeout_s`, or prints without end, is killed.
+    """
+    pending = death = ""
+    deadline = time.monotonic() + timeout_s
+    with process, selectors.DefaultSelector() as selector:
+        selector.register(process.stdout, selectors.EVENT_READ)
+        while not death:
+            if not selector.select(deadline - time.monotonic()):
+                death = f"the interpreter hung and was killed after {timeout_s:g} s"
+            elif len(pending) > OUTPUT_LIMIT:
+                death = "the interpreter printed without end and was killed"
+            else:
+                piece = os.read(process.stdout.fileno(), 65536)
+                if not piece:
+                    break
+                pending += piece.decode("utf-8", "replace")
+                while found := REPORT.search(pending):
+                    yield pending[: found.start()], found[1], found[2]
+                    pending = pending[found.end() :]
+                    deadline = time.monotonic() + timeout_s
+        if death:
+            process.kill()
+    yield pending, "ended", death or _cause_of_death(process.returncode)
+
+
+def _cause_of_death(status):
+    if status < 0:
+        return f"the interpreter died of {signal.Signals(-status).name}"
+    return f"the interpreter ended with status {status}" if status else ""

@@ -26,6 +26,7 @@ except ImportError:  # MicroPython's os has none: asking for the terminal's sett
         return True
 
 
+EPIPE = 32  # not in MicroPython's errno
 FAILED = 1
 NOT_UNDERSTOOD = 2
 
@@ -99,6 +100,16 @@ def options(words):
     return values
 
 
+def world_of(chosen):
+    """The virtual world that the options ask for. UsageError when there is no such drive."""
+    try:
+        return World(
+            main.start, chosen["drives"], chosen["baud"], None, chosen["seed"], chosen["polled"]
+        )
+    except ValueError as error:
+        raise UsageError(error)
+
+
 def lines_of(name):
     """The lines of a script. Those of standard input are done as they come."""
     if name == "-":
@@ -153,9 +164,7 @@ def panel(words):
             return 0
         if chosen["script"] is None and not (isatty(0) and isatty(1)):
             raise UsageError("this is no terminal: give the panel a --script FILE, or --script -")
-        world = World(
-            main.start, chosen["drives"], chosen["baud"], None, chosen["seed"], chosen["polled"]
-        )
+        world = world_of(chosen)
         if chosen["script"] is None:
             run_terminal(world)
         else:
@@ -167,6 +176,10 @@ def panel(words):
         return complain(error, NOT_UNDERSTOOD)
     except (ExpectationFailed, AssertionError) as error:
         return complain(error, FAILED)
+    except OSError as error:
+        if error.errno != EPIPE:
+            raise
+        return FAILED  # whoever read the output has gone
     return 0
 
 

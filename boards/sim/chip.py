@@ -36,6 +36,8 @@ _HEAP_LOCK_UNTIL_US = (sys.maxsize >> 1) - 25_000_000
 
 _ERROR_LIMIT = 16
 
+RX_LIMIT = 256 + 32  # characters a UART holds: the driver's buffer and the FIFO
+
 
 class Chip:
     """The chip as a whole: its interrupts and its reset.
@@ -157,7 +159,7 @@ class UART:
         self.line = None  # the transceiver puts itself here
         self._chip = chip
         self._clock = chip.clock
-        self._buffer = bytearray(256 + 32)
+        self._buffer = bytearray(RX_LIMIT)
         self._head = 0
         self._count = 0
         self._undrained = 0  # how many of them are still in the FIFO
@@ -186,20 +188,18 @@ class UART:
 
     def readinto(self, buffer, n=None):
         """Take what waits, at most len(buffer) or `n`. Returns how many, or None for nothing."""
-        count = self.any()
-        size = len(buffer)
-        if n is not None and n < size:
-            size = n
-        if count > size:
-            count = size
+        count = min(self.any(), len(buffer))
+        if n is not None and n < count:
+            count = n
         if not count:
             return None
         data = self._buffer
+        end = len(data)
         at = self._head
         for i in range(count):
             buffer[i] = data[at]
             at += 1
-            if at == 288:
+            if at == end:
                 at = 0
         self._head = at
         self._count -= count
@@ -213,11 +213,12 @@ class UART:
         count = len(data)
         if n is not None and n < count:
             count = n
+        if not count:
+            return 0
         if self._sent_us <= self._clock.now_us:
             self._sending = 0
-        if count > BURST_LIMIT - self._sending:
-            count = BURST_LIMIT - self._sending
-        if self.line is None or count <= 0:
+        count = min(count, BURST_LIMIT - self._sending)
+        if self.line is None or not count:
             return None
         self._sent_us = self.line.send(data, count)
         self._sending += count
@@ -244,16 +245,15 @@ class UART:
     def receive(self, data, first, stop):
         """Characters first...stop - 1 of `data` come in."""
         buffer = self._buffer
+        end = len(buffer)
         at = self._head + self._count
-        if at >= 288:
-            at -= 288
-        count = stop - first
-        if count > 288 - self._count:
-            count = 288 - self._count
+        if at >= end:
+            at -= end
+        count = min(stop - first, end - self._count)
         for i in range(first, first + count):
             buffer[at] = data[i]
             at += 1
-            if at == 288:
+            if at == end:
                 at = 0
         self._count += count
         self._undrained += count
@@ -277,7 +277,7 @@ class UART:
 
 
 class Pin:
-    """machine.Pin, an output: `on_change(level)` tells the rest of the board. Low after a reset."""
+    """machine.Pin, an output, low after a reset: on_change(level) tells the rest of the board."""
 
     def __init__(self, chip, value=0, on_change=None):
         self.on_change = on_change
@@ -333,16 +333,19 @@ class Timer:
         """Call callback(timer) after `period` ticks, or each time they have passed.
 
         A running timer starts anew. Less than 1 us is 1 us. A hard callback takes no heap (RP2040
-        since MicroPython 1.26; 1.25 refuses the argument). TypeError: no integers.
+        since MicroPython 1.26; 1.25 refuses the argument). TypeError: no integers. ValueError: a
+        negative period, with which the chip's timer would not fire in a lifetime.
         """
         if not (isinstance(mode, int) and isinstance(period, int) and isinstance(tick_hz, int)):
             raise TypeError("can't convert to int")
+        if period < 0:
+            raise ValueError("negative period")
         self._mode = mode
         if 1_000_000 % tick_hz == 0:  # without this, 32-bit integers would take heap
             period_us = period * (1_000_000 // tick_hz)
         else:
             period_us = period * 1_000_000 // tick_hz
-        self._period_us = period_us if period_us > 0 else 1
+        self._period_us = max(period_us, 1)
         self._interrupt.handler = callback
         self._interrupt.hard = bool(hard)
         self._due = False

@@ -244,7 +244,7 @@ class Wire:
             burst.garbled = True
 
     def silence(self, station):
-        """Cut what `station` is sending now: its power failed, its plug was pulled, its chip reset.
+        """Cut what `station` is sending: its power failed, its plug was pulled, its chip reset.
 
         The characters that are complete by now were sent; what follows was not.
         """
@@ -362,7 +362,10 @@ class Wire:
         texts = []
         for at_us, rule, name, other, us in self._broken[: self.violation_count]:
             text = rule.format(
-                name=name, other=other, us=us, start=self.start_interval_us,
+                name=name,
+                other=other,
+                us=us,
+                start=self.start_interval_us,
                 character=self.character_us,
             )
             texts.append("at %d: %s" % (at_us, text))
@@ -414,10 +417,12 @@ class Log:
             if room < 0:
                 break
             start = (end - length) % LOG_CHARACTERS
-            text = bytes(self._ring[start:end])
-            if start > end:
-                text = bytes(self._ring[start:]) + bytes(self._ring[:end])
-            telegrams.append((self._start_us[row], bool(self._from_panel[row]), text))
+            if start <= end:
+                characters = self._ring[start:end]
+            else:
+                characters = self._ring[start:] + self._ring[:end]
+            from_panel = bool(self._from_panel[row])
+            telegrams.append((self._start_us[row], from_panel, bytes(characters)))
             end = start
         telegrams.reverse()
         return telegrams

@@ -21,6 +21,7 @@ from boards.sim.wire import Wire
 BOOT_US = 100_000  # from reset to the first step of the firmware
 TAP_MS = 100
 HANG_SLICE_US = 1_000
+COMPLAINTS_SHOWN = 5
 
 
 class World:
@@ -121,7 +122,10 @@ class World:
             for error in chip.handler_errors:
                 complaints.append("interrupt handler: %r" % (error,))
         if complaints:
-            raise AssertionError("seed %d: %s" % (self.seed, "; ".join(complaints)))
+            shown = complaints[:COMPLAINTS_SHOWN]
+            if len(complaints) > len(shown):
+                shown.append("and %d more" % (len(complaints) - len(shown)))
+            raise AssertionError("seed %d: %s" % (self.seed, "; ".join(shown)))
 
     def random(self, low, high):
         """A number from low to high, of a sequence that the seed decides (xorshift)."""

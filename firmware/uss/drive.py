@@ -82,7 +82,9 @@ class Drive:
         self._job = None
         self._job_since = 0
         self._job_tries = 0
-        self._rest = 0  # telegrams without a task still to be answered with AK 0
+        self._rest = 0  # telegrams without a task still to be tried for an answer with AK 0
+        self._ended_pke = 0  # the job that ended last
+        self._ended_ind = 0
 
     # --- for the loop ---------------------------------------------------------------------------
 
@@ -235,15 +237,20 @@ class Drive:
             self._end_job()
         out = self._queue_out
         if out != self._queue_in:
-            self._job = self._queue[out]
+            self._job = job = self._queue[out]
             self._queue[out] = None
+            # Only to the same question could an old reply be taken for the answer.
+            if job.ind != self._ended_ind or (job.pke ^ self._ended_pke) & 0x07FF:
+                self._rest = 0
             self._queue_out = (out + 1) % len(self._queue)
             self._job_since = now
             self._job_tries = 0
 
     def _end_job(self):
-        # Never leave a task standing, and let two equal ones be told apart (specification
+        # A task is never left standing. Two of the same parameter must be told apart (specification
         # C-4.2.1.1): "no task" stands between them until the drive has answered it.
+        self._ended_pke = self._job.pke
+        self._ended_ind = self._job.ind
         self._job = None
         self._rest = REST_MAX
 

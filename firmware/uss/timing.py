@@ -32,16 +32,17 @@ class Timing:
 
     baud: bits per second; ValueError unless it is one of BAUD_RATES.
     reply_timeout_us: how long the master waits for the first character of a reply. The
-        specification says 20 ms; adapters that delay need more.
+        specification says 20 ms; adapters that delay need more. Below 2400 baud the pause that the
+        drive must keep before its reply comes near to that or exceeds it: twice the pause is waited.
     """
 
     def __init__(self, baud, reply_timeout_us=RESPONSE_DELAY_US):
         if baud not in BAUD_RATES:
             raise ValueError("baud rate %r is none of USS: %s" % (baud, BAUD_RATES))
         self.baud = baud
-        self.reply_timeout_us = reply_timeout_us
         self.character_us = characters_us(baud, 1)
         self.start_interval_us = characters_us(baud, START_INTERVAL_CHARACTERS)
+        self.reply_timeout_us = max(reply_timeout_us, 2 * self.start_interval_us)
 
     def telegram_us(self, net_count):
         """Duration of a telegram with `net_count` net characters sent without a gap."""

@@ -1,0 +1,66 @@
+# pytest, in a virtual environment in build/pytest. To be sourced after folder.sh and packages.sh.
+
+requirements=$top/host_tests/requirements.txt
+
+get_pytest() {
+    has_python || return
+    fill pytest has_pytest make_pytest
+}
+
+has_python() {
+    python3 -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null
+}
+
+# The environment is whole when it was made for these requirements and its Python, which belongs
+# to the machine, is still the one that it was made with.
+has_pytest() {
+    cmp -s "$requirements" "$1/requirements.txt" && "$1/bin/python" -c 'import pytest' 2>/dev/null
+}
+
+make_pytest() {
+    local folder=$1 log=$1/log
+    say "pytest: installing it into build/pytest"
+    make_environment "$folder" &&
+        if ! install_requirements "$folder" >"$log" 2>&1; then
+            say "    that failed:"
+            say_end_of "$log"
+            return 1
+        fi
+    cp "$requirements" "$folder/requirements.txt"
+}
+
+# Debian leaves pip out of python3 (it comes with python3-venv). Then its package is unpacked, and
+# pip is run from there.
+make_environment() {
+    local folder=$1
+    python3 -m venv "$folder" >/dev/null 2>&1 && return
+    say "    this python3 comes without pip, fetching that"
+    python3 -m venv --clear --without-pip "$folder" && unpack_pip "$folder"
+}
+
+install_requirements() {
+    PYTHONPATH=$1/pip "$1/bin/python" -m pip install --disable-pip-version-check -r "$requirements"
+}
+
+unpack_pip() {
+    local folder=$1 view=$1/view release
+    type -P apt-get dpkg-deb >/dev/null || return
+    for release in $(releases); do
+        packages_open "$view" deb "$release"
+        packages_unpack "$view" "$view/root" python3-pip-whl &&
+            python3 -m zipfile -e "$view"/root/usr/share/python-wheels/pip-*.whl "$folder/pip" &&
+            rm -rf "$view" && return
+        rm -rf "$view"
+    done
+    return 1
+}
+
+# What to do when there is no pytest. $1 is the command to be tried again.
+no_pytest() {
+    if ! has_python; then
+        say "$1: wants Python 3.11 or newer as python3:  apt-get install python3 python3-venv"
+    else
+        say "$1: pytest could not be installed (see above)."
+        say "  It is fetched with pip:  apt-get install python3-venv ca-certificates, and a network"
+    fi
+}
