@@ -188,11 +188,13 @@ class TestFailed(Exception):
 
 
 class Failure:
-    """What pytest shows of a failure: the text, and its last line in the short summary."""
+    """What pytest shows of a failure: the text, and one line of it in the short summary."""
 
     def __init__(self, text):
         self.text = text.strip("\n")
-        self.reprcrash = SimpleNamespace(message=self.text.splitlines()[-1])
+        *_, line_before, last_line = ["", *self.text.splitlines()]
+        failed_assert = last_line.startswith("AssertionError")  # then the line of source says more
+        self.reprcrash = SimpleNamespace(message=(line_before if failed_assert else last_line).strip())
 
     def toterminal(self, writer):
         for line in self.text.splitlines():

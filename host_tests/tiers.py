@@ -31,6 +31,11 @@ class Tier(NamedTuple):
     remedy: str  # the command that lets tools/test have the tier
 
 
+# Alone with the standard library, printing at once, leaving no caches in firmware/, and with
+# tracebacks as short as MicroPython's.
+CPYTHON_OPTIONS = ("-I", "-u", "-B", "-X", "utf8", "-X", "no_debug_ranges")
+
+
 def _micropython(name: str) -> tuple[str, ...]:
     return (f"{TOP}/build/{name}/micropython", "-X", "heapsize=64M")
 
@@ -41,8 +46,7 @@ TIERS = {
         Tier("unix64", _micropython("unix64"), "apt-get install micropython"),
         Tier("unix32", _micropython("unix32"), "apt-get install gcc-multilib make python3"),
         Tier("coverage", _micropython("coverage"), "apt-get install gcc libc6-dev make python3"),
-        # Alone with the standard library, printing at once, leaving no caches in firmware/.
-        Tier("cpython", (sys.executable, "-I", "-u", "-B", "-X", "utf8"), ""),
+        Tier("cpython", (sys.executable, *CPYTHON_OPTIONS), ""),
     )
 }
 

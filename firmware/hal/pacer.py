@@ -13,7 +13,6 @@ disabled for good by MicroPython. It is counted, every ON is taken back, and the
 
 from micropython import const
 
-POLL_US = const(1_000)  # how often a link without interrupts is looked at
 RETRY_US = const(10_000)  # after an exception in the engine
 OVERDUE_US = const(50_000)  # a timer that is so late is not waited for any more
 ROUNDS_MAX = const(4)  # entries in a row for events that came meanwhile; the timer takes the rest
@@ -93,8 +92,6 @@ class Pacer:
             return RETRY_US
 
     def _arm(self, after_us):
-        if not self._link.interrupts and after_us > POLL_US:
-            after_us = POLL_US
         self._due_at = (self._ticks_us() + after_us) & self._mask
         timer = self._timer
         if timer and not self._stopped:

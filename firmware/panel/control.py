@@ -40,6 +40,7 @@ class Control:
         self._mask = mask
         self._lowest = settings.lowest_centihertz
         self._highest = settings.highest_centihertz
+        self._version = 0  # of the survey, as last seen
         self._contact = False  # as last seen
         self._contacts = 0  # drive.contacts when it was started
         self._dead_man_trips = 0  # bus.dead_man_trips when it was started
@@ -68,7 +69,7 @@ class Control:
         self._failures = self._bus.failures
         self._started_at = self._now
         self._started = False
-        drive.start(self._hsw())
+        drive.start(drive.hsw)
         return None
 
     def stop(self):
@@ -85,6 +86,8 @@ class Control:
     def change(self, centihertz):
         """Move the setpoint by so much, within the limits of the drive and of the settings."""
         self.setpoint_centihertz = self._limited(self.setpoint_centihertz + centihertz)
+        if self.survey.complete:
+            self.drive.hsw = self.survey.scaling.hsw(self.setpoint_centihertz)
 
     # --- what goes on ---------------------------------------------------------------------------
 
@@ -103,11 +106,9 @@ class Control:
             self._watch_start(now)
         if self._stopping:
             self._watch_stop(now)
-        if self.survey.complete:
-            limited = self._limited(self.setpoint_centihertz)
-            self.setpoint_centihertz = limited
-            if drive.wanted:
-                drive.hsw = self._hsw()
+        if self.survey.version != self._version:
+            self._version = self.survey.version
+            self.change(0)
 
     def actual_centihertz(self):
         """The actual frequency with its sign, or None while it cannot be told."""
@@ -214,6 +215,3 @@ class Control:
             highest = min(highest, self.survey.scaling.limit_centihertz())
             lowest = max(lowest, values[profiles.LOWEST])
         return max(min(centihertz, highest), min(lowest, highest))
-
-    def _hsw(self):
-        return self.survey.scaling.hsw(self._limited(self.setpoint_centihertz))

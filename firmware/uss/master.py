@@ -208,7 +208,7 @@ class Master:
         receiver = self._receiver
         finding = receiver.take(self._link, now)
         if finding == WAITING:
-            return receiver.due_us(now, self._link.resolution_us)
+            return receiver.due_us(self._link, now)
         if finding == telegram.GOOD:
             self._drive.take(receiver.buffer, telegram.NET, now)
         else:

@@ -21,6 +21,7 @@ CUT_OFF = const(6)  # the residual run time passed before the telegram was compl
 
 FINDINGS = telegram.FINDINGS + ("no reply", "residual time expired")
 
+POLL_US = const(1_000)  # how often a link without interrupts is looked at
 ROUNDING_US = const(2)  # two instants, each rounded to a microsecond
 
 
@@ -78,13 +79,22 @@ class Receiver:
             return telegram.BAD_START if self.stray else SILENT
         return WAITING
 
-    def due_us(self, now, resolution_us):
-        """Microseconds until `take` has something to say even if no character comes, at least 1."""
+    def due_us(self, link, now):
+        """Microseconds until `take` has something to say, at least 1.
+
+        A link with interrupts announces what it hears, so that only the time-outs are due. Another
+        one is looked at when the telegram can be complete at the earliest, then every POLL_US.
+        """
+        passed_us = elapsed(now, self._sent_at, self._mask)
         if self.count:
-            left = self._residual_us + resolution_us + 1
+            left = self._residual_us + link.resolution_us + 1
             left -= elapsed(now, self._began_at, self._mask)
         else:
-            left = self._window_us() - elapsed(now, self._sent_at, self._mask)
+            left = self._window_us() - passed_us
+        if not link.interrupts:
+            timing = self._timing
+            earliest_us = timing.start_interval_us + self._size * timing.character_us
+            left = min(left, max(earliest_us - passed_us, POLL_US))
         return max(left, 1)
 
     def _window_us(self):

@@ -24,7 +24,7 @@ class Survey:
 
     values: for each row of profiles.SURVEY the number read, or UNKNOWN.
     complete: all rows are known. scaling: a `pzd.Scaling`, or None while it is not known.
-    unreadable: the drive refused one of them.
+    unreadable: the drive refused one of them. version: counts the changes of all this.
     """
 
     def __init__(self, drive, mask):
@@ -33,6 +33,7 @@ class Survey:
         self.complete = False
         self.scaling = None
         self.unreadable = False
+        self.version = 0
         self._mask = mask
         self._job = pkw.read(0)
         self._words = [UNKNOWN] * (2 * len(profiles.SURVEY))  # as last read: high, low, high ...
@@ -66,6 +67,7 @@ class Survey:
         self.complete = False
         self.scaling = None
         self.unreadable = False
+        self.version += 1
         self._row = 0
         for row in range(len(self.values)):
             self.values[row] = UNKNOWN
@@ -99,6 +101,7 @@ class Survey:
     def _judge(self):
         """What the values amount to, after one of them changed."""
         values = self.values
+        self.version += 1
         self.complete = UNKNOWN not in values
         reference, absolute = values[profiles.REFERENCE], values[profiles.ABSOLUTE]
         if reference < pzd.REFERENCE_MIN or absolute == UNKNOWN:

@@ -179,10 +179,8 @@ word_size() {
 }
 
 unpack_source() {
-    local view=$1 version
-    version=$(apt_cache "$view" showsrc micropython 2>/dev/null |
-        awk '$1 == "Version:" { print $2; exit }')
-    [[ -n $version ]] && dpkg --compare-versions "$version" ge "$oldest" || return
+    local view=$1
+    offered "$view" || return
     mkdir "$view/source" &&
         (cd "$view" && apt_get "$view" source --download-only micropython) >"$view/log" 2>&1 &&
         unpack_tar "$view"/micropython_*.orig.tar.xz "$view/source"
@@ -207,7 +205,8 @@ run_make() {
 }
 
 # Nothing is frozen in, so that no cross compiler has to be built first; and what the panel does
-# not use is left out, so that a C library is all that has to be installed.
+# not use is left out, so that a C library is all that has to be installed. git may not look above
+# build/, or it would take the version of this tree for that of MicroPython.
 make_port() {
     local name=$1 flags=-Wno-error settings=(
         MICROPY_PY_FFI=0 MICROPY_PY_SSL=0 MICROPY_SSL_MBEDTLS=0 MICROPY_PY_BTREE=0 FROZEN_MANIFEST=
@@ -223,5 +222,5 @@ make_port() {
             flags+=' -DMICROPY_BYTES_PER_GC_BLOCK=64'
             ;;
     esac
-    make -C "$2" -j"$(nproc)" "BUILD=build-$name" "CFLAGS_EXTRA=$flags" "${settings[@]}"
+    GIT_CEILING_DIRECTORIES=$build make -C "$2" -j"$(nproc)" "BUILD=build-$name" "CFLAGS_EXTRA=$flags" "${settings[@]}"
 }

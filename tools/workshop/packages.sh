@@ -98,7 +98,9 @@ apt_cache() { apt-cache -q -c "$1/apt.conf" "${@:2}"; }
 
 # packages_version FOLDER PACKAGE: the newest version that the view offers, nothing when none.
 packages_version() {
-    apt_cache "$1" show --no-all-versions "$2" 2>/dev/null | awk '$1 == "Version:" { print $2; exit }'
+    {
+        apt_cache "$1" show --no-all-versions "$2" || apt_cache "$1" showsrc "$2"
+    } 2>/dev/null | awk '$1 == "Version:" { print $2; exit }'
 }
 
 # packages_unpack FOLDER ROOT PACKAGE...: downloads the packages and unpacks them below ROOT.
