@@ -15,7 +15,7 @@ import settings as settings_module
 from hal.pacer import Pacer
 from panel.control import Control
 from panel.panel import Panel
-from uss.master import Master
+from uss.master import CLOSED, Master
 from uss.survey import Survey
 from uss.timing import Timing, elapsed
 
@@ -71,18 +71,23 @@ class App:
         """
         try:
             self.bus.stop_all()
-            clock = self.board.clock
-            began_ms = clock.ticks_ms()
-            patience_ms = CLOSE_MS + CLOSE_PER_DRIVE_MS * len(self.bus.drives)
-            while not self._all_stopped():
-                if elapsed(clock.ticks_ms(), began_ms, self._mask) > patience_ms:
-                    break
-                self.pacer.tend()
-                self.board.watchdog.feed()
-                self.board.idle()
-        finally:
+            self._wait(self._all_stopped)
             self.bus.close()
+            self._wait(self._is_closed)
+        finally:
             self.pacer.stop()
+
+    def _wait(self, condition):
+        """Let the engine work until `condition()` is true, or as long as may be expected."""
+        clock = self.board.clock
+        began_ms = clock.ticks_ms()
+        patience_ms = CLOSE_MS + CLOSE_PER_DRIVE_MS * len(self.bus.drives)
+        while not condition():
+            if elapsed(clock.ticks_ms(), began_ms, self._mask) > patience_ms:
+                return
+            self.pacer.tend()
+            self.board.watchdog.feed()
+            self.board.idle()
 
     def _all_stopped(self):
         """Whether every drive in contact has answered OFF1, and the others were sent it."""
@@ -90,6 +95,9 @@ class App:
             if drive.urgent != drive.served or (drive.contact and not drive.answered_off):
                 return False
         return True
+
+    def _is_closed(self):
+        return self.bus.phase == CLOSED
 
     def _engine_works(self, now_ms):
         if self.pacer.runs != self._runs:

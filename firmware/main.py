@@ -16,9 +16,8 @@ def start(board):
     return app
 
 
-def run(board):
-    """Run the panel on `board` until something ends it; then stop the drives."""
-    app = start(board)
+def loop(app):
+    """Step until something ends it: Ctrl-C, an exception. Then stop the drives."""
     try:
         while True:
             app.step()
@@ -37,7 +36,7 @@ def main():
     import board  # the file that boards/<name>/ puts beside this one
 
     if not escape_wanted(board.keypad):
-        run(board)
+        loop(start(board))
 
 
 if __name__ == "__main__":

@@ -116,7 +116,9 @@ def test_write_takes_what_there_is_room_for():
     assert board.uart.write(bytes(20)) is None
     board.clock.advance(100_000)
     assert board.uart.txdone() and len(board.heard[0][1]) == 260
-    assert board.uart.write(bytes(20)) == 20
+    assert board.uart.write(bytes(200)) == 200
+    board.clock.advance(board.wire.ends[199])
+    assert board.uart.txdone() and board.uart.write(bytes(200)) == 200
 
 
 def test_writing_nothing_sends_nothing():
@@ -195,6 +197,19 @@ def test_the_buffer_is_a_ring():
         received += bytes(buffer[:count])
         expected += telegram
     assert received + board.waiting() == expected
+
+
+def test_no_character_is_lost_where_the_ring_closes():
+    board = Board(115200)
+    for _ in range(4):
+        board.reply(bytes(69))
+        board.clock.advance(10_000)
+    buffer = bytearray(100)
+    board.uart.readinto(buffer)
+    for telegram in (TELEGRAM[:12], TELEGRAM):  # the first one ends at the end of the ring
+        board.reply(telegram)
+        board.clock.advance(10_000)
+    assert board.waiting() == bytes(176) + TELEGRAM[:12] + TELEGRAM
 
 
 def test_what_does_not_fit_into_288_characters_is_lost():
@@ -310,6 +325,16 @@ def test_an_unknown_trigger_or_a_handler_that_cannot_be_called_is_refused():
     assert refused(ValueError, board.uart.irq, 5, UART.IRQ_RXIDLE)
 
 
+def test_a_uart_after_deinit_has_nothing_and_interrupts_nobody():
+    board = Board()
+    board.uart.irq(board.note, UART.IRQ_RXIDLE)
+    board.reply()
+    board.clock.advance(TELEGRAM_US + 100)
+    board.uart.deinit()
+    board.clock.advance(20_000)
+    assert board.interrupts == [] and board.uart.any() == 0
+
+
 def test_a_uart_after_deinit_is_silent_and_deaf():
     board = Board()
     board.uart.irq(board.note, UART.IRQ_RXIDLE)
@@ -343,19 +368,35 @@ def test_there_is_no_echo():
 
 
 def test_the_receiver_is_off_while_the_driver_is_on():
+    # On within character 4, off where character 7 begins, at 4010 us, or near it. Of the garbled
+    # rest, a character comes in if the receiver was on from its start bit to its stop bit.
+    for off_us, first_heard in ((4009, 7), (4010, 7), (4011, 8), (4583, 8), (4584, 9)):
+        board = Board()
+        start_us = 1000
+        board.at(start_us, board.reply)
+        board.uart.irq(board.note, UART.IRQ_RXIDLE)
+        ends = board.wire.ends
+        board.clock.advance(start_us + ends[3] + 10)
+        board.enable(1)
+        board.clock.advance_to(start_us + off_us)
+        board.enable(0)
+        board.clock.advance(20_000)
+        garbled = bytes(character ^ 0xFF for character in TELEGRAM)
+        assert board.waiting() == TELEGRAM[:4] + garbled[first_heard:]
+        ends_us = (start_us + ends[3], start_us + TELEGRAM_US)
+        assert board.interrupts == [end_us + RXIDLE_US for end_us in ends_us]
+        assert board.wire.violation_count == 2  # a collision, and a driver on for nothing
+
+
+def test_a_pin_that_is_high_from_the_start_enables_the_driver():
     board = Board()
-    ends = board.wire.ends
-    board.uart.irq(board.note, UART.IRQ_RXIDLE)
-    board.reply()
-    board.clock.advance(ends[3] + 10)
-    board.enable(1)
-    board.clock.advance_to(ends[7] + 10)
-    board.enable(0)
-    board.clock.advance(20_000)
-    # Characters 4 to 8 are lost: the fifth and the ninth in part. The garbled rest comes in.
-    assert board.waiting() == TELEGRAM[:4] + bytes(c ^ 0xFF for c in TELEGRAM[9:])
-    assert board.interrupts == [ends[3] + RXIDLE_US, TELEGRAM_US + RXIDLE_US]
-    assert board.wire.violation_count == 2  # the collision, and a driver that was on for nothing
+    pin = Pin(board.chip, 1)
+    Transceiver(board.wire, UART(board.chip, 19200), pin, "other")
+    board.clock.advance(1000)
+    pin(0)
+    assert board.wire.violations == [
+        "at 1000: other has its driver enabled for 1000 us without sending"
+    ]
 
 
 def test_characters_left_before_the_driver_came_on_still_give_rxidle():
@@ -410,6 +451,19 @@ def test_an_exception_disables_its_handler_for_good_and_is_remembered():
     board.reply()
     board.clock.advance(20_000)
     assert board.interrupts[2:] == [120_000 + TELEGRAM_US + RXIDLE_US]
+
+
+def test_the_first_16_exceptions_are_remembered():
+    board = Board()
+
+    def fail(source):
+        raise KeyError("spoilt")
+
+    timer = Timer(board.chip)
+    for _ in range(20):
+        timer.init(mode=Timer.ONE_SHOT, period=1, callback=fail)
+        board.clock.advance(1000)
+    assert len(board.chip.handler_errors) == 16
 
 
 def test_a_hard_handler_cannot_take_heap():

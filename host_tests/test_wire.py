@@ -125,11 +125,22 @@ def test_characters_written_while_the_burst_goes_on_follow_without_a_gap():
     assert wire.violations == []
 
 
+def test_a_prolonged_telegram_keeps_its_driver_enabled_for_longer():
+    clock, wire, panel, two = panel_line()
+    wire.drive(panel, True)
+    wire.talk(panel, TELEGRAM, 4)
+    wire.talk(panel, TELEGRAM, 4)
+    clock.advance(wire.ends[7])
+    wire.drive(panel, False)
+    assert wire.violations == [] and two.heard == [(4583, TELEGRAM[:4] + TELEGRAM[:4])]
+
+
 def test_a_burst_has_1_to_260_characters():
     clock, wire, one, _ = line()
     assert refused(ValueError, wire.talk, one, TELEGRAM, 0)
     assert refused(ValueError, wire.talk, one, bytes(261), 261)
     wire.talk(one, bytes(260), 260)
+    assert refused(ValueError, wire.talk, one, TELEGRAM, 0)
     assert refused(ValueError, wire.talk, one, TELEGRAM, 1)
 
 
@@ -310,6 +321,15 @@ def test_who_starts_at_the_very_end_of_a_burst_does_not_collide():
         ]
 
 
+def test_who_goes_on_at_the_very_end_of_its_own_burst_begins_another_one():
+    clock, wire, one, two = line()
+    at(clock, 9166, wire.talk, one, TELEGRAM, 3)
+    wire.talk(one, TELEGRAM, 16)
+    clock.advance(30_000)
+    assert two.heard == [(9166, TELEGRAM), (9166 + 1718, TELEGRAM[:3])]
+    assert wire.violation_count == 1 and wire.log.count == 2
+
+
 # The driver enable of a station that has one
 
 
@@ -342,8 +362,9 @@ def test_a_driver_may_go_off_at_the_very_end_of_the_last_stop_bit():
 
 def test_characters_sent_without_the_driver_do_not_reach_the_line():
     clock, wire, panel, two = panel_line()
+    clock.advance(50_000)
     burst = wire.talk(panel, TELEGRAM, 16)
-    assert burst.end_us == 9166  # for the UART they are sent all the same
+    assert burst.end_us == 59_166  # for the UART they are sent all the same
     wire.talk(panel, TELEGRAM, 1)
     wire.drive(panel, True)
     clock.advance(500)
@@ -351,7 +372,7 @@ def test_characters_sent_without_the_driver_do_not_reach_the_line():
     clock.advance(20_000)
     assert two.heard == [] and two.begun == [] and wire.log.last(9) == []
     assert wire.violations == [
-        "at 0: one talks with its driver disabled, 9166 us of characters are lost"
+        "at 50000: one talks with its driver disabled, 9166 us of characters are lost"
     ]
 
 
@@ -370,12 +391,19 @@ def test_a_driver_that_goes_off_too_early_cuts_the_telegram():
 
 def test_a_driver_that_goes_off_more_than_a_character_late_is_a_violation():
     clock, wire, panel, _ = panel_line()
-    wire.drive(panel, True)
-    wire.talk(panel, TELEGRAM, 16)
-    clock.advance(9166 + 574)
-    wire.drive(panel, False)
+    for _ in range(2):
+        wire.drive(panel, True)
+        wire.talk(panel, TELEGRAM, 16)
+        clock.advance(9166 + 574)
+        wire.drive(panel, False)
+        clock.advance(260)
+        wire.drive(panel, True)
+        clock.advance(573)
+        wire.drive(panel, False)
+        clock.advance(9427)
     assert wire.violations == [
-        "at 9740: one has its driver enabled 574 us after its last stop bit, allowed are 573 us"
+        "at 9740: one has its driver enabled 574 us after its last stop bit, allowed are 573 us",
+        "at 29740: one has its driver enabled 574 us after its last stop bit, allowed are 573 us",
     ]
 
 
@@ -406,6 +434,7 @@ def test_a_driver_that_stays_on_is_found_when_somebody_looks():
 
 def test_a_driver_that_is_on_garbles_what_others_send():
     clock, wire, panel, two = panel_line()
+    clock.advance(5000)
     wire.drive(panel, True)
     wire.talk(panel, TELEGRAM, 16)
     clock.advance(9166 + 1200)
@@ -413,10 +442,10 @@ def test_a_driver_that_is_on_garbles_what_others_send():
     clock.advance(1000)
     wire.drive(panel, False)
     clock.advance(20_000)
-    assert panel.heard == [(10366 + 9166, inverted(TELEGRAM))]
+    assert panel.heard == [(15366 + 9166, inverted(TELEGRAM))]
     assert wire.violations == [
-        "at 10366: two talks while one holds its driver enabled, since 10366 us",
-        "at 11366: one has its driver enabled 2200 us after its last stop bit, allowed are 573 us",
+        "at 15366: two talks while one holds its driver enabled, since 10366 us",
+        "at 16366: one has its driver enabled 2200 us after its last stop bit, allowed are 573 us",
     ]
 
 
@@ -432,6 +461,31 @@ def test_a_driver_that_comes_on_while_another_talks_garbles_the_rest():
     assert wire.violations == [
         "at 6875: one enables its driver while two talks, 2291 us before its end"
     ]
+
+
+def test_a_driver_that_comes_on_at_the_very_end_of_a_burst_garbles_nothing():
+    # Whether or not the burst's own event comes first.
+    for early in (False, True):
+        clock, wire, panel, two = panel_line()
+        if early:
+            at(clock, 9166, wire.drive, panel, True)
+        wire.talk(two, TELEGRAM, 16)
+        if not early:
+            at(clock, 9166, wire.drive, panel, True)
+        clock.advance(9500)
+        wire.drive(panel, False)
+        assert panel.heard == [(9166, TELEGRAM)] and wire.violations == []
+
+
+def test_a_driver_is_not_needed_after_a_cut():
+    clock, wire, panel, _ = panel_line()
+    wire.drive(panel, True)
+    wire.talk(panel, TELEGRAM, 16)
+    clock.advance(3000)
+    wire.silence(panel)
+    clock.advance(574)
+    wire.drive(panel, False)
+    assert wire.violation_count == 1
 
 
 def test_a_reset_in_the_middle_of_a_telegram_breaks_no_rule():

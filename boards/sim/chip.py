@@ -368,9 +368,7 @@ class Timer:
         self._chip.interrupt(self._interrupt)
 
     def _is_due(self):
-        due = self._due
-        self._due = False
-        return due
+        return self._due
 
 
 class WDT:

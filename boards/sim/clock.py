@@ -91,7 +91,6 @@ class Clock:
         while before.next is not event:
             before = before.next
         before.next = event.next
-        event.next = None
         event.armed = False
 
     def advance(self, us):
@@ -114,7 +113,6 @@ class Clock:
             event = head.next
             while event is not None and event.at_us <= at_us:
                 head.next = event.next
-                event.next = None
                 event.armed = False
                 self.now_us = event.at_us
                 event.callback()

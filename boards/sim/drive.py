@@ -1,8 +1,8 @@
 """A simulated drive on the line: the electronics, the inverter and the motor behind them.
 
 It behaves as the manuals and the USS specification say a MICROMASTER 420 does, written from those
-documents alone: it shares no code with the panel's protocol. It models no currents, no voltages and
-no torque. Everything happens at the instant it would, in virtual time.
+documents alone: it shares no code with the panel's protocol. It models no currents, no voltages
+and no torque. Everything happens at the instant it would, in virtual time.
 
     drive = Drive(clock, wire, 1)           # set up for USS on its RS-485 terminals, address 1
     drive.read(1082)                        # 50.0
@@ -96,12 +96,12 @@ class Drive:
         process = self._process
         counters = self._slave.counters
         fault = process.faults[0]
-        zsw, hiw = process.words(2) if self.powered else (0, 0)
+        hiw = process.words(2)[1] if self.powered else 0
         return (
             "address=%d state=%s hz=%.2f stw=%04X zsw=%04X hsw=%04X hiw=%04X good=%d rejected=%d "
             "fault=%s starts=%d"
         ) % (
-            self.address, self.state, round(self.hz(), 2) + 0.0, process.image[0], zsw,
+            self.address, self.state, round(self.hz(), 2) + 0.0, process.image[0], process.zsw(),
             process.image[1], hiw, counters[0], counters[1], "F%04d" % fault if fault else "-",
             self.starts,
         )  # fmt: skip

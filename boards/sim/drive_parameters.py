@@ -7,7 +7,7 @@ who may write, and when, is the business of parameter_channel.py.
     store.set(1120, 0, 5.0)         # as from the drive's own keypad: RAM and EEPROM
     store.get(1120, 0)              # 5.0
 
-A word is an int, U32 as well, and a float has single precision, because that is what the drive keeps.
+A U16 or U32 is an int; a float has single precision, because that is what the drive keeps.
 """
 
 import struct
@@ -15,7 +15,7 @@ import struct
 # Columns of a row.
 NUMBER, NAME, TYPE, UNIT, INDICES, MINIMUM, MAXIMUM, DEFAULT, CHANGE, LEVEL, NOTE = range(11)
 
-# Objections to a value, numbered as in a reply with AK 7 (USS.md 3.6).
+# Objections to a value, numbered as in a reply with AK 7.
 OUT_OF_LIMITS = 2
 NOT_PERMITTED = 104
 
@@ -26,7 +26,7 @@ def single(value):
 
 
 class Parameters:
-    """rows, permitted: a family's tables. reading(number, index) is the value of a read-only number.
+    """rows, permitted: a family's tables. reading(number, index): the value of a read-only number.
 
     ram[number] is the list of the values in force, by index; look, and change it through store().
     """
@@ -55,7 +55,7 @@ class Parameters:
     def objection(self, number, index, value):
         """The error number that forbids `value` here, or None."""
         row = self.rows[number]
-        if not row[MINIMUM] <= value <= row[MAXIMUM]:  # written so that a float "not a number" fails
+        if not row[MINIMUM] <= value <= row[MAXIMUM]:  # not a float "not a number" either
             return OUT_OF_LIMITS
         if value not in self._permitted.get(number, (value,)):
             return NOT_PERMITTED
@@ -91,7 +91,10 @@ class Parameters:
         return self.value(number, index)
 
     def set(self, number, index, value):
-        """Set RAM and EEPROM. KeyError: no such number or index. ValueError: not a value for it."""
+        """Set RAM and EEPROM.
+
+        KeyError: no such number or index. ValueError: read-only, or not a value for it.
+        """
         row = self._find(number, index)
         label = self.label(number, index)
         if not row[CHANGE]:

@@ -1,12 +1,12 @@
 """The MICROMASTER 420 as data: which parameters it has and how they leave the factory.
 
-It is not a store: drive_parameters.py keeps the values, drive.py gives the readings theirs. Numbers,
-names and ranges follow the manufacturer's parameter lists as far as those were at hand. What a
-simulated bus cannot exercise (motor data, terminals, boosts) is left out, and so unknown to the
-drive: it answers error 0 there.
+It is not a store: drive_parameters.py keeps the values, drive.py gives the readings theirs.
+Numbers, names and ranges follow the manufacturer's parameter lists as far as those were at hand.
+What a simulated bus cannot exercise (motor data, terminals, boosts) is left out, and so unknown to
+the drive: it answers error 0 there.
 
-A row has the columns that drive_parameters.py names. CHANGE tells in which states the number may be
-changed, C commissioning, U running, T ready; a row without any is a reading. LEVEL is the least
+A row has the columns that drive_parameters.py names. CHANGE tells in which states the number may
+be changed, C commissioning, U running, T ready; a row without any is a reading. LEVEL is the least
 P0003 for changing it. A default that is a tuple has one value for each index.
 """
 
@@ -14,7 +14,7 @@ NAME = "MICROMASTER 420"
 
 ROWS = (
     # number, name, type, unit, indices, minimum, maximum, default, change, level, note
-    (3, "user access level", "U16", "", 1, 0, 4, 1, "CUT", 1, "0 user list ... 3 expert, 4 service"),
+    (3, "user access level", "U16", "", 1, 0, 4, 1, "CUT", 1, "0 user list ... 3 expert"),
     (10, "commissioning parameter", "U16", "", 1, 0, 30, 0, "CT", 1, "the motor runs only at 0"),
     (20, "frequency setpoint before the ramp", "F", "Hz", 1, None, None, 0.0, "", 3, ""),
     (21, "actual frequency", "F", "Hz", 1, None, None, 0.0, "", 2, "as delivered: PZD2"),
@@ -55,7 +55,7 @@ ROWS = (
     (2019, "PZD to COM link", "U32", "", 4, 0, 0x0FA00000, (0x00340000, 0x00150000, 0, 0x00350000),
      "CT", 3, "number in the high word, index in the low one"),
     (2024, "USS error-free telegrams", "U16", "", 2, None, None, 0, "", 3, ""),
-    (2025, "USS rejected telegrams", "U16", "", 2, None, None, 0, "", 3, "r2026 ... r2031 together"),
+    (2025, "USS rejected telegrams", "U16", "", 2, None, None, 0, "", 3, "r2026 ... r2031"),
     (2026, "USS character frame errors", "U16", "", 2, None, None, 0, "", 3, ""),
     (2027, "USS overrun errors", "U16", "", 2, None, None, 0, "", 3, ""),
     (2028, "USS parity errors", "U16", "", 2, None, None, 0, "", 3, ""),

@@ -1,14 +1,14 @@
-"""The parameter channel of a simulated drive: PKW tasks in, replies out (USS.md chapter 3).
+"""The parameter channel of a simulated drive: PKW tasks in, replies out.
 
-It carries out tasks 1, 2, 3, 6 ... 9 and 11 ... 14 on a parameter store and refuses the others with
-error 106. It does not know where on the line the words come from.
+It carries out tasks 1, 2, 3, 6 ... 9 and 11 ... 14 (specification C-4.2) on a parameter store and
+refuses the others with error 106. It does not know where on the line the words come from.
 
     channel.accept([0x1460, 0, 0, 0], 4)    # the PKW words of a request, and P2013: read P1120
     channel.reply(4)                        # [0x2460, 0, 0x4120, 0]: a double word, 10.0
 
-A task is carried out once, when it changes (3.7 rule 4); a reply that carries a value always carries
-the present one (rule 6). For the first `stale_replies` telegrams of a new task the reply is still that
-of the task before, as real drives do it (rule 5).
+A task is carried out once, when it changes; a reply that carries a value always carries the
+present one. For the first `stale_replies` telegrams of a new task the reply is still that of the
+task before, which the specification allows (C-4.2.1.1) and real drives do.
 """
 
 import struct
@@ -39,7 +39,7 @@ ELEMENTS = 6
 REFUSED = 7
 NO_RIGHTS = 8
 
-# Error numbers of a REFUSED task (3.6); two more are in drive_parameters.py.
+# Error numbers of a REFUSED task; two more are in drive_parameters.py.
 UNKNOWN_NUMBER = 0
 READ_ONLY = 1
 WRONG_SUBINDEX = 3

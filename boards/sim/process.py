@@ -1,7 +1,8 @@
 """The process data of a simulated drive: from STW and HSW to a turning motor, ZSW and HIW.
 
-Control and status words, state machine and setpoint channel are those of the MICROMASTER 4 (USS.md
-4.2 ... 4.9). It knows no telegrams and no parameter tasks; drive.py hands it the PZD words.
+Control and status words are those of the USS specification (C-5.2.1) with the MICROMASTER 4's own
+bits (r0052 ... r0054), the status words as recorded on real drives. It knows no telegrams and no
+parameter tasks; drive.py hands it the PZD words.
 
     process.accept([0x047F, 0x2000])    # PZD words as received
     process.words(2)                    # PZD words to send: ZSW and HIW, as P2019 has them
@@ -104,7 +105,11 @@ class Process:
             self._obey()
 
     def accept_broadcast(self, enable, words):
-        """Take over what the enable array (a, b, c, d) of a broadcast lets through (USS.md 2.3)."""
+        """Take over what the enable array (a, b, c, d) of a broadcast lets through.
+
+        The array is the specification's (A-3, C-5.2.3 and appendix): bit 0 of a is the flag, its
+        other bits name the words; b and c are bit masks for PZD1 and PZD4.
+        """
         if not enable[0] & 1:
             return
         masks = {0: enable[1], 3: enable[2]}  # PZD1 and PZD4 are taken bit by bit

@@ -1,8 +1,8 @@
 """The link layer of a simulated drive: which characters on the line are a telegram for it.
 
-It judges start interval, LGE, residual time, BCC and ADR in the order of the specification (A-5.2;
-USS.md 1.6 and 2.1), counts what goes wrong and says nothing about it. It knows no net data, and it
-shares no code with the panel's protocol, so that a mistake of one shows against the other.
+It judges start interval, LGE, residual time, BCC and ADR in the order of the specification
+(A-5.2), counts what goes wrong and says nothing about it. It knows no net data, and it shares no
+code with the panel's protocol, so that a mistake of one shows against the other.
 
     form = slave.hear(burst)            # STANDARD, MIRROR, BROADCAST, or None: drop it silently
     slave.telegram[:slave.length]       # the telegram, STX to BCC

@@ -103,7 +103,6 @@ class _Tap:
 
     def __init__(self, wire, station):
         self.wire = wire
-        self.station = station
         self.name = getattr(station, "name", "a station")
         self.from_panel = getattr(station, "is_panel", False)
         self.hear = station.hear
@@ -211,7 +210,6 @@ class Wire:
     def _begin(self, burst, now):
         burst.count = 0
         burst.start_us = now
-        burst.end_us = now
         burst.garbled = False
         burst.silence_us = 0 if self._talkers else now - self._idle_since_us
 
@@ -261,7 +259,6 @@ class Wire:
         burst.end_us = now
         tap.driver_needed_us = now
         if tap.talking:
-            self.clock.cancel(tap.end)
             self._ended(tap)
 
     def _ended(self, tap):
@@ -465,7 +462,6 @@ class Transceiver:
 
     def _enable(self, on):
         self.collect()
-        on = bool(on)
         burst = self._burst
         if burst is not None:
             self._switch_within(burst, on)

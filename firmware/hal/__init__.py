@@ -20,7 +20,8 @@ board
 clock
     ticks_us() -> int   interrupt. Microseconds since some instant; wraps to 0 after ticks_mask
     ticks_ms() -> int   milliseconds, wraps to 0 after ticks_mask
-    ticks_mask          period - 1 of both: 2**n - 1, at most 2**30 - 1 (a 31-bit small integer)
+    ticks_mask          period - 1 of both: 2**n - 1, at most 2**30 - 1 (a 31-bit small integer), at
+                        least 2**24 - 1, because half a period must outlast every time-out
 
 link                    half duplex; the driver enable is the link's affair
     interrupts          True: on_activity is called without anyone asking; False: it must be polled

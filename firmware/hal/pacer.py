@@ -38,7 +38,8 @@ class Pacer:
         self._inside = False
         self._again = False
         self._stopped = True
-        self._due_at = 0
+        self._armed_at = 0
+        self._armed_us = 0
         self._on_timer = self._timer_fired  # bound once: binding allocates
         self._on_activity = self.run
 
@@ -57,8 +58,8 @@ class Pacer:
 
     def tend(self):
         """From the main loop: drives the engine where there is no timer, and wakes a stuck one."""
-        late_us = (self._ticks_us() - self._due_at) & self._mask
-        if self._timer is None or OVERDUE_US < late_us <= self._mask >> 1:
+        waited_us = (self._ticks_us() - self._armed_at) & self._mask
+        if self._timer is None or waited_us > self._armed_us + OVERDUE_US:
             self.run()
 
     def run(self):
@@ -92,7 +93,8 @@ class Pacer:
             return RETRY_US
 
     def _arm(self, after_us):
-        self._due_at = (self._ticks_us() + after_us) & self._mask
+        self._armed_at = self._ticks_us()
+        self._armed_us = after_us
         timer = self._timer
         if timer and not self._stopped:
             timer.init(

@@ -12,9 +12,12 @@ from micropython import const
 from panel import texts
 from panel.keys import Keys
 from panel.pages.home import Home
+from panel.pages.splash import Splash
 from panel.screen import Screen
+from uss.master import LISTENING
 from uss.timing import elapsed
 
+SPLASH_MS = const(800)
 DRAW_MS = const(50)
 MESSAGE_MS = const(3_000)
 STOP_ALL_MS = const(4_000)  # STOP held so long stops all drives
@@ -25,7 +28,7 @@ COARSE = const(10)
 class Panel:
     """controls: a `Control` for each drive, at least one. key_names: as the keypad has its bits.
 
-    settings: has setpoint_step_centihertz. mask: the clock's period - 1.
+    settings: has setpoint_step_centihertz and complaint. mask: the clock's period - 1.
 
     For a page: `selected`, the control that is shown; `message`, a row that is shown for a while, or
     None; `announced`, the control of another drive that must be spoken of, with `announcement`.
@@ -42,7 +45,10 @@ class Panel:
         self._keys = Keys(key_names, mask)
         self._mask = mask
         self._step_centihertz = settings.setpoint_step_centihertz
-        self._page = Home(self)
+        self._home = Home(self)
+        self._page = Splash()
+        self._began_at = None
+        self._complaint = settings.complaint
         self._message_at = 0
         self._stop_at = 0
         self._stop_all_armed = False
@@ -54,7 +60,9 @@ class Panel:
             control.step(now_us)
         keys = self._keys
         keys.update(raw_keys, now_ms)
-        if keys.down or keys.pressed:
+        if self._page is not self._home:
+            self._splash(now_ms)
+        if keys.down:
             self._take_keys(keys, now_ms)
         if self.message and elapsed(now_ms, self._message_at, self._mask) >= MESSAGE_MS:
             self.message = None
@@ -76,6 +84,18 @@ class Panel:
         """The step of a value that UP and DOWN move: a key that is held soon moves it faster."""
         coarse = keys.repeated and keys.repeats > COARSE_AFTER
         return self._step_centihertz * (COARSE if coarse else 1)
+
+    def line_in_use(self):
+        """Whether another master was heard before the first telegram, so that none is sent."""
+        return self._bus.phase == LISTENING and self._bus.foreign > 0
+
+    def _splash(self, now_ms):
+        if self._began_at is None:
+            self._began_at = now_ms
+        if elapsed(now_ms, self._began_at, self._mask) >= SPLASH_MS or self._keys.pressed:
+            self._page = self._home
+            if self._complaint:
+                self.say(texts.SETTINGS_DAMAGED, now_ms)
 
     def _take_keys(self, keys, now_ms):
         if keys.pressed:

@@ -32,7 +32,8 @@ NO_CONTACT_ROW = b"NO CONTACT,"  # with MAY_RUN below it
 MAY_RUN = b"MAY RUN"
 STOP_UNCONFIRMED = b"STOP UNCONFIRMED"
 ALL_STOPPED = b"ALL DRIVES: STOP"
-OTHER_MASTER = b"LINE IN USE"
+LINE_IN_USE = b"LINE IN USE"  # another master talks; nothing is sent
+SETTINGS_DAMAGED = b"SETTINGS DAMAGED"  # defaults are used for what is wrong
 
 # Why START was refused, shown for a while: at most ROW_WIDTH.
 REFUSED_SILENT = b"NO: NO CONTACT"
@@ -50,6 +51,5 @@ OTHER_RUNS = b" RUN,HOLD=ALL"
 OTHER_LOST = b" LOST,MAY RUN"
 OTHER_UNCONFIRMED = b" NOT STOPPED"
 
-# Splash.
-TITLE = b"USS PANEL"
-NO_EMERGENCY_STOP = b"NOT AN EMG. STOP"
+# Shown after power-on, both rows: the panel's STOP goes over a wire and through two processors.
+SPLASH = (b"USS PANEL IS NO", b"EMERGENCY STOP")

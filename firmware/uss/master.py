@@ -58,6 +58,7 @@ class Master:
         self._drive = None  # the one whose turn it is
         self._next = 0
         self._first = True  # poll was never called
+        self._closing = False
         self._quiet_since = 0  # the last character on the line, either direction
         self._resting_since = 0
         self._refreshed_at = 0
@@ -93,8 +94,11 @@ class Master:
             drive.stop()
 
     def close(self):
-        """Send nothing any more. Stop the drives first."""
-        self.phase = CLOSED
+        """Send nothing any more once the exchange that goes on is over; `phase` is CLOSED then.
+
+        Stop the drives first.
+        """
+        self._closing = True
 
     # --- the engine -----------------------------------------------------------------------------
 
@@ -153,6 +157,9 @@ class Master:
 
     def _rest(self, now):
         """The start interval: the line is silent for two characters before every telegram."""
+        if self._closing:
+            self.phase = CLOSED
+            return 0
         self._heard_something()
         left_us = self.timing.start_interval_us - elapsed(now, self._quiet_since, self._mask)
         if left_us > 0 and elapsed(now, self._resting_since, self._mask) < BABBLE_US:

@@ -47,11 +47,11 @@ ways_to() {
 # Whether a program is MicroPython and new enough: it is asked itself, since it knows best. The
 # limit in time is for a program of that name that is something else and waits.
 works() {
-    timeout 10 "$1" -c "
+    [[ $(timeout 10 "$1" -c "
 import sys
 name, version = sys.implementation[0], sys.implementation[1]
-sys.exit(0 if name == 'micropython' and tuple(version[:2]) >= (${oldest/./, }) else 1)
-" </dev/null >/dev/null 2>&1
+print(name, tuple(version[:2]) >= (${oldest/./, }))
+" </dev/null 2>/dev/null) == 'micropython True' ]]
 }
 
 # What to do when there is no way. $1 is the command to be tried again.
@@ -124,7 +124,7 @@ offered() {
     version=$(packages_version "$view" micropython)
     if [[ -z $version ]]; then
         say "    no MicroPython there"
-        grep -E '^(E|W|Err)' "$view/log" | head -n 3 | sed 's/^/    /' >&2 || true
+        grep -m 1 -E '^[EW]:' "$view/log" | sed 's/^/    /' >&2 || true
         return 1
     fi
     if ! dpkg --compare-versions "$version" ge "$oldest"; then

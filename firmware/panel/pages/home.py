@@ -33,9 +33,12 @@ class Home:
     def draw(self, screen, now_ms):
         control = self._panel.selected
         if control.lost_running and not self._panel.message:
-            screen.put(0, 0, 16, texts.NO_CONTACT_ROW)
-            self._draw_state(screen, texts.MAY_RUN)
-            return
+            screen.put(0, 0, texts.ROW_WIDTH, texts.NO_CONTACT_ROW)
+        else:
+            self._draw_frequencies(screen, control)
+        self._draw_row_2(screen, control, now_ms)
+
+    def _draw_frequencies(self, screen, control):
         screen.put(0, 0, 2, b"S:")
         screen.number(0, 2, 5, control.setpoint_centihertz, 1)
         screen.put(0, 7, 3, b" F:")
@@ -44,18 +47,21 @@ class Home:
             screen.put(0, 10, 6, b" -----")
         else:
             screen.number(0, 10, 6, actual, 2)
-        self._draw_row_2(screen, now_ms)
 
-    def _draw_row_2(self, screen, now_ms):
+    def _draw_row_2(self, screen, control, now_ms):
         panel = self._panel
         if panel.message:
-            screen.put(1, 0, 16, panel.message)
-        elif panel.selected.stop_unconfirmed:
-            screen.put(1, 0, 16, texts.STOP_UNCONFIRMED)
+            screen.put(1, 0, texts.ROW_WIDTH, panel.message)
+        elif panel.line_in_use():
+            screen.put(1, 0, texts.ROW_WIDTH, texts.LINE_IN_USE)
+        elif control.stop_unconfirmed:
+            screen.put(1, 0, texts.ROW_WIDTH, texts.STOP_UNCONFIRMED)
+        elif control.lost_running:
+            self._draw_state(screen, texts.MAY_RUN)
         elif panel.announced and not now_ms // ANNOUNCE_MS & 1:
             self._draw_announcement(screen)
         else:
-            self._draw_state(screen, panel.selected.state_text())
+            self._draw_state(screen, control.state_text())
 
     def _draw_state(self, screen, text):
         screen.put(1, 0, ADDRESS_COLUMN, text)
@@ -63,7 +69,7 @@ class Home:
 
     def _draw_announcement(self, screen):
         at = self._draw_address(screen, 0, self._panel.announced.drive.address)
-        screen.put(1, at, 16 - at, self._panel.announcement)
+        screen.put(1, at, texts.ROW_WIDTH - at, self._panel.announcement)
 
     def _draw_address(self, screen, column, address):
         """A and the address, left-aligned in three places; answers the column after it."""

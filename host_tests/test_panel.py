@@ -1,0 +1,682 @@
+"""The operator's manual, as tests: keys are pressed, the display is read, the shaft is watched.
+
+Everything runs on the virtual board, in virtual time, with the same firmware as on the chip.
+"""
+
+import main
+from boards.sim.world import World
+
+
+def panel(**options):
+    """A panel that was switched on a second ago."""
+    world = World(main.start, **options)
+    world.run(1000)
+    return world
+
+
+def running(**options):
+    """A panel whose drive 1 has been started and has reached its setpoint."""
+    world = panel(**options)
+    world.press("START")
+    world.run(4000)
+    assert world.drives[1].state == "running", world.drives[1].report()
+    return world
+
+
+def row_1(world):
+    return world.lcd()[0]
+
+
+def row_2(world):
+    return world.lcd()[1].rstrip()
+
+
+def starts(world, address=1):
+    """How often the motor has been set going."""
+    return int(world.drives[address].report().split("starts=")[1].split()[0])
+
+
+def telegrams(world, since_us, address=None):
+    """Telegrams of the panel since an instant, as (instant, control word)."""
+    sent = []
+    for at_us, from_panel, characters in world.wire.log.last(1000):
+        if from_panel and at_us >= since_us and address in (None, characters[2]):
+            sent.append((at_us, characters[11] << 8 | characters[12]))
+    return sent
+
+
+ON, OFF1 = 0x047F, 0x047E
+
+
+# --- switching on -------------------------------------------------------------------------------
+
+
+def test_after_power_on_the_panel_says_what_it_is_not():
+    world = World(main.start)
+    world.run(200)
+    assert world.reads("USS PANEL IS NO EMERGENCY STOP")
+    world.check()
+
+
+def test_a_second_later_it_shows_setpoint_frequency_state_and_address():
+    world = panel()
+    assert world.lcd() == ("S: 10.0 F:  0.00", "READY        A1 ")
+    world.check()
+
+
+def test_the_first_telegram_to_any_drive_is_off1_with_the_control_bit():
+    world = panel(addresses=(1, 2, 3))
+    for address in (1, 2, 3):
+        assert telegrams(world, 0, address)[0][1] == OFF1
+    for _, stw in telegrams(world, 0):
+        assert stw == OFF1
+    world.check()
+
+
+def test_the_panel_listens_before_it_talks():
+    world = panel()
+    first_us = telegrams(world, 0)[0][0]
+    assert 200_000 <= first_us <= 1_000_000  # 100 ms boot, 100 ms of silence heard
+    world.check()
+
+
+# --- start and stop -----------------------------------------------------------------------------
+
+
+def test_start_turns_the_motor_and_stop_stops_it():
+    world = panel()
+    world.press("START")
+    world.run(5000)
+    assert world.lcd() == ("S: 10.0 F: 10.00", "RUNNING      A1 ")
+    assert abs(world.drives[1].hz() - 10) < 0.01
+    world.press("STOP")
+    world.run(500)
+    assert row_2(world) == "STOPPING     A1"
+    world.run(7500)
+    assert world.lcd() == ("S: 10.0 F:  0.00", "READY        A1 ")
+    assert world.drives[1].hz() == 0 and starts(world) == 1
+    world.check()
+
+
+def test_the_same_without_a_receive_interrupt():
+    world = running(polled=True)
+    assert world.lcd() == ("S: 10.0 F: 10.00", "RUNNING      A1 ")
+    world.press("STOP")
+    world.run(8000)
+    assert world.drives[1].hz() == 0 and row_2(world) == "READY        A1"
+    world.check()
+
+
+def test_it_works_at_every_rate_the_drive_knows():
+    for baud in (1200, 2400, 4800, 9600, 19200, 38400, 57600):
+        for polled in (False, True):
+            world = World(main.start, baud=baud, polled=polled)
+            world.run(8000)
+            world.press("START")
+            world.run(5000)
+            assert row_2(world) == "RUNNING      A1", (baud, polled)
+            world.press("STOP")
+            world.run(8000)
+            assert row_2(world) == "READY        A1", (baud, polled)
+            world.check()
+
+
+def test_up_and_down_move_the_setpoint_while_the_motor_turns():
+    world = running()
+    for _ in range(5):
+        world.press("UP", 60)
+        world.run(60)
+    assert row_1(world).startswith("S: 10.5")
+    world.run(1000)
+    assert row_1(world) == "S: 10.5 F: 10.50"
+    world.press("DOWN", 60)
+    world.run(1000)
+    assert row_1(world) == "S: 10.4 F: 10.40"
+    world.check()
+
+
+def test_a_key_that_is_held_repeats_and_soon_moves_faster():
+    world = panel()
+    world.press("UP", 380)
+    world.run(60)
+    assert row_1(world).startswith("S: 10.1")  # 400 ms before the first repeat
+    world.press("UP", 60)
+    world.run(100)
+    world.press("UP", 1500)  # the press, then repeats each 120 ms, the ninth on in steps of 1 Hz
+    world.run(60)
+    assert row_1(world).startswith("S: 13.1") or row_1(world).startswith("S: 12.1"), row_1(world)
+    world.check()
+
+
+def test_the_setpoint_stays_within_the_limits_of_the_drive():
+    world = panel()
+    world.drives[1].write(1080, 0, 9.5)
+    world.drives[1].write(1082, 0, 10.5)
+    world.run(3000)
+    world.press("UP", 3000)
+    assert row_1(world).startswith("S: 10.5")
+    world.press("DOWN", 3000)
+    world.run(100)
+    assert row_1(world).startswith("S:  9.5")
+    world.check()
+
+
+def test_a_motor_that_turns_left_is_shown_with_a_sign():
+    world = running()
+    world.press("STOP")
+    world.run(8000)
+    drive = world.app.bus.drives[0]
+    drive.start(0x10000 - 0x0CCD)  # an own program may reverse by the sign of the setpoint
+    world.run(5000)
+    assert row_1(world) == "S: 10.0 F:-10.00"
+    world.check()
+
+
+def test_start_while_the_motor_runs_down_lets_it_run_up_again():
+    world = running()
+    world.press("STOP")
+    world.run(500)
+    world.press("START")
+    world.run(3000)
+    assert row_2(world) == "RUNNING      A1"
+    world.check()
+
+
+def test_stop_beats_start():
+    world = panel()
+    world.down("STOP")
+    world.run(100)
+    world.press("START")
+    assert row_2(world) == "NO: STOP IS DOWN"
+    world.up("STOP")
+    world.run(3000)
+    assert starts(world) == 0
+    world.down("STOP")  # both in the same moment
+    world.down("START")
+    world.run(100)
+    world.up("STOP")
+    world.up("START")
+    world.run(3000)
+    assert starts(world) == 0
+    world.check()
+
+
+def test_stop_is_in_the_next_telegram_but_one_at_the_latest():
+    """STOP pressed to OFF on the line: debounce and two exchanges, whoever else is in the list."""
+    world = running(addresses=(1, 2, 3, 4, 5, 6))
+    pressed_us = world.clock.now_us
+    world.press("STOP")
+    offs = [at_us for at_us, stw in telegrams(world, pressed_us, 1) if stw == OFF1]
+    exchange_us = 2 * 9167 + 2 * 1719
+    assert offs and offs[0] - pressed_us <= 25_000 + 2 * exchange_us, offs[:1]
+    world.check()
+
+
+def test_a_bouncing_key_counts_once():
+    world = panel()
+    for _ in range(6):
+        world.down("UP")
+        world.run(6)
+        world.up("UP")
+        world.run(6)
+    world.press("UP")
+    world.run(60)
+    assert row_1(world).startswith("S: 10.1")
+    world.check()
+
+
+def test_a_start_key_that_is_jammed_at_power_on_starts_nothing():
+    world = panel()
+    world.down("START")
+    world.reset()
+    world.run(3000)
+    assert starts(world) == 0
+    world.up("START")
+    world.run(100)
+    world.press("START")
+    world.run(1000)
+    assert starts(world) == 1
+    world.check()
+
+
+# --- what STOP promises -------------------------------------------------------------------------
+
+
+def test_a_stop_that_nobody_confirms_is_an_alarm():
+    world = running()
+    world.drives[1].unplug()
+    world.press("STOP")
+    world.run(700)
+    assert row_2(world) != "STOP UNCONFIRMED"
+    world.run(400)
+    assert row_2(world) == "STOP UNCONFIRMED"
+    world.drives[1].plug()
+    world.run(500)
+    assert row_2(world) == "STOPPING     A1"
+    world.run(6000)
+    assert row_2(world) == "READY        A1"
+    world.check()
+
+
+def test_a_stop_that_the_drive_does_not_obey_is_an_alarm():
+    """Somebody has taken the drive away from this bus while it ran."""
+    world = running()
+    world.drives[1].write(700, 0, 2)
+    world.press("STOP")
+    world.run(1500)
+    assert (row_2(world) == "STOP UNCONFIRMED") == (world.drives[1].hz() > 9.9)
+    world.check()
+
+
+def test_stop_is_repeated_until_the_drive_hears_it():
+    world = running()
+    world.drives[1].unplug()
+    world.press("STOP")
+    world.run(3000)
+    for _, stw in telegrams(world, world.clock.now_us - 2_900_000, 1):
+        assert stw == OFF1
+    world.drives[1].plug()
+    world.run(8000)
+    assert world.drives[1].hz() == 0
+    world.check()
+
+
+def test_stop_held_for_four_seconds_stops_all_drives():
+    world = panel(addresses=(1, 2, 3))
+    for _ in range(3):
+        world.press("START")
+        world.press("ADDRESS_UP")
+        world.run(200)
+    world.run(4000)
+    for address in (1, 2, 3):
+        assert world.drives[address].state == "running"
+    world.press("STOP", 3900)
+    assert [world.drives[address].hz() > 9 for address in (1, 2, 3)] == [False, True, True]
+    world.run(100)
+    world.press("STOP", 4100)
+    assert row_2(world) == "ALL DRIVES: STOP"
+    world.run(8000)
+    for address in (1, 2, 3):
+        assert world.drives[address].hz() == 0
+        assert starts(world, address) == 1
+    world.check()
+
+
+# --- several drives -----------------------------------------------------------------------------
+
+
+def test_another_address_starts_and_stops_nothing():
+    world = running(addresses=(1, 2, 5))
+    world.press("ADDRESS_UP")
+    world.run(1600)
+    for _ in range(40):  # the display tells of drive 1 and of the state of drive 2 in turn
+        if row_2(world) == "READY        A2":
+            break
+        world.run(100)
+    assert row_2(world) == "READY        A2"
+    world.run(2000)
+    assert world.drives[1].state == "running" and abs(world.drives[1].hz() - 10) < 0.01
+    assert starts(world, 2) == 0
+    world.press("ADDRESS_DOWN")
+    world.press("ADDRESS_DOWN")  # the list goes round
+    world.run(100)
+    assert starts(world, 5) == 0 and starts(world, 1) == 1
+    world.check()
+
+
+def test_a_drive_that_runs_unseen_is_announced():
+    world = running(addresses=(1, 2))
+    world.press("ADDRESS_UP")
+    seen = set()
+    for _ in range(60):
+        world.run(100)
+        seen.add(row_2(world))
+    assert "A1 RUN,HOLD=ALL" in seen and "READY        A2" in seen
+    world.check()
+
+
+def test_each_drive_has_a_setpoint_of_its_own():
+    world = panel(addresses=(1, 2))
+    world.press("UP", 60)
+    world.run(60)
+    world.press("ADDRESS_UP")
+    world.run(100)
+    assert row_1(world).startswith("S: 10.0")
+    world.press("ADDRESS_DOWN")
+    world.run(100)
+    assert row_1(world).startswith("S: 10.1")
+    world.check()
+
+
+# --- when START is refused ----------------------------------------------------------------------
+
+
+def refused(world, reason):
+    before = starts(world)
+    world.press("START")
+    assert row_2(world) == reason, row_2(world)
+    world.run(6000)
+    assert starts(world) == before
+    world.check()
+
+
+def test_start_of_a_silent_drive_is_refused():
+    world = panel()
+    world.drives[1].unplug()
+    world.run(1500)
+    assert row_2(world) == "NO CONTACT   A1" and row_1(world) == "S: 10.0 F: -----"
+    refused(world, "NO: NO CONTACT")
+
+
+def test_start_of_a_drive_with_a_fault_is_refused():
+    world = panel()
+    world.drives[1].fault(1)
+    world.run(300)
+    assert row_2(world) == "FAULT        A1"
+    refused(world, "NO: FAULT")
+
+
+def test_start_of_a_drive_that_takes_its_commands_elsewhere_is_refused():
+    world = panel()
+    world.drives[1].write(700, 0, 2)
+    world.run(3000)
+    assert row_2(world) == "LOCAL        A1"
+    refused(world, "NO:P0700 NOT USS")
+
+
+def test_start_of_a_drive_that_takes_its_setpoint_elsewhere_is_refused():
+    world = panel()
+    world.drives[1].write(1000, 0, 2)
+    world.run(3000)
+    refused(world, "NO:P1000 NOT USS")
+
+
+def test_start_of_a_drive_whose_scaling_is_still_unknown_is_refused():
+    world = panel(baud=2400)  # a slow line: reading the settings takes a second
+    assert row_2(world) == "CHECKING     A1"
+    refused(world, "NO: STILL CHECKS")
+
+
+def test_what_is_changed_at_the_drive_is_noticed_and_used():
+    """P2000 doubled behind the bus's back: 10 Hz are 10 Hz all the same."""
+    world = panel()
+    world.drives[1].write(2000, 0, 100.0)
+    world.run(3000)
+    world.press("START")
+    world.run(4000)
+    assert row_1(world) == "S: 10.0 F: 10.00" and abs(world.drives[1].hz() - 10) < 0.02
+    world.check()
+
+
+def test_hundredths_of_a_hertz_are_understood():
+    """P2009 = 1: PZD2 is the frequency itself."""
+    world = panel()
+    world.drives[1].write(2009, 0, 1)
+    world.run(3000)
+    world.press("START")
+    world.run(4000)
+    assert row_1(world) == "S: 10.0 F: 10.00"
+    assert world.wire.log.last(2)[0][2][13:15] == b"\x03\xe8"
+    world.check()
+
+
+def test_a_drive_that_does_not_start_is_not_left_waiting_with_on():
+    """P0010 blocks ON. It must not take effect when somebody finishes commissioning."""
+    world = panel()
+    world.drives[1].write(10, 0, 1)
+    world.press("START")
+    world.run(4000)
+    assert row_2(world) == "STARTING     A1"
+    world.run(2000)
+    assert row_2(world) == "NOT STARTED  A1"
+    world.drives[1].write(10, 0, 0)
+    world.run(3000)
+    assert starts(world) == 0
+    world.check()
+
+
+# --- when the drive stops by itself -------------------------------------------------------------
+
+
+def test_a_drive_that_trips_does_not_start_again_when_the_fault_is_gone():
+    world = running()
+    world.drives[1].fault(1)
+    world.run(500)
+    assert row_2(world) == "FAULT        A1"
+    for _, stw in telegrams(world, world.clock.now_us - 300_000, 1):
+        assert stw == OFF1
+    world.drives[1].power_off()
+    world.run(3000)
+    world.drives[1].power_on()
+    world.run(5000)
+    assert starts(world) == 1 and world.drives[1].hz() == 0
+    world.check()
+
+
+# --- a line that fails --------------------------------------------------------------------------
+
+
+def test_unplugged_while_it_runs_the_display_does_not_pretend():
+    world = running()
+    world.drives[1].unplug()
+    world.run(900)
+    world.run(300)
+    assert world.reads("NO CONTACT, MAY RUN")
+    assert "10.00" not in row_1(world)
+    world.press("STOP")  # acknowledges
+    world.run(100)
+    assert not world.reads("MAY RUN")
+    assert row_2(world) == "NO CONTACT   A1"
+    world.check()
+
+
+def test_plugged_in_again_nothing_starts_by_itself():
+    world = running()
+    world.drives[1].unplug()
+    world.run(3000)
+    assert world.drives[1].state == "running"  # nobody told it
+    plugged_us = world.clock.now_us
+    world.drives[1].plug()
+    world.run(12000)
+    assert world.drives[1].hz() == 0 and starts(world) == 1
+    assert row_2(world) == "LINE FAILED  A1"
+    for _, stw in telegrams(world, plugged_us, 1):
+        assert stw == OFF1
+    world.press("START")
+    world.run(2000)
+    assert row_2(world) == "RUNNING      A1" and starts(world) == 2
+    world.check()
+
+
+def test_a_drive_that_comes_later_is_found_and_not_started():
+    world = World(main.start)
+    world.drives[1].unplug()
+    world.run(2000)
+    assert row_2(world) == "NO CONTACT   A1"
+    world.drives[1].plug()
+    world.run(1000)
+    assert row_2(world) == "READY        A1" and starts(world) == 0
+    world.check()
+
+
+def test_a_gap_of_half_a_second_is_no_loss():
+    world = running()
+    world.drives[1].unplug()
+    world.run(500)
+    world.drives[1].plug()
+    world.run(500)
+    assert row_2(world) == "RUNNING      A1" and starts(world) == 1
+    world.check()
+
+
+# --- a panel that fails -------------------------------------------------------------------------
+
+
+def test_a_main_loop_that_hangs_stops_the_motor_within_400_ms():
+    for polled in (False, True):
+        world = running(polled=polled)
+        hung_us = world.clock.now_us
+        world.hang(2000)
+        offs = [at_us for at_us, stw in telegrams(world, hung_us, 1) if stw == OFF1]
+        assert offs and offs[0] - hung_us <= 400_000, offs[:1]
+        after = [stw for at_us, stw in telegrams(world, offs[0], 1)]
+        assert ON not in after
+        world.run(12000)
+        assert world.drives[1].hz() == 0 and starts(world) == 1
+        world.check()
+
+
+def test_after_a_hang_the_panel_says_so_and_waits_for_start():
+    world = running()
+    world.hang(1000)
+    world.run(12000)
+    assert row_2(world) == "PANEL HUNG   A1" and starts(world) == 1
+    world.press("START")
+    world.run(2000)
+    assert row_2(world) == "RUNNING      A1"
+    world.check()
+
+
+def test_every_drive_is_stopped_when_the_loop_hangs():
+    world = panel(addresses=(1, 2, 3))
+    for _ in range(3):
+        world.press("START")
+        world.press("ADDRESS_UP")
+        world.run(200)
+    world.run(4000)
+    hung_us = world.clock.now_us
+    world.hang(1000)
+    for address in (1, 2, 3):
+        offs = [at_us for at_us, stw in telegrams(world, hung_us, address) if stw == OFF1]
+        assert offs and offs[0] - hung_us <= 400_000 + 2 * 22_000
+    world.check()
+
+
+def test_a_loop_that_hangs_for_good_restarts_the_chip():
+    world = running()
+    world.hang(5000)
+    assert world.resets == 1
+    world.run(10000)
+    assert world.drives[1].hz() == 0 and starts(world) == 1
+    assert row_2(world) == "READY        A1"
+    world.check()
+
+
+def test_a_reset_ends_in_a_stopped_motor_and_no_start():
+    world = running()
+    reset_us = world.clock.now_us
+    world.reset()
+    world.run(12000)
+    assert world.drives[1].hz() == 0 and starts(world) == 1
+    assert row_2(world) == "READY        A1"
+    for _, stw in telegrams(world, reset_us):
+        assert stw == OFF1
+    world.check()
+
+
+def test_a_reset_in_the_middle_of_a_telegram_blocks_nothing():
+    for offset_us in range(0, 22_000, 1_000):
+        world = running()
+        world.clock.advance(offset_us)
+        world.reset()
+        world.run(8000)
+        assert row_2(world) == "READY        A1" and starts(world) == 1
+
+
+def test_an_error_in_the_program_stops_the_drives_first():
+    """Ctrl-C or an exception: the motor is told to stop before the program ends."""
+    for error in (KeyboardInterrupt, ValueError):
+        world = World(main.start)
+        world.run(1000)
+        world.press("START")
+        world.run(3000)
+        left_us = world.clock.now_us
+        leave(world.app, error)
+        stws = [stw for _, stw in telegrams(world, left_us, 1)]
+        assert OFF1 in stws and stws[-1] == OFF1
+        last_us = world.wire.log.last(1)[0][0]
+        world.hang(1500)  # no interrupt is left that could send; then the watchdog bites
+        assert world.wire.log.last(1)[0][0] == last_us
+        assert world.drives[1].state in ("stopping", "ready")
+        world.check()
+
+
+def leave(app, error):
+    """Let `error` end the main loop as it would on the chip."""
+
+    class Broken:
+        names = app.board.keypad.names
+
+        def read(self):
+            raise error("on purpose")
+
+    app.board.keypad = Broken()
+    try:
+        main.loop(app)
+    except error:
+        return
+    raise AssertionError("the error got lost")
+
+
+def test_an_exception_in_the_bus_engine_stops_the_motor_and_is_shown():
+    world = running()
+    bus = world.app.bus
+    receiver_open = bus._receiver.open
+    broken = []
+
+    def fail(*arguments):
+        if len(broken) < 3:
+            broken.append(arguments)
+            raise ValueError("on purpose")
+        receiver_open(*arguments)
+
+    bus._receiver.open = fail
+    world.run(12000)
+    assert bus.failures == 3
+    assert world.drives[1].hz() == 0 and starts(world) == 1
+    assert row_2(world) == "BUS ERROR    A1"
+
+
+# --- the clock wraps ----------------------------------------------------------------------------
+
+
+def test_ticks_that_wrap_in_the_middle_of_an_exchange_disturb_nothing():
+    """The counter wraps once at each instant of an exchange while the motor runs."""
+    for bits in (24, 30):
+        mask = (1 << bits) - 1
+        for offset_us in range(0, 24_000, 2_400):
+            world = running(ticks_start=mask - 5_250_000 - offset_us, ticks_mask=mask)
+            wrapped_us = 5_250_000 + offset_us
+            assert world.clock.now_us < wrapped_us
+            world.run(300)
+            assert world.clock.now_us > wrapped_us
+            assert row_2(world) == "RUNNING      A1" and starts(world) == 1
+            assert world.app.bus.dead_man_trips == 0
+            world.check()
+
+
+def test_a_short_period_wraps_many_times_in_an_hour():
+    """2**24 us is 16.8 s."""
+    world = running(ticks_mask=(1 << 24) - 1)
+    world.run(120_000)
+    assert row_2(world) == "RUNNING      A1" and starts(world) == 1
+    world.press("STOP")
+    world.run(8000)
+    assert row_2(world) == "READY        A1"
+    world.check()
+
+
+# --- other worlds -------------------------------------------------------------------------------
+
+
+def test_other_delays_and_loop_times_change_nothing():
+    for seed in range(1, 13):
+        print("seed", seed)
+        world = panel(seed=seed, addresses=(1, 7), polled=bool(seed & 1))
+        world.press("START")
+        world.run(5000)
+        assert row_2(world) == "RUNNING      A1"
+        world.press("STOP")
+        world.run(8000)
+        assert world.drives[1].hz() == 0 and starts(world) == 1
+        world.check()
