@@ -80,7 +80,8 @@ def load(store):
     if data is None:
         return settings
     try:
-        stored = json.loads(data)
+        # MicroPython reads half a dictionary without complaint, so the end is looked at as well.
+        stored = json.loads(data) if data.rstrip().endswith(b"}") else None
     except ValueError:
         stored = None
     if isinstance(stored, dict):

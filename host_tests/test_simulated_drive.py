@@ -234,6 +234,15 @@ def test_a_wire_it_has_no_code_for():
     assert refusal(Drive, wire.clock, wire, 1) == text
 
 
+def test_how_it_is_commissioned():
+    bench = Bench({1120: 3, (2010, 1): 9}, address=7, baud=38400)
+    for number, value in ((700, 5), (1000, 5), (2010, 8), (2011, 7), (2012, 2), (2013, 4),
+                          (2014, 0), (1082, 50.0), (1120, 3.0), (1121, 10.0)):  # fmt: skip
+        assert bench.drive.read(number) == value, number
+    assert bench.drive.read(2010, 1) == 9
+    assert refusal(Bench, {1120: -1}) == "ValueError: P1120 goes from 0.0 to 650.0 s: -1 does not"
+
+
 def test_writing_at_the_keypad_acts_at_once():
     bench = Bench()
     bench.run()
@@ -251,6 +260,8 @@ def test_a_power_failure_coasts_and_ends_inhibited():
     assert bench.ask(telegram(1, 0, 0, 0, 0, RUN, HALF)) is None
     assert 0 < bench.drive.hz() < 25
     assert refusal(bench.drive.fault, 1) == "ValueError: drive 1 is off"
+    assert [bench.drive.read(number) for number in (52, 53)] == [0, 0]
+    bench.drive.write(1121, 0, 5.0)
     bench.drive.power_on()
     assert bench.drive.read(52) & 0xFF == 0xC1
     for _ in range(10):

@@ -76,6 +76,31 @@ def test_gaps_are_allowed_up_to_half_the_compressed_time():
             assert bench.ask(request)
 
 
+def test_gaps_in_a_telegram_of_variable_length():
+    # SPEC A-5.2.1.2: the time follows from what LGE says.
+    request = telegram(1, 0, 0, 0, OFF1, 0)  # 10 net characters: 6.5 characters of gaps
+    for place, gap_us, answered in (
+        (1, 3700, True), (2, 3700, True), (2, 3750, False), (9, 3700, True), (9, 3750, False),
+    ):  # fmt: skip
+        bench = Bench({2013: 127})
+        bench.send(request[:place])
+        bench.send(request[place:], gap_us)
+        bench.wait(0.3)
+        assert bool(bench.heard) == answered, (place, gap_us)
+        assert bench.ask(request)
+
+
+def test_behind_a_telegram_that_took_too_long_a_pause_is_needed():
+    bench = Bench()
+    request = telegram(1, 0, 0, 0, 0, OFF1, 0)
+    bench.send(request[:8])
+    bench.send(request[8:], 5000)
+    bench.send(request, 300)
+    bench.wait(0.1)
+    assert bench.heard == [] and bench.counters() == [0] * 8  # no counter shows residual time
+    assert bench.ask(request)
+
+
 def test_a_telegram_may_come_in_character_by_character():
     request = telegram(1, 0, 0, 0, 0, OFF1, 0)
     bench = Bench()

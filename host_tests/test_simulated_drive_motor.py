@@ -73,9 +73,20 @@ def test_off3_stops_quickly_inhibits_and_cannot_be_taken_back():
     assert bench.drive.hz() == 0 and bench.drive.state == "inhibited"
     assert bench.control(RUN, HALF)[0] == 0xFA71
     assert bench.control(OFF1)[0] == 0xFB31
+    # Nor by a new ON while it stops.
+    bench.run()
+    bench.control(0x047A, HALF)
+    assert bench.control(RUN, HALF)[0] & 0xFF == 0x14 and bench.drive.state == "stopping"
+    bench.wait(5)
+    bench.control(OFF1)
+    # With the pulses disabled as well it coasts.
+    bench.run()
+    assert bench.control(0x0473, HALF)[0] & 0xFF == 0x51 and bench.drive.state == "inhibited"
+    bench.wait(5)
+    bench.control(OFF1)
     # From standstill it inhibits at once.
     assert bench.control(0x047A)[0] == 0xFB51
-    assert bench.drive.starts == 1
+    assert bench.drive.starts == 3
 
 
 def test_pulses_disabled_while_running_coasts_and_stays_ready_to_run():
@@ -86,6 +97,11 @@ def test_pulses_disabled_while_running_coasts_and_stays_ready_to_run():
     assert bench.drive.state == "ready to run" and 10 < bench.drive.hz() < 25
     assert bench.control(RUN, HALF)[0] & 0xFF == 0x34
     assert bench.drive.starts == 2
+    bench.wait(10)
+    assert bench.drive.hz() == 25
+    bench.control(OFF1, HALF)
+    assert bench.control(OFF1 & ~8, HALF)[0] & 0xFF == 0x31  # while it stops: ready
+    assert bench.drive.state == "ready" and bench.drive.hz() > 0
 
 
 def test_the_ramp_generator_obeys_its_three_bits():
@@ -186,6 +202,39 @@ def test_jog_has_its_own_frequencies_and_ramps():
     bench.wait(0.9)
     assert bench.drive.hz() < 0
     bench.wait(0.1)
+    assert bench.drive.state == "ready"
+
+
+def test_jog_pressed_again_goes_on_and_on_takes_over():
+    bench = Bench()
+    bench.control(OFF1)
+    bench.control(JOG_RIGHT)
+    bench.wait(1.5)
+    bench.control(OFF1)
+    bench.wait(0.5)
+    bench.control(JOG_RIGHT)  # while its own ramp goes down
+    bench.wait(1.5)
+    assert bench.drive.hz() == 5 and bench.drive.state == "running"
+    bench.control(RUN, HALF)
+    bench.wait(10)
+    assert bench.drive.hz() == 25
+    assert bench.drive.starts == 1
+    bench.control(OFF1, HALF)
+    bench.control(JOG_RIGHT, HALF)  # on the ramp of OFF1 it means nothing
+    assert bench.drive.state == "stopping"
+    bench.wait(10)
+    assert bench.drive.state == "ready"
+
+
+def test_jog_with_the_pulses_disabled():
+    bench = Bench()
+    bench.control(OFF1)
+    bench.control(JOG_RIGHT & ~8)
+    assert bench.drive.starts == 0
+    bench.control(OFF1)
+    bench.control(JOG_RIGHT)
+    bench.wait(1)
+    assert bench.control(JOG_RIGHT & ~8)[0] & 0xFF == 0x31
     assert bench.drive.state == "ready"
 
 

@@ -97,6 +97,7 @@ def test_readings():
     assert bench.task(0x1036, stw=RUN, hsw=HALF) == (0x1036, 0, 0, RUN)
     assert bench.task(0x1012, 0x8001, stw=RUN, hsw=HALF) == (0x1012, 0x8001, 0, HALF)
     assert bench.task(0x1018, 0x8000, stw=RUN, hsw=HALF)[3] == bench.drive.read(2024)
+    assert bench.task(0x1035, stw=RUN, hsw=HALF) == (0x1035, 0, 0, 0x06E6)
     assert bench.task(0x1018, 0x8001, stw=RUN, hsw=HALF)[3] == 0  # the BOP link
 
 
@@ -132,6 +133,7 @@ def test_stale_replies():
     # SPEC C-4.2.1.1: until a new task is recognised the old reply may be sent, or AK 0 at first.
     bench = Bench()
     bench.drive.stale_replies = 2
+    assert bench.drive.stale_replies == 2
     for answer in (0, 0, 0x12BC, 0x12BC):
         assert bench.task(0x12BC)[0] == answer
     for answer in (0x12BC, 0x12BC, 0x143A):
@@ -208,10 +210,13 @@ def test_variable_length():
         ((0x343A, 0, 0x4220, 0, OFF1, 0), (0x243A, 0, 0x4220, 0, 0xFB31, 0)),
         ((0x23E8, 0, 1, OFF1, 0), (0x13E8, 0, 1, 0xFA31, 0)),
         ((0x23E8, 0, 0, 5, OFF1, 0), (0x13E8, 0, 5, 0xFB31, 0)),
+        ((0x23E8, 0, 2, 0, OFF1, 0), (0x13E8, 0, 2, 0xFB31, 0)),
+        ((0x23E8, 0, 5, 1, OFF1, 0), (0x13E8, 0, 5, 0xFB31, 0)),
         ((0, 0, 0, OFF1, 0), (0, 0, 0, 0xFB31, 0)),
         ((OFF1, 0), (0xFB31, 0)),
         # error 0 comes with the next number that exists
         ((0x1001, 0, 0, OFF1, 0), (0x7001, 0, 0, 3, 0xFB31, 0)),
+        ((0x176C, 0x8000, 0, OFF1, 0), (0x776C, 0x8000, 0, 0, 0xFB31, 0)),  # P3900: none above
         ((0x343A, 0, 0x4220, OFF1, 0), (0x743A, 0, 102, 0xFB31, 0)),
     ):
         assert bench.ask(telegram(1, *request)) == telegram(1, *reply), request

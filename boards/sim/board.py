@@ -98,6 +98,13 @@ class Watchdog:
             self._wdt.feed()
 
 
+class HardTimer(Timer):
+    """A timer whose callbacks are always hard interrupts, as on the chip from MicroPython 1.26 on."""
+
+    def init(self, *, mode, period, tick_hz, callback):
+        Timer.init(self, mode=mode, period=period, tick_hz=tick_hz, callback=callback, hard=True)
+
+
 class Board:
     """One life of the chip, from boot to reset.
 
@@ -113,7 +120,7 @@ class Board:
         self.keypad = keypad
         self.store = store
         self.watchdog = Watchdog(chip)
-        self.timer = Timer(chip)
+        self.timer = HardTimer(chip)
         self.disable_irq = chip.disable_irq
         self.enable_irq = chip.enable_irq
         self._chip = chip
@@ -125,7 +132,7 @@ class Board:
         driver_enable = Pin(chip)
         uart = UART(chip, baud)
         Transceiver(chip.wire, uart, driver_enable)
-        timer = Timer(chip)
+        timer = HardTimer(chip)
         return Rs485Link(
             uart, driver_enable, timer, chip.clock, baud, interrupts=not self._polled
         )

@@ -276,8 +276,7 @@ class Drive:
             self._unsettled = True
         elif number == SUPERVISION:
             self._supervise()
-        if self.powered:
-            self._process.refresh()
+        self._process.refresh()
 
     def _settle(self):
         """What had to wait for the end of the exchange: the settings of the link, P0971."""

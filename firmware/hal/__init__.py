@@ -12,7 +12,7 @@ board
     name                text, at most 16 characters
     clock               see below
     display, keypad, store, watchdog   see below
-    timer               a machine.Timer of its own for the bus, or None: then the main loop paces it
+    timer               a machine.Timer of its own for the bus; None: the main loop paces it
     make_link(baud)     builds the link for that baud rate; called once
     idle()              end of every step of the main loop: lets the rest of the machine work, <= 2 ms
     disable_irq() -> state, enable_irq(state)    as in `machine`

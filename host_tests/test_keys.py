@@ -1,0 +1,103 @@
+"""Keys: debounced, repeated, and deaf to what was down when the panel was switched on."""
+
+from panel.keys import Keys
+
+NAMES = ("START", "STOP", "UP")
+START, STOP, UP = 1, 2, 4
+MASK = (1 << 30) - 1
+
+
+class Hand:
+    """Holds keys down and counts what the panel makes of it, a millisecond at a time."""
+
+    def __init__(self, at_ms=0, down=0):
+        self.keys = Keys(NAMES, MASK)
+        self.at_ms = at_ms
+        self.pressed = []
+        self.repeated = []
+        self.hold(down, 100 if not down else 1)
+
+    def hold(self, raw, ms):
+        for _ in range(ms):
+            self.keys.update(raw, self.at_ms & MASK)
+            if self.keys.pressed:
+                self.pressed.append((self.at_ms, self.keys.pressed))
+            if self.keys.repeated:
+                self.repeated.append((self.at_ms, self.keys.repeated))
+            self.at_ms += 1
+        return self
+
+
+def test_keys_have_the_bits_of_their_names():
+    keys = Keys(NAMES, MASK)
+    assert (keys.bit("START"), keys.bit("STOP"), keys.bit("UP")) == (START, STOP, UP)
+    assert keys.bit("JOG_LEFT") == 0  # not on this board
+
+
+def test_a_key_counts_after_twenty_milliseconds_and_once():
+    hand = Hand()
+    hand.hold(START, 100).hold(0, 100)
+    assert hand.pressed == [(120, START)]
+    assert hand.keys.down == 0
+
+
+def test_a_contact_that_bounces_counts_once_it_is_still():
+    hand = Hand()
+    for _ in range(10):
+        hand.hold(START, 5).hold(0, 5)
+    assert hand.pressed == []
+    hand.hold(START, 300)
+    assert hand.pressed == [(220, START)]
+
+
+def test_a_spike_is_no_key():
+    hand = Hand()
+    hand.hold(STOP, 19).hold(0, 100)
+    assert hand.pressed == []
+
+
+def test_one_bad_contact_does_not_make_the_others_deaf():
+    """START chatters all the time; STOP is heard all the same."""
+    hand = Hand()
+    for step in range(100):
+        hand.hold(STOP | (START if step & 1 else 0), 3)
+    assert hand.pressed == [(120, STOP)]
+
+
+def test_a_key_down_at_power_on_does_not_count_before_it_was_up():
+    hand = Hand(down=START)
+    hand.hold(START, 3000)
+    assert hand.pressed == [] and hand.repeated == []
+    hand.hold(0, 50).hold(START, 50)
+    assert [bit for _, bit in hand.pressed] == [START]
+
+
+def test_a_held_key_repeats_after_400_ms_and_then_every_120():
+    hand = Hand()
+    hand.hold(UP, 900)
+    at = hand.pressed[0][0]
+    assert [when - at for when, _ in hand.repeated] == [400, 520, 640, 760]
+    hand.hold(0, 100)
+    assert hand.keys.repeated == 0
+    hand.hold(UP, 100)
+    assert hand.keys.repeats == 0
+
+
+def test_the_key_pressed_last_is_the_one_that_repeats():
+    hand = Hand()
+    hand.hold(UP, 200).hold(UP | STOP, 500)
+    assert [bit for _, bit in hand.repeated] == [STOP]
+    hand.hold(UP, 1000)
+    assert [bit for _, bit in hand.repeated] == [STOP]
+
+
+def test_keys_pressed_in_the_same_moment_all_count():
+    hand = Hand()
+    hand.hold(START | STOP, 50)
+    assert hand.pressed == [(120, START | STOP)]
+
+
+def test_the_clock_may_wrap_while_a_key_is_down():
+    hand = Hand(at_ms=MASK - 350)
+    hand.hold(UP, 900)
+    assert [when - hand.pressed[0][0] for when, _ in hand.repeated] == [400, 520, 640, 760]

@@ -1,0 +1,92 @@
+"""The picture of 2 x 16 characters, and the texts that stand in it."""
+
+from panel import texts
+from panel.screen import COLUMNS, ROWS, Screen
+
+
+def shown(width, hundredths, decimals):
+    screen = Screen()
+    screen.number(1, 3, width, hundredths, decimals)
+    row = screen.rows()[1]
+    assert row[:3] == "   " and row[3 + width :] == " " * (13 - width)
+    return row[3 : 3 + width]
+
+
+def test_numbers_stand_at_the_right_of_their_field():
+    """Width, hundredths, decimals: what is shown."""
+    for width, hundredths, decimals, text in (
+        (5, 1000, 1, " 10.0"),
+        (6, 998, 2, "  9.98"),
+        (6, 0, 2, "  0.00"),
+        (6, 5, 2, "  0.05"),
+        (6, -5, 2, " -0.05"),
+        (6, -1000, 2, "-10.00"),
+        (6, 65000, 2, "650.00"),
+        (5, 65000, 1, "650.0"),
+        (2, 3100, 0, "31"),
+        (5, 1005, 1, " 10.1"),  # rounded, half away from zero
+        (5, -1005, 1, "-10.1"),
+        (5, 1004, 1, " 10.0"),
+    ):
+        assert shown(width, hundredths, decimals) == text, (width, hundredths, decimals)
+
+
+def test_a_value_that_needs_more_room_gives_up_decimals():
+    assert shown(6, -65000, 2) == "-650.0"
+    assert shown(5, -10000, 1) == " -100"
+    assert shown(5, -65000, 1) == " -650"
+    assert shown(3, 65000, 2) == "650"
+
+
+def test_a_value_that_never_fits_is_not_shown_as_a_small_one():
+    assert shown(2, 65000, 1) == "99"
+    assert shown(3, -65000, 1) == "999"
+
+
+def test_a_zero_has_no_sign():
+    assert shown(5, -4, 1) == "  0.0"
+
+
+def test_every_frequency_of_a_drive_fits_its_field():
+    for centihertz in range(-65000, 65001, 127):
+        for width, decimals in ((5, 1), (6, 2)):
+            text = shown(width, centihertz, decimals)
+            places = len(text.split(".")[1]) if "." in text else 0
+            assert abs(float(text) * 100 - centihertz) <= (0.5, 5, 50)[2 - places] + 0.01, text
+
+
+def test_text_is_cut_or_filled_to_its_field():
+    screen = Screen()
+    screen.put(0, 2, 4, b"RUNNING")
+    screen.put(1, 0, 16, b"READY")
+    assert screen.rows() == ("  RUNN          ", "READY           ")
+    screen.put(0, 2, 4, b"A")
+    assert screen.rows()[0] == "  A             "
+
+
+def test_the_picture_has_the_size_of_the_display():
+    assert len(Screen().picture) == ROWS * COLUMNS == 32
+
+
+def test_no_text_is_wider_than_its_place():
+    states = (
+        "NO_CONTACT CHECKING NOT_READY READY STARTING RUNNING RUNNING_WARNING STOPPING FAULT "
+        "INHIBITED LOCAL RUNS_LOCALLY LINE_FAILED PANEL_HUNG ENGINE_FAILED STOPPED_ITSELF "
+        "DID_NOT_START MAY_RUN"
+    ).split()
+    seen = 0
+    for name in dir(texts):
+        text = getattr(texts, name)
+        if not isinstance(text, bytes):
+            continue
+        width = texts.ROW_WIDTH
+        if name in states:
+            width = texts.STATE_WIDTH
+        elif name.startswith("OTHER_"):
+            width = texts.ROW_WIDTH - len("A31")
+        assert 0 < len(text) <= width, name
+        assert all(0x20 <= code < 0x7F for code in text), name
+        seen += 1
+    assert seen > 30
+    for row in texts.SPLASH:
+        assert len(row) <= texts.ROW_WIDTH

@@ -1,0 +1,123 @@
+"""The house rules that can be read off the files: who may import whom, lengths, texts."""
+
+import ast
+import os
+
+INTERPRETERS = "host"
+
+TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+
+# Room: what it may import of the project, and of the outside. A room is a file or a folder; the
+# longest that fits counts. `micropython` is the language itself (const, viper).
+RULES = (
+    ("firmware/main.py", ("app",), ("board",)),
+    ("firmware/app.py", ("panel", "settings", "uss", "hal"), ("micropython",)),
+    ("firmware/settings.py", ("uss",), ("json",)),
+    ("firmware/uss", ("uss",), ("struct", "array", "micropython")),
+    ("firmware/panel", ("panel", "uss"), ("micropython",)),
+    ("firmware/hal", ("hal",), ("micropython",)),
+    ("boards/sim", ("boards.sim", "hal"), None),
+    ("boards", ("hal",), ("machine", "micropython", "time", "rp2", "esp32")),
+)
+PROJECT = ("app", "panel", "settings", "uss", "hal", "boards", "main")
+ONLY_BOARDS = ("machine", "rp2", "esp32")
+
+
+def python_files(folder):
+    found = []
+    for path, _, names in os.walk(os.path.join(TOP, folder)):
+        found += [
+            os.path.relpath(os.path.join(path, name), TOP) for name in names if name.endswith(".py")
+        ]
+    assert found or folder == "boards/pico", folder
+    return sorted(found)
+
+
+def imports_of(path):
+    """Every module that a file imports, wherever in it."""
+    with open(os.path.join(TOP, path), encoding="utf-8") as source:
+        tree = ast.parse(source.read(), path)
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            for name in node.names:
+                yield name.name
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level == 0, "%s: imports are absolute" % path
+            for name in node.names:
+                yield "%s.%s" % (node.module, name.name)
+
+
+def rule_for(path):
+    fitting = [rule for rule in RULES if path == rule[0] or path.startswith(rule[0] + "/")]
+    assert fitting, "%s stands in no room" % path
+    return max(fitting, key=lambda rule: len(rule[0]))
+
+
+def within(module, packages):
+    return any(module == package or module.startswith(package + ".") for package in packages)
+
+
+def breaches(path, modules):
+    """The imports among `modules` that a file at `path` may not have."""
+    _, project, outside = rule_for(path)
+    for module in modules:
+        if within(module, PROJECT):
+            if not within(module, project):
+                yield "%s imports %s" % (path, module)
+        elif within(module, ONLY_BOARDS) and not path.startswith("boards/"):
+            yield "%s imports %s: only boards may" % (path, module)
+        elif outside is not None and not within(module, outside):
+            yield "%s imports %s" % (path, module)
+
+
+def test_imports_point_down_only():
+    for path in python_files("firmware") + python_files("boards"):
+        found = list(breaches(path, imports_of(path)))
+        assert not found, found
+
+
+def test_the_rule_would_notice():
+    for path, module in (
+        ("firmware/uss/master.py", "time"),
+        ("firmware/uss/master.py", "hal.pacer.Pacer"),
+        ("firmware/panel/panel.py", "machine.Pin"),
+        ("firmware/panel/panel.py", "hal.pacer"),
+        ("firmware/hal/rs485.py", "machine"),
+        ("firmware/hal/rs485.py", "uss.timing.elapsed"),
+        ("boards/sim/drive.py", "uss.telegram"),
+        ("boards/sim/world.py", "app.App"),
+        ("firmware/app.py", "boards.sim.board"),
+        ("firmware/main.py", "uss.master"),
+    ):
+        assert list(breaches(path, [module])), (path, module)
+
+
+def test_no_line_is_wider_than_99_columns():
+    for folder in ("firmware", "boards", "host_tests", "tools"):
+        for path in python_files(folder):
+            with open(os.path.join(TOP, path), encoding="utf-8") as source:
+                for number, line in enumerate(source, 1):
+                    assert len(line.rstrip("\n")) <= 99, "%s:%d" % (path, number)
+
+
+def test_every_function_fits_a_screen():
+    for folder in ("firmware", "boards"):
+        for path in python_files(folder):
+            with open(os.path.join(TOP, path), encoding="utf-8") as source:
+                tree = ast.parse(source.read(), path)
+            for node in ast.walk(tree):
+                if isinstance(node, ast.FunctionDef):
+                    lines = node.end_lineno - node.lineno + 1
+                    assert lines <= 60, "%s: %s has %d lines" % (path, node.name, lines)
+
+
+def test_every_module_of_the_firmware_says_what_it_is():
+    for path in python_files("firmware") + python_files("boards"):
+        with open(os.path.join(TOP, path), encoding="utf-8") as source:
+            assert ast.get_docstring(ast.parse(source.read())), path
+
+
+def test_the_top_level_is_as_it_was_ordered():
+    ordered = {"firmware", "boards", "host_tests", "tools", "README.md"}
+    there = {name for name in os.listdir(TOP) if not name.startswith(".")}
+    assert there - {"build"} <= ordered and "README.md" in there, there
