@@ -1,9 +1,9 @@
 """Golden telegrams: what the documents print, byte for byte. They pin the codec.
 
-golden.json holds one telegram a line. Not all of them are valid: misprints of the sources are kept to
-show that they are refused, and `wrong` says what is wrong with them, "length" or "BCC". Lengths and
-BCC of all were computed anew. `source` is the specification E20125-D0001-S302-A1-7600 (09.94), the
-MICROMASTER 420 Reference Manual, or the author of a published project with live drives.
+golden.json holds one telegram a line. Not all of them are valid: misprints of the sources are kept
+to show that they are refused, and `wrong` says what is wrong with them, "length" or "BCC". Lengths
+and BCC of all were computed anew. `source` is the specification E20125-D0001-S302-A1-7600 (09.94),
+the MICROMASTER 420 Reference Manual, or the author of a published project with live drives.
 """
 
 import json

@@ -22,7 +22,7 @@ def heap_is_locked():
 
 
 def parameter_jobs():
-    """Values of 16 and 32 bits and floating-point ones, read and written, RAM and EEPROM, refused."""
+    """16 and 32 bits and floating point, read and written, RAM and EEPROM, and refused."""
     while True:
         yield pkw.read(2000), 50.0
         yield pkw.read(700), 5

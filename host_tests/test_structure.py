@@ -26,10 +26,9 @@ ONLY_BOARDS = ("machine", "rp2", "esp32")
 def python_files(folder):
     found = []
     for path, _, names in os.walk(os.path.join(TOP, folder)):
-        found += [
-            os.path.relpath(os.path.join(path, name), TOP) for name in names if name.endswith(".py")
-        ]
-    assert found or folder == "boards/pico", folder
+        inside = os.path.relpath(path, TOP)
+        found += [os.path.join(inside, name) for name in names if name.endswith(".py")]
+    assert found, folder
     return sorted(found)
 
 

@@ -1,4 +1,4 @@
-"""The program that ./tools/panel runs: the panel's firmware on the virtual board, driven by a script.
+"""What ./tools/panel runs: the panel's firmware on the virtual board, driven by a script.
 
 Runs on MicroPython. Exit status: 0, 1 when an expectation failed or a rule of the line was broken,
 2 when the command line or a script cannot be understood.

@@ -99,7 +99,7 @@ class Watchdog:
 
 
 class HardTimer(Timer):
-    """A timer whose callbacks are always hard interrupts, as on the chip from MicroPython 1.26 on."""
+    """A timer whose callbacks are hard interrupts, as the chip has them from 1.26 on."""
 
     def init(self, *, mode, period, tick_hz, callback):
         Timer.init(self, mode=mode, period=period, tick_hz=tick_hz, callback=callback, hard=True)

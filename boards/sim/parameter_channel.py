@@ -88,7 +88,8 @@ class ParameterChannel:
         """As at power-up: no task, none answered."""
         self._task = self._answered = NO_TASK
         self._waiting = 0
-        self._refusal = None  # AK and error number, if the answered task failed
+        self._number = None  # of the answered task
+        self._refusal = None  # AK and error number, if it failed
 
     def accept(self, words, layout):
         """Take the PKW words of a request; `layout` is P2013 (3, 4 or VARIABLE)."""
@@ -100,6 +101,7 @@ class ParameterChannel:
             self._waiting -= 1
         if not self._waiting and self._answered is not self._task:
             self._answered = self._task
+            self._number = number_of(self._task[0], self._task[1])
             self._refusal = self._carry_out(self._task)
 
     def reply(self, layout):
@@ -127,16 +129,16 @@ class ParameterChannel:
 
     def _answer(self, pke, ind, layout):
         """AK, high word, low word, and whether it takes both."""
-        task = TASKS.get(pke >> 12)
         if not pke >> 12:
             return 0, 0, 0, False
-        number = number_of(pke, ind)
+        number = self._number
         if self._refusal is not None:
             ak, error = self._refusal
             if layout == VARIABLE and (ak, error) == UNKNOWN and number is not None:
                 return ak, error, self._parameters.next_number(number), True  # to browse by
             return ak, 0, error, False
         row = self._parameters.rows[number]
+        task = TASKS[pke >> 12]
         if task[0] == COUNT:
             return ELEMENTS, 0, row[INDICES], False
         value = self._parameters.value(number, self._index(row, task, ind))
@@ -163,7 +165,7 @@ class ParameterChannel:
         what, width = TASKS[ak][:2]
         if what == WRITE and not self._parameters.ram[927][0] & VIA_COM_LINK:
             return NO_RIGHTS, 0
-        number = number_of(pke, ind)
+        number = self._number
         error = self._misaddressed(number, TASKS[ak], ind & 0xFF)
         if error is None and width == 2 and count < 4:
             error = CHANNEL_TOO_SMALL

@@ -82,7 +82,7 @@ class Script:
         return ScriptError("%s:%d: %s" % (self._name, self._line, message))
 
 
-# --- how arguments are read: the world and a word -> a value, or ValueError -----------------------
+# --- how arguments are read: the world and a word -> a value, or ValueError ---------------------
 
 
 def key(world, word):
@@ -142,20 +142,20 @@ def parameter_name(number, index):
 
 # Command: usage, readers of its arguments, how many of the last may be left out, what it does.
 COMMANDS = {
-    "press": ("press KEY", (key,), 0, lambda script, key: script.world.press(key)),
-    "hold": ("hold KEY MS", (key, milliseconds), 0, lambda script, key, ms: script.world.press(key, ms)),
-    "down": ("down KEY", (key,), 0, lambda script, key: script.world.down(key)),
-    "up": ("up KEY", (key,), 0, lambda script, key: script.world.up(key)),
-    "wait": ("wait MS", (milliseconds,), 0, lambda script, ms: script.world.run(ms)),
+    "press": ("press KEY", (key,), 0, lambda do, key: do.world.press(key)),
+    "hold": ("hold KEY MS", (key, milliseconds), 0, lambda do, key, ms: do.world.press(key, ms)),
+    "down": ("down KEY", (key,), 0, lambda do, key: do.world.down(key)),
+    "up": ("up KEY", (key,), 0, lambda do, key: do.world.up(key)),
+    "wait": ("wait MS", (milliseconds,), 0, lambda do, ms: do.world.run(ms)),
     "lcd": ("lcd", (), 0, Script.lcd),
     "bus": ("bus N", (count,), 0, Script.bus),
-    "drive": ("drive A", (drive,), 0, lambda script, drive: script.show(drive.report())),
+    "drive": ("drive A", (drive,), 0, lambda do, drive: do.show(drive.report())),
     "param": ("param A P0700[0] [VALUE]", (drive, parameter, value), 1, Script.param),
-    "fault": ("fault A F0001", (drive, fault), 0, lambda script, drive, number: drive.fault(number)),
-    "unplug": ("unplug A", (drive,), 0, lambda script, drive: drive.unplug()),
-    "plug": ("plug A", (drive,), 0, lambda script, drive: drive.plug()),
-    "hang": ("hang MS", (milliseconds,), 0, lambda script, ms: script.world.hang(ms)),
-    "reset": ("reset", (), 0, lambda script: script.world.reset()),
+    "fault": ("fault A F0001", (drive, fault), 0, lambda do, drive, number: drive.fault(number)),
+    "unplug": ("unplug A", (drive,), 0, lambda do, drive: drive.unplug()),
+    "plug": ("plug A", (drive,), 0, lambda do, drive: drive.plug()),
+    "hang": ("hang MS", (milliseconds,), 0, lambda do, ms: do.world.hang(ms)),
+    "reset": ("reset", (), 0, lambda do: do.world.reset()),
     "expect": ("expect TEXT", (text,), 0, Script.expect),
 }  # fmt: skip
 

@@ -134,8 +134,7 @@ class Slave:
         if xor_of(self.telegram, self.length):
             return self._drop(BCC)
         self._received = 0
-        adr = self.telegram[2]
-        form = self._form(adr)
+        form = self._form(self.telegram[2])
         if form is not None:
             self._count(GOOD)
         return form

@@ -108,7 +108,7 @@ class World:
         return self.display.text()
 
     def reads(self, text):
-        """Whether a person reads `text` on the display: in a row, or running on from row to row."""
+        """Whether a person reads `text` on the display: in a row, or on across both rows."""
         row_1, row_2 = self.lcd()
         across = " ".join((row_1 + " " + row_2).split())
         return text in row_1 or text in row_2 or text in across

@@ -14,22 +14,22 @@ board
     display, keypad, store, watchdog   see below
     timer               a machine.Timer of its own for the bus; None: the main loop paces it
     make_link(baud)     builds the link for that baud rate; called once
-    idle()              end of every step of the main loop: lets the rest of the machine work, <= 2 ms
+    idle()              end of a step of the main loop: lets the machine work, 2 ms at most
     disable_irq() -> state, enable_irq(state)    as in `machine`
 
 clock
     ticks_us() -> int   interrupt. Microseconds since some instant; wraps to 0 after ticks_mask
     ticks_ms() -> int   milliseconds, wraps to 0 after ticks_mask
-    ticks_mask          period - 1 of both: 2**n - 1, at most 2**30 - 1 (a 31-bit small integer), at
-                        least 2**24 - 1, because half a period must outlast every time-out
+    ticks_mask          period - 1 of both: 2**n - 1, at most 2**30 - 1 (small integers have 31
+                        bits), at least 2**24 - 1 (half a period outlasts every time-out)
 
 link                    half duplex; the driver enable is the link's affair
     interrupts          True: on_activity is called without anyone asking; False: it must be polled
-    resolution_us       how much later than they happened received_at and sent_at may say things happened
+    resolution_us       how late received_at and sent_at may be, at the most
     on_activity         None or a function of no arguments; called (interrupt) when a burst of
                         characters has ended and when sending has ended
-    send(buffer, count) interrupt. Begins to send the first `count` characters; buffer stays untouched
-                        by the caller until sending_us answers 0
+    send(buffer, count) interrupt. Begins to send the first `count` characters; the caller
+                        leaves the buffer alone until sending_us answers 0
     sending_us(now)     interrupt. Microseconds until the last stop bit has left and the driver is
                         off, at least 1; 0 when that is over
     sent_at             clock.ticks_us() of that instant
@@ -40,12 +40,12 @@ link                    half duplex; the driver enable is the link's affair
     close()             driver off, nothing sent any more, no interrupt left
 
 timer                   of the chip: init(mode=timer.ONE_SHOT, period=us, tick_hz=1_000_000,
-                        callback=function of the timer), deinit(); both may be called in an interrupt
+                        callback=function of the timer), deinit(). Both: interrupt.
 
 display
     rows, columns       2 and 16
     show(picture)       picture: bytearray of 32 character codes, row by row. Brings the display a
-                        bounded piece (<= 1 ms of work) nearer to it; answers whether it shows it all
+                        bounded piece (<= 1 ms of work) nearer to it; answers whether all is shown
 
 keypad
     names               names of the keys, in the order of their bits: "START", "STOP", ...

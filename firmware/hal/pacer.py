@@ -3,7 +3,8 @@
 The receive interrupt, a one-shot timer and the main loop all end in `run`, which enters the engine
 once at a time and re-arms the timer for what the engine asks. So interrupt and polled operation
 share one path. An exception in the engine must not get out: a hard interrupt that raises is
-disabled for good by MicroPython. It is counted, every ON is taken back, and the engine begins anew.
+disabled for good by MicroPython. It is counted, every ON is taken back, and the engine begins
+anew.
 
     pacer = Pacer(bus, link, board.clock, board.timer, board.disable_irq, board.enable_irq)
     pacer.start()
@@ -19,7 +20,7 @@ ROUNDS_MAX = const(4)  # entries in a row for events that came meanwhile; the ti
 
 
 class Pacer:
-    """engine: has poll(now) -> microseconds, and recover(). link, clock, timer: contracts of `hal`.
+    """engine: has poll(now) -> microseconds, and recover(). link, clock, timer: see `hal`.
 
     Fields to look at: `runs` (entries into the engine, 16 bit, wraps) and `failure` (the exception
     caught last; the engine counts them).

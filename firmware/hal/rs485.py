@@ -5,7 +5,8 @@ bit should have left, looks whether it has, and drops the driver enable. That is
 callbacks run at once (the simulated chip, hard timers). A port whose timers wait for the garbage
 collector cannot promise it; wire a transceiver with automatic direction there.
 
-The pin must be low before the UART is made: a driver that is on while the chip boots blocks the line.
+The pin must be low before the UART is made: a driver that is on while the chip boots blocks the
+line.
 """
 
 from micropython import const
@@ -15,7 +16,7 @@ from micropython import const
 IDLE_BITS = const(32)
 
 POLLED_RESOLUTION_US = const(5_000)  # how late a polled link may be looked at
-RELEASES_MAX = const(16)  # looks at the transmitter, a quarter of a character apart, before giving up
+RELEASES_MAX = const(16)  # looks at the transmitter, a quarter of a character apart
 
 
 class Rs485Link:

@@ -20,7 +20,7 @@ START_US = const(5_000_000)  # a drive that does not run by then is told to stop
 
 
 class Control:
-    """drive: `uss.drive.Drive`. survey: its `Survey`. bus: the `Master`. mask: the clock's period - 1.
+    """drive: `uss.drive.Drive`. survey: its `Survey`. bus: the `Master`. mask: of the clock.
 
     settings: has setpoint_centihertz, lowest_centihertz, highest_centihertz.
 
@@ -56,7 +56,7 @@ class Control:
     # --- what an operator does ------------------------------------------------------------------
 
     def start(self):
-        """Run with the setpoint shown; None, or the reason why not as a text of texts.REFUSED_..."""
+        """Run with the setpoint shown. None, or why not: one of texts.REFUSED_..."""
         drive = self.drive
         refusal = self._refusal()
         if refusal is not None or drive.is_on():
@@ -121,7 +121,7 @@ class Control:
         return self.drive.contact and self.drive.state() == pzd.RUNNING
 
     def state_text(self):
-        """The state in words, at most texts.STATE_WIDTH wide. A motor that turns outranks a notice."""
+        """The state in words, at most texts.STATE_WIDTH. A motor that turns outranks a notice."""
         drive = self.drive
         if not drive.contact:
             return texts.NO_CONTACT

@@ -20,9 +20,9 @@ REPEAT_MS = const(120)
 class Keys:
     """names: of the keys, in the order of their bits. mask: the millisecond clock's period - 1.
 
-    After each `update`, as bits: `down`, the keys that are down; `pressed`, those that went down just
-    now; `repeated`, those held for another REPEAT_MS just now. `repeats`: how often the key that
-    repeats has done so. Only the key pressed last repeats.
+    After each `update`, as bits: `down`, the keys that are down; `pressed`, those that went down
+    just now; `repeated`, those held for another REPEAT_MS just now. `repeats`: how often the key
+    that repeats has done so. Only the key pressed last repeats.
     """
 
     def __init__(self, names, mask):

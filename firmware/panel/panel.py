@@ -30,8 +30,8 @@ class Panel:
 
     settings: has setpoint_step_centihertz and complaint. mask: the clock's period - 1.
 
-    For a page: `selected`, the control that is shown; `message`, a row that is shown for a while, or
-    None; `announced`, the control of another drive that must be spoken of, with `announcement`.
+    For a page: `selected`, the control that is shown; `message`, a row that is shown for a while,
+    or None; `announced`, the control of another drive that must be spoken of, with `announcement`.
     """
 
     def __init__(self, controls, bus, key_names, settings, mask):

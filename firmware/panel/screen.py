@@ -56,7 +56,7 @@ class Screen:
         return text[:COLUMNS], text[COLUMNS:]
 
     def _digits(self, at, width, digits, decimals, negative):
-        """Write `digits` with a point before the last `decimals`; False when the field is short."""
+        """Write `digits`, a point before the last `decimals`; False when the field is short."""
         negative = negative and digits != 0  # -0.00 reads as if it turned
         picture = self.picture
         point = decimals > 0

@@ -7,9 +7,9 @@ in an interrupt). They share words, not structures; each field has one writer:
     engine   void, zsw, hiw, contact, contacts, was_running, silent, served, counters and the rest
     a Job    belongs to the loop, but to the engine from `ask` until its state is no longer PENDING
 
-ON is sent only on a ticket. Every START draws a new one; the engine voids the one in force when the
-drive is lost, faults, stops of its own accord, or the loop stops refreshing. A void ticket stays
-void: whatever happens to the line or the loop, only a fresh `start` makes a drive run again.
+ON is sent only on a ticket. Every START draws a new one; the engine voids the one in force when
+the drive is lost, faults, stops of its own accord, or the loop stops refreshing. A void ticket
+stays void: whatever happens to the line or the loop, only a fresh `start` makes a drive run again.
 
     drive.start(0x0CCD)         # ON, setpoint HSW, from the next telegram on
     drive.stop()                # OFF1, in the very next telegram on the line
@@ -115,7 +115,7 @@ class Drive:
         return self.wanted and self.ticket == self.void
 
     def state(self):
-        """State by the last status word: one of pzd.NOT_READY ... Means nothing without contact."""
+        """What the last status word says: pzd.READY ... Means nothing without contact."""
         return pzd.state(self.zsw)
 
     def ask(self, job):
@@ -208,8 +208,8 @@ class Drive:
         self._next_job(now)
 
     def _watch_running(self):
-        # A drive that ran on this ticket and runs no more, or trips, has stopped of its own accord.
-        # It must not start again of its own accord when the cause goes away.
+        # A drive that ran on this ticket and runs no more, or trips, has stopped of its own
+        # accord. It must not start again of its own accord when the cause goes away.
         if self.zsw & pzd.ZSW_RUNNING:
             self.ran = True
         elif self.ran:
@@ -226,7 +226,7 @@ class Drive:
                 self._end_job()
 
     def _next_job(self, now):
-        """Take the next job from the queue when there is none, and time out one that takes long."""
+        """Time out a job that takes long; take the next one from the queue when there is none."""
         job = self._job
         if job is not None:
             if self._job_tries < TRIES_MIN:
@@ -247,8 +247,8 @@ class Drive:
             self._job_tries = 0
 
     def _end_job(self):
-        # A task is never left standing. Two of the same parameter must be told apart (specification
-        # C-4.2.1.1): "no task" stands between them until the drive has answered it.
+        # A task is never left standing. Two of the same parameter must be told apart
+        # (specification C-4.2.1.1): "no task" stands between them until the drive has answered it.
         self._ended_pke = self._job.pke
         self._ended_ind = self._job.ind
         self._job = None

@@ -1,11 +1,11 @@
 """The USS master: who talks when on the bus, and what becomes of it.
 
-`poll(now)` does whatever is due - take received characters, judge them, choose the next drive, build
-and send its telegram, time out - and answers in how many microseconds it has something to do again.
-It may be called at any time by anyone: the receive interrupt, a timer, the main loop. It allocates
-nothing, uses no float, and must not be entered twice at once (`hal.pacer` sees to that).
+`poll(now)` does whatever is due - take received characters, judge them, choose the next drive,
+build and send its telegram, time out - and answers in how many microseconds it has something to do
+again. It may be called at any time by anyone: the receive interrupt, a timer, the main loop. It
+allocates nothing, uses no float, and must not be entered twice at once (`hal.pacer` sees to that).
 
-Not a clock and not a driver: the time is an argument, and the link is a duck type (`hal.__init__`).
+Not a clock and not a driver: the time is an argument, and the link is a duck type of `hal`.
 
     bus = Master(link, Timing(19200), clock.ticks_mask)
     drive = bus.add(1)

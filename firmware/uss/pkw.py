@@ -106,7 +106,7 @@ def name(number, index=0):
 
 # --- jobs ---------------------------------------------------------------------------------------
 
-# States of a job. The loop owns it before PENDING and again after; while PENDING it is the engine's.
+# States of a job. While PENDING it belongs to the engine, before and after to the loop.
 NEW, PENDING, DONE, REFUSED, TIMED_OUT = range(5)
 STATE_TEXTS = ("new", "pending", "done", "refused", "timed out")
 
@@ -120,9 +120,9 @@ class Job:
     task: READ, WRITE_... . number: 0...127999. index: 0...254. high, low: the value as two words.
     ValueError when one of them is out of range.
 
-    After it left PENDING: `state`; `error` when REFUSED (see error_text); when DONE `width` (WORD or
-    DOUBLE) and the words `high` and `low`, which for a write are what the drive confirmed.
-    May be handed to `Drive.ask` again when it is not PENDING; a write then needs its value anew.
+    After it left PENDING: `state`; `error` when REFUSED (see error_text); when DONE `width` (WORD
+    or DOUBLE) and the words `high` and `low`, which for a write are what the drive confirmed. May
+    be handed to `Drive.ask` again when it is not PENDING; a write then needs its value anew.
     """
 
     def __init__(self, task, number, index=0, high=0, low=0):

@@ -1,7 +1,7 @@
 """What differs between drive families: data, not code.
 
 MICROMASTER 4 (MM410, MM420, MM430, MM440) on its RS-485 terminals, the COM link. Parameter numbers
-and meanings: MICROMASTER parameter lists; the set-up for USS: USS over COM link, P0700 = P1000 = 5.
+and meanings: MICROMASTER parameter lists; set up for USS with P0700 = P1000 = 5.
 """
 
 from micropython import const

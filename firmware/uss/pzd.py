@@ -37,7 +37,7 @@ ON = const(0x047F)
 
 # --- status word --------------------------------------------------------------------------------
 
-# Bit, name, whether 0 is the remarkable value. Bits 0-10: specification C-5.2.1; from 11 on: r0052.
+# Bit, name, whether 0 is the remarkable value. Bits 0-10: specification C-5.2.1; others: r0052.
 ZSW_BITS = (
     (0, "READY_TO_SWITCH_ON", False),
     (1, "READY_TO_RUN", False),

@@ -1,9 +1,9 @@
 """What must be known of a drive before it may be started, read from it again and again.
 
 Works on the loop's side, through parameter jobs, which cost the bus nothing: every telegram has a
-parameter channel. It reads the rows of `profiles.SURVEY` at once when contact is made and one every
-REREAD_US from then on, so that a change made at the drive itself is noticed. What was known is
-forgotten when contact is lost.
+parameter channel. It reads the rows of `profiles.SURVEY` at once when contact is made and one
+every REREAD_US from then on, so that a change made at the drive itself is noticed. What was known
+is forgotten when contact is lost.
 
     survey = Survey(drive)
     survey.step(now)                # each step of the loop

@@ -33,7 +33,7 @@ class Timing:
     baud: bits per second; ValueError unless it is one of BAUD_RATES.
     reply_timeout_us: how long the master waits for the first character of a reply. The
         specification says 20 ms; adapters that delay need more. Below 2400 baud the pause that the
-        drive must keep before its reply comes near to that or exceeds it: twice the pause is waited.
+        drive must keep before its reply exceeds that or comes near: it is waited twice as long.
     """
 
     def __init__(self, baud, reply_timeout_us=RESPONSE_DELAY_US):

@@ -1,1 +1,1 @@
-"""The pages of the panel, one file each. A page draws itself and takes the keys that are its own."""
+"""The pages of the panel, one file each. A page draws itself and takes keys of its own."""

@@ -1,0 +1,208 @@
+"""From bursts to a telegram: start interval, response delay, residual run time, stray characters.
+
+Specification A-5.1.2 (start interval), A-5.2.1.1 (response delay), A-6.3 (residual run time).
+"""
+
+from uss import receiver, telegram
+from uss.receiver import CUT_OFF, SILENT, WAITING, Receiver
+from uss.telegram import BAD_ADDRESS, BAD_BCC, BAD_LENGTH, BAD_START, GOOD
+from uss.timing import Timing
+
+MASK = (1 << 30) - 1
+BAUD = 19200
+LINE = Timing(BAUD)
+TCH = LINE.character_us  # 573 us
+REPLY = bytes((0x02, 0x0E, 0x01, 0, 0, 0, 0, 0, 0, 0, 0, 0xFB, 0x34, 0x20, 0x00, 0xE2))
+SENT_AT = 1000
+
+
+class Link:
+    """Delivers what it is told, exact to the microsecond."""
+
+    interrupts = True
+    resolution_us = 0
+    received_at = 0
+
+    def __init__(self):
+        self.burst = b""
+
+    def receive(self, buffer, at):
+        count = len(self.burst)
+        buffer[at : at + count] = self.burst
+        self.burst = b""
+        return count
+
+
+class Line:
+    """A receiver that awaits the reply of drive 1, and the characters that come."""
+
+    def __init__(self, mask=MASK, sent_at=SENT_AT, polled_us=0):
+        self.link = Link()
+        self.link.resolution_us = polled_us
+        self.mask = mask
+        self.sent_at = sent_at
+        self.receiver = Receiver(LINE, mask)
+        self.receiver.open(1, 12, LINE.residual_us(12), sent_at)
+
+    def come(self, characters, pause_us, after_us=0):
+        """`characters` back to back after a pause; seen `after_us` late. Answers the finding."""
+        begin = self.receiver.heard_at + pause_us
+        end = begin + len(characters) * TCH
+        self.link.burst = bytes(characters)
+        self.link.received_at = (end + after_us) & self.mask
+        return self.receiver.take(self.link, (end + after_us) & self.mask)
+
+    def silence(self, until_us):
+        """Nothing came until so long after the request."""
+        return self.receiver.take(self.link, (self.sent_at + until_us) & self.mask)
+
+
+def test_a_reply_after_three_characters_is_taken():
+    """As an MM420 answers."""
+    line = Line()
+    assert line.come(REPLY, 3 * TCH) == GOOD
+    assert bytes(line.receiver.buffer[: line.receiver.count]) == REPLY
+
+
+def test_a_reply_may_come_from_two_characters_to_twenty_milliseconds_later():
+    assert Line().come(REPLY, LINE.start_interval_us) == GOOD
+    assert Line().come(REPLY, 19_900) == GOOD
+
+
+def test_a_reply_that_comes_too_early_is_none():
+    """1.9 characters after the request: STX without a start interval is data."""
+    line = Line()
+    assert line.come(REPLY, LINE.start_interval_us * 95 // 100) == WAITING
+    assert line.silence(25_000) == BAD_START
+
+
+def test_silence_is_noticed_when_the_response_delay_is_over():
+    line = Line()
+    assert line.silence(20_000) == WAITING  # its first character may be under way
+    assert line.silence(20_000 + TCH + 3) == SILENT
+
+
+def test_a_reply_in_pieces_is_put_together():
+    """As a link without interrupts delivers it."""
+    for cut in range(1, 16):
+        line = Line()
+        assert line.come(REPLY[:cut], 3 * TCH) == WAITING
+        assert line.come(REPLY[cut:], 0) == GOOD, cut
+    line = Line()
+    for character in REPLY[:-1]:
+        assert line.come(bytes((character,)), 3 * TCH if not line.receiver.count else 0) == WAITING
+    assert line.come(REPLY[-1:], 0) == GOOD
+
+
+def test_a_gap_inside_the_telegram_is_no_error():
+    """The receiver need not watch single gaps, only the residual run time (A-6.3)."""
+    for gap in (19, 21, 60):
+        line = Line()
+        line.come(REPLY[:7], 3 * TCH)
+        assert line.come(REPLY[7:], gap * TCH // 10) == GOOD, gap
+
+
+def test_gaps_of_half_the_telegram_are_allowed_and_no_more():
+    compressed_us = 15 * TCH
+    line = Line()
+    line.come(REPLY[:7], 3 * TCH)
+    assert line.come(REPLY[7:], compressed_us // 2 - TCH // 2) == GOOD
+    line = Line()
+    line.come(REPLY[:7], 3 * TCH)
+    assert line.come(REPLY[7:], compressed_us // 2 + TCH) == CUT_OFF
+
+
+def test_a_reply_that_breaks_off_is_given_up_after_the_residual_time():
+    line = Line()
+    line.come(REPLY[:15], 3 * TCH)
+    began_us = 3 * TCH
+    assert line.silence(began_us + LINE.residual_us(12)) == WAITING
+    assert line.silence(began_us + LINE.residual_us(12) + 2) == CUT_OFF
+
+
+def test_every_other_error_is_found():
+    wrong_bcc = REPLY[:-1] + b"\x00"
+    assert Line().come(wrong_bcc, 3 * TCH) == BAD_BCC
+    other = bytearray(REPLY)
+    other[2], other[15] = 2, other[15] ^ 3
+    assert Line().come(other, 3 * TCH) == BAD_ADDRESS
+    assert Line().come(b"\x02\x06\x01\xfb\x34\x20\x00\xea", 3 * TCH) == BAD_LENGTH
+    assert Line().come(REPLY + b"\x00", 3 * TCH) == BAD_LENGTH
+
+
+def test_a_stray_character_does_not_hide_the_reply_that_follows():
+    """A spike when the line turns round, then the reply after its start interval."""
+    for stray in (b"\x00", b"\xff", b"\x00\xff\x55"):
+        line = Line()
+        assert line.come(stray, 10) == WAITING
+        assert line.receiver.stray
+        assert line.come(REPLY, 3 * TCH) == GOOD, stray
+
+
+def test_a_telegram_that_follows_a_stray_character_without_a_pause_is_data():
+    line = Line()
+    assert line.come(b"\x00" + REPLY, 3 * TCH) == WAITING
+    assert line.silence(25_000) == BAD_START
+    line = Line()
+    line.come(b"\x00", 3 * TCH)
+    assert line.come(REPLY, TCH) == WAITING
+
+
+def test_a_02h_inside_the_data_starts_nothing():
+    """A foreign telegram full of 02h, one character a burst, without pauses."""
+    line = Line()
+    for character in b"\x00" + b"\x02" * 30:
+        assert line.come(bytes((character,)), 0) == WAITING
+    assert line.receiver.count == 0
+
+
+def test_nothing_is_kept_from_one_request_to_the_next():
+    """The panel of 8051 days hung for good here."""
+    line = Line()
+    line.come(REPLY[:9], 3 * TCH)
+    line.sent_at += 50_000
+    line.receiver.open(1, 12, LINE.residual_us(12), line.sent_at)
+    assert line.come(REPLY, 3 * TCH) == GOOD
+
+
+def test_a_link_that_looks_late_is_believed_as_far_as_it_knows():
+    """A polled link does not know the pause exactly: what may have been right is taken."""
+    line = Line(polled_us=5_000)
+    assert line.come(REPLY, 100) == GOOD
+    line = Line(polled_us=5_000)
+    assert line.come(REPLY, 3 * TCH, after_us=4_000) == GOOD
+
+
+def test_the_counter_may_wrap_anywhere_in_an_exchange():
+    for bits in (24, 30):
+        mask = (1 << bits) - 1
+        for before_us in range(0, 12_000, 97):
+            line = Line(mask, mask - before_us)
+            assert line.come(REPLY, 3 * TCH) == GOOD, before_us
+            line = Line(mask, mask - before_us)
+            assert line.silence(20_000) == WAITING
+            assert line.silence(21_000) == SILENT
+
+
+def test_noise_of_any_kind_is_survived_and_the_next_reply_taken():
+    """Seeded bursts of any content and length, then a request and its reply."""
+    seed = 1994
+    print("seed", seed)
+    state = seed
+    for _ in range(2000):
+        line = Line()
+        for _ in range(3):
+            state = (state * 1103 + 12345) & 0xFFFFFF
+            length = 1 + (state >> 8) % 40
+            noise = bytes((state >> (index % 17)) & 0xFF for index in range(length))
+            finding = line.come(noise, (state >> 4) % 3000)
+            assert finding in range(WAITING, CUT_OFF + 1) and finding != GOOD
+            if finding != WAITING:
+                line.receiver.open(1, 12, LINE.residual_us(12), line.receiver.heard_at)
+        line.receiver.open(1, 12, LINE.residual_us(12), line.receiver.heard_at)
+        assert line.come(REPLY, 3 * TCH) == GOOD
+
+
+def test_every_finding_has_a_name():
+    assert len(receiver.FINDINGS) == CUT_OFF + 1
+    assert receiver.FINDINGS[: len(telegram.FINDINGS)] == telegram.FINDINGS
