@@ -1,0 +1,178 @@
+"""The RS-485 link on the simulated chip: sends, hears, and lets go of the line in time."""
+
+from boards.sim.board import HardTimer
+from boards.sim.chip import UART, Chip, Pin
+from boards.sim.clock import Clock
+from boards.sim.wire import Transceiver, Wire
+from hal.rs485 import Rs485Link
+
+RATES = (300, 600, 1200, 2400, 4800, 9600, 19200, 38400, 57600, 76800, 93750, 115200, 187500)
+REQUEST = bytes((0x02, 0x0E, 0x01, 0, 0, 0, 0, 0, 0, 0, 0, 0x04, 0x7E, 0, 0, 0x77))
+
+
+class Neighbour:
+    """Another station: keeps what it hears."""
+
+    name = "neighbour"
+
+    def __init__(self, wire):
+        self.heard = []
+        self.wire = wire
+        wire.attach(self)
+
+    def hear(self, burst):
+        self.heard.append((burst.start_us, burst.end_us, bytes(burst.data[: burst.count])))
+
+
+class Bench:
+    """A link on a chip, and a neighbour on the line."""
+
+    def __init__(self, baud=19200, interrupts=True):
+        self.clock = Clock()
+        self.wire = Wire(self.clock, baud)
+        self.chip = Chip(self.clock, self.wire)
+        self.driver_enable = Pin(self.chip)
+        self.uart = UART(self.chip, baud)
+        Transceiver(self.wire, self.uart, self.driver_enable)
+        self.link = Rs485Link(
+            self.uart, self.driver_enable, HardTimer(self.chip), self.clock, baud, interrupts
+        )
+        self.neighbour = Neighbour(self.wire)
+        self.activities = []
+        self.link.on_activity = self.note
+        self.clock.advance(100_000)
+
+    def note(self):
+        self.activities.append(self.clock.now_us)
+
+    def check(self):
+        assert self.wire.violations == [] and self.chip.handler_errors == []
+
+
+def test_what_is_sent_arrives_at_every_rate_and_the_line_is_free_in_time():
+    """The referee of the line allows the driver one character after the last stop bit."""
+    for baud in RATES:
+        bench = Bench(baud)
+        began_us = bench.clock.now_us
+        bench.link.send(REQUEST, len(REQUEST))
+        assert bench.driver_enable.value() == 1
+        bench.clock.advance(-(-11_000_000 * 17 // baud))
+        assert bench.driver_enable.value() == 0
+        start_us, end_us, heard = bench.neighbour.heard[0]
+        assert heard == REQUEST and start_us == began_us
+        assert 0 <= bench.link.sent_at - end_us <= bench.wire.character_us // 2
+        assert bench.link.late_releases == 0
+        assert len(bench.activities) == 1  # sending has ended
+        bench.check()
+
+
+def test_only_the_first_characters_of_a_longer_buffer_are_sent():
+    bench = Bench()
+    bench.link.send(REQUEST + bytes(240), len(REQUEST))
+    bench.clock.advance(20_000)
+    assert bench.neighbour.heard[0][2] == REQUEST
+    bench.check()
+
+
+def test_sending_us_counts_down_to_zero():
+    bench = Bench()
+    assert bench.link.sending_us(bench.clock.ticks_us()) == 0
+    bench.link.send(REQUEST, len(REQUEST))
+    left = []
+    for _ in range(12):
+        left.append(bench.link.sending_us(bench.clock.ticks_us()))
+        bench.clock.advance(1_000)
+    assert left[0] == 9167 and left == sorted(left, reverse=True) and left[-1] == 0
+    bench.check()
+
+
+def test_a_burst_is_announced_and_its_end_known():
+    bench = Bench()
+    burst = bench.wire.talk(bench.neighbour, REQUEST, len(REQUEST))
+    bench.clock.advance(20_000)
+    assert len(bench.activities) == 1
+    assert bench.activities[0] - burst.end_us <= 32 * 1_000_000 // 19200 + 2
+    buffer = bytearray(260)
+    assert bench.link.receive(buffer, 0) == 16
+    assert bytes(buffer[:16]) == REQUEST
+    assert 0 <= bench.link.received_at - burst.end_us <= 2
+    assert bench.link.receive(buffer, 16) == 0
+    bench.check()
+
+
+def test_a_burst_may_be_taken_in_pieces():
+    bench = Bench(interrupts=False)
+    burst = bench.wire.talk(bench.neighbour, REQUEST, len(REQUEST))
+    buffer = bytearray(260)
+    count = 0
+    while bench.clock.now_us < burst.end_us + 1_000:
+        bench.clock.advance(700)
+        came = bench.link.receive(buffer, count)
+        if came:
+            late_us = bench.clock.now_us - bench.link.received_at
+            assert 0 <= late_us <= bench.link.resolution_us
+        count += came
+    assert count == 16 and bytes(buffer[:16]) == REQUEST
+    assert bench.activities == []
+    bench.check()
+
+
+def test_more_than_there_is_room_for_waits():
+    bench = Bench(interrupts=False)
+    bench.wire.talk(bench.neighbour, bytes(range(200)), 200)
+    bench.clock.advance(200_000)
+    small = bytearray(30)
+    received = b""
+    while True:
+        came = bench.link.receive(small, 10)
+        if not came:
+            break
+        received += bytes(small[10 : 10 + came])
+    assert received == bytes(range(200))
+
+
+def test_the_panel_does_not_hear_itself():
+    bench = Bench()
+    bench.link.send(REQUEST, len(REQUEST))
+    bench.clock.advance(30_000)
+    assert bench.link.receive(bytearray(64), 0) == 0
+    bench.check()
+
+
+def test_a_transmitter_that_is_a_little_slow_is_waited_for():
+    """A quarter of a character at a time: the last stop bit is never cut."""
+    bench = Bench()
+    answers = [False, False, True]
+    bench.uart.txdone = lambda: answers.pop(0)
+    bench.link.send(REQUEST, len(REQUEST))
+    bench.clock.advance(9167 + bench.wire.character_us * 3 // 4 + 4)
+    assert bench.driver_enable.value() == 0 and answers == []
+    assert bench.link.late_releases == 0
+    bench.check()
+
+
+def test_a_transmitter_that_never_ends_does_not_keep_the_line():
+    bench = Bench()
+    bench.uart.txdone = lambda: False
+    bench.link.send(REQUEST, len(REQUEST))
+    bench.clock.advance(20_000)
+    assert bench.driver_enable.value() == 0
+    assert bench.link.late_releases == 1
+    assert bench.link.sending_us(bench.clock.ticks_us()) == 0
+
+
+def test_the_driver_is_off_before_anything_is_sent():
+    bench = Bench()
+    assert bench.driver_enable.value() == 0
+
+
+def test_a_closed_link_is_quiet():
+    bench = Bench()
+    bench.link.send(REQUEST, len(REQUEST))
+    bench.clock.advance(30_000)
+    bench.link.close()
+    bench.wire.talk(bench.neighbour, REQUEST, len(REQUEST))
+    activities = len(bench.activities)
+    bench.clock.advance(50_000)
+    assert len(bench.activities) == activities and bench.driver_enable.value() == 0
+    bench.check()

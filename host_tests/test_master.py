@@ -1,0 +1,520 @@
+"""The bus master: the circulating list, supervision of replies, parameter jobs, tickets.
+
+The master runs on a link whose drive is a few lines of test: it answers what it is told to.
+"""
+
+from uss import pkw, pzd, telegram
+from uss.drive import Drive
+from uss.master import CLOSED, DEAD_MAN_US, LISTENING, LOST_US, Master
+from uss.timing import Timing
+
+MASK = (1 << 30) - 1
+TIMING = Timing(19200)
+REPLY_DELAY_US = 3 * TIMING.character_us
+
+
+class Bus:
+    """A link, and what hangs on it: `answer(request)` gives the reply's net data or None."""
+
+    interrupts = True
+    resolution_us = 0
+
+    def __init__(self, addresses=(1,), start_at=0):
+        self.now = start_at
+        self.sent = []  # (instant, characters)
+        self.silent = set()
+        self.zsw = {address: 0xFB31 for address in addresses}
+        self.pkw = {address: None for address in addresses}  # request's PKW -> reply's PKW
+        self.on_activity = None
+        self.sent_at = 0
+        self.received_at = 0
+        self._sending_until = None
+        self._reply = b""
+        self._reply_at = 0
+        self.master = Master(self, TIMING, MASK)
+        self.drives = [self.master.add(address) for address in addresses]
+
+    # The link.
+
+    def send(self, buffer, count):
+        characters = bytes(buffer[:count])
+        self.sent.append((self.now, characters))
+        self._sending_until = self.now + TIMING.telegram_us(count - 4)
+        self._reply = b""
+        address = characters[2]
+        if address in self.zsw and address not in self.silent:
+            self._answer(address, characters)
+
+    def sending_us(self, now):
+        if self._sending_until is None:
+            return 0
+        if self.now < self._sending_until:
+            return self._sending_until - self.now
+        self.sent_at = self._sending_until & MASK
+        self._sending_until = None
+        return 0
+
+    def receive(self, buffer, at):
+        if not self._reply or self.now < self._reply_at:
+            return 0
+        reply, self._reply = self._reply, b""
+        buffer[at : at + len(reply)] = reply
+        self.received_at = self._reply_at & MASK
+        return len(reply)
+
+    def _answer(self, address, request):
+        net = bytearray(12)
+        take_pkw = self.pkw[address]
+        net[:8] = take_pkw(request[3:11]) if take_pkw else bytes(8)
+        telegram.put_word(net, 8, self.zsw[address])
+        reply = bytearray(20)
+        reply[3:15] = net
+        count = telegram.seal(reply, address, 12)
+        self._reply = bytes(reply[:count])
+        self._reply_at = self._sending_until + REPLY_DELAY_US + TIMING.telegram_us(12)
+
+    # Time.
+
+    def run(self, us, refresh=True):
+        until = self.now + us
+        while self.now < until:
+            if refresh:
+                self.master.refresh(self.now & MASK)
+            wait_us = self.master.poll(self.now & MASK)
+            assert wait_us >= 1
+            if self._reply:
+                wait_us = min(wait_us, max(1, self._reply_at - self.now))
+            self.now += min(wait_us, 5_000)
+
+    def addresses(self, since=0):
+        return [characters[2] for _, characters in self.sent[since:]]
+
+    def stws(self, address, since=0):
+        return [
+            telegram.get_word(characters, 11)
+            for _, characters in self.sent[since:]
+            if characters[2] == address
+        ]
+
+
+def parameters(values):
+    """A drive's parameter channel: number -> (reply id, high word, low word)."""
+
+    def take(request):
+        reply = bytearray(8)
+        task = request[0] >> 4
+        number = ((request[0] & 7) << 8 | request[1]) + (2000 if request[2] & 0x80 else 0)
+        if task and number in values:
+            answer, high, low = values[number]
+            telegram.put_word(reply, 0, answer << 12 | (request[0] & 7) << 8 | request[1])
+            telegram.put_word(reply, 2, request[2] << 8 | request[3])
+            telegram.put_word(reply, 4, high)
+            telegram.put_word(reply, 6, low)
+        return reply
+
+    return take
+
+
+# --- who talks when -----------------------------------------------------------------------------
+
+
+def test_it_listens_for_100_ms_before_its_first_telegram():
+    bus = Bus()
+    bus.run(99_000)
+    assert bus.sent == [] and bus.master.phase == LISTENING
+    bus.run(5_000)
+    assert len(bus.sent) == 1
+
+
+def test_another_master_is_noticed_and_not_fought():
+    bus = Bus()
+    for _ in range(50):
+        bus._reply, bus._reply_at = b"\x02\x06\x01", bus.now
+        bus.run(50_000)
+    assert bus.sent == [] and bus.master.foreign >= 50
+    bus.run(120_000)
+    assert len(bus.sent) > 0
+
+
+def test_the_list_goes_round_and_a_node_may_stand_in_it_twice():
+    """The list of specification A-5.1: 0 1 3 5 0 1 7 21."""
+    order = (0, 1, 3, 5, 0, 1, 7, 21)
+    bus = Bus((0, 1, 3, 5, 7, 21))
+    bus.master.list.clear()
+    for address in order:
+        bus.master.add(address)
+    assert len(bus.master.drives) == 6
+    bus.run(1_000_000)
+    sent = bus.addresses()
+    for index in range(24):
+        assert sent[index] == order[index % 8]
+
+
+def test_the_next_telegram_follows_the_reply_after_the_start_interval():
+    bus = Bus()
+    bus.run(1_000_000)
+    instants = [at for at, _ in bus.sent]
+    gaps = [after - before for before, after in zip(instants, instants[1:])]
+    exchange_us = TIMING.exchange_us(12, REPLY_DELAY_US)
+    assert all(exchange_us <= gap <= exchange_us + 5 for gap in gaps), gaps[:5]
+
+
+def test_a_silent_drive_costs_the_response_delay_and_stays_in_the_list():
+    bus = Bus((1, 2))
+    bus.silent.add(2)
+    bus.run(3_000_000)
+    one, two = bus.drives
+    assert bus.addresses().count(2) >= bus.addresses().count(1) - 1
+    assert two.counters[5] > 20 and two.counters[0] == 0 and not two.contact
+    assert one.counters[0] > 20 and one.contact
+
+
+def test_a_drive_beyond_the_list_or_the_addresses_is_refused():
+    bus = Bus()
+    for wrong in (-1, 32, None, "1"):
+        try:
+            bus.master.add(wrong)
+        except (ValueError, TypeError):
+            continue
+        raise AssertionError(wrong)
+    for _ in range(254):
+        bus.master.add(1)
+    try:
+        bus.master.add(1)
+    except ValueError:
+        return
+    raise AssertionError("256 entries")
+
+
+def test_a_closed_bus_ends_after_the_exchange_that_goes_on():
+    bus = Bus()
+    bus.run(200_000)
+    bus.master.close()
+    bus.run(50_000)
+    assert bus.master.phase == CLOSED
+    sent = len(bus.sent)
+    bus.run(1_000_000)
+    assert len(bus.sent) == sent
+
+
+# --- commands -----------------------------------------------------------------------------------
+
+
+def test_a_drive_is_off_until_it_is_started():
+    bus = Bus()
+    bus.run(500_000)
+    assert set(bus.stws(1)) == {pzd.OFF1}
+
+
+def test_on_carries_the_setpoint_and_off_none():
+    bus = Bus()
+    bus.run(300_000)
+    bus.drives[0].start(0x2000)
+    bus.run(100_000)
+    assert bus.sent[-1][1][11:15] == b"\x04\x7f\x20\x00"
+    bus.drives[0].stop()
+    bus.run(100_000)
+    assert bus.sent[-1][1][11:15] == b"\x04\x7e\x00\x00"
+
+
+def test_start_without_contact_sends_no_on_and_none_later():
+    bus = Bus()
+    bus.silent.add(1)
+    bus.run(300_000)
+    bus.drives[0].start(0x2000)
+    bus.run(3_000_000)
+    bus.silent.clear()
+    bus.run(3_000_000)
+    assert pzd.ON not in bus.stws(1) and bus.drives[0].contact
+
+
+def test_a_command_is_in_the_next_telegram_whatever_stands_in_the_list():
+    bus = Bus(tuple(range(1, 32)))
+    bus.run(3_000_000)
+    for step in range(60):
+        bus.run(1_237)  # another phase of another exchange each time
+        drive = bus.drives[step * 7 % 31]
+        sent = len(bus.sent)
+        if step & 1:
+            drive.stop()
+        else:
+            drive.start(0x1000)
+        while len(bus.sent) == sent:
+            bus.run(200)
+        assert bus.sent[sent][1][2] == drive.address
+
+
+def test_a_stop_goes_before_a_start_and_a_running_drive_first():
+    bus = Bus((1, 2, 3, 4))
+    bus.zsw[4] = 0xFB34
+    bus.run(500_000)
+    sent = len(bus.sent)
+    bus.drives[0].start(0)
+    bus.drives[1].stop()
+    bus.drives[3].stop()
+    while len(bus.sent) < sent + 3:
+        bus.run(200)
+    assert bus.addresses(sent) == [4, 2, 1]
+
+
+def test_a_lost_drive_gets_no_on_until_it_is_started_again():
+    bus = Bus()
+    bus.run(300_000)
+    drive = bus.drives[0]
+    drive.start(0x2000)
+    bus.zsw[1] = 0xFB34
+    bus.run(300_000)
+    assert bus.stws(1)[-1] == pzd.ON
+    bus.silent.add(1)
+    bus.run(LOST_US - 100_000)
+    assert drive.contact and bus.stws(1)[-1] == pzd.ON
+    bus.run(200_000)
+    assert not drive.contact and drive.was_running and drive.stopped_by_engine()
+    sent = len(bus.sent)
+    bus.silent.clear()
+    bus.run(2_000_000)
+    assert drive.contact and pzd.ON not in bus.stws(1, sent)
+    drive.start(0x2000)
+    bus.run(100_000)
+    assert bus.stws(1)[-1] == pzd.ON
+
+
+def test_a_loop_that_does_not_refresh_loses_every_drive_after_300_ms():
+    bus = Bus((1, 2, 3))
+    bus.run(500_000)
+    for drive in bus.drives:
+        drive.start(0x1000)
+        bus.zsw[drive.address] = 0xFB34
+    bus.run(500_000)
+    last = bus.now
+    bus.run(1_000_000, refresh=False)
+    assert bus.master.dead_man_trips == 1
+    for drive in bus.drives:
+        offs = [
+            at
+            for at, characters in bus.sent
+            if at > last and characters[2] == drive.address and characters[12] == 0x7E
+        ]
+        assert DEAD_MAN_US < offs[0] - last <= DEAD_MAN_US + 4 * 22_000
+    sent = len(bus.sent)
+    bus.run(1_000_000)  # the loop is back: nothing starts
+    for drive in bus.drives:
+        assert pzd.ON not in bus.stws(drive.address, sent)
+
+
+def test_a_drive_that_stops_of_its_own_accord_is_not_started_again():
+    bus = Bus()
+    bus.run(300_000)
+    drive = bus.drives[0]
+    for stopped in (0xFB31, 0xFB71, 0xFB78):  # somebody else's OFF, inhibit, fault
+        bus.zsw[1] = 0xFB31
+        drive.start(0x2000)
+        bus.run(100_000)
+        bus.zsw[1] = 0xFB34
+        bus.run(100_000)
+        assert bus.stws(1)[-1] == pzd.ON
+        bus.zsw[1] = stopped
+        bus.run(100_000)
+        bus.zsw[1] = 0xFB31
+        sent = len(bus.sent)
+        bus.run(500_000)
+        assert pzd.ON not in bus.stws(1, sent), hex(stopped)
+        assert drive.stopped_by_engine()
+
+
+def test_65536_starts_later_a_void_ticket_is_still_void():
+    drive = Drive(1, MASK)
+    drive.contact = True
+    drive.start(0)
+    drive.revoke()
+    assert not drive.is_on()
+    for _ in range(0x10003):
+        drive.start(0)
+        assert drive.is_on() and drive.ticket != drive.void
+
+
+# --- parameter jobs -----------------------------------------------------------------------------
+
+
+def test_a_parameter_is_read_and_then_no_task_stands():
+    bus = Bus()
+    bus.pkw[1] = parameters({700: (1, 0, 5)})
+    bus.run(300_000)
+    job = pkw.read(700)
+    bus.drives[0].ask(job)
+    bus.run(200_000)
+    assert job.state == pkw.DONE and job.integer_value() == 5
+    assert bus.sent[-1][1][3:11] == bytes(8)
+
+
+def test_the_task_is_repeated_until_the_fitting_reply_comes():
+    bus = Bus()
+    bus.run(300_000)
+    replies = [bytes(8), b"\x12\xbd\x00\x00\x00\x00\x00\x07", bytes(8)]  # none, P0701, none
+
+    def slow(request):
+        if request[0] >> 4 == 1 and replies:
+            return replies.pop(0)
+        return parameters({700: (1, 0, 5)})(request)
+
+    bus.pkw[1] = slow
+    job = pkw.read(700)
+    sent = len(bus.sent)
+    bus.drives[0].ask(job)
+    bus.run(300_000)
+    assert job.state == pkw.DONE and job.integer_value() == 5 and not replies
+    asked = [characters[3:5] for _, characters in bus.sent[sent:]].count(b"\x12\xbc")
+    assert asked == 4
+
+
+def test_two_tasks_of_one_parameter_have_no_task_between_them():
+    """Or the old reply would be taken for the confirmation of the write (C-4.2.1.1)."""
+    bus = Bus()
+    bus.pkw[1] = parameters({700: (1, 0, 5)})
+    bus.run(300_000)
+    first, second = pkw.write_word(700, 5), pkw.write_word(700, 5)
+    sent = len(bus.sent)
+    bus.drives[0].ask(first)
+    bus.drives[0].ask(second)
+    bus.run(300_000)
+    assert first.state == second.state == pkw.DONE
+    tasks = [characters[3] >> 4 for _, characters in bus.sent[sent:]]
+    first_write = tasks.index(2)
+    assert tasks[first_write : first_write + 4] == [2, 0, 2, 0]
+
+
+def test_tasks_of_different_parameters_follow_each_other_at_once():
+    bus = Bus()
+    bus.pkw[1] = parameters({700: (1, 0, 5), 1000: (1, 0, 5)})
+    bus.run(300_000)
+    sent = len(bus.sent)
+    jobs = [pkw.read(700), pkw.read(1000), pkw.read(700)]
+    for job in jobs:
+        bus.drives[0].ask(job)
+    bus.run(200_000)
+    assert [job.state for job in jobs] == [pkw.DONE] * 3
+    tasks = [characters[3] >> 4 for _, characters in bus.sent[sent:]]
+    assert tasks[tasks.index(1) :][:3] == [1, 1, 1]
+
+
+def test_a_task_that_is_never_answered_times_out():
+    bus = Bus()
+    bus.run(300_000)
+    job, patient = pkw.read(700), pkw.write_word(700, 5, eeprom=True)
+    bus.drives[0].ask(job)
+    bus.run(1_900_000)
+    assert job.state == pkw.PENDING
+    bus.run(200_000)
+    assert job.state == pkw.TIMED_OUT
+    bus.drives[0].ask(patient)
+    bus.run(4_800_000)
+    assert patient.state == pkw.PENDING
+    bus.run(500_000)
+    assert patient.state == pkw.TIMED_OUT
+
+
+def test_jobs_for_a_silent_drive_time_out_too():
+    bus = Bus()
+    bus.silent.add(1)
+    jobs = [pkw.read(700), pkw.read(1000), pkw.write_word(700, 5)]
+    for job in jobs:
+        bus.drives[0].ask(job)
+    bus.run(8_000_000)
+    assert [job.state for job in jobs] == [pkw.TIMED_OUT] * 3
+
+
+def test_a_refusal_is_a_result():
+    bus = Bus()
+    bus.pkw[1] = parameters({1082: (7, 0, 17), 700: (8, 0, 0)})
+    bus.run(300_000)
+    late, rights = pkw.write_float(1082, 40.0), pkw.write_word(700, 2)
+    bus.drives[0].ask(late)
+    bus.drives[0].ask(rights)
+    bus.run(300_000)
+    assert late.state == pkw.REFUSED and late.error == 17
+    assert rights.state == pkw.REFUSED and rights.error == pkw.NO_CHANGE_RIGHTS
+
+
+def test_jobs_of_two_drives_run_at_once():
+    bus = Bus((1, 2))
+    for address in (1, 2):
+        bus.pkw[address] = parameters({2000: (2, 0x4248, 0)})
+    bus.run(300_000)
+    jobs = [pkw.read(2000), pkw.read(2000)]
+    sent = len(bus.sent)
+    for drive, job in zip(bus.drives, jobs):
+        drive.ask(job)
+    bus.run(120_000)
+    assert [job.float_value() for job in jobs] == [50.0, 50.0]
+    assert len(bus.sent) - sent <= 6
+
+
+def test_no_more_jobs_are_taken_than_can_be_kept():
+    bus = Bus()
+    drive = bus.drives[0]
+    jobs = [pkw.read(700) for _ in range(9)]
+    for job in jobs[:8]:
+        drive.ask(job)
+    try:
+        drive.ask(jobs[8])
+    except RuntimeError as error:
+        assert "drive 1" in str(error)
+        return
+    raise AssertionError("a ninth job was taken")
+
+
+def test_a_pending_job_is_not_taken_twice():
+    bus = Bus()
+    job = pkw.read(700)
+    bus.drives[0].ask(job)
+    try:
+        bus.drives[0].ask(job)
+    except RuntimeError:
+        return
+    raise AssertionError("taken twice")
+
+
+def test_a_job_after_the_other_is_never_lost():
+    """The queue goes round many times."""
+    bus = Bus()
+    bus.pkw[1] = parameters({700: (1, 0, 5), 1000: (1, 0, 6), 2000: (2, 0x4248, 0)})
+    bus.run(300_000)
+    for step in range(100):
+        job = pkw.read((700, 1000, 2000)[step % 3])
+        bus.drives[0].ask(job)
+        while job.state == pkw.PENDING:
+            bus.run(5_000)
+        assert job.state == pkw.DONE, step
+
+
+# --- trouble ------------------------------------------------------------------------------------
+
+
+def test_after_an_exception_every_drive_is_off_and_the_bus_goes_on():
+    bus = Bus()
+    bus.run(300_000)
+    bus.drives[0].start(0x1000)
+    bus.run(100_000)
+    bus.master.recover()
+    sent = len(bus.sent)
+    bus.run(500_000)
+    assert bus.master.failures == 1
+    assert len(bus.sent) > sent + 10 and pzd.ON not in bus.stws(1, sent)
+
+
+def test_a_bad_reply_changes_nothing_in_the_image():
+    bus = Bus()
+    bus.run(300_000)
+    drive = bus.drives[0]
+    good, zsw = drive.counters[0], drive.zsw
+    bus.zsw[1] = 0x1234
+    answer = bus._answer
+
+    def spoil(address, request):
+        answer(address, request)
+        bus._reply = bus._reply[:-1] + bytes((bus._reply[-1] ^ 1,))
+
+    bus._answer = spoil
+    bus.run(300_000)
+    assert drive.zsw == zsw and drive.counters[0] <= good + 1
+    assert drive.counters[3] > 5  # wrong BCC
