@@ -1,0 +1,175 @@
+"""The script language: what each command does, and what is said to a line that is none."""
+
+import main
+from boards.sim.script import COMMANDS, ORDER, ExpectationFailed, Script, ScriptError
+from boards.sim.world import World
+
+
+class Session:
+    """A script on a fresh panel, and what it printed."""
+
+    def __init__(self, **options):
+        self.world = World(main.start, **options)
+        self.printed = []
+        self.script = Script(self.world, "test.txt", self.printed.append)
+
+    def do(self, *lines):
+        """Answers what these lines printed."""
+        del self.printed[:]
+        self.script.run(lines)
+        return list(self.printed)
+
+    def refused(self, line):
+        """Answers the message of the error that `line` must be."""
+        before_us = self.world.clock.now_us
+        try:
+            self.do(line)
+        except ScriptError as error:
+            assert self.world.clock.now_us == before_us, "half of it was done"
+            return str(error)
+        raise AssertionError("%r was understood" % line)
+
+
+def test_the_script_of_the_readme():
+    session = Session()
+    session.do("wait 1000", "press START", "wait 5000")
+    assert session.do("lcd") == ["|S: 10.0 F: 10.00|", "|RUNNING      A1 |"]
+    running = session.do("drive 1")[0]
+    for field in ("address=1", "state=running", "hz=10.00", "stw=047F", "zsw=FB34"):
+        assert field in running.split(), running
+    session.do("press STOP", "wait 8000")
+    assert "state=ready" in session.do("drive 1")[0]
+    session.world.check()
+
+
+def test_blank_lines_and_comments_are_nothing():
+    session = Session()
+    assert session.do("", "   ", "# wait 1000", "\t# nothing", "wait 10 # a comment\n") == []
+    assert session.world.clock.now_us < 200_000
+
+
+def test_keys_are_tapped_held_and_let_go():
+    session = Session()
+    session.do("wait 1000", "press UP", "wait 60")
+    assert session.do("lcd")[0].startswith("|S: 10.1")
+    session.do("hold UP 850", "wait 60")
+    assert session.do("lcd")[0].startswith("|S: 10.6")
+    session.do("down UP", "wait 100", "up UP", "wait 60")
+    assert session.do("lcd")[0].startswith("|S: 10.7")
+
+
+def test_a_press_takes_100_ms():
+    session = Session()
+    session.do("wait 1000")
+    before_us = session.world.clock.now_us
+    session.do("press STOP")
+    assert 100_000 <= session.world.clock.now_us - before_us < 104_000
+
+
+def test_bus_shows_the_last_telegrams():
+    session = Session()
+    session.do("wait 1000")
+    shown = session.do("bus 4")
+    assert len(shown) == 4
+    instants = []
+    for line in shown:
+        instant, direction, *pairs = line.split()
+        instants.append(int(instant))
+        assert direction in "<>"
+        assert [len(pair) for pair in pairs] in ([2] * 16, [2] * len(pairs))
+        assert pairs[:3] == ["02", "0E", "01"]
+    assert instants == sorted(instants)
+    assert session.do("bus 0") == []
+
+
+def test_param_looks_into_the_drive_and_changes_it():
+    session = Session()
+    assert session.do("param 1 P0700[0]") == ["P0700[0]=5"]
+    assert session.do("param 1 P0700") == ["P0700[0]=5"]
+    assert session.do("param 1 P0700[0] 2") == ["P0700[0]=2"]
+    assert session.do("param 1 P1082 45.5") == ["P1082[0]=45.5"]
+    assert session.do("param 1 r0052")[0].startswith("P0052[0]=")
+
+
+def test_the_drive_can_trip_and_be_unplugged():
+    session = Session()
+    session.do("wait 1000", "fault 1 F0001", "wait 300", "expect FAULT")
+    assert "fault=F0001" in session.do("drive 1")[0]
+    session = Session(addresses=(1, 2))
+    session.do("wait 1000", "unplug 1", "wait 1500", "expect NO CONTACT", "plug 1", "wait 1000")
+    session.do("expect READY")
+
+
+def test_hang_and_reset():
+    session = Session()
+    session.do("wait 1000", "press START", "wait 3000", "hang 1000", "wait 12000")
+    session.do("expect PANEL HUNG", "reset", "wait 1500", "expect READY")
+    assert session.world.resets == 1
+
+
+def test_an_expectation_that_fails_shows_the_display():
+    session = Session()
+    session.do("wait 1000")
+    session.do("expect READY", "expect F:  0.00", "expect READY A1")
+    try:
+        session.do("# one", "expect RUNNING")
+    except ExpectationFailed as error:
+        text = str(error)
+        assert "test.txt:6:" in text and "RUNNING" in text
+        assert "|S: 10.0 F:  0.00|" in text and "|READY        A1 |" in text
+        return
+    raise AssertionError("the display shows READY")
+
+
+def test_what_cannot_be_understood_names_script_and_line_and_does_nothing():
+    session = Session()
+    for line, said in (
+        ("press", "use: press KEY"),
+        ("press STRAT", "no key STRAT"),
+        ("press start", "no key start"),
+        ("press START 100", "use: press KEY"),
+        ("hold UP", "use: hold KEY MS"),
+        ("wait", "use: wait MS"),
+        ("wait soon", "soon is no number of milliseconds"),
+        ("wait -5", "-5 is no number of milliseconds"),
+        ("drive", "use: drive A"),
+        ("drive 9", "no drive at address 9: there are 1"),
+        ("drive one", "no drive at address one"),
+        ("param 1", "use: param A P0700[0] [VALUE]"),
+        ("param 1 0700", "0700 is no parameter"),
+        ("param 1 P07x0", "P07x0 is no parameter"),
+        ("param 1 P0700[", "P0700[ is no parameter"),
+        ("param 1 P0700[]", "P0700[] is no parameter"),
+        ("param 1 P0700[0]x", "is no parameter"),
+        ("param 1 P0700[0] much", "much is no number"),
+        ("param 1 P9999", "9999"),
+        ("param 1 P0700[7]", "7"),
+        ("param 1 P0700 99", "99"),
+        ("param 1 P2000 nan", "nan is no number"),
+        ("fault 1 1", "1 is no fault"),
+        ("fault 1 Fx", "Fx is no fault"),
+        ("expect", "use: expect TEXT"),
+        ("bus", "use: bus N"),
+        ("bus all", "all is no number"),
+        ("jump", "unknown command jump"),
+        ("PRESS START", "unknown command PRESS"),
+    ):
+        message = session.refused(line)
+        assert message.startswith("test.txt:"), message
+        assert said in message, (line, message)
+
+
+def test_the_line_number_is_that_of_the_script():
+    session = Session()
+    try:
+        session.do("wait 1", "", "# three", "jump")
+    except ScriptError as error:
+        assert str(error).startswith("test.txt:4: ")
+        return
+    raise AssertionError("understood")
+
+
+def test_every_command_is_listed_once():
+    assert sorted(ORDER) == sorted(COMMANDS)
+    for name, (usage, _, _, _) in COMMANDS.items():
+        assert usage.split()[0] == name
