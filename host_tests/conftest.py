@@ -41,7 +41,10 @@ def pytest_report_header(config):
 
 
 def pytest_pycollect_makemodule(module_path, parent):
-    tree = ast.parse(module_path.read_bytes(), filename=str(module_path))
+    try:
+        tree = ast.parse(module_path.read_bytes(), filename=str(module_path))
+    except SyntaxError:
+        return None  # pytest shows it best
     names = interpreters(tree)
     if names == ["host"]:
         return None  # an ordinary pytest file
@@ -193,8 +196,9 @@ class Failure:
     def __init__(self, text):
         self.text = text.strip("\n")
         *_, line_before, last_line = ["", *self.text.splitlines()]
-        failed_assert = last_line.startswith("AssertionError")  # then the line of source says more
-        self.reprcrash = SimpleNamespace(message=(line_before if failed_assert else last_line).strip())
+        if last_line.startswith("AssertionError"):  # the source, which stands before it, says more
+            last_line = line_before
+        self.reprcrash = SimpleNamespace(message=last_line.strip())
 
     def toterminal(self, writer):
         for line in self.text.splitlines():

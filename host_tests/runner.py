@@ -81,7 +81,7 @@ def search_path():
 
 
 def prove(tier):
-    """Returns a line about the interpreter; ends the process when it is not what `tier` promises."""
+    """Returns a line about the interpreter; ends the process when it is not as promised."""
     found = (sys.implementation.name, small_integer_bits(), hasattr(sys, "settrace"))
     if found != PROMISES[tier]:
         print("this is not %s: %r wanted, %r found" % (tier, PROMISES[tier], found))

@@ -430,6 +430,10 @@ def test_a_driver_that_stays_on_is_found_when_somebody_looks():
     clock.advance(1000)
     wire.drive(panel, False)
     assert wire.violation_count == 1  # the same breach is noted once
+    wire.drive(panel, True)
+    clock.advance(574)
+    wire.drive(panel, False)
+    assert wire.violation_count == 2
 
 
 def test_a_driver_that_is_on_garbles_what_others_send():

@@ -74,10 +74,10 @@ class Rs485Link:
             return 0
         room = len(buffer) - at
         if at == 0:
-            count = self._uart.readinto(buffer, min(count, room))
+            count = self._uart.readinto(buffer, min(count, room)) or 0
         else:
             scratch = self._scratch
-            count = self._uart.readinto(scratch, min(count, room, len(scratch)))
+            count = self._uart.readinto(scratch, min(count, room, len(scratch))) or 0
             for index in range(count):
                 buffer[at + index] = scratch[index]
         if self._burst_ended:

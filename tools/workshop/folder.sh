@@ -1,4 +1,5 @@
-# build/, the one folder that the workshop fills. To be sourced, with $top set to the top of the tree.
+# build/, the one folder that the workshop fills. To be sourced, with $top set to the top of the
+# tree.
 #
 # Each subfolder of build/ is made aside and then renamed, so that it is either absent or whole,
 # and under a lock, so that two runs at once do not disturb each other. Deleting build/, or any

@@ -61,7 +61,8 @@ no_micropython() {
     say "  - install it:  apt-get install micropython   (Debian 13, Ubuntu 25.10, or newer),"
     say "    or from wherever your system has it, so that 'micropython' is on the PATH;"
     say "  - on Debian or Ubuntu, see that 'apt-get update' reaches its mirror, and run $1 again;"
-    say "  - where that has no packages for this machine:  apt-get install gcc libc6-dev make python3"
+    say "  - where that has no package for this machine, have it built:"
+    say "    apt-get install gcc libc6-dev make python3"
 }
 
 # ---- what is installed ----------------------------------------------------------------------
@@ -224,5 +225,6 @@ make_port() {
             flags+=' -DMICROPY_BYTES_PER_GC_BLOCK=64'
             ;;
     esac
-    GIT_CEILING_DIRECTORIES=$build make -C "$2" -j"$(nproc)" "BUILD=build-$name" "CFLAGS_EXTRA=$flags" "${settings[@]}"
+    GIT_CEILING_DIRECTORIES=$build make -C "$2" -j"$(nproc)" \
+        "BUILD=build-$name" "CFLAGS_EXTRA=$flags" "${settings[@]}"
 }

@@ -4,10 +4,12 @@
 # lists and caches in a folder of our own. The apt configuration and lists of the machine stay as
 # they are. Only the address of the mirror, and a proxy if there is one, are taken from them.
 
+os_release=/etc/os-release
+
 # The distribution in one word: debian, ubuntu (derivatives count as what they derive from) or "".
 distribution() (
     ID='' ID_LIKE=''
-    [[ -r /etc/os-release ]] && . /etc/os-release
+    [[ -r $os_release ]] && . "$os_release"
     case " $ID $ID_LIKE " in
         *' ubuntu '*) echo ubuntu ;;
         *' debian '*) echo debian ;;
@@ -16,7 +18,7 @@ distribution() (
 
 # The code name of the release that the machine runs, in the words of that distribution.
 release() (
-    . /etc/os-release
+    . "$os_release"
     if [[ $(distribution) == ubuntu ]]; then
         echo "${UBUNTU_CODENAME:-${VERSION_CODENAME:-}}"
     else

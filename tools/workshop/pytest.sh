@@ -39,7 +39,8 @@ make_environment() {
 }
 
 install_requirements() {
-    PYTHONPATH=$1/pip "$1/bin/python" -m pip install --disable-pip-version-check -r "$requirements"
+    PYTHONPATH=$1/pip "$1/bin/python" -m pip install \
+        --disable-pip-version-check -r "$requirements"
 }
 
 unpack_pip() {
@@ -61,6 +62,6 @@ no_pytest() {
         say "$1: wants Python 3.11 or newer as python3:  apt-get install python3 python3-venv"
     else
         say "$1: pytest could not be installed (see above)."
-        say "  It is fetched with pip:  apt-get install python3-venv ca-certificates, and a network"
+        say "  It comes over the network with pip:  apt-get install python3-venv ca-certificates"
     fi
 }

@@ -1,0 +1,90 @@
+"""The firmware's first file: finds the board, honours the escape key, stops the drives at the end."""
+
+import sys
+
+import main
+from boards.sim.world import World
+
+
+class Switch:
+    """A virtual board that main() finds as the module `board`, and how its loop ends."""
+
+    def __init__(self, held=None, ends_after_ms=3000, error=KeyboardInterrupt):
+        self.started = []
+        self.world = World(self.keep)
+        self.board = self.started.pop()
+        if held:
+            self.world.down(held)
+        self.board.idle = self.idle
+        self.end_us = self.world.clock.now_us + ends_after_ms * 1000
+        self.error = error
+
+    def keep(self, board):
+        self.started.append(board)
+        return self
+
+    def idle(self):
+        self.world.clock.advance(2000)
+        if self.error and self.world.clock.now_us >= self.end_us:
+            error, self.error = self.error, None
+            raise error
+
+    def power_on(self):
+        """Run main() to its end; answer the error that ended it, or None."""
+        sys.modules["board"] = self.board
+        try:
+            main.main()
+        except (KeyboardInterrupt, ValueError) as error:
+            return error
+        finally:
+            del sys.modules["board"]
+        return None
+
+
+def test_the_panel_runs_until_ctrl_c_and_then_everything_is_quiet():
+    switch = Switch()
+    assert isinstance(switch.power_on(), KeyboardInterrupt)
+    switch.world.clock.advance(200_000)
+    sent = switch.world.wire.log.count
+    switch.world.clock.advance(1_000_000)
+    assert sent > 100 and switch.world.wire.log.count == sent
+    switch.world.check()
+
+
+def test_a_second_ctrl_c_while_the_drives_are_stopped_leaves_no_interrupt_either():
+    switch = Switch()
+    again = switch.idle
+
+    def impatient():
+        again()
+        if switch.error is None:
+            raise KeyboardInterrupt
+
+    switch.board.idle = impatient
+    assert isinstance(switch.power_on(), KeyboardInterrupt)
+    sent = switch.world.wire.log.count
+    switch.world.clock.advance(1_000_000)
+    assert switch.world.wire.log.count <= sent + 1  # the drive may still answer
+
+
+def test_down_held_at_power_on_leaves_the_chip_at_the_prompt():
+    switch = Switch(held="DOWN")
+    assert switch.power_on() is None
+    switch.world.clock.advance(2_000_000)
+    assert switch.world.wire.log.count == 0
+
+
+def test_another_key_held_at_power_on_does_not():
+    switch = Switch(held="START")
+    assert isinstance(switch.power_on(), KeyboardInterrupt)
+    assert switch.world.wire.log.count > 0
+
+
+def test_a_board_without_the_escape_key_has_no_escape():
+    class Keypad:
+        names = ("START", "STOP")
+
+        def read(self):
+            return 3
+
+    assert main.escape_wanted(Keypad()) is False

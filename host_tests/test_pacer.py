@@ -1,0 +1,184 @@
+"""The pacer: whoever calls, the engine is entered once at a time and never left asleep."""
+
+import main
+from boards.sim.world import World
+from hal.pacer import OVERDUE_US, ROUNDS_MAX, Pacer
+from uss.master import SENDING
+
+
+class Clock:
+    ticks_mask = (1 << 30) - 1
+
+    def __init__(self):
+        self.now = 0
+
+    def ticks_us(self):
+        return self.now & self.ticks_mask
+
+
+class Timer:
+    ONE_SHOT = 0
+
+    def __init__(self):
+        self.period = None
+
+    def init(self, mode, period, tick_hz, callback):
+        assert mode == self.ONE_SHOT and tick_hz == 1_000_000
+        self.period = period
+        self.callback = callback
+
+    def deinit(self):
+        self.period = None
+
+
+class Link:
+    interrupts = True
+    on_activity = None
+    closed = False
+
+    def close(self):
+        self.closed = True
+
+
+class Engine:
+    """Asks to be called again after 700 us; does what the test wants meanwhile."""
+
+    def __init__(self):
+        self.entries = 0
+        self.inside = 0
+        self.recovered = 0
+        self.meanwhile = None
+
+    def poll(self, now):
+        self.entries += 1
+        self.inside += 1
+        assert self.inside == 1, "entered twice at once"
+        if self.meanwhile:
+            self.meanwhile()
+        self.inside -= 1
+        return 700
+
+    def recover(self):
+        self.inside = 0
+        self.recovered += 1
+
+
+class Bench:
+    def __init__(self, timer=True):
+        self.clock, self.engine, self.link = Clock(), Engine(), Link()
+        self.timer = Timer() if timer else None
+        self.pacer = Pacer(
+            self.engine, self.link, self.clock, self.timer, lambda: 0, lambda state: None
+        )
+        self.pacer.start()
+
+
+def test_the_timer_is_set_to_what_the_engine_asks():
+    bench = Bench()
+    assert bench.engine.entries == 1 and bench.timer.period == 700
+    bench.timer.callback(bench.timer)
+    assert bench.engine.entries == 2
+
+
+def test_activity_on_the_link_enters_the_engine():
+    bench = Bench()
+    bench.link.on_activity()
+    assert bench.engine.entries == 2
+
+
+def test_an_interrupt_inside_the_engine_has_it_entered_once_more():
+    bench = Bench()
+    calls = [2]
+
+    def interrupted():
+        if calls[0]:
+            calls[0] -= 1
+            bench.pacer.run()
+
+    bench.engine.meanwhile = interrupted
+    bench.pacer.run()
+    assert bench.engine.entries == 1 + 3
+
+
+def test_interrupts_without_end_do_not_keep_the_loop_out():
+    bench = Bench()
+    bench.engine.meanwhile = bench.pacer.run
+    bench.pacer.run()
+    assert bench.engine.entries == 1 + ROUNDS_MAX
+    assert bench.timer.period == 700
+
+
+def test_an_exception_is_kept_in_and_the_engine_begins_anew():
+    bench = Bench()
+
+    def fail():
+        raise ValueError("on purpose")
+
+    bench.engine.meanwhile = fail
+    bench.pacer.run()
+    assert bench.engine.recovered == 1
+    assert str(bench.pacer.failure) == "on purpose"
+    bench.engine.meanwhile = None
+    bench.timer.callback(bench.timer)
+    assert bench.engine.entries == 3
+
+
+def test_a_timer_that_never_comes_is_noticed_by_the_main_loop():
+    bench = Bench()
+    bench.clock.now += 700 + OVERDUE_US - 1
+    bench.pacer.tend()
+    assert bench.engine.entries == 1
+    bench.clock.now += 2
+    bench.pacer.tend()
+    assert bench.engine.entries == 2
+
+
+def test_without_a_timer_every_turn_of_the_main_loop_enters_the_engine():
+    bench = Bench(timer=False)
+    for _ in range(5):
+        bench.pacer.tend()
+    assert bench.engine.entries == 6
+
+
+def test_after_stop_nothing_enters_the_engine_and_the_link_is_closed():
+    bench = Bench()
+    callback, timer = bench.timer.callback, bench.timer
+    bench.pacer.stop()
+    callback(timer)
+    bench.pacer.tend()
+    bench.pacer.run()
+    assert bench.engine.entries == 1 and bench.link.closed
+    assert bench.timer.period is None and bench.link.on_activity is None
+
+
+def test_a_panel_whose_port_has_neither_interrupt_nor_timer_works():
+    def start(board):
+        board.timer = None
+        return main.start(board)
+
+    world = World(start, polled=True)
+    world.run(1000)
+    world.press("START")
+    world.run(4000)
+    assert world.lcd() == ("S: 10.0 F: 10.00", "RUNNING      A1 ")
+    world.press("STOP")
+    world.run(8000)
+    assert world.drives[1].hz() == 0
+    world.check()
+
+
+def test_a_lost_timer_interrupt_delays_the_bus_and_stops_nothing():
+    """As when MicroPython's queue of soft callbacks overflows."""
+    world = World(main.start)
+    world.run(1000)
+    world.press("START")
+    world.run(3000)
+    bus = world.app.bus
+    for _ in range(20):
+        while bus.phase == SENDING:
+            world.run(2)
+        world.app.board.timer.deinit()
+        world.run(150)
+    world.run(500)
+    assert world.lcd()[1] == "RUNNING      A1 " and world.app.bus.failures == 0
+    world.check()

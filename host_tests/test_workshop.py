@@ -1,0 +1,328 @@
+"""The workshop itself: how tests are collected and judged, and how MicroPython is obtained.
+
+What it does when all is well, every run of the tests shows; here stands what goes wrong.
+"""
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import line_coverage
+import pytest
+import tiers
+
+INTERPRETERS = "host"
+
+TOOLS = tiers.TOP / "tools"
+HOST_TESTS = tiers.TOP / "host_tests"
+
+
+# ---- collecting and judging -----------------------------------------------------------------
+
+
+@pytest.fixture
+def run_pytest(tmp_path):
+    """Writes a test file and runs pytest on it, in a process of its own, as tools/test does."""
+
+    def run(source, *arguments, **environment):
+        (tmp_path / "test_it.py").write_text(source)
+        inherited = {k: v for k, v in os.environ.items() if k not in ("CI", "USS_STRICT")}
+        return subprocess.run(
+            [sys.executable, "-B", "-m", "pytest", "-c", HOST_TESTS / "pytest.ini"]
+            + ["--rootdir", tmp_path, "-p", "no:cacheprovider", "-p", "conftest", *arguments],
+            cwd=tmp_path,
+            env={**inherited, "PYTHONPATH": f"{HOST_TESTS}:{tmp_path}", **environment},
+            capture_output=True,
+            text=True,
+            timeout=60,
+        )
+
+    return run
+
+
+def here(*names):
+    """The INTERPRETERS line for those of the tiers that this machine has."""
+    versions = tiers.survey().versions
+    return f'INTERPRETERS = "{" ".join(name for name in names if name in versions)}"\n'
+
+
+def test_each_function_is_an_item_under_each_interpreter(run_pytest):
+    run = run_pytest("def test_one(): pass\ndef test_two(): pass\n", "--collect-only", "-q")
+    expected = [
+        f"test_it.py::{tier}::{function}"
+        for tier in tiers.TIERS
+        if tier in tiers.survey().versions
+        for function in ("test_one", "test_two")
+    ]
+    assert run.stdout.splitlines()[: len(expected)] == expected
+
+
+def test_a_failure_shows_the_source_line_and_what_was_printed(run_pytest):
+    source = here("unix64", "cpython") + (
+        "def test_good(): print('not of interest')\n"
+        "def test_bad():\n"
+        "    print('seen', 3)\n"
+        "    assert 3 == 4\n"
+    )
+    run = run_pytest(source)
+    tried = source.splitlines()[0].count("unix64") + 1
+    assert run.returncode == 1
+    assert run.stdout.count("    assert 3 == 4\n") == tried
+    assert run.stdout.count("seen 3\n") == tried
+    assert "not of interest" not in run.stdout
+    assert "FAILED test_it.py::cpython::test_bad - assert 3 == 4" in run.stdout
+    assert f"{tried} failed, {tried} passed" in run.stdout.splitlines()[-1]
+
+
+def test_a_crash_fails_its_function_and_the_others_still_run(run_pytest):
+    run = run_pytest(
+        here("unix64", "unix32", "cpython") + "import os\n"
+        "def test_before(): pass\n"
+        "def test_crash():\n"
+        "    print('last words')\n"
+        "    os.system('kill -SEGV $PPID')\n"
+        "def test_after(): pass\n"
+    )
+    assert run.stdout.count("In this function the interpreter died of SIGSEGV.") >= 1
+    assert "last words" in run.stdout
+    assert "test_after" not in run.stdout, run.stdout
+    counts = run.stdout.splitlines()[-1].split()
+    assert int(counts[3]) == 2 * int(counts[1])  # "= 3 failed, 6 passed in ..."
+
+
+def test_a_hang_is_ended_and_the_others_still_run(run_pytest):
+    run = run_pytest(
+        here("unix64") + "def test_before(): pass\n"
+        "def test_hang():\n"
+        "    while True: pass\n"
+        "def test_after(): pass\n",
+        *("-o", "function_timeout_s=1"),
+    )
+    if "unix64" in tiers.survey().versions:
+        assert "In this function the interpreter hung and was killed after 1 s." in run.stdout
+        assert "1 failed, 2 passed" in run.stdout.splitlines()[-1]
+
+
+def test_a_file_that_cannot_be_imported_fails_all_its_functions(run_pytest):
+    run = run_pytest(here("cpython") + "import nothing_of_that_name\ndef test_a(): pass\n")
+    assert "No module named 'nothing_of_that_name'" in run.stdout
+    assert "1 failed" in run.stdout.splitlines()[-1]
+
+
+def test_a_death_after_the_last_function_is_noticed(run_pytest):
+    run = run_pytest(here("cpython") + "import atexit, os\natexit.register(os._exit, 5)\ndef test_a(): pass\n")
+    assert "After this function the interpreter ended with status 5." in run.stdout
+
+
+def test_sys_exit_in_a_test_is_a_failure(run_pytest):
+    run = run_pytest(here("unix64", "cpython") + "import sys\ndef test_a(): sys.exit(0)\n")
+    assert run.returncode == 1 and "SystemExit" in run.stdout
+
+
+def test_what_would_silently_not_run_is_refused(run_pytest):
+    for source, message in (
+        ("def test_a(): pass\ndef test_a(): pass\n", "there are two functions test_a"),
+        ("def test_a(tmp_path): pass\n", "test_a is not a plain function"),
+        ("async def test_a(): pass\n", "test_a is not a plain function"),
+        ("INTERPRETERS = 'unix16'\ndef test_a(): pass\n", "'unix16', which is not a tier"),
+    ):
+        run = run_pytest(source)
+        assert run.returncode == 2 and message in run.stdout, run.stdout
+
+
+def test_a_missing_tier_is_named_and_under_ci_it_is_a_failure(run_pytest, tmp_path):
+    (tmp_path / "without_coverage.py").write_text(
+        "from tiers import TIERS\n"
+        "TIERS['coverage'] = TIERS['coverage']._replace(command=('/no/such/program',))\n"
+    )
+    source = here("cpython") + "def test_a(): pass\n"
+    relaxed = run_pytest(source, "-p", "without_coverage")
+    assert relaxed.returncode == 0
+    assert "Not run: tier coverage (there is no /no/such/program)" in relaxed.stdout
+    assert "apt-get install gcc" in relaxed.stdout
+    for environment in ({"CI": "true"}, {"USS_STRICT": "1"}):
+        strict = run_pytest(source, "-p", "without_coverage", "-k", "test_a", **environment)
+        assert strict.returncode == 1 and "FAILED" in strict.stdout
+
+
+def test_an_interpreter_that_is_not_what_it_should_be_is_refused():
+    run = subprocess.run(
+        [sys.executable, "-B", "host_tests/runner.py", "unix32"],
+        cwd=tiers.TOP,
+        capture_output=True,
+        text=True,
+    )
+    assert run.returncode == 1 and run.stdout.startswith("this is not unix32")
+
+
+# ---- line coverage --------------------------------------------------------------------------
+
+
+def test_only_statements_that_leave_code_count():
+    assert line_coverage.statements(
+        '"""Text."""\n'
+        "TABLE = (\n"  # 2
+        "    1,\n"
+        ")\n"
+        "@decorated\n"  # 5
+        "def function(a,\n"
+        "             b):\n"
+        '    """Text."""\n'
+        "    global c\n"
+        "    if a:\n"  # 10
+        "        pass\n"
+        "    while True:\n"
+        "        return b\n"  # 13
+    ) == {2: 4, 5: 7, 10: 10, 13: 13}
+
+
+def test_the_table_rounds_down_and_joins_neighbours(tmp_path):
+    (tmp_path / "firmware").mkdir()
+    (tmp_path / "firmware" / "a.py").write_text("a = 1\nb = 2\n\nc = 3\nd = 4\ne = 5\nf = 6\n")
+    coverage = line_coverage.LineCoverage(tmp_path)
+    coverage.note("firmware/a.py", [1, 5])
+    _, row, total = coverage.report()
+    assert row.split(maxsplit=5) == ["firmware/a.py", "6", "2", "33", "%", "2-4, 6-7"]
+    assert total.split() == ["total", "6", "2", "33", "%"]
+
+
+# ---- obtaining MicroPython ------------------------------------------------------------------
+
+# Stands in for MicroPython: answers the question for its version, and otherwise shows how it was
+# called.
+STAND_IN = """#!/bin/sh
+case "$*" in
+    *sys.implementation*) echo "micropython {new_enough}" ;;
+    *) printf '%s\\n' "$MICROPYPATH" "$@"; cat; exit 7 ;;
+esac
+"""
+
+NEEDED = "bash env readlink mkdir rm mv ln cat sed awk grep tail timeout flock sleep".split()
+
+
+class Machine:
+    """A copy of the tools in a folder with a blank in its name, and the few programs it may use."""
+
+    def __init__(self, folder):
+        self.top = folder / "a tree"
+        self.programs = folder / "bin"
+        self.programs.mkdir()
+        shutil.copytree(TOOLS, self.top / "tools")
+        for name in NEEDED:
+            if path := shutil.which(name):
+                (self.programs / name).symlink_to(path)
+
+    def install(self, name, text):
+        (self.programs / name).write_text(text)
+        (self.programs / name).chmod(0o755)
+
+    def run(self, *command, **options):
+        return subprocess.run(
+            command, env={"PATH": str(self.programs)}, capture_output=True, text=True, **options
+        )
+
+    def panel(self, *arguments):
+        return self.run(self.top / "tools" / "panel", *arguments, input="standard input", cwd="/")
+
+    def shell(self, commands):
+        files = ("folder", "packages", "micropython")
+        sourced = " ".join(f'. "$top/tools/workshop/{file}.sh";' for file in files)
+        return self.run("bash", "-c", f'set -euo pipefail; top=$0; {sourced} {commands}', self.top)
+
+
+@pytest.fixture
+def machine(tmp_path):
+    return Machine(tmp_path)
+
+
+def test_an_installed_micropython_gets_all_arguments_and_the_paths(machine):
+    machine.install("micropython", STAND_IN.format(new_enough=True))
+    run = machine.panel("--script", "a file")
+    top = machine.top
+    assert run.returncode == 7
+    assert run.stdout.splitlines() == (
+        [f"{top}:{top}/firmware:.frozen", "-X", "heapsize=16M", f"{top}/tools/virtual_panel.py"]
+        + ["--script", "a file", "standard input"]
+    )
+    assert "using" in run.stderr
+    assert machine.panel().stderr == ""  # it remembers
+
+
+def test_without_any_micropython_it_says_what_to_install(machine):
+    machine.install("micropython", STAND_IN.format(new_enough=False))
+    run = machine.panel()
+    assert run.returncode == 3 and run.stdout == ""
+    assert "is not MicroPython 1.25 or newer, passed over" in run.stderr
+    assert "apt-get install micropython" in run.stderr
+    assert sorted(os.listdir(machine.top / "build")) == ["lock"]
+
+
+def test_what_is_remembered_is_looked_for_again_when_it_is_gone(machine):
+    machine.install("micropython", STAND_IN.format(new_enough=True))
+    machine.panel()
+    (machine.programs / "micropython").rename(machine.programs / "elsewhere")
+    assert machine.panel().returncode == 3
+    (machine.programs / "elsewhere").rename(machine.programs / "micropython")
+    assert machine.panel().returncode == 7
+
+
+@pytest.mark.parametrize(
+    "program",
+    ["#!/bin/sh\nexit 0\n", "#!/bin/sh\nexit 1\n", "#!/no/such/interpreter\n", "no program"],
+)
+def test_what_is_only_called_micropython_is_passed_over(machine, program):
+    machine.install("micropython", program)
+    assert machine.panel().returncode == 3
+
+
+def test_the_mirror_is_the_one_that_the_machine_takes_its_release_from(machine, tmp_path):
+    (tmp_path / "os-release").write_text("ID=debian\nVERSION_CODENAME=bookworm\n")
+    machine.install(
+        "apt-get",
+        "#!/bin/sh\n"
+        "echo bookworm main cdrom://disc/\n"
+        "echo bookworm main http://mirror/debian\n"
+        "echo bookworm contrib http://mirror/other\n"
+        "echo bookworm-security main http://mirror/security\n"
+        "echo bookworm main http://mirror/debian\n",
+    )
+    run = machine.shell(f'os_release="{tmp_path}/os-release"; mirrors; releases')
+    assert run.stdout.splitlines() == ["http://mirror/debian", "trixie", "bookworm"]
+
+
+@pytest.mark.parametrize(
+    "system, expected",
+    [
+        ("ID=debian\nVERSION_CODENAME=trixie\n", "debian trixie"),
+        ("ID=ubuntu\nID_LIKE=debian\nVERSION_CODENAME=noble\n", "ubuntu noble questing resolute"),
+        (
+            'ID=linuxmint\nID_LIKE="ubuntu debian"\nVERSION_CODENAME=x\nUBUNTU_CODENAME=noble\n',
+            "ubuntu noble questing resolute",
+        ),
+        ("ID=fedora\n", ""),
+    ],
+)
+def test_the_releases_to_look_into(machine, tmp_path, system, expected):
+    (tmp_path / "os-release").write_text(system)
+    run = machine.shell(f'os_release="{tmp_path}/os-release"; distribution; releases')
+    assert run.stdout.split() == expected.split()
+
+
+def test_a_folder_of_build_is_made_once_however_many_want_it(machine):
+    commands = (
+        "there() { [[ -e $1/it ]]; }; make() { echo made; sleep 0.2; : >\"$1/it\"; };"
+        "fill thing there make & fill thing there make & wait; fill thing there make"
+    )
+    assert machine.shell(commands).stdout == "made\n"
+    assert sorted(os.listdir(machine.top / "build")) == ["lock", "thing"]
+
+
+def test_what_could_not_be_made_leaves_nothing_behind(machine):
+    commands = (
+        "there() { [[ -e $1/it ]]; }; make() { : >\"$1/half\"; return 1; };"
+        "fill thing there make || echo failed"
+    )
+    assert machine.shell(commands).stdout == "failed\n"
+    assert os.listdir(machine.top / "build") == ["lock"]
