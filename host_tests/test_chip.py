@@ -1,7 +1,5 @@
 """Data sheet of the simulated chip: UART, pin, timer, watchdog and interrupts as on the RP2040."""
 
-import sys
-
 from boards.sim.chip import UART, WDT, Chip, Pin, Timer, heap_lock, heap_unlock
 from boards.sim.clock import Clock, Event
 from boards.sim.wire import Transceiver, Wire
@@ -464,28 +462,6 @@ def test_the_first_16_exceptions_are_remembered():
         timer.init(mode=Timer.ONE_SHOT, period=1, callback=fail)
         board.clock.advance(1000)
     assert len(board.chip.handler_errors) == 16
-
-
-def test_a_hard_handler_cannot_take_heap():
-    if sys.implementation.name != "micropython":
-        return
-    board = Board()
-
-    def greedy(source):
-        board.interrupts.append([board.clock.now_us])
-
-    timer = Timer(board.chip)
-    timer.init(mode=Timer.ONE_SHOT, period=1, callback=greedy, hard=False)
-    board.clock.advance(2000)
-    assert board.interrupts == [[1000]] and board.chip.handler_errors == []
-    timer.init(mode=Timer.ONE_SHOT, period=1, callback=greedy, hard=True)
-    board.clock.advance(2000)
-    board.uart.irq(greedy, UART.IRQ_RXIDLE, hard=True)
-    board.reply()
-    board.clock.advance(20_000)
-    assert len(board.interrupts) == 1
-    assert [type(error) for error in board.chip.handler_errors] == [MemoryError, MemoryError]
-    board.interrupts.append([0])  # the heap is open again
 
 
 def test_interrupts_wait_while_disabled_and_come_in_the_order_they_happened():

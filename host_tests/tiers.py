@@ -1,7 +1,7 @@
 """The tiers: the interpreters that every test file runs on, and the processes that run it there.
 
 A tier is one interpreter; runner.py is what runs inside it. `survey` asks each tier for its
-version, `run_file` runs functions of one file on one tier and publishes a verdict for each, also
+version; a FileRun runs functions of one file on one tier and publishes a verdict for each, also
 when the process crashes or hangs in the middle: then the function at fault fails, and the ones
 after it run in a new process. This module knows nothing of pytest; conftest.py uses it.
 """
@@ -21,6 +21,9 @@ from runner import MARK
 TOP = Path(__file__).resolve().parent.parent
 RUNNER = "host_tests/runner.py"
 SURVEY_TIMEOUT_S = 20
+# A copy: pytest changes the environment in one thread while processes start in others, and a new
+# process that is handed the living environment at that instant is not started (EFAULT).
+ENVIRONMENT = dict(os.environ)
 OUTPUT_LIMIT = 10_000_000  # characters that one function may print
 REPORT = re.compile(rf"{MARK}(\w+) ?(.*)\n")
 
@@ -37,7 +40,7 @@ CPYTHON_OPTIONS = ("-I", "-u", "-B", "-X", "utf8", "-X", "no_debug_ranges")
 
 
 def _micropython(name: str) -> tuple[str, ...]:
-    return (f"{TOP}/build/{name}/micropython", "-X", "heapsize=64M")
+    return (f"{TOP}/build/{name}/micropython", "-X", "heapsize=32M")
 
 
 TIERS = {
@@ -121,6 +124,8 @@ class FileRun:
         name = verdict = None
         output, began = "", 0.0
         self.process = _start([*self.command, *self.left])
+        if self.stopped:  # while it was being started
+            self.process.kill()
         for text, word, argument in _reports(self.process, self.timeout_s):
             if word == "began":
                 if verdict:
@@ -166,6 +171,7 @@ def _start(command):
     return subprocess.Popen(
         command,
         cwd=TOP,
+        env=ENVIRONMENT,
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
