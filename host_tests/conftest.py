@@ -11,6 +11,7 @@ ids and the summary work as ever. A file that is not for every tier says so at m
 
 import ast
 import os
+import signal
 from collections import defaultdict
 from concurrent.futures import Future, ThreadPoolExecutor
 from types import SimpleNamespace
@@ -61,12 +62,33 @@ def pytest_collection_modifyitems(session, items):
 @pytest.hookimpl(wrapper=True)
 def pytest_runtestloop(session):
     pool = session.config.stash[POOL]
+    # Whoever ends pytest (a time limit, say) ends the interpreters with it, as Ctrl-C does.
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
     if not session.config.option.collectonly and not session.testsfailed:
         pool.start([item for item in session.items if isinstance(item, Function)])
     try:
         return (yield)
     finally:
         pool.stop()
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_call(item):
+    """An ordinary pytest test is given up after the same time; the pool sees to the others."""
+    if isinstance(item, Function):
+        return (yield)
+    timeout_s = item.config.stash[POOL].timeout_s
+
+    def give_up(*_):
+        raise TestFailed(f"The test hung and was given up after {timeout_s:g} s.")
+
+    previous = signal.signal(signal.SIGALRM, give_up)
+    signal.setitimer(signal.ITIMER_REAL, timeout_s)
+    try:
+        return (yield)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, previous)
 
 
 @pytest.hookimpl(wrapper=True)
@@ -187,7 +209,7 @@ class MissingTier(pytest.Item):
 
 
 class TestFailed(Exception):
-    """Carries the traceback of the other interpreter, or what became of it."""
+    """Carries the traceback of the other interpreter, or says what became of the test."""
 
 
 class Failure:

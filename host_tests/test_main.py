@@ -1,4 +1,4 @@
-"""The firmware's first file: finds the board, honours the escape key, stops the drives at the end."""
+"""The firmware's first file: finds the board, honours the escape key, stops the drives."""
 
 import sys
 

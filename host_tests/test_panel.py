@@ -397,6 +397,30 @@ def test_start_of_a_drive_whose_scaling_is_still_unknown_is_refused():
     refused(world, "NO: STILL CHECKS")
 
 
+def test_start_of_a_drive_that_keeps_its_scaling_to_itself_is_refused():
+    """It refuses to tell P2009: what a setpoint would mean is unknown."""
+    world = World(main.start)
+    parameters = world.drives[1]._parameters
+    parameters.rows = {row: parameters.rows[row] for row in parameters.rows if row != 2009}
+    world.run(2000)
+    assert row_2(world) == "CHECKING     A1"
+    refused(world, "NO: SCALING ???")
+
+
+def test_start_of_an_inhibited_drive_is_refused():
+    """OFF2 at the drive's own terminal, say: its inhibit stays while the cause does."""
+    world = panel()
+    world.drives[1]._process.zsw = lambda: 0xFB71
+    world.run(300)
+    assert row_2(world) == "INHIBITED    A1"
+    refused(world, "NO: INHIBITED")
+    world = panel()
+    world.drives[1]._process.zsw = lambda: 0xFB30
+    world.run(300)
+    assert row_2(world) == "NOT READY    A1"
+    refused(world, "NO: NOT READY")
+
+
 def test_what_is_changed_at_the_drive_is_noticed_and_used():
     """P2000 doubled behind the bus's back: 10 Hz are 10 Hz all the same."""
     world = panel()
@@ -432,6 +456,66 @@ def test_a_drive_that_does_not_start_is_not_left_waiting_with_on():
     world.drives[1].write(10, 0, 0)
     world.run(3000)
     assert starts(world) == 0
+    world.check()
+
+
+# --- other things the display says --------------------------------------------------------------
+
+
+def test_a_warning_of_the_drive_is_shown_while_it_runs():
+    world = running()
+    zsw = world.drives[1]._process.zsw
+    world.drives[1]._process.zsw = lambda: zsw() | 0x80
+    world.run(300)
+    assert row_2(world) == "RUNNING WARN A1"
+    world.check()
+
+
+def test_another_drive_that_was_lost_or_does_not_stop_is_announced():
+    world = running(addresses=(1, 12))
+    world.drives[1].unplug()
+    world.press("ADDRESS_UP")
+    seen = set()
+    for _ in range(60):
+        world.run(100)
+        seen.add(row_2(world))
+    assert "A1 LOST,MAY RUN" in seen and "READY        A12" in seen
+    world.press("ADDRESS_DOWN")
+    world.press("STOP")
+    world.press("ADDRESS_UP")
+    seen = set()
+    for _ in range(60):
+        world.run(100)
+        seen.add(row_2(world))
+    assert "A1 NOT STOPPED" in seen and "A1 LOST,MAY RUN" not in seen
+    world.check()
+
+
+def test_another_master_on_the_line_is_shown_and_not_fought():
+    class OtherMaster:
+        name = "other master"
+
+        def hear(self, burst):
+            pass
+
+    world = World(main.start)
+    other = OtherMaster()
+    world.wire.attach(other)
+    for _ in range(40):
+        world.wire.talk(other, b"\x02\x06\x05\x04\x7e\x00\x00\x7b", 8)
+        world.run(50)
+    assert row_2(world) == "LINE IN USE" and telegrams(world, 0) == []
+    world.run(1500)  # it falls silent
+    assert row_2(world) == "READY        A1"
+    world.check()
+
+
+def test_damaged_settings_are_said_and_the_defaults_used():
+    world = World(main.start, settings={"setpoint_centihertz": -1})
+    world.run(1000)
+    assert row_2(world) == "SETTINGS DAMAGED"
+    world.run(3000)
+    assert world.lcd() == ("S: 10.0 F:  0.00", "READY        A1 ")
     world.check()
 
 

@@ -105,6 +105,33 @@ def test_a_hang_is_ended_and_the_others_still_run(run_pytest):
         assert "1 failed, 2 passed" in run.stdout.splitlines()[-1]
 
 
+def test_what_ends_pytest_ends_the_interpreters(run_pytest, tmp_path):
+    # The test tells the number of its process, and then hangs; meanwhile pytest is ended.
+    source = here("cpython") + (
+        "import os\n"
+        "def test_hang():\n"
+        f"    open({str(tmp_path / 'number')!r}, 'w').write(str(os.getpid()))\n"
+        "    os.kill(os.getppid(), 15)\n"
+        "    while True: pass\n"
+    )
+    run = run_pytest(source)
+    assert run.returncode == 2 and "KeyboardInterrupt" in run.stdout
+    with pytest.raises(ProcessLookupError):
+        os.kill(int((tmp_path / "number").read_text()), 0)
+
+
+def test_an_ordinary_pytest_test_that_hangs_is_given_up(run_pytest):
+    run = run_pytest(
+        'INTERPRETERS = "host"\n'
+        "import os\n"
+        "def test_hang(): os.read(os.pipe()[0], 1)\n"
+        "def test_after(tmp_path): pass\n",
+        *("-o", "function_timeout_s=1"),
+    )
+    assert "The test hung and was given up after 1 s." in run.stdout
+    assert "1 failed, 1 passed" in run.stdout.splitlines()[-1]
+
+
 def test_a_file_that_cannot_be_imported_fails_all_its_functions(run_pytest):
     run = run_pytest(here("cpython") + "import nothing_of_that_name\ndef test_a(): pass\n")
     assert "No module named 'nothing_of_that_name'" in run.stdout
@@ -112,7 +139,8 @@ def test_a_file_that_cannot_be_imported_fails_all_its_functions(run_pytest):
 
 
 def test_a_death_after_the_last_function_is_noticed(run_pytest):
-    run = run_pytest(here("cpython") + "import atexit, os\natexit.register(os._exit, 5)\ndef test_a(): pass\n")
+    leave_badly = "import atexit, os\natexit.register(os._exit, 5)\n"
+    run = run_pytest(here("cpython") + leave_badly + "def test_a(): pass\n")
     assert "After this function the interpreter ended with status 5." in run.stdout
 
 
@@ -190,8 +218,7 @@ def test_the_table_rounds_down_and_joins_neighbours(tmp_path):
 
 # ---- obtaining MicroPython ------------------------------------------------------------------
 
-# Stands in for MicroPython: answers the question for its version, and otherwise shows how it was
-# called.
+# Stands in for MicroPython: tells its version when asked, and otherwise shows how it is called.
 STAND_IN = """#!/bin/sh
 case "$*" in
     *sys.implementation*) echo "micropython {new_enough}" ;;
@@ -203,7 +230,7 @@ NEEDED = "bash env readlink mkdir rm mv ln cat sed awk grep tail timeout flock s
 
 
 class Machine:
-    """A copy of the tools in a folder with a blank in its name, and the few programs it may use."""
+    """A copy of the tools, in a folder with a blank in its name, and the programs it may use."""
 
     def __init__(self, folder):
         self.top = folder / "a tree"
@@ -296,10 +323,10 @@ def test_the_mirror_is_the_one_that_the_machine_takes_its_release_from(machine, 
     "system, expected",
     [
         ("ID=debian\nVERSION_CODENAME=trixie\n", "debian trixie"),
-        ("ID=ubuntu\nID_LIKE=debian\nVERSION_CODENAME=noble\n", "ubuntu noble questing resolute"),
+        ("ID=ubuntu\nID_LIKE=debian\nVERSION_CODENAME=noble\n", "ubuntu noble resolute"),
         (
             'ID=linuxmint\nID_LIKE="ubuntu debian"\nVERSION_CODENAME=x\nUBUNTU_CODENAME=noble\n',
-            "ubuntu noble questing resolute",
+            "ubuntu noble resolute",
         ),
         ("ID=fedora\n", ""),
     ],

@@ -12,10 +12,15 @@ say() {
     printf '%s\n' "$*" >&2
 }
 
-# A flat copy of the end of a log, indented, for a message.
-say_end_of() {
-    [[ -s $1 ]] && tail -n "${2:-5}" "$1" | sed 's/^/    /' >&2
-    return 0
+# quietly LOG COMMAND...
+#   Runs the command with its output in LOG; when it fails, shows what it said last.
+quietly() {
+    local log=$1
+    shift
+    "$@" >"$log" 2>&1 && return
+    say "    that failed:"
+    tail -n 5 "$log" | sed 's/^/    /' >&2
+    return 1
 }
 
 # fill NAME IS_WHOLE MAKE...

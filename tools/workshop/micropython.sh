@@ -111,12 +111,7 @@ unpack_from_view() {
     local libraries
     libraries=$(packages_dependencies "$view" micropython)
     # shellcheck disable=SC2086  # one word a package
-    if ! packages_unpack "$view" "$folder" micropython $libraries; then
-        say "    the download failed:"
-        say_end_of "$view/log"
-        return 1
-    fi
-    write_starter "$folder"
+    packages_unpack "$view" "$folder" micropython $libraries && write_starter "$folder"
 }
 
 # Whether the view offers a MicroPython that is new enough; says which.
@@ -158,9 +153,7 @@ build_from_source() {
     for release in $(releases); do
         say "MicroPython $name: looking into the sources of $release"
         packages_open "$view" deb-src "$release"
-        unpack_source "$view" && run_make "$name" "$view" &&
-            mv "$view/source/ports/unix/build-$name/micropython" "$folder/micropython" &&
-            rm -rf "$view" && return
+        unpack_source "$view" && compile "$name" "$view" "$folder" && rm -rf "$view" && return
         rm -rf "$view"
     done
     return 1
@@ -181,10 +174,10 @@ word_size() {
 
 unpack_source() {
     local view=$1
-    offered "$view" || return
-    mkdir "$view/source" &&
-        (cd "$view" && apt_get "$view" source --download-only micropython) >"$view/log" 2>&1 &&
-        unpack_tar "$view"/micropython_*.orig.tar.xz "$view/source"
+    offered "$view" &&
+        packages_download "$view" source micropython &&
+        mkdir "$view/source" &&
+        unpack_tar "$view"/downloads/micropython_*.orig.tar.xz "$view/source"
 }
 
 # Python takes the compression off, since it is needed anyhow and xz may be missing.
@@ -195,14 +188,11 @@ shutil.copyfileobj(lzma.open(sys.argv[1]), sys.stdout.buffer)
 ' "$1" | tar -x -C "$2" --strip-components=1
 }
 
-run_make() {
-    local name=$1 view=$2
+compile() {
+    local name=$1 view=$2 folder=$3
     say "    compiling it"
-    if ! make_port "$name" "$view/source/ports/unix" >"$view/log" 2>&1; then
-        say "    that failed:"
-        say_end_of "$view/log"
-        return 1
-    fi
+    quietly "$view/log" make_port "$name" "$view/source/ports/unix" &&
+        mv "$view/source/ports/unix/build-$name/micropython" "$folder/micropython"
 }
 
 # Nothing is frozen in, so that no cross compiler has to be built first; and what the panel does

@@ -5,6 +5,7 @@
 # they are. Only the address of the mirror, and a proxy if there is one, are taken from them.
 
 os_release=/etc/os-release
+keyrings=/usr/share/keyrings
 
 # The distribution in one word: debian, ubuntu (derivatives count as what they derive from) or "".
 distribution() (
@@ -26,12 +27,12 @@ release() (
     fi
 )
 
-# The releases worth looking into, best first. Debian: the release that everything was tried with
-# comes first. Ubuntu: its own release first, so that nothing is mixed where nothing has to be.
+# The releases worth looking into, best first. Debian: the one that everything was tried with.
+# Ubuntu: the machine's own, and the first with long support that has MicroPython 1.25 or newer.
 releases() {
     case $(distribution) in
         debian) printf '%s\n' trixie "$(release)" ;;
-        ubuntu) printf '%s\n' "$(release)" questing resolute ;;
+        ubuntu) printf '%s\n' "$(release)" resolute ;;
     esac | awk 'NF && !seen[$0]++'
 }
 
@@ -48,7 +49,7 @@ mirrors() {
 # The sources of the private view: KIND is deb or deb-src.
 sources() {
     local kind=$1 release=$2 architecture=$3 options='' components=main keyring mirror
-    for keyring in "/usr/share/keyrings/$(distribution)-archive-keyring".{gpg,pgp}; do
+    for keyring in "$keyrings/$(distribution)-archive-keyring".{gpg,pgp}; do
         # Without the file, apt falls back on the keys that it trusts for everything.
         [[ -r $keyring ]] && options="signed-by=$keyring" && break
     done
@@ -90,6 +91,7 @@ Acquire::Retries "1";
 Acquire::http::Timeout "20";
 Acquire::https::Timeout "20";
 CONFIGURATION
+    [[ -s $folder/sources.list ]] || say "    apt on this machine names no mirror of its release"
     apt_get "$folder" update >"$folder/log" 2>&1 || true
 }
 
@@ -105,12 +107,22 @@ packages_version() {
     } 2>/dev/null | awk '$1 == "Version:" { print $2; exit }'
 }
 
+# packages_download FOLDER WHAT...: `download PACKAGE...` or `source PACKAGE`, as for apt-get.
+# The files land in FOLDER/downloads. A failure has been shown when this returns.
+packages_download() {
+    local folder=$1
+    mkdir -p "$folder/downloads" && quietly "$folder/log" download_into "$@"
+}
+
+download_into() (
+    cd "$1/downloads" && apt_get "$1" --download-only "${@:2}"
+)
+
 # packages_unpack FOLDER ROOT PACKAGE...: downloads the packages and unpacks them below ROOT.
 packages_unpack() {
     local folder=$1 root=$2 package
     shift 2
-    mkdir -p "$folder/downloads" "$root" &&
-        (cd "$folder/downloads" && apt_get "$folder" download "$@") >"$folder/log" 2>&1 || return
+    packages_download "$folder" download "$@" && mkdir -p "$root" || return
     for package in "$folder"/downloads/*.deb; do
         dpkg-deb -x "$package" "$root" || return
     done

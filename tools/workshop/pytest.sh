@@ -11,22 +11,18 @@ has_python() {
     python3 -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null
 }
 
-# The environment is whole when it was made for these requirements and its Python, which belongs
-# to the machine, is still the one that it was made with.
+# The environment is whole when it was made for these requirements and pytest is found in it; it is
+# not when the machine has got another Python since.
 has_pytest() {
     cmp -s "$requirements" "$1/requirements.txt" && "$1/bin/python" -c 'import pytest' 2>/dev/null
 }
 
 make_pytest() {
-    local folder=$1 log=$1/log
+    local folder=$1
     say "pytest: installing it into build/pytest"
     make_environment "$folder" &&
-        if ! install_requirements "$folder" >"$log" 2>&1; then
-            say "    that failed:"
-            say_end_of "$log"
-            return 1
-        fi
-    cp "$requirements" "$folder/requirements.txt"
+        quietly "$folder/log" install_requirements "$folder" &&
+        cp "$requirements" "$folder/requirements.txt"
 }
 
 # Debian leaves pip out of python3 (it comes with python3-venv). Then its package is unpacked, and
