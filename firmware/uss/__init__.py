@@ -7,7 +7,8 @@ Time and characters are arguments, so it runs anywhere and is tested to the micr
     receiver   bursts of a link -> the one telegram awaited
     pkw        parameter channel: tasks, replies, numbers, values, jobs
     pzd        process data: control and status words, scaling
-    drive      one slave: commands, images, jobs, counters
+    channel    the parameter channel of one drive: jobs wait, one task is on the line
+    drive      one slave: commands, process image, counters
     master     the bus: who talks when, supervision
     profiles   what differs between drive families: data
     survey     what must be known of a drive before it may be started

@@ -16,7 +16,7 @@ Not a clock and not a driver: the time is an argument, and the link is a duck ty
 from micropython import const
 
 from uss import telegram
-from uss.drive import NET_COUNT, Drive
+from uss.drive import Drive
 from uss.receiver import WAITING, Receiver
 from uss.timing import elapsed
 
@@ -53,7 +53,6 @@ class Master:
         self._mask = mask
         self._lost_us = lost_us
         self._receiver = Receiver(timing, mask)
-        self._residual_us = timing.residual_us(NET_COUNT)
         self._telegram = bytearray(telegram.SIZE_MAX)
         self._drive = None  # the one whose turn it is
         self._next = 0
@@ -79,6 +78,7 @@ class Master:
                 break
         else:
             drive = Drive(address, self._mask)
+            drive.residual_us = self.timing.residual_us(drive.net_count)
             self.drives.append(drive)
         self.list.append(drive)
         return drive
@@ -197,7 +197,7 @@ class Master:
         drive = self._drive
         drive.served = drive.urgent
         drive.fill(self._telegram, telegram.NET, now)
-        count = telegram.seal(self._telegram, drive.address, NET_COUNT)
+        count = telegram.seal(self._telegram, drive.address, drive.net_count)
         self.exchanges = (self.exchanges + 1) & 0xFFFF
         self.phase = SENDING
         self._link.send(self._telegram, count)
@@ -206,8 +206,9 @@ class Master:
         left_us = self._link.sending_us(now)
         if left_us > 0:
             return left_us
-        self._quiet_since = self._link.sent_at
-        self._receiver.open(self._drive.address, NET_COUNT, self._residual_us, self._link.sent_at)
+        drive, sent_at = self._drive, self._link.sent_at
+        self._quiet_since = sent_at
+        self._receiver.open(drive.address, drive.net_count, drive.residual_us, sent_at)
         self.phase = AWAITING
         return 0
 
