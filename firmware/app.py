@@ -19,7 +19,6 @@ from uss.master import CLOSED, Master
 from uss.survey import Survey
 from uss.timing import Timing, elapsed
 
-ENGINE_DEAD_MS = const(500)  # the engine works at least every 300 ms
 CLOSE_MS = const(1_000)  # for the drives to answer their OFF1, and a little for each of them
 CLOSE_PER_DRIVE_MS = const(100)
 
@@ -43,11 +42,11 @@ class App:
             controls.append(Control(drive, Survey(drive, mask), self.bus, mask, settings))
         self.panel = Panel(controls, self.bus, board.keypad.names, settings, mask)
         self._mask = mask
-        self._runs = 0  # pacer.runs as last seen, and when it moved
-        self._worked_at_ms = 0
+        self._progress = 0  # of the bus as last seen, and when it moved
+        self._progress_at_ms = 0
 
     def start(self):
-        self._worked_at_ms = self.board.clock.ticks_ms()
+        self._progress_at_ms = self.board.clock.ticks_ms()
         self.bus.refresh(self.board.clock.ticks_us())
         self.pacer.start()
 
@@ -67,7 +66,7 @@ class App:
     def close(self):
         """Stop every drive, wait for its answer as long as it may take, and leave no interrupt.
 
-        Whatever interrupts the waiting, the link is closed in the end.
+        A second Ctrl-C does not cut this short: it takes a second, and a motor may be turning.
         """
         try:
             self.bus.stop_all()
@@ -85,9 +84,12 @@ class App:
         while not condition():
             if elapsed(clock.ticks_ms(), began_ms, self._mask) > patience_ms:
                 return
-            self.pacer.tend()
-            self.board.watchdog.feed()
-            self.board.idle()
+            try:
+                self.pacer.tend()
+                self.board.watchdog.feed()
+                self.board.idle()
+            except KeyboardInterrupt:
+                pass
 
     def _all_stopped(self):
         """Whether every drive in contact has answered OFF1, and the others were sent it."""
@@ -100,8 +102,9 @@ class App:
         return self.bus.phase == CLOSED
 
     def _engine_works(self, now_ms):
-        if self.pacer.runs != self._runs:
-            self._runs = self.pacer.runs
-            self._worked_at_ms = now_ms
+        if self.bus.progress != self._progress:
+            self._progress = self.bus.progress
+            self._progress_at_ms = now_ms
             return True
-        return elapsed(now_ms, self._worked_at_ms, self._mask) < ENGINE_DEAD_MS
+        stands_ms = elapsed(now_ms, self._progress_at_ms, self._mask)
+        return stands_ms * 1000 < self.bus.patience_us

@@ -302,6 +302,56 @@ def test_a_loop_that_does_not_refresh_loses_every_drive_after_300_ms():
         assert pzd.ON not in bus.stws(drive.address, sent)
 
 
+def test_a_program_that_never_refreshes_gets_no_on():
+    bus = Bus()
+    bus.run(300_000, refresh=False)
+    bus.drives[0].start(0x1000)
+    bus.run(1_000_000, refresh=False)
+    assert len(bus.sent) > 20 and pzd.ON not in bus.stws(1)
+
+
+def test_every_stop_is_sent_even_when_a_start_follows_at_once():
+    bus = Bus((1, 2, 3))
+    bus.run(500_000)
+    drive = bus.drives[1]
+    drive.start(0x1000)
+    bus.run(200_000)
+    for _ in range(3):
+        sent = len(bus.sent)
+        drive.stop()
+        drive.start(0x1000)
+        bus.run(200_000)
+        stws = bus.stws(2, sent)
+        assert stws[0] == pzd.OFF1 and stws[1] == stws[-1] == pzd.ON
+
+
+def test_an_off_that_is_not_answered_is_repeated_every_second_telegram():
+    bus = Bus((1, 2, 3, 4, 5, 6, 7, 8))
+    bus.run(1_000_000)
+    bus.silent.add(5)
+    sent = len(bus.sent)
+    bus.drives[4].stop()
+    bus.run(800_000)
+    addresses = bus.addresses(sent)
+    after = addresses[addresses.index(5) :]
+    assert after[:20].count(5) >= 10
+    assert set(after[:20]) == {1, 2, 3, 4, 5, 6, 7, 8}  # the list goes on in between
+    assert after[21:].count(5) <= 2  # it does not take half of the line for ever
+    bus.silent.clear()
+    sent = len(bus.sent)
+    bus.run(500_000)
+    assert bus.addresses(sent).count(5) <= 4
+
+
+def test_an_inhibited_drive_is_not_left_with_on():
+    bus = Bus()
+    bus.run(300_000)
+    bus.zsw[1] = 0xFB71
+    bus.drives[0].start(0x1000)
+    bus.run(200_000)
+    assert bus.stws(1)[-1] == pzd.OFF1 and bus.drives[0].stopped_by_engine()
+
+
 def test_a_drive_that_stops_of_its_own_accord_is_not_started_again():
     bus = Bus()
     bus.run(300_000)
@@ -495,11 +545,36 @@ def test_after_an_exception_every_drive_is_off_and_the_bus_goes_on():
     bus.run(300_000)
     bus.drives[0].start(0x1000)
     bus.run(100_000)
-    bus.master.recover()
+    bus.master.recover(bus.now)
     sent = len(bus.sent)
     bus.run(500_000)
     assert bus.master.failures == 1
     assert len(bus.sent) > sent + 10 and pzd.ON not in bus.stws(1, sent)
+
+
+def test_after_an_exception_nothing_is_sent_into_the_reply_that_may_come():
+    bus = Bus()
+    bus.run(300_000)
+    sent = len(bus.sent)
+    while len(bus.sent) == sent:
+        bus.run(500)
+    bus.master.recover(bus.now)
+    failed = bus.now
+    bus.run(200_000)
+    first_us = bus.sent[sent + 1][0]
+    assert first_us - failed >= TIMING.reply_timeout_us + TIMING.telegram_us(12)
+
+
+def test_several_exceptions_in_a_row_and_nothing_is_known_of_the_drives():
+    bus = Bus()
+    bus.run(300_000)
+    for _ in range(3):
+        assert bus.drives[0].contact
+        bus.master.recover(bus.now)
+    assert not bus.drives[0].contact
+    progress = bus.master.progress
+    bus.run(500_000)
+    assert bus.drives[0].contact and bus.master.progress > progress
 
 
 def test_a_bad_reply_changes_nothing_in_the_image():

@@ -2,7 +2,7 @@
 
 import main
 from boards.sim.world import World
-from hal.pacer import OVERDUE_US, ROUNDS_MAX, Pacer
+from hal.pacer import OVERDUE_US, ROUNDS_MAX, WAKE_US, Pacer
 from uss.master import SENDING
 
 
@@ -58,7 +58,7 @@ class Engine:
         self.inside -= 1
         return 700
 
-    def recover(self):
+    def recover(self, now):
         self.inside = 0
         self.recovered += 1
 
@@ -105,6 +105,56 @@ def test_interrupts_without_end_do_not_keep_the_loop_out():
     bench.engine.meanwhile = bench.pacer.run
     bench.pacer.run()
     assert bench.engine.entries == 1 + ROUNDS_MAX
+    assert bench.timer.period == WAKE_US
+
+
+def test_a_timer_that_fires_while_it_is_set_does_not_leave_the_engine_asleep():
+    """In the last of several rounds the one-shot may be used up before anyone may enter."""
+    bench = Bench()
+    init, rounds = bench.timer.init, [ROUNDS_MAX]
+
+    def fire_at_once(mode, period, tick_hz, callback):
+        init(mode, period, tick_hz, callback)
+        if rounds[0]:
+            rounds[0] -= 1
+            bench.timer.period = None
+            callback(bench.timer)
+
+    bench.timer.init = fire_at_once
+    bench.pacer.run()
+    assert bench.timer.period is not None
+
+
+def test_ctrl_c_inside_the_engine_goes_on_its_way_and_the_engine_too():
+    bench = Bench(timer=False)
+
+    def interrupted():
+        bench.engine.meanwhile = None
+        raise KeyboardInterrupt
+
+    bench.engine.meanwhile = interrupted
+    try:
+        bench.pacer.tend()
+    except KeyboardInterrupt:
+        bench.pacer.tend()
+        assert bench.engine.entries == 3 and bench.engine.recovered == 1
+        return
+    raise AssertionError("Ctrl-C got lost")
+
+
+def test_a_timer_that_cannot_be_set_is_tried_again_by_the_main_loop():
+    bench = Bench()
+    init = bench.timer.init
+
+    def fail(mode, period, tick_hz, callback):
+        raise OSError("no alarm left")
+
+    bench.timer.init = fail
+    bench.pacer.run()
+    assert isinstance(bench.pacer.failure, OSError)
+    bench.timer.init = init
+    bench.clock.now += 2 * OVERDUE_US
+    bench.pacer.tend()
     assert bench.timer.period == 700
 
 

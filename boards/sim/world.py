@@ -49,7 +49,9 @@ class World:
         self.seed = seed
         self.drives = {}
         for address in addresses:
-            delay_us = self.random(self.wire.start_interval_us, 15_000) if seed else None
+            # Not before two characters have passed, not later than the master waits at this rate.
+            fastest_us = self.wire.start_interval_us
+            delay_us = self.random(fastest_us, max(15_000, 3 * fastest_us // 2)) if seed else None
             self.drives[address] = Drive(self.clock, self.wire, address, reply_delay_us=delay_us)
         stored = dict(settings or {})
         stored.setdefault("baud", baud)

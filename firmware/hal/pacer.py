@@ -14,13 +14,15 @@ anew.
 
 from micropython import const
 
-RETRY_US = const(10_000)  # after an exception in the engine
+RETRY_US = const(1_000)  # after an exception in the engine
+WAKE_US = const(1_000)
+PERIOD_MIN_US = const(20)  # or the timer would fire before it is armed
 OVERDUE_US = const(50_000)  # a timer that is so late is not waited for any more
 ROUNDS_MAX = const(4)  # entries in a row for events that came meanwhile; the timer takes the rest
 
 
 class Pacer:
-    """engine: has poll(now) -> microseconds, and recover(). link, clock, timer: see `hal`.
+    """engine: has poll(now) -> microseconds, and recover(now). link, clock, timer: see `hal`.
 
     Fields to look at: `runs` (entries into the engine, 16 bit, wraps) and `failure` (the exception
     caught last; the engine counts them).
@@ -72,26 +74,43 @@ class Pacer:
             return
         self._inside = True
         self._enable_irq(irq)
+        try:
+            self._work()
+        except BaseException:  # Ctrl-C in the main loop: it goes on its way, the engine too
+            self._inside = False
+            self._recover()
+            raise
+
+    def _work(self):
         rounds = 0
         while True:
             self._again = False
-            self._arm(self._enter())
+            self._enter()
             rounds += 1
             irq = self._disable_irq()
             if not self._again or rounds == ROUNDS_MAX:
                 self._inside = False
                 self._enable_irq(irq)
-                return
+                break
             self._enable_irq(irq)
+        if self._again:
+            # The one-shot may have been the event that was put off, and so be used up.
+            self._arm(WAKE_US)
 
     def _enter(self):
         self.runs = (self.runs + 1) & 0xFFFF
         try:
-            return self._engine.poll(self._ticks_us())
+            self._arm(self._engine.poll(self._ticks_us()))
         except Exception as failure:
             self.failure = failure
-            self._engine.recover()
-            return RETRY_US
+            self._recover()
+
+    def _recover(self):
+        try:
+            self._engine.recover(self._ticks_us())
+            self._arm(RETRY_US)
+        except Exception as failure:  # nothing works: the main loop tries again, or the watchdog
+            self.failure = failure
 
     def _arm(self, after_us):
         self._armed_at = self._ticks_us()
@@ -99,7 +118,10 @@ class Pacer:
         timer = self._timer
         if timer and not self._stopped:
             timer.init(
-                mode=timer.ONE_SHOT, period=after_us, tick_hz=1_000_000, callback=self._on_timer
+                mode=timer.ONE_SHOT,
+                period=max(after_us, PERIOD_MIN_US),
+                tick_hz=1_000_000,
+                callback=self._on_timer,
             )
 
     def _timer_fired(self, _timer):

@@ -5,8 +5,8 @@ The rules that keep a motor from starting by surprise and a STOP from getting lo
 
     control = Control(drive, survey, bus, mask, settings)
     control.step(now)                  # each step of the loop
-    refusal = control.start()          # None, or the text that says why not
-    control.stop()
+    control.start()                    # START: asks the drive first, then ON, or `refusal`
+    control.stop()                     # STOP
 """
 
 from micropython import const
@@ -15,8 +15,10 @@ from panel import texts
 from uss import profiles, pzd
 from uss.timing import elapsed
 
-CONFIRM_US = const(1_000_000)  # a STOP that is not confirmed by then is an alarm
 START_US = const(5_000_000)  # a drive that does not run by then is told to stop again
+CONFIRM_US = const(1_000_000)  # a STOP that is not confirmed by then is an alarm
+SLOWING_US = const(3_000_000)  # a drive that stops slows down at least once in this time ...
+SLOWER = const(4)  # ... by so many steps of HIW: 0.012 Hz of 50 Hz, more than the word trembles
 
 
 class Control:
@@ -24,70 +26,82 @@ class Control:
 
     settings: has setpoint_centihertz, lowest_centihertz, highest_centihertz.
 
-    Fields for a page: `setpoint_centihertz`; `notice`, a text why the drive is not on any more, or
-    None; `lost_running`, it was running when contact was lost and nobody has acknowledged that;
-    `stop_unconfirmed`.
+    Fields for a page: `setpoint_centihertz`; `refusal`, why START was not obeyed, to be shown once;
+    `notice`, why the drive is not on any more, or None; `lost_running`, it was running when contact
+    was lost and nobody has acknowledged that; `stop_unconfirmed`.
     """
 
     def __init__(self, drive, survey, bus, mask, settings):
         self.drive = drive
         self.survey = survey
         self.setpoint_centihertz = settings.setpoint_centihertz
+        self.refusal = None
         self.notice = None
         self.lost_running = False
         self.stop_unconfirmed = False
         self._bus = bus
         self._mask = mask
+        self._now = 0
+        self._asked_centihertz = settings.setpoint_centihertz  # what the operator set
         self._lowest = settings.lowest_centihertz
         self._highest = settings.highest_centihertz
         self._version = 0  # of the survey, as last seen
         self._contact = False  # as last seen
-        self._contacts = 0  # drive.contacts when it was started
-        self._dead_man_trips = 0  # bus.dead_man_trips when it was started
-        self._failures = 0
-        self._stopping = False  # a STOP is to be confirmed
-        self._stopped_at = 0
-        self._off_answers = 0  # drive.off_answers when it was stopped
-        self._fastest = 0  # |HIW| seen since the STOP
+        # From START on.
+        self._checking = False  # the drive is being asked before it is sent ON
         self._started_at = 0
-        self._started = False  # seen running since START
-        self._now = 0
+        self._ran = False
+        self._contacts = 0  # drive.contacts, bus.dead_man_trips and bus.failures then
+        self._dead_man_trips = 0
+        self._failures = 0
+        # From STOP on.
+        self._stopping = False  # the motor has still to come to rest
+        self._stopped_at = 0
+        self._off_answers = 0  # drive.off_answers then
+        self._slowed = False  # it has been seen to slow down
+        self._slowed_at = 0
+        self._speed = 0  # |HIW| when it was, until then the highest since STOP
 
     # --- what an operator does ------------------------------------------------------------------
 
     def start(self):
-        """Run with the setpoint shown. None, or why not: one of texts.REFUSED_..."""
-        drive = self.drive
-        refusal = self._refusal()
-        if refusal is not None or drive.is_on():
-            return refusal
+        """Run with the setpoint shown, once the drive has confirmed its settings.
+
+        What can be told at once, or turns out on the way, is in `refusal`: texts.REFUSED_...
+        """
+        self.refusal = self._why_not()
+        if self.refusal is not None or self._checking or self.drive.is_on():
+            return
         self.notice = None
-        self._stopping = False
-        self.stop_unconfirmed = False
-        self._contacts = drive.contacts
+        self._contacts = self.drive.contacts
         self._dead_man_trips = self._bus.dead_man_trips
         self._failures = self._bus.failures
         self._started_at = self._now
-        self._started = False
-        drive.start(drive.hsw)
-        return None
+        self._checking = True
+        self.survey.recheck()
+
+    def take_refusal(self):
+        """The refusal, which is forgotten by this."""
+        refusal, self.refusal = self.refusal, None
+        return refusal
 
     def stop(self):
         """OFF1, always, and acknowledge what was announced about this drive."""
         self.drive.stop()
+        self._checking = False
         self.notice = None
         self.lost_running = False
         self.stop_unconfirmed = False
         self._stopping = True
         self._stopped_at = self._now
         self._off_answers = self.drive.off_answers
-        self._fastest = 0
+        self._slowed = False
+        self._speed = 0
 
     def change(self, centihertz):
         """Move the setpoint by so much, within the limits of the drive and of the settings."""
-        self.setpoint_centihertz = self._limited(self.setpoint_centihertz + centihertz)
-        if self.survey.complete:
-            self.drive.hsw = self.survey.scaling.hsw(self.setpoint_centihertz)
+        self._asked_centihertz = self._limited(self.setpoint_centihertz + centihertz)
+        self._set_setpoint()
 
     # --- what goes on ---------------------------------------------------------------------------
 
@@ -95,10 +109,15 @@ class Control:
         """Look at the drive; each step of the loop."""
         self._now = now
         self.survey.step(now)
+        if self.survey.version != self._version:
+            self._version = self.survey.version
+            self._set_setpoint()
         drive = self.drive
         if drive.contact != self._contact:
             self._contact = drive.contact
             self.lost_running = drive.was_running and not drive.contact
+        if self._checking:
+            self._finish_check(now)
         if drive.stopped_by_engine():
             self.notice = self._why_stopped()
             drive.stop()
@@ -106,15 +125,16 @@ class Control:
             self._watch_start(now)
         if self._stopping:
             self._watch_stop(now)
-        if self.survey.version != self._version:
-            self._version = self.survey.version
-            self.change(0)
 
     def actual_centihertz(self):
         """The actual frequency with its sign, or None while it cannot be told."""
         if not self.drive.contact or self.survey.scaling is None:
             return None
         return self.survey.scaling.centihertz(self.drive.hiw)
+
+    def actual_is_beyond(self):
+        """Whether the actual frequency is more than its word can say, and so unknown."""
+        return self.drive.hiw in pzd.BEYOND
 
     def runs(self):
         """Whether its motor turns by the last status word. False without contact."""
@@ -130,7 +150,7 @@ class Control:
             return texts.FAULT
         if state == pzd.RUNNING:
             return self._running_text()
-        if drive.is_on():
+        if self._checking or drive.is_on():
             return texts.STARTING
         if self.notice is not None:
             return self.notice
@@ -149,7 +169,7 @@ class Control:
         local = self._is_foreign(profiles.COMMAND_SOURCE)
         return texts.RUNS_LOCALLY if local else texts.STOPPING
 
-    def _refusal(self):
+    def _why_not(self):
         """Why START is not sent, in the order in which an operator would want to know."""
         drive, survey = self.drive, self.survey
         if not drive.contact:
@@ -163,6 +183,9 @@ class Control:
             return texts.REFUSED_COMMAND
         if self._is_foreign(profiles.SETPOINT_SOURCE):
             return texts.REFUSED_SETPOINT
+        slowest = min(survey.values[profiles.LOWEST], survey.values[profiles.HIGHEST])
+        if slowest > survey.scaling.limit_centihertz():
+            return texts.REFUSED_MINIMUM
         if state == pzd.INHIBITED:
             return texts.REFUSED_INHIBITED
         if state == pzd.NOT_READY:
@@ -173,6 +196,26 @@ class Control:
         """Whether a source is known and is not this bus. source: row of profiles.SURVEY."""
         value = self.survey.values[source]
         return value >= 0 and value != profiles.USS_ON_COM_LINK
+
+    def _finish_check(self, now):
+        """ON, if the drive has told its settings and there is nothing against it."""
+        refusal = self._why_not()
+        if refusal is None and self.survey.unchecked:
+            patience_us = len(profiles.SURVEY) * self._bus.patience_us
+            if elapsed(now, self._started_at, self._mask) < patience_us:
+                return
+            refusal = texts.REFUSED_CHECKING
+        self._checking = False
+        if self._bus.dead_man_trips != self._dead_man_trips:
+            self.notice = texts.PANEL_HUNG  # that START is too old to be obeyed
+        elif refusal is not None:
+            self.refusal = refusal
+        else:
+            self._started_at = now
+            self._ran = False
+            self._stopping = False
+            self.stop_unconfirmed = False
+            self.drive.start(self.drive.hsw)
 
     def _why_stopped(self):
         drive, bus = self.drive, self._bus
@@ -187,25 +230,38 @@ class Control:
     def _watch_start(self, now):
         """ON that leads to nothing is taken back: it must not take effect minutes later."""
         if self.drive.state() == pzd.RUNNING:
-            self._started = True
-        elif not self._started:
+            self._ran = True
+        elif not self._ran:
             foreign = self._is_foreign(profiles.COMMAND_SOURCE)
             if foreign or elapsed(now, self._started_at, self._mask) >= START_US:
                 self.drive.stop()
                 self.notice = texts.DID_NOT_START
 
     def _watch_stop(self, now):
-        """A STOP is confirmed when the drive has answered OFF1 and does not run, or slows down."""
+        """A STOP is confirmed when the drive has answered OFF1 and slows down, again and again,
+        until it does not run any more.
+        """
         drive = self.drive
         if drive.contact and drive.off_answers != self._off_answers:
-            speed = abs(pzd.signed(drive.hiw))
-            if drive.state() != pzd.RUNNING or speed < self._fastest:
+            if drive.state() != pzd.RUNNING:
                 self._stopping = False
                 self.stop_unconfirmed = False
                 return
-            self._fastest = max(self._fastest, speed)
-        if elapsed(now, self._stopped_at, self._mask) >= CONFIRM_US:
+            self._watch_speed(abs(pzd.signed(drive.hiw)), now)
+        since, patience_us = self._stopped_at, CONFIRM_US
+        if self._slowed:
+            since, patience_us = self._slowed_at, SLOWING_US
+        if elapsed(now, since, self._mask) >= patience_us:
             self.stop_unconfirmed = True
+
+    def _watch_speed(self, speed, now):
+        if speed <= self._speed - SLOWER:
+            self._slowed = True
+            self._slowed_at = now
+            self._speed = speed
+            self.stop_unconfirmed = False
+        elif not self._slowed:
+            self._speed = max(self._speed, speed)
 
     def _limited(self, centihertz):
         values = self.survey.values
@@ -215,3 +271,8 @@ class Control:
             highest = min(highest, self.survey.scaling.limit_centihertz())
             lowest = max(lowest, values[profiles.LOWEST])
         return max(min(centihertz, highest), min(lowest, highest))
+
+    def _set_setpoint(self):
+        self.setpoint_centihertz = self._limited(self._asked_centihertz)
+        if self.survey.complete:
+            self.drive.hsw = self.survey.scaling.hsw(self.setpoint_centihertz)

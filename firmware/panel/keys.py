@@ -4,8 +4,9 @@
     keys.update(keypad.read(), clock.ticks_ms())
     if keys.pressed & keys.bit("START"): ...
 
-A key counts once it has been the same for DEBOUNCE_MS. Keys that are down when the panel starts do
-not count before they were seen up: a START that is jammed or leant on starts nothing.
+A key counts once it has been the same for DEBOUNCE_MS. A key that is down when the panel starts is
+`down`, but not `pressed` before it was seen up: a START that is jammed or leant on starts nothing,
+while a STOP that is down, or whose wire is broken, is down from the beginning.
 """
 
 from micropython import const
@@ -75,12 +76,13 @@ class Keys:
             self.down &= ~bit
             if self._last == bit:
                 self._last = 0
-        elif self._released & bit and not self.down & bit:
-            self.down |= bit
+            return
+        if self._released & bit and not self.down & bit:
             self.pressed |= bit
             self._last = bit
             self._repeat_at = now_ms
             self.repeats = 0
+        self.down |= bit
 
     def _repeat(self, now_ms):
         wait_ms = REPEAT_MS if self.repeats else REPEAT_DELAY_MS

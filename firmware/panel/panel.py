@@ -60,10 +60,13 @@ class Panel:
             control.step(now_us)
         keys = self._keys
         keys.update(raw_keys, now_ms)
-        if self._page is not self._home:
-            self._splash(now_ms)
         if keys.down:
             self._take_keys(keys, now_ms)
+        refusal = self.selected.take_refusal()
+        if refusal:
+            self.say(refusal, now_ms)
+        if self._page is not self._home:
+            self._splash(now_ms)
         if self.message and elapsed(now_ms, self._message_at, self._mask) >= MESSAGE_MS:
             self.message = None
         if (
@@ -108,14 +111,20 @@ class Panel:
         if keys.down & stop:
             self._stop_all_when_held(now_ms)
         if keys.pressed & keys.bit("START"):
-            refusal = texts.REFUSED_STOP if keys.down & stop else self.selected.start()
-            if refusal:
-                self.say(refusal, now_ms)
+            self._start(keys.down & stop, now_ms)
         if keys.pressed & keys.bit("ADDRESS_UP"):
             self._select(1)
         elif keys.pressed & keys.bit("ADDRESS_DOWN"):
             self._select(-1)
         self._page.take_keys(keys)
+
+    def _start(self, stop_is_down, now_ms):
+        if self._page is not self._home:
+            return  # nobody has seen yet which drive would start, and how fast
+        if stop_is_down:
+            self.say(texts.REFUSED_STOP, now_ms)
+        else:
+            self.selected.start()
 
     def _stop_all_when_held(self, now_ms):
         held_ms = elapsed(now_ms, self._stop_at, self._mask)

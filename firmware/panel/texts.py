@@ -27,6 +27,10 @@ ENGINE_FAILED = b"BUS ERROR"
 STOPPED_ITSELF = b"STOPPED SELF"
 DID_NOT_START = b"NOT STARTED"
 
+# In place of the actual frequency: 6 wide.
+UNKNOWN_VALUE = b" -----"
+BEYOND_VALUE = b" >>>>>"  # more than the word of a telegram can say
+
 # Whole rows.
 NO_CONTACT_ROW = b"NO CONTACT,"  # with MAY_RUN below it
 MAY_RUN = b"MAY RUN"
@@ -44,6 +48,7 @@ REFUSED_NOT_READY = b"NO: NOT READY"
 REFUSED_COMMAND = b"NO:P0700 NOT USS"
 REFUSED_SETPOINT = b"NO:P1000 NOT USS"
 REFUSED_SCALING = b"NO: SCALING ???"
+REFUSED_MINIMUM = b"NO: P1080 > 200%"  # the drive would run faster than a telegram can say
 REFUSED_STOP = b"NO: STOP IS DOWN"
 
 # What another drive does; follows "A" and its address. At most ROW_WIDTH with a two-digit address.

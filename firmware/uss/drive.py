@@ -3,12 +3,13 @@
 Two sides share a drive: the *loop* (panel, own program) and the *engine* (`master.poll`, possibly
 in an interrupt). They share words, not structures; each field has one writer:
 
-    loop     wanted, ticket, hsw, urgent
+    loop     wanted, ticket, stops, hsw, urgent
     engine   void, zsw, hiw, contact, contacts, was_running, silent, served, counters and the rest
 
 ON is sent only on a ticket. Every START draws a new one; the engine voids the one in force when
 the drive is lost, faults, stops of its own accord, or the loop stops refreshing. A void ticket
 stays void: whatever happens to the line or the loop, only a fresh `start` makes a drive run again.
+Every STOP is sent: one telegram at least carries OFF1 before the next ON, however soon that comes.
 
     drive.start(0x0CCD)         # ON, setpoint HSW, from the next telegram on
     drive.stop()                # OFF1, in the very next telegram on the line
@@ -24,6 +25,7 @@ from uss.timing import elapsed
 
 PZD_COUNT = const(4)  # characters of STW and HSW, of ZSW and HIW
 TICKET_MASK = const(0xFFFF)
+INSIST_MAX = const(10)  # telegrams out of turn that an OFF1 may take until the drive answers one
 COUNTER_MASK = const(0xFFFF)  # counters wrap like the drive's own (specification A-5.2.3)
 
 # What each receiver finding is counted as. Named as in specification A-5.2.3.
@@ -46,12 +48,14 @@ class Drive:
             raise ValueError("drive address %r is not 0...31" % (address,))
         self.address = address
         self.net_count = PKW_COUNT + PZD_COUNT  # net characters of a request and of a reply
-        self.residual_us = 0  # of a reply; the master knows the line
+        self.telegram_us = 0  # the time one takes; the master knows the line
+        self.residual_us = 0  # the time a reply may take
         self.channel = Channel(mask)
         self._mask = mask
         # Written by the loop.
         self.wanted = False
         self.ticket = 0
+        self.stops = 0
         self.hsw = 0
         self.urgent = 0
         # Written by the engine.
@@ -60,17 +64,19 @@ class Drive:
         self.hiw = 0
         self.contact = False  # a valid reply came within the lost time
         self.contacts = 0  # how often contact was made
-        self.heard = False  # ever
         self.was_running = False  # when contact was lost: it may run still
         self.ran = False  # seen running on the ticket in force
         self.off_answers = 0  # valid replies to telegrams without ON; wraps
         self.answered_off = False  # the last valid reply was one to a telegram without ON
         self.silent = 0  # telegrams without a valid reply in a row
         self.served = 0
+        self.stops_sent = 0  # `stops` when the last telegram was built
         self.taken_back = False  # ON was revoked and the telegram that says so is still to be sent
+        self.insist = 0  # telegrams out of turn left to an OFF1 that no answer has confirmed
         self.counters = [0] * len(COUNTERS)
         self._heard_at = 0
         self._sent_on = False
+        self._may_run = False  # sent ON or seen running, and not seen standing in an answer to OFF1
 
     # --- for the loop ---------------------------------------------------------------------------
 
@@ -86,6 +92,7 @@ class Drive:
     def stop(self):
         """OFF1, whatever state the drive is in, ahead of the list. It stays OFF until `start`."""
         self.wanted = False
+        self.stops = (self.stops + 1) & TICKET_MASK
         self.hurry()
 
     def hurry(self):
@@ -94,7 +101,12 @@ class Drive:
 
     def is_on(self):
         """Whether ON is being sent."""
-        return self.wanted and self.ticket != self.void and self.contact
+        return (
+            self.wanted
+            and self.ticket != self.void
+            and self.stops == self.stops_sent
+            and self.contact
+        )
 
     def stopped_by_engine(self):
         """Whether ON was wanted and the engine took it back; `stop` or `start` clear it."""
@@ -118,20 +130,33 @@ class Drive:
         self.ran = False
 
     def urgency(self):
-        """0: wait for your turn in the list. Above: go before it, the highest first."""
-        if not (self.taken_back or self.urgent != self.served):
-            return 0
+        """How much this drive is in a hurry.
+
+        0: its turn in the list will do. 1: an OFF1 is repeated until it is answered. 2: a command.
+        3: a stop. 4: a stop of a drive that runs.
+        """
+        if self.urgent == self.served and not self.taken_back and self.stops == self.stops_sent:
+            return 1 if self.insist else 0
         if self.is_on():
-            return 1
-        return 3 if self.zsw & pzd.ZSW_RUNNING else 2
+            return 2
+        return 4 if self.zsw & pzd.ZSW_RUNNING else 3
 
     def fill(self, net, at, now):
         """Write this drive's request, PKW and PZD words, into `net` from index `at` on."""
+        self.served = self.urgent
         self.channel.fill(net, at, now)
         on = self.is_on()
+        if self.taken_back or self.stops != self.stops_sent:
+            self.taken_back = False
+            self.stops_sent = self.stops
+            self.insist = INSIST_MAX
+        elif self.insist:
+            self.insist -= 1
         self._sent_on = on
-        self.taken_back = False
-        if not on:
+        if on:
+            self._may_run = True
+            self.insist = 0
+        else:
             self.ran = False
         put_word(net, at + PKW_COUNT, pzd.ON if on else pzd.OFF1)
         put_word(net, at + PKW_COUNT + 2, self.hsw if on else 0)
@@ -147,7 +172,6 @@ class Drive:
             self.contacts = (self.contacts + 1) & COUNTER_MASK
             self.was_running = False
             self.contact = True
-            self.heard = True
         self.zsw = get_word(net, at + PKW_COUNT)
         self.hiw = get_word(net, at + PKW_COUNT + 2)
         self.answered_off = not self._sent_on
@@ -155,6 +179,8 @@ class Drive:
             self._watch_running()
         else:
             self.off_answers = (self.off_answers + 1) & COUNTER_MASK
+            self.insist = 0
+            self._may_run = self.zsw & pzd.ZSW_RUNNING != 0
         self.channel.take(net, at)
 
     def miss(self, finding, now, lost_us):
@@ -165,20 +191,25 @@ class Drive:
         self._count(finding)
         if self.silent < COUNTER_MASK:
             self.silent += 1
-        if self.contact and elapsed(now, self._heard_at, self._mask) >= lost_us:
-            self.was_running = self._sent_on or self.state() == pzd.RUNNING
-            self.contact = False
-            self.revoke()
+        if elapsed(now, self._heard_at, self._mask) >= lost_us:
+            self.lose()
         self.channel.miss(now)
 
+    def lose(self):
+        """Contact is lost; ON, if it was being sent, is void."""
+        if self.contact:
+            self.was_running = self._may_run
+            self.revoke()
+            self.contact = False
+
     def _watch_running(self):
-        # A drive that ran on this ticket and runs no more, or trips, has stopped of its own
-        # accord. It must not start again of its own accord when the cause goes away.
+        # A drive that ran on this ticket and runs no more, trips or inhibits itself has stopped of
+        # its own accord. It must not start again of its own accord when the cause goes away.
         if self.zsw & pzd.ZSW_RUNNING:
             self.ran = True
         elif self.ran:
             self.revoke()
-        if self.zsw & pzd.ZSW_FAULT:
+        if self.zsw & (pzd.ZSW_FAULT | pzd.ZSW_INHIBIT):
             self.revoke()
 
     def _count(self, counter):

@@ -17,7 +17,7 @@ from micropython import const
 
 from uss import telegram
 from uss.drive import Drive
-from uss.receiver import WAITING, Receiver
+from uss.receiver import SILENT, WAITING, Receiver
 from uss.timing import elapsed
 
 LIST_MAX = const(255)  # entries of the circulating list
@@ -25,6 +25,8 @@ LOST_US = const(1_000_000)  # without a valid reply for so long, contact with a 
 DEAD_MAN_US = const(300_000)  # without `refresh` for so long, the loop is taken for dead
 LISTEN_US = const(100_000)  # silence that must be heard before the first telegram
 BABBLE_US = const(500_000)  # a line that never falls silent is sent on all the same after this
+STUCK_US = const(50_000)  # a transmission that takes so much longer than it should has failed
+FAILURES_MAX = const(3)  # exceptions in a row after which nothing is known of the drives any more
 
 # What the engine is doing.
 LISTENING, RESTING, SENDING, AWAITING, CLOSED = range(5)
@@ -36,8 +38,10 @@ class Master:
     link: what is sent on and received from. timing: `Timing` of its baud rate. mask: the clock's
     period - 1, at most 2**30 - 1. All figures of counters are unsigned 16-bit and wrap.
 
-    Fields to look at: `exchanges` (telegrams sent), `dead_man_trips`, `failures` (exceptions in
-    `poll`), `foreign` (bursts heard while listening: another master is on the line), `phase`.
+    Fields to look at: `phase`; `exchanges` (telegrams sent); `progress`, which moves as long as the
+    engine gets anything done; `dead_man_trips`; `failures` (exceptions in `poll`); `foreign` (bursts
+    heard while listening: another master is on the line). `patience_us` is how long `progress` may
+    stand still on a bus that works.
     """
 
     def __init__(self, link, timing, mask, lost_us=LOST_US):
@@ -46,6 +50,8 @@ class Master:
         self.timing = timing
         self.phase = LISTENING
         self.exchanges = 0
+        self.progress = 0
+        self.patience_us = BABBLE_US + STUCK_US
         self.dead_man_trips = 0
         self.failures = 0
         self.foreign = 0
@@ -55,11 +61,15 @@ class Master:
         self._receiver = Receiver(timing, mask)
         self._telegram = bytearray(telegram.SIZE_MAX)
         self._drive = None  # the one whose turn it is
+        self._insisted = False  # it was its turn because its OFF1 is not answered yet
+        self._failures_in_row = 0
         self._next = 0
         self._first = True  # poll was never called
         self._closing = False
         self._quiet_since = 0  # the last character on the line, either direction
         self._resting_since = 0
+        self._rest_us = timing.start_interval_us
+        self._sending_since = 0
         self._refreshed_at = 0
         self._dead_man = True  # tripped until the loop refreshes for the first time
 
@@ -79,6 +89,9 @@ class Master:
         else:
             drive = Drive(address, self._mask)
             drive.residual_us = self.timing.residual_us(drive.net_count)
+            drive.telegram_us = self.timing.telegram_us(drive.net_count)
+            longest_us = drive.telegram_us + self.timing.reply_timeout_us + drive.residual_us
+            self.patience_us = max(self.patience_us, longest_us + BABBLE_US + STUCK_US)
             self.drives.append(drive)
         self.list.append(drive)
         return drive
@@ -119,27 +132,38 @@ class Master:
                 due_us = DEAD_MAN_US
         return due_us
 
-    def recover(self):
-        """After an exception in `poll`: take ON back from every drive and begin with a silence."""
+    def recover(self, now):
+        """After an exception in `poll`: take ON back from every drive and begin with a silence in
+        which whatever was under way comes to its end. Several in a row, and contact is lost.
+        """
         self.failures = (self.failures + 1) & 0xFFFF
-        self._revoke_all()
+        self._failures_in_row += 1
+        for drive in self.drives:
+            drive.revoke()
+            if self._failures_in_row >= FAILURES_MAX:
+                drive.lose()
         if self.phase != CLOSED:
-            self._begin_rest(self._quiet_since)
+            self._begin_rest(now)
+            self._quiet_since = now
+            if self._drive is not None:
+                self._rest_us = self.timing.reply_timeout_us + self._drive.residual_us
 
-    def _revoke_all(self):
+    def _check_dead_man(self, now):
+        """Take ON back from every drive, also one that is started later, until the loop is back."""
+        if not self._dead_man:
+            if elapsed(now, self._refreshed_at, self._mask) <= DEAD_MAN_US:
+                return
+            self._dead_man = True
+            self.dead_man_trips = (self.dead_man_trips + 1) & 0xFFFF
         for drive in self.drives:
             drive.revoke()
 
-    def _check_dead_man(self, now):
-        if self._dead_man:
-            return
-        if elapsed(now, self._refreshed_at, self._mask) > DEAD_MAN_US:
-            self._dead_man = True
-            self.dead_man_trips = (self.dead_man_trips + 1) & 0xFFFF
-            self._revoke_all()
+    def _get_on(self):
+        self.progress = (self.progress + 1) & 0xFFFF
 
     def _listen(self, now):
         """Before the first telegram: traffic not asked for means that another master is there."""
+        self._get_on()
         if self._first:
             self._first = False
             self._quiet_since = now
@@ -153,6 +177,7 @@ class Master:
 
     def _begin_rest(self, now):
         self._resting_since = now
+        self._rest_us = self.timing.start_interval_us
         self.phase = RESTING
 
     def _rest(self, now):
@@ -160,12 +185,16 @@ class Master:
         if self._closing:
             self.phase = CLOSED
             return 0
+        left_us = self._link.sending_us(now)  # only after an exception
+        if left_us > 0 and elapsed(now, self._resting_since, self._mask) < BABBLE_US:
+            return max(left_us, self.timing.character_us)
         self._heard_something()
-        left_us = self.timing.start_interval_us - elapsed(now, self._quiet_since, self._mask)
+        left_us = self._rest_us - elapsed(now, self._quiet_since, self._mask)
         if left_us > 0 and elapsed(now, self._resting_since, self._mask) < BABBLE_US:
             return left_us
         self._drive = self._choose()
         if self._drive is None:
+            self._get_on()
             return DEAD_MAN_US
         self._send(now)
         return 0
@@ -179,14 +208,19 @@ class Master:
         return heard
 
     def _choose(self):
-        """The next drive: a command that matters goes before the list, a stop before a start."""
+        """The next drive: a command that matters goes before the list, a stop before a start.
+
+        An OFF1 that is not answered yet is repeated out of turn, but only every second telegram:
+        a drive that has died must not take the line from the others.
+        """
         chosen = None
-        highest = 0
+        highest = 1 if self._insisted else 0
         for drive in self.drives:
             urgency = drive.urgency()
             if urgency > highest:
                 highest = urgency
                 chosen = drive
+        self._insisted = chosen is not None and highest == 1
         if chosen is None and self.list:
             position = self._next if self._next < len(self.list) else 0
             self._next = position + 1
@@ -195,21 +229,32 @@ class Master:
 
     def _send(self, now):
         drive = self._drive
-        drive.served = drive.urgent
         drive.fill(self._telegram, telegram.NET, now)
         count = telegram.seal(self._telegram, drive.address, drive.net_count)
         self.exchanges = (self.exchanges + 1) & 0xFFFF
         self.phase = SENDING
+        self._sending_since = now
         self._link.send(self._telegram, count)
 
     def _finish_sending(self, now):
         left_us = self._link.sending_us(now)
         if left_us > 0:
-            return left_us
+            sending_us = elapsed(now, self._sending_since, self._mask)
+            if sending_us > self._drive.telegram_us + STUCK_US:
+                return self._give_up(now)
+            return max(left_us, self.timing.character_us)
         drive, sent_at = self._drive, self._link.sent_at
         self._quiet_since = sent_at
         self._receiver.open(drive.address, drive.net_count, drive.residual_us, sent_at)
         self.phase = AWAITING
+        return 0
+
+    def _give_up(self, now):
+        """The link does not get rid of a telegram. Try again; this is no progress."""
+        self._drive.miss(SILENT, now, self._lost_us)
+        self._begin_rest(now)
+        self._quiet_since = now
+        self._resting_since = (now - BABBLE_US) & self._mask
         return 0
 
     def _await(self, now):
@@ -222,5 +267,7 @@ class Master:
         else:
             self._drive.miss(finding, now, self._lost_us)
         self._quiet_since = receiver.heard_at
+        self._failures_in_row = 0
+        self._get_on()
         self._begin_rest(now)
         return 0

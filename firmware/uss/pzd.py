@@ -91,6 +91,7 @@ REFERENCE_MIN = const(100)  # P2000 in centihertz (MICROMASTER 4 parameter list)
 REFERENCE_MAX = const(65000)
 HSW_MIN = const(-0x8000)
 HSW_MAX = const(0x7FFF)
+BEYOND = (0x7FFF, 0x8000)  # where a drive stops counting: the value may be any beyond this one
 
 
 def signed(word):

@@ -3,11 +3,12 @@
 Works on the loop's side, through parameter jobs, which cost the bus nothing: every telegram has a
 parameter channel. It reads the rows of `profiles.SURVEY` at once when contact is made and one
 every REREAD_US from then on, so that a change made at the drive itself is noticed. What was known
-is forgotten when contact is lost.
+is forgotten when contact is lost. `recheck` has all of it read again at once, ahead of the list.
 
     survey = Survey(drive)
     survey.step(now)                # each step of the loop
     if survey.complete: survey.scaling.hsw(1000)
+    survey.recheck()                # before a START; survey.unchecked counts down to 0
 """
 
 from micropython import const
@@ -25,6 +26,7 @@ class Survey:
     values: for each row of profiles.SURVEY the number read, or UNKNOWN.
     complete: all rows are known. scaling: a `pzd.Scaling`, or None while it is not known.
     unreadable: the drive refused one of them. version: counts the changes of all this.
+    unchecked: how many rows `recheck` has still to read.
     """
 
     def __init__(self, drive, mask):
@@ -34,14 +36,21 @@ class Survey:
         self.scaling = None
         self.unreadable = False
         self.version = 0
+        self.unchecked = 0
         self._mask = mask
         self._job = pkw.read(0)
         self._words = [UNKNOWN] * (2 * len(profiles.SURVEY))  # as last read: high, low, high ...
         self._row = 0
         self._asked = False
-        self._stale = False  # what was asked was asked before contact was lost
+        self._stale = False  # what was asked was asked too early to count
         self._read_at = 0
         self._contact = 0  # drive.contacts to which the values belong
+
+    def recheck(self):
+        """Have every row read again, each in the next telegram on the line."""
+        self.unchecked = len(self.values)
+        self._row = 0
+        self._stale = self._asked
 
     def step(self, now):
         """Take an answer that has come, ask for the next; allocates only when a value is new."""
@@ -58,10 +67,16 @@ class Survey:
                     self._take()
                 self._stale = False
         elif drive.contact:
-            if not self.complete or elapsed(now, self._read_at, self._mask) >= REREAD_US:
+            if self._is_in_a_hurry() or elapsed(now, self._read_at, self._mask) >= REREAD_US:
                 self._ask()
+        if self.unchecked and drive.urgent == drive.served:
+            drive.hurry()
+
+    def _is_in_a_hurry(self):
+        return self.unchecked or not self.complete
 
     def _forget(self):
+        self.unchecked = 0
         if not self.complete and self._row == 0 and not self.unreadable:
             return
         self.complete = False
@@ -96,6 +111,8 @@ class Survey:
             else:
                 self.values[row] = job.low
             self._judge()
+        if self.unchecked:
+            self.unchecked -= 1
         self._row = row + 1 if row + 1 < len(profiles.SURVEY) else 0
 
     def _judge(self):

@@ -32,7 +32,7 @@ class Home:
 
     def draw(self, screen, now_ms):
         control = self._panel.selected
-        if control.lost_running and not self._panel.message:
+        if control.lost_running:
             screen.put(0, 0, texts.ROW_WIDTH, texts.NO_CONTACT_ROW)
         else:
             self._draw_frequencies(screen, control)
@@ -44,20 +44,22 @@ class Home:
         screen.put(0, 7, 3, b" F:")
         actual = control.actual_centihertz()
         if actual is None:
-            screen.put(0, 10, 6, b" -----")
+            screen.put(0, 10, 6, texts.UNKNOWN_VALUE)
+        elif control.actual_is_beyond():
+            screen.put(0, 10, 6, texts.BEYOND_VALUE)
         else:
             screen.number(0, 10, 6, actual, 2)
 
     def _draw_row_2(self, screen, control, now_ms):
         panel = self._panel
-        if panel.message:
-            screen.put(1, 0, texts.ROW_WIDTH, panel.message)
-        elif panel.line_in_use():
-            screen.put(1, 0, texts.ROW_WIDTH, texts.LINE_IN_USE)
-        elif control.stop_unconfirmed:
+        if control.stop_unconfirmed:
             screen.put(1, 0, texts.ROW_WIDTH, texts.STOP_UNCONFIRMED)
         elif control.lost_running:
             self._draw_state(screen, texts.MAY_RUN)
+        elif panel.message:
+            screen.put(1, 0, texts.ROW_WIDTH, panel.message)
+        elif panel.line_in_use():
+            screen.put(1, 0, texts.ROW_WIDTH, texts.LINE_IN_USE)
         elif panel.announced and not now_ms // ANNOUNCE_MS & 1:
             self._draw_announcement(screen)
         else:
