@@ -11,13 +11,14 @@ sends ON only while `step` refreshes it, and `step` feeds the watchdog only whil
 
 from micropython import const
 
-import settings as settings_module
+# From the bottom of the house up: an import inside an import inside an import takes stack.
+from uss.timing import Timing, elapsed
+from uss.survey import Survey
+from uss.master import CLOSED, Master
 from hal.pacer import Pacer
 from panel.control import Control
 from panel.panel import Panel
-from uss.master import CLOSED, Master
-from uss.survey import Survey
-from uss.timing import Timing, elapsed
+from settings import load
 
 CLOSE_MS = const(1_000)  # for the drives to answer their OFF1, and a little for each of them
 CLOSE_PER_DRIVE_MS = const(100)
@@ -28,7 +29,7 @@ class App:
 
     def __init__(self, board):
         self.board = board
-        self.settings = settings = settings_module.load(board.store)
+        self.settings = settings = load(board.store)
         mask = board.clock.ticks_mask
         self.link = board.make_link(settings.baud)
         timing = Timing(settings.baud, settings.reply_timeout_ms * 1000)

@@ -29,6 +29,7 @@ except ImportError:  # MicroPython's os has none: asking for the terminal's sett
 EPIPE = 32  # not in MicroPython's errno
 FAILED = 1
 NOT_UNDERSTOOD = 2
+INTERRUPTED = 130
 
 USAGE = """\
 usage: ./tools/panel [--script FILE|-] [--drives 1,2,5] [--baud 19200] [--seed N] [--polled]
@@ -143,9 +144,11 @@ def run_terminal(world):
     script.do("wait 1000")
     script.do("lcd")
     while True:
-        try:
-            line = input("> ")
-        except EOFError:
+        # Not input(): it reads the terminal raw, and loses what was typed before the prompt.
+        sys.stdout.write("> ")
+        line = sys.stdin.readline()
+        if not line:
+            print()
             return
         try:
             script.do(line)
@@ -176,6 +179,8 @@ def panel(words):
         return complain(error, NOT_UNDERSTOOD)
     except (ExpectationFailed, AssertionError) as error:
         return complain(error, FAILED)
+    except KeyboardInterrupt:
+        return complain("ended by Ctrl-C", INTERRUPTED)
     except OSError as error:
         if error.errno != EPIPE:
             raise

@@ -14,7 +14,6 @@ from panel.keys import Keys
 from panel.pages.home import Home
 from panel.pages.splash import Splash
 from panel.screen import Screen
-from uss.master import LISTENING
 from uss.timing import elapsed
 
 SPLASH_MS = const(800)
@@ -90,7 +89,7 @@ class Panel:
 
     def line_in_use(self):
         """Whether another master was heard before the first telegram, so that none is sent."""
-        return self._bus.phase == LISTENING and self._bus.foreign > 0
+        return self._bus.is_line_in_use()
 
     def _splash(self, now_ms):
         if self._began_at is None:

@@ -101,6 +101,10 @@ class Master:
         self._refreshed_at = now
         self._dead_man = False
 
+    def is_line_in_use(self):
+        """Whether another master was heard and is listened to instead of talking."""
+        return self.phase == LISTENING and self.foreign > 0
+
     def stop_all(self):
         """OFF1 to every drive by a telegram each; the engine takes those that run first."""
         for drive in self.drives:
