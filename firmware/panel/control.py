@@ -26,9 +26,9 @@ class Control:
 
     settings: has setpoint_centihertz, lowest_centihertz, highest_centihertz.
 
-    Fields for a page: `setpoint_centihertz`; `refusal`, why START was not obeyed, to be shown once;
-    `notice`, why the drive is not on any more, or None; `lost_running`, it was running when contact
-    was lost and nobody has acknowledged that; `stop_unconfirmed`.
+    Fields for a page: `setpoint_centihertz`; `refusal`, why START was not obeyed, to be shown
+    once; `notice`, why the drive is not on any more, or None; `lost_running`, it was running when
+    contact was lost and nobody has acknowledged that; `stop_unconfirmed`.
     """
 
     def __init__(self, drive, survey, bus, mask, settings):

@@ -76,7 +76,7 @@ class Drive:
         self.counters = [0] * len(COUNTERS)
         self._heard_at = 0
         self._sent_on = False
-        self._may_run = False  # sent ON or seen running, and not seen standing in an answer to OFF1
+        self._may_run = False  # sent ON or seen running, and not seen standing after OFF1
 
     # --- for the loop ---------------------------------------------------------------------------
 

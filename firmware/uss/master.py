@@ -38,10 +38,10 @@ class Master:
     link: what is sent on and received from. timing: `Timing` of its baud rate. mask: the clock's
     period - 1, at most 2**30 - 1. All figures of counters are unsigned 16-bit and wrap.
 
-    Fields to look at: `phase`; `exchanges` (telegrams sent); `progress`, which moves as long as the
-    engine gets anything done; `dead_man_trips`; `failures` (exceptions in `poll`); `foreign` (bursts
-    heard while listening: another master is on the line). `patience_us` is how long `progress` may
-    stand still on a bus that works.
+    Fields to look at: `phase`; `exchanges` (telegrams sent); `progress`, which moves as long as
+    the engine gets anything done; `dead_man_trips`; `failures` (exceptions in `poll`); `foreign`
+    (bursts heard while listening: another master is on the line). `patience_us` is how long
+    `progress` may stand still on a bus that works.
     """
 
     def __init__(self, link, timing, mask, lost_us=LOST_US):
@@ -153,7 +153,7 @@ class Master:
                 self._rest_us = self.timing.reply_timeout_us + self._drive.residual_us
 
     def _check_dead_man(self, now):
-        """Take ON back from every drive, also one that is started later, until the loop is back."""
+        """Take ON back from all drives, also one started later, until the loop is back."""
         if not self._dead_man:
             if elapsed(now, self._refreshed_at, self._mask) <= DEAD_MAN_US:
                 return
