@@ -16,7 +16,7 @@ from uss.timing import BAUD_RATES
 
 SCHEMA = (  # name, default, lowest, highest, meaning
     ("baud", 19200, 300, 187500, "bit/s, one of the rates of USS"),
-    ("reply_timeout_ms", 20, 20, 2000, "wait for a reply to begin; more for adapters"),
+    ("reply_timeout_ms", 20, 20, 60, "wait for a reply to begin; it delays a STOP as well"),
     ("lost_ms", 1000, 100, 5000, "without a valid reply for so long a drive counts as lost"),
     ("setpoint_centihertz", 1000, 0, 65000, "setpoint after power-up, 0.01 Hz"),
     ("setpoint_step_centihertz", 10, 1, 1000, "step of UP and DOWN, 0.01 Hz"),

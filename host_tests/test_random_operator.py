@@ -111,5 +111,5 @@ def test_nothing_starts_by_surprise_whatever_happens():
         world.run(13_000)
         for address, drive in world.drives.items():
             assert drive.hz() == 0, drive.report()
-        chips = world._chips
+        chips = world.chips
         assert not [chip.handler_errors for chip in chips if chip.handler_errors]

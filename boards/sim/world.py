@@ -47,6 +47,7 @@ class World:
         self.clock = Clock(ticks_start, ticks_mask)
         self.wire = Wire(self.clock, baud)
         self.seed = seed
+        self._random = (seed * 0x2545F + 0x1234567) & 0x3FFFFFFF or 1  # never 0
         self.drives = {}
         for address in addresses:
             # Not before two characters have passed, not later than the master waits at this rate.
@@ -64,7 +65,7 @@ class World:
         self._start = start
         self._polled = polled
         self._bitten = False
-        self._chips = []
+        self.chips = []  # each life of the chip, the last one is `chip`
         self._boot()
 
     # --- time -----------------------------------------------------------------------------------
@@ -120,7 +121,7 @@ class World:
     def check(self):
         """AssertionError when a rule of the line was broken or an interrupt handler failed."""
         complaints = list(self.wire.violations)
-        for chip in self._chips:
+        for chip in self.chips:
             for error in chip.handler_errors:
                 complaints.append("interrupt handler: %r" % (error,))
         if complaints:
@@ -131,7 +132,7 @@ class World:
 
     def random(self, low, high):
         """A number from low to high, of a sequence that the seed decides (xorshift)."""
-        state = getattr(self, "_random", 0) or (self.seed * 0x2545F + 0x1234567) & 0x3FFFFFFF or 1
+        state = self._random
         state ^= (state << 7) & 0x3FFFFFFF
         state ^= state >> 9
         state ^= (state << 8) & 0x3FFFFFFF
@@ -142,7 +143,7 @@ class World:
         self._bitten = False
         self.chip = Chip(self.clock, self.wire)
         self.chip.on_bite = self._bite
-        self._chips.append(self.chip)
+        self.chips.append(self.chip)
         self.clock.advance(BOOT_US)
         loop_us = self._uneven_loop_us if self.seed else None
         board = Board(

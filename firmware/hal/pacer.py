@@ -43,12 +43,12 @@ class Pacer:
         self._stopped = True
         self._armed_at = 0
         self._armed_us = 0
-        self._on_timer = self._timer_fired  # bound once: binding allocates
-        self._on_activity = self.run
+        self._ctrl_c = False
+        self._on_interrupt = self._interrupted  # bound once: binding allocates
 
     def start(self):
         self._stopped = False
-        self._link.on_activity = self._on_activity
+        self._link.on_activity = self._on_interrupt
         self.run()
 
     def stop(self):
@@ -60,20 +60,21 @@ class Pacer:
         self._link.close()
 
     def tend(self):
-        """From the main loop: drives the engine where there is no timer, and wakes a stuck one."""
+        """From the main loop: drives the engine where there is no timer, and wakes a stuck one.
+
+        Raises the KeyboardInterrupt that came while an interrupt was served.
+        """
+        if self._ctrl_c:
+            self._ctrl_c = False
+            raise KeyboardInterrupt
         waited_us = (self._ticks_us() - self._armed_at) & self._mask
         if self._timer is None or waited_us > self._armed_us + OVERDUE_US:
             self.run()
 
     def run(self):
         """Enter the engine unless somebody is inside; then have it entered once more."""
-        irq = self._disable_irq()
-        if self._inside or self._stopped:
-            self._again = True
-            self._enable_irq(irq)
+        if not self._may_enter():
             return
-        self._inside = True
-        self._enable_irq(irq)
         try:
             self._work()
         except BaseException:  # Ctrl-C in the main loop: it goes on its way, the engine too
@@ -81,18 +82,34 @@ class Pacer:
             self._recover()
             raise
 
+    def _may_enter(self):
+        irq = self._disable_irq()
+        try:
+            if self._inside or self._stopped:
+                self._again = True
+                return False
+            self._inside = True
+            return True
+        finally:
+            self._enable_irq(irq)
+
+    def _may_leave(self):
+        irq = self._disable_irq()
+        try:
+            if self._again:
+                return False
+            self._inside = False
+            return True
+        finally:
+            self._enable_irq(irq)
+
     def _work(self):
-        rounds = 0
-        while True:
+        for _ in range(ROUNDS_MAX):
             self._again = False
             self._enter()
-            rounds += 1
-            irq = self._disable_irq()
-            if not self._again or rounds == ROUNDS_MAX:
-                self._inside = False
-                self._enable_irq(irq)
-                break
-            self._enable_irq(irq)
+            if self._may_leave():
+                return
+        self._inside = False
         if self._again:
             # The one-shot may have been the event that was put off, and so be used up.
             self._arm(WAKE_US)
@@ -121,8 +138,13 @@ class Pacer:
                 mode=timer.ONE_SHOT,
                 period=max(after_us, PERIOD_MIN_US),
                 tick_hz=1_000_000,
-                callback=self._on_timer,
+                callback=self._on_interrupt,
             )
 
-    def _timer_fired(self, _timer):
-        self.run()
+    def _interrupted(self, _source=None):
+        # MicroPython raises a pending Ctrl-C wherever it happens to be, here as well; it would be
+        # the end of this handler. The main loop is where it belongs.
+        try:
+            self.run()
+        except KeyboardInterrupt:
+            self._ctrl_c = True

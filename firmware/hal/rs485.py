@@ -47,7 +47,7 @@ class Rs485Link:
         self._releases = 0
         self._burst_ended = False
         self._burst_ended_at = 0
-        self._scratch = bytearray(64)
+        self._scratch = bytearray(256)
         self._on_timer = self._release  # bound once: binding allocates
         driver_enable.value(0)
         if interrupts:
@@ -55,6 +55,7 @@ class Rs485Link:
 
     def send(self, buffer, count):
         self._sending = True
+        self._burst_ended = False
         self._releases = 0
         self._duration_us = self._durations_us[count]
         self._driver_enable.value(1)
@@ -66,20 +67,25 @@ class Rs485Link:
         if not self._sending:
             return 0
         passed_us = (now - self._started_at) & self._mask
+        if passed_us > self._mask >> 1:  # `now` was read before the sending began
+            passed_us = 0
         return max(self._duration_us - passed_us, 1)
 
     def receive(self, buffer, at):
-        count = self._uart.any()
-        if not count:
-            return 0
-        room = len(buffer) - at
-        if at == 0:
-            count = self._uart.readinto(buffer, min(count, room)) or 0
-        else:
-            scratch = self._scratch
-            count = self._uart.readinto(scratch, min(count, room, len(scratch))) or 0
-            for index in range(count):
+        count = 0
+        scratch = self._scratch
+        while True:
+            came = min(self._uart.any(), len(scratch), len(buffer) - at)
+            came = self._uart.readinto(scratch, came) or 0 if came else 0
+            if not came:
+                break
+            for index in range(came):
                 buffer[at + index] = scratch[index]
+            at += came
+            count += came
+        if not count:
+            self._burst_ended = False
+            return 0
         if self._burst_ended:
             self._burst_ended = False
             self.received_at = self._burst_ended_at

@@ -18,6 +18,7 @@ from uss.timing import elapsed
 START_US = const(5_000_000)  # a drive that does not run by then is told to stop again
 CONFIRM_US = const(1_000_000)  # a STOP that is not confirmed by then is an alarm
 SLOWING_US = const(3_000_000)  # a drive that stops slows down at least once in this time ...
+ANSWERS_MIN = const(3)  # in a long list it takes time to be told so; so many answers must have come
 SLOWER = const(4)  # ... by so many steps of HIW: 0.012 Hz of 50 Hz, more than the word trembles
 
 
@@ -56,11 +57,10 @@ class Control:
         self._failures = 0
         # From STOP on.
         self._stopping = False  # the motor has still to come to rest
-        self._stopped_at = 0
-        self._off_answers = 0  # drive.off_answers then
         self._slowed = False  # it has been seen to slow down
-        self._slowed_at = 0
-        self._speed = 0  # |HIW| when it was, until then the highest since STOP
+        self._slowed_at = 0  # when that was last, at first the instant of STOP
+        self._off_answers = 0  # drive.off_answers then
+        self._speed = 0  # |HIW| then, at first the highest since STOP
 
     # --- what an operator does ------------------------------------------------------------------
 
@@ -92,14 +92,16 @@ class Control:
         self.notice = None
         self.lost_running = False
         self.stop_unconfirmed = False
-        self._stopping = True
-        self._stopped_at = self._now
-        self._off_answers = self.drive.off_answers
-        self._slowed = False
-        self._speed = 0
+        self._begin_watch(self._now)
 
     def change(self, centihertz):
-        """Move the setpoint by so much, within the limits of the drive and of the settings."""
+        """Move the setpoint by so much, within the limits of the drive and of the settings.
+
+        Not while a drive runs that does not tell its settings: what is shown is what is sent.
+        """
+        if self.drive.wanted and not self.survey.complete:
+            self.refusal = texts.REFUSED_CHECKING
+            return
         self._asked_centihertz = self._limited(self.setpoint_centihertz + centihertz)
         self._set_setpoint()
 
@@ -125,6 +127,8 @@ class Control:
             self._watch_start(now)
         if self._stopping:
             self._watch_stop(now)
+        elif self._runs_against_off():
+            self._begin_watch(now)
 
     def actual_centihertz(self):
         """The actual frequency with its sign, or None while it cannot be told."""
@@ -237,27 +241,45 @@ class Control:
                 self.drive.stop()
                 self.notice = texts.DID_NOT_START
 
+    def _runs_against_off(self):
+        """Whether a drive of this bus runs though nobody wants it to: it may not obey OFF1."""
+        return (
+            self.runs()
+            and not self.drive.wanted
+            and self.survey.complete
+            and not self._is_foreign(profiles.COMMAND_SOURCE)
+        )
+
+    def _begin_watch(self, now):
+        self._stopping = True
+        self._off_answers = self.drive.off_answers
+        self._slowed = False
+        self._slowed_at = now
+        self._speed = 0
+
     def _watch_stop(self, now):
         """A STOP is confirmed when the drive has answered OFF1 and slows down, again and again,
         until it does not run any more.
         """
         drive = self.drive
-        if drive.contact and drive.off_answers != self._off_answers:
+        answers = (drive.off_answers - self._off_answers) & 0xFFFF
+        if drive.contact and answers:
             if drive.state() != pzd.RUNNING:
                 self._stopping = False
                 self.stop_unconfirmed = False
                 return
             self._watch_speed(abs(pzd.signed(drive.hiw)), now)
-        since, patience_us = self._stopped_at, CONFIRM_US
-        if self._slowed:
-            since, patience_us = self._slowed_at, SLOWING_US
-        if elapsed(now, since, self._mask) >= patience_us:
+            if answers < ANSWERS_MIN:
+                return
+        patience_us = SLOWING_US if self._slowed else CONFIRM_US
+        if elapsed(now, self._slowed_at, self._mask) >= patience_us:
             self.stop_unconfirmed = True
 
     def _watch_speed(self, speed, now):
         if speed <= self._speed - SLOWER:
             self._slowed = True
             self._slowed_at = now
+            self._off_answers = self.drive.off_answers
             self._speed = speed
             self.stop_unconfirmed = False
         elif not self._slowed:

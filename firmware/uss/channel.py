@@ -40,16 +40,19 @@ class Channel:
         self._ended_pke = 0  # the job that ended last
         self._ended_ind = 0
 
+    def is_full(self):
+        """Whether `ask` would be refused for want of room."""
+        return (self._in + 1) % len(self._queue) == self._out
+
     def ask(self, job):
         """Queue a job. RuntimeError when JOBS_MAX wait already or it is pending."""
-        following = (self._in + 1) % len(self._queue)
-        if following == self._out:
+        if self.is_full():
             raise RuntimeError("%d jobs wait already" % JOBS_MAX)
         if job.state == pkw.PENDING:
             raise RuntimeError("%r is pending already" % (job,))
         job.state = pkw.PENDING
         self._queue[self._in] = job
-        self._in = following
+        self._in = (self._in + 1) % len(self._queue)
 
     # --- for the engine: allocates nothing ------------------------------------------------------
 

@@ -92,8 +92,9 @@ class Master:
             drive.telegram_us = self.timing.telegram_us(drive.net_count)
             longest_us = drive.telegram_us + self.timing.reply_timeout_us + drive.residual_us
             self.patience_us = max(self.patience_us, longest_us + BABBLE_US + STUCK_US)
-            self.drives.append(drive)
-        self.list.append(drive)
+            # New lists, because an interrupt may be walking the old ones.
+            self.drives = self.drives + [drive]
+        self.list = self.list + [drive]
         return drive
 
     def refresh(self, now):
@@ -199,6 +200,8 @@ class Master:
         self._drive = self._choose()
         if self._drive is None:
             self._get_on()
+            self._begin_rest(now)
+            self._quiet_since = now
             return DEAD_MAN_US
         self._send(now)
         return 0

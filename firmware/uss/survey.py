@@ -89,6 +89,8 @@ class Survey:
             self._words[2 * row] = UNKNOWN
 
     def _ask(self):
+        if self.drive.channel.is_full():
+            return  # others ask as well: later
         number, index, _ = profiles.SURVEY[self._row]
         self._job.aim(pkw.READ, number, index)
         self.drive.ask(self._job)
