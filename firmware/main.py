@@ -1,7 +1,7 @@
 """Starts the panel on the board it finds.
 
 DOWN held at power-on leaves the chip at the prompt instead. So does Ctrl-C, after every drive has
-been stopped.
+been stopped; but the watchdog, once it runs, cannot be stopped and restarts the chip 2 s later.
 """
 
 from app import App

@@ -109,6 +109,30 @@ def test_a_file_that_is_no_text_is_refused(tmp_path):
     assert ended.returncode == 2 and "Traceback" not in ended.stderr
 
 
+def test_standard_input_that_is_no_text_is_refused():
+    ended = subprocess.run(
+        [PANEL, "--script", "-"], input=b"wait 10\n\xff\xfe\n", capture_output=True, check=False
+    )
+    assert ended.returncode == 2 and b"is no text" in ended.stderr
+
+
+def test_a_full_disk_is_said():
+    with open("/dev/full", "w") as full:
+        ended = subprocess.run(
+            [PANEL, "--script", "-"],
+            input="wait 1000\nlcd\n", stdout=full, stderr=subprocess.PIPE, text=True, check=False,
+        )  # fmt: skip
+    assert ended.returncode == 1 and "input or output failed" in ended.stderr
+    assert "Traceback" not in ended.stderr
+
+
+def test_a_byte_order_mark_and_the_line_ends_of_other_systems_do_not_matter(tmp_path):
+    script = tmp_path / "notepad.txt"
+    script.write_bytes(b"\xef\xbb\xbfwait 1000\r\nexpect READY\r\n")
+    ended = panel("--script", str(script))
+    assert (ended.returncode, ended.stderr) == (0, "")
+
+
 def test_without_a_script_and_without_a_terminal_it_says_so():
     ended = panel()
     assert ended.returncode == 2
@@ -166,9 +190,10 @@ def test_in_a_terminal_it_takes_commands_from_the_keyboard():
     for typed, said in (
         ("press START\n", "|STARTING     A1 |"),
         ("wait 3000\n", "|RUNNING      A1 |"),
-        ("jump\n", "unknown command jump"),
+        ("jump\n", "keyboard:3: unknown command jump"),
         ("expect STOPPING\n", "expected STOPPING"),
         ("lcd\n", "|S: 10.0 F: 10.00|"),
+        ("help\n", "hold KEY MS"),
     ):
         terminal.type(typed)
         assert said in terminal.read("> "), terminal.shown

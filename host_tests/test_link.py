@@ -162,8 +162,32 @@ def test_a_transmitter_that_never_ends_does_not_keep_the_line():
 
 
 def test_the_driver_is_off_before_anything_is_sent():
+    clock = Clock()
+    chip = Chip(clock, Wire(clock, 19200))
+    driver_enable = Pin(chip, 1)  # left on by somebody
+    Rs485Link(UART(chip, 19200), driver_enable, HardTimer(chip), clock, 19200)
+    assert driver_enable.value() == 0
+
+
+def test_a_burst_that_somebody_drained_does_not_date_the_next_one():
     bench = Bench()
-    assert bench.driver_enable.value() == 0
+    bench.wire.talk(bench.neighbour, REQUEST, len(REQUEST))
+    bench.clock.advance(20_000)
+    bench.uart.readinto(bytearray(32))
+    assert bench.link.receive(bytearray(260), 0) == 0
+    burst = bench.wire.talk(bench.neighbour, REQUEST, len(REQUEST))
+    bench.clock.advance(9_300)  # before the interrupt that ends it
+    assert bench.link.receive(bytearray(260), 0) == 16
+    assert bench.link.received_at >= burst.end_us
+
+
+def test_the_longest_telegram_is_delivered_whole():
+    bench = Bench()
+    bench.wire.talk(bench.neighbour, bytes(256), 256)
+    bench.clock.advance(160_000)
+    buffer = bytearray(264)
+    assert bench.link.receive(buffer, 2) == 256
+    bench.check()
 
 
 def test_a_closed_link_is_quiet():

@@ -71,6 +71,15 @@ def test_ctrl_c_again_and_again_does_not_keep_the_drives_from_being_stopped():
     assert world.wire.log.count == sent
 
 
+def test_ctrl_c_stops_a_drive_that_runs_before_anything_else_ends():
+    switch = Switch(ends_after_ms=4000)
+    world = switch.world
+    world.clock.schedule(Event(lambda: world.down("START")), world.clock.now_us + 1_500_000)
+    assert isinstance(switch.power_on(), KeyboardInterrupt)
+    assert world.drives[1].state == "stopping"
+    world.check()
+
+
 def test_down_held_at_power_on_leaves_the_chip_at_the_prompt():
     switch = Switch(held="DOWN")
     assert switch.power_on() is None

@@ -142,6 +142,26 @@ def test_ctrl_c_inside_the_engine_goes_on_its_way_and_the_engine_too():
     raise AssertionError("Ctrl-C got lost")
 
 
+def test_ctrl_c_that_lands_in_an_interrupt_reaches_the_main_loop():
+    """The handler must not raise: MicroPython would disable it for good."""
+    bench = Bench()
+
+    def interrupted():
+        bench.engine.meanwhile = None
+        raise KeyboardInterrupt
+
+    bench.engine.meanwhile = interrupted
+    bench.timer.callback(bench.timer)
+    bench.link.on_activity()
+    assert bench.engine.entries == 3
+    try:
+        bench.pacer.tend()
+    except KeyboardInterrupt:
+        bench.pacer.tend()
+        return
+    raise AssertionError("Ctrl-C got lost")
+
+
 def test_a_timer_that_cannot_be_set_is_tried_again_by_the_main_loop():
     bench = Bench()
     init = bench.timer.init

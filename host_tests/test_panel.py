@@ -5,6 +5,7 @@ Everything runs on the virtual board, in virtual time, with the same firmware as
 
 import main
 from boards.sim.world import World
+from uss import pkw
 
 
 def panel(**options):
@@ -145,9 +146,9 @@ def test_a_key_that_is_held_repeats_and_soon_moves_faster():
     assert row_1(world).startswith("S: 10.1")  # 400 ms before the first repeat
     world.press("UP", 60)
     world.run(100)
-    world.press("UP", 1500)  # the press, then repeats each 120 ms, the ninth on in steps of 1 Hz
+    world.press("UP", 1480)  # the press, 8 repeats of 0.1 Hz, and the ninth of 1 Hz
     world.run(60)
-    assert row_1(world).startswith("S: 13.1") or row_1(world).startswith("S: 12.1"), row_1(world)
+    assert row_1(world).startswith("S: 12.1"), row_1(world)
     world.check()
 
 
@@ -205,13 +206,19 @@ def test_stop_beats_start():
 
 
 def test_stop_is_in_the_next_telegram_but_one_at_the_latest():
-    """STOP pressed to OFF on the line: debounce and two exchanges, whoever else is in the list."""
-    world = running(addresses=(1, 2, 3, 4, 5, 6))
-    pressed_us = world.clock.now_us
-    world.press("STOP")
-    offs = [at_us for at_us, stw in telegrams(world, pressed_us, 1) if stw == OFF1]
+    """STOP pressed to OFF on the line: debounce and two exchanges, with 31 drives in the list."""
+    world = panel(addresses=tuple(range(1, 32)))
+    world.run(8000)
     exchange_us = 2 * 9167 + 2 * 1719
-    assert offs and offs[0] - pressed_us <= 25_000 + 2 * exchange_us, offs[:1]
+    for offset_ms in range(0, 44, 4):
+        world.press("START")
+        world.run(1000 + offset_ms)
+        assert row_2(world) == "RUNNING      A1"
+        pressed_us = world.clock.now_us
+        world.press("STOP")
+        offs = [at_us for at_us, stw in telegrams(world, pressed_us, 1) if stw == OFF1]
+        assert offs and offs[0] - pressed_us <= 24_000 + 2 * exchange_us, offs[:1]
+        world.run(1000)
     world.check()
 
 
@@ -327,10 +334,53 @@ def test_a_stop_that_nobody_confirms_is_an_alarm():
 def test_a_stop_that_the_drive_does_not_obey_is_an_alarm():
     """Somebody has taken the drive away from this bus while it ran."""
     world = running()
-    world.drives[1].write(700, 0, 2)
+    words = world.drives[1]._process.words
+    world.drives[1]._process.words = lambda count: [0xFB34, 0x0CCD]  # it runs on and says so
     world.press("STOP")
-    world.run(1500)
-    assert (row_2(world) == "STOP UNCONFIRMED") == (world.drives[1].hz() > 9.9)
+    world.run(800)
+    assert row_2(world) == "STOPPING     A1"
+    world.run(300)
+    assert row_2(world) == "STOP UNCONFIRMED"
+    world.drives[1]._process.words = words
+    world.run(5000)
+    assert row_2(world) == "READY        A1"
+    world.check()
+
+
+def test_an_off1_that_nobody_pressed_is_watched_as_well():
+    """The dead man has sent it, and the drive does not obey."""
+    world = running()
+    world.drives[1]._process.words = lambda count: [0xFB34, 0x0CCD]
+    world.hang(1000)
+    world.run(2500)
+    assert row_2(world) == "STOP UNCONFIRMED"
+
+
+def test_an_answer_from_before_stop_confirms_nothing():
+    """The drive stands still and answers; it is unplugged, STOP is pressed."""
+    world = panel()
+    world.drives[1].unplug()
+    world.run(100)
+    world.press("STOP")
+    world.run(700)
+    assert world.app.bus.drives[0].contact
+    world.run(400)
+    assert row_2(world) == "STOP UNCONFIRMED"
+
+
+def test_a_long_list_is_no_reason_for_an_alarm():
+    """Eight drives at 1200 baud: it takes seconds until a drive has told that it slows down."""
+    addresses = (1, 2, 3, 4, 5, 6, 7, 8)
+    world = panel(addresses=addresses, baud=1200)
+    world.drives[1].write(1121, 0, 30.0)
+    world.run(60_000)
+    world.press("START")
+    world.run(20_000)
+    assert world.drives[1].state == "running"
+    world.press("STOP")
+    while world.drives[1].state == "stopping" or row_2(world) == "STOPPING     A1":
+        world.run(100)
+        assert row_2(world) != "STOP UNCONFIRMED"
     world.check()
 
 
@@ -381,8 +431,8 @@ def test_stop_is_repeated_until_the_drive_hears_it():
     world.drives[1].unplug()
     world.press("STOP")
     world.run(3000)
-    for _, stw in telegrams(world, world.clock.now_us - 2_900_000, 1):
-        assert stw == OFF1
+    stws = [stw for _, stw in telegrams(world, world.clock.now_us - 2_900_000, 1)]
+    assert len(stws) > 50 and set(stws) == {OFF1}
     world.drives[1].plug()
     world.run(8000)
     assert world.drives[1].hz() == 0
@@ -426,9 +476,14 @@ def test_another_address_starts_and_stops_nothing():
     assert world.drives[1].state == "running" and abs(world.drives[1].hz() - 10) < 0.01
     assert starts(world, 2) == 0
     world.press("ADDRESS_DOWN")
+    world.run(100)
+    assert row_2(world) == "RUNNING      A1"
     world.press("ADDRESS_DOWN")  # the list goes round
     world.run(100)
-    assert starts(world, 5) == 0 and starts(world, 1) == 1
+    assert world.app.panel.selected.drive.address == 5
+    world.press("ADDRESS_UP")
+    assert world.app.panel.selected.drive.address == 1
+    assert starts(world, 5) == 0 and starts(world, 2) == 0 and starts(world, 1) == 1
     world.check()
 
 
@@ -543,6 +598,118 @@ def test_start_asks_the_drive_what_the_setpoint_means():
             assert world.drives[1].hz() < 10.1
         assert abs(world.drives[1].hz() - 10) < 0.1
         world.check()
+
+
+def test_a_start_that_waited_through_a_hang_is_void():
+    world = panel()
+    world.drives[1].stale_replies = 30  # it takes its time to tell its settings
+    world.press("START")
+    assert row_2(world) == "STARTING     A1"
+    world.hang(400)
+    world.drives[1].stale_replies = 0
+    world.run(3000)
+    assert row_2(world) == "PANEL HUNG   A1" and starts(world) == 0
+    world.check()
+
+
+def test_a_start_of_which_the_drive_changes_its_mind_is_taken_back():
+    """P0700 is changed after ON has been sent and before the motor turns."""
+    world = panel()
+    world.drives[1].write(10, 0, 1)  # it does not start yet
+    world.press("START")
+    world.run(500)
+    assert row_2(world) == "STARTING     A1"
+    world.drives[1].write(700, 0, 2)
+    world.run(2500)
+    assert row_2(world) == "NOT STARTED  A1"
+    world.check()
+
+
+def test_the_settings_of_a_drive_that_was_away_are_read_anew():
+    world = panel()
+    world.drives[1].unplug()
+    world.run(2000)
+    world.drives[1].write(700, 0, 2)
+    world.drives[1].plug()
+    survey = world.app.panel.selected.survey
+    while not world.app.bus.drives[0].contact:
+        world.run(2)
+    world.run(4)
+    assert not survey.complete and survey.scaling is None
+    world.run(1500)
+    assert row_2(world) == "LOCAL        A1"
+    world.check()
+
+
+def test_a_drive_that_runs_on_other_commands_is_said_to():
+    world = running()
+    world.drives[1].write(700, 0, 2)
+    world.drives[1]._process.words = lambda count: [0xFB34, 0x0CCD]
+    world.reset()
+    world.run(4000)
+    assert row_2(world) == "RUNS LOCALLY A1"
+
+
+def test_the_setpoint_is_never_more_than_its_word_can_say():
+    world = panel(settings={"setpoint_centihertz": 60_000})
+    world.drives[1].write(1082, 0, 650.0)
+    world.drives[1].write(2000, 0, 10.0)
+    world.run(3000)
+    assert row_1(world).startswith("S: 20.0")  # 19.99 Hz
+    world.drives[1].write(2009, 0, 1)
+    world.run(3000)
+    assert row_1(world).startswith("S:327.7")
+    world.check()
+
+
+def test_the_setpoint_stays_within_the_limits_of_the_settings():
+    world = panel(settings={"lowest_centihertz": 900, "highest_centihertz": 1100})
+    world.press("UP", 3000)
+    assert row_1(world).startswith("S: 11.0")
+    world.press("DOWN", 3000)
+    assert row_1(world).startswith("S:  9.0")
+    world.check()
+
+
+def test_the_setpoint_does_not_move_while_it_cannot_be_sent():
+    """A drive that stops telling its settings while it runs: what is shown is what is sent."""
+    world = running()
+    parameters = world.drives[1]._parameters
+    parameters.rows = {row: parameters.rows[row] for row in parameters.rows if row != 1080}
+    world.run(3000)
+    world.press("UP")
+    assert row_1(world) == "S: 10.0 F: 10.00" and row_2(world) == "NO: STILL CHECKS"
+    world.check()
+
+
+def test_the_time_after_which_a_drive_is_lost_is_that_of_the_settings():
+    for lost_ms in (300, 3000):
+        world = panel(settings={"lost_ms": lost_ms})
+        world.drives[1].unplug()
+        world.run(lost_ms - 100)
+        assert world.app.bus.drives[0].contact and row_2(world) != "NO CONTACT   A1"
+        world.run(300)
+        assert row_2(world) == "NO CONTACT   A1"
+
+
+def test_the_wait_for_a_reply_is_that_of_the_settings():
+    for reply_timeout_ms, text in ((20, "NO CONTACT   A1"), (60, "READY        A1")):
+        world = World(main.start, settings={"reply_timeout_ms": reply_timeout_ms})
+        world.drives[1].reply_delay_us = 45_000
+        world.run(3000)
+        assert row_2(world) == text
+
+
+def test_other_parameter_jobs_do_not_disturb_the_panel():
+    """An own program fills the queue of the drive."""
+    world = panel()
+    drive = world.app.bus.drives[0]
+    for _ in range(50):
+        while not drive.channel.is_full():
+            drive.ask(pkw.read(1120))
+        world.run(20)
+    assert row_2(world) == "READY        A1"
+    world.check()
 
 
 def test_start_is_not_obeyed_late():
@@ -698,8 +865,8 @@ def test_a_drive_that_trips_does_not_start_again_when_the_fault_is_gone():
     world.drives[1].fault(1)
     world.run(500)
     assert row_2(world) == "FAULT        A1"
-    for _, stw in telegrams(world, world.clock.now_us - 300_000, 1):
-        assert stw == OFF1
+    stws = [stw for _, stw in telegrams(world, world.clock.now_us - 300_000, 1)]
+    assert len(stws) > 5 and set(stws) == {OFF1}
     world.drives[1].power_off()
     world.run(3000)
     world.drives[1].power_on()
@@ -802,7 +969,7 @@ def test_a_main_loop_that_hangs_stops_the_motor_within_400_ms():
         hung_us = world.clock.now_us
         world.hang(2000)
         offs = [at_us for at_us, stw in telegrams(world, hung_us, 1) if stw == OFF1]
-        assert offs and offs[0] - hung_us <= 400_000, offs[:1]
+        assert offs and 298_000 < offs[0] - hung_us <= 350_000, offs[:1]  # 400 ms is the promise
         after = [stw for at_us, stw in telegrams(world, offs[0], 1)]
         assert ON not in after
         world.run(12000)
@@ -933,6 +1100,8 @@ def test_a_reset_in_the_middle_of_a_telegram_blocks_nothing():
         world.reset()
         world.run(8000)
         assert row_2(world) == "READY        A1" and starts(world) == 1
+        cut = [text for text in world.wire.violations if "driver" not in text]
+        assert not cut, cut
 
 
 def test_an_error_in_the_program_stops_the_drives_first():

@@ -58,12 +58,14 @@ def test_keys_are_tapped_held_and_let_go():
     assert session.do("lcd")[0].startswith("|S: 10.7")
 
 
-def test_a_press_takes_100_ms():
+def test_a_press_holds_the_key_for_100_ms_and_lets_it_go():
     session = Session()
     session.do("wait 1000")
     before_us = session.world.clock.now_us
-    session.do("press STOP")
-    assert 100_000 <= session.world.clock.now_us - before_us < 104_000
+    session.do("press UP")
+    assert 140_000 <= session.world.clock.now_us - before_us < 146_000
+    session.do("press UP", "press UP", "wait 60")  # one right after the other
+    assert session.do("lcd")[0].startswith("|S: 10.3")
 
 
 def test_bus_shows_the_last_telegrams():
@@ -129,6 +131,7 @@ def test_what_cannot_be_understood_names_script_and_line_and_does_nothing():
         ("press start", "no key start"),
         ("press START 100", "use: press KEY"),
         ("hold UP", "use: hold KEY MS"),
+        ("hold UP 0", "1 millisecond at the least"),
         ("wait", "use: wait MS"),
         ("wait soon", "soon is no number of milliseconds"),
         ("wait -5", "-5 is no number of milliseconds"),
@@ -148,6 +151,8 @@ def test_what_cannot_be_understood_names_script_and_line_and_does_nothing():
         ("param 1 P2000 nan", "nan is no number"),
         ("fault 1 1", "1 is no fault"),
         ("fault 1 Fx", "Fx is no fault"),
+        ("fault 1 F0000", "F0000 is no fault"),
+        ("fault 1 F10000", "F10000 is no fault"),
         ("expect", "use: expect TEXT"),
         ("bus", "use: bus N"),
         ("bus all", "all is no number"),

@@ -26,6 +26,7 @@ except ImportError:  # MicroPython's os has none: asking for the terminal's sett
         return True
 
 
+BYTE_ORDER_MARK = "\ufeff"  # some editors begin a text with it
 EPIPE = 32  # not in MicroPython's errno
 FAILED = 1
 NOT_UNDERSTOOD = 2
@@ -39,6 +40,7 @@ usage: ./tools/panel [--script FILE|-] [--drives 1,2,5] [--baud 19200] [--seed N
   --baud RATE     baud rate of the line (19200)
   --seed N        other reply delays and loop times; 0 is the plain world (0)
   --polled        no receive interrupt: the link is polled
+The simulated drive knows the rates from 1200 to 115200.
 Without --script, in a terminal: commands from the keyboard; the display is shown after each."""
 
 
@@ -117,7 +119,7 @@ def lines_of(name):
         return standard_input()
     try:
         with open(name) as script:
-            return script.read().split("\n")
+            return script.read().lstrip(BYTE_ORDER_MARK).split("\n")
     except OSError as error:
         raise UsageError("--script %s: cannot be read (%s)" % (name, error))
     except UnicodeError:
@@ -126,7 +128,10 @@ def lines_of(name):
 
 def standard_input():
     while True:
-        line = sys.stdin.readline()
+        try:
+            line = sys.stdin.readline()
+        except UnicodeError:
+            raise UsageError("standard input is no text")
         if not line:
             return
         yield line
@@ -136,10 +141,14 @@ def run_script(world, name):
     Script(world, "standard input" if name == "-" else name).run(lines_of(name))
 
 
+def print_commands():
+    print("Commands: %s; help; quit" % "; ".join(COMMANDS[name][0] for name in ORDER))
+
+
 def run_terminal(world):
     """Commands from the keyboard until the end of input; what is wrong is said, nothing ends."""
     print("USS panel on the virtual board. Time passes only while a command does.")
-    print("Commands: %s" % "; ".join(COMMANDS[name][0] for name in ORDER))
+    print_commands()
     script = Script(world, "keyboard")
     script.do("wait 1000")
     script.do("lcd")
@@ -150,10 +159,16 @@ def run_terminal(world):
         if not line:
             print()
             return
+        words = line.split()
+        if words == ["quit"]:
+            return
         try:
-            script.do(line)
-            if line.split()[:1] != ["lcd"]:
-                script.do("lcd")
+            if words == ["help"]:
+                print_commands()
+            else:
+                script.run([line])
+                if words[:1] != ["lcd"]:
+                    script.do("lcd")
         except (ScriptError, ExpectationFailed) as error:
             print(error)
 
@@ -182,9 +197,9 @@ def panel(words):
     except KeyboardInterrupt:
         return complain("ended by Ctrl-C", INTERRUPTED)
     except OSError as error:
-        if error.errno != EPIPE:
-            raise
-        return FAILED  # whoever read the output has gone
+        if error.errno == EPIPE:
+            return FAILED  # whoever read the output has gone
+        return complain("input or output failed: %s" % error, FAILED)
     return 0
 
 

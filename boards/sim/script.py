@@ -8,6 +8,8 @@ The commands are the table COMMANDS. A line that cannot be understood is a Scrip
 script and line; an expectation that fails is an ExpectationFailed that shows the display.
 """
 
+FAULT_MAX = 9999
+
 
 class ScriptError(Exception):
     """A line that is no command. Text: script:line: what is wrong."""
@@ -97,6 +99,12 @@ def milliseconds(world, word):
     return int(word)
 
 
+def held_milliseconds(world, word):
+    if milliseconds(world, word) < 1:
+        raise ValueError("a key is held for 1 millisecond at the least")
+    return int(word)
+
+
 def count(world, word):
     if not word.isdigit():
         raise ValueError("%s is no number" % word)
@@ -127,7 +135,7 @@ def value(world, word):
 
 
 def fault(world, word):
-    if word[:1] != "F" or not word[1:].isdigit():
+    if word[:1] != "F" or not word[1:].isdigit() or not 0 < int(word[1:]) <= FAULT_MAX:
         raise ValueError("%s is no fault like F0001" % word)
     return int(word[1:])
 
@@ -143,7 +151,7 @@ def parameter_name(number, index):
 # Command: usage, readers of its arguments, how many of the last may be left out, what it does.
 COMMANDS = {
     "press": ("press KEY", (key,), 0, lambda do, key: do.world.press(key)),
-    "hold": ("hold KEY MS", (key, milliseconds), 0, lambda do, key, ms: do.world.press(key, ms)),
+    "hold": ("hold KEY MS", (key, held_milliseconds), 0, lambda do, key, ms: do.world.press(key, ms)),
     "down": ("down KEY", (key,), 0, lambda do, key: do.world.down(key)),
     "up": ("up KEY", (key,), 0, lambda do, key: do.world.up(key)),
     "wait": ("wait MS", (milliseconds,), 0, lambda do, ms: do.world.run(ms)),

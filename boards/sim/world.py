@@ -20,6 +20,7 @@ from boards.sim.wire import Wire
 
 BOOT_US = 100_000  # from reset to the first step of the firmware
 TAP_MS = 100
+RELEASE_MS = 40  # a key that was let go is up for so long before the hand is at the next one
 HANG_SLICE_US = 1_000
 COMPLAINTS_SHOWN = 5
 
@@ -96,9 +97,11 @@ class World:
     # --- a hand and an eye ----------------------------------------------------------------------
 
     def press(self, key, ms=TAP_MS):
+        """Hold a key down for `ms` milliseconds, let it go, and let that be noticed."""
         self.down(key)
         self.run(ms)
         self.up(key)
+        self.run(RELEASE_MS)
 
     def down(self, key):
         self.keypad.hold(key)

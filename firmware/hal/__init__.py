@@ -12,7 +12,8 @@ board
     name                text, at most 16 characters
     clock               see below
     display, keypad, store, watchdog   see below
-    timer               a machine.Timer of its own for the bus; None: the main loop paces it
+    timer               a machine.Timer of its own for the bus; None: the main loop paces it, and
+                        while that hangs nothing stops the drives before the watchdog does
     make_link(baud)     builds the link for that baud rate; called once
     idle()              end of a step of the main loop: lets the machine work, 2 ms at most
     disable_irq() -> state, enable_irq(state)    as in `machine`
@@ -49,7 +50,8 @@ display
 
 keypad
     names               names of the keys, in the order of their bits: "START", "STOP", ...
-    read() -> int       the keys that are down now, as bits. A reading that is ambiguous is 0.
+    read() -> int       the keys that are down now, as bits. Of an ambiguous reading of a matrix
+                        none; keys with a pin of their own, STOP first of all, stay.
 
 store                   keeps one small file over power cuts
     read() -> bytes or None

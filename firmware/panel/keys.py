@@ -1,6 +1,6 @@
 """From the keys that are down now to what an operator did: pressed, repeated.
 
-    keys = Keys(keypad.names)
+    keys = Keys(keypad.names, clock.ticks_mask)
     keys.update(keypad.read(), clock.ticks_ms())
     if keys.pressed & keys.bit("START"): ...
 

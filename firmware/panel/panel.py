@@ -1,6 +1,6 @@
 """The panel: keys that act on every page, which drive is selected, which page is shown.
 
-    panel = Panel(controls, keys, settings, mask)
+    panel = Panel(controls, bus, keypad.names, settings, clock.ticks_mask)
     panel.step(keypad.read(), now_ms, now_us)      # each step of the loop
     display.show(panel.screen.picture)
 

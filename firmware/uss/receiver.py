@@ -5,7 +5,7 @@ as it knows. The receiver puts them together, watches the response delay and the
 (specification A-5.2.1), and has `telegram.judge` look at the result. It keeps nothing after an
 error: `open` begins anew each time.
 
-    receiver.open(address, net_count, sent_at)      # the request has just left
+    receiver.open(address, net_count, residual_us, sent_at)     # the request has just left
     finding = receiver.take(link, now)              # WAITING until there is something to say
 """
 

@@ -5,7 +5,7 @@ parameter channel. It reads the rows of `profiles.SURVEY` at once when contact i
 every REREAD_US from then on, so that a change made at the drive itself is noticed. What was known
 is forgotten when contact is lost. `recheck` has all of it read again at once, ahead of the list.
 
-    survey = Survey(drive)
+    survey = Survey(drive, clock.ticks_mask)
     survey.step(now)                # each step of the loop
     if survey.complete: survey.scaling.hsw(1000)
     survey.recheck()                # before a START; survey.unchecked counts down to 0
@@ -103,7 +103,7 @@ class Survey:
         if job.state != pkw.DONE:
             self.values[row] = UNKNOWN
             self._words[2 * row] = UNKNOWN
-            self.unreadable = True
+            self.unreadable = job.state == pkw.REFUSED
             self._judge()
         elif job.high != self._words[2 * row] or job.low != self._words[2 * row + 1]:
             self._words[2 * row] = job.high
