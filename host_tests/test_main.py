@@ -80,6 +80,18 @@ def test_ctrl_c_stops_a_drive_that_runs_before_anything_else_ends():
     world.check()
 
 
+def test_a_drive_that_does_not_answer_does_not_keep_the_program_from_ending():
+    switch = Switch(ends_after_ms=4000)
+    world = switch.world
+    world.clock.schedule(Event(lambda: world.down("START")), world.clock.now_us + 1_500_000)
+    world.clock.schedule(Event(world.drives[1].unplug), switch.end_us - 20_000)
+    assert isinstance(switch.power_on(), KeyboardInterrupt)
+    assert world.clock.now_us - switch.end_us < 1_500_000
+    sent = world.wire.log.count
+    world.clock.advance(1_000_000)
+    assert world.wire.log.count == sent
+
+
 def test_down_held_at_power_on_leaves_the_chip_at_the_prompt():
     switch = Switch(held="DOWN")
     assert switch.power_on() is None

@@ -99,7 +99,7 @@ def milliseconds(world, word):
     return int(word)
 
 
-def held_milliseconds(world, word):
+def duration(world, word):
     if milliseconds(world, word) < 1:
         raise ValueError("a key is held for 1 millisecond at the least")
     return int(word)
@@ -151,7 +151,7 @@ def parameter_name(number, index):
 # Command: usage, readers of its arguments, how many of the last may be left out, what it does.
 COMMANDS = {
     "press": ("press KEY", (key,), 0, lambda do, key: do.world.press(key)),
-    "hold": ("hold KEY MS", (key, held_milliseconds), 0, lambda do, key, ms: do.world.press(key, ms)),
+    "hold": ("hold KEY MS", (key, duration), 0, lambda do, key, ms: do.world.press(key, ms)),
     "down": ("down KEY", (key,), 0, lambda do, key: do.world.down(key)),
     "up": ("up KEY", (key,), 0, lambda do, key: do.world.up(key)),
     "wait": ("wait MS", (milliseconds,), 0, lambda do, ms: do.world.run(ms)),

@@ -12,14 +12,11 @@ The rules that keep a motor from starting by surprise and a STOP from getting lo
 from micropython import const
 
 from panel import texts
+from panel.stop_watch import StopWatch
 from uss import profiles, pzd
 from uss.timing import elapsed
 
 START_US = const(5_000_000)  # a drive that does not run by then is told to stop again
-CONFIRM_US = const(1_000_000)  # a STOP that is not confirmed by then is an alarm
-SLOWING_US = const(3_000_000)  # a drive that stops slows down at least once in this time ...
-ANSWERS_MIN = const(3)  # in a long list it takes time to be told so; so many answers must have come
-SLOWER = const(4)  # ... by so many steps of HIW: 0.012 Hz of 50 Hz, more than the word trembles
 
 
 class Control:
@@ -29,7 +26,7 @@ class Control:
 
     Fields for a page: `setpoint_centihertz`; `refusal`, why START was not obeyed, to be shown
     once; `notice`, why the drive is not on any more, or None; `lost_running`, it was running when
-    contact was lost and nobody has acknowledged that; `stop_unconfirmed`.
+    contact was lost and nobody has acknowledged that; `stop_watch`, whether a STOP is obeyed.
     """
 
     def __init__(self, drive, survey, bus, mask, settings):
@@ -39,7 +36,7 @@ class Control:
         self.refusal = None
         self.notice = None
         self.lost_running = False
-        self.stop_unconfirmed = False
+        self.stop_watch = StopWatch(drive, mask)
         self._bus = bus
         self._mask = mask
         self._now = 0
@@ -55,12 +52,6 @@ class Control:
         self._contacts = 0  # drive.contacts, bus.dead_man_trips and bus.failures then
         self._dead_man_trips = 0
         self._failures = 0
-        # From STOP on.
-        self._stopping = False  # the motor has still to come to rest
-        self._slowed = False  # it has been seen to slow down
-        self._slowed_at = 0  # when that was last, at first the instant of STOP
-        self._off_answers = 0  # drive.off_answers then
-        self._speed = 0  # |HIW| then, at first the highest since STOP
 
     # --- what an operator does ------------------------------------------------------------------
 
@@ -91,8 +82,7 @@ class Control:
         self._checking = False
         self.notice = None
         self.lost_running = False
-        self.stop_unconfirmed = False
-        self._begin_watch(self._now)
+        self.stop_watch.begin(self._now)
 
     def change(self, centihertz):
         """Move the setpoint by so much, within the limits of the drive and of the settings.
@@ -125,10 +115,9 @@ class Control:
             drive.stop()
         elif drive.is_on():
             self._watch_start(now)
-        if self._stopping:
-            self._watch_stop(now)
-        elif self._runs_against_off():
-            self._begin_watch(now)
+        if not self.stop_watch.active and self._runs_against_off():
+            self.stop_watch.begin(now)
+        self.stop_watch.step(now)
 
     def actual_centihertz(self):
         """The actual frequency with its sign, or None while it cannot be told."""
@@ -217,8 +206,7 @@ class Control:
         else:
             self._started_at = now
             self._ran = False
-            self._stopping = False
-            self.stop_unconfirmed = False
+            self.stop_watch.end()
             self.drive.start(self.drive.hsw)
 
     def _why_stopped(self):
@@ -249,41 +237,6 @@ class Control:
             and self.survey.complete
             and not self._is_foreign(profiles.COMMAND_SOURCE)
         )
-
-    def _begin_watch(self, now):
-        self._stopping = True
-        self._off_answers = self.drive.off_answers
-        self._slowed = False
-        self._slowed_at = now
-        self._speed = 0
-
-    def _watch_stop(self, now):
-        """A STOP is confirmed when the drive has answered OFF1 and slows down, again and again,
-        until it does not run any more.
-        """
-        drive = self.drive
-        answers = (drive.off_answers - self._off_answers) & 0xFFFF
-        if drive.contact and answers:
-            if drive.state() != pzd.RUNNING:
-                self._stopping = False
-                self.stop_unconfirmed = False
-                return
-            self._watch_speed(abs(pzd.signed(drive.hiw)), now)
-            if answers < ANSWERS_MIN:
-                return
-        patience_us = SLOWING_US if self._slowed else CONFIRM_US
-        if elapsed(now, self._slowed_at, self._mask) >= patience_us:
-            self.stop_unconfirmed = True
-
-    def _watch_speed(self, speed, now):
-        if speed <= self._speed - SLOWER:
-            self._slowed = True
-            self._slowed_at = now
-            self._off_answers = self.drive.off_answers
-            self._speed = speed
-            self.stop_unconfirmed = False
-        elif not self._slowed:
-            self._speed = max(self._speed, speed)
 
     def _limited(self, centihertz):
         values = self.survey.values

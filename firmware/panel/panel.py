@@ -145,7 +145,7 @@ class Panel:
         for control in self.controls:
             if control is self.selected:
                 continue
-            if control.stop_unconfirmed:
+            if control.stop_watch.unconfirmed:
                 rank, text = 3, texts.OTHER_UNCONFIRMED
             elif control.lost_running:
                 rank, text = 2, texts.OTHER_LOST

@@ -190,9 +190,6 @@ class Master:
         if self._closing:
             self.phase = CLOSED
             return 0
-        left_us = self._link.sending_us(now)  # only after an exception
-        if left_us > 0 and elapsed(now, self._resting_since, self._mask) < BABBLE_US:
-            return max(left_us, self.timing.character_us)
         self._heard_something()
         left_us = self._rest_us - elapsed(now, self._quiet_since, self._mask)
         if left_us > 0 and elapsed(now, self._resting_since, self._mask) < BABBLE_US:

@@ -52,7 +52,7 @@ class Home:
 
     def _draw_row_2(self, screen, control, now_ms):
         panel = self._panel
-        if control.stop_unconfirmed:
+        if control.stop_watch.unconfirmed:
             screen.put(1, 0, texts.ROW_WIDTH, texts.STOP_UNCONFIRMED)
         elif control.lost_running:
             self._draw_state(screen, texts.MAY_RUN)

@@ -1,0 +1,78 @@
+"""Whether a STOP is obeyed: the drive has answered OFF1, slows down, and comes to rest.
+
+An answer alone says that OFF1 was heard, not that it is obeyed: a drive that takes its commands
+from elsewhere answers as well. So its speed is watched until the motor stands still.
+
+    watch = StopWatch(drive, mask)
+    watch.begin(now)                # OFF1 is being sent
+    watch.step(now)                 # each step of the loop
+    watch.unconfirmed               # an alarm
+"""
+
+from micropython import const
+
+from uss import pzd
+from uss.timing import elapsed
+
+CONFIRM_US = const(1_000_000)  # a STOP that is not confirmed by then is an alarm
+SLOWING_US = const(3_000_000)  # from then on the drive slows down once in this time at the least,
+SLOWER = const(4)  # by so many steps of HIW: 0.012 Hz of 50 Hz, more than the word trembles
+ANSWERS_MIN = const(3)  # so many answers must have come to judge by: long lists take their time
+
+
+class StopWatch:
+    """drive: a `uss.drive.Drive`. mask: of the clock.
+
+    `active`: the motor has still to come to rest. `unconfirmed`: it should have said so by now, or
+    does not slow down.
+    """
+
+    def __init__(self, drive, mask):
+        self.active = False
+        self.unconfirmed = False
+        self._drive = drive
+        self._mask = mask
+        self._slowed = False  # it has been seen to slow down
+        self._slowed_at = 0  # when that was last, at first when the watch began
+        self._off_answers = 0  # drive.off_answers then
+        self._speed = 0  # |HIW| then, at first the highest since the watch began
+
+    def begin(self, now):
+        self.active = True
+        self.unconfirmed = False
+        self._slowed = False
+        self._slowed_at = now
+        self._off_answers = self._drive.off_answers
+        self._speed = 0
+
+    def end(self):
+        """The motor stands still, or is wanted to run again."""
+        self.active = False
+        self.unconfirmed = False
+
+    def step(self, now):
+        if not self.active:
+            return
+        drive = self._drive
+        if drive.contact:
+            answers = (drive.off_answers - self._off_answers) & 0xFFFF
+            if answers:
+                if drive.state() != pzd.RUNNING:
+                    self.end()
+                    return
+                self._look_at(abs(pzd.signed(drive.hiw)), now)
+            if (answers or self._slowed) and answers < ANSWERS_MIN:
+                return
+        patience_us = SLOWING_US if self._slowed else CONFIRM_US
+        if elapsed(now, self._slowed_at, self._mask) >= patience_us:
+            self.unconfirmed = True
+
+    def _look_at(self, speed, now):
+        if speed <= self._speed - SLOWER:
+            self._slowed = True
+            self._slowed_at = now
+            self._off_answers = self._drive.off_answers
+            self._speed = speed
+            self.unconfirmed = False
+        elif not self._slowed:
+            self._speed = max(self._speed, speed)
