@@ -343,13 +343,78 @@ def test_an_off_that_is_not_answered_is_repeated_every_second_telegram():
     assert bus.addresses(sent).count(5) <= 4
 
 
-def test_an_inhibited_drive_is_not_left_with_on():
+def test_a_drive_that_inhibits_itself_or_trips_is_not_left_with_on():
+    """Before it ever ran: it must not start when the cause goes away."""
+    for zsw in (0xFB71, 0xFB78):
+        bus = Bus()
+        bus.run(300_000)
+        bus.zsw[1] = zsw
+        bus.drives[0].start(0x1000)
+        bus.run(200_000)
+        assert bus.stws(1)[-1] == pzd.OFF1 and bus.drives[0].stopped_by_engine()
+
+
+def test_a_drive_may_take_its_time_to_run_again_after_a_stop():
     bus = Bus()
     bus.run(300_000)
-    bus.zsw[1] = 0xFB71
-    bus.drives[0].start(0x1000)
-    bus.run(200_000)
-    assert bus.stws(1)[-1] == pzd.OFF1 and bus.drives[0].stopped_by_engine()
+    drive = bus.drives[0]
+    for _ in range(3):
+        bus.zsw[1] = 0xFB31
+        drive.start(0x1000)
+        bus.run(300_000)  # not running yet: it magnetises its motor
+        assert bus.stws(1)[-1] == pzd.ON and not drive.stopped_by_engine()
+        bus.zsw[1] = 0xFB34
+        bus.run(300_000)
+        drive.stop()
+        bus.run(300_000)
+
+
+def test_when_the_dead_man_trips_the_drives_that_run_are_stopped_first():
+    bus = Bus(tuple(range(1, 32)))
+    bus.run(3_000_000)
+    running = (5, 17, 30)
+    for drive in bus.drives:
+        if drive.address in running:
+            drive.start(0x1000)
+            bus.zsw[drive.address] = 0xFB34
+    bus.run(3_000_000)
+    last = bus.now
+    bus.run(500_000, refresh=False)
+    for address in running:
+        sent = [(at, stw[12]) for at, stw in bus.sent if at > last and stw[2] == address]
+        offs = [at for at, stw in sent if stw == 0x7E]
+        assert offs[0] - last <= DEAD_MAN_US + 5 * 22_000, address
+
+
+def test_a_line_that_never_falls_silent_is_sent_on_all_the_same():
+    """A babbling station: STOP is sent into it, for what it is worth."""
+    bus = Bus()
+    bus.run(300_000)
+    receive = bus.receive
+
+    def babble(buffer, at):
+        bus.received_at = bus.now & MASK
+        return receive(buffer, at) or 1
+
+    bus.receive = babble
+    sent = len(bus.sent)
+    bus.drives[0].stop()
+    bus.run(3_000_000)
+    assert 3 <= len(bus.sent) - sent <= 8
+
+
+def test_a_read_carries_no_value():
+    bus = Bus()
+    bus.pkw[1] = parameters({2000: (2, 0x4248, 0x1234)})
+    bus.run(300_000)
+    job = pkw.read(2000)
+    for _ in range(2):  # the same job again: its words hold the first answer
+        sent = len(bus.sent)
+        bus.drives[0].ask(job)
+        bus.run(300_000)
+        assert job.high == 0x4248
+        for _, characters in bus.sent[sent:]:
+            assert characters[7:11] == bytes(4)
 
 
 def test_a_drive_that_stops_of_its_own_accord_is_not_started_again():

@@ -712,6 +712,30 @@ def test_other_parameter_jobs_do_not_disturb_the_panel():
     world.check()
 
 
+def test_stop_takes_back_a_start_whose_drive_is_still_being_asked():
+    for baud in (2400, 9600):
+        world = panel(baud=baud)
+        world.run(4000)
+        world.press("START", 40)
+        assert row_2(world) == "STARTING     A1"
+        world.press("STOP", 40)
+        world.run(6000)
+        assert starts(world) == 0 and row_2(world) == "READY        A1"
+        assert ON not in [stw for _, stw in telegrams(world, 0)]
+        world.check()
+
+
+def test_stop_acknowledges_what_is_said_about_the_drive():
+    world = running()
+    world.hang(1000)
+    world.run(5000)
+    assert row_2(world) == "PANEL HUNG   A1"
+    world.press("STOP")
+    world.run(200)
+    assert row_2(world) == "READY        A1"
+    world.check()
+
+
 def test_start_is_not_obeyed_late():
     """The line fails while the drive is being asked; a START of seconds ago is void."""
     world = panel()
@@ -1113,8 +1137,9 @@ def test_an_error_in_the_program_stops_the_drives_first():
         world.run(3000)
         left_us = world.clock.now_us
         leave(world.app, error)
-        stws = [stw for _, stw in telegrams(world, left_us, 1)]
-        assert OFF1 in stws and stws[-1] == OFF1
+        sent = telegrams(world, left_us, 1)
+        offs = [at_us for at_us, stw in sent if stw == OFF1]
+        assert offs[0] - left_us < 50_000 and sent[-1][1] == OFF1
         last_us = world.wire.log.last(1)[0][0]
         world.hang(1500)  # no interrupt is left that could send; then the watchdog bites
         assert world.wire.log.last(1)[0][0] == last_us

@@ -23,9 +23,10 @@ class Rs485Link:
     """uart: 8E1 at `baud`, buffers of at least 256 characters. driver_enable: a Pin, 1 sends.
 
     timer: its own, for the driver enable only. interrupts: False where the UART has none.
+    hard: False where the port takes only soft ones (ESP32).
     """
 
-    def __init__(self, uart, driver_enable, timer, clock, baud, interrupts=True):
+    def __init__(self, uart, driver_enable, timer, clock, baud, interrupts=True, hard=True):
         self.on_activity = None
         self.interrupts = interrupts
         self.received_at = 0
@@ -51,7 +52,7 @@ class Rs485Link:
         self._on_timer = self._release  # bound once: binding allocates
         driver_enable.value(0)
         if interrupts:
-            uart.irq(handler=self._on_idle, trigger=uart.IRQ_RXIDLE, hard=True)
+            uart.irq(handler=self._on_idle, trigger=uart.IRQ_RXIDLE, hard=hard)
 
     def send(self, buffer, count):
         self._sending = True

@@ -79,7 +79,7 @@ class Channel:
         if self._rest:
             # The task was withdrawn; until the drive says AK 0 an old reply may still come.
             self._rest = 0 if pke >> 12 == pkw.NO_REPLY else self._rest - 1
-        elif self._job is not None and self._tries:
+        elif self._job is not None:
             ind, high, low = get_word(net, at + 2), get_word(net, at + 4), get_word(net, at + 6)
             if self._job.answer(pke, ind, high, low):
                 self._end()
