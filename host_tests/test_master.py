@@ -630,6 +630,16 @@ def test_after_an_exception_nothing_is_sent_into_the_reply_that_may_come():
     assert first_us - failed >= TIMING.reply_timeout_us + TIMING.telegram_us(12)
 
 
+def test_an_exception_while_it_listens_does_not_make_it_talk():
+    bus = Bus()
+    bus.run(50_000)
+    bus.master.recover(bus.now)
+    bus.run(95_000)
+    assert bus.sent == [] and bus.master.phase == LISTENING
+    bus.run(20_000)
+    assert bus.sent
+
+
 def test_several_exceptions_in_a_row_and_nothing_is_known_of_the_drives():
     bus = Bus()
     bus.run(300_000)

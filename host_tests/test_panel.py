@@ -386,17 +386,15 @@ def test_a_long_list_is_no_reason_for_an_alarm():
 
 def test_a_word_that_trembles_is_not_taken_for_a_motor_that_slows_down():
     world = running()
-    drive = world.drives[1]
-    drive.write(700, 0, 2)
-    words, count = drive._process.words, [0]
+    count = [0]
 
     def trembling(wanted):
         count[0] += 1
-        return [words(wanted)[0], 0x0CCD - count[0] % 3]
+        return [0xFB34, 0x0CCD - count[0] % 3]
 
-    drive._process.words = trembling
+    world.drives[1]._process.words = trembling
     world.press("STOP")
-    world.run(1500)
+    world.run(3500)
     assert row_2(world) == "STOP UNCONFIRMED"
 
 
@@ -417,13 +415,19 @@ def test_a_motor_that_slows_down_and_then_does_not_is_an_alarm():
 
 
 def test_the_slowest_ramp_of_a_drive_is_no_alarm():
-    world = running()
-    world.drives[1].write(1121, 0, 650.0)
-    world.press("STOP")
-    for _ in range(300):
-        world.run(100)
-        assert row_2(world) == "STOPPING     A1"
-    world.check()
+    for p2000, p2009 in ((50.0, 0), (650.0, 0), (50.0, 1)):
+        world = panel()
+        world.drives[1].write(1121, 0, 650.0)
+        world.drives[1].write(2000, 0, p2000)
+        world.drives[1].write(2009, 0, p2009)
+        world.run(3000)
+        world.press("START")
+        world.run(4000)
+        world.press("STOP")
+        for _ in range(200):
+            world.run(100)
+            assert row_2(world) == "STOPPING     A1", (p2000, p2009)
+        world.check()
 
 
 def test_stop_is_repeated_until_the_drive_hears_it():
@@ -621,7 +625,74 @@ def test_a_start_of_which_the_drive_changes_its_mind_is_taken_back():
     assert row_2(world) == "STARTING     A1"
     world.drives[1].write(700, 0, 2)
     world.run(2500)
-    assert row_2(world) == "NOT STARTED  A1"
+    assert row_2(world) == "TAKEN AWAY   A1"
+    world.check()
+
+
+def test_a_drive_that_takes_its_setpoint_from_elsewhere_is_stopped():
+    world = running()
+    world.drives[1].write(1000, 0, 2)
+    world.run(2500)
+    assert OFF1 == telegrams(world, 0, 1)[-1][1]
+    world.run(6000)
+    assert row_2(world) == "TAKEN AWAY   A1" and world.drives[1].hz() == 0
+    world.check()
+
+
+def test_a_start_takes_little_of_the_line_from_a_drive_that_runs():
+    """While one drive is asked for its settings, the others are polled at half their rate."""
+    for baud in (9600, 19200, 57600):
+        world = running(addresses=(1, 2), baud=baud)
+        instants = [at_us for at_us, _ in telegrams(world, 0, 1)][-20:]
+        cycle_us = max(after - before for before, after in zip(instants, instants[1:]))
+        pressed_us = world.clock.now_us
+        world.press("ADDRESS_UP")
+        world.press("START")
+        world.run(3000)
+        assert world.drives[2].state == "running"
+        instants = [at_us for at_us, _ in telegrams(world, pressed_us, 1)]
+        longest_us = max(after - before for before, after in zip(instants, instants[1:]))
+        assert longest_us <= 2 * cycle_us, (baud, longest_us, cycle_us)
+        world.check()
+
+
+def test_a_stop_goes_before_the_start_of_another_drive():
+    world = panel(addresses=(1, 2), baud=2400)
+    world.run(8000)
+    world.press("START")
+    assert row_2(world) == "STARTING     A1"
+    world.press("ADDRESS_UP")
+    pressed_us = world.clock.now_us
+    world.press("STOP")
+    world.run(500)
+    first_us = telegrams(world, pressed_us, 2)[0][0]
+    exchange_us = 2 * 73_400 + 3 * 4_600
+    assert first_us - pressed_us <= 24_000 + 2 * exchange_us
+    world.check()
+
+
+def test_two_drives_may_be_started_one_right_after_the_other():
+    world = panel(addresses=(1, 2), baud=9600)
+    world.run(2000)
+    world.press("START")
+    world.press("ADDRESS_UP")
+    world.press("START")
+    world.run(4000)
+    assert [world.drives[address].state for address in (1, 2)] == ["running", "running"]
+    world.check()
+
+
+def test_a_start_refused_while_another_drive_is_shown_is_not_said_of_that_one():
+    world = panel(addresses=(1, 2), baud=2400)
+    world.run(8000)
+    world.press("START")
+    world.press("ADDRESS_UP")
+    world.drives[1].fault(1)
+    world.run(3000)
+    assert row_2(world) == "READY        A2"
+    world.press("ADDRESS_DOWN")
+    world.run(100)
+    assert row_2(world) == "FAULT        A1" and starts(world) == 0
     world.check()
 
 

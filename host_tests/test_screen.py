@@ -72,7 +72,7 @@ def test_no_text_is_wider_than_its_place():
     states = (
         "NO_CONTACT CHECKING NOT_READY READY STARTING RUNNING RUNNING_WARNING STOPPING FAULT "
         "INHIBITED LOCAL RUNS_LOCALLY LINE_FAILED PANEL_HUNG ENGINE_FAILED STOPPED_ITSELF "
-        "DID_NOT_START MAY_RUN"
+        "DID_NOT_START TAKEN_AWAY MAY_RUN"
     ).split()
     seen = 0
     for name in dir(texts):

@@ -80,6 +80,7 @@ class Control:
         """OFF1, always, and acknowledge what was announced about this drive."""
         self.drive.stop()
         self._checking = False
+        self.survey.drop_recheck()
         self.notice = None
         self.lost_running = False
         self.stop_watch.begin(self._now)
@@ -194,15 +195,19 @@ class Control:
         """ON, if the drive has told its settings and there is nothing against it."""
         refusal = self._why_not()
         if refusal is None and self.survey.unchecked:
-            patience_us = len(profiles.SURVEY) * self._bus.patience_us
+            patience_us = 2 * len(profiles.SURVEY) * self._bus.patience_us
+            # A clock of a short period cannot tell more than half of it.
+            patience_us = min(patience_us, self._mask >> 2)
             if elapsed(now, self._started_at, self._mask) < patience_us:
                 return
             refusal = texts.REFUSED_CHECKING
         self._checking = False
+        self.survey.drop_recheck()
         if self._bus.dead_man_trips != self._dead_man_trips:
             self.notice = texts.PANEL_HUNG  # that START is too old to be obeyed
         elif refusal is not None:
             self.refusal = refusal
+            self.notice = texts.DID_NOT_START  # the operator may look at another drive by now
         else:
             self._started_at = now
             self._ran = False
@@ -220,14 +225,18 @@ class Control:
         return texts.STOPPED_ITSELF
 
     def _watch_start(self, now):
-        """ON that leads to nothing is taken back: it must not take effect minutes later."""
-        if self.drive.state() == pzd.RUNNING:
+        """ON that leads to nothing is taken back: it must not take effect minutes later. So is one
+        to a drive that listens to somebody else by now.
+        """
+        command, setpoint = profiles.COMMAND_SOURCE, profiles.SETPOINT_SOURCE
+        if self._is_foreign(command) or self._is_foreign(setpoint):
+            self.drive.stop()
+            self.notice = texts.TAKEN_AWAY
+        elif self.drive.state() == pzd.RUNNING:
             self._ran = True
-        elif not self._ran:
-            foreign = self._is_foreign(profiles.COMMAND_SOURCE)
-            if foreign or elapsed(now, self._started_at, self._mask) >= START_US:
-                self.drive.stop()
-                self.notice = texts.DID_NOT_START
+        elif not self._ran and elapsed(now, self._started_at, self._mask) >= START_US:
+            self.drive.stop()
+            self.notice = texts.DID_NOT_START
 
     def _runs_against_off(self):
         """Whether a drive of this bus runs though nobody wants it to: it may not obey OFF1."""

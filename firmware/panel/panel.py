@@ -61,9 +61,10 @@ class Panel:
         keys.update(raw_keys, now_ms)
         if keys.down:
             self._take_keys(keys, now_ms)
-        refusal = self.selected.take_refusal()
-        if refusal:
-            self.say(refusal, now_ms)
+        for control in self.controls:
+            refusal = control.take_refusal()
+            if refusal and control is self.selected:
+                self.say(refusal, now_ms)
         if self._page is not self._home:
             self._splash(now_ms)
         if self.message and elapsed(now_ms, self._message_at, self._mask) >= MESSAGE_MS:

@@ -33,6 +33,7 @@ class StopWatch:
         self._drive = drive
         self._mask = mask
         self._slowed = False  # it has been seen to slow down
+        self._seems_slower = False  # by less than the word may tremble
         self._slowed_at = 0  # when that was last, at first when the watch began
         self._off_answers = 0  # drive.off_answers then
         self._speed = 0  # |HIW| then, at first the highest since the watch began
@@ -41,6 +42,7 @@ class StopWatch:
         self.active = True
         self.unconfirmed = False
         self._slowed = False
+        self._seems_slower = False
         self._slowed_at = now
         self._off_answers = self._drive.off_answers
         self._speed = 0
@@ -63,7 +65,7 @@ class StopWatch:
                 self._look_at(abs(pzd.signed(drive.hiw)), now)
             if (answers or self._slowed) and answers < ANSWERS_MIN:
                 return
-        patience_us = SLOWING_US if self._slowed else CONFIRM_US
+        patience_us = SLOWING_US if self._slowed or self._seems_slower else CONFIRM_US
         if elapsed(now, self._slowed_at, self._mask) >= patience_us:
             self.unconfirmed = True
 
@@ -75,4 +77,5 @@ class StopWatch:
             self._speed = speed
             self.unconfirmed = False
         elif not self._slowed:
+            self._seems_slower = speed < self._speed
             self._speed = max(self._speed, speed)

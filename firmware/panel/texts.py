@@ -26,6 +26,7 @@ PANEL_HUNG = b"PANEL HUNG"
 ENGINE_FAILED = b"BUS ERROR"
 STOPPED_ITSELF = b"STOPPED SELF"
 DID_NOT_START = b"NOT STARTED"
+TAKEN_AWAY = b"TAKEN AWAY"  # P0700 or P1000 hands it to somebody else
 
 # In place of the actual frequency: 6 wide.
 UNKNOWN_VALUE = b" -----"

@@ -3,7 +3,7 @@
 Two sides share a drive: the *loop* (panel, own program) and the *engine* (`master.poll`, possibly
 in an interrupt). They share words, not structures; each field has one writer:
 
-    loop     wanted, ticket, stops, hsw, urgent
+    loop     wanted, ticket, stops, hsw, urgent, asking
     engine   void, zsw, hiw, contact, contacts, was_running, silent, served, counters and the rest
 
 ON is sent only on a ticket. Every START draws a new one; the engine voids the one in force when
@@ -58,6 +58,7 @@ class Drive:
         self.stops = 0
         self.hsw = 0
         self.urgent = 0
+        self.asking = False  # somebody waits for its parameters
         # Written by the engine.
         self.void = 0
         self.zsw = 0
@@ -132,14 +133,15 @@ class Drive:
     def urgency(self):
         """How much this drive is in a hurry.
 
-        0: its turn in the list will do. 1: an OFF1 is repeated until it is answered. 2: a command.
-        3: a stop. 4: a stop of a drive that runs.
+        0: its turn in the list will do. 1: more often than its turn: an OFF1 is repeated until it
+        is answered, or parameters are waited for. 2: a command. 3: a stop. 4: a stop of a drive
+        that runs, or may run.
         """
         if self.urgent == self.served and not self.taken_back and self.stops == self.stops_sent:
-            return 1 if self.insist else 0
+            return 1 if self.insist or self.asking else 0
         if self.is_on():
             return 2
-        return 4 if self.zsw & pzd.ZSW_RUNNING else 3
+        return 4 if self._may_run or self.zsw & pzd.ZSW_RUNNING else 3
 
     def fill(self, net, at, now):
         """Write this drive's request, PKW and PZD words, into `net` from index `at` on."""

@@ -61,7 +61,8 @@ class Master:
         self._receiver = Receiver(timing, mask)
         self._telegram = bytearray(telegram.SIZE_MAX)
         self._drive = None  # the one whose turn it is
-        self._insisted = False  # it was its turn because its OFF1 is not answered yet
+        self._insisted = False  # it was its turn because it is to have more than its turn
+        self._look_from = 0  # where the search for one with a hurry begins
         self._failures_in_row = 0
         self._next = 0
         self._first = True  # poll was never called
@@ -147,9 +148,9 @@ class Master:
             drive.revoke()
             if self._failures_in_row >= FAILURES_MAX:
                 drive.lose()
-        if self.phase != CLOSED:
+        self._quiet_since = now
+        if self.phase != CLOSED and self.phase != LISTENING:
             self._begin_rest(now)
-            self._quiet_since = now
             if self._drive is not None:
                 self._rest_us = self.timing.reply_timeout_us + self._drive.residual_us
 
@@ -214,16 +215,20 @@ class Master:
     def _choose(self):
         """The next drive: a command that matters goes before the list, a stop before a start.
 
-        An OFF1 that is not answered yet is repeated out of turn, but only every second telegram:
-        a drive that has died must not take the line from the others.
+        What is only to have more than its turn gets every second telegram at the most, one drive
+        after the other, so that the list goes on in between.
         """
         chosen = None
         highest = 1 if self._insisted else 0
-        for drive in self.drives:
-            urgency = drive.urgency()
+        drives = self.drives
+        position = self._look_from
+        for _ in range(len(drives)):
+            position = position + 1 if position + 1 < len(drives) else 0
+            urgency = drives[position].urgency()
             if urgency > highest:
                 highest = urgency
-                chosen = drive
+                chosen = drives[position]
+                self._look_from = position
         self._insisted = chosen is not None and highest == 1
         if chosen is None and self.list:
             position = self._next if self._next < len(self.list) else 0

@@ -3,7 +3,7 @@
 Works on the loop's side, through parameter jobs, which cost the bus nothing: every telegram has a
 parameter channel. It reads the rows of `profiles.SURVEY` at once when contact is made and one
 every REREAD_US from then on, so that a change made at the drive itself is noticed. What was known
-is forgotten when contact is lost. `recheck` has all of it read again at once, ahead of the list.
+is forgotten when contact is lost. `recheck` has all of it read again soon.
 
     survey = Survey(drive, clock.ticks_mask)
     survey.step(now)                # each step of the loop
@@ -47,10 +47,15 @@ class Survey:
         self._contact = 0  # drive.contacts to which the values belong
 
     def recheck(self):
-        """Have every row read again, each in the next telegram on the line."""
+        """Have every row read again soon: the drive gets more than its turn meanwhile."""
         self.unchecked = len(self.values)
         self._row = 0
         self._stale = self._asked
+
+    def drop_recheck(self):
+        """Nobody waits for it any more."""
+        self.unchecked = 0
+        self.drive.asking = False
 
     def step(self, now):
         """Take an answer that has come, ask for the next; allocates only when a value is new."""
@@ -69,8 +74,7 @@ class Survey:
         elif drive.contact:
             if self._is_in_a_hurry() or elapsed(now, self._read_at, self._mask) >= REREAD_US:
                 self._ask()
-        if self.unchecked and drive.urgent == drive.served:
-            drive.hurry()
+        drive.asking = self.unchecked > 0
 
     def _is_in_a_hurry(self):
         return self.unchecked or not self.complete
