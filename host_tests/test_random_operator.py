@@ -109,7 +109,6 @@ def test_nothing_starts_by_surprise_whatever_happens():
             world.drives[address].plug()
         world.press("STOP", 4200)  # all of them
         world.run(13_000)
-        for address, drive in world.drives.items():
+        for drive in world.drives.values():
             assert drive.hz() == 0, drive.report()
-        chips = world.chips
-        assert not [chip.handler_errors for chip in chips if chip.handler_errors]
+        assert not [chip for chip in world.chips if chip.handler_errors]

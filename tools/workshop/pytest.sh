@@ -44,8 +44,8 @@ unpack_pip() {
     type -P apt-get dpkg-deb >/dev/null || return
     for release in $(releases); do
         packages_open "$view" deb "$release"
-        packages_unpack "$view" "$view/root" python3-pip-whl &&
-            python3 -m zipfile -e "$view"/root/usr/share/python-wheels/pip-*.whl "$folder/pip" &&
+        packages_unpack "$view" "$view/unpacked" python3-pip-whl &&
+            python3 -m zipfile -e "$view"/unpacked/usr/share/python-wheels/pip-*.whl "$folder/pip" &&
             rm -rf "$view" && return
         rm -rf "$view"
     done

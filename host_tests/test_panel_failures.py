@@ -1,0 +1,348 @@
+"""The operator's manual, when something fails: the drive, the line, the panel, its clock."""
+
+import main
+from boards.sim.world import World
+from panel_bench import ERROR, OFF1, ON, panel, row_1, row_2, running, starts, telegrams
+
+
+# --- when the drive stops by itself --------------------------------------------------------------
+
+
+def test_a_drive_that_trips_does_not_start_again_when_the_fault_is_gone():
+    world = running()
+    world.drives[1].fault(1)
+    world.run(500)
+    assert row_2(world) == "FAULT        A1"
+    stws = [stw for _, stw in telegrams(world, world.clock.now_us - 300_000, 1)]
+    assert len(stws) > 5 and set(stws) == {OFF1}
+    world.drives[1].power_off()
+    world.run(3000)
+    world.drives[1].power_on()
+    world.run(5000)
+    assert starts(world) == 1 and world.drives[1].hz() == 0
+    world.check()
+
+
+# --- a line that fails ---------------------------------------------------------------------------
+
+
+def test_unplugged_while_it_runs_the_display_does_not_pretend():
+    world = running()
+    world.drives[1].unplug()
+    world.run(900)
+    world.run(300)
+    assert world.reads("NO CONTACT, MAY RUN")
+    assert "10.00" not in row_1(world)
+    world.press("STOP")  # acknowledges
+    world.run(100)
+    assert not world.reads("MAY RUN")
+    assert row_2(world) == "NO CONTACT   A1"
+    world.check()
+
+
+def test_a_drive_that_took_on_and_was_never_heard_again_may_run():
+    """It is unplugged between the telegram with ON and its answer, and the panel hangs."""
+    for hang_ms in (0, 400):
+        world = panel()
+        world.down("START")
+        while not telegrams(world, 0) or telegrams(world, 0)[-1][1] != ON:
+            world.hang(1)
+            world.app.step()
+        world.hang(2)
+        world.drives[1].unplug()
+        world.up("START")
+        world.hang(hang_ms)
+        world.run(1500)
+        assert world.drives[1].state == "running"
+        assert world.reads("NO CONTACT, MAY RUN"), world.lcd()
+
+
+def test_an_alarm_is_not_hidden_by_what_is_said_about_a_key():
+    world = running()
+    world.drives[1].unplug()
+    world.run(1500)
+    world.press("START")
+    assert world.reads("NO CONTACT, MAY RUN")
+    world.press("STOP")
+    world.run(1500)
+    world.press("START")
+    assert row_2(world) == "STOP UNCONFIRMED"
+
+
+def test_plugged_in_again_nothing_starts_by_itself():
+    world = running()
+    world.drives[1].unplug()
+    world.run(3000)
+    assert world.drives[1].state == "running"  # nobody told it
+    plugged_us = world.clock.now_us
+    world.drives[1].plug()
+    world.run(12000)
+    assert world.drives[1].hz() == 0 and starts(world) == 1
+    assert row_2(world) == "LINE FAILED  A1"
+    for _, stw in telegrams(world, plugged_us, 1):
+        assert stw == OFF1
+    world.press("START")
+    world.run(2000)
+    assert row_2(world) == "RUNNING      A1" and starts(world) == 2
+    world.check()
+
+
+def test_a_drive_that_comes_later_is_found_and_not_started():
+    world = World(main.start)
+    world.drives[1].unplug()
+    world.run(2000)
+    assert row_2(world) == "NO CONTACT   A1"
+    world.drives[1].plug()
+    world.run(1000)
+    assert row_2(world) == "READY        A1" and starts(world) == 0
+    world.check()
+
+
+def test_a_gap_of_half_a_second_is_no_loss():
+    world = running()
+    world.drives[1].unplug()
+    world.run(500)
+    world.drives[1].plug()
+    world.run(500)
+    assert row_2(world) == "RUNNING      A1" and starts(world) == 1
+    world.check()
+
+
+# --- a panel that fails --------------------------------------------------------------------------
+
+
+def test_a_main_loop_that_hangs_stops_the_motor_within_400_ms():
+    for polled in (False, True):
+        world = running(polled=polled)
+        hung_us = world.clock.now_us
+        world.hang(2000)
+        offs = [at_us for at_us, stw in telegrams(world, hung_us, 1) if stw == OFF1]
+        assert offs and 298_000 < offs[0] - hung_us <= 350_000, offs[:1]  # 400 ms is the promise
+        after = [stw for at_us, stw in telegrams(world, offs[0], 1)]
+        assert ON not in after
+        world.run(12000)
+        assert world.drives[1].hz() == 0 and starts(world) == 1
+        world.check()
+
+
+def test_after_a_hang_the_panel_says_so_and_waits_for_start():
+    world = running()
+    world.hang(1000)
+    world.run(12000)
+    assert row_2(world) == "PANEL HUNG   A1" and starts(world) == 1
+    world.press("START")
+    world.run(2000)
+    assert row_2(world) == "RUNNING      A1"
+    world.check()
+
+
+def test_every_drive_is_stopped_when_the_loop_hangs():
+    world = panel(addresses=(1, 2, 3))
+    for _ in range(3):
+        world.press("START")
+        world.press("ADDRESS_UP")
+        world.run(200)
+    world.run(4000)
+    hung_us = world.clock.now_us
+    world.hang(1000)
+    for address in (1, 2, 3):
+        offs = [at_us for at_us, stw in telegrams(world, hung_us, address) if stw == OFF1]
+        assert offs and offs[0] - hung_us <= 400_000 + 2 * 22_000
+    world.check()
+
+
+def test_start_between_two_hangs_does_not_outlive_the_second():
+    """The dead man has tripped already when START is obeyed; it holds all the same."""
+    world = panel()
+    app = world.app
+    control = app.panel.selected
+    read, hung = app.board.keypad.read, [False]
+
+    def hang_in_the_step():
+        if not hung[0]:
+            hung[0] = True
+            world.clock.advance(400_000)  # refreshed 400 ms ago: the dead man trips
+            control.drive.start(0x0CCD)
+        return read()
+
+    app.board.keypad.read = hang_in_the_step
+    app.step()
+    del app.board.keypad.read
+    hung_us = world.clock.now_us
+    world.hang(1500)
+    assert ON not in [stw for _, stw in telegrams(world, hung_us)]
+    world.run(3000)
+    assert starts(world) == 0
+
+
+def test_an_engine_that_gets_nothing_done_restarts_the_chip():
+    """It is entered all the time and fails all the time, so that no OFF1 gets out."""
+
+    class Link:
+        def __init__(self, link):
+            self._link = link
+            self.send = self.fail
+
+        def __getattr__(self, name):
+            return getattr(self._link, name)
+
+        def fail(self, buffer, count):
+            raise ERROR
+
+    world = running()
+    bus = world.app.bus
+    bus._link = Link(bus._link)
+    world.run(1000)
+    assert world.reads("NO CONTACT, MAY RUN")  # not the last state
+    world.run(4000)
+    assert world.resets == 1
+    world.run(10000)
+    assert world.drives[1].hz() == 0 and starts(world) == 1
+
+
+def test_a_transmission_that_never_ends_is_given_up_and_tried_again():
+    world = running()
+    link = world.app.link
+    sending_us = link.sending_us
+    link.sending_us = lambda now: 1
+    world.run(300)
+    assert row_2(world) == "RUNNING      A1"  # a disturbance
+    link.sending_us = sending_us
+    world.run(1000)
+    assert row_2(world) == "RUNNING      A1"
+    link.sending_us = lambda now: 1
+    world.run(1500)
+    assert world.reads("NO CONTACT, MAY RUN")
+    world.run(5000)
+    assert world.resets >= 1
+    world.run(10000)
+    assert world.drives[1].hz() == 0 and starts(world) == 1
+
+
+def test_a_loop_that_hangs_for_good_restarts_the_chip():
+    world = running()
+    world.hang(5000)
+    assert world.resets == 1
+    world.run(10000)
+    assert world.drives[1].hz() == 0 and starts(world) == 1
+    assert row_2(world) == "READY        A1"
+    world.check()
+
+
+def test_a_reset_ends_in_a_stopped_motor_and_no_start():
+    world = running()
+    reset_us = world.clock.now_us
+    world.reset()
+    world.run(12000)
+    assert world.drives[1].hz() == 0 and starts(world) == 1
+    assert row_2(world) == "READY        A1"
+    for _, stw in telegrams(world, reset_us):
+        assert stw == OFF1
+    world.check()
+
+
+def test_a_reset_in_the_middle_of_a_telegram_blocks_nothing():
+    for offset_us in range(0, 22_000, 1_000):
+        world = running()
+        world.clock.advance(offset_us)
+        world.reset()
+        world.run(8000)
+        assert row_2(world) == "READY        A1" and starts(world) == 1
+        cut = [text for text in world.wire.violations if "driver" not in text]
+        assert not cut, cut
+
+
+def test_an_error_in_the_program_stops_the_drives_first():
+    """Ctrl-C or an exception: the motor is told to stop before the program ends."""
+    for error in (KeyboardInterrupt, ValueError):
+        world = World(main.start)
+        world.run(1000)
+        world.press("START")
+        world.run(3000)
+        left_us = world.clock.now_us
+        leave(world.app, error)
+        sent = telegrams(world, left_us, 1)
+        offs = [at_us for at_us, stw in sent if stw == OFF1]
+        assert offs[0] - left_us < 50_000 and sent[-1][1] == OFF1
+        last_us = world.wire.log.last(1)[0][0]
+        world.hang(1500)  # no interrupt is left that could send; then the watchdog bites
+        assert world.wire.log.last(1)[0][0] == last_us
+        assert world.drives[1].state in ("stopping", "ready")
+        world.check()
+
+
+def leave(app, error):
+    """Let `error` end the main loop as it would on the chip."""
+
+    class Broken:
+        names = app.board.keypad.names
+
+        def read(self):
+            raise error("on purpose")
+
+    app.board.keypad = Broken()
+    try:
+        main.loop(app)
+    except error:
+        return
+    raise AssertionError("the error got lost")
+
+
+class Failing:
+    """Stands before a receiver and fails some times. The heap is locked: nothing is made here."""
+
+    def __init__(self, receiver, times):
+        self.take = receiver.take
+        self.due_us = receiver.due_us
+        self.buffer = receiver.buffer
+        self.times = times
+        self._receiver = receiver
+
+    @property
+    def heard_at(self):
+        return self._receiver.heard_at
+
+    def open(self, address, net_count, residual_us, sent_at):
+        if self.times:
+            self.times -= 1
+            raise ERROR
+        self._receiver.open(address, net_count, residual_us, sent_at)
+
+
+def test_an_exception_in_the_bus_engine_stops_the_motor_and_is_shown():
+    world = running()
+    bus = world.app.bus
+    bus._receiver = Failing(bus._receiver, 3)
+    world.run(12000)
+    assert bus.failures == 3
+    assert world.drives[1].hz() == 0 and starts(world) == 1
+    assert row_2(world) == "BUS ERROR    A1"
+
+
+# --- the clock wraps -----------------------------------------------------------------------------
+
+
+def test_ticks_that_wrap_in_the_middle_of_an_exchange_disturb_nothing():
+    """The counter wraps once at each instant of an exchange while the motor runs."""
+    for bits in (24, 30):
+        mask = (1 << bits) - 1
+        for offset_us in range(0, 24_000, 2_400):
+            world = running(ticks_start=mask - 5_250_000 - offset_us, ticks_mask=mask)
+            wrapped_us = 5_250_000 + offset_us
+            assert world.clock.now_us < wrapped_us
+            world.run(300)
+            assert world.clock.now_us > wrapped_us
+            assert row_2(world) == "RUNNING      A1" and starts(world) == 1
+            assert world.app.bus.dead_man_trips == 0
+            world.check()
+
+
+def test_a_short_period_wraps_many_times_in_an_hour():
+    """2**24 us is 16.8 s."""
+    world = running(ticks_mask=(1 << 24) - 1)
+    world.run(120_000)
+    assert row_2(world) == "RUNNING      A1" and starts(world) == 1
+    world.press("STOP")
+    world.run(8000)
+    assert row_2(world) == "READY        A1"
+    world.check()

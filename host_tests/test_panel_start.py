@@ -1,0 +1,380 @@
+"""The operator's manual, START: what is asked before a motor turns, and when it is refused."""
+
+import main
+from boards.sim.world import World
+from panel_bench import OFF1, ON, panel, row_1, row_2, running, starts, telegrams
+from uss import pkw
+
+
+def refused(world, reason):
+    before = starts(world)
+    world.press("START")
+    assert row_2(world) == reason, row_2(world)
+    world.run(6000)
+    assert starts(world) == before
+    world.check()
+
+
+def test_start_of_a_silent_drive_is_refused():
+    world = panel()
+    world.drives[1].unplug()
+    world.run(1500)
+    assert row_2(world) == "NO CONTACT   A1" and row_1(world) == "S: 10.0 F: -----"
+    refused(world, "NO: NO CONTACT")
+
+
+def test_start_of_a_drive_with_a_fault_is_refused():
+    world = panel()
+    world.drives[1].fault(1)
+    world.run(300)
+    assert row_2(world) == "FAULT        A1"
+    refused(world, "NO: FAULT")
+
+
+def test_start_of_a_drive_that_takes_its_commands_elsewhere_is_refused():
+    world = panel()
+    world.drives[1].write(700, 0, 2)
+    world.run(3000)
+    assert row_2(world) == "LOCAL        A1"
+    refused(world, "NO:P0700 NOT USS")
+
+
+def test_start_of_a_drive_that_takes_its_setpoint_elsewhere_is_refused():
+    world = panel()
+    world.drives[1].write(1000, 0, 2)
+    world.run(3000)
+    refused(world, "NO:P1000 NOT USS")
+
+
+def test_start_of_a_drive_whose_scaling_is_still_unknown_is_refused():
+    world = panel(baud=2400)  # a slow line: reading the settings takes a second
+    assert row_2(world) == "CHECKING     A1"
+    refused(world, "NO: STILL CHECKS")
+
+
+def test_start_of_a_drive_that_keeps_its_scaling_to_itself_is_refused():
+    """It refuses to tell P2009: what a setpoint would mean is unknown."""
+    world = World(main.start)
+    parameters = world.drives[1]._parameters
+    parameters.rows = {row: parameters.rows[row] for row in parameters.rows if row != 2009}
+    world.run(2000)
+    assert row_2(world) == "CHECKING     A1"
+    refused(world, "NO: SCALING ???")
+
+
+def test_start_of_an_inhibited_drive_is_refused():
+    """OFF2 at the drive's own terminal, say: its inhibit stays while the cause does."""
+    world = panel()
+    world.drives[1]._process.zsw = lambda: 0xFB71
+    world.run(300)
+    assert row_2(world) == "INHIBITED    A1"
+    refused(world, "NO: INHIBITED")
+    world = panel()
+    world.drives[1]._process.zsw = lambda: 0xFB30
+    world.run(300)
+    assert row_2(world) == "NOT READY    A1"
+    refused(world, "NO: NOT READY")
+
+
+def test_start_asks_the_drive_what_the_setpoint_means():
+    """P2000 changed in the last moment: 10 Hz are 10 Hz from the first telegram with ON."""
+    for before, after in ((50.0, 650.0), (650.0, 50.0)):
+        world = panel()
+        world.drives[1].write(1082, 0, 650.0)
+        world.drives[1].write(2000, 0, before)
+        world.run(3000)
+        world.drives[1].write(2000, 0, after)
+        world.press("START")
+        for _ in range(300):
+            world.run(10)
+            assert world.drives[1].hz() < 10.1
+        assert abs(world.drives[1].hz() - 10) < 0.1
+        world.check()
+
+
+def test_a_start_that_waited_through_a_hang_is_void():
+    world = panel()
+    world.drives[1].stale_replies = 30  # it takes its time to tell its settings
+    world.press("START")
+    assert row_2(world) == "STARTING     A1"
+    world.hang(400)
+    world.drives[1].stale_replies = 0
+    world.run(3000)
+    assert row_2(world) == "PANEL HUNG   A1" and starts(world) == 0
+    world.check()
+
+
+def test_a_start_of_which_the_drive_changes_its_mind_is_taken_back():
+    """P0700 is changed after ON has been sent and before the motor turns."""
+    world = panel()
+    world.drives[1].write(10, 0, 1)  # it does not start yet
+    world.press("START")
+    world.run(500)
+    assert row_2(world) == "STARTING     A1"
+    world.drives[1].write(700, 0, 2)
+    world.run(2500)
+    assert row_2(world) == "TAKEN AWAY   A1"
+    world.check()
+
+
+def test_a_drive_that_takes_its_setpoint_from_elsewhere_is_stopped():
+    world = running()
+    world.drives[1].write(1000, 0, 2)
+    world.run(2500)
+    assert OFF1 == telegrams(world, 0, 1)[-1][1]
+    world.run(6000)
+    assert row_2(world) == "TAKEN AWAY   A1" and world.drives[1].hz() == 0
+    world.check()
+
+
+def test_a_start_takes_little_of_the_line_from_a_drive_that_runs():
+    """While one drive is asked for its settings, the others are polled at half their rate."""
+    for baud in (9600, 19200, 57600):
+        world = running(addresses=(1, 2), baud=baud)
+        instants = [at_us for at_us, _ in telegrams(world, 0, 1)][-20:]
+        cycle_us = max(after - before for before, after in zip(instants, instants[1:]))
+        pressed_us = world.clock.now_us
+        world.press("ADDRESS_UP")
+        world.press("START")
+        world.run(3000)
+        assert world.drives[2].state == "running"
+        instants = [at_us for at_us, _ in telegrams(world, pressed_us, 1)]
+        longest_us = max(after - before for before, after in zip(instants, instants[1:]))
+        assert longest_us <= 2 * cycle_us, (baud, longest_us, cycle_us)
+        world.check()
+
+
+def test_a_stop_goes_before_the_start_of_another_drive():
+    world = panel(addresses=(1, 2), baud=2400)
+    world.run(8000)
+    world.press("START")
+    assert row_2(world) == "STARTING     A1"
+    world.press("ADDRESS_UP")
+    pressed_us = world.clock.now_us
+    world.press("STOP")
+    world.run(500)
+    first_us = telegrams(world, pressed_us, 2)[0][0]
+    exchange_us = 2 * 73_400 + 3 * 4_600
+    assert first_us - pressed_us <= 24_000 + 2 * exchange_us
+    world.check()
+
+
+def test_two_drives_may_be_started_one_right_after_the_other():
+    world = panel(addresses=(1, 2), baud=9600)
+    world.run(2000)
+    world.press("START")
+    world.press("ADDRESS_UP")
+    world.press("START")
+    world.run(4000)
+    assert [world.drives[address].state for address in (1, 2)] == ["running", "running"]
+    world.check()
+
+
+def test_a_start_refused_while_another_drive_is_shown_is_not_said_of_that_one():
+    world = panel(addresses=(1, 2), baud=2400)
+    world.run(8000)
+    world.press("START")
+    world.press("ADDRESS_UP")
+    world.drives[1].fault(1)
+    world.run(3000)
+    assert row_2(world) == "READY        A2"
+    world.press("ADDRESS_DOWN")
+    world.run(100)
+    assert row_2(world) == "FAULT        A1" and starts(world) == 0
+    world.check()
+
+
+def test_the_settings_of_a_drive_that_was_away_are_read_anew():
+    world = panel()
+    world.drives[1].unplug()
+    world.run(2000)
+    world.drives[1].write(700, 0, 2)
+    world.drives[1].plug()
+    survey = world.app.panel.selected.survey
+    while not world.app.bus.drives[0].contact:
+        world.run(2)
+    world.run(4)
+    assert not survey.complete and survey.scaling is None
+    world.run(1500)
+    assert row_2(world) == "LOCAL        A1"
+    world.check()
+
+
+def test_a_drive_that_runs_on_other_commands_is_said_to():
+    world = running()
+    world.drives[1].write(700, 0, 2)
+    world.drives[1]._process.words = lambda count: [0xFB34, 0x0CCD]
+    world.reset()
+    world.run(4000)
+    assert row_2(world) == "RUNS LOCALLY A1"
+
+
+def test_the_setpoint_is_never_more_than_its_word_can_say():
+    world = panel(settings={"setpoint_centihertz": 60_000})
+    world.drives[1].write(1082, 0, 650.0)
+    world.drives[1].write(2000, 0, 10.0)
+    world.run(3000)
+    assert row_1(world).startswith("S: 20.0")  # 19.99 Hz
+    world.drives[1].write(2009, 0, 1)
+    world.run(3000)
+    assert row_1(world).startswith("S:327.7")
+    world.check()
+
+
+def test_the_setpoint_stays_within_the_limits_of_the_settings():
+    world = panel(settings={"lowest_centihertz": 900, "highest_centihertz": 1100})
+    world.press("UP", 3000)
+    assert row_1(world).startswith("S: 11.0")
+    world.press("DOWN", 3000)
+    assert row_1(world).startswith("S:  9.0")
+    world.check()
+
+
+def test_the_setpoint_does_not_move_while_it_cannot_be_sent():
+    """A drive that stops telling its settings while it runs: what is shown is what is sent."""
+    world = running()
+    parameters = world.drives[1]._parameters
+    parameters.rows = {row: parameters.rows[row] for row in parameters.rows if row != 1080}
+    world.run(3000)
+    world.press("UP")
+    assert row_1(world) == "S: 10.0 F: 10.00" and row_2(world) == "NO: STILL CHECKS"
+    world.check()
+
+
+def test_the_time_after_which_a_drive_is_lost_is_that_of_the_settings():
+    for lost_ms in (300, 3000):
+        world = panel(settings={"lost_ms": lost_ms})
+        world.drives[1].unplug()
+        world.run(lost_ms - 100)
+        assert world.app.bus.drives[0].contact and row_2(world) != "NO CONTACT   A1"
+        world.run(300)
+        assert row_2(world) == "NO CONTACT   A1"
+
+
+def test_the_wait_for_a_reply_is_that_of_the_settings():
+    for reply_timeout_ms, text in ((20, "NO CONTACT   A1"), (60, "READY        A1")):
+        world = World(main.start, settings={"reply_timeout_ms": reply_timeout_ms})
+        world.drives[1].reply_delay_us = 45_000
+        world.run(3000)
+        assert row_2(world) == text
+
+
+def test_other_parameter_jobs_do_not_disturb_the_panel():
+    """An own program fills the queue of the drive."""
+    world = panel()
+    drive = world.app.bus.drives[0]
+    for _ in range(50):
+        while not drive.channel.is_full():
+            drive.ask(pkw.read(1120))
+        world.run(20)
+    assert row_2(world) == "READY        A1"
+    world.check()
+
+
+def test_stop_takes_back_a_start_whose_drive_is_still_being_asked():
+    for baud in (2400, 9600):
+        world = panel(baud=baud)
+        world.run(4000)
+        world.press("START", 40)
+        assert row_2(world) == "STARTING     A1"
+        world.press("STOP", 40)
+        world.run(6000)
+        assert starts(world) == 0 and row_2(world) == "READY        A1"
+        assert ON not in [stw for _, stw in telegrams(world, 0)]
+        world.check()
+
+
+def test_stop_acknowledges_what_is_said_about_the_drive():
+    world = running()
+    world.hang(1000)
+    world.run(5000)
+    assert row_2(world) == "PANEL HUNG   A1"
+    world.press("STOP")
+    world.run(200)
+    assert row_2(world) == "READY        A1"
+    world.check()
+
+
+def test_start_is_not_obeyed_late():
+    """The line fails while the drive is being asked; a START of seconds ago is void."""
+    world = panel()
+    world.down("START")
+    world.run(30)
+    world.drives[1].unplug()
+    world.run(500)
+    world.up("START")
+    world.hang(1000)
+    world.drives[1].plug()
+    world.run(5000)
+    assert starts(world) == 0
+    world.check()
+
+
+def test_start_of_a_drive_too_fast_to_be_told_is_refused():
+    """P1080 above 200 % of P2000: HSW and HIW cannot say its frequency."""
+    for p2000, p2009 in ((50.0, 0), (50.0, 1)):
+        world = panel()
+        world.drives[1].write(1082, 0, 650.0)
+        world.drives[1].write(1080, 0, 400.0)
+        world.drives[1].write(2000, 0, p2000)
+        world.drives[1].write(2009, 0, p2009)
+        world.run(3000)
+        refused(world, "NO: P1080 > 200%")
+
+
+def test_a_frequency_that_the_word_cannot_say_is_not_shown_as_one_it_can():
+    world = running()
+    words = world.drives[1]._process.words
+    for hiw in (0x7FFF, 0x8000):
+        world.drives[1]._process.words = lambda wanted: [words(wanted)[0], hiw]
+        world.run(300)
+        assert row_1(world) == "S: 10.0 F: >>>>>"
+
+
+def test_the_setpoint_comes_back_when_a_limit_goes_away():
+    world = panel()
+    world.drives[1].write(1080, 0, 40.0)
+    world.run(3000)
+    assert row_1(world).startswith("S: 40.0")
+    world.drives[1].write(1080, 0, 0.0)
+    world.run(3000)
+    assert row_1(world).startswith("S: 10.0")
+    world.check()
+
+
+def test_what_is_changed_at_the_drive_is_noticed_and_used():
+    """P2000 doubled behind the bus's back: 10 Hz are 10 Hz all the same."""
+    world = panel()
+    world.drives[1].write(2000, 0, 100.0)
+    world.run(3000)
+    world.press("START")
+    world.run(4000)
+    assert row_1(world) == "S: 10.0 F: 10.00" and abs(world.drives[1].hz() - 10) < 0.02
+    world.check()
+
+
+def test_hundredths_of_a_hertz_are_understood():
+    """P2009 = 1: PZD2 is the frequency itself."""
+    world = panel()
+    world.drives[1].write(2009, 0, 1)
+    world.run(3000)
+    world.press("START")
+    world.run(4000)
+    assert row_1(world) == "S: 10.0 F: 10.00"
+    assert world.wire.log.last(2)[0][2][13:15] == b"\x03\xe8"
+    world.check()
+
+
+def test_a_drive_that_does_not_start_is_not_left_waiting_with_on():
+    """P0010 blocks ON. It must not take effect when somebody finishes commissioning."""
+    world = panel()
+    world.drives[1].write(10, 0, 1)
+    world.press("START")
+    world.run(4000)
+    assert row_2(world) == "STARTING     A1"
+    world.run(2000)
+    assert row_2(world) == "NOT STARTED  A1"
+    world.drives[1].write(10, 0, 0)
+    world.run(3000)
+    assert starts(world) == 0
+    world.check()

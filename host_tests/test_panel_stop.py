@@ -1,0 +1,152 @@
+"""The operator's manual, STOP: it is always sent, repeated, and watched until the motor rests."""
+
+from panel_bench import OFF1, panel, row_2, running, starts, telegrams
+
+
+def test_a_stop_that_nobody_confirms_is_an_alarm():
+    world = running()
+    world.drives[1].unplug()
+    world.press("STOP")
+    world.run(700)
+    assert row_2(world) != "STOP UNCONFIRMED"
+    world.run(400)
+    assert row_2(world) == "STOP UNCONFIRMED"
+    world.drives[1].plug()
+    world.run(500)
+    assert row_2(world) == "STOPPING     A1"
+    world.run(6000)
+    assert row_2(world) == "READY        A1"
+    world.check()
+
+
+def test_a_stop_that_the_drive_does_not_obey_is_an_alarm():
+    """Somebody has taken the drive away from this bus while it ran."""
+    world = running()
+    words = world.drives[1]._process.words
+    world.drives[1]._process.words = lambda count: [0xFB34, 0x0CCD]  # it runs on and says so
+    world.press("STOP")
+    world.run(800)
+    assert row_2(world) == "STOPPING     A1"
+    world.run(300)
+    assert row_2(world) == "STOP UNCONFIRMED"
+    world.drives[1]._process.words = words
+    world.run(5000)
+    assert row_2(world) == "READY        A1"
+    world.check()
+
+
+def test_an_off1_that_nobody_pressed_is_watched_as_well():
+    """The dead man has sent it, and the drive does not obey."""
+    world = running()
+    world.drives[1]._process.words = lambda count: [0xFB34, 0x0CCD]
+    world.hang(1000)
+    world.run(2500)
+    assert row_2(world) == "STOP UNCONFIRMED"
+
+
+def test_an_answer_from_before_stop_confirms_nothing():
+    """The drive stands still and answers; it is unplugged, STOP is pressed."""
+    world = panel()
+    world.drives[1].unplug()
+    world.run(100)
+    world.press("STOP")
+    world.run(700)
+    assert world.app.bus.drives[0].contact
+    world.run(400)
+    assert row_2(world) == "STOP UNCONFIRMED"
+
+
+def test_a_long_list_is_no_reason_for_an_alarm():
+    """Eight drives at 1200 baud: it takes seconds until a drive has told that it slows down."""
+    addresses = (1, 2, 3, 4, 5, 6, 7, 8)
+    world = panel(addresses=addresses, baud=1200)
+    world.drives[1].write(1121, 0, 30.0)
+    world.run(60_000)
+    world.press("START")
+    world.run(20_000)
+    assert world.drives[1].state == "running"
+    world.press("STOP")
+    while world.drives[1].state == "stopping" or row_2(world) == "STOPPING     A1":
+        world.run(100)
+        assert row_2(world) != "STOP UNCONFIRMED"
+    world.check()
+
+
+def test_a_word_that_trembles_is_not_taken_for_a_motor_that_slows_down():
+    world = running()
+    count = [0]
+
+    def trembling(wanted):
+        count[0] += 1
+        return [0xFB34, 0x0CCD - count[0] % 3]
+
+    world.drives[1]._process.words = trembling
+    world.press("STOP")
+    world.run(3500)
+    assert row_2(world) == "STOP UNCONFIRMED"
+
+
+def test_a_motor_that_slows_down_and_then_does_not_is_an_alarm():
+    """Somebody has set the ramp to a standstill: 650 s."""
+    world = running()
+    world.press("STOP")
+    world.run(500)
+    assert row_2(world) == "STOPPING     A1"
+    drive = world.drives[1]
+    words = drive._process.words
+    hiw = words(2)[1]
+    drive._process.words = lambda wanted: [words(wanted)[0] | 4, hiw]
+    world.run(2500)
+    assert row_2(world) == "STOPPING     A1"
+    world.run(1000)
+    assert row_2(world) == "STOP UNCONFIRMED"
+
+
+def test_the_slowest_ramp_of_a_drive_is_no_alarm():
+    for p2000, p2009 in ((50.0, 0), (650.0, 0), (50.0, 1)):
+        world = panel()
+        world.drives[1].write(1121, 0, 650.0)
+        world.drives[1].write(2000, 0, p2000)
+        world.drives[1].write(2009, 0, p2009)
+        world.run(3000)
+        world.press("START")
+        world.run(4000)
+        world.press("STOP")
+        for _ in range(200):
+            world.run(100)
+            assert row_2(world) == "STOPPING     A1", (p2000, p2009)
+        world.check()
+
+
+def test_stop_is_repeated_until_the_drive_hears_it():
+    world = running()
+    world.drives[1].unplug()
+    world.press("STOP")
+    world.run(3000)
+    stws = [stw for _, stw in telegrams(world, world.clock.now_us - 2_900_000, 1)]
+    assert len(stws) > 50 and set(stws) == {OFF1}
+    world.drives[1].plug()
+    world.run(8000)
+    assert world.drives[1].hz() == 0
+    world.check()
+
+
+def test_stop_held_for_four_seconds_stops_all_drives():
+    world = panel(addresses=(1, 2, 3))
+    for _ in range(3):
+        world.press("START")
+        world.press("ADDRESS_UP")
+        world.run(200)
+    world.run(4000)
+    for address in (1, 2, 3):
+        assert world.drives[address].state == "running"
+    world.press("STOP", 3900)
+    assert [world.drives[address].hz() > 9 for address in (1, 2, 3)] == [False, True, True]
+    world.run(100)
+    world.press("STOP", 4100)
+    assert row_2(world) == "ALL DRIVES: STOP"
+    world.run(8000)
+    for address in (1, 2, 3):
+        assert world.drives[address].hz() == 0
+        assert starts(world, address) == 1
+    world.check()
