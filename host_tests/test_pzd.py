@@ -43,7 +43,7 @@ def test_control_words_are_those_of_the_manuals():
 
 
 def test_4000h_is_the_reference_frequency():
-    """Percent of P2000 and the word, USS.md 4.5 and the G110 manual."""
+    """Percent of P2000 and the word (G110 and MICROMASTER 440 operating instructions)."""
     scaling = pzd.Scaling(5000, False)
     for centihertz, word in (
         (5000, 0x4000), (2500, 0x2000), (1250, 0x1000), (500, 0x0666), (1000, 0x0CCD),
@@ -55,7 +55,7 @@ def test_4000h_is_the_reference_frequency():
 
 def test_p2009_makes_it_hundredths_of_a_hertz():
     scaling = pzd.Scaling(5000, True)
-    assert scaling.hsw(1000) == 0x03E8  # S4: 10.00 Hz
+    assert scaling.hsw(1000) == 0x03E8  # as seen on a live MM420
     assert scaling.hsw(-1000) == 0xFC18
     assert scaling.centihertz(0xFC18) == -1000
     assert scaling.hsw(65000) == 0x7FFF  # a word holds 327.67 Hz

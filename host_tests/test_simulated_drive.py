@@ -16,7 +16,7 @@ from drive_bench import HALF, OFF1, RUN, Bench, from_hex, telegram
 
 ADDRESS_0 = {2011: 0}
 PZD_ONLY = {2013: 0}
-HUNDREDTHS = {2009: 1}  # the setpoint in 0.01 Hz, as the panel of S4 has it
+HUNDREDTHS = {2009: 1}  # the setpoint in 0.01 Hz, as the MM420 panel of S4 has it
 STOPPED = ((OFF1, 0, 0),)
 STOPPED_WITH_SETPOINT = ((OFF1, 0x03E8, 0),)
 AT_HALF = ((OFF1, 0, 0), (RUN, HALF, 20))
