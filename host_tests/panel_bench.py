@@ -23,6 +23,19 @@ def running(**options):
     return world
 
 
+def all_running(addresses):
+    """A panel whose drives have all been started and have reached their setpoints."""
+    world = panel(addresses=addresses)
+    for _ in addresses:
+        world.press("START")
+        world.press("ADDRESS_UP")
+        world.run(200)
+    world.run(4000)
+    for drive in world.drives.values():
+        assert drive.state == "running", drive.report()
+    return world
+
+
 def row_1(world):
     return world.lcd()[0]
 

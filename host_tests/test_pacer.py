@@ -142,6 +142,32 @@ def test_ctrl_c_inside_the_engine_goes_on_its_way_and_the_engine_too():
     raise AssertionError("Ctrl-C got lost")
 
 
+def test_no_interrupt_comes_in_while_the_engine_recovers_from_ctrl_c():
+    bench = Bench()
+    recover, entries = bench.engine.recover, []
+
+    def interrupted():
+        bench.engine.meanwhile = None
+        raise KeyboardInterrupt
+
+    def recover_interrupted(now):
+        before = bench.engine.entries
+        bench.link.on_activity()
+        entries.append(bench.engine.entries - before)
+        recover(now)
+
+    bench.engine.meanwhile = interrupted
+    bench.engine.recover = recover_interrupted
+    try:
+        bench.pacer.run()
+    except KeyboardInterrupt:
+        assert entries == [0]
+        bench.timer.callback(bench.timer)
+        assert bench.engine.entries == 3
+        return
+    raise AssertionError("Ctrl-C got lost")
+
+
 def test_ctrl_c_that_lands_in_an_interrupt_reaches_the_main_loop():
     """The handler must not raise: MicroPython would disable it for good."""
     bench = Bench()

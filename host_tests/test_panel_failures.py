@@ -2,7 +2,18 @@
 
 import main
 from boards.sim.world import World
-from panel_bench import ERROR, OFF1, ON, panel, row_1, row_2, running, starts, telegrams
+from panel_bench import (
+    ERROR,
+    OFF1,
+    ON,
+    all_running,
+    panel,
+    row_1,
+    row_2,
+    running,
+    starts,
+    telegrams,
+)
 
 
 # --- when the drive stops by itself --------------------------------------------------------------
@@ -137,12 +148,7 @@ def test_after_a_hang_the_panel_says_so_and_waits_for_start():
 
 
 def test_every_drive_is_stopped_when_the_loop_hangs():
-    world = panel(addresses=(1, 2, 3))
-    for _ in range(3):
-        world.press("START")
-        world.press("ADDRESS_UP")
-        world.run(200)
-    world.run(4000)
+    world = all_running((1, 2, 3))
     hung_us = world.clock.now_us
     world.hang(1000)
     for address in (1, 2, 3):

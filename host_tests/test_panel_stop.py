@@ -1,6 +1,6 @@
 """The operator's manual, STOP: it is always sent, repeated, and watched until the motor rests."""
 
-from panel_bench import OFF1, panel, row_2, running, starts, telegrams
+from panel_bench import OFF1, all_running, panel, row_2, running, starts, telegrams
 
 
 def test_a_stop_that_nobody_confirms_is_an_alarm():
@@ -132,14 +132,7 @@ def test_stop_is_repeated_until_the_drive_hears_it():
 
 
 def test_stop_held_for_four_seconds_stops_all_drives():
-    world = panel(addresses=(1, 2, 3))
-    for _ in range(3):
-        world.press("START")
-        world.press("ADDRESS_UP")
-        world.run(200)
-    world.run(4000)
-    for address in (1, 2, 3):
-        assert world.drives[address].state == "running"
+    world = all_running((1, 2, 3))
     world.press("STOP", 3900)
     assert [world.drives[address].hz() > 9 for address in (1, 2, 3)] == [False, True, True]
     world.run(100)

@@ -78,8 +78,10 @@ class Pacer:
         try:
             self._work()
         except BaseException:  # Ctrl-C in the main loop: it goes on its way, the engine too
-            self._inside = False
-            self._recover()
+            try:
+                self._recover()  # still inside: no interrupt may come in on half of it
+            finally:
+                self._inside = False
             raise
 
     def _may_enter(self):

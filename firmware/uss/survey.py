@@ -77,7 +77,7 @@ class Survey:
         drive.asking = self.unchecked > 0
 
     def _is_in_a_hurry(self):
-        return self.unchecked or not self.complete
+        return self.unchecked > 0 or not self.complete
 
     def _forget(self):
         self.unchecked = 0
