@@ -388,7 +388,7 @@ def test_the_receiver_is_off_while_the_driver_is_on():
 
 def test_a_pin_that_is_high_from_the_start_enables_the_driver():
     board = Board()
-    pin = Pin(board.chip, 1)
+    pin = Pin(board.chip, value=1)
     Transceiver(board.wire, UART(board.chip, 19200), pin, "other")
     board.clock.advance(1000)
     pin(0)
@@ -540,7 +540,61 @@ def test_a_pin_has_a_level_and_tells_its_edges():
     pin(0)
     pin.value(True)
     assert edges == [1, 0, 1]
-    assert Pin(chip, 1).value() == 1
+    assert Pin(chip, value=1).value() == 1
+
+
+def test_an_input_reads_what_is_applied_to_it_else_its_pull():
+    chip = Chip(Clock(), None)
+    for pull, level in ((Pin.PULL_UP, 1), (Pin.PULL_DOWN, 0), (None, 0)):
+        edges = []
+        pin = Pin(chip, Pin.IN, pull, on_change=edges.append)
+        assert pin() == level
+        for applied in (0, 1):
+            pin.apply(applied)
+            assert pin.value() == applied
+        pin.on()
+        pin.off()
+        assert pin() == 1 and edges == []
+        pin.apply(None)
+        assert pin() == level
+
+
+def test_an_open_drain_output_pulls_low_or_lets_go():
+    chip = Chip(Clock(), None)
+    edges = []
+    pin = Pin(chip, Pin.OPEN_DRAIN, Pin.PULL_UP, value=1, on_change=edges.append)
+    assert pin() == 1
+    pin.apply(0)
+    assert pin() == 0  # somebody else pulls
+    pin.apply(1)
+    pin.off()
+    assert pin() == 0
+    pin.on()
+    pin.on()
+    assert pin() == 1 and edges == [0, 1]
+    assert Pin(chip, Pin.OPEN_DRAIN, value=1)() == 0  # nobody holds it
+
+
+def test_an_output_reads_as_it_is_set_whatever_is_applied():
+    pin = Pin(Chip(Clock(), None))
+    pin.apply(1)
+    assert pin() == 0
+    pin.apply(0)
+    pin.on()
+    assert pin() == 1
+
+
+def test_a_reset_lets_go_of_open_drain_outputs():
+    chip = Chip(Clock(), None)
+    edges = []
+    pin = Pin(chip, Pin.OPEN_DRAIN, Pin.PULL_UP, on_change=edges.append)
+    chip.reset()
+    pin.off()
+    assert edges == [0, 1] and pin() == 1
+
+
+def test_a_pin_of_no_mode_is_refused():
+    assert refused(ValueError, Pin, Chip(Clock(), None), 3)
 
 
 # Timer
@@ -664,7 +718,7 @@ def test_a_bite_resets_the_chip_even_with_interrupts_disabled():
 def test_a_reset_cuts_the_telegram_lowers_the_pins_and_calls_nobody():
     board = Board()
     levels = []
-    lamp = Pin(board.chip, 1, levels.append)
+    lamp = Pin(board.chip, value=1, on_change=levels.append)
     watchdog = WDT(board.chip, 100)
     board.chip.on_bite = lambda: levels.append("bite")
     timer = Timer(board.chip)

@@ -164,7 +164,7 @@ def test_a_transmitter_that_never_ends_does_not_keep_the_line():
 def test_the_driver_is_off_before_anything_is_sent():
     clock = Clock()
     chip = Chip(clock, Wire(clock, 19200))
-    driver_enable = Pin(chip, 1)  # left on by somebody
+    driver_enable = Pin(chip, value=1)  # left on by somebody
     Rs485Link(UART(chip, 19200), driver_enable, HardTimer(chip), clock, 19200)
     assert driver_enable.value() == 0
 

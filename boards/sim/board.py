@@ -1,87 +1,46 @@
 """The virtual board: the attributes that `hal` asks of any board, on a simulated chip.
 
-Display, keypad and store are things of the panel that outlive a restart of the chip; the board
-itself is made anew by every restart, as on the chip.
+The display's controller, switches and flash are things of the panel that outlive a restart of the
+chip; the board itself is made anew by every restart, as on the chip.
 """
 
 from boards.sim.chip import UART, WDT, Pin, Timer
 from boards.sim.wire import Transceiver
+from hal.hd44780 import Hd44780
+from hal.keypad import Keypad, Matrix
 from hal.rs485 import Rs485Link
 
-KEYS = ("START", "STOP", "UP", "DOWN", "ADDRESS_UP", "ADDRESS_DOWN")
+KEYS = (
+    "START",
+    "STOP",
+    "REVERSE",
+    "JOG_RIGHT",
+    "JOG_LEFT",
+    "UP",
+    "DOWN",
+    "ADDRESS_UP",
+    "ADDRESS_DOWN",
+    "PARAM",
+    "NEXT",
+    "PREVIOUS",
+    "EDIT",
+    "SET",
+)
+
+NORMALLY_CLOSED = ("STOP",)
+
+# How the keys may be wired: which are in a matrix. The others have pins of their own.
+WIRINGS = {
+    "direct": (),
+    "matrix": (
+        ("REVERSE", "JOG_RIGHT", "JOG_LEFT", "PARAM"),
+        ("UP", "DOWN", "ADDRESS_UP", "ADDRESS_DOWN"),
+        ("NEXT", "PREVIOUS", "EDIT", "SET"),
+    ),
+}
 
 LOOP_US = 2_000  # what a step of the main loop takes at the most on the chip
 WATCHDOG_MS = 2_000
-
-
-class Display:
-    """A display of 2 x 16 characters that takes a few of them at a time.
-
-    While it writes, time passes and interrupts come, as on the chip.
-    """
-
-    rows = 2
-    columns = 16
-    cells_max = 8  # written by one call of show
-    cell_us = 100  # a character over the 4-bit bus, with its share of cursor moves
-
-    def __init__(self, clock):
-        self._clock = clock
-        self._shown = bytearray(b" " * (self.rows * self.columns))
-
-    def show(self, picture):
-        shown = self._shown
-        if shown == picture:
-            return True
-        written = 0
-        for index in range(len(shown)):
-            if shown[index] != picture[index]:
-                shown[index] = picture[index]
-                written += 1
-                if written == self.cells_max:
-                    break
-        self._clock.advance(written * self.cell_us)
-        return shown == picture
-
-    def text(self):
-        """Both rows, as a person reads them."""
-        text = "".join(chr(code) for code in self._shown)
-        return text[: self.columns], text[self.columns :]
-
-
-class Keypad:
-    """Keys that a hand, a script or a test holds down."""
-
-    def __init__(self, names=KEYS):
-        self.names = names
-        self._down = 0
-
-    def read(self):
-        return self._down
-
-    def hold(self, key):
-        self._down |= 1 << self._position(key)
-
-    def let_go(self, key):
-        self._down &= ~(1 << self._position(key))
-
-    def _position(self, key):
-        if key not in self.names:
-            raise ValueError("no key %s: there are %s" % (key, " ".join(self.names)))
-        return self.names.index(key)
-
-
-class Store:
-    """A small file that outlives the chip's restarts."""
-
-    def __init__(self, data=None):
-        self._data = data
-
-    def read(self):
-        return self._data
-
-    def replace(self, data):
-        self._data = bytes(data)
 
 
 class Watchdog:
@@ -108,16 +67,17 @@ class HardTimer(Timer):
 class Board:
     """One life of the chip, from boot to reset.
 
-    chip: a `chip.Chip` that is running. polled: its UART offers no receive interrupt.
+    chip: a `chip.Chip` that is running. lcd: the controller of the panel's display. switches: of
+    the panel's keys. polled: its UART offers no receive interrupt.
     loop_us: a function that answers how long this step of the main loop takes, in microseconds.
     """
 
     name = "SIMULATED"
 
-    def __init__(self, chip, display, keypad, store, polled=False, loop_us=None):
+    def __init__(self, chip, lcd, switches, store, polled=False, loop_us=None):
         self.clock = chip.clock
-        self.display = display
-        self.keypad = keypad
+        self.display = make_display(chip, lcd)
+        self.keypad = make_keypad(chip, switches)
         self.store = store
         self.watchdog = Watchdog(chip)
         self.timer = HardTimer(chip)
@@ -139,6 +99,27 @@ class Board:
 
     def idle(self):
         self.clock.advance(self._loop_us())
+
+
+def make_display(chip, lcd):
+    """The driver of the display, on new pins that are wired to the controller."""
+    register_select = Pin(chip)
+    enable = Pin(chip)
+    data = tuple(Pin(chip) for _ in range(4))
+    lcd.wire(register_select, enable, data)
+    return Hd44780(register_select, enable, data, chip.clock)
+
+
+def make_keypad(chip, switches):
+    """The driver of the keys, on new pins that are joined to the switches."""
+    direct = tuple((key, Pin(chip, Pin.IN, Pin.PULL_UP)) for key in switches.direct)
+    rows = tuple(Pin(chip, Pin.OPEN_DRAIN, value=1) for _ in switches.matrix)
+    matrix, columns = None, ()
+    if rows:
+        columns = tuple(Pin(chip, Pin.IN, Pin.PULL_UP) for _ in switches.matrix[0])
+        matrix = Matrix(rows, columns, switches.matrix, chip.clock)
+    switches.connect(tuple(pin for _, pin in direct), rows, columns)
+    return Keypad(direct, matrix, switches.closed)
 
 
 def _usual_loop_us():

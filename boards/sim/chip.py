@@ -277,21 +277,44 @@ class UART:
 
 
 class Pin:
-    """machine.Pin, an output, low after a reset: on_change(level) tells the rest of the board."""
+    """machine.Pin: an output, an open-drain output, or an input with or without a pull.
 
-    def __init__(self, chip, value=0, on_change=None):
+    output             what the pin does to its wire. OUT: the level. OPEN_DRAIN: 0 pulls it low, 1
+                       lets go of it.
+    on_change(output)  tells the rest of the board when that changes
+    apply(level)       what the rest of the board does to the wire: 0, 1, or None for nothing
+
+    An input, and an open-drain output that has let go, read what is applied, else the pull; a wire
+    that nothing holds is 0.
+    A reset leaves the wire to the board: an output is low, as by a resistor to ground.
+    """
+
+    IN = 0
+    OUT = 1
+    OPEN_DRAIN = 2
+    PULL_UP = 1
+    PULL_DOWN = 2
+
+    def __init__(self, chip, mode=OUT, pull=None, *, value=0, on_change=None):
+        if mode not in (self.IN, self.OUT, self.OPEN_DRAIN):
+            raise ValueError("invalid mode %r" % (mode,))
+        self.mode = mode
+        self.pull = pull
         self.on_change = on_change
-        self._level = 0
+        self.output = 1 if mode == self.OPEN_DRAIN else 0
+        self._applied = None
+        self._level = 0  # what value() answers, kept up to date: it is asked far more often
         self._alive = True
         chip.pins.append(self)
         self.value(value)
+        self._settle()
 
     def value(self, level=None):
-        """The level, or set it."""
+        """The level, or set it; to set that of an input changes nothing."""
         if level is None:
             return self._level
-        if self._alive:
-            self._set(1 if level else 0)
+        if self._alive and self.mode != self.IN:
+            self._put(1 if level else 0)
 
     __call__ = value
 
@@ -301,15 +324,28 @@ class Pin:
     def off(self):
         self.value(0)
 
+    def apply(self, level):
+        self._applied = level
+        self._settle()
+
     def die(self):
-        self._set(0)
+        self._put(1 if self.mode == self.OPEN_DRAIN else 0)
         self._alive = False
 
-    def _set(self, level):
-        if level != self._level:
-            self._level = level
+    def _put(self, output):
+        if output != self.output:
+            self.output = output
+            self._settle()
             if self.on_change is not None:
-                self.on_change(level)
+                self.on_change(output)
+
+    def _settle(self):
+        if self.mode == self.OUT or (self.mode == self.OPEN_DRAIN and not self.output):
+            self._level = self.output
+        elif self._applied is not None:
+            self._level = self._applied
+        else:
+            self._level = 1 if self.pull == self.PULL_UP else 0
 
 
 class Timer:

@@ -13,6 +13,8 @@ The 32-bit build leaves its small integers after 2**30 us (17.9 minutes): from t
 still right, but it takes heap.
 """
 
+SLEEP_LIMIT_US = 100  # of hal's contract `clock`
+
 
 class Event:
     """Something that happens at an instant: `callback()` is called, without an argument.
@@ -95,6 +97,12 @@ class Clock:
 
     def advance(self, us):
         """Let `us` microseconds pass."""
+        self.advance_to(self.now_us + us)
+
+    def sleep_us(self, us):
+        """As the chip's: busy waiting, so 100 us at most (ValueError), and never in an event."""
+        if us > SLEEP_LIMIT_US:
+            raise ValueError("nobody sleeps for %d us: the limit is %d" % (us, SLEEP_LIMIT_US))
         self.advance_to(self.now_us + us)
 
     def advance_to(self, at_us):

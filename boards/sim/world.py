@@ -12,13 +12,19 @@ The world knows nothing of the firmware: `start(board)` makes it and answers an 
 
 import json
 
-from boards.sim.board import KEYS, LOOP_US, Board, Display, Keypad, Store
+from boards.sim.board import KEYS, LOOP_US, NORMALLY_CLOSED, WIRINGS, Board
 from boards.sim.chip import Chip
 from boards.sim.clock import Clock
 from boards.sim.drive import Drive
+from boards.sim.flash import Flash, PowerCut
+from boards.sim.lcd import Lcd
+from boards.sim.switches import Switches
 from boards.sim.wire import Wire
+from hal.store import FileStore
 
 BOOT_US = 100_000  # from reset to the first step of the firmware
+SETTINGS_FILE = "settings.json"
+SUPERVISION = 2014  # P2014, telegram off time
 TAP_MS = 100
 RELEASE_MS = 40  # a key that was let go is up for so long before the hand is at the next one
 HANG_SLICE_US = 1_000
@@ -30,8 +36,10 @@ class World:
 
     settings: what else the panel's settings file says. seed: 0 is the plain world, in which every
     drive answers after 3 characters and every step of the loop takes 2 ms; any other number gives
-    each its own times, the same for the same number. polled: no receive interrupt.
-    ticks_start, ticks_mask: of the chip's clock.
+    each its own times, the same for the same number, and keys bounce. polled: no receive
+    interrupt. ticks_start, ticks_mask: of the chip's clock. keys: "direct", each with a pin of its
+    own, or "matrix", all but START and STOP. parameters: of every drive, {number: value}; without
+    them they are supervised, P2014, as commissioned drives are.
     """
 
     def __init__(
@@ -44,23 +52,34 @@ class World:
         polled=False,
         ticks_start=0,
         ticks_mask=0x3FFFFFFF,
+        keys="direct",
+        parameters=None,
     ):
         self.clock = Clock(ticks_start, ticks_mask)
         self.wire = Wire(self.clock, baud)
         self.seed = seed
         self._random = (seed * 0x2545F + 0x1234567) & 0x3FFFFFFF or 1  # never 0
+        if parameters is None:
+            parameters = {SUPERVISION: supervision_ms(baud, len(addresses))}
         self.drives = {}
         for address in addresses:
             # Not before two characters have passed, not later than the master waits at this rate.
             fastest_us = self.wire.start_interval_us
             delay_us = self.random(fastest_us, max(15_000, 3 * fastest_us // 2)) if seed else None
-            self.drives[address] = Drive(self.clock, self.wire, address, reply_delay_us=delay_us)
+            self.drives[address] = Drive(
+                self.clock, self.wire, address, parameters, reply_delay_us=delay_us
+            )
         stored = dict(settings or {})
         stored.setdefault("baud", baud)
         stored.setdefault("drives", list(addresses))
-        self.display = Display(self.clock)
-        self.keypad = Keypad(KEYS)
-        self.store = Store(json.dumps(stored).encode())
+        self.lcd_chip = Lcd(self.clock)
+        if keys not in WIRINGS:
+            raise ValueError("keys are wired %s, not %s" % (" or ".join(WIRINGS), keys))
+        self.keypad = Switches(
+            self.clock, KEYS, NORMALLY_CLOSED, WIRINGS[keys], self.random if seed else None
+        )
+        self.flash = Flash()
+        self.flash.files[SETTINGS_FILE] = json.dumps(stored).encode()
         self.resets = 0
         self.app = None
         self._start = start
@@ -75,7 +94,11 @@ class World:
         """Let so many milliseconds pass, the firmware stepping."""
         until_us = self.clock.now_us + ms * 1000
         while self.clock.now_us < until_us:
-            self.app.step()
+            try:
+                self.app.step()
+            except PowerCut:  # `flash.cut_at` was reached; power is back at once
+                self.flash.power_on()
+                self.reset()
             if self._bitten:
                 self.reset()
 
@@ -91,6 +114,7 @@ class World:
     def reset(self):
         """The chip restarts, as after a watchdog: nothing of the firmware survives."""
         self.resets += 1
+        self.lcd_chip.let_go()
         self.chip.reset()
         self._boot()
 
@@ -111,7 +135,7 @@ class World:
 
     def lcd(self):
         """The two rows that can be read, 16 characters each."""
-        return self.display.text()
+        return self.lcd_chip.text()
 
     def reads(self, text):
         """Whether a person reads `text` on the display: in a row, or on across both rows."""
@@ -122,8 +146,10 @@ class World:
     # --- the referee ----------------------------------------------------------------------------
 
     def check(self):
-        """AssertionError when a rule of the line was broken or an interrupt handler failed."""
+        """AssertionError: a rule of line or display was broken, or an interrupt handler failed."""
         complaints = list(self.wire.violations)
+        for complaint in self.lcd_chip.complaints:
+            complaints.append("display: " + complaint)
         for chip in self.chips:
             for error in chip.handler_errors:
                 complaints.append("interrupt handler: %r" % (error,))
@@ -149,15 +175,21 @@ class World:
         self.chips.append(self.chip)
         self.clock.advance(BOOT_US)
         loop_us = self._uneven_loop_us if self.seed else None
-        board = Board(
-            self.chip, self.display, self.keypad, self.store, self._polled, loop_us
-        )
+        store = FileStore(SETTINGS_FILE, self.flash.open, self.flash)
+        board = Board(self.chip, self.lcd_chip, self.keypad, store, self._polled, loop_us)
         self.app = self._start(board)
 
     def _bite(self):
         # Inside an event: the world restarts the chip when it has the floor again.
         self._bitten = True
+        self.lcd_chip.let_go()
         self.chip.reset()
 
     def _uneven_loop_us(self):
         return self.random(LOOP_US // 4, LOOP_US * 2)
+
+
+def supervision_ms(baud, drives):
+    """A telegram off time that fits a line: four rounds in which every answer comes late."""
+    exchange_ms = 2 * 16 * 11_000 // baud + 30
+    return min(max(4 * exchange_ms * drives, 2_000), 60_000)

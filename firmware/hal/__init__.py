@@ -23,6 +23,7 @@ clock
     ticks_ms() -> int   milliseconds, wraps to 0 after ticks_mask
     ticks_mask          period - 1 of both: 2**n - 1, at most 2**30 - 1 (small integers have 31
                         bits), at least 2**24 - 1 (half a period outlasts every time-out)
+    sleep_us(us)        wait so long or a little longer, 100 us at most; interrupts are served
 
 link                    half duplex; the driver enable is the link's affair
     interrupts          True: on_activity is called without anyone asking; False: it must be polled
@@ -45,6 +46,8 @@ timer                   of the chip: init(mode=timer.ONE_SHOT, period=us, tick_h
 
 display
     rows, columns       2 and 16
+    define(glyphs)      before the first show: the pictures of character codes 0...7, 8 bytes each,
+                        one for every row of dots from the top, bit 4 the leftmost of 5
     show(picture)       picture: bytearray of 32 character codes, row by row. Brings the display a
                         bounded piece (<= 1 ms of work) nearer to it; answers whether all is shown
 
@@ -53,9 +56,10 @@ keypad
     read() -> int       the keys that are down now, as bits. Of an ambiguous reading of a matrix
                         none; keys with a pin of their own, STOP first of all, stay.
 
-store                   keeps one small file over power cuts
+store                   keeps one small file over power cuts; any method may raise OSError
     read() -> bytes or None
     replace(data)       all or nothing: after a power cut either the old or the new data are there
+    set_aside()         keep what is there under another name, for a person to look at
 
 watchdog
     feed()              the first call starts it; 2 s without a further call restart the chip

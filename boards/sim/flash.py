@@ -1,0 +1,142 @@
+"""Files on a flash memory whose power can be cut before every step of writing.
+
+It behaves like littlefs: a file that is written appears with its new content when it is closed,
+all at once, and rename overwrites at once (littlefs README, Usage). It has no folders, wears out
+never, and takes no time.
+
+    flash = Flash()
+    store = FileStore("settings.json", flash.open, flash)      # it stands for `open` and for `os`
+    flash.cut_at = flash.steps + 2
+    try:
+        store.replace(b"{}")
+    except PowerCut:
+        flash.power_on()
+"""
+
+import io
+
+ENOENT = 2
+EIO = 5
+ENOSPC = 28
+
+BLOCK_BYTES = 64  # written in one step; small, so that there are many steps
+CAPACITY_BYTES = 64 * BLOCK_BYTES
+
+
+class PowerCut(BaseException):
+    """The power is gone: no handler of errors may go on as if it were not."""
+
+
+class Flash:
+    """torn: of a file that was being written at the cut, what had been written is visible.
+
+    littlefs promises better; a firmware that stands this needs no such promise.
+
+    files        path -> bytes, as a reader finds them; a test may put something there
+    unreadable   paths that cannot be read: OSError
+    steps        how many were taken: a file created, a block written, a file committed
+                 (close), renamed, removed
+    cut_at       power is cut instead of the step with this number, counted from 0; None: never
+    """
+
+    def __init__(self, capacity_bytes=CAPACITY_BYTES, torn=False):
+        self.files = {}
+        self.unreadable = ()
+        self.steps = 0
+        self.cut_at = None
+        self._blocks_max = capacity_bytes // BLOCK_BYTES
+        self._torn = torn
+        self._has_power = True
+        self._writing = {}  # path -> what has been written of it and is not committed
+
+    def power_on(self):
+        self._has_power = True
+        self.cut_at = None
+
+    def open(self, path, mode):
+        """OSError: ENOENT, EIO. mode: "rb" or "wb"."""
+        self._need_power()
+        if mode == "wb":
+            if path not in self.files:
+                self._step()
+                self.files[path] = b""
+            self._writing[path] = b""
+            return _Writer(self, path)
+        self._need(path)
+        if path in self.unreadable:
+            raise OSError(EIO)
+        return io.BytesIO(self.files[path])
+
+    def rename(self, old, new):
+        self._need(old)
+        self._step()
+        self.files[new] = self.files.pop(old)
+
+    def remove(self, path):
+        self._need(path)
+        self._step()
+        del self.files[path]
+
+    def write_block(self, path, block):
+        """For the writer of a file. OSError: ENOSPC; what was written of the file is given up."""
+        if self._blocks_used() == self._blocks_max:
+            del self._writing[path]
+            raise OSError(ENOSPC)
+        half = len(block) // 2
+        self._writing[path] += block[:half]
+        self._step()
+        self._writing[path] += block[half:]
+
+    def commit(self, path):
+        """For the writer of a file: what it has written takes the place of what was there."""
+        self._step()
+        self.files[path] = self._writing.pop(path)
+
+    def _step(self):
+        self._need_power()
+        if self.steps == self.cut_at:
+            self._has_power = False
+            if self._torn:
+                self.files.update(self._writing)
+            self._writing = {}
+            raise PowerCut()
+        self.steps += 1
+
+    def _need_power(self):
+        if not self._has_power:
+            raise PowerCut()
+
+    def _need(self, path):
+        self._need_power()
+        if path not in self.files:
+            raise OSError(ENOENT)
+
+    def _blocks_used(self):
+        contents = list(self.files.values()) + list(self._writing.values())
+        return sum(-(-len(content) // BLOCK_BYTES) for content in contents)
+
+
+class _Writer:
+    """A file that is being written. Until it is closed its data wait in memory."""
+
+    def __init__(self, flash, path):
+        self._flash = flash
+        self._path = path
+        self._waiting = b""
+
+    def write(self, data):
+        self._waiting += data
+        return len(data)
+
+    def close(self):
+        waiting = self._waiting
+        self._waiting = b""
+        for at in range(0, len(waiting), BLOCK_BYTES):
+            self._flash.write_block(self._path, waiting[at : at + BLOCK_BYTES])
+        self._flash.commit(self._path)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, _type, _value, _traceback):
+        self.close()

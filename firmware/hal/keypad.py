@@ -1,0 +1,150 @@
+"""Keys on pins of their own, and in a matrix without diodes. Contract `keypad` of `hal`.
+
+A key joins its pin to ground, the pin has a pull-up: low is down. A normally closed key opens when
+it is pressed: high is down, and so is a broken wire. STOP has a pin of its own, best normally
+closed. A wire to ground is not noticed there: it reads as a closed contact.
+
+    keys = Matrix((row_1, row_2), (column_1, column_2), (("UP", "DOWN"), ("SET", None)), clock)
+    keypad = Keypad((("START", start_pin), ("STOP", stop_pin)), keys, closed=("STOP",))
+    keypad.names        # ("START", "STOP", "UP", "DOWN", "SET")
+    keypad.read()       # 0b00010: STOP is down
+
+Nothing is debounced here: that is `panel.keys`.
+"""
+
+from micropython import const
+
+KEYS_MAX = const(30)  # bits of a small integer that is not negative, on 32-bit ports
+
+# A column rises through the chip's pull-up against its cable: 8 us with 80 kohm (RP2040 data
+# sheet, pads) and 100 pF, to 2.0 of 3.3 V. Twice that, and a little.
+SETTLE_US = const(20)
+
+
+class Keypad:
+    """direct: (name, Pin) for each key with a pin of its own, inputs with pull-ups.
+
+    matrix: a `Matrix` or None. closed: names of the direct keys that are normally closed.
+    ValueError: STOP has no pin of its own, a name stands twice, more than 30 keys, a normally
+    closed key that is not among the direct ones.
+    """
+
+    def __init__(self, direct, matrix=None, closed=()):
+        own = tuple(name for name, _ in direct)
+        self.names = own + (matrix.names if matrix else ())
+        check_names(self.names, own, closed)
+        # Bound once; calling a Pin itself would look the method up each time.
+        self._direct = tuple((1 << bit, pin.value) for bit, (_, pin) in enumerate(direct))
+        self._closed = sum(1 << own.index(name) for name in closed)
+        self._matrix = matrix
+        self._shift = len(own)
+
+    def read(self):
+        low = 0
+        for bit, level in self._direct:
+            if not level():
+                low |= bit
+        down = low ^ self._closed
+        if self._matrix:
+            down |= self._matrix.read() << self._shift
+        return down
+
+
+def check_names(names, own, closed):
+    if "STOP" not in own:
+        raise ValueError("STOP has a pin of its own")
+    if len(set(names)) < len(names):
+        raise ValueError("a key stands there twice: %s" % " ".join(names))
+    if len(names) > KEYS_MAX:
+        raise ValueError("%d keys: %d at the most" % (len(names), KEYS_MAX))
+    for name in closed:
+        if name not in own:
+            raise ValueError("%s is normally closed and has no pin of its own" % name)
+
+
+class Matrix:
+    """Rows are driven one after the other, columns tell which of the row's keys are closed.
+
+    rows: open-drain outputs, high. columns: inputs with pull-ups. names: for each row the name of
+    the key at each column, None where there is none. clock: contract of `hal`. ValueError: names
+    do not fit the pins. A read takes 20 us; with a key down, 20 us for each row and 40 us more.
+
+    Current flows backwards through closed keys: with three at the corners of a rectangle, the
+    fourth seems closed. So two rows that share two columns are ambiguous, and no key counts. Any
+    other reading is true. (A key that moves within the read may be misread, once: no key is
+    believed before it has been the same for some time.)
+
+    A column that is low while no row is driven is shorted to ground: its keys do not count.
+    """
+
+    def __init__(self, rows, columns, names, clock):
+        if len(names) != len(rows) or any(len(keys) != len(columns) for keys in names):
+            raise ValueError("not a name for each of %d x %d" % (len(rows), len(columns)))
+        self.names = tuple(name for keys in names for name in keys if name is not None)
+        self._rows = tuple(row.value for row in rows)
+        self._columns = tuple((1 << bit, pin.value) for bit, pin in enumerate(columns))
+        self._keys = _bits_of(names)
+        self._seen = [0] * len(rows)  # the columns that are low while a row is driven, as bits
+        self._sleep_us = clock.sleep_us
+
+    def read(self):
+        """The keys that are down, as bits in the order of `names`; 0 of an ambiguous reading."""
+        if self._is_idle():
+            return 0
+        self._scan()
+        return 0 if self._is_ambiguous() else self._down()
+
+    def _is_idle(self):
+        """Whether no key is down, as it mostly is: one look at all rows together tells."""
+        for put in self._rows:
+            put(0)
+        self._sleep_us(SETTLE_US)
+        low = self._low_columns()
+        for put in self._rows:
+            put(1)
+        return not low
+
+    def _scan(self):
+        self._sleep_us(SETTLE_US)
+        working = ~self._low_columns()
+        row = 0
+        for put in self._rows:
+            put(0)
+            self._sleep_us(SETTLE_US)
+            self._seen[row] = self._low_columns() & working
+            put(1)
+            row += 1
+
+    def _low_columns(self):
+        low = 0
+        for bit, level in self._columns:
+            if not level():
+                low |= bit
+        return low
+
+    def _is_ambiguous(self):
+        seen = self._seen
+        for row in range(1, len(seen)):
+            for other in range(row):
+                shared = seen[row] & seen[other]
+                if shared & (shared - 1):  # more than one bit
+                    return True
+        return False
+
+    def _down(self):
+        down = 0
+        seen = self._seen
+        for row, column, bit in self._keys:
+            if seen[row] & column:
+                down |= bit
+        return down
+
+
+def _bits_of(names):
+    """For each key of a matrix: its row, the bit of its column, its own bit."""
+    keys = []
+    for row, row_names in enumerate(names):
+        for column, name in enumerate(row_names):
+            if name is not None:
+                keys.append((row, 1 << column, 1 << len(keys)))
+    return tuple(keys)

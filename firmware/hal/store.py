@@ -1,0 +1,75 @@
+"""A small file that survives power cuts, on a file system whose rename overwrites at once.
+
+Fulfils the contract `store` of `hal`. New data are written to a file beside the old one, and a
+rename puts it in its place: littlefs, which the ports for the RP2040 and the ESP32 use, promises
+that either the old or the new file is there afterwards (littlefs README, Usage). FAT promises
+nothing of the kind. What a power cut leaves beside the file is never read, and the next writing
+takes its place.
+
+    store = FileStore("settings.json", open, os)
+    store.replace(b"{}")
+"""
+
+from micropython import const
+
+_ENOENT = const(2)
+
+
+class FileStore:
+    """path: of the file, in a folder that is there. open, os: those of Python.
+
+    Beside the file there may be path + ".new", which was not finished, and path + ".bad", which
+    was set aside.
+    """
+
+    def __init__(self, path, open, os):
+        self._path = path
+        self._open = open
+        self._os = os
+
+    def read(self):
+        return self._read(self._path)
+
+    def replace(self, data):
+        self._put(self._path, data)
+
+    def set_aside(self):
+        """Keep a copy as path + ".bad", in place of an earlier one.
+
+        A copy, because between moving the file away and writing the next one power may be cut.
+        Only what cannot be read is moved.
+        """
+        try:
+            data = self.read()
+        except OSError:
+            self._os.rename(self._path, self._path + ".bad")
+            return
+        if data is not None:
+            self._put(self._path + ".bad", data)
+
+    def _read(self, path):
+        try:
+            with self._open(path, "rb") as file:
+                return file.read()
+        except OSError as error:
+            if error.args[0] == _ENOENT:
+                return None
+            raise
+
+    def _put(self, path, data):
+        if data == self._read(path):
+            return  # flash wears out
+        new = self._path + ".new"
+        try:
+            with self._open(new, "wb") as file:
+                file.write(data)
+            self._os.rename(new, path)
+        except OSError:
+            self._remove(new)  # it takes room that is short
+            raise
+
+    def _remove(self, path):
+        try:
+            self._os.remove(path)
+        except OSError:
+            pass
