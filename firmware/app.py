@@ -17,8 +17,10 @@ from uss.survey import Survey
 from uss.master import CLOSED, Master
 from hal.pacer import Pacer
 from panel.control import Control
+from panel import texts
 from panel.panel import Panel
-from settings import load
+from panel.screen import GLYPHS
+from settings import load, save
 
 CLOSE_MS = const(1_000)  # for the drives to answer their OFF1, and a little for each of them
 CLOSE_PER_DRIVE_MS = const(100)
@@ -41,6 +43,7 @@ class App:
         for address in settings.drives:
             drive = self.bus.add(address)
             controls.append(Control(drive, Survey(drive, mask), self.bus, mask, settings))
+        board.display.define(GLYPHS)
         self.panel = Panel(controls, self.bus, board.keypad.names, settings, mask)
         self._mask = mask
         self._progress = 0  # of the bus as last seen, and when it moved
@@ -62,7 +65,23 @@ class App:
         board.display.show(self.panel.screen.picture)
         if self._engine_works(now_ms):
             board.watchdog.feed()
+        if self.settings.dirty and not self._any_runs():
+            self._save(now_ms)
         board.idle()
+
+    def _any_runs(self):
+        for drive in self.bus.drives:
+            if drive.may_run():
+                return True
+        return False
+
+    def _save(self, now_ms):
+        """Writing flash may hold everything up for a while: only when no drive runs."""
+        try:
+            save(self.board.store, self.settings)
+        except OSError:
+            self.settings.dirty = False  # not again and again; what was set holds until power-off
+            self.panel.say(texts.NOT_SAVED, now_ms)
 
     def close(self):
         """Stop every drive, wait for its answer as long as it may take, and leave no interrupt.

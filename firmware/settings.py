@@ -1,12 +1,14 @@
-"""What a user sets once: the bus, its drives, the limits of the setpoint.
+"""What a user sets once: the bus, its drives, the limits of the setpoint, what was accepted.
 
-The schema is a table; the settings are read from a board's store as JSON. A file that cannot be
-read or has a value out of range gives the default for what is wrong and says so in `complaint`;
-nothing that was stored is lost by that, because loading writes nothing.
+The schema is two tables; the settings stand in a board's store as JSON, a line for each. A file
+that cannot be read or has a value that cannot be gives the default for what is wrong and says so
+in `complaint`. Nothing that was stored is lost by that: loading writes nothing, and the first save
+sets the file aside. What a newer firmware stored and this one does not know is kept.
 
     settings = load(board.store)
-    settings.baud
-    save(board.store, settings)
+    settings.readdress(1, 5)
+    if settings.dirty:
+        save(board.store, settings)
 """
 
 import json
@@ -14,8 +16,11 @@ import json
 from uss.telegram import NODE_MAX
 from uss.timing import BAUD_RATES
 
-SCHEMA = (  # name, default, lowest, highest, meaning
-    ("baud", 19200, 300, 187500, "bit/s, one of the rates of USS"),
+CHOICES = (  # name, default, what it may be, meaning
+    ("baud", 19200, BAUD_RATES, "bit/s"),
+    ("second_stop", "OFF3", ("OFF3", "OFF2", "none"), "what holding STOP for 1.5 s sends"),
+)
+NUMBERS = (  # name, default, lowest, highest, meaning
     ("reply_timeout_ms", 20, 20, 60, "wait for a reply to begin; it delays a STOP as well"),
     ("lost_ms", 1000, 100, 5000, "without a valid reply for so long a drive counts as lost"),
     ("setpoint_centihertz", 1000, 0, 65000, "setpoint after power-up, 0.01 Hz"),
@@ -23,60 +28,135 @@ SCHEMA = (  # name, default, lowest, highest, meaning
     ("lowest_centihertz", 0, 0, 65000, "lowest setpoint, 0.01 Hz"),
     ("highest_centihertz", 65000, 0, 65000, "highest setpoint, 0.01 Hz"),
 )
-DRIVES = (1,)  # addresses 0...31, each once, in the order of the address keys
+ADDRESSES = (  # name, default, fewest, meaning; addresses 0...31, each once, 31 at the most
+    ("drives", (1,), 1, "in the order of the address keys"),
+    ("unsupervised", (), 0, "drives accepted without a telegram time-out, P2014 = 0"),
+)
+DEFAULTS = {row[0]: row[1] for row in CHOICES + NUMBERS + ADDRESSES}
 
 
 class Settings:
-    """One attribute for each row of SCHEMA, `drives`, and `complaint`: None or what was wrong."""
+    """One attribute for each row of CHOICES, NUMBERS and ADDRESSES (tuples), and
+
+    complaint   None, or what was wrong with the file; stays until the next power-up
+    damaged     True: the file holds what was not taken over and is not yet set aside
+    dirty       True: something was changed and is not saved yet
+    """
 
     def __init__(self):
         self.complaint = None
-        self.drives = DRIVES
-        for name, default, _, _, _ in SCHEMA:
-            setattr(self, name, default)
+        self.damaged = False
+        self.dirty = False
+        self._unknown = {}
+        for name in DEFAULTS:
+            setattr(self, name, DEFAULTS[name])
 
     def take(self, stored):
         """Take over what a dictionary says; complain about the first thing that cannot be."""
-        for name, _, lowest, highest, _ in SCHEMA:
-            if name in stored:
-                value = stored[name]
-                if _is_integer(value) and lowest <= value <= highest:
-                    setattr(self, name, value)
-                else:
-                    self._complain("%s: %r is not %d...%d" % (name, value, lowest, highest))
-        if self.baud not in BAUD_RATES:
-            self._complain("baud: %d is no rate of USS" % self.baud)
-            self.baud = SCHEMA[0][1]
-        if "drives" in stored:
-            self._take_drives(stored["drives"])
+        for name, default, choices, _ in CHOICES:
+            value = stored.get(name, default)
+            if type(value) is type(default) and value in choices:
+                setattr(self, name, value)
+            else:
+                self.complain("%s: %r is none of %s" % (name, value, _words(choices)))
+        for name, default, lowest, highest, _ in NUMBERS:
+            value = stored.get(name, default)
+            if _is_number(value, lowest, highest):
+                setattr(self, name, value)
+            else:
+                self.complain("%s: %r is not %d...%d" % (name, value, lowest, highest))
+        for name, default, fewest, _ in ADDRESSES:
+            value = stored.get(name, default)
+            if _are_addresses(value, fewest):
+                setattr(self, name, tuple(value))
+            else:
+                self.complain("%s: %r are not up to 31 addresses 0...31" % (name, value))
+        self._check_limits()
+        self._unknown = {name: stored[name] for name in stored if name not in DEFAULTS}
+
+    def accept_unsupervised(self, address):
+        """The operator lets this drive run on when telegrams stay away. ValueError: no such drive.
+
+        What was accepted for a drive that is no longer there ends with that.
+        """
+        self._check_present(address)
+        accepted = tuple(one for one in self.drives if one == address or one in self.unsupervised)
+        self.dirty = self.dirty or accepted != self.unsupervised
+        self.unsupervised = accepted
+
+    def readdress(self, old, new):
+        """The drive at address `old` answers at `new` from now on; it keeps what was accepted.
+
+        ValueError: there is no drive at `old`, there is one at `new`, or `new` is not 0...31.
+        """
+        self._check_present(old)
+        if new in self.drives or not _is_number(new, 0, NODE_MAX):
+            raise ValueError("address %r is taken or not 0...31" % (new,))
+        accepted = [one for one in self.drives if one in self.unsupervised]
+        self.drives = _replaced(self.drives, old, new)
+        self.unsupervised = _replaced(accepted, old, new)
+        self.dirty = True
 
     def as_dictionary(self):
-        stored = {name: getattr(self, name) for name, _, _, _, _ in SCHEMA}
-        stored["drives"] = list(self.drives)
+        """All that is stored, unknown things as well."""
+        stored = dict(self._unknown)
+        for name in DEFAULTS:
+            stored[name] = getattr(self, name)
         return stored
 
-    def _take_drives(self, drives):
-        fits = isinstance(drives, list) and 0 < len(drives) <= NODE_MAX
-        for address in drives if fits else ():
-            if not (_is_integer(address) and 0 <= address <= NODE_MAX):
-                fits = False
-        if fits and len(set(drives)) == len(drives):
-            self.drives = tuple(drives)
-        else:
-            self._complain("drives: %r are not up to 31 addresses 0...31" % (drives,))
+    def as_file(self):
+        """What is stored, as bytes: JSON in the order of the tables, the unknown at the end."""
+        names = [row[0] for row in CHOICES + NUMBERS + ADDRESSES] + sorted(self._unknown)
+        stored = self.as_dictionary()
+        lines = ["  %s: %s" % (json.dumps(name), json.dumps(stored[name])) for name in names]
+        return ("{\n" + ",\n".join(lines) + "\n}\n").encode()
 
-    def _complain(self, text):
+    def complain(self, text):
+        """Note what is wrong with the file; the first complaint stays."""
         self.complaint = self.complaint or text
+        self.damaged = True
+
+    def _check_limits(self):
+        if self.lowest_centihertz > self.highest_centihertz:
+            limits = (self.lowest_centihertz, self.highest_centihertz)
+            self.complain("lowest_centihertz: %d is above highest_centihertz: %d" % limits)
+            self.lowest_centihertz = DEFAULTS["lowest_centihertz"]
+            self.highest_centihertz = DEFAULTS["highest_centihertz"]
+
+    def _check_present(self, address):
+        if address not in self.drives:
+            raise ValueError("no drive %r" % (address,))
 
 
-def _is_integer(value):
-    return isinstance(value, int) and not isinstance(value, bool)
+def _is_number(value, lowest, highest):
+    return type(value) is int and lowest <= value <= highest  # a bool is none
+
+
+def _are_addresses(values, fewest):
+    if not isinstance(values, (list, tuple)) or not fewest <= len(values) <= NODE_MAX:
+        return False
+    for value in values:
+        if not _is_number(value, 0, NODE_MAX):
+            return False
+    return len(set(values)) == len(values)
+
+
+def _replaced(addresses, old, new):
+    return tuple(new if address == old else address for address in addresses)
+
+
+def _words(choices):
+    return " ".join(str(choice) for choice in choices)
 
 
 def load(store):
     """The settings that a store keeps; the defaults where it keeps none."""
     settings = Settings()
-    data = store.read()
+    try:
+        data = store.read()
+    except OSError:
+        settings.complain("the settings file cannot be read")
+        return settings
     if data is None:
         return settings
     try:
@@ -87,10 +167,17 @@ def load(store):
     if isinstance(stored, dict):
         settings.take(stored)
     else:
-        settings.complaint = "the settings file is damaged"
+        settings.complain("the settings file is damaged")
     return settings
 
 
 def save(store, settings):
-    """Replace what the store keeps by these settings, all or nothing."""
-    store.replace(json.dumps(settings.as_dictionary()).encode())
+    """Replace what the store keeps by these settings, all or nothing.
+
+    OSError: the store failed; the old settings are there, and `dirty` stays as it was.
+    """
+    if settings.damaged:
+        store.set_aside()
+        settings.damaged = False
+    store.replace(settings.as_file())
+    settings.dirty = False

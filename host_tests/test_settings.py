@@ -1,56 +1,87 @@
-"""Settings: a table of what may be set, and a file that may be damaged."""
+"""Settings: tables of what may be set, and a file that may be damaged."""
 
 import json
 
 import settings
-from boards.sim.board import Store
+from boards.sim.flash import Flash
+from hal.store import FileStore
 
 
-def loaded(stored):
-    data = stored if isinstance(stored, bytes) else json.dumps(stored).encode()
-    return settings.load(Store(data))
+def stored(data=None):
+    """A store that keeps `data`: bytes, or a dictionary; None: nothing yet."""
+    flash = Flash()
+    if data is not None:
+        flash.files["s"] = data if isinstance(data, bytes) else json.dumps(data).encode()
+    return FileStore("s", flash.open, flash)
+
+
+def loaded(data=None):
+    return settings.load(stored(data))
+
+
+def refuses(function, *arguments):
+    try:
+        function(*arguments)
+    except ValueError:
+        return True
+    return False
+
+
+# --- loading ------------------------------------------------------------------------------------
 
 
 def test_without_a_file_the_defaults_hold():
-    chosen = settings.load(Store())
+    chosen = loaded()
     assert (chosen.baud, chosen.drives, chosen.setpoint_centihertz) == (19200, (1,), 1000)
-    assert chosen.complaint is None
+    assert (chosen.second_stop, chosen.unsupervised) == ("OFF3", ())
+    assert chosen.complaint is None and not chosen.dirty
 
 
 def test_what_is_stored_is_used():
-    chosen = loaded({"baud": 9600, "drives": [3, 0, 31], "setpoint_centihertz": 2500})
-    assert (chosen.baud, chosen.drives, chosen.setpoint_centihertz) == (9600, (3, 0, 31), 2500)
-    assert chosen.complaint is None
-
-
-def test_what_is_saved_is_loaded_again():
-    store = Store()
-    chosen = loaded({"baud": 38400, "drives": [5, 6], "highest_centihertz": 6000})
-    settings.save(store, chosen)
-    again = settings.load(store)
-    assert again.as_dictionary() == chosen.as_dictionary()
+    chosen = loaded({"baud": 9600, "drives": [3, 0, 31], "unsupervised": [31, 0]})
+    assert (chosen.baud, chosen.drives, chosen.unsupervised) == (9600, (3, 0, 31), (31, 0))
+    for kind in ("OFF3", "OFF2", "none"):
+        assert loaded({"second_stop": kind}).second_stop == kind
+    assert chosen.complaint is None and not chosen.dirty
 
 
 def test_a_damaged_file_gives_defaults_and_says_so():
-    for data in (b"", b"{", b"\xff\xfe\x00", b"[1, 2]", b'"text"', b"null", b"12"):
+    unreadable = (b"", b"{", b"}", b"\xff\xfe\x00", b"\xff}", b'{"baud": 9600}}')
+    for data in unreadable + (b"[1, 2]", b'"text"', b"null", b"12"):
         chosen = loaded(data)
         assert chosen.baud == 19200 and chosen.drives == (1,)
-        assert chosen.complaint, data
+        assert chosen.complaint == "the settings file is damaged", data
+
+
+def test_a_file_that_cannot_be_read_gives_defaults_and_says_so():
+    flash = Flash()
+    flash.files["s"] = b'{"baud": 9600}'
+    flash.unreadable = ("s",)
+    chosen = settings.load(FileStore("s", flash.open, flash))
+    assert chosen.baud == 19200
+    assert chosen.complaint == "the settings file cannot be read"
 
 
 def test_a_file_cut_at_any_character_is_noticed():
     """As a power cut may leave it where the store is not what it should be."""
-    whole = json.dumps({"drives": [1, 2], "baud": 9600}).encode()
+    store = stored()
+    settings.save(store, loaded({"drives": [1, 2], "baud": 9600}))
+    whole = store.read().rstrip()
     for length in range(len(whole)):
         chosen = loaded(whole[:length])
         assert chosen.complaint and chosen.baud == 19200, whole[:length]
 
 
-def test_a_value_out_of_range_gives_its_default_and_keeps_the_others():
+def test_a_value_that_cannot_be_gives_its_default_and_keeps_the_others():
     for name, value in (
         ("baud", 14400),
         ("baud", "9600"),
+        ("baud", 9600.0),
         ("baud", None),
+        ("second_stop", "OFF1"),
+        ("second_stop", "off3"),
+        ("second_stop", None),
+        ("second_stop", ["OFF2"]),
         ("reply_timeout_ms", 5),
         ("lost_ms", 0),
         ("setpoint_centihertz", -1),
@@ -63,25 +94,156 @@ def test_a_value_out_of_range_gives_its_default_and_keeps_the_others():
         ("drives", [1, 1]),
         ("drives", "1"),
         ("drives", [True]),
+        ("drives", [[1]]),
         ("drives", list(range(32))),
+        ("unsupervised", [-1]),
+        ("unsupervised", [2, 2]),
+        ("unsupervised", {"1": 1}),
+        ("unsupervised", None),
+        ("unsupervised", list(range(32))),
     ):
-        stored = {"lowest_centihertz": 100, name: value}
-        chosen = loaded(stored)
-        default = settings.DRIVES
-        for row in settings.SCHEMA:
-            if row[0] == name:
-                default = row[1]
-        assert getattr(chosen, name) == default, (name, value)
+        chosen = loaded({"lowest_centihertz": 100, name: value})
+        assert getattr(chosen, name) == settings.DEFAULTS[name], (name, value)
         assert chosen.lowest_centihertz == 100
         assert name in chosen.complaint
 
 
-def test_every_default_is_within_its_limits():
-    for name, default, lowest, highest, meaning in settings.SCHEMA:
-        assert lowest <= default <= highest and meaning, name
+def test_a_lowest_setpoint_above_the_highest_gives_the_defaults_for_both():
+    chosen = loaded({"lowest_centihertz": 5000, "highest_centihertz": 4999, "baud": 9600})
+    assert (chosen.lowest_centihertz, chosen.highest_centihertz) == (0, 65000)
+    assert "lowest_centihertz" in chosen.complaint and "highest_centihertz" in chosen.complaint
+    assert chosen.baud == 9600
+    assert loaded({"lowest_centihertz": 5000, "highest_centihertz": 5000}).complaint is None
+
+
+def test_every_default_may_be_set():
+    assert loaded(settings.DEFAULTS).complaint is None
+    for row in settings.CHOICES + settings.NUMBERS + settings.ADDRESSES:
+        assert row[-1], row
 
 
 def test_loading_writes_nothing():
-    store = Store(b"damaged")
+    store = stored(b"damaged")
     settings.load(store)
     assert store.read() == b"damaged"
+
+
+# --- saving -------------------------------------------------------------------------------------
+
+
+def test_what_is_saved_is_loaded_again():
+    store = stored()
+    chosen = loaded({"baud": 38400, "drives": [5, 6], "second_stop": "none", "unsupervised": [6]})
+    settings.save(store, chosen)
+    again = settings.load(store)
+    assert again.as_dictionary() == chosen.as_dictionary()
+    assert again.complaint is None
+
+
+def test_a_person_can_read_the_file():
+    store = stored({"drives": [2, 1], "unsupervised": [2]})
+    settings.save(store, settings.load(store))
+    assert store.read().decode() == (
+        "{\n"
+        '  "baud": 19200,\n'
+        '  "second_stop": "OFF3",\n'
+        '  "reply_timeout_ms": 20,\n'
+        '  "lost_ms": 1000,\n'
+        '  "setpoint_centihertz": 1000,\n'
+        '  "setpoint_step_centihertz": 10,\n'
+        '  "lowest_centihertz": 0,\n'
+        '  "highest_centihertz": 65000,\n'
+        '  "drives": [2, 1],\n'
+        '  "unsupervised": [2]\n'
+        "}\n"
+    )
+
+
+def test_what_a_newer_firmware_stored_is_kept():
+    newer = {"language": "de", "baud": 9600, "motors": {"1": ["a", None]}}
+    store = stored(newer)
+    chosen = settings.load(store)
+    assert chosen.complaint is None
+    settings.save(store, chosen)
+    again = json.loads(store.read())
+    assert (again["language"], again["motors"]) == ("de", {"1": ["a", None]})
+    assert again["baud"] == 9600
+
+
+def test_a_file_with_something_wrong_is_set_aside_before_the_first_save_and_only_then():
+    for damaged in (b"{", b'{"baud": 14400, "drives": [7]}'):
+        flash = Flash()
+        flash.files["s"] = damaged
+        store = FileStore("s", flash.open, flash)
+        chosen = settings.load(store)
+        chosen.readdress(chosen.drives[0], 9)
+        settings.save(store, chosen)
+        assert flash.files["s.bad"] == damaged
+        chosen.readdress(9, 10)
+        settings.save(store, chosen)
+        assert flash.files["s.bad"] == damaged
+        assert chosen.complaint, "it stays on the display until the next power-up"
+        assert settings.load(store).complaint is None
+        assert settings.load(store).drives == (10,)
+
+
+def test_a_sound_file_is_not_set_aside():
+    flash = Flash()
+    store = FileStore("s", flash.open, flash)
+    settings.save(store, loaded())
+    settings.save(store, loaded({"baud": 9600}))
+    assert list(flash.files) == ["s"]
+
+
+# --- changing -----------------------------------------------------------------------------------
+
+
+def test_a_drive_without_supervision_is_accepted_once_and_for_all():
+    chosen = loaded({"drives": [3, 4]})
+    chosen.accept_unsupervised(4)
+    assert chosen.unsupervised == (4,) and chosen.dirty
+    settings.save(stored(), chosen)
+    assert not chosen.dirty
+    chosen.accept_unsupervised(4)
+    assert chosen.unsupervised == (4,) and not chosen.dirty
+    chosen.accept_unsupervised(3)
+    assert chosen.unsupervised == (3, 4) and chosen.dirty
+
+
+def test_only_drives_that_are_there_are_accepted():
+    chosen = loaded({"drives": [3, 4]})
+    for address in (5, 32, -1):
+        assert refuses(chosen.accept_unsupervised, address), address
+    assert chosen.unsupervised == () and not chosen.dirty
+
+
+def test_what_was_accepted_goes_with_the_drive_to_its_new_address():
+    chosen = loaded({"drives": [3, 4], "unsupervised": [4]})
+    chosen.readdress(4, 0)
+    assert (chosen.drives, chosen.unsupervised) == ((3, 0), (0,))
+    chosen.readdress(3, 31)
+    assert (chosen.drives, chosen.unsupervised) == ((31, 0), (0,))
+    assert chosen.dirty
+
+
+def test_a_new_address_inherits_no_acceptance_of_a_drive_that_is_gone():
+    chosen = loaded({"drives": [3], "unsupervised": [8]})
+    chosen.readdress(3, 8)
+    assert (chosen.drives, chosen.unsupervised) == ((8,), ())
+
+
+def test_an_address_that_cannot_be_is_refused_and_changes_nothing():
+    chosen = loaded({"drives": [3, 4], "unsupervised": [3]})
+    for old, new in ((5, 6), (3, 4), (3, 3), (3, 32), (3, -1), (3, True), (3, None), (32, 1)):
+        assert refuses(chosen.readdress, old, new), (old, new)
+    assert (chosen.drives, chosen.unsupervised) == ((3, 4), (3,)) and not chosen.dirty
+
+
+def test_31_drives_can_all_be_accepted_whatever_the_file_says_of_others():
+    store = stored({"drives": list(range(31)), "unsupervised": list(range(1, 32))})
+    chosen = settings.load(store)
+    for address in range(31):
+        chosen.accept_unsupervised(address)
+    settings.save(store, chosen)
+    assert settings.load(store).unsupervised == tuple(range(31))
+    assert settings.load(store).complaint is None

@@ -1,50 +1,64 @@
-"""One drive under the operator's hand: what may be done with it, and what is to be said about it.
+"""One drive under the operator's hand: start, stop, jog, reverse, and what came of them.
 
-The rules that keep a motor from starting by surprise and a STOP from getting lost live here and in
-`uss.drive`; pages only show, keys only ask.
+The rules that keep a motor from starting by surprise and a STOP from getting lost live here, in
+`permits` and in `uss.drive`; pages only show, keys only ask.
 
     control = Control(drive, survey, bus, mask, settings)
-    control.step(now)                  # each step of the loop
-    control.start()                    # START: asks the drive first, then ON, or `refusal`
-    control.stop()                     # STOP
+    control.step(now)                   # each step of the loop
+    control.start()                     # START: asks the drive first, then ON, or `refusal`
+    control.stop()                      # STOP
+    control.jog(pzd.JOG_LEFT)           # a jog key goes down
+    control.end_jog()                   # and up
 """
 
 from micropython import const
 
-from panel import texts
+from panel import permits, texts
+from panel.fault import Fault
+from panel.setpoint import Setpoint
 from panel.stop_watch import StopWatch
 from uss import profiles, pzd
 from uss.timing import elapsed
 
 START_US = const(5_000_000)  # a drive that does not run by then is told to stop again
+SILENT_MAX = const(3)  # telegrams without an answer after which the speed is not known any more
+
+# settings.second_stop: what a held STOP sends.
+SECOND_STOPS = {"OFF3": pzd.OFF3, "OFF2": pzd.OFF2, "none": 0}
 
 
 class Control:
     """drive: `uss.drive.Drive`. survey: its `Survey`. bus: the `Master`. mask: of the clock.
 
-    settings: has setpoint_centihertz, lowest_centihertz, highest_centihertz.
+    settings: a `Settings`.
 
-    Fields for a page: `setpoint_centihertz`; `refusal`, why START was not obeyed, to be shown
-    once; `notice`, why the drive is not on any more, or None; `lost_running`, it was running when
-    contact was lost and nobody has acknowledged that; `stop_watch`, whether a STOP is obeyed.
+    Fields for a page: `setpoint`; `reversed`, the direction START takes; `jogging`, 0 or the
+    control word of the jog that is held; `refusal`, why a key was not obeyed, to be shown once;
+    `question`, START waits to be told that the drive may run unsupervised; `notice`, why the drive
+    is not on any more, or None; `lost_running`, it was running when contact was lost and nobody
+    has acknowledged that; `stop_watch`, whether a STOP is obeyed; `fault`; `listed_address`, the
+    drive's in the settings.
     """
 
     def __init__(self, drive, survey, bus, mask, settings):
         self.drive = drive
         self.survey = survey
-        self.setpoint_centihertz = settings.setpoint_centihertz
+        self.setpoint = Setpoint(drive, survey, settings)
+        self.stop_watch = StopWatch(drive, mask)
+        self.fault = Fault(drive, mask)
+        self.listed_address = drive.address  # in the settings; it may have moved for now
+        self.reversed = False
+        self.jogging = 0
         self.refusal = None
+        self.question = False
         self.notice = None
         self.lost_running = False
-        self.stop_watch = StopWatch(drive, mask)
         self._bus = bus
         self._mask = mask
+        self._settings = settings
         self._now = 0
-        self._asked_centihertz = settings.setpoint_centihertz  # what the operator set
-        self._lowest = settings.lowest_centihertz
-        self._highest = settings.highest_centihertz
-        self._version = 0  # of the survey, as last seen
         self._contact = False  # as last seen
+        self._jogged = False  # what turns, or ramps down, is a jog of this panel
         # From START on.
         self._checking = False  # the drive is being asked before it is sent ON
         self._started_at = 0
@@ -60,71 +74,82 @@ class Control:
 
         What can be told at once, or turns out on the way, is in `refusal`: texts.REFUSED_...
         """
-        self.refusal = self._why_not()
-        if self.refusal is not None or self._checking or self.drive.is_on():
-            return
+        self.refusal = permits.why_not_start(self)
+        if self.refusal is None and not self.is_starting():
+            self._remember()
+            self._checking = True
+            self.survey.recheck()
+
+    def accept_unsupervised(self):
+        """The operator takes the risk for this drive, once and for all, and starts it."""
+        self._settings.accept_unsupervised(self.listed_address)
+        self.start()
+
+    def stop(self):
+        """OFF, always; acknowledge what was announced about this drive and its fault, if shown."""
+        if self.fault.was_shown(self._now):
+            self.drive.acknowledge()
+        self.stop_unseen()
         self.notice = None
-        self._contacts = self.drive.contacts
-        self._dead_man_trips = self._bus.dead_man_trips
-        self._failures = self._bus.failures
-        self._started_at = self._now
-        self._checking = True
-        self.survey.recheck()
+        self.lost_running = False
+
+    def stop_unseen(self):
+        """OFF for a drive that need not be the one shown, so nothing is acknowledged.
+
+        A second stop that is on its way is not weakened by this.
+        """
+        self._stop(self.drive.off)
+
+    def second_stop(self):
+        """Stop by what the settings say: OFF3, OFF2, or nothing more than OFF1."""
+        off = SECOND_STOPS[self._settings.second_stop]
+        if off:
+            self._stop(off)
+
+    def jog(self, stw):
+        """Turn while a key is held. stw: pzd.JOG_RIGHT or JOG_LEFT. Not obeyed: `refusal`."""
+        self.refusal = permits.why_not_jog(self)
+        if self.refusal is None:
+            self._remember()
+            self.stop_watch.end()
+            self.jogging = stw
+            self._jogged = True
+            self.drive.start(self.drive.hsw, stw)
+
+    def end_jog(self):
+        if self.jogging:
+            self._stop(self.drive.off)
+
+    def reverse(self):
+        """The other direction: at once for a drive that runs, preselected for one that stands."""
+        if self.jogging:
+            self.refusal = texts.REFUSED_JOG
+            return
+        self.reversed = not self.reversed
+        self.drive.turn(self._on())
+
+    def change(self, centihertz):
+        """Move the setpoint, unless the drive runs and does not tell its settings: what is shown
+        is what is sent.
+        """
+        if self.drive.wanted and not self.survey.complete:
+            self.refusal = texts.REFUSED_CHECKING
+            return
+        self.setpoint.change(centihertz)
 
     def take_refusal(self):
         """The refusal, which is forgotten by this."""
         refusal, self.refusal = self.refusal, None
         return refusal
 
-    def stop(self):
-        """OFF1, always, and acknowledge what was announced about this drive."""
-        self.drive.stop()
-        self._checking = False
-        self.survey.drop_recheck()
-        self.notice = None
-        self.lost_running = False
-        self.stop_watch.begin(self._now)
-
-    def change(self, centihertz):
-        """Move the setpoint by so much, within the limits of the drive and of the settings.
-
-        Not while a drive runs that does not tell its settings: what is shown is what is sent.
-        """
-        if self.drive.wanted and not self.survey.complete:
-            self.refusal = texts.REFUSED_CHECKING
-            return
-        self._asked_centihertz = self._limited(self.setpoint_centihertz + centihertz)
-        self._set_setpoint()
-
-    # --- what goes on ---------------------------------------------------------------------------
-
-    def step(self, now):
-        """Look at the drive; each step of the loop."""
-        self._now = now
-        self.survey.step(now)
-        if self.survey.version != self._version:
-            self._version = self.survey.version
-            self._set_setpoint()
-        drive = self.drive
-        if drive.contact != self._contact:
-            self._contact = drive.contact
-            self.lost_running = drive.was_running and not drive.contact
-        if self._checking:
-            self._finish_check(now)
-        if drive.stopped_by_engine():
-            self.notice = self._why_stopped()
-            drive.stop()
-        elif drive.is_on():
-            self._watch_start(now)
-        if not self.stop_watch.active and self._runs_against_off():
-            self.stop_watch.begin(now)
-        self.stop_watch.step(now)
+    # --- what is known --------------------------------------------------------------------------
 
     def actual_centihertz(self):
         """The actual frequency with its sign, or None while it cannot be told."""
-        if not self.drive.contact or self.survey.scaling is None:
+        drive = self.drive
+        if not drive.contact or drive.silent >= SILENT_MAX or self.survey.scaling is None:
             return None
-        return self.survey.scaling.centihertz(self.drive.hiw)
+        return self.survey.scaling.centihertz(drive.hiw)
 
     def actual_is_beyond(self):
         """Whether the actual frequency is more than its word can say, and so unknown."""
@@ -134,66 +159,77 @@ class Control:
         """Whether its motor turns by the last status word. False without contact."""
         return self.drive.contact and self.drive.state() == pzd.RUNNING
 
-    def state_text(self):
-        """The state in words, at most texts.STATE_WIDTH. A motor that turns outranks a notice."""
+    def is_starting(self):
+        """Whether START has been obeyed: the drive is being asked, or ON is sent."""
+        return self._checking or self.drive.is_on()
+
+    def needs_attention(self):
+        """Whether it may run though it should not: an alarm."""
+        return self.lost_running or self.stop_watch.unconfirmed
+
+    def second_stop_active(self):
+        return self.drive.off != pzd.OFF1
+
+    def own_jog_ends(self):
+        """Whether it turns because a jog of this panel is still ramping down."""
+        return self._jogged and self.stop_watch.active
+
+    def accepts_unsupervised(self):
+        return self.listed_address in self._settings.unsupervised
+
+    # --- what goes on ---------------------------------------------------------------------------
+
+    def step(self, now):
+        """Look at the drive; each step of the loop."""
+        self._now = now
+        self.survey.step(now)
+        self.setpoint.step()
+        self.fault.step(now)
         drive = self.drive
-        if not drive.contact:
-            return texts.NO_CONTACT
-        state = drive.state()
-        if state == pzd.FAULT:
-            return texts.FAULT
-        if state == pzd.RUNNING:
-            return self._running_text()
-        if self._checking or drive.is_on():
-            return texts.STARTING
-        if self.notice is not None:
-            return self.notice
-        if state == pzd.INHIBITED:
-            return texts.INHIBITED
-        if not self.survey.complete:
-            return texts.CHECKING
-        if self._is_foreign(profiles.COMMAND_SOURCE):
-            return texts.LOCAL
-        return texts.READY if state == pzd.READY else texts.NOT_READY
+        if drive.contact != self._contact:
+            self._contact = drive.contact
+            self.lost_running = drive.was_running and not drive.contact
+        if self._checking:
+            self._finish_check(now)
+        if drive.stopped_by_engine():
+            self.notice = self._why_stopped()
+            self.jogging = 0
+            drive.stop(drive.off)
+        elif drive.is_on():
+            self._watch_start(now)
+        if drive.off != pzd.OFF1:
+            self._watch_second_stop()
+        if not self.stop_watch.active and self._runs_against_off():
+            self.stop_watch.begin(now)
+        self.stop_watch.step(now)
+        if not (self.jogging or self.stop_watch.active):
+            self._jogged = False
 
-    def _running_text(self):
-        if self.drive.is_on():
-            warning = self.drive.zsw & pzd.ZSW_WARNING
-            return texts.RUNNING_WARNING if warning else texts.RUNNING
-        local = self._is_foreign(profiles.COMMAND_SOURCE)
-        return texts.RUNS_LOCALLY if local else texts.STOPPING
+    def _stop(self, off):
+        self.drive.stop(off)
+        self.jogging = 0
+        self.question = False
+        self._checking = False
+        self.survey.drop_recheck()
+        if not self.stop_watch.active:  # pressing again does not put the alarm off
+            self.stop_watch.begin(self._now)
 
-    def _why_not(self):
-        """Why START is not sent, in the order in which an operator would want to know."""
-        drive, survey = self.drive, self.survey
-        if not drive.contact:
-            return texts.REFUSED_SILENT
-        state = drive.state()
-        if state == pzd.FAULT:
-            return texts.REFUSED_FAULT
-        if not survey.complete:
-            return texts.REFUSED_SCALING if survey.unreadable else texts.REFUSED_CHECKING
-        if self._is_foreign(profiles.COMMAND_SOURCE):
-            return texts.REFUSED_COMMAND
-        if self._is_foreign(profiles.SETPOINT_SOURCE):
-            return texts.REFUSED_SETPOINT
-        slowest = min(survey.values[profiles.LOWEST], survey.values[profiles.HIGHEST])
-        if slowest > survey.scaling.limit_centihertz():
-            return texts.REFUSED_MINIMUM
-        if state == pzd.INHIBITED:
-            return texts.REFUSED_INHIBITED
-        if state == pzd.NOT_READY:
-            return texts.REFUSED_NOT_READY
-        return None
+    def _on(self):
+        return pzd.ON_REVERSE if self.reversed else pzd.ON
 
-    def _is_foreign(self, source):
-        """Whether a source is known and is not this bus. source: row of profiles.SURVEY."""
-        value = self.survey.values[source]
-        return value >= 0 and value != profiles.USS_ON_COM_LINK
+    def _remember(self):
+        """How things stand when a command is given, to tell later what took it back."""
+        self.notice = None
+        self.question = False
+        self._contacts = self.drive.contacts
+        self._dead_man_trips = self._bus.dead_man_trips
+        self._failures = self._bus.failures
+        self._started_at = self._now
+        self._ran = False
 
     def _finish_check(self, now):
         """ON, if the drive has told its settings and there is nothing against it."""
-        refusal = self._why_not()
+        refusal = permits.why_not_start(self)
         if refusal is None and self.survey.unchecked:
             patience_us = 2 * len(profiles.SURVEY) * self._bus.patience_us
             # A clock of a short period cannot tell more than half of it.
@@ -208,11 +244,14 @@ class Control:
         elif refusal is not None:
             self.refusal = refusal
             self.notice = texts.DID_NOT_START  # the operator may look at another drive by now
+        elif permits.is_unsupervised(self.survey) and not self.accepts_unsupervised():
+            self.question = True
+            self.notice = texts.DID_NOT_START
         else:
             self._started_at = now
-            self._ran = False
             self.stop_watch.end()
-            self.drive.start(self.drive.hsw)
+            self._jogged = False
+            self.drive.start(self.drive.hsw, self._on())
 
     def _why_stopped(self):
         drive, bus = self.drive, self._bus
@@ -228,15 +267,29 @@ class Control:
         """ON that leads to nothing is taken back: it must not take effect minutes later. So is one
         to a drive that listens to somebody else by now.
         """
-        command, setpoint = profiles.COMMAND_SOURCE, profiles.SETPOINT_SOURCE
-        if self._is_foreign(command) or self._is_foreign(setpoint):
-            self.drive.stop()
-            self.notice = texts.TAKEN_AWAY
+        survey = self.survey
+        if permits.is_foreign(survey, profiles.COMMAND_SOURCE) or (
+            not self.jogging and permits.is_foreign(survey, profiles.SETPOINT_SOURCE)
+        ):
+            self._give_up(texts.TAKEN_AWAY)
         elif self.drive.state() == pzd.RUNNING:
             self._ran = True
         elif not self._ran and elapsed(now, self._started_at, self._mask) >= START_US:
-            self.drive.stop()
-            self.notice = texts.DID_NOT_START
+            self._give_up(texts.DID_NOT_START)
+
+    def _give_up(self, notice):
+        self.drive.stop(self.drive.off)
+        self.jogging = 0
+        self.notice = notice
+
+    def _watch_second_stop(self):
+        """Back to OFF1, which ends the inhibit, once OFF2 or OFF3 was heard and it stands."""
+        drive = self.drive
+        if drive.answered_stw & ~pzd.STW_ACKNOWLEDGE != drive.off:
+            return
+        local = permits.is_foreign(self.survey, profiles.COMMAND_SOURCE)
+        if drive.state() != pzd.RUNNING or local:
+            drive.stop(pzd.OFF1)
 
     def _runs_against_off(self):
         """Whether a drive of this bus runs though nobody wants it to: it may not obey OFF1."""
@@ -244,19 +297,5 @@ class Control:
             self.runs()
             and not self.drive.wanted
             and self.survey.complete
-            and not self._is_foreign(profiles.COMMAND_SOURCE)
+            and not permits.is_foreign(self.survey, profiles.COMMAND_SOURCE)
         )
-
-    def _limited(self, centihertz):
-        values = self.survey.values
-        highest, lowest = self._highest, self._lowest
-        if self.survey.complete:
-            highest = min(highest, values[profiles.HIGHEST])
-            highest = min(highest, self.survey.scaling.limit_centihertz())
-            lowest = max(lowest, values[profiles.LOWEST])
-        return max(min(centihertz, highest), min(lowest, highest))
-
-    def _set_setpoint(self):
-        self.setpoint_centihertz = self._limited(self._asked_centihertz)
-        if self.survey.complete:
-            self.drive.hsw = self.survey.scaling.hsw(self.setpoint_centihertz)

@@ -17,6 +17,9 @@ DEBOUNCE_MS = const(20)
 REPEAT_DELAY_MS = const(400)
 REPEAT_MS = const(120)
 
+# How a value moves while its key is held: repeats, then steps for each of them.
+PACES = ((16, 100), (8, 10), (0, 1))
+
 
 class Keys:
     """names: of the keys, in the order of their bits. mask: the millisecond clock's period - 1.
@@ -44,6 +47,18 @@ class Keys:
     def bit(self, key):
         """The bit of a key by name; 0 when this board has no such key."""
         return self._bits.get(key, 0)
+
+    def moved(self, key):
+        """1 when a key went down or repeated just now, else 0."""
+        return 1 if (self.pressed | self.repeated) & self.bit(key) else 0
+
+    def pace(self, highest=10):
+        """Steps for a value that a held key moves: more the longer it is held, up to `highest`."""
+        if self.repeated:
+            for repeats, steps in PACES:
+                if self.repeats > repeats and steps <= highest:
+                    return steps
+        return 1
 
     def update(self, raw, now_ms):
         """raw: what the keypad reads now, as bits."""

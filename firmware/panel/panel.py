@@ -4,33 +4,41 @@
     panel.step(keypad.read(), now_ms, now_us)      # each step of the loop
     display.show(panel.screen.picture)
 
-START, STOP and the address keys act on every page, STOP before everything else.
+STOP acts on every page, before everything else. START, REVERSE, the jog and the address keys act
+on every page that shows the drive they act on; PARAM changes between home and parameter mode.
 """
 
 from micropython import const
 
 from panel import texts
+from panel.jog_keys import JogKeys
 from panel.keys import Keys
 from panel.pages.home import Home
+from panel.pages.parameters import Parameters
+from panel.pages.question import Question
 from panel.pages.splash import Splash
 from panel.screen import Screen
+from panel.stop_key import StopKey
+from panel.view import View
+from panel.writer import Writer
+from uss import profiles
 from uss.timing import elapsed
 
 SPLASH_MS = const(800)
 DRAW_MS = const(50)
 MESSAGE_MS = const(3_000)
-STOP_ALL_MS = const(4_000)  # STOP held so long stops all drives
-COARSE_AFTER = const(8)  # repeats of a held key, then the step is COARSE times as large
-COARSE = const(10)
+CYCLES_MIN = const(3)  # a drive's time-out is offered as so many rounds of the bus
+OFF_TIME_MIN_MS = const(1_000)
+OFF_TIME_MAX_MS = const(65_000)
 
 
 class Panel:
     """controls: a `Control` for each drive, at least one. key_names: as the keypad has its bits.
 
-    settings: has setpoint_step_centihertz and complaint. mask: the clock's period - 1.
+    settings: a `Settings`. mask: the clock's period - 1.
 
-    For a page: `selected`, the control that is shown; `message`, a row that is shown for a while,
-    or None; `announced`, the control of another drive that must be spoken of, with `announcement`.
+    For pages and view: `selected`, the control that is shown; `message`, a row that is shown for a
+    while, or None; `stop_key`; `setpoint_step` in centihertz.
     """
 
     def __init__(self, controls, bus, key_names, settings, mask):
@@ -38,19 +46,22 @@ class Panel:
         self.selected = controls[0]
         self.screen = Screen()
         self.message = None
-        self.announced = None
-        self.announcement = None
+        self.setpoint_step = settings.setpoint_step_centihertz
+        self.stop_key = StopKey(controls, settings.second_stop, mask, self.say)
         self._bus = bus
-        self._keys = Keys(key_names, mask)
         self._mask = mask
-        self._step_centihertz = settings.setpoint_step_centihertz
+        self._keys = Keys(key_names, mask)
+        self._jog_keys = JogKeys()
+        self._writer = Writer(bus, settings, mask)
         self._home = Home(self)
-        self._page = Splash()
+        self._parameters = Parameters(self, self._writer, mask)
+        self._page = self._home
+        self._splash = Splash()
+        self._over = self._splash  # what hides the page: the splash, a question, or None
+        self._view = View(self, self.screen)
         self._began_at = None
         self._complaint = settings.complaint
         self._message_at = 0
-        self._stop_at = 0
-        self._stop_all_armed = False
         self._drawn_at = None
 
     def step(self, raw_keys, now_ms, now_us):
@@ -59,102 +70,131 @@ class Panel:
             control.step(now_us)
         keys = self._keys
         keys.update(raw_keys, now_ms)
-        if keys.down:
-            self._take_keys(keys, now_ms)
-        for control in self.controls:
-            refusal = control.take_refusal()
-            if refusal and control is self.selected:
-                self.say(refusal, now_ms)
-        if self._page is not self._home:
-            self._splash(now_ms)
-        if self.message and elapsed(now_ms, self._message_at, self._mask) >= MESSAGE_MS:
-            self.message = None
+        self._take_keys(keys, now_ms)
+        self._writer.step(now_us)
+        if self._page is self._parameters:
+            self._parameters.step(keys, now_ms)
+        self._collect(now_ms)
+        if self._over is self._splash:
+            self._end_splash(now_ms)
         if (
             keys.pressed
             or self._drawn_at is None
             or elapsed(now_ms, self._drawn_at, self._mask) >= DRAW_MS
         ):
             self._drawn_at = now_ms
-            self._announce()
-            self._page.draw(self.screen, now_ms)
+            self._view.draw(self._over or self._page, now_ms)
+
+    # --- for the pages --------------------------------------------------------------------------
 
     def say(self, text, now_ms):
         """Show a row for MESSAGE_MS, unless something else is said or a key is pressed."""
         self.message = text
         self._message_at = now_ms
 
-    def step_of(self, keys):
-        """The step of a value that UP and DOWN move: a key that is held soon moves it faster."""
-        coarse = keys.repeated and keys.repeats > COARSE_AFTER
-        return self._step_centihertz * (COARSE if coarse else 1)
+    def ask(self, question):
+        """Show a `Question` over the page until a key answers it."""
+        self._over = question
+
+    def close_question(self):
+        self._over = None
+        self.selected.question = False
+
+    def is_taken(self, address):
+        """Whether another drive of this panel than the selected one has this address."""
+        for control in self.controls:
+            if control is not self.selected and address in (
+                control.drive.address,
+                control.listed_address,
+            ):
+                return True
+        return False
 
     def line_in_use(self):
         """Whether another master was heard before the first telegram, so that none is sent."""
         return self._bus.is_line_in_use()
 
-    def _splash(self, now_ms):
-        if self._began_at is None:
-            self._began_at = now_ms
-        if elapsed(now_ms, self._began_at, self._mask) >= SPLASH_MS or self._keys.pressed:
-            self._page = self._home
-            if self._complaint:
-                self.say(texts.SETTINGS_DAMAGED, now_ms)
+    # --- keys -----------------------------------------------------------------------------------
 
     def _take_keys(self, keys, now_ms):
         if keys.pressed:
             self.message = None
-        stop = keys.bit("STOP")
-        if keys.pressed & stop:
-            self.selected.stop()
-            self._stop_at = now_ms
-            self._stop_all_armed = True
-        if keys.down & stop:
-            self._stop_all_when_held(now_ms)
+        self.stop_key.step(keys, self.selected, now_ms)
+        page = self._over or self._page
+        self._jog_keys.step(keys, self.selected, page.obeys and not self.stop_key.is_down)
+        if not keys.down:
+            return
+        if page.obeys:
+            self._take_command(keys, now_ms)
+        page.take_keys(keys, now_ms)
+
+    def _take_command(self, keys, now_ms):
         if keys.pressed & keys.bit("START"):
-            self._start(keys.down & stop, now_ms)
-        if keys.pressed & keys.bit("ADDRESS_UP"):
-            self._select(1)
-        elif keys.pressed & keys.bit("ADDRESS_DOWN"):
-            self._select(-1)
-        self._page.take_keys(keys)
+            if self.stop_key.is_down:
+                self.say(texts.REFUSED_STOP, now_ms)
+            else:
+                self.selected.start()
+        if keys.pressed & keys.bit("REVERSE"):
+            self.selected.reverse()
+        if keys.pressed & (keys.bit("JOG_RIGHT") | keys.bit("JOG_LEFT")):
+            if self.stop_key.is_down:
+                self.say(texts.REFUSED_STOP, now_ms)
+        direction = keys.moved("ADDRESS_UP") - keys.moved("ADDRESS_DOWN")
+        if direction:
+            self._select(direction)
+        if keys.pressed & keys.bit("PARAM"):
+            self._toggle_parameters()
 
-    def _start(self, stop_is_down, now_ms):
-        if self._page is not self._home:
-            return  # nobody has seen yet which drive would start, and how fast
-        if stop_is_down:
-            self.say(texts.REFUSED_STOP, now_ms)
+    def _toggle_parameters(self):
+        if self._page is self._parameters:
+            self._page = self._home
         else:
-            self.selected.start()
-
-    def _stop_all_when_held(self, now_ms):
-        held_ms = elapsed(now_ms, self._stop_at, self._mask)
-        if self._stop_all_armed and held_ms >= STOP_ALL_MS:
-            self._stop_all_armed = False
-            for control in self.controls:
-                control.stop()
-            self.say(texts.ALL_STOPPED, now_ms)
+            self._page = self._parameters
+            self._parameters.open()
 
     def _select(self, direction):
         """Show another drive. It starts and stops nothing."""
+        self.selected.question = False
         position = self.controls.index(self.selected) + direction
         self.selected = self.controls[position % len(self.controls)]
 
-    def _announce(self):
-        """Find the drive, not selected, that most needs to be spoken of."""
-        self.announced = None
-        highest = 0
+    # --- what has to be said --------------------------------------------------------------------
+
+    def _collect(self, now_ms):
+        """Take up what the drives and the writer have to say and to ask."""
         for control in self.controls:
-            if control is self.selected:
-                continue
-            if control.stop_watch.unconfirmed:
-                rank, text = 3, texts.OTHER_UNCONFIRMED
-            elif control.lost_running:
-                rank, text = 2, texts.OTHER_LOST
-            elif control.runs():
-                rank, text = 1, texts.OTHER_RUNS
-            else:
-                continue
-            if rank > highest:
-                highest = rank
-                self.announced = control
-                self.announcement = text
+            refusal = control.take_refusal()
+            if refusal and control is self.selected:
+                self.say(refusal, now_ms)
+        result = self._writer.take_result(self.selected)
+        if result:
+            self.say(result, now_ms)
+        selected = self.selected
+        if selected.question and self._over is None:
+            answers = {"SET": self._supervise, "START": self._accept_unsupervised}
+            self.ask(Question(self, texts.ASK_UNSUPERVISED, answers, self._mask))
+        if self._over is not self._splash and selected.needs_attention():
+            self.close_question()  # an alarm is not to be hidden
+        if self.message and elapsed(now_ms, self._message_at, self._mask) >= MESSAGE_MS:
+            self.message = None
+
+    def _supervise(self, now_ms):
+        """Have the drive stop by itself when this panel falls silent, with room for bad luck."""
+        cycle_ms = CYCLES_MIN * self._bus.longest_cycle_us() // 1000
+        off_time_ms = min(max(cycle_ms + 99, OFF_TIME_MIN_MS) // 100 * 100, OFF_TIME_MAX_MS)
+        reason = self._writer.write(
+            self.selected, profiles.TELEGRAM_OFF_TIME, profiles.COM_LINK, off_time_ms, False
+        )
+        if reason is not None:
+            self.say(reason, now_ms)
+
+    def _accept_unsupervised(self, now_ms):
+        self.selected.accept_unsupervised()
+
+    def _end_splash(self, now_ms):
+        if self._began_at is None:
+            self._began_at = now_ms
+        if elapsed(now_ms, self._began_at, self._mask) >= SPLASH_MS or self._keys.pressed:
+            self._over = None
+            if self._complaint:
+                self.say(texts.SETTINGS_DAMAGED, now_ms)

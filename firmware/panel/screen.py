@@ -11,6 +11,13 @@ from micropython import const
 ROWS = const(2)
 COLUMNS = const(16)
 
+# Character codes with pictures of our own, 5 x 8 dots, and the pictures one after the other.
+BUSY, EDITS = range(2)
+GLYPHS = bytes(
+    (0x1F, 0x11, 0x0A, 0x04, 0x0A, 0x11, 0x1F, 0x00)  # an hourglass
+    + (0x04, 0x0E, 0x15, 0x04, 0x04, 0x15, 0x0E, 0x04)  # an arrow up and down
+)
+
 _BLANK = const(0x20)
 _MINUS = const(0x2D)
 _POINT = const(0x2E)
@@ -49,6 +56,15 @@ class Screen:
             decimals -= 1
         for index in range(width):
             self.picture[row * COLUMNS + column + index] = _NINE
+
+    def digits(self, row, column, width, number):
+        """Write a whole number, not negative, in exactly `width` digits: 0001. The last ones of
+        more digits.
+        """
+        at = row * COLUMNS + column
+        for position in range(at + width - 1, at - 1, -1):
+            self.picture[position] = _ZERO + number % 10
+            number //= 10
 
     def rows(self):
         """Both rows as text, for people and tests."""

@@ -15,7 +15,10 @@ STARTING = b"STARTING"
 RUNNING = b"RUNNING"
 RUNNING_WARNING = b"RUNNING WARN"
 STOPPING = b"STOPPING"
-FAULT = b"FAULT"
+JOGS_RIGHT = b"JOG RIGHT"
+JOGS_LEFT = b"JOG LEFT"
+FAULT = b"FAULT"  # with FAULT_LETTER and four digits behind it, once they are known
+FAULT_LETTER = b"F"
 INHIBITED = b"INHIBITED"
 LOCAL = b"LOCAL"  # commands do not come from this bus
 RUNS_LOCALLY = b"RUNS LOCALLY"
@@ -39,6 +42,14 @@ STOP_UNCONFIRMED = b"STOP UNCONFIRMED"
 ALL_STOPPED = b"ALL DRIVES: STOP"
 LINE_IN_USE = b"LINE IN USE"  # another master talks; nothing is sent
 SETTINGS_DAMAGED = b"SETTINGS DAMAGED"  # defaults are used for what is wrong
+NOT_SAVED = b"SETTINGS UNSAVED"  # the flash is full or broken
+
+# What a STOP that is held does next, or has done.
+HOLD_FOR_OFF3 = b"STOP, HOLD: OFF3"
+HOLD_FOR_OFF2 = b"STOP, HOLD: OFF2"
+HOLD_FOR_ALL = b"STOP, HOLD: ALL"
+OFF3_HOLD_FOR_ALL = b"OFF3, HOLD: ALL"
+OFF2_HOLD_FOR_ALL = b"OFF2, HOLD: ALL"
 
 # Why START was refused, shown for a while: at most ROW_WIDTH.
 REFUSED_SILENT = b"NO: NO CONTACT"
@@ -51,11 +62,75 @@ REFUSED_SETPOINT = b"NO:P1000 NOT USS"
 REFUSED_SCALING = b"NO: SCALING ???"
 REFUSED_MINIMUM = b"NO: P1080 > 200%"  # the drive would run faster than a telegram can say
 REFUSED_STOP = b"NO: STOP IS DOWN"
+REFUSED_STOPPING = b"NO: QUICK STOP"  # OFF2 or OFF3 is still in force
+REFUSED_JOG = b"NO: JOG IS DOWN"
+REFUSED_RUNS = b"NO JOG: IT RUNS"
+REFUSED_UNSUPERVISED = b"NO JOG: P2014=0"
+
+# --- parameter mode ------------------------------------------------------------------------------
+
+# In front of a value, PARAMETER_WIDTH wide, and in place of one, VALUE_WIDTH wide.
+PARAMETER_WIDTH = 6
+VALUE_WIDTH = 6
+UNREAD_VALUE = b"     ?"
+REFUSED_VALUE = b" -----"  # the drive does not tell it
+
+EDIT_FIRST = b"PRESS EDIT FIRST"
+READ_ONLY = b"READ ONLY"
+NOT_READ_YET = b"NOT READ YET"
+STOP_FIRST = b"STOP DRIVE FIRST"  # its address does not change while it runs
+ADDRESS_TAKEN = b"ADDRESS IS TAKEN"  # by another drive of this panel
+WRITER_BUSY = b"STILL WRITING"
+WRITTEN = b"WRITTEN (RAM)"
+WRITTEN_EEPROM = b"WRITTEN (EEPROM)"
+NO_ANSWER = b"NO ANSWER"
+
+# What became of a write to a drive that is not shown any more; follows "A" and its address.
+OTHER_WRITTEN = b": WRITTEN"
+OTHER_NOT_WRITTEN = b": NOT WRITTEN"
+
+# Why a drive refused a parameter task, by the error number of its reply (pkw.ERRORS has them
+# longer). NO_RIGHTS is reply 8, which carries no number.
+NO_RIGHTS = b"NO CHANGE RIGHTS"
+REFUSALS = {
+    0: b"NO SUCH PARAM.",
+    1: b"READ ONLY",
+    2: b"BEYOND LIMITS",
+    3: b"NO SUCH INDEX",
+    4: b"NOT AN ARRAY",
+    5: b"WRONG DATA TYPE",
+    6: b"MAY ONLY BE 0",
+    7: b"NOT CHANGEABLE",
+    11: NO_RIGHTS,
+    12: b"KEY WORD MISSING",
+    17: b"NOT IN THIS MODE",  # most often: not while it runs
+    18: b"DRIVE SAYS ERROR",
+    20: b"ILLEGAL VALUE",
+    101: b"INACTIVE NOW",
+    102: b"REPLY TOO LONG",
+    103: b"WRONG PKW LENGTH",
+    104: b"NOT THIS VALUE",
+    105: b"IS AN ARRAY",
+    106: b"TASK UNKNOWN",
+    107: b"TEXT IS FIXED",
+    200: b"BELOW LIMIT NOW",
+    201: b"ABOVE LIMIT NOW",
+    204: b"P0003 TOO LOW",
+}
+OTHER_REFUSAL = b"REFUSED: "  # and the number
+
+# --- questions: what takes row 1 in turn, and the choice in row 2 --------------------------------
+
+ASK_CUTS_OFF = ((b"PANEL MAY LOSE", b"THE DRIVE BY IT"), b"SET=DO  PARAM=NO")
+ASK_RESCALES = ((b"SETPOINTS MAY", b"CHANGE THEIR HZ"), b"SET=DO  PARAM=NO")
+# SET writes P2014, START takes the risk.
+ASK_UNSUPERVISED = ((b"P2014=0: IT RUNS", b"ON IF PANEL DIES"), b"SET=FIX START=GO")
 
 # What another drive does; follows "A" and its address. At most ROW_WIDTH with a two-digit address.
 OTHER_RUNS = b" RUN,HOLD=ALL"
 OTHER_LOST = b" LOST,MAY RUN"
 OTHER_UNCONFIRMED = b" NOT STOPPED"
+OTHER_TRIPPED = b" FAULT F"  # and four digits
 
 # Shown after power-on, both rows: the panel's STOP goes over a wire and through two processors.
 SPLASH = (b"USS PANEL IS NO", b"EMERGENCY STOP")

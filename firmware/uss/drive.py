@@ -3,17 +3,21 @@
 Two sides share a drive: the *loop* (panel, own program) and the *engine* (`master.poll`, possibly
 in an interrupt). They share words, not structures; each field has one writer:
 
-    loop     wanted, ticket, stops, hsw, urgent, asking
+    loop     wanted, off, ticket, stops, hsw, urgent, asking, acknowledgements
     engine   void, zsw, hiw, contact, contacts, was_running, silent, served, counters and the rest
 
-ON is sent only on a ticket. Every START draws a new one; the engine voids the one in force when
-the drive is lost, faults, stops of its own accord, or the loop stops refreshing. A void ticket
-stays void: whatever happens to the line or the loop, only a fresh `start` makes a drive run again.
-Every STOP is sent: one telegram at least carries OFF1 before the next ON, however soon that comes.
+ON and JOG are sent only on a ticket. Every `start` draws a new one; the engine voids the one in
+force when the drive is lost, faults, stops of its own accord, or the loop stops refreshing. A void
+ticket stays void: whatever happens to the line or the loop, only a fresh `start` makes a drive run
+again. Every STOP is sent: one telegram at least carries OFF before the next ON, however soon that
+comes.
 
-    drive.start(0x0CCD)         # ON, setpoint HSW, from the next telegram on
-    drive.stop()                # OFF1, in the very next telegram on the line
-    drive.ask(pkw.read(700))    # see `channel`
+    drive.start(0x0CCD)                 # ON, setpoint HSW, from the next telegram on
+    drive.start(0, pzd.JOG_LEFT)        # JOG, until `stop`
+    drive.stop()                        # OFF1, in the very next telegram on the line
+    drive.stop(pzd.OFF3)                # as fast as the drive can, until `stop` is for OFF1 again
+    drive.acknowledge()                 # a fault
+    drive.ask(pkw.read(700))            # see `channel`
 """
 
 from micropython import const
@@ -53,12 +57,14 @@ class Drive:
         self.channel = Channel(mask)
         self._mask = mask
         # Written by the loop.
-        self.wanted = False
+        self.wanted = 0  # the control word that makes it run, 0 for none
+        self.off = pzd.OFF1  # the control word that makes it stop
         self.ticket = 0
         self.stops = 0
         self.hsw = 0
         self.urgent = 0
         self.asking = False  # somebody waits for its parameters
+        self.acknowledgements = 0  # of faults
         # Written by the engine.
         self.void = 0
         self.zsw = 0
@@ -69,31 +75,53 @@ class Drive:
         self.ran = False  # seen running on the ticket in force
         self.off_answers = 0  # valid replies to telegrams without ON; wraps
         self.answered_off = False  # the last valid reply was one to a telegram without ON
+        self.answered_stw = 0  # the control word of that telegram; 0 without contact
         self.silent = 0  # telegrams without a valid reply in a row
         self.served = 0
         self.stops_sent = 0  # `stops` when the last telegram was built
         self.taken_back = False  # ON was revoked and the telegram that says so is still to be sent
         self.insist = 0  # telegrams out of turn left to an OFF1 that no answer has confirmed
         self.counters = [0] * len(COUNTERS)
+        self.acknowledged = 0  # `acknowledgements` that a valid reply has confirmed
         self._heard_at = 0
-        self._sent_on = False
+        self._sent_stw = 0
+        self._acknowledging = 0  # `acknowledgements` when bit 7 was sent
+        self._edge_was_answered = False
         self._may_run = False  # sent ON or seen running, and not seen standing after OFF1
 
     # --- for the loop ---------------------------------------------------------------------------
 
-    def start(self, hsw):
-        """Have the drive run with setpoint word `hsw` (0...FFFFh) on a new ticket."""
+    def start(self, hsw, stw=pzd.ON):
+        """Have the drive run with setpoint word `hsw` (0...FFFFh) on a new ticket.
+
+        stw: pzd.ON, ON_REVERSE, JOG_RIGHT or JOG_LEFT; a jog has its speed from the drive.
+        """
         self.hsw = hsw
+        self.off = pzd.OFF1
         self.ticket = (self.ticket + 1) & TICKET_MASK
         if self.ticket == self.void:  # after 65536 starts the old void one comes round
             self.ticket = (self.ticket + 1) & TICKET_MASK
-        self.wanted = True
+        self.wanted = stw
         self.hurry()
 
-    def stop(self):
-        """OFF1, whatever state the drive is in, ahead of the list. It stays OFF until `start`."""
-        self.wanted = False
+    def turn(self, stw):
+        """Another control word for a drive that is wanted to run; it starts none that is not."""
+        if self.wanted:
+            self.wanted = stw
+
+    def stop(self, off=pzd.OFF1):
+        """OFF, whatever state the drive is in, ahead of the list. It stays OFF until `start`.
+
+        off: pzd.OFF1, OFF2 or OFF3. The latter two inhibit the drive until OFF1 follows.
+        """
+        self.wanted = 0
+        self.off = off
         self.stops = (self.stops + 1) & TICKET_MASK
+        self.hurry()
+
+    def acknowledge(self):
+        """Acknowledge a fault: one edge of bit 7, confirmed by a reply. Not while it runs."""
+        self.acknowledgements = (self.acknowledgements + 1) & TICKET_MASK
         self.hurry()
 
     def hurry(self):
@@ -101,17 +129,21 @@ class Drive:
         self.urgent = (self.served + 1) & TICKET_MASK
 
     def is_on(self):
-        """Whether ON is being sent."""
+        """Whether ON or JOG is being sent."""
         return (
-            self.wanted
+            self.wanted != 0
             and self.ticket != self.void
             and self.stops == self.stops_sent
             and self.contact
         )
 
+    def may_run(self):
+        """Whether its motor may turn: sent ON or seen running, and not seen standing since."""
+        return self._may_run or self.is_on()
+
     def stopped_by_engine(self):
         """Whether ON was wanted and the engine took it back; `stop` or `start` clear it."""
-        return self.wanted and self.ticket == self.void
+        return self.wanted != 0 and self.ticket == self.void
 
     def state(self):
         """What the last status word says: pzd.READY ... Means nothing without contact."""
@@ -154,14 +186,17 @@ class Drive:
             self.insist = INSIST_MAX
         elif self.insist:
             self.insist -= 1
-        self._sent_on = on
         if on:
             self._may_run = True
             self.insist = 0
+            self.acknowledged = self.acknowledgements  # never with ON, nor much later
+            stw = self.wanted
         else:
             self.ran = False
-        put_word(net, at + PKW_COUNT, pzd.ON if on else pzd.OFF1)
-        put_word(net, at + PKW_COUNT + 2, self.hsw if on else 0)
+            stw = self._off_word()
+        self._sent_stw = stw
+        put_word(net, at + PKW_COUNT, stw)
+        put_word(net, at + PKW_COUNT + 2, self.hsw if stw & pzd.STW_ON else 0)
 
     def take(self, net, at, now):
         """Take the words of a valid reply that stands in `net` from index `at` on."""
@@ -176,10 +211,14 @@ class Drive:
             self.contact = True
         self.zsw = get_word(net, at + PKW_COUNT)
         self.hiw = get_word(net, at + PKW_COUNT + 2)
-        self.answered_off = not self._sent_on
-        if self._sent_on:
+        self.answered_stw = self._sent_stw
+        self.answered_off = not self._sent_stw & pzd.STW_RUN
+        if not self.answered_off:
             self._watch_running()
         else:
+            if self._sent_stw & pzd.STW_ACKNOWLEDGE:
+                self.acknowledged = self._acknowledging
+                self._edge_was_answered = True
             self.off_answers = (self.off_answers + 1) & COUNTER_MASK
             self.insist = 0
             self._may_run = self.zsw & pzd.ZSW_RUNNING != 0
@@ -202,7 +241,21 @@ class Drive:
         if self.contact:
             self.was_running = self._may_run
             self.revoke()
+            self.acknowledged = self.acknowledgements
+            self.answered_stw = 0
             self.contact = False
+
+    def _off_word(self):
+        """OFF1, OFF2 or OFF3, and bit 7 for an acknowledgement until a reply has confirmed it.
+
+        It acts by its rising edge: after one that was confirmed a word goes without.
+        """
+        stw = self.off
+        if self.acknowledgements != self.acknowledged and not self._edge_was_answered:
+            self._acknowledging = self.acknowledgements
+            stw |= pzd.STW_ACKNOWLEDGE
+        self._edge_was_answered = False
+        return stw
 
     def _watch_running(self):
         # A drive that ran on this ticket and runs no more, trips or inhibits itself has stopped of

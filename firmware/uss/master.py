@@ -98,6 +98,25 @@ class Master:
         self.list = self.list + [drive]
         return drive
 
+    def readdress(self, drive, address):
+        """From the next telegram on, `drive` answers at another address.
+
+        ValueError when it is not 0...31 or another drive of this bus has it.
+        """
+        if not 0 <= address <= telegram.NODE_MAX:
+            raise ValueError("drive address %r is not 0...31" % (address,))
+        for other in self.drives:
+            if other is not drive and other.address == address:
+                raise ValueError("address %d is taken" % address)
+        drive.address = address
+
+    def longest_cycle_us(self):
+        """How long a round of the list takes when every drive is silent till the last moment."""
+        cycle_us = 0
+        for drive in self.list:
+            cycle_us += drive.telegram_us + self.timing.reply_timeout_us + drive.residual_us
+        return cycle_us
+
     def refresh(self, now):
         """The loop says that it is alive. Whatever ran when it was not stays stopped."""
         self._refreshed_at = now

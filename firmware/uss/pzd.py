@@ -32,8 +32,18 @@ STW_BITS = (
 )
 
 STW_ON = const(0x0001)
-OFF1 = const(0x047E)  # stop, and the first word any drive is sent; bit 10 is never 0
+STW_ACKNOWLEDGE = const(0x0080)
+STW_REVERSE = const(0x0800)
+STW_RUN = const(0x0301)  # ON, JOG_RIGHT, JOG_LEFT: each of them turns the motor
+
+# Whole control words. Bit 10 is never 0. With ON a MICROMASTER 4 ignores the jogs.
+OFF1 = const(0x047E)  # ramp down; the first word any drive is sent
+OFF2 = const(0x047C)  # coast
+OFF3 = const(0x047A)  # ramp down as fast as the drive can
 ON = const(0x047F)
+ON_REVERSE = const(0x0C7F)
+JOG_RIGHT = const(0x057E)
+JOG_LEFT = const(0x067E)
 
 # --- status word --------------------------------------------------------------------------------
 

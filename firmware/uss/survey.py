@@ -46,6 +46,14 @@ class Survey:
         self._read_at = 0
         self._contact = 0  # drive.contacts to which the values belong
 
+    def lowest(self):
+        """The lowest frequency of the drive, P1080, in centihertz. Once complete."""
+        return self.values[profiles.LOWEST]
+
+    def highest(self):
+        """The highest frequency that can be had of it, in centihertz. Once complete."""
+        return min(self.values[profiles.HIGHEST], self.scaling.limit_centihertz())
+
     def recheck(self):
         """Have every row read again soon: the drive gets more than its turn meanwhile."""
         self.unchecked = len(self.values)

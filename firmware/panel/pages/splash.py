@@ -4,9 +4,12 @@ from panel import texts
 
 
 class Splash:
-    """Takes no keys: those that act on every page act on this one too."""
+    """Any key ends it and does nothing else, but for STOP."""
 
-    def take_keys(self, keys):
+    whole = True
+    obeys = False
+
+    def take_keys(self, keys, now_ms):
         pass
 
     def draw(self, screen, now_ms):

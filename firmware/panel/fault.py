@@ -1,0 +1,73 @@
+"""The fault of one drive: its number, and whether it has been seen long enough to acknowledge it.
+
+    fault = Fault(drive, mask)
+    fault.step(now)                     # each step of the loop
+    fault.number                        # 1 for F0001; 0 while it is not known
+    fault.seen = True                   # it is on the display
+    if fault.was_shown(now): drive.acknowledge()
+"""
+
+from micropython import const
+
+from uss import pkw, profiles, pzd
+from uss.timing import elapsed
+
+SHOWN_US = const(1_000_000)  # a STOP in the moment of the trip must not wipe its number away
+AGAIN_US = const(500_000)  # an answer that did not come is asked for again
+
+
+class Fault:
+    """drive: a `Drive`. mask: the clock's period - 1.
+
+    active: the drive has tripped. seen: whoever shows it says so here.
+    """
+
+    def __init__(self, drive, mask):
+        self.active = False
+        self.number = 0
+        self.seen = False
+        self._drive = drive
+        self._mask = mask
+        self._job = pkw.read(profiles.FAULT_NUMBER)
+        self._asked = False
+        self._asked_at = 0
+        self._wait_us = 0  # between the last question and the next
+        self._stale = False  # what was asked belongs to an earlier trip
+        self._since = 0  # when it was seen first
+
+    def was_shown(self, now):
+        return self.active and self.seen and elapsed(now, self._since, self._mask) >= SHOWN_US
+
+    def step(self, now):
+        drive = self._drive
+        active = drive.contact and drive.state() == pzd.FAULT
+        if active != self.active:
+            self.active = active
+            self.number = 0
+            self.seen = False
+            self._wait_us = 0
+            self._stale = self._asked
+        if not self.seen:
+            self._since = now
+        if self._asked:
+            self._take()
+        elif active and not self.number:
+            self._ask(now)
+
+    def _ask(self, now):
+        waited_us = elapsed(now, self._asked_at, self._mask)
+        if waited_us < self._wait_us or self._drive.channel.is_full():
+            return
+        self._job.aim(pkw.READ, profiles.FAULT_NUMBER)
+        self._drive.ask(self._job)
+        self._asked = True
+        self._asked_at = now
+        self._wait_us = AGAIN_US
+
+    def _take(self):
+        if self._job.state == pkw.PENDING:
+            return
+        self._asked = False
+        if self._job.state == pkw.DONE and not self._stale:
+            self.number = self._job.low
+        self._stale = False

@@ -1,0 +1,209 @@
+"""Parameter mode: row 1 stays as it is on the home page, row 2 is a parameter of the drive shown.
+
+    S: 10.0 F:  9.98
+    P1000:     5 A1         the value as the drive tells it, read again and again
+
+NEXT and PREVIOUS walk the rows of PARAMETERS. EDIT freezes the value, UP and DOWN change it, EDIT
+lets it go again. SET writes it into the drive's RAM; SET held for 1.5 s writes it into the EEPROM
+as well. Between value and address: an arrow while the value is frozen, an hourglass while a write
+is on its way.
+"""
+
+from micropython import const
+
+from panel import texts
+from panel.pages.question import Question
+from panel.screen import BUSY, EDITS
+from panel.view import draw_address
+from panel.writer import refusal
+from uss import pkw, profiles
+from uss.timing import elapsed
+
+PARAMETERS = (  # what is shown, number, index, highest value or None: read only. Lowest is 0.
+    (b"P0700:", 700, 0, 6),
+    (b"P1000:", 1000, 0, 77),
+    (b"P2011:", 2011, 0, 31),
+    (b"r2024:", 2024, 0, None),
+    (b"r2025:", 2025, 0, None),
+)
+
+READ_MS = const(500)  # between an answer and the next question
+EEPROM_MS = const(1_500)  # SET is held so long
+FAST_SPAN = const(100)  # values of a smaller range move by ones, however long the key is held
+
+MARK_COLUMN = const(12)
+GLYPHS = (bytes((BUSY,)), bytes((EDITS,)))
+
+ASK = {profiles.CUTS_OFF: texts.ASK_CUTS_OFF, profiles.RESCALES: texts.ASK_RESCALES}
+
+
+class Parameters:
+    """panel: the `Panel`. writer: its `Writer`. mask: the clock's period - 1."""
+
+    whole = False
+    tells_state = False
+    obeys = True
+
+    def __init__(self, panel, writer, mask):
+        self._panel = panel
+        self._writer = writer
+        self._mask = mask
+        self._row = 0
+        self._control = None  # the drive that what follows belongs to
+        self._value = None  # as last told by the drive
+        self._refused = False  # it does not tell it
+        self._editing = False
+        self._edited = 0
+        self._job = pkw.read(0)
+        self._asked = False
+        self._stale = False  # what was asked is not what is shown any more
+        self._due = True  # ask at once
+        self._read_at_ms = 0
+        self._writing = False  # the value shown is on its way
+        # A SET that is held makes the write permanent once it is confirmed.
+        self._set_at_ms = None  # when it went down, None when it is up or was used up
+
+    def open(self):
+        """It is shown from now on."""
+        self._forget()
+
+    # --- keys -----------------------------------------------------------------------------------
+
+    def take_keys(self, keys, now_ms):
+        step = keys.moved("NEXT") - keys.moved("PREVIOUS")
+        if step:
+            self._row = (self._row + step) % len(PARAMETERS)
+            self._forget()
+        elif keys.pressed & keys.bit("EDIT"):
+            self._toggle_edit(now_ms)
+        elif keys.pressed & keys.bit("SET"):
+            self._set(now_ms)
+        direction = keys.moved("UP") - keys.moved("DOWN")
+        if direction:
+            self._change(direction, keys, now_ms)
+
+    def _toggle_edit(self, now_ms):
+        if PARAMETERS[self._row][3] is None:
+            self._panel.say(texts.READ_ONLY, now_ms)
+        elif self._value is None:
+            self._panel.say(texts.NOT_READ_YET, now_ms)
+        else:
+            self._editing = not self._editing
+            self._edited = self._value
+
+    def _change(self, direction, keys, now_ms):
+        highest = PARAMETERS[self._row][3]
+        if not self._editing:
+            self._panel.say(texts.EDIT_FIRST if highest is not None else texts.READ_ONLY, now_ms)
+            return
+        pace = keys.pace(100 if highest > FAST_SPAN else 1)
+        self._edited = max(0, min(highest, self._edited + direction * pace))
+
+    def _set(self, now_ms):
+        if not self._editing:
+            self._panel.say(texts.EDIT_FIRST, now_ms)
+            return
+        number = PARAMETERS[self._row][1]
+        reason = self._why_not(number)
+        if reason is not None:
+            self._panel.say(reason, now_ms)
+        elif number in profiles.ASK_FIRST:
+            text = ASK[profiles.ASK_FIRST[number]]
+            self._panel.ask(Question(self._panel, text, {"SET": self._write}, self._mask))
+        else:
+            self._write(now_ms)
+
+    def _why_not(self, number):
+        if number != profiles.USS_ADDRESS:
+            return None
+        if self._control.runs() or self._control.is_starting():
+            return texts.STOP_FIRST
+        return texts.ADDRESS_TAKEN if self._panel.is_taken(self._edited) else None
+
+    def _write(self, now_ms, eeprom=False):
+        _, number, index, _ = PARAMETERS[self._row]
+        reason = self._writer.write(self._control, number, index, self._edited, eeprom)
+        if reason is not None:
+            self._panel.say(reason, now_ms)
+            return
+        self._writing = True
+        self._set_at_ms = None if eeprom else now_ms
+
+    # --- what goes on ---------------------------------------------------------------------------
+
+    def step(self, keys, now_ms):
+        """Each step of the loop while it is shown."""
+        if self._panel.selected is not self._control:
+            self._forget()
+        if not keys.down & keys.bit("SET"):
+            self._set_at_ms = None
+        if not self._writer.busy:
+            self._follow_write(now_ms)
+        if self._asked:
+            self._take_answer(now_ms)
+        elif self._control.drive.contact:
+            self._ask(now_ms)
+        else:
+            self._value = None
+
+    def _follow_write(self, now_ms):
+        if self._writing:
+            self._writing = False
+            self._due = True
+            if self._writer.written:
+                self._editing = False
+            else:
+                self._set_at_ms = None
+        elif self._set_at_ms is not None:
+            if elapsed(now_ms, self._set_at_ms, self._mask) >= EEPROM_MS:
+                self._write(now_ms, True)
+
+    def _ask(self, now_ms):
+        waited_ms = elapsed(now_ms, self._read_at_ms, self._mask)
+        drive = self._control.drive
+        if (self._due or waited_ms >= READ_MS) and not drive.channel.is_full():
+            _, number, index, _ = PARAMETERS[self._row]
+            self._job.aim(pkw.READ, number, index)
+            drive.ask(self._job)
+            self._asked = True
+            self._due = False
+
+    def _take_answer(self, now_ms):
+        job = self._job
+        if job.state == pkw.PENDING:
+            return
+        self._asked = False
+        self._read_at_ms = now_ms
+        if self._stale:
+            self._stale = False
+        elif job.state == pkw.DONE:
+            self._value = job.low
+            self._refused = False
+        elif job.state == pkw.REFUSED:
+            if not self._refused:
+                self._panel.say(refusal(job.error), now_ms)
+            self._value = None
+            self._refused = True
+
+    def _forget(self):
+        """Another parameter or another drive: nothing is known of it yet, nothing is edited."""
+        self._control = self._panel.selected
+        self._value = None
+        self._refused = False
+        self._editing = False
+        self._writing = False
+        self._set_at_ms = None
+        self._stale = self._asked
+        self._due = True
+
+    def draw(self, screen, now_ms):
+        value = self._edited if self._editing else self._value
+        screen.put(1, 0, texts.PARAMETER_WIDTH, PARAMETERS[self._row][0])
+        if value is not None:
+            screen.number(1, texts.PARAMETER_WIDTH, texts.VALUE_WIDTH, value * 100, 0)
+        else:
+            unknown = texts.REFUSED_VALUE if self._refused else texts.UNREAD_VALUE
+            screen.put(1, texts.PARAMETER_WIDTH, texts.VALUE_WIDTH, unknown)
+        mark = GLYPHS[BUSY] if self._writing else GLYPHS[EDITS] if self._editing else b""
+        screen.put(1, MARK_COLUMN, 1, mark)
+        draw_address(screen, self._panel.selected)

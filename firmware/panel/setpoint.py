@@ -1,0 +1,48 @@
+"""The setpoint of one drive: what the operator set, kept within every limit, as a word to send.
+
+    setpoint = Setpoint(drive, survey, settings)
+    setpoint.step()                     # each step of the loop: limits may have been read
+    setpoint.change(10)                 # 0.1 Hz up
+    setpoint.centihertz                 # what is shown and sent, without its sign
+"""
+
+
+class Setpoint:
+    """settings: has setpoint_centihertz, lowest_centihertz, highest_centihertz.
+
+    centihertz: in 0.01 Hz, never negative; the direction is a bit of the control word and belongs
+    to `Control`. Writes drive.hsw, which goes out with ON only.
+    """
+
+    def __init__(self, drive, survey, settings):
+        self.centihertz = settings.setpoint_centihertz
+        self._asked_centihertz = settings.setpoint_centihertz  # what the operator set
+        self._lowest = settings.lowest_centihertz
+        self._highest = settings.highest_centihertz
+        self._drive = drive
+        self._survey = survey
+        self._version = 0  # of the survey, as last seen
+
+    def change(self, centihertz):
+        """Move it by so much, within the limits of the drive and of the settings."""
+        self._asked_centihertz = self._limited(self.centihertz + centihertz)
+        self._apply()
+
+    def step(self):
+        """A limit that comes or goes moves it at once; what the operator set is remembered."""
+        if self._survey.version != self._version:
+            self._version = self._survey.version
+            self._apply()
+
+    def _limited(self, centihertz):
+        survey = self._survey
+        highest, lowest = self._highest, self._lowest
+        if survey.complete:
+            highest = min(highest, survey.highest())
+            lowest = max(lowest, survey.lowest())
+        return max(min(centihertz, highest), min(lowest, highest))
+
+    def _apply(self):
+        self.centihertz = self._limited(self._asked_centihertz)
+        if self._survey.complete:
+            self._drive.hsw = self._survey.scaling.hsw(self.centihertz)

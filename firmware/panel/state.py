@@ -1,0 +1,42 @@
+"""What a drive does, in a word or two: the left part of row 2 on the home page.
+
+    text(control)                       # texts.RUNNING
+"""
+
+from panel import texts
+from panel.permits import is_foreign
+from uss import profiles, pzd
+
+
+def text(control):
+    """The state in words, at most texts.STATE_WIDTH. A motor that turns outranks a notice."""
+    drive, survey = control.drive, control.survey
+    if not drive.contact:
+        return texts.NO_CONTACT
+    state = drive.state()
+    if state == pzd.FAULT:
+        return texts.FAULT
+    if state == pzd.RUNNING:
+        return _running(control)
+    if control.is_starting():
+        return texts.STARTING
+    if control.notice is not None:
+        return control.notice
+    if state == pzd.INHIBITED:
+        return texts.INHIBITED
+    if not survey.complete:
+        return texts.CHECKING
+    if is_foreign(survey, profiles.COMMAND_SOURCE):
+        return texts.LOCAL
+    return texts.READY if state == pzd.READY else texts.NOT_READY
+
+
+def _running(control):
+    drive = control.drive
+    if not drive.is_on():
+        if is_foreign(control.survey, profiles.COMMAND_SOURCE):
+            return texts.RUNS_LOCALLY
+        return texts.STOPPING
+    if control.jogging:
+        return texts.JOGS_RIGHT if control.jogging == pzd.JOG_RIGHT else texts.JOGS_LEFT
+    return texts.RUNNING_WARNING if drive.zsw & pzd.ZSW_WARNING else texts.RUNNING

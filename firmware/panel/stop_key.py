@@ -1,0 +1,79 @@
+"""The STOP key: what it does when it goes down, and what while it is held.
+
+    when      what
+    at once   OFF1 to the drive that is shown, and a second stop that goes on is not weakened
+    1.5 s     that drive's second stop: OFF3, OFF2 or none, by the settings
+    4 s       OFF1 to every drive
+
+A STOP that was down when the panel started holds nothing: it only forbids START and JOG.
+"""
+
+from micropython import const
+
+from panel import texts
+from uss.timing import elapsed
+
+TELL_MS = const(300)  # held so long, what comes next is said
+SECOND_MS = const(1_500)
+ALL_MS = const(4_000)
+
+RELEASED, PRESSED, SECOND_SENT, ALL_SENT = range(4)
+
+# settings.second_stop: what is said before it, and after it.
+SAID = {
+    "OFF3": (texts.HOLD_FOR_OFF3, texts.OFF3_HOLD_FOR_ALL),
+    "OFF2": (texts.HOLD_FOR_OFF2, texts.OFF2_HOLD_FOR_ALL),
+    "none": (texts.HOLD_FOR_ALL, texts.HOLD_FOR_ALL),
+}
+
+
+class StopKey:
+    """controls: of all drives. second_stop: of the settings. mask: the clock's period - 1.
+
+    say: say(text, now_ms) has a row shown for a while.
+
+    text: what is to be said while it is held, or None. is_down: no START and no JOG meanwhile.
+    """
+
+    def __init__(self, controls, second_stop, mask, say):
+        self.text = None
+        self.is_down = False
+        self._controls = controls
+        self._said = SAID[second_stop]
+        self._mask = mask
+        self._say = say
+        self._stage = RELEASED
+        self._control = None  # the drive that was shown when it went down
+        self._pressed_at = 0
+
+    def step(self, keys, control, now_ms):
+        """keys: `Keys`, up to date. control: of the drive that is shown."""
+        stop = keys.bit("STOP")
+        self.is_down = keys.down & stop != 0
+        if keys.pressed & stop:
+            self._stage = PRESSED
+            self._pressed_at = now_ms
+            self._control = control
+            control.stop()
+        elif not self.is_down:
+            self._stage = RELEASED
+            self.text = None
+        if self._stage != RELEASED:
+            self._hold(now_ms)
+
+    def _hold(self, now_ms):
+        held_ms = elapsed(now_ms, self._pressed_at, self._mask)
+        if self._stage == PRESSED and held_ms >= SECOND_MS:
+            self._stage = SECOND_SENT
+            self._control.second_stop()
+        if self._stage == SECOND_SENT and held_ms >= ALL_MS:
+            self._stage = ALL_SENT
+            for control in self._controls:
+                control.stop_unseen()
+            self._say(texts.ALL_STOPPED, now_ms)
+        if self._stage == ALL_SENT:
+            self.text = texts.ALL_STOPPED
+        elif self._stage == SECOND_SENT:
+            self.text = self._said[1]
+        elif held_ms >= TELL_MS:
+            self.text = self._said[0]

@@ -1,0 +1,117 @@
+"""What is on the display: the page, and what must be said whatever the page is.
+
+    row 1   frequencies of the drive shown, or NO CONTACT, when it ran and was lost
+    row 2   the first of these: what a held STOP does, a STOP that is not obeyed, MAY RUN, a
+            message, another master, another drive that runs (in turn with the page), the page
+
+Row 1 has 5 places for the setpoint and 6 for the actual frequency. A value that needs more room
+gives up decimals (-650.00 is shown as -650.0); without contact the actual frequency is dashes,
+never the last one known.
+"""
+
+from micropython import const
+
+from panel import texts
+
+ADDRESS_COLUMN = const(13)
+ANNOUNCE_MS = const(1_500)  # another drive is announced so long, then the page is as long
+
+
+# How much another drive needs to be spoken of, and what is said.
+SILENT_ABOUT, RUNS, TRIPPED, LOST, UNCONFIRMED = range(5)
+ANNOUNCEMENTS = (
+    b"",
+    texts.OTHER_RUNS,
+    texts.OTHER_TRIPPED,
+    texts.OTHER_LOST,
+    texts.OTHER_UNCONFIRMED,
+)
+
+
+class View:
+    """panel: the `Panel` that is shown on `screen`."""
+
+    def __init__(self, panel, screen):
+        self._panel = panel
+        self._screen = screen
+
+    def draw(self, page, now_ms):
+        screen = self._screen
+        if page.whole:
+            page.draw(screen, now_ms)
+            return
+        panel = self._panel
+        control, held = panel.selected, panel.stop_key.text
+        alarm = texts.STOP_UNCONFIRMED if control.stop_watch.unconfirmed else None
+        if alarm and held:
+            screen.put(0, 0, texts.ROW_WIDTH, alarm)
+        elif control.lost_running:
+            screen.put(0, 0, texts.ROW_WIDTH, texts.NO_CONTACT_ROW)
+        else:
+            _draw_frequencies(screen, control)
+        if held or alarm:
+            screen.put(1, 0, texts.ROW_WIDTH, held or alarm)
+        elif control.lost_running:
+            screen.put(1, 0, ADDRESS_COLUMN, texts.MAY_RUN)
+            draw_address(screen, control)
+        elif panel.message or panel.line_in_use():
+            screen.put(1, 0, texts.ROW_WIDTH, panel.message or texts.LINE_IN_USE)
+        elif now_ms // ANNOUNCE_MS & 1 or not self._announce(page):
+            page.draw(screen, now_ms)
+
+    def _announce(self, page):
+        """Speak of the drive that needs it most and is not told of by the page; False when none
+        does.
+        """
+        highest, announced = 0, None
+        for control in self._panel.controls:
+            if control is not self._panel.selected or not page.tells_state:
+                rank = _rank(control, control is self._panel.selected)
+                if rank > highest:
+                    highest, announced = rank, control
+        if announced is None:
+            return False
+        screen, address = self._screen, announced.drive.address
+        text = ANNOUNCEMENTS[highest]
+        column = 2 if address < 10 else 3
+        screen.put(1, 0, texts.ROW_WIDTH, b"A")
+        screen.number(1, 1, column - 1, address * 100, 0)
+        screen.put(1, column, texts.ROW_WIDTH - column, text)
+        if highest == TRIPPED:
+            screen.digits(1, column + len(text), 4, announced.fault.number)
+            announced.fault.seen = True
+        return True
+
+
+def _rank(control, selected):
+    """How much a drive needs to be spoken of: SILENT_ABOUT ... UNCONFIRMED."""
+    if control.stop_watch.unconfirmed:
+        return UNCONFIRMED
+    if control.lost_running:
+        return LOST
+    if control.fault.number and (selected or control.notice is not None):
+        return TRIPPED  # a drive that was on, or one that is worked on
+    return RUNS if control.runs() and not selected else SILENT_ABOUT
+
+
+def draw_address(screen, control):
+    """A and the address of a drive, left-aligned at the end of row 2."""
+    address = control.drive.address
+    screen.put(1, ADDRESS_COLUMN, 3, b"A")
+    screen.number(1, ADDRESS_COLUMN + 1, 1 if address < 10 else 2, address * 100, 0)
+
+
+def _draw_frequencies(screen, control):
+    setpoint = control.setpoint.centihertz
+    screen.put(0, 0, 2, b"S:")
+    screen.number(0, 2, 5, -setpoint if control.reversed else setpoint, 1)
+    if control.reversed and not setpoint:
+        screen.put(0, 3, 1, b"-")  # the direction is to be seen before it turns
+    screen.put(0, 7, 3, b" F:")
+    actual = control.actual_centihertz()
+    if actual is None:
+        screen.put(0, 10, 6, texts.UNKNOWN_VALUE)
+    elif control.actual_is_beyond():
+        screen.put(0, 10, 6, texts.BEYOND_VALUE)
+    else:
+        screen.number(0, 10, 6, actual, 2)
