@@ -36,6 +36,16 @@ def all_running(addresses):
     return world
 
 
+def unsupervised(*addresses):
+    """Options of a panel whose drives run on without telegrams, P2014 = 0, as was accepted."""
+    addresses = addresses or (1,)
+    return {
+        "addresses": addresses,
+        "parameters": {2014: 0},
+        "settings": {"unsupervised": list(addresses)},
+    }
+
+
 def row_1(world):
     return world.lcd()[0]
 

@@ -13,6 +13,7 @@ from panel_bench import (
     running,
     starts,
     telegrams,
+    unsupervised,
 )
 
 
@@ -23,7 +24,7 @@ def test_a_drive_that_trips_does_not_start_again_when_the_fault_is_gone():
     world = running()
     world.drives[1].fault(1)
     world.run(500)
-    assert row_2(world) == "FAULT        A1"
+    assert row_2(world) == "FAULT F0001  A1"
     stws = [stw for _, stw in telegrams(world, world.clock.now_us - 300_000, 1)]
     assert len(stws) > 5 and set(stws) == {OFF1}
     world.drives[1].power_off()
@@ -81,7 +82,7 @@ def test_an_alarm_is_not_hidden_by_what_is_said_about_a_key():
 
 
 def test_plugged_in_again_nothing_starts_by_itself():
-    world = running()
+    world = running(**unsupervised())
     world.drives[1].unplug()
     world.run(3000)
     assert world.drives[1].state == "running"  # nobody told it
@@ -106,6 +107,24 @@ def test_a_drive_that_comes_later_is_found_and_not_started():
     world.drives[1].plug()
     world.run(1000)
     assert row_2(world) == "READY        A1" and starts(world) == 0
+    world.check()
+
+
+def test_a_supervised_drive_trips_when_the_line_is_cut_and_is_acknowledged_by_stop():
+    """P2014: the drive stops by itself. F0072 is read off it, STOP acknowledges, START starts."""
+    world = running()
+    world.drives[1].unplug()
+    world.run(3000)
+    assert world.drives[1].state == "fault" and world.drives[1].hz() == 0
+    world.drives[1].plug()
+    world.run(2000)
+    assert row_2(world) == "FAULT F0072  A1"
+    world.press("STOP")
+    world.run(300)
+    assert row_2(world) == "READY        A1" and starts(world) == 1
+    world.press("START")
+    world.run(2000)
+    assert row_2(world) == "RUNNING      A1" and starts(world) == 2
     world.check()
 
 

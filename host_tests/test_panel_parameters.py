@@ -1,0 +1,1030 @@
+"""The operator's manual, parameter mode: look at a parameter, change it, write it, move a drive."""
+
+import json
+
+from panel_bench import OFF1, panel, row_1, row_2, running, starts, telegrams
+
+WRITES = {2: "RAM", 14: "EEPROM"}  # AK of a task: where it writes a word to
+ASKED = "SET=DO  PARAM=NO"
+NAMES = ("P0700", "P1000", "P2011", "r2024", "r2025")
+KEYS = ("START", "REVERSE", "JOG_RIGHT", "JOG_LEFT", "UP", "DOWN", "ADDRESS_UP", "ADDRESS_DOWN",
+        "PARAM", "NEXT", "PREVIOUS", "EDIT")  # fmt: skip
+
+
+def wait_for(world, text, ms=9000):
+    """Let time pass until row 2 begins with a text."""
+    for _ in range(ms // 20):
+        if row_2(world).startswith(text):
+            return
+        world.run(20)
+    raise AssertionError("%r does not come: %r" % (text, world.lcd()))
+
+
+def show(world, name):
+    """From the home page to a parameter."""
+    world.press("PARAM")
+    for _ in range(NAMES.index(name)):
+        world.press("NEXT")
+    wait_for(world, name + ":")
+    world.run(200)
+    return world
+
+
+def parameter(name, **options):
+    return show(panel(**options), name)
+
+
+def edit(world, value):
+    """EDIT, then UP or DOWN to a value."""
+    world.press("EDIT")
+    wait_for(world, "P")
+    assert row_2(world)[12] == "↕", world.lcd()
+    shown = int(row_2(world)[6:12])
+    for _ in range(abs(value - shown)):
+        world.press("UP" if value > shown else "DOWN")
+    wait_for(world, "P")
+    assert int(row_2(world)[6:12]) == value
+    return world
+
+
+def write(world, value):
+    """A new value into RAM, with the question answered."""
+    edit(world, value)
+    world.press("SET")
+    assert row_2(world) == ASKED, world.lcd()
+    world.press("SET")
+
+
+def write_eeprom(world, value):
+    edit(world, value)
+    world.press("SET")
+    world.press("SET", 2000)
+
+
+def writes(world, address=None):
+    """Writes of the panel as (address, number, where, value), repetitions left out."""
+    found = []
+    for _, from_panel, characters in world.wire.log.last(1000):
+        if from_panel and len(characters) == 16 and characters[3] >> 4 in WRITES:
+            number = (characters[3] & 7) << 8 | characters[4]
+            number += 2000 if characters[5] & 0x80 else 0
+            row = (characters[2], number, WRITES[characters[3] >> 4], characters[10])
+            if row not in found and address in (None, characters[2]):
+                found.append(row)
+    return found
+
+
+def restart_drive(world, address=1):
+    world.drives[address].power_off()
+    world.run(200)
+    world.drives[address].power_on()
+
+
+def stored(world):
+    return json.loads(world.flash.files["settings.json"])
+
+
+def lose_answer(world, number, value, silent_ms=200):
+    """SET, and the drive does what it is told, but its answer does not come through."""
+    drive = world.drives[1]
+    delay_us, drive.reply_delay_us = drive.reply_delay_us, 15_000
+    world.down("SET")
+    for _ in range(30_000):
+        world.run(2)
+        if drive.read(number) == value:
+            break
+    drive.unplug()
+    world.up("SET")
+    world.run(silent_ms)
+    drive.reply_delay_us = delay_us
+    drive.plug()
+
+
+# --- looking ---------------------------------------------------------------------------------------
+
+
+def test_param_goes_to_parameter_mode_and_back():
+    world = panel()
+    home = world.lcd()
+    world.press("PARAM")
+    world.run(200)
+    assert world.lcd() == ("S: 10.0 F:  0.00", "P0700:     5 A1 ")
+    world.press("PARAM")
+    assert world.lcd() == home
+    world.check()
+
+
+def test_next_and_previous_walk_the_parameters_round():
+    world = panel()
+    world.drives[1].write(1000, 0, 65)
+    world.press("PARAM")
+    walk = ["P0700:     5 A1", "P1000:    65 A1", "P2011:     1 A1", "r2024:", "r2025:     0 A1"]
+    for key, rows in (("NEXT", walk + walk[:2]), ("PREVIOUS", [walk[1], walk[0]] + walk[:0:-1])):
+        if key == "PREVIOUS":
+            walk = walk[1:]
+        for row in rows:
+            world.run(100)
+            assert row_2(world).startswith(row), (row, world.lcd())
+            last = row
+            world.press(key)
+        world.press("PREVIOUS" if key == "NEXT" else "NEXT")
+        assert row_2(world).startswith(last)
+    world.check()
+
+
+def test_next_is_read_at_once_and_repeats_while_it_is_held():
+    world = parameter("P0700")
+    world.press("NEXT", 60)
+    world.run(100)
+    assert row_2(world) == "P1000:     5 A1"
+    world.down("NEXT")
+    seen = set()
+    for _ in range(200):
+        world.run(10)
+        seen.add(row_2(world)[:5])
+    assert len(seen) == 5
+    world.check()
+
+
+def test_a_value_follows_the_drive():
+    world = parameter("P1000")
+    world.drives[1].write(1000, 0, 3)
+    world.run(800)
+    assert row_2(world) == "P1000:     3 A1"
+    world.check()
+
+
+def test_the_telegrams_that_the_drive_counts_are_shown():
+    world = parameter("r2024")
+    first = int(row_2(world)[6:12])
+    world.run(1000)
+    assert first + 10 < int(row_2(world)[6:12]) <= world.drives[1].read(2024)
+    world.check()
+
+
+def test_a_value_is_that_of_the_drive_shown():
+    world = panel(addresses=(1, 2, 31))
+    for address, value in ((1, 1), (2, 2), (31, 3)):
+        world.drives[address].write(1000, 0, value)
+    show(world, "P1000")
+    for row in ("P1000:     1 A1", "P1000:     2 A2", "P1000:     3 A31"):
+        assert row_2(world) == row
+        world.press("ADDRESS_UP", 30)
+        assert "?" in row_2(world) or row_2(world)[13:] != row[13:]
+        world.run(200)
+    world.check()
+
+
+def test_a_stale_answer_is_never_shown_as_another_parameter():
+    """The drive still tells the old parameter for a while, as it may."""
+    world = panel()
+    world.drives[1].write(1000, 0, 3)
+    world.drives[1].stale_replies = 10
+    world.press("PARAM")
+    allowed = {"P0700": "     5     ?", "P1000": "     3     ?", "P2011": "     1     ?"}
+    for _ in range(6):
+        for _ in range(50):
+            world.run(10)
+            name, value = row_2(world)[:5], row_2(world)[6:12]
+            assert name not in allowed or value in allowed[name], world.lcd()
+        world.press("NEXT", 30)
+    world.check()
+
+
+def test_a_parameter_that_the_drive_does_not_have_is_told():
+    world = panel()
+    parameters = world.drives[1]._parameters
+    parameters.rows = {row: parameters.rows[row] for row in parameters.rows if row != 2024}
+    show(world, "P2011")
+    world.press("NEXT")
+    world.run(200)
+    assert row_2(world) == "NO SUCH PARAM."
+    world.run(3200)
+    assert row_2(world) == "r2024: ----- A1"
+    world.check()
+
+
+def test_the_value_of_a_silent_drive_is_not_shown():
+    """Not even the last one, as soon as it is out of contact; and it comes back with it."""
+    world = parameter("P1000")
+    world.drives[1].unplug()
+    world.run(1200)
+    assert world.lcd() == ("S: 10.0 F: -----", "P1000:     ? A1 ")
+    world.drives[1].plug()
+    world.run(3000)
+    assert row_2(world) == "P1000:     5 A1"
+    world.check()
+
+
+def test_a_value_that_is_not_told_any_more_is_not_shown():
+    """It answers with an old parameter for ever: what it was told once is out of date."""
+    world = parameter("P1000")
+    world.drives[1].stale_replies = 1_000_000
+    world.drives[1].write(1000, 0, 2)
+    world.run(10_000)
+    assert row_2(world) == "P1000:     ? A1"
+    world.check()
+
+
+def test_a_drive_that_does_not_tell_holds_up_no_other():
+    world = parameter("P1000", addresses=(1, 2))
+    world.drives[1].unplug()
+    world.run(800)
+    world.press("ADDRESS_UP")
+    world.run(500)
+    assert row_2(world) == "P1000:     5 A2"
+    world.check()
+
+
+# --- editing ---------------------------------------------------------------------------------------
+
+
+def test_edit_freezes_the_value_and_lets_it_go():
+    world = parameter("P1000")
+    world.press("EDIT")
+    assert row_2(world) == "P1000:     5↕A1"
+    world.press("UP")
+    world.drives[1].write(1000, 0, 2)
+    world.run(1500)
+    assert row_2(world) == "P1000:     6↕A1"
+    world.press("EDIT")
+    assert row_2(world) == "P1000:     2 A1"
+    world.press("EDIT")
+    assert row_2(world) == "P1000:     2↕A1"
+    assert not writes(world)
+    world.check()
+
+
+def test_an_edited_value_stays_within_its_range():
+    for name, highest in (("P0700", 6), ("P1000", 77), ("P2011", 31)):
+        world = parameter(name)
+        world.press("EDIT")
+        world.press("UP", 11_000)
+        assert int(row_2(world)[6:12]) == highest
+        world.press("DOWN", 11_000)
+        assert row_2(world) == "%s:     0↕A1" % name
+        world.check()
+
+
+def test_a_small_range_is_walked_by_ones():
+    world = parameter("P1000")
+    world.press("EDIT")
+    world.down("UP")
+    last = 5
+    for _ in range(400):
+        world.run(10)
+        value = int(row_2(world)[6:12])
+        assert value - last in (0, 1)
+        last = value
+    assert 30 < last < 40
+    world.check()
+
+
+def test_readings_cannot_be_edited():
+    for name in ("r2024", "r2025"):
+        for key in ("EDIT", "UP", "DOWN"):
+            world = parameter(name)
+            world.press(key)
+            assert row_2(world) == "READ ONLY"
+            world.run(3100)
+            assert row_2(world)[12] == " "
+        world.press("SET")
+        assert "FIRST" in row_2(world) or row_2(world) == "READ ONLY"
+        world.run(500)
+        assert not writes(world)
+        world.check()
+
+
+def test_up_down_and_set_without_edit_say_what_to_do():
+    for key in ("UP", "DOWN", "SET"):
+        world = parameter("P0700")
+        world.press(key)
+        assert row_2(world) == "PRESS EDIT FIRST"
+        world.run(3100)
+        assert row_2(world) == "P0700:     5 A1" and not writes(world)
+        world.check()
+
+
+def test_what_is_not_read_yet_cannot_be_edited():
+    world = panel()
+    world.drives[1].stale_replies = 50
+    world.press("PARAM")
+    world.press("EDIT")
+    assert row_2(world) == "NOT READ YET"
+    world.check()
+
+
+def test_another_parameter_or_drive_drops_what_was_edited():
+    for away, back in (("NEXT", "PREVIOUS"), ("ADDRESS_UP", "ADDRESS_DOWN"), ("PARAM", "PARAM")):
+        world = parameter("P1000", addresses=(1, 2))
+        edit(world, 3)
+        world.press(away)
+        world.press(back)
+        world.run(300)
+        assert row_2(world) == "P1000:     5 A1"
+        world.press("SET")
+        assert row_2(world) == "PRESS EDIT FIRST" and not writes(world)
+        world.check()
+
+
+def test_what_was_edited_never_goes_to_another_drive():
+    """Also when ADDRESS_UP and SET go down in the same moment, in every order and wiring."""
+    for keys in ("direct", "matrix"):
+        for early, late, ms in (("SET", "ADDRESS_UP", 0), ("ADDRESS_UP", "SET", 4),
+                                ("SET", "ADDRESS_UP", 4)):  # fmt: skip
+            world = parameter("P1000", addresses=(1, 2), keys=keys)
+            edit(world, 4)
+            world.down(early)
+            world.run(ms)
+            world.down(late)
+            world.run(100)
+            world.up("SET")
+            world.up("ADDRESS_UP")
+            world.run(100)
+            world.press("SET", 2000)
+            world.run(500)
+            assert world.drives[2].read(1000) == 5, (keys, early, ms)
+            assert not writes(world, 2)
+            world.check()
+
+
+# --- writing ---------------------------------------------------------------------------------------
+
+
+def test_set_asks_first():
+    for name, value in (("P0700", 6), ("P1000", 3), ("P2011", 4)):
+        world = edit(parameter(name), value)
+        world.press("SET")
+        assert world.lcd() == ("PANEL MAY LOSE  ", ASKED)
+        world.run(1600)
+        assert world.lcd() == ("THE DRIVE BY IT ", ASKED)
+        world.run(1500)
+        assert world.lcd() == ("PANEL MAY LOSE  ", ASKED)
+        world.run(10_000)
+        assert row_2(world) == ASKED and not writes(world)
+        world.check()
+
+
+def test_set_again_writes_into_ram():
+    world = parameter("P1000")
+    write(world, 3)
+    world.run(200)
+    assert row_2(world) == "WRITTEN (RAM)"
+    world.run(3000)
+    assert row_2(world) == "P1000:     3 A1"
+    assert writes(world) == [(1, 1000, "RAM", 3)]
+    restart_drive(world)
+    world.run(2500)
+    assert row_2(world) == "P1000:     5 A1"
+    world.check()
+
+
+def test_set_held_writes_into_the_eeprom_as_well():
+    world = parameter("P1000")
+    write_eeprom(world, 3)
+    world.run(200)
+    assert row_2(world) == "WRITTEN (EEPROM)"
+    assert writes(world) == [(1, 1000, "RAM", 3), (1, 1000, "EEPROM", 3)]
+    restart_drive(world)
+    world.run(4000)
+    assert row_2(world) == "P1000:     3 A1"
+    world.check()
+
+
+def test_only_a_set_that_is_held_for_a_second_and_a_half_reaches_the_eeprom():
+    for ms, eeprom in ((1300, False), (1900, True)):
+        world = edit(parameter("P1000"), 3)
+        world.press("SET")
+        world.press("SET", ms)
+        world.run(1500)
+        assert ((1, 1000, "EEPROM", 3) in writes(world)) == eeprom
+        world.check()
+
+
+def test_the_set_that_asks_does_not_write_however_long_it_is_held():
+    world = edit(parameter("P1000"), 3)
+    world.press("SET", 5000)
+    assert row_2(world) == ASKED and not writes(world)
+    world.check()
+
+
+def test_a_held_set_writes_the_eeprom_once():
+    world = edit(parameter("P1000"), 3)
+    world.press("SET")
+    world.down("SET")
+    world.run(2200)
+    before = world.wire.log.count
+    world.run(5000)
+    since = world.wire.log.last(world.wire.log.count - before)
+    assert not [row for row in since if row[1] and row[2][3] >> 4 in WRITES]
+    world.check()
+
+
+def test_a_write_that_is_on_its_way_has_an_hourglass():
+    world = edit(parameter("P1000"), 3)
+    world.drives[1].stale_replies = 20
+    world.press("SET")
+    world.press("SET")
+    world.run(100)
+    assert row_2(world) == "P1000:     3⧗A1"
+    world.run(1500)
+    assert row_2(world) == "WRITTEN (RAM)"
+    world.check()
+
+
+def test_keys_while_set_is_held_do_not_change_what_becomes_permanent():
+    """What was asked and written into RAM is what the EEPROM gets, or nothing."""
+    for keys in (("EDIT", "DOWN"), ("UP",), ("NEXT",), ("ADDRESS_UP",), ("PARAM",)):
+        for ms in (30, 300):
+            world = edit(parameter("P1000", addresses=(1, 2)), 3)
+            world.press("SET")
+            world.down("SET")
+            world.run(ms)
+            for key in keys:
+                world.press(key, 60)
+            world.run(2500)
+            for row in writes(world):
+                assert row[:2] == (1, 1000) and row[3] == 3, (keys, ms, row)
+            world.check()
+
+
+def test_keys_while_set_is_held_do_not_move_a_drive_onto_another():
+    world = edit(parameter("P2011", addresses=(1, 2)), 3)
+    world.press("SET")
+    world.down("SET")
+    world.run(400)
+    world.press("EDIT")
+    world.press("DOWN")
+    world.run(2000)
+    assert world.drives[1].address == 3
+    world.check()
+
+
+def test_a_set_that_goes_on_after_the_line_failed_makes_nothing_permanent():
+    """The operator reads NO CONTACT; a write some time later would be a surprise."""
+    world = edit(parameter("P1000"), 3)
+    world.press("SET")
+    world.down("SET")
+    world.run(300)
+    world.drives[1].unplug()
+    world.run(8000)
+    world.drives[1].plug()
+    world.run(3000)
+    assert (1, 1000, "EEPROM", 3) not in writes(world)
+    world.check()
+
+
+def test_any_other_key_cancels_and_does_nothing_else():
+    for key in KEYS:
+        world = edit(parameter("P1000", addresses=(1, 2)), 3)
+        world.press("SET")
+        row = row_1(world)
+        world.press(key)
+        assert row_2(world) == "P1000:     3↕A1", (key, world.lcd())
+        assert row != row_1(world) == "S: 10.0 F:  0.00"
+        world.run(1000)
+        assert not writes(world) and starts(world) == 0
+        world.check()
+
+
+def test_a_key_that_cancels_does_nothing_else_while_it_is_held():
+    for key in KEYS:
+        world = edit(parameter("P1000", addresses=(1, 2)), 3)
+        world.press("SET")
+        world.press(key, 1500)
+        assert row_2(world) == "P1000:     3↕A1", (key, world.lcd())
+        assert not writes(world) and starts(world) == 0
+        world.check()
+
+
+def test_two_keys_at_once_are_no_answer():
+    world = edit(parameter("P1000"), 3)
+    world.press("SET")
+    world.down("UP")
+    world.press("SET")
+    world.up("UP")
+    world.run(500)
+    assert row_2(world) == "P1000:     3↕A1" and not writes(world)
+
+
+def test_stop_cancels_and_stops():
+    world = show(running(), "P1000")
+    edit(world, 3)
+    world.press("SET")
+    assert row_2(world) == ASKED
+    since_us = world.clock.now_us
+    world.press("STOP")
+    assert row_2(world) == "P1000:     3↕A1"
+    assert telegrams(world, since_us)[-1][1] == OFF1
+    world.run(5000)
+    assert world.drives[1].state == "ready" and not writes(world)
+    world.check()
+
+
+def test_a_refusal_is_told_in_words():
+    """Name, value, what is set at the drive before, what is said."""
+    for name, value, before, text in (
+        ("P1000", 7, None, "NOT THIS VALUE"),
+        ("P0700", 3, None, "NOT THIS VALUE"),
+        ("P1000", 3, (927, 7), "NO CHANGE RIGHTS"),
+        ("P2011", 3, (3, 1), "P0003 TOO LOW"),
+    ):
+        world = panel()
+        if before:
+            world.drives[1].write(before[0], 0, before[1])
+        show(world, name)
+        number = int(name[1:])
+        was = world.drives[1].read(number)
+        write_eeprom(world, value)
+        assert row_2(world) == text, world.lcd()
+        assert world.drives[1].read(number) == was
+        assert "EEPROM" not in [row[2] for row in writes(world)]
+        world.run(3100)
+        assert row_2(world) == "%s:     %d↕A1" % (name, value)
+        world.press("EDIT")
+        assert row_2(world) == "%s:     %d A1" % (name, was)
+        world.check()
+
+
+def test_the_source_of_commands_is_not_changed_while_the_drive_runs():
+    world = show(running(), "P0700")
+    write(world, 2)
+    world.run(200)
+    assert row_2(world) == "NOT IN THIS MODE"
+    world.run(1000)
+    assert world.drives[1].state == "running" and world.drives[1].read(700) == 5
+    world.check()
+
+
+def test_a_drive_that_goes_silent_while_it_is_written_to_is_told_of():
+    world = edit(parameter("P1000", parameters={2014: 20_000}), 3)
+    world.press("SET")
+    world.drives[1].unplug()
+    world.press("SET", 1000)
+    wait_for(world, "NO ANSWER")
+    world.press("SET")
+    world.press("SET")
+    assert row_2(world) == "NO CONTACT"
+    world.drives[1].plug()
+    world.run(3500)
+    assert world.drives[1].read(1000) == 5
+    world.press("SET")
+    world.press("SET")
+    world.run(300)
+    assert row_2(world) == "WRITTEN (RAM)" and world.drives[1].read(1000) == 3
+    world.check()
+
+
+def test_a_stale_answer_is_not_taken_for_a_confirmation():
+    """The value stood there before; the drive takes a second to look at the task."""
+    world = edit(parameter("P1000"), 7)
+    world.drives[1].stale_replies = 20
+    world.press("SET")
+    world.press("SET")
+    for _ in range(20):
+        world.run(100)
+        assert "WRITTEN" not in row_2(world)
+    assert row_2(world) == "NOT THIS VALUE"
+    world.check()
+
+
+def test_a_second_write_waits_for_the_first():
+    world = edit(parameter("P1000"), 3)
+    world.drives[1].stale_replies = 30
+    for _ in range(4):
+        world.press("SET")
+    assert row_2(world) == "STILL WRITING"
+    world.run(2500)
+    assert world.drives[1].read(1000) == 3
+    world.check()
+
+
+def test_the_end_of_a_write_is_told_though_another_drive_is_shown():
+    for value, text in ((3, "A1: WRITTEN"), (7, "A1: NOT WRITTEN")):
+        world = edit(parameter("P1000", addresses=(1, 2)), value)
+        world.drives[1].stale_replies = 20
+        world.press("SET")
+        world.press("SET")
+        world.press("ADDRESS_UP")
+        wait_for(world, text)
+        wait_for(world, "P1000:     5 A2")
+        assert not writes(world, 2)
+        world.check()
+
+
+def test_a_write_goes_on_when_parameter_mode_is_left():
+    world = edit(parameter("P1000"), 3)
+    world.drives[1].stale_replies = 20
+    world.press("SET")
+    world.down("SET")
+    world.run(100)
+    world.press("PARAM")
+    world.run(1500)
+    assert row_2(world) == "WRITTEN (RAM)"
+    world.run(4000)
+    assert [row[2] for row in writes(world)] == ["RAM"]  # for the EEPROM nobody looks on
+    world.up("SET")
+    world.drives[1].stale_replies = 0
+    world.press("PARAM")
+    world.run(300)
+    assert row_2(world) == "P1000:     3 A1"
+    world.check()
+
+
+def test_what_was_written_counts_for_the_next_start():
+    world = parameter("P0700")
+    write(world, 2)
+    world.run(300)
+    world.press("START")
+    assert row_2(world) == "NO:P0700 NOT USS" and starts(world) == 0
+    world.check()
+
+
+# --- a drive under the hand ------------------------------------------------------------------------
+
+
+def test_the_setpoint_does_not_move_in_parameter_mode():
+    world = parameter("P1000")
+    for _ in range(2):
+        world.press("UP", 2000)
+        world.press("DOWN", 500)
+        world.press("EDIT")
+    assert row_1(world) == "S: 10.0 F:  0.00"
+    world.press("PARAM")
+    assert row_1(world) == "S: 10.0 F:  0.00"
+    world.check()
+
+
+def test_start_stop_reverse_and_jog_act_and_row_1_shows_it():
+    world = parameter("P1000")
+    world.press("START")
+    world.run(4000)
+    assert world.lcd() == ("S: 10.0 F: 10.00", "P1000:     5 A1 ")
+    world.press("REVERSE")
+    world.run(6000)
+    assert world.lcd() == ("S:-10.0 F:-10.00", "P1000:     5 A1 ")
+    world.press("STOP")
+    world.run(5000)
+    assert world.lcd() == ("S:-10.0 F:  0.00", "P1000:     5 A1 ")
+    assert world.drives[1].state == "ready"
+    for key, sign in (("JOG_RIGHT", ""), ("JOG_LEFT", "-")):
+        world.down(key)
+        world.run(3000)
+        assert row_1(world)[10:] == "%6s" % (sign + "5.00")
+        world.up(key)
+        world.run(3000)
+        assert row_1(world)[10:] == "  0.00" and row_2(world) == "P1000:     5 A1"
+    world.check()
+
+
+def test_stop_that_is_held_says_what_it_does_in_parameter_mode():
+    world = show(running(addresses=(1, 2)), "P1000")
+    world.down("STOP")
+    world.run(500)
+    assert row_2(world) == "STOP, HOLD: OFF3"
+    world.run(4000)
+    assert row_2(world) == "ALL DRIVES: STOP"
+    world.up("STOP")
+    world.run(4000)
+    assert row_2(world) == "P1000:     5 A1"
+    world.check()
+
+
+def test_a_jog_ends_when_a_question_comes():
+    world = edit(parameter("P1000"), 3)
+    world.down("JOG_RIGHT")
+    world.run(2000)
+    world.press("SET")
+    assert row_2(world) == ASKED
+    world.run(3000)
+    assert world.drives[1].state == "ready" and row_2(world) == ASKED
+    world.press("PARAM")
+    world.run(1000)
+    assert starts(world) == 1  # the key must be pressed anew
+    world.check()
+
+
+# --- alarms ----------------------------------------------------------------------------------------
+
+
+def rows_in_turn(world, ms=4000):
+    seen = set()
+    for _ in range(ms // 50):
+        world.run(50)
+        seen.add(row_2(world))
+    return seen
+
+
+def test_a_fault_of_this_drive_is_shown_in_turn_and_acknowledged_by_stop():
+    world = parameter("P1000")
+    world.drives[1].fault(1)
+    world.run(300)
+    assert rows_in_turn(world) == {"A1 FAULT F0001", "P1000:     5 A1"}
+    world.press("STOP")
+    world.run(1000)
+    assert world.drives[1].state == "ready"
+    assert rows_in_turn(world) == {"P1000:     5 A1"}
+    world.check()
+
+
+def test_a_fault_whose_number_is_not_told_is_seen_in_parameter_mode_too():
+    world = parameter("P1000")
+    parameters = world.drives[1]._parameters
+    parameters.rows = {row: parameters.rows[row] for row in parameters.rows if row != 947}
+    world.drives[1].fault(1)
+    world.run(1000)
+    assert [row for row in rows_in_turn(world) if "FAULT" in row]
+
+
+def test_another_drive_that_runs_is_announced_in_parameter_mode():
+    world = running(addresses=(1, 2))
+    world.press("ADDRESS_UP")
+    show(world, "P1000")
+    assert rows_in_turn(world) == {"A1 RUN,HOLD=ALL", "P1000:     5 A2"}
+    world.check()
+
+
+def test_a_stop_that_is_not_obeyed_is_seen_in_parameter_mode():
+    world = show(running(), "P1000")
+    world.drives[1]._process.words = lambda count: [0xFB34, 0x0CCD]
+    world.press("STOP")
+    world.run(2000)
+    assert rows_in_turn(world) == {"STOP UNCONFIRMED"}
+
+
+def test_a_drive_that_may_run_is_seen_in_parameter_mode():
+    world = show(running(), "P1000")
+    world.drives[1].unplug()
+    world.run(1500)
+    assert world.lcd() == ("NO CONTACT,     ", "MAY RUN      A1 ")
+    world.check()
+
+
+def test_an_alarm_takes_a_question_away():
+    world = edit(show(running(), "P1000"), 3)
+    world.press("SET")
+    assert row_2(world) == ASKED
+    world.drives[1].unplug()
+    world.run(1500)
+    assert world.lcd() == ("NO CONTACT,     ", "MAY RUN      A1 ")
+    world.press("SET")
+    world.drives[1].plug()
+    world.run(3000)
+    assert not writes(world)
+    world.check()
+
+
+def test_an_alarm_of_another_drive_is_not_hidden_by_a_question():
+    world = running(addresses=(1, 2))
+    world.press("ADDRESS_UP")
+    edit(show(world, "P1000"), 3)
+    world.press("SET")
+    world.drives[1].unplug()
+    world.run(1500)
+    assert "A1 LOST,MAY RUN" in rows_in_turn(world)
+    world.check()
+
+
+# --- the address -----------------------------------------------------------------------------------
+
+
+def test_a_drive_is_followed_to_its_new_address():
+    world = parameter("P2011", addresses=(1, 2))
+    write(world, 5)
+    world.run(300)
+    assert row_2(world) == "WRITTEN (RAM)"
+    world.run(3000)
+    assert row_2(world) == "P2011:     5 A5" and world.drives[1].address == 5
+    world.press("PARAM")
+    assert row_2(world) == "READY        A5"
+    world.press("START")
+    world.run(4000)
+    assert world.drives[1].state == "running" and starts(world, 2) == 0
+    world.press("STOP")
+    world.run(5000)
+    assert world.drives[1].state == "ready"
+    world.check()
+
+
+def test_every_address_of_a_drive_can_be_written():
+    for address in (0, 9, 10, 31):
+        world = parameter("P2011")
+        write(world, address)
+        world.run(3500)
+        assert row_2(world) == "P2011:    %2d A%d" % (address, address)
+        world.check()
+
+
+def test_an_address_in_ram_ends_with_the_power_of_the_drive():
+    """Neither the panel's settings nor the drive keep it, and both find each other again."""
+    world = parameter("P2011")
+    write(world, 5)
+    world.run(1000)
+    assert stored(world)["drives"] == [1]
+    restart_drive(world)
+    world.reset()
+    world.run(2000)
+    assert row_2(world) == "READY        A1"
+    world.check()
+
+
+def test_a_drive_that_loses_its_address_of_the_ram_is_found_again():
+    """Mains off and on, while the panel goes on."""
+    world = parameter("P2011")
+    write(world, 5)
+    world.run(1000)
+    world.drives[1].power_off()
+    world.run(3000)
+    world.drives[1].power_on()
+    world.run(10_000)
+    assert row_2(world) == "P2011:     1 A1"
+    world.check()
+
+
+def test_an_address_in_the_eeprom_goes_into_the_settings():
+    world = panel(addresses=(1, 2), settings={"unsupervised": [1]})
+    show(world, "P2011")
+    write_eeprom(world, 5)
+    world.run(300)
+    assert row_2(world) == "WRITTEN (EEPROM)"
+    assert stored(world)["drives"] == [5, 2] and stored(world)["unsupervised"] == [5]
+    restart_drive(world)
+    world.reset()
+    world.run(2000)
+    assert row_2(world) == "READY        A5"
+    world.check()
+
+
+def test_an_address_moves_several_times_and_the_last_one_stays():
+    world = parameter("P2011")
+    for address in (5, 7):
+        write(world, address)
+        world.run(3500)
+    write_eeprom(world, 9)
+    world.run(500)
+    assert stored(world)["drives"] == [9]
+    write_eeprom(world, 1)
+    world.run(500)
+    assert stored(world)["drives"] == [1]
+    world.check()
+
+
+def test_the_address_that_it_has_may_be_written_into_the_eeprom():
+    world = parameter("P2011")
+    write_eeprom(world, 1)
+    assert row_2(world) == "WRITTEN (EEPROM)" and stored(world)["drives"] == [1]
+    world.check()
+
+
+def test_a_drive_that_was_moved_in_ram_may_come_back_for_good():
+    world = parameter("P2011")
+    write(world, 2)
+    world.run(3500)
+    write_eeprom(world, 1)
+    assert row_2(world) == "WRITTEN (EEPROM)" and stored(world)["drives"] == [1]
+    world.check()
+
+
+def test_an_address_of_another_drive_is_refused():
+    """Also one that the other has left only until its power goes off."""
+    world = edit(parameter("P2011", addresses=(1, 2)), 2)
+    world.press("SET")
+    assert row_2(world) == "ADDRESS IS TAKEN"
+    world.press("ADDRESS_UP")
+    world.run(500)
+    write(world, 4)
+    world.run(1000)
+    world.press("ADDRESS_DOWN")
+    world.run(500)
+    for address in (2, 4):
+        edit(world, address)
+        world.press("SET")
+        assert row_2(world) == "ADDRESS IS TAKEN"
+        world.press("EDIT")
+    assert world.drives[1].address == 1
+    world.check()
+
+
+def test_an_address_is_not_changed_while_the_drive_runs():
+    world = show(panel(), "P2011")
+    edit(world, 4)
+    world.press("START", 40)
+    for _ in range(2):  # it starts; it runs
+        world.press("SET", 40)
+        assert row_2(world) == "STOP DRIVE FIRST"
+        world.run(4000)
+    world.press("STOP")
+    world.press("SET")
+    assert row_2(world) == "STOP DRIVE FIRST"  # it ramps down
+    world.run(5000)
+    world.press("SET")
+    assert row_2(world) == ASKED
+    assert not writes(world)
+    world.check()
+
+
+def test_an_address_is_not_changed_when_the_drive_has_started_meanwhile():
+    """While the question stood somebody started it at its terminals."""
+    world = edit(parameter("P2011"), 4)
+    world.press("SET")
+    world.drives[1].write(700, 0, 2)
+    world.drives[1]._process.zsw = lambda: 0xFB34
+    world.run(500)
+    world.press("SET")
+    world.run(500)
+    assert world.drives[1].address == 1 and not writes(world)
+
+
+def test_two_drives_never_get_the_same_address():
+    """The first one is still being written to when the second one is given its new address."""
+    for wait_ms in (0, 150, 300, 450):
+        world = edit(parameter("P2011", addresses=(1, 2)), 4)
+        world.press("SET")
+        world.run(wait_ms)
+        lose_answer(world, 2011, 4, 40)
+        world.press("ADDRESS_UP", 40)
+        world.run(500)
+        if row_2(world) != "P2011:     2 A2":
+            continue
+        edit(world, 4)
+        world.press("SET")
+        world.run(4000)
+        world.press("SET")
+        world.run(1000)
+        assert (world.drives[1].address, world.drives[2].address) == (4, 2)
+        world.check()
+
+
+def test_a_drive_whose_answer_was_lost_is_found_at_its_new_address():
+    for silent_ms in (50, 1500, 3000):
+        world = edit(parameter("P2011", parameters={2014: 20_000}), 5)
+        world.press("SET")
+        lose_answer(world, 2011, 5, silent_ms)
+        world.run(6500)
+        assert world.drives[1].address == 5
+        assert row_2(world)[13:] == "A5", (silent_ms, world.lcd())
+        world.press("PARAM")
+        world.press("START")
+        world.run(4000)
+        assert world.drives[1].state == "running" and row_2(world) == "RUNNING      A5"
+        world.check()
+
+
+def test_a_long_list_gets_time_to_find_the_drive_as_well():
+    """With 20 drives at 2400 baud a round of the bus takes more than 3 s."""
+    world = panel(addresses=tuple(range(1, 21)), baud=2400)
+    world.run(4000)
+    show(world, "P2011")
+    wait_for(world, "P2011:     1 A1", 60_000)
+    edit(world, 0)
+    world.press("SET")
+    lose_answer(world, 2011, 0, 50)
+    assert world.drives[1].address == 0
+    world.run(60_000)
+    assert row_2(world) == "P2011:     0 A0"
+
+
+def test_a_drive_that_did_not_hear_is_taken_again_at_its_old_address():
+    world = parameter("P2011", addresses=(1, 2), parameters={2014: 20_000})
+    edit(world, 5)
+    world.press("SET")
+    world.drives[1].unplug()
+    world.press("SET")
+    wait_for(world, "NO ANSWER")
+    world.drives[1].plug()
+    world.run(5000)
+    assert row_2(world) == "P2011:     5↕A1"
+    world.press("EDIT")
+    assert row_2(world) == "P2011:     1 A1" and stored(world)["drives"] == [1, 2]
+    world.check()
+
+
+def test_an_address_that_did_not_reach_the_eeprom_does_not_get_into_the_settings():
+    """The line fails while SET is held, and comes back: nothing is claimed that is not so."""
+    for silent_ms in range(5000, 13_000, 1000):
+        world = edit(parameter("P2011", parameters={2014: 0}), 5)
+        world.press("SET")
+        world.down("SET")
+        world.run(1350)
+        world.drives[1].unplug()
+        world.run(silent_ms)
+        world.up("SET")
+        world.drives[1].plug()
+        world.run(3000)
+        claimed = stored(world)["drives"]
+        restart_drive(world)
+        assert claimed == [world.drives[1].address], (silent_ms, claimed, world.lcd())
+
+
+def test_a_drive_that_is_not_of_this_panel_is_not_taken_for_the_one_that_moved():
+    """Drive 1 did not hear that it is 5; somebody else's drive 5 answers instead."""
+    world = edit(parameter("P2011", addresses=(1, 5), settings={"drives": [1]}), 5)
+    world.press("SET")
+    world.drives[1].unplug()
+    world.press("SET")
+    world.run(3000)
+    world.press("PARAM")
+    world.press("START")
+    world.run(3000)
+    assert starts(world, 5) == 0
+    assert 5 not in [row[2][2] for row in world.wire.log.last(20) if row[1]]

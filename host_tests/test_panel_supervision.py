@@ -1,0 +1,402 @@
+"""The operator's manual, P2014 = 0: a drive that would run on when the panel dies is not run
+without its operator's word.
+"""
+
+import json
+
+from panel_bench import ON, panel, row_1, row_2, starts, telegrams, unsupervised
+
+OFF3 = 0x047A
+ASKED = "SET=FIX START=GO"
+OTHER_KEYS = ("STOP", "REVERSE", "JOG_RIGHT", "JOG_LEFT", "UP", "DOWN", "ADDRESS_UP",
+              "ADDRESS_DOWN", "PARAM", "NEXT", "PREVIOUS", "EDIT")  # fmt: skip
+
+
+def unset(**options):
+    """A panel whose drives have P2014 = 0, as delivered."""
+    return panel(parameters={2014: 0}, **options)
+
+
+def asked(**options):
+    """The same, START pressed, the question on the display."""
+    world = unset(**options)
+    world.press("START")
+    wait_for(world, ASKED)
+    world.run(1200)  # time to read it
+    return world
+
+
+def wait_for(world, text, ms=9000):
+    """Let time pass until row 2 begins with a text."""
+    for _ in range(ms // 20):
+        if row_2(world).startswith(text):
+            return
+        world.run(20)
+    raise AssertionError("%r does not come: %r" % (text, world.lcd()))
+
+
+def accepted(world):
+    return json.loads(world.flash.files["settings.json"]).get("unsupervised", [])
+
+
+def test_jog_is_refused():
+    for key in ("JOG_RIGHT", "JOG_LEFT"):
+        world = unset()
+        world.press(key, 1000)
+        assert row_2(world) == "NO JOG: P2014=0"
+        world.run(1000)
+        assert starts(world) == 0
+        world.check()
+
+
+def test_start_asks():
+    world = unset()
+    world.press("START")
+    wait_for(world, ASKED, 1000)
+    assert row_1(world) == "P2014=0: IT RUNS"
+    world.run(1600)
+    assert world.lcd() == ("ON IF PANEL DIES", ASKED)
+    world.run(1500)
+    assert world.lcd() == ("P2014=0: IT RUNS", ASKED)
+    world.run(8000)
+    assert row_2(world) == ASKED and starts(world) == 0
+    assert ON not in [stw for _, stw in telegrams(world, 0)]
+    world.check()
+
+
+def test_a_supervised_drive_is_started_without_a_question():
+    world = panel(parameters={2014: 500})
+    world.press("START")
+    for _ in range(60):
+        world.run(20)
+        assert row_2(world) != ASKED
+    assert starts(world) == 1
+    world.check()
+
+
+def test_start_asks_in_parameter_mode_too():
+    world = unset()
+    world.press("PARAM")
+    world.press("START")
+    wait_for(world, ASKED, 1000)
+    world.press("PARAM")
+    assert row_2(world) == "P0700:     5 A1" and starts(world) == 0
+    world.check()
+
+
+def test_set_has_the_drive_supervised_and_does_not_start_it():
+    world = asked()
+    world.press("SET")
+    wait_for(world, "WRITTEN (RAM)", 1000)
+    assert world.drives[1].read(2014) == 1000
+    world.run(4000)
+    assert starts(world) == 0 and accepted(world) == []
+    world.press("START")
+    world.run(3000)
+    assert world.drives[1].state == "running" and row_2(world) == "RUNNING      A1"
+    world.check()
+
+
+def test_set_that_is_held_does_not_write_the_eeprom():
+    """The question says nothing of it."""
+    world = asked()
+    world.press("SET", 4000)
+    world.run(500)
+    world.drives[1].power_off()
+    world.drives[1].power_on()
+    assert world.drives[1].read(2014) == 0
+    world.check()
+
+
+def test_the_time_written_is_three_rounds_of_the_bus_and_a_second_at_least():
+    """Telegram, reply time-out, reply that takes as long as it may: all of it three times."""
+    for baud, drives, reply_timeout_ms in ((19200, 1, 20), (57600, 3, 20), (9600, 31, 20),
+                                           (9600, 31, 60), (2400, 8, 20)):  # fmt: skip
+        settings = {"reply_timeout_ms": reply_timeout_ms}
+        world = unset(addresses=tuple(range(1, drives + 1)), baud=baud, settings=settings)
+        telegram_ms = 16 * 11_000 / baud
+        rounds_ms = 3 * drives * (2.5 * telegram_ms + reply_timeout_ms)
+        world.press("ADDRESS_DOWN")
+        wait_for(world, "READY        A%d" % drives, 60_000)
+        world.press("START")
+        wait_for(world, ASKED, 60_000)
+        world.run(1200)
+        world.press("SET")
+        wait_for(world, "WRITTEN (RAM)", 10_000)
+        off_ms = world.drives[drives].read(2014)
+        assert max(1000, rounds_ms - 100) <= off_ms <= max(1000, 1.1 * rounds_ms + 200), (
+            baud, drives, off_ms, rounds_ms)  # fmt: skip
+        assert world.drives[1].read(2014) == (off_ms if drives == 1 else 0)
+        world.check()
+
+
+def test_a_drive_that_was_set_stops_when_the_panel_dies():
+    world = asked()
+    world.press("SET")
+    world.run(500)
+    world.press("START")
+    world.run(4000)
+    assert world.drives[1].state == "running"
+    world.drives[1].unplug()
+    world.run(1500)
+    assert world.drives[1].state == "fault"
+    world.check()
+
+
+def test_a_refusal_of_the_drive_is_told():
+    for number, value, text in ((927, 7, "NO CHANGE RIGHTS"), (3, 2, "P0003 TOO LOW")):
+        world = asked()
+        world.drives[1].write(number, 0, value)
+        world.press("SET")
+        wait_for(world, text, 1000)
+        assert world.drives[1].read(2014) == 0 and starts(world) == 0
+        world.press("START")
+        wait_for(world, ASKED, 4000)
+        world.check()
+
+
+def test_start_accepts_and_starts():
+    world = asked()
+    world.press("START")
+    world.run(3000)
+    assert row_2(world) == "RUNNING      A1" and starts(world) == 1
+    assert accepted(world) == [1] and world.drives[1].read(2014) == 0
+    world.check()
+
+
+def test_what_was_accepted_is_not_asked_again():
+    """Not after a stop, not after a reset, and jogging is allowed as well."""
+    world = asked()
+    world.press("START")
+    world.run(3000)
+    world.press("STOP")
+    world.run(5000)
+    for _ in range(2):
+        world.press("START")
+        world.run(3000)
+        assert row_2(world) == "RUNNING      A1"
+        world.press("STOP")
+        world.run(5000)
+        world.press("JOG_LEFT", 2000)
+        assert world.drives[1].hz() < 0
+        world.run(4000)
+        world.reset()
+        world.run(1500)
+    world.check()
+
+
+def test_what_was_accepted_counts_for_that_drive_only():
+    world = asked(addresses=(1, 2))
+    world.press("START")
+    world.run(3000)
+    assert [starts(world, address) for address in (1, 2)] == [1, 0]
+    world.press("ADDRESS_UP")
+    world.press("JOG_RIGHT", 500)
+    assert row_2(world) == "NO JOG: P2014=0"
+    world.press("START")
+    wait_for(world, ASKED)
+    world.press("STOP")
+    world.run(500)
+    assert starts(world, 2) == 0 and accepted(world) == [1]
+    world.check()
+
+
+def test_what_was_accepted_before_stays_accepted():
+    world = panel(**unsupervised(1, 2))
+    world.drives[1].write(2014, 0, 0)
+    world.press("START")
+    world.run(3000)
+    assert starts(world) == 1 and accepted(world) == [1, 2]
+    world.check()
+
+
+def test_any_other_key_does_nothing_and_start_asks_again():
+    for key in OTHER_KEYS:
+        world = asked(addresses=(1, 2))
+        world.press(key)
+        world.run(2000)
+        assert row_1(world) == "S: 10.0 F:  0.00", (key, world.lcd())
+        assert row_2(world)[13:] == "A1" and row_2(world)[:5] in ("NOT S", "READY"), world.lcd()
+        assert [starts(world, address) for address in (1, 2)] == [0, 0]
+        assert world.drives[1].read(2014) == 0 and accepted(world) == []
+        world.press("START")
+        wait_for(world, ASKED, 1000)
+        world.check()
+
+
+def test_two_keys_at_once_are_no_answer():
+    for other in ("SET", "UP", "STOP"):
+        world = asked()
+        world.down(other)
+        world.press("START")
+        world.up(other)
+        world.run(3000)
+        assert starts(world) == 0 and accepted(world) == [], other
+        assert world.drives[1].read(2014) == 0
+        world.check()
+
+
+def test_a_start_that_is_held_is_no_second_start():
+    world = unset()
+    world.press("START", 8000)
+    assert row_2(world) == ASKED and starts(world) == 0 and accepted(world) == []
+    world.check()
+
+
+def test_a_start_that_is_tapped_twice_accepts_nothing():
+    """Nobody reads the question in half a second."""
+    for pause_ms in (100, 200, 300, 400, 500):
+        world = unset()
+        world.press("START")
+        world.run(pause_ms)
+        world.press("START")
+        world.run(2000)
+        assert starts(world) == 0 and accepted(world) == [], pause_ms
+        world.check()
+
+
+def test_stop_answers_no_and_acts():
+    world = asked()
+    since_us = world.clock.now_us
+    world.down("STOP")
+    world.run(100)
+    assert row_1(world) == "S: 10.0 F:  0.00"
+    world.run(1300)
+    assert row_2(world) == "STOP, HOLD: OFF3"
+    world.run(300)
+    assert row_2(world) == "OFF3, HOLD: ALL"
+    assert OFF3 in [stw for _, stw in telegrams(world, since_us)]
+    world.up("STOP")
+    world.run(1000)
+    assert row_2(world) == "READY        A1" and starts(world) == 0
+    world.check()
+
+
+def test_stop_that_is_pressed_while_the_drive_is_asked_takes_the_question_away():
+    world = unset()
+    world.press("START", 40)
+    world.press("STOP")
+    for _ in range(50):
+        world.run(50)
+        assert row_2(world) != ASKED
+    world.check()
+
+
+def test_another_drive_that_is_shown_meanwhile_is_not_asked_about():
+    """Nor is a question put that nobody waits for any more, when the first one is shown again."""
+    world = unset(addresses=(1, 2))
+    world.press("START", 40)
+    world.press("ADDRESS_UP")
+    for _ in range(60):
+        world.run(50)
+        assert row_2(world) == "READY        A2"
+    world.press("ADDRESS_DOWN", 40)
+    assert row_2(world) == "NOT STARTED  A1"
+    world.run(1000)
+    assert row_2(world) == "NOT STARTED  A1"
+    world.check()
+
+
+def test_a_question_that_was_left_is_not_answered_by_the_next_start():
+    """That START asks: the operator has not been told yet."""
+    world = unset(addresses=(1, 2))
+    world.press("START", 40)
+    world.press("ADDRESS_UP")
+    world.run(3000)
+    world.press("ADDRESS_DOWN", 40)
+    world.press("START")
+    world.run(2000)
+    assert row_2(world) == ASKED and starts(world) == 0 and accepted(world) == []
+    world.check()
+
+
+def test_nothing_is_accepted_while_stop_is_down():
+    """STOP of another drive is held; this one's question comes up, and START beside STOP."""
+    world = unset(addresses=(1, 2))
+    world.press("START", 40)
+    world.press("ADDRESS_UP")
+    world.run(1000)
+    world.down("STOP")
+    world.run(100)
+    world.press("ADDRESS_DOWN")
+    world.run(100)
+    world.press("START")
+    world.run(1000)
+    assert starts(world) == 0 and accepted(world) == []
+    world.check()
+
+
+def test_a_drive_that_was_started_after_another_is_the_one_that_is_asked_about():
+    world = unset(addresses=(1, 2))
+    world.press("START", 40)
+    world.press("ADDRESS_UP")
+    world.press("START")
+    wait_for(world, ASKED)
+    world.run(1200)
+    world.press("START")
+    world.run(3000)
+    assert [starts(world, address) for address in (1, 2)] == [0, 1]
+    assert accepted(world) == [2]
+    world.check()
+
+
+def test_an_alarm_takes_the_question_away():
+    world = asked()
+    world.drives[1]._process.words = lambda count: [0xFB34, 0x0CCD]
+    for _ in range(300):
+        world.run(20)
+        if row_2(world) == "STOP UNCONFIRMED":
+            break
+    assert row_2(world) == "STOP UNCONFIRMED"
+    world.press("START")
+    world.run(500)
+    assert accepted(world) == []
+
+
+def test_a_question_of_a_drive_that_has_gone_silent_starts_nothing_later():
+    world = asked()
+    world.drives[1].unplug()
+    world.run(2000)
+    world.press("START")
+    world.run(2000)
+    world.drives[1].plug()
+    world.run(5000)
+    assert starts(world) == 0
+    world.check()
+
+
+def test_a_reset_forgets_the_question():
+    world = asked()
+    world.reset()
+    world.run(3000)
+    assert row_2(world) == "READY        A1" and accepted(world) == [] and starts(world) == 0
+    world.press("SET")
+    world.run(500)
+    assert world.drives[1].read(2014) == 0
+    world.check()
+
+
+def test_a_drive_that_was_lost_is_looked_at_anew():
+    """P2014 was put back to 0 at the drive while it was away."""
+    world = panel(parameters={2014: 20_000})
+    world.drives[1].unplug()
+    world.run(2000)
+    world.drives[1].write(2014, 0, 0)
+    world.drives[1].plug()
+    world.run(1000)
+    world.press("START")
+    wait_for(world, ASKED, 2000)
+    world.check()
+
+
+def test_the_last_moment_counts():
+    """P2014 changed right before START: the drive is asked, not the memory."""
+    for before, after in ((2000, 0), (0, 2000)):
+        world = panel(parameters={2014: before})
+        world.run(2000)
+        world.drives[1].write(2014, 0, after)
+        world.press("START")
+        world.run(1500)
+        assert (row_2(world) == ASKED) == (after == 0), world.lcd()
+        assert starts(world) == (1 if after else 0)
+        world.check()
