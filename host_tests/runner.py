@@ -9,6 +9,7 @@ Without function names it runs all of the file; without a file it only tells wha
 Before anything else it proves that the interpreter is what the tier promises.
 """
 
+import gc
 import io
 import sys
 
@@ -25,6 +26,10 @@ PROMISES = {
     "cpython": ("cpython", 0, True),
 }
 
+# Bytes between two collections: MicroPython would fill its heap first, and take ever longer to find
+# the last holes in it.
+COLLECT_AFTER = 1_000_000
+
 # Relative to the top of the tree, which is the working directory.
 IMPORT_FOLDERS = ("", "firmware", "host_tests")
 TRACED_FOLDER = "firmware/"
@@ -40,6 +45,8 @@ def main(tier, path=None, *names):
     if tier == "coverage":
         leave_heap_unlocked()
         lines = LineTracer()
+    if hasattr(gc, "threshold"):
+        gc.threshold(COLLECT_AFTER)
     folder, _, file_name = path.rpartition("/")
     if folder not in IMPORT_FOLDERS:
         sys.path.insert(0, folder)

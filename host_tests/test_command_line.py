@@ -1,7 +1,9 @@
-"""./tools/panel as a user calls it: what it prints, and its exit status."""
+"""./tools/panel as a user calls it: what it prints, and its exit status.
+
+In a terminal it is another thing: test_terminal.py.
+"""
 
 import os
-import signal
 import subprocess
 
 import pytest
@@ -92,6 +94,9 @@ def test_an_unknown_word_is_exit_status_2_and_names_file_and_line(tmp_path):
         (("--baud", "14400", "--script", "-"), "USS knows 300 600"),
         (("--baud", "300", "--script", "-"), "MICROMASTER 420 has no code for 300 baud"),
         (("--seed", "x", "--script", "-"), "--seed x is no number"),
+        (("--speed", "0"), "--speed 0: time passes 1...100 times as fast"),
+        (("--speed", "101"), "--speed 101: time passes 1...100 times as fast"),
+        (("--speed=fast",), "--speed fast: time passes 1...100 times as fast"),
         (("--polled=yes", "--script", "-"), "--polled takes no value"),
     ],
 )
@@ -154,57 +159,3 @@ def test_a_reader_that_goes_away_is_no_crash():
             timeout=60, check=False,
         )  # fmt: skip
     assert ended.returncode == 1 and "Traceback" not in ended.stderr
-
-
-class Terminal:
-    """A terminal in which ./tools/panel runs; the test types, and reads what is shown."""
-
-    def __init__(self):
-        self.screen, terminal = os.openpty()
-        self.process = subprocess.Popen(
-            [PANEL], stdin=terminal, stdout=terminal, stderr=terminal, start_new_session=True
-        )
-        os.close(terminal)
-        self.shown = ""
-
-    def read(self, until):
-        """Read until `until` is the end of what is shown, or the program has gone."""
-        while not self.shown.endswith(until):
-            try:
-                data = os.read(self.screen, 1024)
-            except OSError:  # Linux says so when nobody has the terminal open any more
-                data = b""
-            if not data:
-                break
-            self.shown += data.decode()
-        return self.shown
-
-    def type(self, text):
-        self.shown = ""
-        os.write(self.screen, text.encode())
-
-
-def test_in_a_terminal_it_takes_commands_from_the_keyboard():
-    terminal = Terminal()
-    assert "READY        A1" in terminal.read("> ")
-    for typed, said in (
-        ("press START\n", "|STARTING     A1 |"),
-        ("wait 3000\n", "|RUNNING      A1 |"),
-        ("jump\n", "keyboard:3: unknown command jump"),
-        ("expect STOPPING\n", "expected STOPPING"),
-        ("lcd\n", "|S: 10.0 F: 10.00|"),
-        ("help\n", "hold KEY MS"),
-    ):
-        terminal.type(typed)
-        assert said in terminal.read("> "), terminal.shown
-    terminal.type("\x04")  # Ctrl-D
-    terminal.read("never")
-    assert terminal.process.wait(10) == 0 and "Traceback" not in terminal.shown
-
-
-def test_ctrl_c_ends_it_without_a_traceback():
-    terminal = Terminal()
-    terminal.read("> ")
-    os.killpg(terminal.process.pid, signal.SIGINT)
-    terminal.read("never")
-    assert terminal.process.wait(10) == 130 and "Traceback" not in terminal.shown

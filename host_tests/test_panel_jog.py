@@ -1,4 +1,4 @@
-"""The operator's manual, JOG, REVERSE and the held STOP: a motor turns only as long as it should."""
+"""The operator's manual, JOG, REVERSE, the held STOP: a motor turns only as long as it should.
 
 from panel_bench import (
     all_running,
@@ -372,7 +372,7 @@ def test_a_second_stop_reaches_a_drive_that_was_away():
     world.check()
 
 
-# --- faults --------------------------------------------------------------------------------------
+# --- faults -------------------------------------------------------------------------------------
 
 
 def test_a_fault_is_shown_by_its_number_and_acknowledged_by_stop():

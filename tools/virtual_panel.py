@@ -1,14 +1,20 @@
-"""What ./tools/panel runs: the panel's firmware on the virtual board, driven by a script.
+"""What ./tools/panel runs: the panel's firmware on the virtual board, live or driven by a script.
 
 Runs on MicroPython. Exit status: 0, 1 when an expectation failed or a rule of the line was broken,
-2 when the command line or a script cannot be understood.
+2 when the command line or a script cannot be understood, 130 after Ctrl-C.
 """
 
+import gc
+import os
 import sys
 
 import main
-from boards.sim.script import COMMANDS, ORDER, ExpectationFailed, Script, ScriptError
+from boards.sim.script import ExpectationFailed, Script, ScriptError
+from boards.sim.board import WIRINGS
 from boards.sim.world import World
+from hal.store import FileStore
+from settings import load
+from tools.terminal_panel import live
 from uss.telegram import NODE_MAX
 from uss.timing import BAUD_RATES
 
@@ -31,17 +37,25 @@ EPIPE = 32  # not in MicroPython's errno
 FAILED = 1
 NOT_UNDERSTOOD = 2
 INTERRUPTED = 130
+SPEED_MAX = 100
+# Bytes between two collections. Left alone, MicroPython fills the heap first, and takes ten times
+# as long for everything while it looks for the last holes in it.
+COLLECT_AFTER = 1_000_000
 
 USAGE = """\
-usage: ./tools/panel [--script FILE|-] [--drives 1,2,5] [--baud 19200] [--seed N] [--polled]
+usage: ./tools/panel [--speed N] [--drives 1,2,5] [--baud 19200] [--settings FILE] ...
+       ./tools/panel --script FILE|- ...
 
+  --speed N       in a terminal: time passes N times as fast, 1...100 (1)
   --script FILE   do the commands in FILE, or from standard input (-), in virtual time
-  --drives LIST   addresses of the simulated drives, 0...31 (1)
-  --baud RATE     baud rate of the line (19200)
+  --drives LIST   addresses of the simulated drives, 0...31 (1, or those of the settings)
+  --baud RATE     baud rate of the line (19200, or that of the settings)
+  --settings FILE keep the panel's settings in FILE; otherwise they end with the program
+  --keys WIRING   direct: each key has a pin of its own; matrix: all but START and STOP (direct)
   --seed N        other reply delays and loop times; 0 is the plain world (0)
   --polled        no receive interrupt: the link is polled
 The simulated drive knows the rates from 1200 to 115200.
-Without --script, in a terminal: commands from the keyboard; the display is shown after each."""
+Without --script, in a terminal: the live panel. It shows its keys; q ends it."""
 
 
 class UsageError(Exception):
@@ -72,11 +86,26 @@ def number(word):
     return int(word)
 
 
+def speed_factor(word):
+    if not word.isdigit() or not 1 <= int(word) <= SPEED_MAX:
+        raise UsageError("--speed %s: time passes 1...%d times as fast" % (word, SPEED_MAX))
+    return int(word)
+
+
+def wiring(word):
+    if word not in WIRINGS:
+        raise UsageError("--keys %s: keys are wired %s" % (word, " or ".join(sorted(WIRINGS))))
+    return word
+
+
 # Option: name of the value, default, reader. An option without a reader is a switch.
 OPTIONS = {
     "--script": ("script", None, str),
-    "--drives": ("drives", (1,), addresses),
-    "--baud": ("baud", 19200, baud_rate),
+    "--speed": ("speed", 1, speed_factor),
+    "--drives": ("drives", None, addresses),
+    "--baud": ("baud", None, baud_rate),
+    "--settings": ("settings", None, str),
+    "--keys": ("keys", "direct", wiring),
     "--seed": ("seed", 0, number),
     "--polled": ("polled", False, None),
     "--help": ("help", False, None),
@@ -105,12 +134,26 @@ def options(words):
 
 def world_of(chosen):
     """The virtual world that the options ask for. UsageError when there is no such drive."""
+    store = None
+    drives, baud = chosen["drives"], chosen["baud"]
     try:
+        if chosen["settings"] is not None:
+            store = FileStore(chosen["settings"], open, os)
+            kept = load(store)
+            drives, baud = drives or kept.drives, baud or kept.baud
         return World(
-            main.start, chosen["drives"], chosen["baud"], None, chosen["seed"], chosen["polled"]
+            main.start,
+            drives or (1,),
+            baud or 19200,
+            seed=chosen["seed"],
+            polled=chosen["polled"],
+            keys=chosen["keys"],
+            store=store,
         )
     except ValueError as error:
         raise UsageError(error)
+    except OSError as error:
+        raise UsageError("--settings %s: cannot be kept (%s)" % (chosen["settings"], error))
 
 
 def lines_of(name):
@@ -141,38 +184,6 @@ def run_script(world, name):
     Script(world, "standard input" if name == "-" else name).run(lines_of(name))
 
 
-def print_commands():
-    print("Commands: %s; help; quit" % "; ".join(COMMANDS[name][0] for name in ORDER))
-
-
-def run_terminal(world):
-    """Commands from the keyboard until the end of input; what is wrong is said, nothing ends."""
-    print("USS panel on the virtual board. Time passes only while a command does.")
-    print_commands()
-    script = Script(world, "keyboard")
-    script.do("wait 1000")
-    script.do("lcd")
-    while True:
-        # Not input(): it reads the terminal raw, and loses what was typed before the prompt.
-        sys.stdout.write("> ")
-        line = sys.stdin.readline()
-        if not line:
-            print()
-            return
-        words = line.split()
-        if words == ["quit"]:
-            return
-        try:
-            if words == ["help"]:
-                print_commands()
-            else:
-                script.run([line])
-                if words[:1] != ["lcd"]:
-                    script.do("lcd")
-        except (ScriptError, ExpectationFailed) as error:
-            print(error)
-
-
 def panel(words):
     """Do what the command line says; answer the exit status."""
     try:
@@ -184,7 +195,7 @@ def panel(words):
             raise UsageError("this is no terminal: give the panel a --script FILE, or --script -")
         world = world_of(chosen)
         if chosen["script"] is None:
-            run_terminal(world)
+            live(world, chosen["speed"])
         else:
             run_script(world, chosen["script"])
         world.check()
@@ -209,4 +220,5 @@ def complain(message, status):
 
 
 if __name__ == "__main__":
+    gc.threshold(COLLECT_AFTER)
     sys.exit(panel(sys.argv[1:]))

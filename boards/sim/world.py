@@ -39,7 +39,8 @@ class World:
     each its own times, the same for the same number, and keys bounce. polled: no receive
     interrupt. ticks_start, ticks_mask: of the chip's clock. keys: "direct", each with a pin of its
     own, or "matrix", all but START and STOP. parameters: of every drive, {number: value}; without
-    them they are supervised, P2014, as commissioned drives are.
+    them they are supervised, P2014, as commissioned drives are. store: keeps the panel's settings
+    in place of the flash; what it has already is not touched.
     """
 
     def __init__(
@@ -54,6 +55,7 @@ class World:
         ticks_mask=0x3FFFFFFF,
         keys="direct",
         parameters=None,
+        store=None,
     ):
         self.clock = Clock(ticks_start, ticks_mask)
         self.wire = Wire(self.clock, baud)
@@ -79,7 +81,9 @@ class World:
             self.clock, KEYS, NORMALLY_CLOSED, WIRINGS[keys], self.random if seed else None
         )
         self.flash = Flash()
-        self.flash.files[SETTINGS_FILE] = json.dumps(stored).encode()
+        self.store = store or FileStore(SETTINGS_FILE, self.flash.open, self.flash)
+        if self.store.read() is None:
+            self.store.replace(json.dumps(stored).encode())
         self.resets = 0
         self.app = None
         self._start = start
@@ -175,8 +179,7 @@ class World:
         self.chips.append(self.chip)
         self.clock.advance(BOOT_US)
         loop_us = self._uneven_loop_us if self.seed else None
-        store = FileStore(SETTINGS_FILE, self.flash.open, self.flash)
-        board = Board(self.chip, self.lcd_chip, self.keypad, store, self._polled, loop_us)
+        board = Board(self.chip, self.lcd_chip, self.keypad, self.store, self._polled, loop_us)
         self.app = self._start(board)
 
     def _bite(self):

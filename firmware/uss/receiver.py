@@ -106,9 +106,11 @@ class Receiver:
         """Judge the buffer after `added` characters came, the last of them at `received_at`."""
         length_us = added * self._timing.character_us
         # A link that sees late says so by its resolution: only a pause that was certainly too
-        # short is held against the telegram.
+        # short is held against the telegram. Behind stray characters it must be a certain one:
+        # a look may have fallen between them and what follows without a pause.
+        late_us = 0 if self.stray else resolution_us
         pause_us = elapsed(received_at, self.heard_at, self._mask) - length_us
-        paused = pause_us + resolution_us + ROUNDING_US >= self._timing.start_interval_us
+        paused = pause_us + late_us + ROUNDING_US >= self._timing.start_interval_us
         self.heard_at = received_at
         if self.count == 0:
             if not paused or self.buffer[0] != telegram.STX:

@@ -1,0 +1,71 @@
+"""The home page takes no memory, so that no collection ever interrupts it: the heap is locked.
+
+The firmware runs with the heap locked from the first instruction of a step to the last; only the
+simulated world around it may take heap. On the 32-bit port small integers have 31 bits, as on the
+chips.
+"""
+
+from micropython import heap_lock, heap_unlock
+from panel_bench import panel, row_2
+
+INTERPRETERS = "unix64 unix32"
+
+MINUTES = 10
+
+
+def lock(world, ms):
+    """Run the firmware so long with the heap locked."""
+    clock = world.clock
+    advance_to = clock.advance_to
+
+    def unlocked(at_us):
+        heap_unlock()
+        try:
+            advance_to(at_us)
+        finally:
+            heap_lock()
+
+    until_us = clock.now_us + ms * 1000
+    clock.advance_to = unlocked
+    try:
+        while clock.now_us < until_us:
+            heap_lock()
+            try:
+                world.app.step()
+            finally:
+                heap_unlock()
+    finally:
+        clock.advance_to = advance_to
+
+
+def test_ten_minutes_of_the_home_page_take_no_memory():
+    world = panel()
+    world.press("START")
+    world.run(2000)
+    lock(world, MINUTES * 60_000)
+    assert row_2(world) == "RUNNING      A1"
+    world.check()
+
+
+def test_nor_do_frequencies_that_change_or_three_drives_of_which_one_is_announced():
+    world = panel(addresses=(1, 2, 3), keys="matrix")
+    world.press("START")
+    world.press("ADDRESS_UP")
+    lock(world, 20_000)
+    world.press("ADDRESS_DOWN")
+    world.press("STOP")
+    lock(world, 10_000)
+    world.drives[3].unplug()
+    lock(world, 5_000)
+    world.check()
+
+
+def test_a_page_that_takes_memory_would_be_noticed():
+    world = panel()
+    step = world.app.panel.step
+    world.app.panel.step = lambda *arguments: (step(*arguments), bytearray(16))
+    try:
+        lock(world, 10)
+    except MemoryError:
+        return
+    raise AssertionError("sixteen bytes were taken and nobody noticed")

@@ -1,0 +1,374 @@
+"""./tools/panel in a terminal: a person types, looks at the screen, leaves; nothing stays behind.
+
+The terminal is a real one (a pty); what is written to it is shown on a screen of 24 x 80, so that
+the tests read what a person would. They wait for what they expect, and give up after a while.
+"""
+
+import fcntl
+import os
+import re
+import select
+import signal
+import struct
+import subprocess
+import termios
+import time
+
+import pytest
+
+INTERPRETERS = "host"
+
+TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+PANEL = os.path.join(TOP, "tools", "panel")
+MICROPYTHON = os.path.join(TOP, "build", "unix64", "micropython")
+PATIENCE_S = 30  # for a machine that does other things as well
+
+# With its supervision set, START does not ask first.
+SUPERVISED = ":param 1 P2014[0] 1000\r"
+
+SEQUENCE = re.compile(rb"\x1b\[([?\d;]*)([A-Za-z])")
+
+
+class Screen:
+    """What a terminal shows: as much of ECMA-48 as the panel uses. Anything else is an error."""
+
+    def __init__(self, rows, columns):
+        self.rows, self.columns = rows, columns
+        self.normal = []  # what was printed on the normal screen
+        self.second = False
+        self.cursor = True
+        self.wraps = True
+        self.clear()
+        self._pending = b""
+
+    def clear(self):
+        self.cells = [[" "] * self.columns for _ in range(self.rows)]
+        self.row = self.column = 0
+
+    def lines(self):
+        return ["".join(row).rstrip() for row in self.cells]
+
+    def text(self):
+        return "\n".join(self.lines() if self.second else "".join(self.normal).splitlines())
+
+    def write(self, data):
+        data = self._pending + data
+        at = 0
+        while at < len(data):
+            if data[at] == 0x1B:
+                found = SEQUENCE.match(data, at)
+                if not found:
+                    assert len(data) - at < 12, data[at : at + 20]
+                    break
+                self._obey(found[1].decode(), found[2].decode())
+                at = found.end()
+                continue
+            size = 1 if data[at] < 0x80 else 2 if data[at] < 0xE0 else 3
+            if at + size > len(data):
+                break
+            self._put(data[at : at + size].decode())
+            at += size
+        self._pending = data[at:]
+
+    def _obey(self, parameters, final):
+        if final in "hl":
+            on = final == "h"
+            if parameters == "?1049":
+                self.second = on
+                self.clear()
+            elif parameters == "?25":
+                self.cursor = on
+            else:
+                assert parameters == "?7", parameters
+                self.wraps = on
+        elif final == "H":
+            row, column = map(int, parameters.split(";"))
+            assert 1 <= row <= self.rows and column == 1, parameters
+            self.row, self.column = row - 1, 0
+        elif final == "K":
+            self.cells[self.row][self.column :] = [" "] * (self.columns - self.column)
+        elif final == "J":
+            self.clear()
+        else:
+            assert final == "m" and parameters in ("0", "7", "27"), (parameters, final)
+
+    def _put(self, character):
+        if not self.second:
+            self.normal.append(character)
+            return
+        assert character >= " " and self.column < self.columns, "it would leave the screen"
+        self.cells[self.row][self.column] = character
+        self.column += 1
+
+
+class Terminal:
+    """A terminal in which a program runs: ./tools/panel, with options, or another one."""
+
+    def __init__(self, *options, rows=24, columns=80, program=None, **environment):
+        self.master, self.slave = os.openpty()
+        self.resize(rows, columns)
+        self.before = termios.tcgetattr(self.slave)
+        environment = {**os.environ, "LC_ALL": "C.UTF-8", **environment}
+        self.process = subprocess.Popen(
+            program or [PANEL, *options],
+            stdin=self.slave, stdout=self.slave, stderr=self.slave,
+            start_new_session=True, cwd=TOP, env=environment,
+        )  # fmt: skip
+
+    def resize(self, rows, columns):
+        self.screen = Screen(rows, columns)
+        fcntl.ioctl(self.slave, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
+
+    def type(self, text):
+        os.write(self.master, text.encode())
+
+    def waits(self, condition, what):
+        """Take what is written until the condition holds."""
+        deadline = time.monotonic() + PATIENCE_S
+        while not condition():
+            left = deadline - time.monotonic()
+            assert left > 0, "%s was never seen:\n%s" % (what, self.screen.text())
+            if select.select([self.master], [], [], min(left, 0.1))[0]:
+                self.screen.write(os.read(self.master, 65536))
+
+    def shows(self, text):
+        self.waits(lambda: text in self.screen.text(), text)
+
+    def shows_no_more(self, text):
+        self.waits(lambda: text not in self.screen.text(), "the end of " + text)
+
+    def ends(self):
+        """The exit status of the program, when everything it wrote has been seen."""
+        self.waits(lambda: self.process.poll() is not None, "its end")
+        while select.select([self.master], [], [], 0)[0]:
+            self.screen.write(os.read(self.master, 65536))
+        return self.process.returncode
+
+    def is_as_before(self):
+        assert termios.tcgetattr(self.slave) == self.before
+        assert self.screen.cursor and self.screen.wraps and not self.screen.second
+        return True
+
+    def program(self):
+        """The process id of the program that the wrapper runs."""
+        with open("/proc/%d/task/%d/children" % (self.process.pid, self.process.pid)) as file:
+            return int(file.read().split()[0])
+
+
+@pytest.fixture
+def terminal():
+    """Makes terminals, and sees that nothing runs on in them."""
+    made = []
+
+    def make(*options, **others):
+        made.append(Terminal(*options, **others))
+        return made[-1]
+
+    yield make
+    for one in made:
+        if one.process.poll() is None:
+            os.killpg(one.process.pid, signal.SIGKILL)
+            one.process.wait()
+        os.close(one.master)
+        os.close(one.slave)
+
+
+def test_s_starts_the_drive_and_space_stops_it(terminal):
+    panel = terminal("--speed", "5")
+    panel.shows("READY        A1")
+    assert panel.screen.second and not panel.screen.cursor
+    panel.type(SUPERVISED)
+    panel.shows("P2014[0]=1000")
+    panel.type("s")
+    panel.shows("RUNNING      A1")
+    panel.shows("10.00 Hz right  running")
+    panel.type(" ")
+    panel.shows("ready")
+    panel.type("q")
+    assert panel.ends() == 0 and panel.is_as_before()
+    assert "USS panel: ended after 0:00:" in panel.screen.text()
+
+
+def test_the_display_has_a_frame(terminal):
+    panel = terminal()
+    panel.shows("\u2502READY        A1 \u2502")
+    lines = panel.screen.lines()
+    assert lines[1].startswith(" \u250c" + 16 * "\u2500" + "\u2510")
+    assert lines[4].startswith(" \u2514" + 16 * "\u2500" + "\u2518")
+
+
+def test_without_utf_8_all_is_ascii(terminal):
+    panel = terminal(LC_ALL="C")
+    panel.shows("|READY        A1 |")
+    assert panel.screen.text().isascii() and "+----------------+" in panel.screen.text()
+
+
+def test_a_capital_holds_a_jog_and_lets_go_of_it(terminal):
+    panel = terminal()
+    panel.shows("READY")
+    panel.type("J")
+    panel.shows("j JOG_LEFT     HELD")
+    panel.shows_no_more("HELD")
+
+
+def test_a_held_key_is_let_go_by_esc(terminal):
+    panel = terminal()
+    panel.shows("READY")
+    panel.type("T")
+    panel.shows("t STOP         HELD")
+    panel.type("\x1b")
+    panel.shows_no_more("HELD")
+
+
+def test_arrows_move_the_setpoint(terminal):
+    panel = terminal("--speed", "5")
+    panel.shows("READY")
+    panel.type("\x1b[A\x1b[A\x1bOB\x1b[A")
+    panel.shows("S: 10.2")
+
+
+def test_commands_of_the_script_language_work_after_a_colon(terminal):
+    panel = terminal()
+    panel.shows("READY")
+    panel.type(":unplug 1")
+    panel.shows(":unplug 1_")
+    panel.type("\r")
+    panel.shows("done: unplug 1")
+    panel.shows("NO CONTACT")
+    panel.type(":jump\r")
+    panel.shows("unknown command jump")
+
+
+def test_speed_lets_time_pass_faster(terminal):
+    panel = terminal("--speed", "10")
+    began = time.monotonic()
+    panel.shows("time 0:00:3")
+    assert time.monotonic() - began < 25
+    panel.waits(lambda: speed_shown(panel) > 1.5, "a speed of more than 1.5")
+
+
+def speed_shown(panel):
+    return float(panel.screen.lines()[0].split("speed x")[1])
+
+
+def test_ctrl_c_leaves_the_terminal_as_it_was(terminal):
+    panel = terminal()
+    panel.shows("READY")
+    assert termios.tcgetattr(panel.slave) != panel.before
+    panel.type("\x03")
+    assert panel.ends() == 130 and panel.is_as_before()
+    assert "ended by Ctrl-C" in panel.screen.text()
+    assert "Traceback" not in panel.screen.text()
+
+
+def test_an_interrupt_from_outside_does_so_too(terminal):
+    panel = terminal()
+    panel.shows("READY")
+    os.killpg(panel.process.pid, signal.SIGINT)
+    assert panel.ends() == 130 and panel.is_as_before()
+    assert "Traceback" not in panel.screen.text()
+
+
+@pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGTERM])
+def test_a_program_that_is_killed_leaves_the_terminal_as_it_was(terminal, how):
+    panel = terminal()
+    panel.shows("READY")
+    os.kill(panel.program(), how)
+    assert panel.ends() == 128 + how and panel.is_as_before()
+    assert "panel: ended by signal %d" % how in panel.screen.text()
+
+
+def test_who_is_asked_to_end_ends_its_program(terminal):
+    panel = terminal()
+    panel.shows("READY")
+    program = panel.program()
+    panel.process.terminate()
+    assert panel.ends() == 128 + signal.SIGTERM and panel.is_as_before()
+    assert not os.path.exists("/proc/%d" % program)
+
+
+def test_a_terminal_that_is_closed_ends_it():
+    panel = Terminal()
+    panel.shows("READY")
+    program = panel.program()
+    os.close(panel.slave)
+    os.close(panel.master)
+    panel.process.wait(PATIENCE_S)
+    assert not os.path.exists("/proc/%d" % program)
+
+
+# The panel with a firmware that fails: nothing that a person can type does that.
+FAILING = """
+import main
+from boards.sim.world import World
+from tools.terminal_panel import live
+
+world = World(main.start)
+world.run(1000)
+step = world.app.step
+stopped = []
+close = world.app.close
+world.app.close = lambda: (close(), stopped.append(True))
+
+def fail():
+    step()
+    if world.keypad_is_down:
+        raise RuntimeError("on purpose")
+
+world.keypad_is_down = False
+down = world.down
+
+def press(key):
+    down(key)
+    world.keypad_is_down = True
+
+world.down = press
+world.app.step = fail
+try:
+    live(world, 1)
+finally:
+    print("stopped", stopped)
+"""
+
+
+def test_an_exception_is_shown_on_a_terminal_as_it_was(terminal):
+    panel = terminal(
+        program=[MICROPYTHON, "-X", "heapsize=16M", "-c", FAILING],
+        MICROPYPATH="%s:%s/firmware:.frozen" % (TOP, TOP),
+    )
+    panel.shows("READY")
+    panel.type("s")
+    assert panel.ends() == 1 and panel.is_as_before()
+    assert "RuntimeError: on purpose" in panel.screen.text()
+    assert "stopped [True]" in panel.screen.text()
+
+
+def test_a_wrong_command_line_is_said_in_a_terminal_too(terminal):
+    panel = terminal("--speed", "0")
+    assert panel.ends() == 2 and panel.is_as_before()
+    assert "--speed 0: time passes 1...100 times as fast" in panel.screen.text()
+
+
+def test_a_script_works_in_a_terminal_too(terminal, tmp_path):
+    script = tmp_path / "ready.txt"
+    script.write_text("wait 1000\nexpect READY\nlcd\n")
+    panel = terminal("--script", str(script))
+    assert panel.ends() == 0 and panel.is_as_before()
+    assert "|READY        A1 |" in panel.screen.text()
+
+
+def test_a_small_terminal_shows_what_fits_and_says_so(terminal):
+    panel = terminal(rows=12, columns=60)
+    panel.shows("60 x 12 is too small: the panel needs 79 x 24")
+    panel.shows("READY        A1")
+    panel.resize(24, 80)
+    panel.shows("telegrams:")
+    panel.shows("READY        A1")
+    assert "too small" not in panel.screen.text()
+
+
+def test_many_drives_fit_the_screen(terminal):
+    panel = terminal("--drives", ",".join(str(address) for address in range(31)))
+    panel.shows("+ 26 more")
+    panel.type("q")
+    assert panel.ends() == 0 and panel.is_as_before()

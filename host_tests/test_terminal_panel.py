@@ -1,0 +1,530 @@
+"""The live panel without its terminal: what is typed, how the hand presses it, what is shown.
+
+The terminal itself is in test_terminal.py.
+"""
+
+import main
+from boards.sim.world import World
+from tools.hand import JOG_MS, WAITING_MAX, Hand
+from tools.panel_picture import COLUMNS, ROWS, SHAFT, Picture, fitted, seen, telegram_line
+from tools.terminal import ESCAPE, OTHER, Strokes
+from tools.terminal_panel import WORK_MS, Pace, Session, farewell, shows_boxes, turning
+
+FRAME_MS = 20
+
+
+class Time:
+    """Real time that passes when the test says so."""
+
+    def __init__(self):
+        self.us = 0x3FFF0000  # soon it wraps
+
+    def ticks_us(self):
+        return self.us & 0x3FFFFFFF
+
+    def ticks_diff(self, later, earlier):
+        return (later - earlier) & 0x3FFFFFFF
+
+
+class Seat:
+    """A person before the live panel of a world."""
+
+    def __init__(self, speed=1, boxes=True, **options):
+        self.world = World(main.start, **options)
+        for drive in self.world.drives.values():
+            drive.write(2014, 0, 1000)  # supervised: START does not ask
+        self.session = Session(self.world, boxes)
+        self.time = Time()
+        self.pace = Pace(self.world, self.session.hand, speed, self.time)
+        self.wait(1000)
+
+    def wait(self, ms):
+        """Let so much of the world's time pass, frame by frame."""
+        until_us = self.world.clock.now_us + ms * 1000
+        while self.world.clock.now_us < until_us:
+            self.frame()
+
+    def frame(self):
+        self.time.us += FRAME_MS * 1000
+        self.pace.follow()
+
+    def type(self, *strokes):
+        for stroke in strokes:
+            self.session.take(stroke, self.pace.now_ms)
+
+    def command(self, text):
+        self.type(":", *text)
+        self.type("\r")
+
+    def screen(self):
+        return [seen(line) for line in self.session.lines(self.pace.now_ms, self.pace.speed)]
+
+    def shows(self, text):
+        return any(text in line for line in self.screen())
+
+    def state(self, address=1):
+        return self.world.drives[address].state
+
+
+class Clock:
+    now_us = 0
+
+
+class Keys:
+    """A world of nothing but keys: what was done to them is a list."""
+
+    def __init__(self):
+        self.clock = Clock()
+        self.done = []
+        self.hand = Hand(self)
+
+    def down(self, key):
+        self.done.append("%s down" % key)
+
+    def up(self, key):
+        self.done.append("%s up" % key)
+
+    def run(self, ms, now_ms=0):
+        for _ in range(ms):
+            self.clock.now_us += 1000
+            self.hand.step(now_ms)
+
+
+# --- what a terminal sends ----------------------------------------------------------------------
+
+
+def strokes(*pieces):
+    """The strokes of bytes that come in pieces, 20 ms apart; an empty piece is a silent frame."""
+    decoder = Strokes()
+    found = []
+    for index, piece in enumerate(pieces):
+        found += decoder.take(piece, 20 * index)
+    return found
+
+
+def test_letters_are_themselves_and_arrows_have_names():
+    assert strokes(b"sT \x03") == ["s", "T", " ", "\x03"]
+    assert strokes(b"\x1b[A\x1b[B\x1b[C\x1b[D") == ["UP", "DOWN", "RIGHT", "LEFT"]
+    assert strokes(b"\x1bOA\x1bOD") == ["UP", "LEFT"]
+
+
+def test_an_arrow_that_comes_in_pieces_is_an_arrow():
+    assert strokes(b"\x1b", b"[", b"A", b"s") == ["UP", "s"]
+
+
+def test_esc_is_known_by_the_silence_after_it():
+    assert strokes(b"\x1b", b"", b"") == []
+    assert strokes(b"\x1b", b"", b"", b"") == [ESCAPE]
+    assert strokes(b"\x1b\x1b[A") == [ESCAPE, "UP"]
+
+
+def test_no_other_key_is_taken_for_a_letter():
+    for sequence in (b"\x1b[[A", b"\x1b[5~", b"\x1b[15;2~", b"\x1bOP", b"\x1b[1;5A", b"\x1bs"):
+        assert strokes(sequence) == [OTHER], sequence
+    assert strokes("ä€".encode()) == [OTHER, OTHER]
+    assert strokes(b"\x1b[" + b"1" * 40)[0] == OTHER
+
+
+# --- the hand -----------------------------------------------------------------------------------
+
+
+def test_a_tap_is_down_for_100_ms_and_up_for_40_before_the_next_one():
+    keys = Keys()
+    keys.hand.tap("UP")
+    keys.hand.tap("DOWN")
+    keys.run(1)
+    assert keys.done == ["UP down"]
+    keys.run(100)
+    assert keys.done == ["UP down", "UP up"]
+    keys.run(38)
+    assert len(keys.done) == 2
+    keys.run(2)
+    assert keys.done[2:] == ["DOWN down"]
+
+
+def test_taps_that_are_typed_too_fast_are_left_out():
+    keys = Keys()
+    assert all(keys.hand.tap("UP") for _ in range(WAITING_MAX))
+    assert not keys.hand.tap("UP")
+    keys.run(5000)
+    assert keys.done.count("UP down") == keys.done.count("UP up") == WAITING_MAX
+
+
+def test_stop_goes_ahead_of_everything_and_empties_the_queue():
+    keys = Keys()
+    for key in ("START", "UP", "UP"):
+        keys.hand.tap(key)
+    keys.run(10)
+    keys.hand.tap("STOP")
+    assert keys.done == ["START down", "STOP down", "START up"]
+    keys.run(1000)
+    assert keys.done[3:] == ["STOP up"]
+
+
+def test_stop_is_pressed_at_once_while_another_key_is_held():
+    keys = Keys()
+    keys.hand.hold("JOG_RIGHT", 0)
+    keys.run(10)
+    keys.hand.tap("STOP")
+    assert keys.done == ["JOG_RIGHT down", "STOP down", "JOG_RIGHT up"]
+    assert keys.hand.key == "STOP" and not keys.hand.held
+
+
+def test_each_stop_is_a_press_of_its_own():
+    keys = Keys()
+    keys.hand.hold("STOP", 0)
+    keys.run(5000)
+    assert keys.done == ["STOP down"] and keys.hand.held
+    keys.hand.tap("STOP")
+    keys.run(200)
+    assert keys.done == ["STOP down", "STOP up", "STOP down", "STOP up"]
+
+
+def test_a_capital_holds_until_another_key():
+    keys = Keys()
+    keys.hand.hold("UP", 0)
+    keys.run(3000, now_ms=60_000)
+    assert keys.done == ["UP down"] and keys.hand.held
+    keys.hand.hold("UP", 0)  # again: nothing new
+    keys.hand.tap("NEXT")
+    keys.run(500)
+    assert keys.done == ["UP down", "UP up", "NEXT down", "NEXT up"]
+
+
+def test_a_hold_that_waits_does_not_outlast_the_tap_after_it():
+    keys = Keys()
+    for key in ("UP", "DOWN"):
+        keys.hand.hold(key, 0)
+    keys.hand.tap("NEXT")
+    keys.run(1000)
+    assert keys.done[-2:] == ["NEXT down", "NEXT up"]
+    for key in ("UP", "DOWN"):
+        assert keys.done.count(key + " down") == keys.done.count(key + " up")
+
+
+def test_a_jog_lets_go_when_the_keyboard_does_not_repeat_it():
+    for key in ("JOG_RIGHT", "JOG_LEFT"):
+        keys = Keys()
+        for now_ms in range(0, 3000, 500):
+            keys.hand.hold(key, now_ms)
+            keys.run(10, now_ms)
+        keys.run(10, 2500 + JOG_MS - 1)
+        assert keys.done == [key + " down"]
+        keys.run(1, 2500 + JOG_MS)
+        assert keys.done == [key + " down", key + " up"]
+
+
+def test_esc_lets_go():
+    keys = Keys()
+    keys.hand.hold("STOP", 0)
+    keys.hand.let_go()
+    assert keys.done == ["STOP down", "STOP up"] and keys.hand.key is None
+
+
+# --- time ---------------------------------------------------------------------------------------
+
+
+def test_a_tap_is_seen_at_every_speed():
+    for speed in (1, 10, 100):
+        seat = Seat(speed)
+        seat.type("s")
+        seat.wait(2000)
+        assert seat.state() == "running", speed
+        seat.type(" ")
+        seat.wait(8000)
+        assert seat.state() == "ready", speed
+
+
+class Machine(Keys):
+    """A world of keys on a machine that takes so much real time for a millisecond of it."""
+
+    def __init__(self, time, ms_us):
+        super().__init__()
+        self.clock = Clock()
+        self.time = time
+        self.ms_us = ms_us
+
+    def run(self, ms):
+        self.clock.now_us += ms * 1000
+        self.time.us += ms * self.ms_us
+
+
+def test_the_world_follows_real_time():
+    for speed in (1, 7, 100):
+        time = Time()
+        world = Machine(time, 5)
+        pace = Pace(world, world.hand, speed, time)
+        for _ in range(150):
+            time.us += FRAME_MS * 1000
+            pace.follow()
+        passed_us = time.us - Time().us
+        assert abs(world.clock.now_us - passed_us * speed) <= 40_000 * speed, speed
+        assert abs(pace.speed - speed) < 0.05 * speed and not pace.late
+        assert 0 <= passed_us - pace.now_ms * 1000 < 30_000
+
+
+def test_a_machine_that_is_too_slow_falls_behind_and_says_so():
+    time = Time()
+    world = Machine(time, 5_000)
+    pace = Pace(world, world.hand, 1, time)
+    for _ in range(100):
+        before_us = time.us
+        pace.follow()
+        assert time.us - before_us <= 2 * WORK_MS * 1000  # the keys are looked at again
+        time.us += 1000
+    assert pace.late and 0.1 < pace.speed < 0.25
+
+
+# --- a person at the panel ----------------------------------------------------------------------
+
+
+def test_s_starts_and_space_stops():
+    seat = Seat()
+    seat.type("s")
+    seat.wait(4000)
+    assert seat.shows("|RUNNING      A1 |".replace("|", "\u2502"))
+    assert seat.shows(" 10.00 Hz right  running")
+    seat.type(" ")
+    seat.wait(500)
+    assert seat.state() == "stopping"
+
+
+def test_arrows_move_the_setpoint():
+    seat = Seat()
+    seat.type("UP", "UP", "DOWN", "UP")
+    seat.wait(1000)
+    assert seat.world.lcd()[0].startswith("S: 10.2")
+
+
+def test_the_legend_marks_the_key_that_is_down():
+    seat = Seat()
+    assert seat.shows("u UP") and not seat.shows("HELD")
+    seat.type("u")
+    seat.wait(50)
+    assert seat.shows("u UP           down")
+    seat.wait(500)
+    seat.type("T")
+    seat.wait(500)
+    assert seat.shows("t STOP         HELD") and not seat.shows("down")
+
+
+def test_a_key_that_means_nothing_gets_a_hint_and_does_nothing():
+    seat = Seat()
+    seat.type("T")
+    seat.wait(100)
+    for stroke in ("x", "!", OTHER, "\x01"):
+        seat.type(stroke)
+        assert seat.shows("does nothing here"), stroke
+    assert seat.shows("HELD")
+    seat.type("u")
+    assert not seat.shows("does nothing here")
+
+
+def test_q_leaves_and_so_does_the_end_of_input():
+    for stroke in ("q", "\x04"):
+        seat = Seat()
+        assert not seat.session.left
+        seat.type(stroke)
+        assert seat.session.left
+
+
+def test_ctrl_c_interrupts_in_the_middle_of_a_command_too():
+    seat = Seat()
+    for typed in ("", ":press"):
+        seat.type(*typed)
+        try:
+            seat.type("\x03")
+        except KeyboardInterrupt:
+            continue
+        raise AssertionError(typed)
+
+
+def test_a_command_is_typed_after_a_colon():
+    seat = Seat()
+    seat.type(*":unplux")
+    assert seat.shows(":unplux_")
+    seat.type("\x7f", *"g 1")
+    assert seat.shows(":unplug 1_") and seat.world.drives[1].plugged
+    seat.type("\r")
+    assert seat.shows("done: unplug 1") and seat.shows("unplugged")
+    seat.command("fault 1 F0001")
+    assert seat.shows("F0001") and seat.shows("fault")
+    seat.command("param 1 P2014[0]")
+    assert seat.shows("P2014[0]=1000")
+
+
+def test_esc_or_an_empty_line_closes_the_command():
+    for stroke in (ESCAPE, "\r", " "):
+        seat = Seat()
+        seat.type(":", stroke)
+        assert seat.session.command is None and not seat.session.said
+    assert seat.session.hand.key == "STOP"  # a space where no command begins is STOP
+
+
+def test_what_is_wrong_with_a_command_is_said():
+    seat = Seat()
+    for command, said in (
+        ("jump", "unknown command jump"),
+        ("press FIRE", "no key FIRE"),
+        ("unplug 7", "no drive at address 7"),
+        ("expect RUNNING", "expected RUNNING"),
+        ("wait 60001", "60000 ms at the most"),
+    ):
+        seat.command(command)
+        assert seat.shows(said), command
+    assert not seat.session.left
+
+
+def test_a_key_that_a_command_put_down_is_marked():
+    seat = Seat()
+    seat.command("down UP")
+    assert seat.shows("u UP           down")
+    seat.command("up UP")
+    assert not seat.shows("u UP           down")
+    seat.type("T")
+    seat.command("press STOP")
+    assert not seat.shows("HELD")
+
+
+def test_a_broken_rule_of_the_line_is_shown_and_ends_nothing():
+    class Noise:
+        name = "noise"
+
+        def hear(self, burst):
+            pass
+
+    seat = Seat()
+    noise = Noise()
+    seat.world.wire.attach(noise)
+    while not seat.world.wire.violation_count:
+        seat.world.wire.talk(noise, b"\x55", 1)
+        seat.wait(20)
+    seat.wait(1000)
+    assert seat.shows("BROKEN: seed 0: at ")
+    seat.type("s")
+    seat.wait(1000)
+    assert len(seat.screen()) == ROWS
+
+
+def test_the_farewell_names_the_motors_that_turned():
+    seat = Seat()
+    assert farewell(seat.world, turning(seat.world)).endswith("no motor was turning.")
+    seat.type("s")
+    seat.wait(4000)
+    assert "A1 at 10.00 Hz" in farewell(seat.world, turning(seat.world))
+
+
+# --- the picture --------------------------------------------------------------------------------
+
+
+def test_everything_fits_24_rows_of_79_columns():
+    for addresses in ((1,), tuple(range(6)), tuple(range(31))):
+        seat = Seat(addresses=addresses)
+        seat.type(*":" + "x" * 200)
+        seat.session._broken = "y" * 300
+        lines = seat.screen()
+        assert len(lines) == ROWS
+        assert max(len(line) for line in lines) <= COLUMNS
+        assert sum(" > " in line or " < " in line for line in lines) >= 4
+    assert any("+ 26 more" in line for line in lines)
+
+
+def test_of_many_drives_those_that_run_and_the_selected_one_are_shown():
+    seat = Seat(addresses=tuple(range(1, 13)))
+    seat.type("z", "z")
+    seat.wait(4000)
+    seat.type("s")  # the one before the last runs,
+    seat.wait(4000)
+    seat.type("a")  # the last is shown
+    seat.wait(500)
+    assert seat.state(11) == "running", seat.world.lcd()
+    lines = seat.screen()
+    first = [line for line in lines if " Hz " in line][:2]
+    assert first[0].startswith(" A11 ") and first[1].startswith("*A12 "), first
+    assert any("+ 7 more" in line for line in lines)
+
+
+def test_a_long_telegram_is_cut():
+    line = telegram_line(123_456_789, True, bytes(range(256)))
+    assert len(line) <= COLUMNS and line.startswith(" 123456789 > 00 01 ")
+    assert line.endswith(" ...")
+    assert telegram_line(5, False, b"\x02\x0e") == "         5 < 02 0E"
+
+
+def test_a_terminal_without_utf_8_gets_ascii():
+    class Display:
+        """Stands for a world whose display shows its own characters."""
+
+        def __init__(self, world):
+            self.world = world
+
+        def __getattr__(self, name):
+            return getattr(self.world, name)
+
+        def lcd(self):
+            return "\u29d7\u2195\u2192\u2592            ", "READY           "
+
+    seat = Seat(boxes=False)
+    picture = Picture(Display(seat.world), seat.session.hand, False)
+    lines = [seen(line) for line in picture.lines([], [])]
+    assert all(ord(character) < 0x80 for line in lines for character in line)
+    assert any(line.startswith(" |X^>?            |") for line in lines), lines
+    picture = Picture(Display(seat.world), seat.session.hand, True)
+    assert any("\u29d7\u2195" in line for line in picture.lines([], []))
+
+
+def test_the_environment_tells_what_the_terminal_understands():
+    for environment, boxes in (
+        ({"LANG": "en_US.UTF-8"}, True),
+        ({"LANG": "C.utf8"}, True),
+        ({"LANG": "C"}, False),
+        ({}, False),
+        ({"LC_ALL": "C", "LANG": "en_US.UTF-8"}, False),
+        ({"LC_ALL": "", "LC_CTYPE": "de_DE.UTF-8", "LANG": "C"}, True),
+    ):
+        assert shows_boxes(environment.get) is boxes, environment
+
+
+def positions(hz, frame_us, frames):
+    """The positions of a shaft that turns at this frequency, one for each frame."""
+
+    class OneDrive:
+        pass
+
+    OneDrive.hz = lambda: hz
+    OneDrive.drives = {1: OneDrive}
+    picture = Picture(OneDrive, None, True)
+    found = []
+    for _ in range(frames):
+        picture.turn(frame_us)
+        found.append(picture._positions[1])
+    return found
+
+
+def test_the_direction_of_a_shaft_can_be_seen_at_every_frequency_and_speed():
+    assert SHAFT == "|/-\\"
+    for hz, frame_us in ((0.5, 50_000), (10, 50_000), (50, 50_000), (650, 5_000_000)):
+        for direction in (1, -1):
+            found = positions(hz * direction, frame_us, 400)
+            steps = {after - before for before, after in zip(found, found[1:])}
+            assert direction in steps and steps <= {0, direction}, (hz, direction, steps)
+    assert set(positions(0, 50_000, 100)) == {0}
+
+
+def test_a_shaft_turns_as_fast_as_its_motor():
+    slow = positions(5, 50_000, 400)[-1]
+    assert slow == positions(5, 25_000, 800)[-1]
+    assert abs(positions(15, 50_000, 400)[-1] - 3 * slow) <= 3
+
+
+def test_a_small_terminal_shows_display_and_keys_first_and_says_that_it_is_small():
+    seat = Seat()
+    lines = seat.screen()
+    assert fitted(lines, ROWS, COLUMNS) == lines == fitted(lines, 60, 200)
+    for rows, columns in ((10, 80), (24, 40), (3, 20), (1, 1)):
+        shown = fitted(lines, rows, columns)
+        assert len(shown) <= rows and all(len(line) <= columns for line in shown)
+    assert fitted(lines, 10, 80)[:9] == lines[:9]
+    assert fitted(lines, 10, 80)[9] == "80 x 10 is too small: the panel needs 79 x 24"
+    seat.type(*":wait")
+    assert fitted(seat.screen(), 10, 80)[9] == ":wait_"

@@ -1,0 +1,121 @@
+"""A hand at the panel's keys, for a keyboard that does not tell when a key is let go.
+
+    hand = Hand(world)
+    hand.tap("START")               # down for 100 ms, as soon as the taps before it are done
+    hand.hold("JOG_RIGHT", now_ms)  # down until something else is pressed
+    hand.step(now_ms)               # every few milliseconds of the world
+
+Taps happen in the world's time, so that the panel sees a tap at every speed. A person's
+patience is real time: a JOG that is not renewed for a second, as by a keyboard's repeat, lets go.
+"""
+
+STOP = "STOP"
+
+# Letter: the key that it taps; the capital holds it. In the order in which a legend shows them.
+LETTERS = (
+    ("s", "START"),
+    ("t", STOP),
+    ("r", "REVERSE"),
+    ("l", "JOG_RIGHT"),
+    ("j", "JOG_LEFT"),
+    ("u", "UP"),
+    ("d", "DOWN"),
+    ("a", "ADDRESS_UP"),
+    ("z", "ADDRESS_DOWN"),
+    ("p", "PARAM"),
+    ("n", "NEXT"),
+    ("b", "PREVIOUS"),
+    ("e", "EDIT"),
+    ("w", "SET"),
+)
+JOGS = ("JOG_RIGHT", "JOG_LEFT")
+
+TAP_US = 100_000  # five times what the panel takes for a bounce
+RELEASE_US = 40_000  # a key that was let go is up for so long before the next one goes down
+JOG_MS = 1_000  # longer than a keyboard waits before it repeats
+WAITING_MAX = 6  # taps typed ahead; more would still be done when nobody wants them any more
+
+
+class Hand:
+    """world: a `World`.
+
+    key: the one that is down, or None. held: it stays down. fixed: keys that a command put down.
+    """
+
+    def __init__(self, world):
+        self.key = None
+        self.held = False
+        self.fixed = set()
+        self._world = world
+        self._waiting = []  # (key, whether to hold it)
+        self._let_go_us = 0  # when the tap is over
+        self._free_us = 0  # when the next key may go down
+        self._renewed_ms = 0  # when the capital was typed last
+
+    def tap(self, key):
+        """Press a key and let it go. False: too many taps are waiting, this one is lost."""
+        return self._take(key, False)
+
+    def hold(self, key, now_ms):
+        """Press a key and keep it down until the next one; now_ms is real time. As `tap`."""
+        self._renewed_ms = now_ms
+        if (key, True) in self._waiting or self.held and self.key == key:
+            return True
+        return self._take(key, True)
+
+    def let_go(self):
+        """Let go of what is held, and forget the taps that wait."""
+        self._waiting.clear()
+        if self.key:
+            self._up()
+
+    def fix(self, key, down):
+        """A command put a key down, or up, without this hand."""
+        self.fixed.discard(key)
+        if down:
+            self.fixed.add(key)
+        elif key == self.key:
+            self.key = None
+            self.held = False
+
+    def step(self, now_ms):
+        """Do what is due; now_ms is real time."""
+        world_us = self._world.clock.now_us
+        if self.held:
+            tired = self.key in JOGS and now_ms - self._renewed_ms >= JOG_MS
+            if tired or self._waiting:
+                self._up()
+        elif self.key and world_us >= self._let_go_us:
+            self._up()
+        if self._waiting and not self.key and world_us >= self._free_us:
+            self._down(*self._waiting.pop(0))
+
+    def _take(self, key, hold):
+        if key == STOP:
+            self._waiting.clear()
+            if self.key != STOP:
+                self._down(STOP, hold)
+                return True
+        if self.held:
+            self._up()
+        if len(self._waiting) >= WAITING_MAX:
+            return False
+        self._waiting.append((key, hold))
+        return True
+
+    def _down(self, key, hold):
+        before = self.key
+        self._world.down(key)
+        if before:  # STOP is down already when the other one goes up
+            self._world.up(before)
+        self.fixed.discard(key)
+        self.key = key
+        self.held = hold
+        self._let_go_us = self._world.clock.now_us + TAP_US
+
+    def _up(self):
+        self._world.up(self.key)
+        self.fixed.discard(self.key)
+        self.key = None
+        self.held = False
+        self._free_us = self._world.clock.now_us + RELEASE_US

@@ -1,0 +1,156 @@
+"""The terminal as a picture of lines and a source of strokes. It knows nothing of a panel.
+
+On the Unix port of MicroPython. Whoever opens it closes it, whatever happens in between:
+
+    terminal = Terminal()
+    terminal.open()
+    try:
+        terminal.draw(["first line", HIGHLIGHT + "second" + PLAIN])
+        for stroke in strokes.take(terminal.read(20), now_ms): ...
+    finally:
+        terminal.close()
+
+Escape sequences are those of ECMA-48 that every terminal knows, and the DEC private modes 7, 25
+and 1049 as xterm has them.
+"""
+
+import os
+import select
+import sys
+import termios
+
+# Marks in a line that take no room: what stands between them is shown in reverse.
+HIGHLIGHT = "\x0e"
+PLAIN = "\x0f"
+
+OPEN = "\x1b[?1049h\x1b[?25l\x1b[?7l\x1b[2J"  # second screen, no cursor, no wrapping of lines
+CLOSE = "\x1b[0m\x1b[?7h\x1b[?25h\x1b[?1049l"
+LINE = "\x1b[%d;1H%s\x1b[0m\x1b[K"  # go there, write, plain again, clear what is left
+REVERSED = "\x1b[7m"
+NORMAL = "\x1b[27m"
+
+USUAL_ROWS, USUAL_COLUMNS = 24, 80
+# The exit status is the figure, cut to what fits into one: 255.
+SIZE_COMMAND = "set -- $(stty size 2>/dev/null); n=${%d:-0}; exit $((n < 255 ? n : 255))"
+
+FLUSH = 2  # TCSAFLUSH: MicroPython's termios does not name it
+READ_MAX = 64  # a paste is taken in pieces
+
+ARROWS = {b"\x1b[A": "UP", b"\x1b[B": "DOWN", b"\x1b[C": "RIGHT", b"\x1b[D": "LEFT"}
+ESCAPE = "ESCAPE"
+OTHER = "OTHER"  # a key that has no name here
+ESCAPE_MS = 60  # an escape sequence that was cut in two, as by ssh, is together again by then
+SEQUENCE_MAX = 16
+
+
+class Terminal:
+    """Standard input and output, which are a terminal."""
+
+    def __init__(self):
+        self._settings = None
+        self._shown = []
+        self._poller = select.poll()
+
+    def open(self):
+        """Raw, the second screen, no cursor."""
+        self._settings = termios.tcgetattr(0)
+        termios.setraw(0)
+        self._poller.register(sys.stdin, select.POLLIN)
+        self._write(OPEN)
+
+    def close(self):
+        """As it was before. What was typed and not read is dropped, lest a shell takes it."""
+        settings, self._settings = self._settings, None
+        if settings is None:
+            return
+        try:
+            self._write(CLOSE)
+            termios.tcsetattr(0, FLUSH, settings)
+        except OSError:
+            pass  # it has gone: there is nothing to restore
+
+    def read(self, wait_ms):
+        """The bytes that were typed; waits for the first one so long. EOFError: it has gone."""
+        typed = bytearray()
+        while len(typed) < READ_MAX and self._poller.poll(0 if typed else wait_ms):
+            try:
+                byte = sys.stdin.buffer.read(1)
+            except OSError:
+                byte = b""
+            if not byte:
+                raise EOFError
+            typed += byte
+        return typed
+
+    def draw(self, lines):
+        """Show these lines from the top; only those that differ are written."""
+        pieces = []
+        for row, line in enumerate(lines):
+            if row >= len(self._shown) or self._shown[row] != line:
+                shown = line.replace(HIGHLIGHT, REVERSED).replace(PLAIN, NORMAL)
+                pieces.append(LINE % (row + 1, shown))
+        self._shown = list(lines)
+        if pieces:
+            self._write("".join(pieces))
+
+    def clear(self):
+        """Draw everything anew the next time."""
+        self._shown = []
+        self._write("\x1b[2J")
+
+    def size(self):
+        """Rows and columns, 255 at the most. A terminal that does not tell has 24 x 80.
+
+        MicroPython cannot ask the kernel, so `stty` does: a few milliseconds.
+        """
+        rows, columns = (os.system(SIZE_COMMAND % place) >> 8 for place in (1, 2))
+        return rows or USUAL_ROWS, columns or USUAL_COLUMNS
+
+    def _write(self, text):
+        sys.stdout.write(text)
+
+
+class Strokes:
+    """From bytes to strokes: a character, "UP" ... for the arrows, ESCAPE, or OTHER."""
+
+    def __init__(self):
+        self._sequence = b""  # the beginning of an escape sequence
+        self._began_ms = 0
+
+    def take(self, typed, now_ms):
+        """The strokes that these bytes complete. Without a byte: an Esc that was only that."""
+        strokes = []
+        if not typed and self._sequence and now_ms - self._began_ms >= ESCAPE_MS:
+            strokes.append(ESCAPE if self._sequence == b"\x1b" else OTHER)
+            self._sequence = b""
+        for byte in typed:
+            stroke = self._take(byte, now_ms)
+            if stroke:
+                strokes.append(stroke)
+        return strokes
+
+    def _take(self, byte, now_ms):
+        if self._sequence:
+            return self._continue(byte)
+        if byte == 0x1B:
+            self._sequence = b"\x1b"
+            self._began_ms = now_ms
+            return None
+        if byte < 0x80:
+            return chr(byte)
+        return OTHER if byte >= 0xC0 else None  # once for a character of several bytes
+
+    def _continue(self, byte):
+        sequence = self._sequence + bytes((byte,))
+        if len(sequence) == 2:
+            if byte == 0x1B:
+                return ESCAPE  # and the second one may begin a sequence
+            going_on = byte in b"[O"
+        else:
+            # The Linux console has one [ more in its function keys.
+            going_on = byte < 0x40 or sequence == b"\x1b[["
+        if going_on and len(sequence) < SEQUENCE_MAX:
+            self._sequence = sequence
+            return None
+        self._sequence = b""
+        return ARROWS.get(sequence.replace(b"\x1bO", b"\x1b["), OTHER)

@@ -1,0 +1,271 @@
+"""The live panel in a terminal: the virtual world in real time, keys in, a picture out.
+
+    live(world, speed=1)        # until q, Ctrl-C or the terminal's end
+
+It joins the pieces: `terminal` (bytes and lines), `hand` (keys), `panel_picture` (what is shown).
+Whatever ends it, the drives are stopped and the terminal is as it was before.
+"""
+
+import os
+import time
+
+from boards.sim.script import ExpectationFailed, Script, ScriptError
+from tools.hand import LETTERS, STOP, Hand
+from tools.panel_picture import COLUMNS, SAID_ROWS, Picture, fitted
+from tools.terminal import ESCAPE, Strokes, Terminal
+
+FRAME_MS = 20
+SLICE_MS = 10  # of the world's time, between two movements of the hand
+WORK_MS = 60  # for the world at a time, before the keys are looked at again
+DRAW_MS = 50
+TELEGRAMS_MS = 250  # slow enough to be read
+CHECK_MS = 500
+SIZE_MS = 2_000
+SPEED_MS = 1_000  # the speed shown is the mean of so long
+TELEGRAMS = 16
+
+CTRL_C, CTRL_D, CTRL_U = "\x03", "\x04", "\x15"
+BACKSPACES = ("\x08", "\x7f")
+ENTERS = ("\r", "\n")
+COMMAND_MAX = 70
+PASS_MAX_MS = 60_000  # a command that lets more time pass would leave the keys unheard too long
+PASSING = ("wait", "hold", "hang")
+KEY_COMMANDS = ("press", "hold", "down", "up")
+
+KEYS = {letter: key for letter, key in LETTERS}
+KEYS.update({" ": STOP, "UP": "UP", "DOWN": "DOWN", "RIGHT": "NEXT", "LEFT": "PREVIOUS"})
+
+
+def live(world, speed):
+    """Run until somebody leaves; then stop the drives. KeyboardInterrupt: that was by Ctrl-C."""
+    terminal = Terminal()
+    session = Session(world, shows_boxes(os.getenv))
+    there = True
+    try:
+        terminal.open()
+        run(session, terminal, Pace(world, session.hand, speed, time))
+    except EOFError:
+        there = False
+    finally:
+        ran = turning(world)
+        try:
+            world.app.close()
+        finally:
+            terminal.close()
+        if there:
+            print(farewell(world, ran))
+
+
+def run(session, terminal, pace):
+    """One frame after the other: keys, time, now and then the picture."""
+    strokes = Strokes()
+    size = terminal.size()
+    sized_ms = 0
+    drawn_ms = -DRAW_MS
+    while not session.left:
+        typed = terminal.read(0 if pace.late else FRAME_MS)
+        for stroke in strokes.take(typed, pace.now_ms):
+            session.take(stroke, pace.now_ms)
+        pace.follow()
+        if pace.now_ms - sized_ms >= SIZE_MS:
+            sized_ms = pace.now_ms
+            before, size = size, terminal.size()
+            if size != before:
+                terminal.clear()
+        if pace.now_ms - drawn_ms >= DRAW_MS:
+            drawn_ms = pace.now_ms
+            terminal.draw(fitted(session.lines(pace.now_ms, pace.speed), *size))
+
+
+class Pace:
+    """Lets the world's time follow real time, so many times as fast.
+
+    time: has ticks_us and ticks_diff. now_ms: real time since the beginning. speed: the true one.
+    late: the machine is too slow. What it does not manage is dropped, never made up for.
+    """
+
+    def __init__(self, world, hand, speed, time):
+        self.now_ms = 0
+        self.speed = speed
+        self.late = False
+        self._world = world
+        self._hand = hand
+        self._wanted = speed
+        self._ticks_us = time.ticks_us
+        self._ticks_diff = time.ticks_diff
+        self._seen_us = time.ticks_us()
+        self._rest_us = 0  # real time that is no whole millisecond yet
+        self._owed_us = 0  # of the world's time
+        self._measured_ms = 0
+        self._measured_us = world.clock.now_us
+
+    def follow(self):
+        """Let as much time pass in the world as has really passed since the last call."""
+        clock = self._world.clock
+        began_us = self._ticks_us()
+        real_us = self._ticks_diff(began_us, self._seen_us)
+        self._seen_us = began_us
+        self._rest_us += real_us
+        self.now_ms += self._rest_us // 1000
+        self._rest_us %= 1000
+        self._owed_us += min(real_us, 2 * WORK_MS * 1000) * self._wanted
+        self._hand.step(self.now_ms)
+        self.late = False
+        while self._owed_us >= SLICE_MS * 1000:
+            if self._ticks_diff(self._ticks_us(), began_us) >= WORK_MS * 1000:
+                self.late = True
+                self._owed_us = 0
+                break
+            before_us = clock.now_us
+            self._world.run(SLICE_MS)
+            self._owed_us -= clock.now_us - before_us
+            self._hand.step(self.now_ms)
+        self._measure()
+
+    def _measure(self):
+        passed_ms = self.now_ms - self._measured_ms
+        if passed_ms >= SPEED_MS:
+            world_us = self._world.clock.now_us
+            self.speed = (world_us - self._measured_us) / (passed_ms * 1000)
+            self._measured_ms = self.now_ms
+            self._measured_us = world_us
+
+
+class Session:
+    """What a person does to the world, and sees of it, whatever the terminal: strokes and lines.
+
+    left: the person wants to go. command: what is being typed after `:`, or None. said: up to two
+    lines for the person, until the next stroke.
+    """
+
+    def __init__(self, world, boxes):
+        self.hand = Hand(world)
+        self.left = False
+        self.command = None
+        self.said = []
+        self._world = world
+        self._picture = Picture(world, self.hand, boxes)
+        self._script = Script(world, "keyboard", self._print)
+        self._drawn_us = world.clock.now_us
+        self._telegrams = ()
+        self._telegrams_ms = -TELEGRAMS_MS
+        self._broken = ""
+        self._checked_ms = 0
+
+    def take(self, stroke, now_ms):
+        """One stroke, as `Strokes` names them; now_ms is real time. KeyboardInterrupt: Ctrl-C."""
+        if stroke == CTRL_C:
+            raise KeyboardInterrupt
+        self.said = []
+        if self.command is not None:
+            self._type(stroke, now_ms)
+        elif stroke in ("q", CTRL_D):
+            self.left = True
+        elif stroke == ":":
+            self.command = ""
+        elif stroke == ESCAPE:
+            self.hand.let_go()
+        else:
+            self._press(stroke, now_ms)
+
+    def lines(self, now_ms, speed):
+        """The picture now; now_ms is real time, speed the true one."""
+        world_us = self._world.clock.now_us
+        self._picture.turn(world_us - self._drawn_us)
+        self._drawn_us = world_us
+        if now_ms - self._telegrams_ms >= TELEGRAMS_MS:
+            self._telegrams_ms = now_ms
+            self._telegrams = self._world.wire.log.last(TELEGRAMS)
+        if now_ms - self._checked_ms >= CHECK_MS:
+            self._checked_ms = now_ms
+            self._check()
+        said = self.said if self.command is None else [":" + self.command + "_"]
+        return self._picture.lines(self._telegrams, said, self._broken, speed)
+
+    def _press(self, stroke, now_ms):
+        small = stroke.lower() if len(stroke) == 1 else stroke
+        key = KEYS.get(small)
+        if key not in self._world.keypad.names:
+            name = stroke if len(stroke) == 1 and stroke > " " else "that key"
+            self.said = ["%s does nothing here; the letters stand beside the keys" % name]
+        elif small != stroke:
+            self.hand.hold(key, now_ms)
+        elif not self.hand.tap(key):
+            self.said = ["too fast: this %s was left out" % key]
+
+    def _type(self, stroke, now_ms):
+        command = self.command
+        if stroke == ESCAPE or stroke in ENTERS:
+            self.command = None
+            if stroke in ENTERS:
+                self._do(command)
+        elif stroke == " " and not command:  # a space is STOP, and no command begins with one
+            self.command = None
+            self._press(stroke, now_ms)
+        elif stroke in BACKSPACES:
+            self.command = command[:-1]
+        elif stroke == CTRL_U:
+            self.command = ""
+        elif len(stroke) == 1 and stroke >= " " and len(command) < COMMAND_MAX:
+            self.command = command + stroke
+
+    def _do(self, command):
+        """One line of the script language; what it prints, or what is wrong with it, is said."""
+        words = command.split("#")[0].split()
+        if not words:
+            return
+        if words[0] in PASSING and words[-1].isdigit() and int(words[-1]) > PASS_MAX_MS:
+            self._print("%s: %d ms at the most" % (words[0], PASS_MAX_MS))
+            return
+        try:
+            self._script.run([command])
+        except (ScriptError, ExpectationFailed) as error:
+            for line in str(error).split("\n")[:SAID_ROWS]:
+                self._print(line)
+            return
+        if words[0] in KEY_COMMANDS:
+            self.hand.fix(words[1], words[0] == "down")
+        if not self.said:
+            self._print("done: " + command)
+
+    def _print(self, line):
+        """Say a line, on in the next one where it is too long; the last two are kept."""
+        for start in range(0, len(line), COLUMNS):
+            self.said.append(line[start : start + COLUMNS])
+        self.said = self.said[-SAID_ROWS:]
+
+    def _check(self):
+        try:
+            self._world.check()
+        except AssertionError as error:
+            self._broken = str(error)
+
+
+def shows_boxes(getenv):
+    """Whether the environment says that the terminal understands UTF-8."""
+    for name in ("LC_ALL", "LC_CTYPE", "LANG"):
+        value = getenv(name)
+        if value:
+            return "UTF8" in value.upper().replace("-", "")
+    return False
+
+
+def turning(world):
+    """Which motors turn, and how fast: [(address, hz)]."""
+    found = []
+    for address in sorted(world.drives):
+        hz = world.drives[address].hz()
+        if hz:
+            found.append((address, hz))
+    return found
+
+
+def farewell(world, ran):
+    """What the panel says when it has gone; ran: what `turning` answered before."""
+    seconds = world.clock.now_us // 1_000_000
+    text = "USS panel: ended after %d:%02d:%02d of the world's time; " % (
+        seconds // 3600, seconds // 60 % 60, seconds % 60,
+    )  # fmt: skip
+    if not ran:
+        return text + "no motor was turning."
+    return text + "stopped: %s." % ", ".join("A%d at %.2f Hz" % motor for motor in ran)
