@@ -1,4 +1,4 @@
-"""The operator's manual, JOG, REVERSE, the held STOP: a motor turns only as long as it should.
+"""The operator's manual, JOG, REVERSE, a held STOP: a motor turns only as long as it should."""
 
 from panel_bench import (
     all_running,

@@ -2,17 +2,26 @@
 
 Each seed is a world of its own. What is checked is read off the wire, not asked of the firmware: a
 telegram with ON to a drive must be covered by a START that was pressed while that drive was shown,
-and by nothing since that forbids it.
+and by nothing since that forbids it; one with JOG by a jog key that is down, or was just now.
 """
 
 import main
+from boards.sim.board import KEYS
 from boards.sim.world import World
 
 SEEDS = range(1, 13)
 SECONDS = 20
 
-KEYS = ("START", "START", "START", "STOP", "UP", "DOWN", "ADDRESS_UP", "ADDRESS_DOWN")
-PARAMETERS = ((700, 5), (700, 2), (1000, 5), (1080, 5.0), (1082, 50.0), (2000, 60.0), (2009, 1))
+PRESSED = ("START", "START", "START", "START", "STOP", "JOG_RIGHT", "JOG_LEFT", "REVERSE") + tuple(
+    KEYS[5:]  # UP, DOWN, the address keys, those of parameter mode
+)
+PARAMETERS = (
+    (700, 5), (700, 2), (1000, 5), (1080, 5.0), (1082, 50.0), (2000, 60.0), (2009, 1), (2014, 0),
+    (2014, 5000),
+)  # fmt: skip
+TURNS = {0x047F: "START", 0x0C7F: "START", 0x057E: "JOG_RIGHT", 0x067E: "JOG_LEFT"}
+OFF = (0x047E, 0x047A, 0x04FE, 0x04FA)  # OFF1, OFF3, each with an acknowledgement
+JOG_RELEASE_US = 150_000  # debouncing, the exchange under way, a stop of another drive
 
 
 class Operator:
@@ -27,8 +36,10 @@ class Operator:
             ticks_start=seed * 44_444_444,
             ticks_mask=(1 << (24, 30)[seed & 1]) - 1,
         )
-        self.started = {address: False for address in world.drives}  # covered by a START
-        self.last_answer_us = {address: 0 for address in world.drives}
+        # By the address on the line: parameter mode can change it.
+        self.started = {address: False for address in range(32)}  # covered by a START
+        self.last_answer_us = {address: 0 for address in range(32)}
+        self.jogged = (None, None, 0, 0)  # address, key, from when to when it was down
         self.looked_at = 0
         world.run(1500)
 
@@ -41,7 +52,7 @@ class Operator:
         world, roll = self.world, self.world.random(0, 99)
         drive = world.drives[sorted(world.drives)[world.random(0, len(world.drives) - 1)]]
         if roll < 70:
-            self.press(KEYS[world.random(0, len(KEYS) - 1)], (40, 100, 700, 4200)[roll % 4])
+            self.press(PRESSED[world.random(0, len(PRESSED) - 1)], (40, 100, 700, 4200)[roll % 4])
         elif roll < 76:
             world.run(10)
             self.look()
@@ -67,7 +78,10 @@ class Operator:
         selected = self.world.app.panel.selected.drive.address
         if key == "START":
             self.started[selected] = True
+        began_us = self.world.clock.now_us
         self.world.press(key, ms)
+        if key.startswith("JOG"):
+            self.jogged = (selected, key, began_us, began_us + ms * 1000 + JOG_RELEASE_US)
         self.world.run(60)
         self.look()
         if key == "STOP":
@@ -92,12 +106,21 @@ class Operator:
             if not from_panel:
                 self.last_answer_us[address] = at_us
                 continue
-            assert stw in (0x047E, 0x047F), "STW %04X at %d" % (stw, at_us)
-            if stw == 0x047F:
-                assert self.started[address], "ON to drive %d at %d" % (address, at_us)
-                silent_us = at_us - self.last_answer_us[address]
-                assert silent_us < 1_500_000, "ON to lost drive %d at %d" % (address, at_us)
+            if stw not in OFF:
+                self.judge(at_us, address, stw)
         self.looked_at = log.count
+
+    def judge(self, at_us, address, stw):
+        """A telegram that makes a motor turn."""
+        where = "%04X to drive %d at %d" % (stw, address, at_us)
+        assert stw in TURNS, where
+        if TURNS[stw] == "START":
+            assert self.started[address], where
+        else:
+            jogged, key, from_us, to_us = self.jogged
+            assert (jogged, key) == (address, TURNS[stw]) and from_us <= at_us <= to_us, where
+        silent_us = at_us - self.last_answer_us[address]
+        assert silent_us < 1_500_000, where + ", which is lost"
 
 
 def test_nothing_starts_by_surprise_whatever_happens():

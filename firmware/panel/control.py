@@ -36,8 +36,8 @@ class Control:
     control word of the jog that is held; `refusal`, why a key was not obeyed, to be shown once;
     `question`, START waits to be told that the drive may run unsupervised; `notice`, why the drive
     is not on any more, or None; `lost_running`, it was running when contact was lost and nobody
-    has acknowledged that; `stop_watch`, whether a STOP is obeyed; `fault`; `listed_address`, the
-    drive's in the settings.
+    has acknowledged that; `stop_watch`, whether a STOP is obeyed; `fault`; `moved`, it has just been
+    given another address.
     """
 
     def __init__(self, drive, survey, bus, mask, settings):
@@ -46,7 +46,7 @@ class Control:
         self.setpoint = Setpoint(drive, survey, settings)
         self.stop_watch = StopWatch(drive, mask)
         self.fault = Fault(drive, mask)
-        self.listed_address = drive.address  # in the settings; it may have moved for now
+        self.moved = False
         self.reversed = False
         self.jogging = 0
         self.refusal = None
@@ -82,7 +82,7 @@ class Control:
 
     def accept_unsupervised(self):
         """The operator takes the risk for this drive, once and for all, and starts it."""
-        self._settings.accept_unsupervised(self.listed_address)
+        self._settings.accept_unsupervised(self.drive.address)
         self.start()
 
     def stop(self):
@@ -175,7 +175,11 @@ class Control:
         return self._jogged and self.stop_watch.active
 
     def accepts_unsupervised(self):
-        return self.listed_address in self._settings.unsupervised
+        return self.drive.address in self._settings.unsupervised
+
+    def is_unsaved(self):
+        """Whether its address is another one than the panel will look for after a restart."""
+        return self.moved and self._settings.dirty
 
     # --- what goes on ---------------------------------------------------------------------------
 
@@ -204,6 +208,8 @@ class Control:
         self.stop_watch.step(now)
         if not (self.jogging or self.stop_watch.active):
             self._jogged = False
+        if self.moved and not self._settings.dirty:
+            self.moved = False
 
     def _stop(self, off):
         self.drive.stop(off)

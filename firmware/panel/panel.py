@@ -103,10 +103,14 @@ class Panel:
     def is_taken(self, address):
         """Whether another drive of this panel than the selected one has this address."""
         for control in self.controls:
-            if control is not self.selected and address in (
-                control.drive.address,
-                control.listed_address,
-            ):
+            if control is not self.selected and control.drive.address == address:
+                return True
+        return False
+
+    def any_runs(self):
+        """Whether a drive of this panel runs, or is about to."""
+        for control in self.controls:
+            if control.runs() or control.is_starting():
                 return True
         return False
 

@@ -25,7 +25,7 @@ def why_not_start(control):
         return texts.REFUSED_JOG
     if control.second_stop_active():
         return texts.REFUSED_STOPPING
-    reason = _why_no_command(drive, survey)
+    reason = _why_no_command(control)
     if reason is not None:
         return reason
     if is_foreign(survey, profiles.SETPOINT_SOURCE):
@@ -40,7 +40,7 @@ def why_not_jog(control):
     drive, survey = control.drive, control.survey
     if control.second_stop_active():
         return texts.REFUSED_STOPPING
-    reason = _why_no_command(drive, survey)
+    reason = _why_no_command(control)
     if reason is not None:
         return reason
     if control.is_starting() or drive.state() == pzd.RUNNING and not control.own_jog_ends():
@@ -50,9 +50,12 @@ def why_not_jog(control):
     return _why_not_now(drive)
 
 
-def _why_no_command(drive, survey):
+def _why_no_command(control):
+    drive, survey = control.drive, control.survey
     if not drive.contact:
         return texts.REFUSED_SILENT
+    if control.is_unsaved():
+        return texts.REFUSED_UNSAVED
     if drive.state() == pzd.FAULT:
         return texts.REFUSED_FAULT
     if not survey.complete:

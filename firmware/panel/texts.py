@@ -65,6 +65,7 @@ REFUSED_STOP = b"NO: STOP IS DOWN"
 REFUSED_STOPPING = b"NO: QUICK STOP"  # OFF2 or OFF3 is still in force
 REFUSED_JOG = b"NO: JOG IS DOWN"
 REFUSED_RUNS = b"NO JOG: IT RUNS"
+REFUSED_UNSAVED = b"NO: UNSAVED"  # its new address is not in the settings yet
 REFUSED_UNSUPERVISED = b"NO JOG: P2014=0"
 
 # --- parameter mode ------------------------------------------------------------------------------
@@ -78,7 +79,7 @@ REFUSED_VALUE = b" -----"  # the drive does not tell it
 EDIT_FIRST = b"PRESS EDIT FIRST"
 READ_ONLY = b"READ ONLY"
 NOT_READ_YET = b"NOT READ YET"
-STOP_FIRST = b"STOP DRIVE FIRST"  # its address does not change while it runs
+STOP_FIRST = b"STOP ALL FIRST"  # no address changes while a drive runs
 ADDRESS_TAKEN = b"ADDRESS IS TAKEN"  # by another drive of this panel
 WRITER_BUSY = b"STILL WRITING"
 WRITTEN = b"WRITTEN (RAM)"

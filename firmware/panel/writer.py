@@ -37,7 +37,7 @@ class Writer:
         self._trying = False  # the drive is looked for at the address that was written
         self._tried_at = 0
         self._good = 0  # its good answers then
-        self._old_address = 0
+        self._old_address = 0  # of the drive that is written
 
     def write(self, control, number, index, value, eeprom):
         """Write a 16-bit value, 0...65535. Why it cannot even be tried, a text, or None."""
@@ -50,6 +50,7 @@ class Writer:
         self._job.aim(task, number, index, 0, value)
         drive.ask(self._job)
         self._control = control
+        self._old_address = drive.address
         self._value = value
         self._eeprom = eeprom
         self.busy = True
@@ -94,17 +95,16 @@ class Writer:
     # --- a drive that moves to another address --------------------------------------------------
 
     def _follow(self):
-        """The drive confirmed its new address. Only the EEPROM outlives its power: only then is
-        the address the panel's too after the next power-up.
+        """The drive is at its new address, and the panel must look for it there after a restart:
+        it may run by then.
         """
+        if self._value != self._old_address:
+            self._settings.readdress(self._old_address, self._value)
+            self._control.moved = True
         self._bus.readdress(self._control.drive, self._value)
-        if self._eeprom:
-            self._settings.readdress(self._control.listed_address, self._value)
-            self._control.listed_address = self._value
 
     def _try_new_address(self, now):
         drive = self._control.drive
-        self._old_address = drive.address
         self._good = drive.counters[0]
         self._tried_at = now
         self._trying = True

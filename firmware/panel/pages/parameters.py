@@ -116,7 +116,7 @@ class Parameters:
     def _why_not(self, number):
         if number != profiles.USS_ADDRESS:
             return None
-        if self._control.runs() or self._control.is_starting():
+        if self._panel.any_runs():
             return texts.STOP_FIRST
         return texts.ADDRESS_TAKEN if self._panel.is_taken(self._edited) else None
 
