@@ -24,6 +24,7 @@ from settings import load, save
 
 CLOSE_MS = const(1_000)  # for the drives to answer their OFF1, and a little for each of them
 CLOSE_PER_DRIVE_MS = const(100)
+SAVE_AGAIN_MS = const(10_000)  # after the store failed
 
 
 class App:
@@ -48,6 +49,8 @@ class App:
         self._mask = mask
         self._progress = 0  # of the bus as last seen, and when it moved
         self._progress_at_ms = 0
+        self._save_failed = False
+        self._saved_at_ms = 0
 
     def start(self):
         self._progress_at_ms = self.board.clock.ticks_ms()
@@ -61,50 +64,58 @@ class App:
         now_ms = clock.ticks_ms()
         self.bus.refresh(clock.ticks_us())
         self.pacer.tend()
-        self.panel.step(board.keypad.read(), now_ms, clock.ticks_us())
+        keypad = board.keypad
+        self.panel.step(keypad.read(), now_ms, clock.ticks_us(), keypad.unclear)
         board.display.show(self.panel.screen.picture)
         if self._engine_works(now_ms):
             board.watchdog.feed()
-        if self.settings.dirty and not self._any_runs():
+        if self.settings.dirty and not self.panel.any_runs():
             self._save(now_ms)
         board.idle()
 
-    def _any_runs(self):
-        for drive in self.bus.drives:
-            if drive.may_run():
-                return True
-        return False
-
     def _save(self, now_ms):
         """Writing flash may hold everything up for a while: only when no drive runs."""
+        if self._save_failed and elapsed(now_ms, self._saved_at_ms, self._mask) < SAVE_AGAIN_MS:
+            return
+        self._saved_at_ms = now_ms
+        self._save_failed = False
         try:
             save(self.board.store, self.settings)
         except OSError:
-            self.settings.dirty = False  # not again and again; what was set holds until power-off
+            self._save_failed = True
             self.panel.say(texts.NOT_SAVED, now_ms)
 
     def close(self):
         """Stop every drive, wait for its answer as long as it may take, and leave no interrupt.
 
-        A second Ctrl-C does not cut this short: it takes a second, and a motor may be turning.
+        Ctrl-C does not cut this short, wherever it strikes: it takes a second, and a motor may be
+        turning.
         """
         try:
-            self.bus.stop_all()
-            self._wait(self._all_stopped)
-            self.bus.close()
-            self._wait(self._is_closed)
+            self._persist(self.bus.stop_all)
+            self._persist(self._wait, self._all_stopped)
+            self._persist(self.bus.close)
+            self._persist(self._wait, self._is_closed)
         finally:
-            self.pacer.stop()
+            self._persist(self.pacer.stop)
+
+    def _persist(self, action, *arguments):
+        while True:
+            try:
+                return action(*arguments)
+            except KeyboardInterrupt:
+                pass
 
     def _wait(self, condition):
         """Let the engine work until `condition()` is true, or as long as may be expected."""
         clock = self.board.clock
         began_ms = clock.ticks_ms()
         patience_ms = CLOSE_MS + CLOSE_PER_DRIVE_MS * len(self.bus.drives)
-        while not condition():
-            if elapsed(clock.ticks_ms(), began_ms, self._mask) > patience_ms:
-                return
+        while True:
             try:
+                waited_ms = elapsed(clock.ticks_ms(), began_ms, self._mask)
+                if condition() or waited_ms > patience_ms:
+                    return
                 self.pacer.tend()
                 self.board.watchdog.feed()
                 self.board.idle()

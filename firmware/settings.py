@@ -72,7 +72,9 @@ class Settings:
             else:
                 self.complain("%s: %r are not up to 31 addresses 0...31" % (name, value))
         self._check_limits()
-        self._unknown = {name: stored[name] for name in stored if name not in DEFAULTS}
+        for name in stored:
+            if name not in DEFAULTS and _survives(name, stored[name]):
+                self._unknown[name] = stored[name]
 
     def accept_unsupervised(self, address):
         """The operator lets this drive run on when telegrams stay away. ValueError: no such drive.
@@ -128,6 +130,14 @@ class Settings:
             raise ValueError("no drive %r" % (address,))
 
 
+def _survives(name, value):
+    """Whether it would be read again as it is written. MicroPython reads more than JSON allows."""
+    try:
+        return isinstance(name, str) and json.loads(json.dumps(value)) == value
+    except ValueError:
+        return False
+
+
 def _is_number(value, lowest, highest):
     return type(value) is int and lowest <= value <= highest  # a bool is none
 
@@ -162,7 +172,7 @@ def load(store):
     try:
         # MicroPython reads half a dictionary without complaint, so the end is looked at as well.
         stored = json.loads(data) if data.rstrip().endswith(b"}") else None
-    except ValueError:
+    except (ValueError, RuntimeError):  # RuntimeError: nested too deep
         stored = None
     if isinstance(stored, dict):
         settings.take(stored)

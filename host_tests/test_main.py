@@ -71,6 +71,36 @@ def test_ctrl_c_again_and_again_does_not_keep_the_drives_from_being_stopped():
     assert world.wire.log.count == sent
 
 
+def test_a_second_ctrl_c_wherever_it_strikes_leaves_no_motor_running():
+    for name in ("_all_stopped", "_is_closed", "_wait", "stop_all", "close", "stop"):
+        world = World(main.start)
+        world.run(1000)
+        world.press("START")
+        world.run(2000)
+        app = world.app
+        owner = {"stop_all": app.bus, "close": app.bus, "stop": app.pacer}.get(name, app)
+        interrupt(owner, name)
+        app.close()
+        assert world.drives[1].state == "stopping", name
+        sent = world.wire.log.count
+        world.clock.advance(1_000_000)
+        assert world.wire.log.count == sent, name
+
+
+def interrupt(owner, name):
+    """Ctrl-C strikes at the beginning of the first call of a method, and of the third."""
+    method = getattr(owner, name)
+    calls = []
+
+    def interrupted(*arguments):
+        calls.append(name)
+        if len(calls) in (1, 3):
+            raise KeyboardInterrupt
+        return method(*arguments)
+
+    setattr(owner, name, interrupted)
+
+
 def test_ctrl_c_stops_a_drive_that_runs_before_anything_else_ends():
     switch = Switch(ends_after_ms=4000)
     world = switch.world

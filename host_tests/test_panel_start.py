@@ -245,6 +245,26 @@ def test_the_setpoint_does_not_move_while_it_cannot_be_sent():
     world.check()
 
 
+def test_what_is_shown_is_what_is_sent_though_the_limits_are_not_told_any_more():
+    world = panel(parameters={2014: 2000, 1080: 20.0})
+    world.press("START")
+    world.run(6000)
+    assert row_1(world) == "S: 20.0 F: 20.00"
+    world.drives[1].stale_replies = 100_000
+    world.run(8000)
+    assert row_1(world).startswith("S: 20.0") and abs(world.drives[1].hz() - 20) < 0.01
+    world.check()
+
+
+def test_start_in_the_splash_is_told_that_it_does_not_count():
+    world = World(main.start)
+    world.run(300)
+    world.press("START")
+    assert row_2(world) == "NO: PRESS AGAIN"
+    world.run(3000)
+    assert starts(world) == 0
+
+
 def test_the_time_after_which_a_drive_is_lost_is_that_of_the_settings():
     for lost_ms in (300, 3000):
         world = panel(settings={"lost_ms": lost_ms})

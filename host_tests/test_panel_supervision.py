@@ -210,6 +210,19 @@ def test_what_was_accepted_before_stays_accepted():
     world.check()
 
 
+def test_what_was_accepted_stays_with_a_drive_that_moves():
+    world = panel(**unsupervised())
+    for key in ("PARAM", "NEXT", "NEXT", "EDIT", "UP", "SET", "SET", "PARAM"):
+        world.run(300)
+        world.press(key)
+    world.run(500)
+    assert row_2(world) == "READY        A2"
+    world.press("START")
+    world.run(3000)
+    assert row_2(world) == "RUNNING      A2" and accepted(world) == [2]
+    world.check()
+
+
 def test_any_other_key_does_nothing_and_start_asks_again():
     for key in OTHER_KEYS:
         world = asked(addresses=(1, 2))
@@ -400,3 +413,17 @@ def test_the_last_moment_counts():
         assert (row_2(world) == ASKED) == (after == 0), world.lcd()
         assert starts(world) == (1 if after else 0)
         world.check()
+
+
+def test_a_question_that_nobody_answers_goes_away():
+    world = unset()
+    world.press("START")
+    wait_for(world, ASKED)
+    world.run(29_000)
+    assert row_2(world) == ASKED
+    world.run(2_000)
+    assert row_2(world) == "NOT STARTED  A1"
+    world.press("START")
+    world.run(500)
+    assert starts(world) == 0
+    world.check()

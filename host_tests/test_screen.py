@@ -1,6 +1,7 @@
 """The picture of 2 x 16 characters, and the texts that stand in it."""
 
 from panel import texts
+from panel.pages.parameters import PARAMETERS
 from panel.screen import COLUMNS, ROWS, Screen
 
 
@@ -68,25 +69,56 @@ def test_the_picture_has_the_size_of_the_display():
     assert len(Screen().picture) == ROWS * COLUMNS == 32
 
 
+def all_texts(value):
+    """The texts in a value of the module `texts`, however deep they stand."""
+    if isinstance(value, bytes):
+        yield value
+    elif isinstance(value, (tuple, dict)):
+        for part in value.values() if isinstance(value, dict) else value:
+            for text in all_texts(part):
+                yield text
+
+
 def test_no_text_is_wider_than_its_place():
     states = (
-        "NO_CONTACT CHECKING NOT_READY READY STARTING RUNNING RUNNING_WARNING STOPPING FAULT "
-        "INHIBITED LOCAL RUNS_LOCALLY LINE_FAILED PANEL_HUNG ENGINE_FAILED STOPPED_ITSELF "
-        "DID_NOT_START TAKEN_AWAY MAY_RUN"
+        "NO_CONTACT CHECKING NOT_READY READY STARTING RUNNING RUNNING_WARNING STOPPING JOGS_RIGHT "
+        "JOGS_LEFT FAULT INHIBITED LOCAL RUNS_LOCALLY LINE_FAILED PANEL_HUNG ENGINE_FAILED "
+        "STOPPED_ITSELF DID_NOT_START TAKEN_AWAY MAY_RUN"
     ).split()
+    values = ("UNREAD_VALUE", "REFUSED_VALUE", "UNKNOWN_VALUE", "BEYOND_VALUE")
     seen = 0
     for name in dir(texts):
-        text = getattr(texts, name)
-        if not isinstance(text, bytes):
+        if name.startswith("__"):
             continue
         width = texts.ROW_WIDTH
         if name in states:
             width = texts.STATE_WIDTH
+        elif name in values:
+            width = texts.VALUE_WIDTH
+        elif name == "OTHER_TRIPPED":
+            width = texts.ROW_WIDTH - len("A31") - len("0001")
+        elif name == "OTHER_REFUSAL":
+            width = texts.ROW_WIDTH - len("65535")
         elif name.startswith("OTHER_"):
             width = texts.ROW_WIDTH - len("A31")
-        assert 0 < len(text) <= width, name
-        assert all(0x20 <= code < 0x7F for code in text), name
-        seen += 1
-    assert seen > 30
-    for row in texts.SPLASH:
-        assert len(row) <= texts.ROW_WIDTH
+        for text in all_texts(getattr(texts, name)):
+            assert 0 < len(text) <= width, (name, text)
+            seen += 1
+    assert seen > 100, seen
+
+
+def test_every_text_is_made_of_characters_that_the_display_has():
+    """The ROM of the HD44780 has a yen sign for the backslash and an arrow for the tilde."""
+    for name in dir(texts):
+        for text in all_texts(getattr(texts, name)):
+            for code in text:
+                assert 0x20 <= code < 0x7E and chr(code) != "\\", (name, text)
+
+
+def test_every_state_of_a_drive_fits_beside_its_fault_number():
+    assert len(texts.FAULT) + 1 + len(texts.FAULT_LETTER) + 4 <= texts.STATE_WIDTH
+
+
+def test_parameter_names_fit_their_field():
+    for name, _, _, _ in PARAMETERS:
+        assert len(name) == texts.PARAMETER_WIDTH

@@ -9,6 +9,8 @@ Taps happen in the world's time, so that the panel sees a tap at every speed. A 
 patience is real time: a JOG that is not renewed for a second, as by a keyboard's repeat, lets go.
 """
 
+from boards.sim.world import RELEASE_MS, TAP_MS
+
 STOP = "STOP"
 
 # Letter: the key that it taps; the capital holds it. In the order in which a legend shows them.
@@ -30,8 +32,8 @@ LETTERS = (
 )
 JOGS = ("JOG_RIGHT", "JOG_LEFT")
 
-TAP_US = 100_000  # five times what the panel takes for a bounce
-RELEASE_US = 40_000  # a key that was let go is up for so long before the next one goes down
+TAP_US = TAP_MS * 1000
+RELEASE_US = RELEASE_MS * 1000  # a key that was let go is up for so long before the next one
 JOG_MS = 1_000  # longer than a keyboard waits before it repeats
 WAITING_MAX = 6  # taps typed ahead; more would still be done when nobody wants them any more
 
@@ -70,11 +72,11 @@ class Hand:
             self._up()
 
     def fix(self, key, down):
-        """A command put a key down, or up, without this hand."""
+        """A command put a key down, or up, without this hand; it is no longer in the hand."""
         self.fixed.discard(key)
         if down:
             self.fixed.add(key)
-        elif key == self.key:
+        if key == self.key:
             self.key = None
             self.held = False
 
@@ -93,7 +95,11 @@ class Hand:
     def _take(self, key, hold):
         if key == STOP:
             self._waiting.clear()
-            if self.key != STOP:
+            if STOP in self.fixed:  # to press what is down already, it has to come up first
+                self.let_go()
+                self.key = STOP
+                self.held = True
+            elif self.key != STOP:
                 self._down(STOP, hold)
                 return True
         if self.held:

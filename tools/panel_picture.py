@@ -18,6 +18,7 @@ LEGEND_COLUMNS = 3
 LEGEND_COLUMN = 20
 CELL_COLUMNS = 20
 DRIVE_ROWS_MAX = 6
+ADDRESS = 2011  # P2011
 
 HELP = " small letter: tap  CAPITAL: hold  Esc: let go  space: STOP  : command  q: quit"
 DRIVES_HEAD = " drive   motor            turns  state"
@@ -131,13 +132,15 @@ class Picture:
         return lines + [" + %d more" % (len(addresses) - len(shown))]
 
     def _matters(self, address):
-        return address == self._selected() or self._world.drives[address].hz() != 0
+        drive = self._world.drives[address]
+        return drive.read(ADDRESS) == self._selected() or drive.hz() != 0
 
     def _selected(self):
         return self._world.app.panel.selected.drive.address
 
     def _drive(self, address):
         drive = self._world.drives[address]
+        address = drive.read(ADDRESS)  # somebody may have changed it
         hz = drive.hz()
         fault = drive.report().split("fault=")[1].split()[0]
         return "%s%-6s (%s) %7.2f Hz %-6s %-13s %s%s" % (
@@ -198,7 +201,8 @@ def fitted(lines, rows, columns):
     if rows >= ROWS and columns >= COLUMNS:
         return lines
     said = [line for line in lines[-SAID_ROWS:] if line]
-    notice = "%d x %d is too small: the panel needs %d x %d" % (columns, rows, COLUMNS, ROWS)
+    notice = "q quits. %d x %d is too small: the panel needs %d x %d"
+    notice %= (columns, rows, COLUMNS, ROWS)
     kept = lines[: rows - 1] if rows < ROWS else lines[:-1]
     kept = kept + [said[0] if said else notice]
     return [cut(line, columns) for line in kept]

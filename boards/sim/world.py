@@ -82,8 +82,10 @@ class World:
         )
         self.flash = Flash()
         self.store = store or FileStore(SETTINGS_FILE, self.flash.open, self.flash)
-        if self.store.read() is None:
-            self.store.replace(json.dumps(stored).encode())
+        if store is None:
+            self.flash.files[SETTINGS_FILE] = json.dumps(stored).encode()
+        elif store.read() is None:
+            store.replace(json.dumps(stored).encode())
         self.resets = 0
         self.app = None
         self._start = start

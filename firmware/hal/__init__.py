@@ -55,6 +55,7 @@ keypad
     names               names of the keys, in the order of their bits: "START", "STOP", ...
     read() -> int       the keys that are down now, as bits. Of an ambiguous reading of a matrix
                         none; keys with a pin of their own, STOP first of all, stay.
+    unclear             the keys, as bits, of which the last reading could not tell; mostly 0
 
 store                   keeps one small file over power cuts; any method may raise OSError
     read() -> bytes or None

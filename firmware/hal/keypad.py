@@ -38,6 +38,7 @@ class Keypad:
         self._closed = sum(1 << own.index(name) for name in closed)
         self._matrix = matrix
         self._shift = len(own)
+        self.unclear = 0
 
     def read(self):
         low = 0
@@ -47,6 +48,7 @@ class Keypad:
         down = low ^ self._closed
         if self._matrix:
             down |= self._matrix.read() << self._shift
+            self.unclear = self._matrix.unclear << self._shift
         return down
 
 
@@ -75,6 +77,8 @@ class Matrix:
     believed before it has been the same for some time.)
 
     A column that is low while no row is driven is shorted to ground: its keys do not count.
+
+    unclear: the keys, as bits, of which the last reading could not tell.
     """
 
     def __init__(self, rows, columns, names, clock):
@@ -84,15 +88,22 @@ class Matrix:
         self._rows = tuple(row.value for row in rows)
         self._columns = tuple((1 << bit, pin.value) for bit, pin in enumerate(columns))
         self._keys = _bits_of(names)
+        self.unclear = 0
         self._seen = [0] * len(rows)  # the columns that are low while a row is driven, as bits
         self._sleep_us = clock.sleep_us
 
     def read(self):
         """The keys that are down, as bits in the order of `names`; 0 of an ambiguous reading."""
+        self.unclear = 0
         if self._is_idle():
             return 0
-        self._scan()
-        return 0 if self._is_ambiguous() else self._down()
+        shorted = self._scan()
+        if self._is_ambiguous():
+            self.unclear = (1 << len(self._keys)) - 1
+            return 0
+        if shorted:
+            self.unclear = self._keys_of(shorted)
+        return self._down()
 
     def _is_idle(self):
         """Whether no key is down, as it mostly is: one look at all rows together tells."""
@@ -105,15 +116,17 @@ class Matrix:
         return not low
 
     def _scan(self):
+        """Look at every row; answer the columns that are shorted."""
         self._sleep_us(SETTLE_US)
-        working = ~self._low_columns()
+        shorted = self._low_columns()
         row = 0
         for put in self._rows:
             put(0)
             self._sleep_us(SETTLE_US)
-            self._seen[row] = self._low_columns() & working
+            self._seen[row] = self._low_columns() & ~shorted
             put(1)
             row += 1
+        return shorted
 
     def _low_columns(self):
         low = 0
@@ -130,6 +143,13 @@ class Matrix:
                 if shared & (shared - 1):  # more than one bit
                     return True
         return False
+
+    def _keys_of(self, columns):
+        keys = 0
+        for _, column, bit in self._keys:
+            if column & columns:
+                keys |= bit
+        return keys
 
     def _down(self):
         down = 0

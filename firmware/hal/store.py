@@ -57,7 +57,7 @@ class FileStore:
             raise
 
     def _put(self, path, data):
-        if data == self._read(path):
+        if self._holds(path, data):
             return  # flash wears out
         new = self._path + ".new"
         try:
@@ -67,6 +67,12 @@ class FileStore:
         except OSError:
             self._remove(new)  # it takes room that is short
             raise
+
+    def _holds(self, path, data):
+        try:
+            return self._read(path) == data
+        except OSError:  # it cannot be read: certainly not
+            return False
 
     def _remove(self, path):
         try:

@@ -87,7 +87,7 @@ class Control:
 
     def stop(self):
         """OFF, always; acknowledge what was announced about this drive and its fault, if shown."""
-        if self.fault.was_shown(self._now):
+        if self.fault.was_shown:
             self.drive.acknowledge()
         self.stop_unseen()
         self.notice = None
@@ -274,7 +274,7 @@ class Control:
         to a drive that listens to somebody else by now.
         """
         survey = self.survey
-        if permits.is_foreign(survey, profiles.COMMAND_SOURCE) or (
+        if permits.is_local(survey) or (
             not self.jogging and permits.is_foreign(survey, profiles.SETPOINT_SOURCE)
         ):
             self._give_up(texts.TAKEN_AWAY)
@@ -293,7 +293,7 @@ class Control:
         drive = self.drive
         if drive.answered_stw & ~pzd.STW_ACKNOWLEDGE != drive.off:
             return
-        local = permits.is_foreign(self.survey, profiles.COMMAND_SOURCE)
+        local = permits.is_local(self.survey)
         if drive.state() != pzd.RUNNING or local:
             drive.stop(pzd.OFF1)
 
@@ -303,5 +303,5 @@ class Control:
             self.runs()
             and not self.drive.wanted
             and self.survey.complete
-            and not permits.is_foreign(self.survey, profiles.COMMAND_SOURCE)
+            and not permits.is_local(self.survey)
         )

@@ -4,7 +4,7 @@
     fault.step(now)                     # each step of the loop
     fault.number                        # 1 for F0001; 0 while it is not known
     fault.seen = True                   # it is on the display
-    if fault.was_shown(now): drive.acknowledge()
+    if fault.was_shown: drive.acknowledge()
 """
 
 from micropython import const
@@ -13,19 +13,20 @@ from uss import pkw, profiles, pzd
 from uss.timing import elapsed
 
 SHOWN_US = const(1_000_000)  # a STOP in the moment of the trip must not wipe its number away
-AGAIN_US = const(500_000)  # an answer that did not come is asked for again
+AGAIN_US = const(500_000)  # between two questions
 
 
 class Fault:
     """drive: a `Drive`. mask: the clock's period - 1.
 
-    active: the drive has tripped. seen: whoever shows it says so here.
+    active: the drive has tripped. seen: whoever shows it says so here. was_shown: for a second.
     """
 
     def __init__(self, drive, mask):
         self.active = False
         self.number = 0
         self.seen = False
+        self.was_shown = False
         self._drive = drive
         self._mask = mask
         self._job = pkw.read(profiles.FAULT_NUMBER)
@@ -35,9 +36,6 @@ class Fault:
         self._stale = False  # what was asked belongs to an earlier trip
         self._since = 0  # when it was seen first
 
-    def was_shown(self, now):
-        return self.active and self.seen and elapsed(now, self._since, self._mask) >= SHOWN_US
-
     def step(self, now):
         drive = self._drive
         active = drive.contact and drive.state() == pzd.FAULT
@@ -45,14 +43,17 @@ class Fault:
             self.active = active
             self.number = 0
             self.seen = False
+            self.was_shown = False
             self._wait_us = 0
             self._stale = self._asked
         if not self.seen:
             self._since = now
+        elif active and elapsed(now, self._since, self._mask) >= SHOWN_US:
+            self.was_shown = True  # for good: the clock forgets how long ago that was
         if self._asked:
             self._take()
-        elif active and not self.number:
-            self._ask(now)
+        elif active:
+            self._ask(now)  # again and again: there may be another one by now
 
     def _ask(self, now):
         waited_us = elapsed(now, self._asked_at, self._mask)

@@ -4,7 +4,8 @@
     keys.update(keypad.read(), clock.ticks_ms())
     if keys.pressed & keys.bit("START"): ...
 
-A key counts once it has been the same for DEBOUNCE_MS. A key that is down when the panel starts is
+A key counts once it has been the same for DEBOUNCE_MS; STOP goes down with the second reading, so
+that neither a slow loop nor a chattering contact loses it. A key that is down when the panel starts is
 `down`, but not `pressed` before it was seen up: a START that is jammed or leant on starts nothing,
 while a STOP that is down, or whose wire is broken, is down from the beginning.
 """
@@ -36,6 +37,7 @@ class Keys:
         self.repeats = 0
         self._bits = {key: 1 << position for position, key in enumerate(names)}
         self._mask = mask
+        self._eager = self.bit("STOP")
         self._raw = 0
         self._changed_at = [0] * len(names)
         self._all = (1 << len(names)) - 1
@@ -47,6 +49,10 @@ class Keys:
     def bit(self, key):
         """The bit of a key by name; 0 when this board has no such key."""
         return self._bits.get(key, 0)
+
+    def forget(self):
+        """What is down repeats nothing any more: it has to be pressed anew."""
+        self._last = 0
 
     def moved(self, key):
         """1 when a key went down or repeated just now, else 0."""
@@ -60,8 +66,15 @@ class Keys:
                     return steps
         return 1
 
-    def update(self, raw, now_ms):
-        """raw: what the keypad reads now, as bits."""
+    def update(self, raw, now_ms, unclear=0):
+        """raw: what the keypad reads now, as bits. unclear: the keys among them of which it cannot
+        tell; they are up, and each must be seen up before it counts again.
+        """
+        if unclear:
+            raw &= ~unclear
+            self.down &= ~unclear
+            if self._last & unclear:
+                self._last = 0
         if self._first:
             self._first = False
             self._raw = raw
@@ -73,6 +86,7 @@ class Keys:
         self._raw = raw
         if changed or raw != self.down or self._released != self._all:
             self._debounce(raw, changed, now_ms)
+        self._released &= ~unclear
         if self._last:
             self._repeat(now_ms)
 
@@ -81,6 +95,8 @@ class Keys:
         for position in range(len(self._changed_at)):
             if changed & bit:
                 self._changed_at[position] = now_ms
+            elif raw & bit & self._eager:
+                self._settle(bit, raw & bit, now_ms)
             elif elapsed(now_ms, self._changed_at[position], self._mask) >= DEBOUNCE_MS:
                 self._settle(bit, raw & bit, now_ms)
             bit <<= 1

@@ -27,6 +27,7 @@ from uss.timing import elapsed
 SPLASH_MS = const(800)
 DRAW_MS = const(50)
 MESSAGE_MS = const(3_000)
+READING_MS = const(1_000)  # so long a START does not answer a question: it may be a double tap
 CYCLES_MIN = const(3)  # a drive's time-out is offered as so many rounds of the bus
 OFF_TIME_MIN_MS = const(1_000)
 OFF_TIME_MAX_MS = const(65_000)
@@ -64,12 +65,14 @@ class Panel:
         self._message_at = 0
         self._drawn_at = None
 
-    def step(self, raw_keys, now_ms, now_us):
-        """raw_keys: the keys down now, as bits. Both times are readings of the clock."""
+    def step(self, raw_keys, now_ms, now_us, unclear_keys=0):
+        """raw_keys: the keys down now, as bits; unclear_keys: those that cannot be told. Both times
+        are readings of the clock.
+        """
         for control in self.controls:
             control.step(now_us)
         keys = self._keys
-        keys.update(raw_keys, now_ms)
+        keys.update(raw_keys, now_ms, unclear_keys)
         self._take_keys(keys, now_ms)
         self._writer.step(now_us)
         if self._page is self._parameters:
@@ -105,12 +108,12 @@ class Panel:
         for control in self.controls:
             if control is not self.selected and control.drive.address == address:
                 return True
-        return False
+        return self._writer.takes(address)
 
     def any_runs(self):
-        """Whether a drive of this panel runs, or is about to."""
+        """Whether a drive of this panel runs, is told to, or may run out of contact."""
         for control in self.controls:
-            if control.runs() or control.is_starting():
+            if control.runs() or control.drive.is_on() or control.lost_running:
                 return True
         return False
 
@@ -158,7 +161,6 @@ class Panel:
 
     def _select(self, direction):
         """Show another drive. It starts and stops nothing."""
-        self.selected.question = False
         position = self.controls.index(self.selected) + direction
         self.selected = self.controls[position % len(self.controls)]
 
@@ -168,7 +170,9 @@ class Panel:
         """Take up what the drives and the writer have to say and to ask."""
         for control in self.controls:
             refusal = control.take_refusal()
-            if refusal and control is self.selected:
+            if control is not self.selected:
+                control.question = False  # START has to be pressed anew, with that drive in sight
+            elif refusal:
                 self.say(refusal, now_ms)
         result = self._writer.take_result(self.selected)
         if result:
@@ -176,9 +180,11 @@ class Panel:
         selected = self.selected
         if selected.question and self._over is None:
             answers = {"SET": self._supervise, "START": self._accept_unsupervised}
-            self.ask(Question(self, texts.ASK_UNSUPERVISED, answers, self._mask))
-        if self._over is not self._splash and selected.needs_attention():
-            self.close_question()  # an alarm is not to be hidden
+            text = texts.ASK_UNSUPERVISED
+            self.ask(Question(self, text, answers, self._mask, READING_MS))
+        if self._over is not None and self._over is not self._splash:
+            if selected.needs_attention() or self._over.is_stale(now_ms):
+                self.close_question()  # an alarm is not to be hidden
         if self.message and elapsed(now_ms, self._message_at, self._mask) >= MESSAGE_MS:
             self.message = None
 
@@ -193,7 +199,10 @@ class Panel:
             self.say(reason, now_ms)
 
     def _accept_unsupervised(self, now_ms):
-        self.selected.accept_unsupervised()
+        if self.stop_key.is_down:
+            self.say(texts.REFUSED_STOP, now_ms)
+        else:
+            self.selected.accept_unsupervised()
 
     def _end_splash(self, now_ms):
         if self._began_at is None:
@@ -202,3 +211,5 @@ class Panel:
             self._over = None
             if self._complaint:
                 self.say(texts.SETTINGS_DAMAGED, now_ms)
+            elif self._keys.pressed & self._keys.bit("START"):
+                self.say(texts.REFUSED_EARLY, now_ms)

@@ -14,6 +14,11 @@ def is_foreign(survey, source):
     return value >= 0 and value != profiles.USS_ON_COM_LINK
 
 
+def is_local(survey):
+    """Whether the drive takes its commands from elsewhere, P0700."""
+    return is_foreign(survey, profiles.COMMAND_SOURCE)
+
+
 def is_unsupervised(survey):
     """Whether the drive runs on for ever when telegrams stay away, P2014 = 0."""
     return survey.values[profiles.SUPERVISION] == 0
@@ -60,7 +65,7 @@ def _why_no_command(control):
         return texts.REFUSED_FAULT
     if not survey.complete:
         return texts.REFUSED_SCALING if survey.unreadable else texts.REFUSED_CHECKING
-    if is_foreign(survey, profiles.COMMAND_SOURCE):
+    if is_local(survey):
         return texts.REFUSED_COMMAND
     return None
 

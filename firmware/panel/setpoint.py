@@ -29,10 +29,14 @@ class Setpoint:
         self._apply()
 
     def step(self):
-        """A limit that comes or goes moves it at once; what the operator set is remembered."""
+        """A limit that comes or goes moves it at once; what the operator set is remembered.
+
+        While a drive runs and does not tell its limits, what is shown stays what is sent.
+        """
         if self._survey.version != self._version:
             self._version = self._survey.version
-            self._apply()
+            if self._survey.complete or not self._drive.wanted:
+                self._apply()
 
     def _limited(self, centihertz):
         survey = self._survey

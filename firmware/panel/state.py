@@ -4,8 +4,8 @@
 """
 
 from panel import texts
-from panel.permits import is_foreign
-from uss import profiles, pzd
+from panel.permits import is_local
+from uss import pzd
 
 
 def text(control):
@@ -26,7 +26,7 @@ def text(control):
         return texts.INHIBITED
     if not survey.complete:
         return texts.CHECKING
-    if is_foreign(survey, profiles.COMMAND_SOURCE):
+    if is_local(survey):
         return texts.LOCAL
     return texts.READY if state == pzd.READY else texts.NOT_READY
 
@@ -34,7 +34,7 @@ def text(control):
 def _running(control):
     drive = control.drive
     if not drive.is_on():
-        if is_foreign(control.survey, profiles.COMMAND_SOURCE):
+        if is_local(control.survey):
             return texts.RUNS_LOCALLY
         return texts.STOPPING
     if control.jogging:

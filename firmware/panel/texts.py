@@ -51,7 +51,7 @@ HOLD_FOR_ALL = b"STOP, HOLD: ALL"
 OFF3_HOLD_FOR_ALL = b"OFF3, HOLD: ALL"
 OFF2_HOLD_FOR_ALL = b"OFF2, HOLD: ALL"
 
-# Why START was refused, shown for a while: at most ROW_WIDTH.
+# Why a key was not obeyed, shown for a while: at most ROW_WIDTH.
 REFUSED_SILENT = b"NO: NO CONTACT"
 REFUSED_CHECKING = b"NO: STILL CHECKS"
 REFUSED_FAULT = b"NO: FAULT"
@@ -62,6 +62,7 @@ REFUSED_SETPOINT = b"NO:P1000 NOT USS"
 REFUSED_SCALING = b"NO: SCALING ???"
 REFUSED_MINIMUM = b"NO: P1080 > 200%"  # the drive would run faster than a telegram can say
 REFUSED_STOP = b"NO: STOP IS DOWN"
+REFUSED_EARLY = b"NO: PRESS AGAIN"  # nobody had seen yet what would start
 REFUSED_STOPPING = b"NO: QUICK STOP"  # OFF2 or OFF3 is still in force
 REFUSED_JOG = b"NO: JOG IS DOWN"
 REFUSED_RUNS = b"NO JOG: IT RUNS"
@@ -85,13 +86,14 @@ WRITER_BUSY = b"STILL WRITING"
 WRITTEN = b"WRITTEN (RAM)"
 WRITTEN_EEPROM = b"WRITTEN (EEPROM)"
 NO_ANSWER = b"NO ANSWER"
+NOT_WRITTEN = b"NOT WRITTEN"
 
 # What became of a write to a drive that is not shown any more; follows "A" and its address.
 OTHER_WRITTEN = b": WRITTEN"
 OTHER_NOT_WRITTEN = b": NOT WRITTEN"
 
-# Why a drive refused a parameter task, by the error number of its reply (pkw.ERRORS has them
-# longer). NO_RIGHTS is reply 8, which carries no number.
+# Why a drive refused a parameter task, by the error number of its reply (specification table 4.9,
+# and what drives add to it). NO_RIGHTS is reply 8, which carries no number.
 NO_RIGHTS = b"NO CHANGE RIGHTS"
 REFUSALS = {
     0: b"NO SUCH PARAM.",
@@ -122,6 +124,8 @@ OTHER_REFUSAL = b"REFUSED: "  # and the number
 
 # --- questions: what takes row 1 in turn, and the choice in row 2 --------------------------------
 
+# What is about to be written stands in front: "A31: P2019=65535".
+
 ASK_CUTS_OFF = ((b"PANEL MAY LOSE", b"THE DRIVE BY IT"), b"SET=DO  PARAM=NO")
 ASK_RESCALES = ((b"SETPOINTS MAY", b"CHANGE THEIR HZ"), b"SET=DO  PARAM=NO")
 # SET writes P2014, START takes the risk.
@@ -131,7 +135,7 @@ ASK_UNSUPERVISED = ((b"P2014=0: IT RUNS", b"ON IF PANEL DIES"), b"SET=FIX START=
 OTHER_RUNS = b" RUN,HOLD=ALL"
 OTHER_LOST = b" LOST,MAY RUN"
 OTHER_UNCONFIRMED = b" NOT STOPPED"
-OTHER_TRIPPED = b" FAULT F"  # and four digits
+OTHER_TRIPPED = b" FAULT"  # with the letter and four digits behind it, once they are known
 
 # Shown after power-on, both rows: the panel's STOP goes over a wire and through two processors.
 SPLASH = (b"USS PANEL IS NO", b"EMERGENCY STOP")

@@ -18,10 +18,11 @@ ANNOUNCE_MS = const(1_500)  # another drive is announced so long, then the page 
 
 
 # How much another drive needs to be spoken of, and what is said.
-SILENT_ABOUT, RUNS, TRIPPED, LOST, UNCONFIRMED = range(5)
+SILENT_ABOUT, RUNS, NOTED, TRIPPED, LOST, UNCONFIRMED = range(6)
 ANNOUNCEMENTS = (
     b"",
     texts.OTHER_RUNS,
+    b"",  # and its notice
     texts.OTHER_TRIPPED,
     texts.OTHER_LOST,
     texts.OTHER_UNCONFIRMED,
@@ -39,6 +40,8 @@ class View:
         screen = self._screen
         if page.whole:
             page.draw(screen, now_ms)
+            if not now_ms // ANNOUNCE_MS & 1:
+                self._announce(0, page, LOST)  # an alarm is not hidden by a question
             return
         panel = self._panel
         control, held = panel.selected, panel.stop_key.text
@@ -56,14 +59,14 @@ class View:
             draw_address(screen, control)
         elif panel.message or panel.line_in_use():
             screen.put(1, 0, texts.ROW_WIDTH, panel.message or texts.LINE_IN_USE)
-        elif now_ms // ANNOUNCE_MS & 1 or not self._announce(page):
+        elif now_ms // ANNOUNCE_MS & 1 or not self._announce(1, page, RUNS):
             page.draw(screen, now_ms)
 
-    def _announce(self, page):
-        """Speak of the drive that needs it most and is not told of by the page; False when none
-        does.
+    def _announce(self, row, page, least):
+        """Speak in `row` of the drive that needs it most, at least so much, and is not told of by
+        the page; False when none does.
         """
-        highest, announced = 0, None
+        highest, announced = least - 1, None
         for control in self._panel.controls:
             if control is not self._panel.selected or not page.tells_state:
                 rank = _rank(control, control is self._panel.selected)
@@ -74,12 +77,13 @@ class View:
         screen, address = self._screen, announced.drive.address
         text = ANNOUNCEMENTS[highest]
         column = 2 if address < 10 else 3
-        screen.put(1, 0, texts.ROW_WIDTH, b"A")
-        screen.number(1, 1, column - 1, address * 100, 0)
-        screen.put(1, column, texts.ROW_WIDTH - column, text)
-        if highest == TRIPPED:
-            screen.digits(1, column + len(text), 4, announced.fault.number)
-            announced.fault.seen = True
+        screen.put(row, 0, texts.ROW_WIDTH, b"A")
+        screen.number(row, 1, column - 1, address * 100, 0)
+        screen.put(row, column, texts.ROW_WIDTH - column, text)
+        if highest == NOTED:
+            screen.put(row, column + 1, texts.ROW_WIDTH - column - 1, announced.notice)
+        elif highest == TRIPPED:
+            draw_fault(screen, row, column + len(text) + 1, announced.fault)
         return True
 
 
@@ -89,9 +93,19 @@ def _rank(control, selected):
         return UNCONFIRMED
     if control.lost_running:
         return LOST
-    if control.fault.number and (selected or control.notice is not None):
+    if control.fault.active and (selected or control.notice is not None):
         return TRIPPED  # a drive that was on, or one that is worked on
-    return RUNS if control.runs() and not selected else SILENT_ABOUT
+    if control.runs():
+        return SILENT_ABOUT if selected else RUNS
+    return NOTED if selected and control.notice is not None else SILENT_ABOUT
+
+
+def draw_fault(screen, row, column, fault):
+    """F and the number of a fault, once it is known: it has been seen now."""
+    fault.seen = True
+    if fault.number:
+        screen.put(row, column, 1, texts.FAULT_LETTER)
+        screen.digits(row, column + 1, 4, fault.number)
 
 
 def draw_address(screen, control):

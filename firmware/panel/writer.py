@@ -2,10 +2,11 @@
 
     writer.write(control, 1000, 0, 5, False)        # into RAM
     writer.step(now)                                # each step of the loop
-    writer.take_result()                            # a row to be shown, once, or None
+    writer.take_result(selected)                    # a row to be shown, once, or None
 
-A drive whose address is written is followed to the new one. When the answer to that is lost,
-nobody knows where the drive is: the new address is tried for a while, then the old one again.
+A drive that is to have another address is followed there, after a look whether anybody answers
+there already. When the answer to the write is lost, nobody knows where the drive is: it is looked
+for at the new address for a while, and then is taken to be at the old one.
 """
 
 from micropython import const
@@ -14,7 +15,15 @@ from panel import texts
 from uss import pkw, profiles
 from uss.timing import elapsed
 
-TRY_US = const(2_000_000)  # a drive that was moved is looked for at its new address so long
+LOOK_US = const(2_000_000)  # a drive that may have moved is looked for so long, or
+LOOK_CYCLES = const(3)  # so many rounds of the bus
+PROBES = const(3)  # telegrams after which nobody is at an address; the first was under way already
+
+SILENT_MAX = const(3)  # telegrams without an answer, then the other address is tried
+
+TRIES_MAX = const(3)
+
+IDLE, PROBING, WAITING, WRITING, LOOKING = range(5)
 
 
 class Writer:
@@ -29,15 +38,19 @@ class Writer:
         self._bus = bus
         self._settings = settings
         self._mask = mask
+        self._phase = IDLE
         self._job = pkw.read(0)
         self._control = None
         self._value = 0
         self._eeprom = False
         self._result = None
-        self._trying = False  # the drive is looked for at the address that was written
-        self._tried_at = 0
-        self._good = 0  # its good answers then
         self._old_address = 0  # of the drive that is written
+        self._since = 0
+        self._stops = 0  # drive.stops when it was spoken to at the new address first
+        self._telegrams = 0  # to the drive, then
+        self._tries = 0
+        self._moves = False  # what is written is the drive's address
+        self._silent = 0  # drive.silent when it was last spoken to at the other address
 
     def write(self, control, number, index, value, eeprom):
         """Write a 16-bit value, 0...65535. Why it cannot even be tried, a text, or None."""
@@ -48,14 +61,28 @@ class Writer:
             return texts.NO_CONTACT
         task = pkw.WRITE_WORD_EEPROM if eeprom else pkw.WRITE_WORD
         self._job.aim(task, number, index, 0, value)
-        drive.ask(self._job)
         self._control = control
         self._old_address = drive.address
         self._value = value
         self._eeprom = eeprom
+        self._tries = 0
         self.busy = True
         self.written = False
+        self._moves = (
+            number == profiles.USS_ADDRESS
+            and index == profiles.COM_LINK
+            and value != drive.address
+        )
+        if self._moves:
+            self._phase = PROBING
+            self._go_to(value)
+        else:
+            self._ask()
         return None
+
+    def takes(self, address):
+        """Whether a drive is just being given this address."""
+        return self.busy and self._moves and self._value == address
 
     def take_result(self, selected):
         """A row that tells how the write ended, once; None otherwise. selected: what is shown."""
@@ -66,26 +93,59 @@ class Writer:
         return b"A%d%s" % (self._control.drive.address, outcome)
 
     def step(self, now):
-        if self._trying:
-            self._look_for_drive(now)
-        elif self.busy and self._job.state != pkw.PENDING:
-            self._finish(now)
+        if self._phase == WAITING:
+            self._ask()
+        elif self._phase == PROBING:
+            self._probe()
+        elif self._phase == LOOKING:
+            self._look(now)
+        elif self._phase == WRITING:
+            if self._job.state != pkw.PENDING:
+                self._finish(now)
+            elif self._moves:
+                self._follow_silence()
+
+    def _ask(self):
+        drive = self._control.drive
+        if drive.channel.is_full():
+            self._phase = WAITING
+            return
+        self._phase = WRITING
+        self._silent = drive.silent
+        self._job.aim(self._job.task, self._job.number, self._job.index, 0, self._value)
+        drive.ask(self._job)
 
     def _finish(self, now):
         job = self._job
-        moves = job.number == profiles.USS_ADDRESS and job.index == profiles.COM_LINK
         if job.state == pkw.REFUSED:
             self._end(refusal(job.error), False)
         elif job.state == pkw.DONE:
-            if moves:
-                self._follow()
-            self._end(texts.WRITTEN_EEPROM if self._eeprom else texts.WRITTEN, True)
-        elif moves and self._control.drive.silent:
-            self._try_new_address(now)
+            if job.low == self._value:
+                self._confirm()
+            elif self._tries < TRIES_MAX:  # that was an old answer to a reading
+                self._tries += 1
+                self._ask()
+            else:
+                self._end(texts.NOT_WRITTEN, False)
+        elif self._moves and self._control.drive.silent:
+            self._phase = LOOKING
+            self._since = now
+            self._go_to(self._value)
+        elif self._moves and self._control.drive.answered_address == self._value:
+            self._confirm()
         else:
             self._end(texts.NO_ANSWER, False)
 
+    def _confirm(self):
+        if self._moves:
+            self._bus.readdress(self._control.drive, self._value)
+            # The panel must look for it there after a restart: it may run by then.
+            self._settings.readdress(self._old_address, self._value)
+            self._control.moved = True
+        self._end(texts.WRITTEN_EEPROM if self._eeprom else texts.WRITTEN, True)
+
     def _end(self, result, written):
+        self._phase = IDLE
         self.busy = False
         self.written = written
         self._result = result
@@ -94,30 +154,50 @@ class Writer:
 
     # --- a drive that moves to another address --------------------------------------------------
 
-    def _follow(self):
-        """The drive is at its new address, and the panel must look for it there after a restart:
-        it may run by then.
+    def _go_to(self, address):
+        drive = self._control.drive
+        self._bus.readdress(drive, address)
+        drive.hurry()
+        self._stops = drive.stops
+        self._telegrams = sum(drive.counters)
+
+    def _probe(self):
+        """Nobody may be at the new address: two drives at one would answer at once for ever."""
+        drive = self._control.drive
+        telegrams = (sum(drive.counters) - self._telegrams) & 0xFFFF
+        if drive.stops != self._stops:  # that is for the drive, which is at the old address
+            self._give_up_probe(texts.NOT_WRITTEN)
+        elif not drive.silent and drive.answered_address == self._value:
+            self._give_up_probe(texts.ADDRESS_TAKEN)
+        elif telegrams >= PROBES:
+            self._bus.readdress(drive, self._old_address)
+            self._ask()
+        elif drive.urgent == drive.served:
+            drive.hurry()
+
+    def _give_up_probe(self, result):
+        self._bus.readdress(self._control.drive, self._old_address)
+        self._control.drive.hurry()
+        self._end(result, False)
+
+    def _follow_silence(self):
+        """A drive that falls silent while it is told its new address may be there already, or not
+        have heard of it: it is spoken to at either in turn, and the task with it.
         """
-        if self._value != self._old_address:
-            self._settings.readdress(self._old_address, self._value)
-            self._control.moved = True
-        self._bus.readdress(self._control.drive, self._value)
-
-    def _try_new_address(self, now):
         drive = self._control.drive
-        self._good = drive.counters[0]
-        self._tried_at = now
-        self._trying = True
-        self._bus.readdress(drive, self._value)
+        if not drive.silent:
+            self._silent = 0
+        elif drive.silent >= self._silent + SILENT_MAX:
+            self._silent = drive.silent
+            at_new = drive.address == self._value
+            self._bus.readdress(drive, self._old_address if at_new else self._value)
 
-    def _look_for_drive(self, now):
+    def _look(self, now):
         drive = self._control.drive
-        if drive.counters[0] != self._good:
-            self._trying = False
-            self._follow()
-            self._end(texts.WRITTEN_EEPROM if self._eeprom else texts.WRITTEN, True)
-        elif elapsed(now, self._tried_at, self._mask) >= TRY_US:
-            self._trying = False
+        patience_us = max(LOOK_US, LOOK_CYCLES * self._bus.longest_cycle_us())
+        if not drive.silent and drive.answered_address == self._value:
+            self._confirm()
+        elif elapsed(now, self._since, self._mask) >= min(patience_us, self._mask >> 2):
             self._bus.readdress(drive, self._old_address)
             self._end(texts.NO_ANSWER, False)
 

@@ -76,6 +76,7 @@ class Drive:
         self.off_answers = 0  # valid replies to telegrams without ON; wraps
         self.answered_off = False  # the last valid reply was one to a telegram without ON
         self.answered_stw = 0  # the control word of that telegram; 0 without contact
+        self.answered_address = address  # of the last valid reply
         self.silent = 0  # telegrams without a valid reply in a row
         self.served = 0
         self.stops_sent = 0  # `stops` when the last telegram was built
@@ -98,9 +99,13 @@ class Drive:
         """
         self.hsw = hsw
         self.off = pzd.OFF1
-        self.ticket = (self.ticket + 1) & TICKET_MASK
-        if self.ticket == self.void:  # after 65536 starts the old void one comes round
-            self.ticket = (self.ticket + 1) & TICKET_MASK
+        ticket = (self.ticket + 1) & TICKET_MASK
+        if ticket == self.void:  # after 65536 starts the old void one comes round
+            ticket = (ticket + 1) & TICKET_MASK
+        # The engine may come in between any two of these: the word stands before its ticket does,
+        # and the ticket is written once, so that what the engine voids stays void.
+        self.wanted = 0
+        self.ticket = ticket
         self.wanted = stw
         self.hurry()
 
@@ -136,10 +141,6 @@ class Drive:
             and self.stops == self.stops_sent
             and self.contact
         )
-
-    def may_run(self):
-        """Whether its motor may turn: sent ON or seen running, and not seen standing since."""
-        return self._may_run or self.is_on()
 
     def stopped_by_engine(self):
         """Whether ON was wanted and the engine took it back; `stop` or `start` clear it."""
@@ -199,8 +200,9 @@ class Drive:
         put_word(net, at + PKW_COUNT + 2, self.hsw if stw & pzd.STW_ON else 0)
 
     def take(self, net, at, now):
-        """Take the words of a valid reply that stands in `net` from index `at` on."""
+        """Take the words of a valid reply that stands in `net` from index `at` on, behind ADR."""
         self._heard_at = now
+        self.answered_address = net[at - 1]
         self.silent = 0
         self._count(0)
         if not self.contact:

@@ -28,6 +28,10 @@ FAULT_NUMBER = const(947)  # r0947[0]: the number of the present fault
 USS_ADDRESS = const(2011)
 TELEGRAM_OFF_TIME = const(2014)
 
+# Parameters that are written into the EEPROM as well, always: with its next power-up the drive
+# would be where nobody looks for it.
+PERMANENT = (2010, 2011, 2012, 2013)
+
 # Parameters that must not be written without asking: the panel may lose the drive by them, or a
 # setpoint may mean something else afterwards.
 CUTS_OFF, RESCALES = range(2)

@@ -7,9 +7,7 @@ Row 1 is drawn by `panel.view`, because parameter mode shows it too.
 """
 
 from panel import state, texts
-from panel.view import draw_address
-
-FAULT_DIGITS_COLUMN = len(texts.FAULT) + 1 + len(texts.FAULT_LETTER)
+from panel.view import draw_address, draw_fault
 
 
 class Home:
@@ -34,9 +32,5 @@ class Home:
         text = state.text(control)
         screen.put(1, 0, texts.STATE_WIDTH + 1, text)
         if text is texts.FAULT:
-            control.fault.seen = True
-        if text is texts.FAULT and control.fault.number:
-            at = FAULT_DIGITS_COLUMN
-            screen.put(1, at - 1, 1, texts.FAULT_LETTER)
-            screen.digits(1, at, 4, control.fault.number)
+            draw_fault(screen, 1, len(text) + 1, control.fault)
         draw_address(screen, control)

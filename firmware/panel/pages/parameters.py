@@ -4,9 +4,9 @@
     P1000:     5 A1         the value as the drive tells it, read again and again
 
 NEXT and PREVIOUS walk the rows of PARAMETERS. EDIT freezes the value, UP and DOWN change it, EDIT
-lets it go again. SET writes it into the drive's RAM; SET held for 1.5 s writes it into the EEPROM
-as well. Between value and address: an arrow while the value is frozen, an hourglass while a write
-is on its way.
+lets it go again. SET writes it into the drive's RAM; SET held for 1.5 s, and no other key with it,
+writes it into the EEPROM as well. Between value and address: an arrow while the value is frozen,
+an hourglass while a write is on its way.
 """
 
 from micropython import const
@@ -56,11 +56,12 @@ class Parameters:
         self._edited = 0
         self._job = pkw.read(0)
         self._asked = False
-        self._stale = False  # what was asked is not what is shown any more
         self._due = True  # ask at once
         self._read_at_ms = 0
-        self._writing = False  # the value shown is on its way
-        # A SET that is held makes the write permanent once it is confirmed.
+        # What SET was pressed for: control, number, index, value.
+        self._wish = None
+        self._writing = False  # the wish is on its way
+        # A SET that is held makes a write permanent once it is confirmed.
         self._set_at_ms = None  # when it went down, None when it is up or was used up
 
     def open(self):
@@ -70,13 +71,17 @@ class Parameters:
     # --- keys -----------------------------------------------------------------------------------
 
     def take_keys(self, keys, now_ms):
+        self._look_at_selected()
+        set_key = keys.bit("SET")
+        if keys.pressed & ~set_key:
+            self._set_at_ms = None
         step = keys.moved("NEXT") - keys.moved("PREVIOUS")
         if step:
             self._row = (self._row + step) % len(PARAMETERS)
             self._forget()
         elif keys.pressed & keys.bit("EDIT"):
             self._toggle_edit(now_ms)
-        elif keys.pressed & keys.bit("SET"):
+        elif keys.pressed == set_key and set_key:  # with another key it is no clear wish
             self._set(now_ms)
         direction = keys.moved("UP") - keys.moved("DOWN")
         if direction:
@@ -103,48 +108,61 @@ class Parameters:
         if not self._editing:
             self._panel.say(texts.EDIT_FIRST, now_ms)
             return
-        number = PARAMETERS[self._row][1]
-        reason = self._why_not(number)
+        _, number, index, _ = PARAMETERS[self._row]
+        self._wish = (self._control, number, index, self._edited)
+        reason = self._why_not()
         if reason is not None:
             self._panel.say(reason, now_ms)
         elif number in profiles.ASK_FIRST:
-            text = ASK[profiles.ASK_FIRST[number]]
+            turns, choice = ASK[profiles.ASK_FIRST[number]]
+            subject = b"A%d: P%04d=%d" % (self._control.drive.address, number, self._edited)
+            text = ((subject,) + turns, choice)
             self._panel.ask(Question(self._panel, text, {"SET": self._write}, self._mask))
         else:
             self._write(now_ms)
 
-    def _why_not(self, number):
+    def _why_not(self):
+        """Why the wish is not even tried. Asked again when a question was answered."""
+        control, number, _, value = self._wish
         if number != profiles.USS_ADDRESS:
             return None
-        if self._panel.any_runs():
+        if self._panel.any_runs() or control.is_starting():
             return texts.STOP_FIRST
-        return texts.ADDRESS_TAKEN if self._panel.is_taken(self._edited) else None
+        return texts.ADDRESS_TAKEN if self._panel.is_taken(value) else None
 
     def _write(self, now_ms, eeprom=False):
-        _, number, index, _ = PARAMETERS[self._row]
-        reason = self._writer.write(self._control, number, index, self._edited, eeprom)
+        reason = self._why_not()
+        if reason is None:
+            control, number, index, value = self._wish
+            always = number in profiles.PERMANENT
+            reason = self._writer.write(control, number, index, value, eeprom or always)
         if reason is not None:
             self._panel.say(reason, now_ms)
             return
         self._writing = True
-        self._set_at_ms = None if eeprom else now_ms
+        self._set_at_ms = None if eeprom or always else now_ms
 
     # --- what goes on ---------------------------------------------------------------------------
 
     def step(self, keys, now_ms):
         """Each step of the loop while it is shown."""
-        if self._panel.selected is not self._control:
-            self._forget()
-        if not keys.down & keys.bit("SET"):
+        self._look_at_selected()
+        contact = self._control.drive.contact
+        if not contact or not keys.down & keys.bit("SET"):
             self._set_at_ms = None
+        if not contact:
+            self._value = None
+            self._due = True
         if not self._writer.busy:
             self._follow_write(now_ms)
         if self._asked:
             self._take_answer(now_ms)
-        elif self._control.drive.contact:
+        elif contact:
             self._ask(now_ms)
-        else:
-            self._value = None
+
+    def _look_at_selected(self):
+        if self._panel.selected is not self._control:
+            self._forget()
 
     def _follow_write(self, now_ms):
         if self._writing:
@@ -174,16 +192,11 @@ class Parameters:
             return
         self._asked = False
         self._read_at_ms = now_ms
-        if self._stale:
-            self._stale = False
-        elif job.state == pkw.DONE:
-            self._value = job.low
-            self._refused = False
-        elif job.state == pkw.REFUSED:
-            if not self._refused:
-                self._panel.say(refusal(job.error), now_ms)
-            self._value = None
-            self._refused = True
+        refused = job.state == pkw.REFUSED
+        if refused and not self._refused:
+            self._panel.say(refusal(job.error), now_ms)
+        self._refused = refused
+        self._value = job.low if job.state == pkw.DONE else None
 
     def _forget(self):
         """Another parameter or another drive: nothing is known of it yet, nothing is edited."""
@@ -192,9 +205,12 @@ class Parameters:
         self._refused = False
         self._editing = False
         self._writing = False
+        self._wish = None
         self._set_at_ms = None
-        self._stale = self._asked
         self._due = True
+        if self._asked:  # the drive may take its time with that one
+            self._asked = False
+            self._job = pkw.read(0)
 
     def draw(self, screen, now_ms):
         value = self._edited if self._editing else self._value

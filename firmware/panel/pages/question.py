@@ -11,20 +11,24 @@ from panel import texts
 from uss.timing import elapsed
 
 TURN_MS = const(1_500)
+STALE_MS = const(30_000)
 
 
 class Question:
     """text: (texts for row 1 in turn, text of row 2). answers: key -> function of now_ms.
 
-    mask: the clock's period - 1.
+    mask: the clock's period - 1. deaf_ms: so long after it appeared no answer counts, because
+    nobody has read it yet.
     """
 
     whole = True  # takes both rows
+    tells_state = False
     obeys = False  # the keys that act on every page do not act on this one, but for STOP
 
-    def __init__(self, panel, text, answers, mask):
+    def __init__(self, panel, text, answers, mask, deaf_ms=0):
         self._panel = panel
         self._mask = mask
+        self._deaf_ms = deaf_ms
         self._text = text
         self._answers = answers
         self._shown_at = None
@@ -32,15 +36,28 @@ class Question:
     def take_keys(self, keys, now_ms):
         if not keys.pressed:
             return
-        self._panel.close_question()
-        for key, answer in self._answers.items():
+        chosen = None
+        for key in self._answers:
             if keys.pressed == keys.bit(key):  # two keys at once are no answer
-                answer(now_ms)
+                chosen = self._answers[key]
+        if chosen is not None and self._shown_for(now_ms) < self._deaf_ms:
+            return
+        self._panel.close_question()
+        keys.forget()  # a key that said no, and is held, does nothing else
+        if chosen is not None:
+            chosen(now_ms)
 
     def draw(self, screen, now_ms):
         turns, choice = self._text
-        if self._shown_at is None:
-            self._shown_at = now_ms
-        turn = elapsed(now_ms, self._shown_at, self._mask) // TURN_MS
+        turn = self._shown_for(now_ms) // TURN_MS
         screen.put(0, 0, texts.ROW_WIDTH, turns[turn % len(turns)])
         screen.put(1, 0, texts.ROW_WIDTH, choice)
+
+    def is_stale(self, now_ms):
+        """Whether it has been there so long that whoever caused it is gone."""
+        return self._shown_for(now_ms) >= STALE_MS
+
+    def _shown_for(self, now_ms):
+        if self._shown_at is None:
+            self._shown_at = now_ms
+        return elapsed(now_ms, self._shown_at, self._mask)

@@ -7,6 +7,7 @@ class Splash:
     """Any key ends it and does nothing else, but for STOP."""
 
     whole = True
+    tells_state = False
     obeys = False
 
     def take_keys(self, keys, now_ms):
