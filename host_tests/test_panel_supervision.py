@@ -4,6 +4,7 @@ without its operator's word.
 
 import json
 
+from panel.supervision import off_time_ms
 from panel_bench import ON, panel, row_1, row_2, starts, telegrams, unsupervised
 
 OFF3 = 0x047A
@@ -427,3 +428,15 @@ def test_a_question_that_nobody_answers_goes_away():
     world.run(500)
     assert starts(world) == 0
     world.check()
+
+
+def test_the_time_that_is_offered_fits_the_bus():
+    for cycle_us, offered_ms in (
+        (0, 1000),
+        (60_000, 1000),
+        (400_000, 1300),
+        (2_000_000, 6100),
+        (21_000_000, 63_100),
+        (60_000_000, 65_000),
+    ):
+        assert off_time_ms(cycle_us) == offered_ms, off_time_ms(cycle_us)

@@ -1,12 +1,18 @@
 """The operator's panel: drives and keys on one side, two rows of sixteen characters on the other.
 
-    keys       what is down now -> pressed, repeated, held
-    control    one drive under the operator's hand: start, stop, setpoint, what to say about it
-    stop_watch whether a STOP is obeyed
-    screen     the picture of 2 x 16 characters
-    texts      every word that can be seen
-    pages      one file for each page
-    panel      the keys that act on every page, and the page that is shown
+    panel       the keys that act on every page, and the page that is shown
+    keys        what is down now -> pressed, repeated, held
+    stop_key, jog_keys          what these do while they are held
+    control     one drive under the operator's hand: start, stop, jog, reverse
+    permits     why START and JOG are refused
+    command     a START or JOG that was obeyed, and what took it back
+    setpoint, fault, stop_watch, state      what is known of a drive and said of it
+    writer      writes parameters, follows a drive to another address
+    supervision the telegram off time that is offered to a drive
+    pages       one file for each page
+    view        what is shown whatever the page is
+    screen      the picture of 2 x 16 characters
+    texts       every word that can be seen
 
 Knows no pins and no telegram bytes; time is an argument.
 """

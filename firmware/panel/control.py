@@ -14,13 +14,12 @@ The rules that keep a motor from starting by surprise and a STOP from getting lo
 from micropython import const
 
 from panel import permits, texts
+from panel.command import Command
 from panel.fault import Fault
 from panel.setpoint import Setpoint
 from panel.stop_watch import StopWatch
-from uss import profiles, pzd
-from uss.timing import elapsed
+from uss import pzd
 
-START_US = const(5_000_000)  # a drive that does not run by then is told to stop again
 SILENT_MAX = const(3)  # telegrams without an answer after which the speed is not known any more
 
 # settings.second_stop: what a held STOP sends.
@@ -36,8 +35,8 @@ class Control:
     control word of the jog that is held; `refusal`, why a key was not obeyed, to be shown once;
     `question`, START waits to be told that the drive may run unsupervised; `notice`, why the drive
     is not on any more, or None; `lost_running`, it was running when contact was lost and nobody
-    has acknowledged that; `stop_watch`, whether a STOP is obeyed; `fault`; `moved`, it has just been
-    given another address.
+    has acknowledged that; `stop_watch`, whether a STOP is obeyed; `fault`; `moving`, it is being
+    given another address; `moved`, it has been.
     """
 
     def __init__(self, drive, survey, bus, mask, settings):
@@ -46,6 +45,7 @@ class Control:
         self.setpoint = Setpoint(drive, survey, settings)
         self.stop_watch = StopWatch(drive, mask)
         self.fault = Fault(drive, mask)
+        self.moving = False
         self.moved = False
         self.reversed = False
         self.jogging = 0
@@ -53,19 +53,12 @@ class Control:
         self.question = False
         self.notice = None
         self.lost_running = False
-        self._bus = bus
-        self._mask = mask
+        self._command = Command(drive, survey, bus, mask)
         self._settings = settings
         self._now = 0
         self._contact = False  # as last seen
         self._jogged = False  # what turns, or ramps down, is a jog of this panel
-        # From START on.
         self._checking = False  # the drive is being asked before it is sent ON
-        self._started_at = 0
-        self._ran = False
-        self._contacts = 0  # drive.contacts, bus.dead_man_trips and bus.failures then
-        self._dead_man_trips = 0
-        self._failures = 0
 
     # --- what an operator does ------------------------------------------------------------------
 
@@ -76,7 +69,7 @@ class Control:
         """
         self.refusal = permits.why_not_start(self)
         if self.refusal is None and not self.is_starting():
-            self._remember()
+            self._obey()
             self._checking = True
             self.survey.recheck()
 
@@ -110,7 +103,7 @@ class Control:
         """Turn while a key is held. stw: pzd.JOG_RIGHT or JOG_LEFT. Not obeyed: `refusal`."""
         self.refusal = permits.why_not_jog(self)
         if self.refusal is None:
-            self._remember()
+            self._obey()
             self.stop_watch.end()
             self.jogging = stw
             self._jogged = True
@@ -196,11 +189,11 @@ class Control:
         if self._checking:
             self._finish_check(now)
         if drive.stopped_by_engine():
-            self.notice = self._why_stopped()
-            self.jogging = 0
-            drive.stop(drive.off)
+            self._take_back(self._command.why_stopped())
         elif drive.is_on():
-            self._watch_start(now)
+            notice = self._command.why_in_vain(self.jogging, now)
+            if notice is not None:
+                self._take_back(notice)
         if drive.off != pzd.OFF1:
             self._watch_second_stop()
         if not self.stop_watch.active and self._runs_against_off():
@@ -223,30 +216,23 @@ class Control:
     def _on(self):
         return pzd.ON_REVERSE if self.reversed else pzd.ON
 
-    def _remember(self):
-        """How things stand when a command is given, to tell later what took it back."""
+    def _obey(self):
+        """A key was obeyed: what was said of the drive is over."""
         self.notice = None
         self.question = False
-        self._contacts = self.drive.contacts
-        self._dead_man_trips = self._bus.dead_man_trips
-        self._failures = self._bus.failures
-        self._started_at = self._now
-        self._ran = False
+        self._command.give(self._now)
 
     def _finish_check(self, now):
         """ON, if the drive has told its settings and there is nothing against it."""
         refusal = permits.why_not_start(self)
         if refusal is None and self.survey.unchecked:
-            patience_us = 2 * len(profiles.SURVEY) * self._bus.patience_us
-            # A clock of a short period cannot tell more than half of it.
-            patience_us = min(patience_us, self._mask >> 2)
-            if elapsed(now, self._started_at, self._mask) < patience_us:
+            if not self._command.is_overdue(now):
                 return
             refusal = texts.REFUSED_CHECKING
         self._checking = False
         self.survey.drop_recheck()
-        if self._bus.dead_man_trips != self._dead_man_trips:
-            self.notice = texts.PANEL_HUNG  # that START is too old to be obeyed
+        if self._command.is_stale():
+            self.notice = texts.PANEL_HUNG
         elif refusal is not None:
             self.refusal = refusal
             self.notice = texts.DID_NOT_START  # the operator may look at another drive by now
@@ -254,36 +240,12 @@ class Control:
             self.question = True
             self.notice = texts.DID_NOT_START
         else:
-            self._started_at = now
+            self._command.send(now)
             self.stop_watch.end()
             self._jogged = False
             self.drive.start(self.drive.hsw, self._on())
 
-    def _why_stopped(self):
-        drive, bus = self.drive, self._bus
-        if not drive.contact or drive.contacts != self._contacts:
-            return texts.LINE_FAILED
-        if bus.dead_man_trips != self._dead_man_trips:
-            return texts.PANEL_HUNG
-        if bus.failures != self._failures:
-            return texts.ENGINE_FAILED
-        return texts.STOPPED_ITSELF
-
-    def _watch_start(self, now):
-        """ON that leads to nothing is taken back: it must not take effect minutes later. So is one
-        to a drive that listens to somebody else by now.
-        """
-        survey = self.survey
-        if permits.is_local(survey) or (
-            not self.jogging and permits.is_foreign(survey, profiles.SETPOINT_SOURCE)
-        ):
-            self._give_up(texts.TAKEN_AWAY)
-        elif self.drive.state() == pzd.RUNNING:
-            self._ran = True
-        elif not self._ran and elapsed(now, self._started_at, self._mask) >= START_US:
-            self._give_up(texts.DID_NOT_START)
-
-    def _give_up(self, notice):
+    def _take_back(self, notice):
         self.drive.stop(self.drive.off)
         self.jogging = 0
         self.notice = notice

@@ -5,9 +5,9 @@
     if keys.pressed & keys.bit("START"): ...
 
 A key counts once it has been the same for DEBOUNCE_MS; STOP goes down with the second reading, so
-that neither a slow loop nor a chattering contact loses it. A key that is down when the panel starts is
-`down`, but not `pressed` before it was seen up: a START that is jammed or leant on starts nothing,
-while a STOP that is down, or whose wire is broken, is down from the beginning.
+that neither a slow loop nor a chattering contact loses it. A key that is down when the panel
+starts is `down`, but not `pressed` before it was seen up: a START that is jammed or leant on
+starts nothing, while a STOP that is down, or whose wire is broken, is down from the beginning.
 """
 
 from micropython import const

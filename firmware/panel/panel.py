@@ -19,6 +19,7 @@ from panel.pages.question import Question
 from panel.pages.splash import Splash
 from panel.screen import Screen
 from panel.stop_key import StopKey
+from panel.supervision import off_time_ms
 from panel.view import View
 from panel.writer import Writer
 from uss import profiles
@@ -28,9 +29,6 @@ SPLASH_MS = const(800)
 DRAW_MS = const(50)
 MESSAGE_MS = const(3_000)
 READING_MS = const(1_000)  # so long a START does not answer a question: it may be a double tap
-CYCLES_MIN = const(3)  # a drive's time-out is offered as so many rounds of the bus
-OFF_TIME_MIN_MS = const(1_000)
-OFF_TIME_MAX_MS = const(65_000)
 
 
 class Panel:
@@ -66,8 +64,9 @@ class Panel:
         self._drawn_at = None
 
     def step(self, raw_keys, now_ms, now_us, unclear_keys=0):
-        """raw_keys: the keys down now, as bits; unclear_keys: those that cannot be told. Both times
-        are readings of the clock.
+        """raw_keys: the keys down now, as bits; unclear_keys: those that cannot be told.
+
+        Both times are readings of the clock.
         """
         for control in self.controls:
             control.step(now_us)
@@ -189,12 +188,10 @@ class Panel:
             self.message = None
 
     def _supervise(self, now_ms):
-        """Have the drive stop by itself when this panel falls silent, with room for bad luck."""
-        cycle_ms = CYCLES_MIN * self._bus.longest_cycle_us() // 1000
-        off_time_ms = min(max(cycle_ms + 99, OFF_TIME_MIN_MS) // 100 * 100, OFF_TIME_MAX_MS)
-        reason = self._writer.write(
-            self.selected, profiles.TELEGRAM_OFF_TIME, profiles.COM_LINK, off_time_ms, False
-        )
+        """Have the drive stop by itself when this panel falls silent."""
+        number, index = profiles.TELEGRAM_OFF_TIME, profiles.COM_LINK
+        value_ms = off_time_ms(self._bus.longest_cycle_us())
+        reason = self._writer.write(self.selected, number, index, value_ms, False)
         if reason is not None:
             self.say(reason, now_ms)
 

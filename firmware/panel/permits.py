@@ -59,6 +59,8 @@ def _why_no_command(control):
     drive, survey = control.drive, control.survey
     if not drive.contact:
         return texts.REFUSED_SILENT
+    if control.moving:
+        return texts.WRITER_BUSY
     if control.is_unsaved():
         return texts.REFUSED_UNSAVED
     if drive.state() == pzd.FAULT:

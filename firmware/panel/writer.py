@@ -75,6 +75,7 @@ class Writer:
         )
         if self._moves:
             self._phase = PROBING
+            control.moving = True
             self._go_to(value)
         else:
             self._ask()
@@ -146,6 +147,7 @@ class Writer:
 
     def _end(self, result, written):
         self._phase = IDLE
+        self._control.moving = False
         self.busy = False
         self.written = written
         self._result = result

@@ -1,0 +1,79 @@
+"""A START or a JOG that was obeyed: when that was, how things stood, and what took it back.
+
+    command = Command(drive, survey, bus, mask)
+    command.give(now)                       # the key was obeyed
+    command.send(now)                       # ON goes out from now on
+    notice = command.why_in_vain(jogs, now) # each step of the loop while it is sent; or None
+    notice = command.why_stopped()          # the engine has taken it back
+"""
+
+from micropython import const
+
+from panel import permits, texts
+from uss import profiles, pzd
+from uss.timing import elapsed
+
+START_US = const(5_000_000)  # a drive that does not run by then is told to stop again
+
+
+class Command:
+    """drive: `uss.drive.Drive`. survey: its `Survey`. bus: the `Master`. mask: of the clock."""
+
+    def __init__(self, drive, survey, bus, mask):
+        self._drive = drive
+        self._survey = survey
+        self._bus = bus
+        self._mask = mask
+        self._since = 0
+        self._ran = False
+        self._contacts = 0  # drive.contacts, bus.dead_man_trips and bus.failures when it was given
+        self._dead_man_trips = 0
+        self._failures = 0
+
+    def give(self, now):
+        self._contacts = self._drive.contacts
+        self._dead_man_trips = self._bus.dead_man_trips
+        self._failures = self._bus.failures
+        self.send(now)
+
+    def send(self, now):
+        self._since = now
+        self._ran = False
+
+    def is_stale(self):
+        """Whether the loop has hung since it was given: too old to be obeyed."""
+        return self._bus.dead_man_trips != self._dead_man_trips
+
+    def is_overdue(self, now):
+        """Whether the drive has had more time to tell all its settings than it may need."""
+        patience_us = 2 * len(profiles.SURVEY) * self._bus.patience_us
+        # A clock of a short period cannot tell more than half of it.
+        return elapsed(now, self._since, self._mask) >= min(patience_us, self._mask >> 2)
+
+    def why_stopped(self):
+        """What made the engine take it back, as a notice."""
+        drive, bus = self._drive, self._bus
+        if not drive.contact or drive.contacts != self._contacts:
+            return texts.LINE_FAILED
+        if self.is_stale():
+            return texts.PANEL_HUNG
+        if bus.failures != self._failures:
+            return texts.ENGINE_FAILED
+        return texts.STOPPED_ITSELF
+
+    def why_in_vain(self, jogs, now):
+        """Why it has to be taken back, as a notice, or None. jogs: the setpoint does not matter.
+
+        ON that leads to nothing must not take effect minutes later; nor may one to a drive that
+        listens to somebody else by now.
+        """
+        survey = self._survey
+        if permits.is_local(survey):
+            return texts.TAKEN_AWAY
+        if not jogs and permits.is_foreign(survey, profiles.SETPOINT_SOURCE):
+            return texts.TAKEN_AWAY
+        if self._drive.state() == pzd.RUNNING:
+            self._ran = True
+        elif not self._ran and elapsed(now, self._since, self._mask) >= START_US:
+            return texts.DID_NOT_START
+        return None

@@ -1,0 +1,20 @@
+"""How long a drive may wait for a telegram before it stops by itself: P2014, telegram off time.
+
+With P2014 = 0 a motor runs on for ever when the panel dies. The panel offers a time that fits its
+bus: long enough for bad luck, short enough to matter.
+
+    off_time_ms(bus.longest_cycle_us())         # 1000...65000
+"""
+
+from micropython import const
+
+CYCLES = const(3)  # rounds of the bus in which every drive answers late
+SHORTEST_MS = const(1_000)
+LONGEST_MS = const(65_000)  # P2014 goes to 65535
+STEP_MS = const(100)
+
+
+def off_time_ms(longest_cycle_us):
+    """A telegram off time for a drive, in ms, rounded up to tenths of a second."""
+    needed_ms = -(-CYCLES * (longest_cycle_us // 1000 + 1) // STEP_MS) * STEP_MS
+    return min(max(needed_ms, SHORTEST_MS), LONGEST_MS)

@@ -1,0 +1,323 @@
+"""The operator's manual: a drive is given another address, and the panel follows it."""
+
+from panel_bench import OFF1, panel, row_2, running, starts, telegrams
+from parameter_bench import (
+    ASKED,
+    edit,
+    lose_answer,
+    parameter,
+    restart_drive,
+    show,
+    stored,
+    wait_for,
+    write,
+    write_eeprom,
+    writes,
+)
+
+
+def test_a_drive_is_followed_to_its_new_address():
+    world = parameter("P2011", addresses=(1, 2))
+    write(world, 5)
+    world.run(400)
+    assert row_2(world) == "WRITTEN (EEPROM)"  # always: where would it be after its power-up?
+    world.run(3000)
+    assert row_2(world) == "P2011:     5 A5" and world.drives[1].address == 5
+    world.press("PARAM")
+    assert row_2(world) == "READY        A5"
+    world.press("START")
+    world.run(4000)
+    assert world.drives[1].state == "running" and starts(world, 2) == 0
+    world.press("STOP")
+    world.run(5000)
+    assert world.drives[1].state == "ready"
+    world.check()
+
+
+def test_every_address_of_a_drive_can_be_written():
+    for address in (0, 9, 10, 31):
+        world = parameter("P2011")
+        write(world, address)
+        world.run(3500)
+        assert row_2(world) == "P2011:    %2d A%d" % (address, address)
+        world.check()
+
+
+def test_a_drive_keeps_its_address_over_its_mains():
+    """While the panel goes on, and when it restarts as well."""
+    for restart in (False, True):
+        world = parameter("P2011")
+        write(world, 5)
+        world.run(1000)
+        assert stored(world)["drives"] == [5]
+        world.drives[1].power_off()
+        world.run(3000)
+        world.drives[1].power_on()
+        if restart:
+            world.reset()
+        world.run(10_000)
+        assert row_2(world)[13:] == "A5" and world.drives[1].address == 5
+        world.check()
+
+
+def test_an_address_in_the_eeprom_goes_into_the_settings():
+    world = panel(addresses=(1, 2), settings={"unsupervised": [1]})
+    show(world, "P2011")
+    write_eeprom(world, 5)
+    world.run(300)
+    assert row_2(world) == "WRITTEN (EEPROM)"
+    assert stored(world)["drives"] == [5, 2] and stored(world)["unsupervised"] == [5]
+    restart_drive(world)
+    world.reset()
+    world.run(2000)
+    assert row_2(world) == "READY        A5"
+    world.check()
+
+
+def test_an_address_moves_several_times_and_the_last_one_stays():
+    world = parameter("P2011")
+    for address in (5, 7):
+        write(world, address)
+        world.run(3500)
+    write_eeprom(world, 9)
+    world.run(500)
+    assert stored(world)["drives"] == [9]
+    write_eeprom(world, 1)
+    world.run(500)
+    assert stored(world)["drives"] == [1]
+    world.check()
+
+
+def test_the_address_that_it_has_may_be_written_into_the_eeprom():
+    world = parameter("P2011")
+    write_eeprom(world, 1)
+    assert row_2(world) == "WRITTEN (EEPROM)" and stored(world)["drives"] == [1]
+    world.check()
+
+
+def test_an_address_of_another_drive_is_refused():
+    world = edit(parameter("P2011", addresses=(1, 2)), 2)
+    world.press("SET")
+    assert row_2(world) == "ADDRESS IS TAKEN"
+    world.press("ADDRESS_UP")
+    world.run(500)
+    write(world, 4)
+    world.run(1000)
+    world.press("ADDRESS_DOWN")
+    world.run(500)
+    edit(world, 4)
+    world.press("SET")
+    assert row_2(world) == "ADDRESS IS TAKEN"
+    world.press("EDIT")
+    edit(world, 2)  # the other one has left it
+    world.press("SET")
+    assert row_2(world) == ASKED
+    world.check()
+
+
+def test_an_address_is_not_changed_while_the_drive_runs():
+    world = show(panel(), "P2011")
+    edit(world, 4)
+    world.press("START", 40)
+    for _ in range(2):  # it starts; it runs
+        world.press("SET", 40)
+        assert row_2(world) == "STOP ALL FIRST"
+        world.run(4000)
+    world.press("STOP")
+    world.press("SET")
+    assert row_2(world) == "STOP ALL FIRST"  # it ramps down
+    world.run(5000)
+    world.press("SET")
+    assert row_2(world) == ASKED
+    assert not writes(world)
+    world.check()
+
+
+def test_an_address_is_not_changed_when_the_drive_has_started_meanwhile():
+    """While the question stood somebody started it at its terminals."""
+    world = edit(parameter("P2011"), 4)
+    world.press("SET")
+    world.drives[1].write(700, 0, 2)
+    world.drives[1]._process.zsw = lambda: 0xFB34
+    world.run(500)
+    world.press("SET")
+    world.run(500)
+    assert world.drives[1].address == 1 and not writes(world)
+
+
+def test_an_old_answer_to_a_reading_is_no_confirmation():
+    """A drive that lags by more telegrams than the master waits for."""
+    for lag, phase_ms in ((22, 0), (25, 130), (30, 470), (45, 470)):
+        world = parameter("P2011", baud=115200)
+        world.drives[1].stale_replies = lag
+        world.run(2500 + phase_ms)
+        edit(world, 5)
+        world.press("SET")
+        world.press("SET")
+        world.run(12_000)
+        assert (world.drives[1].address,) == world.app.settings.drives, (lag, world.lcd())
+        world.check()
+
+
+def test_two_drives_never_get_the_same_address():
+    """The first one is still being written to when the second one is given its new address."""
+    for wait_ms in (0, 150, 300, 450):
+        world = edit(parameter("P2011", addresses=(1, 2)), 4)
+        world.press("SET")
+        world.run(wait_ms)
+        lose_answer(world, 2011, 4, 40)
+        world.press("ADDRESS_UP", 40)
+        world.run(500)
+        if row_2(world) != "P2011:     2 A2":
+            continue
+        edit(world, 4)
+        world.press("SET")
+        world.run(4000)
+        world.press("SET")
+        world.run(1000)
+        assert (world.drives[1].address, world.drives[2].address) == (4, 2)
+        world.check()
+
+
+def test_a_drive_whose_answer_was_lost_is_found_at_its_new_address():
+    for silent_ms in (50, 1500, 3000):
+        world = edit(parameter("P2011", parameters={2014: 20_000}), 5)
+        world.press("SET")
+        lose_answer(world, 2011, 5, silent_ms)
+        world.run(6500)
+        assert world.drives[1].address == 5
+        assert row_2(world)[13:] == "A5", (silent_ms, world.lcd())
+        world.press("PARAM")
+        world.press("START")
+        world.run(4000)
+        assert world.drives[1].state == "running" and row_2(world) == "RUNNING      A5"
+        world.check()
+
+
+def test_a_long_list_gets_time_to_find_the_drive_as_well():
+    """With 20 drives at 2400 baud a round of the bus takes more than 3 s."""
+    world = panel(addresses=tuple(range(1, 21)), baud=2400)
+    world.run(4000)
+    show(world, "P2011")
+    wait_for(world, "P2011:     1 A1", 60_000)
+    edit(world, 0)
+    world.press("SET")
+    lose_answer(world, 2011, 0, 50)
+    assert world.drives[1].address == 0
+    world.run(60_000)
+    assert row_2(world) == "P2011:     0 A0"
+
+
+def test_a_drive_that_did_not_hear_is_taken_again_at_its_old_address():
+    world = parameter("P2011", addresses=(1, 2), parameters={2014: 20_000})
+    edit(world, 5)
+    world.press("SET")
+    world.drives[1].unplug()
+    world.press("SET")
+    wait_for(world, "NO ANSWER", 15_000)
+    world.drives[1].plug()
+    world.run(5000)
+    assert row_2(world) == "P2011:     5↕A1"
+    world.press("EDIT")
+    assert row_2(world) == "P2011:     1 A1" and stored(world)["drives"] == [1, 2]
+    world.check()
+
+
+def test_an_address_that_did_not_reach_the_eeprom_does_not_get_into_the_settings():
+    """The line fails while SET is held, and comes back: nothing is claimed that is not so."""
+    for silent_ms in range(5000, 13_000, 1000):
+        world = edit(parameter("P2011", parameters={2014: 0}), 5)
+        world.press("SET")
+        world.down("SET")
+        world.run(1350)
+        world.drives[1].unplug()
+        world.run(silent_ms)
+        world.up("SET")
+        world.drives[1].plug()
+        world.run(3000)
+        claimed = stored(world)["drives"]
+        restart_drive(world)
+        assert claimed == [world.drives[1].address], (silent_ms, claimed, world.lcd())
+
+
+def test_a_drive_that_is_not_of_this_panel_is_not_taken_for_the_one_that_moved():
+    """Drive 1 did not hear that it is 5; somebody else's drive 5 answers instead."""
+    world = edit(parameter("P2011", addresses=(1, 5), settings={"drives": [1]}), 5)
+    world.press("SET")
+    world.drives[1].unplug()
+    world.press("SET")
+    world.run(3000)
+    world.press("PARAM")
+    world.press("START")
+    world.run(3000)
+    assert starts(world, 5) == 0
+    assert 5 not in [row[2][2] for row in world.wire.log.last(20) if row[1]]
+
+
+def test_stop_while_it_is_looked_whether_an_address_is_free_reaches_the_drive():
+    world = parameter("P2011", baud=2400)
+    world.run(5000)
+    edit(world, 5)
+    world.press("SET")
+    world.press("SET", 60)
+    pressed_us = world.clock.now_us
+    world.press("STOP")
+    world.run(1500)
+    assert OFF1 in [stw for _, stw in telegrams(world, pressed_us, 1)]
+    assert row_2(world) == "NOT WRITTEN" and world.drives[1].address == 1
+    world.check()
+
+
+def test_a_drive_whose_new_address_cannot_be_saved_is_not_started():
+    """The flash is full: a panel that restarts would look for it at the old address."""
+    world = parameter("P2011")
+    full(world)
+    write(world, 5)
+    world.run(1000)
+    assert world.drives[1].address == 5
+    world.press("PARAM")
+    world.press("START")
+    assert row_2(world) in ("NO: UNSAVED", "SETTINGS UNSAVED")
+    world.run(2000)
+    assert starts(world) == 0
+    world.app.board.store.replace = world.keep
+    world.run(11_000)
+    world.press("START")
+    world.run(2000)
+    assert starts(world) == 1
+    world.check()
+
+
+def full(world):
+    store = world.app.board.store
+    world.keep = store.replace
+
+    def replace(data):
+        raise OSError(28)
+
+    store.replace = replace
+
+
+def test_a_lost_drive_that_was_acknowledged_does_not_keep_the_settings_from_being_saved():
+    world = running(addresses=(1, 2), parameters={2014: 0}, settings={"unsupervised": [1, 2]})
+    world.drives[1].unplug()
+    world.run(2000)
+    assert world.reads("NO CONTACT, MAY RUN")
+    world.press("STOP")
+    world.press("ADDRESS_UP")
+    world.run(500)
+    show(world, "P2011")
+    write(world, 7)
+    world.run(2000)
+    assert stored(world)["drives"] == [1, 7]
+
+
+def test_start_and_jog_wait_until_the_address_is_written():
+    world = edit(parameter("P2011"), 5)
+    world.press("SET")
+    world.press("SET", 40)
+    world.press("START", 40)
+    assert row_2(world) == "STILL WRITING"
+    world.run(5000)
+    assert starts(world) == 0 and world.drives[1].address == 5
+    world.check()
