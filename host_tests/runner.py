@@ -26,8 +26,8 @@ PROMISES = {
     "cpython": ("cpython", 0, True),
 }
 
-# Bytes between two collections: MicroPython would fill its heap first, and take ever longer to find
-# the last holes in it.
+# Bytes between two collections: MicroPython would fill its heap first, and take ever longer to
+# find the last holes in it.
 COLLECT_AFTER = 1_000_000
 
 # Relative to the top of the tree, which is the working directory.
