@@ -3,6 +3,7 @@
 In a terminal it is another thing: test_terminal.py.
 """
 
+import json
 import os
 import subprocess
 
@@ -12,6 +13,7 @@ INTERPRETERS = "host"
 
 TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 PANEL = os.path.join(TOP, "tools", "panel")
+MICROPYTHON = os.path.join(TOP, "build", "unix64", "micropython")
 
 START_AND_STOP = """\
 wait 1000
@@ -22,6 +24,20 @@ drive 1
 press STOP
 wait 8000
 drive 1
+"""
+
+
+# With P2014 = 0 the panel asks; START takes the risk, which the settings keep.
+ACCEPTED = """\
+wait 1000
+param 1 P2014[0] 0
+press START
+wait 5000
+press START
+wait 3000
+expect RUNNING
+press STOP
+wait 8000
 """
 
 
@@ -91,6 +107,14 @@ def test_an_unknown_word_is_exit_status_2_and_names_file_and_line(tmp_path):
         (("--drives", "32", "--script", "-"), "32 is no address 0...31"),
         (("--drives", "", "--script", "-"), "nothing is no address"),
         (("--drives", "1,1", "--script", "-"), "an address stands there twice"),
+        (("--drives", ",".join(map(str, range(32))), "--script", "-"), "31 at the most"),
+        (("--keys", "loop", "--script", "-"), "keys are wired direct or matrix"),
+        (("--settings", "nowhere/settings.json", "--script", "-"), "cannot be kept"),
+        (("--settings", "", "--script", "-"), "cannot be kept"),
+        (("--settings", ".", "--script", "-"), "is no ordinary file"),
+        (("--settings", "/dev/full", "--script", "-"), "is no ordinary file"),
+        (("--settings", "/dev/null", "--script", "-"), "is no ordinary file"),
+        (("--settings", "/proc/self/mem", "--script", "-"), "cannot be kept"),  # unreadable
         (("--baud", "14400", "--script", "-"), "USS knows 300 600"),
         (("--baud", "300", "--script", "-"), "MICROMASTER 420 has no code for 300 baud"),
         (("--seed", "x", "--script", "-"), "--seed x is no number"),
@@ -144,8 +168,9 @@ def test_without_a_script_and_without_a_terminal_it_says_so():
     assert "this is no terminal: give the panel a --script" in ended.stderr
 
 
-def test_help_is_no_error():
-    ended = panel("--help")
+@pytest.mark.parametrize("word", ["--help", "-h"])
+def test_help_is_no_error(word):
+    ended = panel(word)
     assert ended.returncode == 0 and "usage: ./tools/panel" in ended.stdout
 
 
@@ -159,3 +184,121 @@ def test_a_reader_that_goes_away_is_no_crash():
             timeout=60, check=False,
         )  # fmt: skip
     assert ended.returncode == 1 and "Traceback" not in ended.stderr
+
+
+# --- the panel's settings -----------------------------------------------------------------------
+
+
+def test_settings_are_kept_from_one_run_to_the_next(tmp_path):
+    first = panel(
+        "--settings", "kept.json", "--drives", "1,2", "--baud", "9600", "--script", "-",
+        script=ACCEPTED, folder=tmp_path,
+    )  # fmt: skip
+    assert (first.returncode, first.stderr) == (0, "")
+    kept = json.loads((tmp_path / "kept.json").read_text())
+    assert (kept["drives"], kept["baud"], kept["unsupervised"]) == ([1, 2], 9600, [1])
+    second = panel(
+        "--settings", "kept.json", "--script", "-",
+        script="wait 1000\nparam 1 P2014[0] 0\npress START\nwait 3000\nexpect RUNNING\n",
+        folder=tmp_path,
+    )  # fmt: skip
+    assert (second.returncode, second.stderr) == (0, "")
+    assert os.listdir(tmp_path) == ["kept.json"]
+
+
+def test_without_settings_nothing_is_written(tmp_path):
+    assert panel("--script", "-", script=ACCEPTED, folder=tmp_path).returncode == 0
+    assert os.listdir(tmp_path) == []
+
+
+def test_a_damaged_settings_file_is_said_and_kept_aside(tmp_path):
+    kept = tmp_path / "kept.json"
+    kept.write_text('{"drives": [1], "bau')
+    words = ("--settings", str(kept), "--script", "-")
+    ended = panel(*words, script="wait 1000\nexpect SETTINGS DAMAGED\n")
+    assert (ended.returncode, ended.stderr) == (0, "")
+    assert os.listdir(tmp_path) == ["kept.json"] and kept.read_text().endswith('"bau')
+    ended = panel(*words, script="wait 1000\npress STOP\n" + ACCEPTED)
+    assert (ended.returncode, ended.stderr) == (0, "")
+    assert (tmp_path / "kept.json.bad").read_text() == '{"drives": [1], "bau'
+    assert json.loads(kept.read_text())["unsupervised"] == [1]
+
+
+def test_settings_in_a_pipe_are_refused_and_nobody_waits(tmp_path):
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    ended = panel("--settings", str(pipe), "--script", "-", script="wait 1\n")
+    assert ended.returncode == 2 and "is no ordinary file" in ended.stderr
+
+
+def test_settings_that_name_other_drives_than_are_simulated_are_pointed_out(tmp_path):
+    kept = tmp_path / "kept.json"
+    kept.write_text('{"drives": [5, 6]}')
+    words = ("--settings", str(kept), "--script", "-")
+    ended = panel(*words, "--drives", "1,2", script="wait 3000\nexpect NO CONTACT A5\n")
+    assert ended.returncode == 0
+    said = "panel: by %s the panel looks for drives 5,6; there are 1,2\n" % kept
+    assert ended.stderr == said
+    ended = panel(*words, "--drives", "6,5", script="wait 1000\nexpect READY A5\n")
+    assert (ended.returncode, ended.stderr) == (0, "")
+    assert kept.read_text() == '{"drives": [5, 6]}'
+
+
+def test_a_baud_rate_that_is_not_that_of_the_settings_is_refused(tmp_path):
+    kept = tmp_path / "kept.json"
+    kept.write_text('{"baud": 9600}')
+    ended = panel("--settings", str(kept), "--baud", "19200", "--script", "-")
+    assert ended.returncode == 2 and "--baud 19200: %s says 9600" % kept in ended.stderr
+    kept.write_text('{"baud": 300}')
+    ended = panel("--settings", str(kept), "--script", "-")
+    assert ended.returncode == 2 and "has no code for 300 baud" in ended.stderr
+    ended = panel("--settings", str(tmp_path / "new.json"), "--baud", "300", "--script", "-")
+    assert ended.returncode == 2 and not (tmp_path / "new.json").exists()
+
+
+def test_keys_in_a_matrix_work_as_well():
+    script = START_AND_STOP + "press UP\nwait 100\nexpect S: 10.1\n"
+    ended = panel("--keys", "matrix", "--script", "-", script=script)
+    assert (ended.returncode, ended.stderr) == (0, "")
+    assert ended.stdout.splitlines()[1] == "|RUNNING      A1 |"
+
+
+# --- a firmware that fails ----------------------------------------------------------------------
+
+FAILING = """
+from app import App
+
+def start(board):
+    app = App(board)
+    app.start()
+    steps = [0]
+    step = app.step
+
+    def fail():
+        steps[0] += 1
+        if steps[0] > %d:
+            raise %s
+        step()
+
+    app.step = fail
+    if %d < 0:
+        fail()
+    return app
+"""
+
+
+@pytest.mark.parametrize("steps", [-1, 200])
+@pytest.mark.parametrize(
+    "error", ["ValueError('x')", "KeyError('x')", "OSError(5)", "AssertionError('x')"]
+)
+def test_a_crash_of_the_firmware_shows_where_and_has_a_status_of_its_own(tmp_path, error, steps):
+    (tmp_path / "main.py").write_text(FAILING % (steps, error, steps))
+    ended = subprocess.run(
+        [MICROPYTHON, "-X", "heapsize=16M", os.path.join(TOP, "tools", "virtual_panel.py")]
+        + ["--script", "-"],
+        input="wait 1000\nlcd\n", capture_output=True, text=True, timeout=60, check=False,
+        env={**os.environ, "MICROPYPATH": "%s:%s:%s/firmware:.frozen" % (tmp_path, TOP, TOP)},
+    )  # fmt: skip
+    assert ended.returncode == 4 and ended.stdout == ""
+    assert "Traceback" in ended.stderr and ", in fail" in ended.stderr
+    assert error.split("(")[0] in ended.stderr and "standard input:" not in ended.stderr

@@ -164,6 +164,31 @@ def test_what_cannot_be_understood_names_script_and_line_and_does_nothing():
         assert said in message, (line, message)
 
 
+def test_what_the_firmware_raises_is_no_mistake_of_the_script():
+    for error in (ValueError("x"), KeyError("x"), AssertionError("x"), OSError(28)):
+        for line in ("wait 10", "press UP", "hold UP 50", "hang 5000", "reset"):
+            session = Session()
+            session.do("wait 1000")
+
+            def fail(error=error):
+                raise error
+
+            session.world.app.step = fail
+            session.world._start = lambda board: fail()
+            try:
+                session.do(line)
+            except Exception as raised:
+                assert raised is error, (line, raised)
+                continue
+            raise AssertionError("swallowed: " + line)
+
+
+def test_a_drive_that_is_off_cannot_trip():
+    session = Session()
+    session.world.drives[1].power_off()
+    assert "drive 1 is off (use: fault A F0001)" in session.refused("fault 1 F0001")
+
+
 def test_the_line_number_is_that_of_the_script():
     session = Session()
     try:

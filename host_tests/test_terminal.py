@@ -86,7 +86,9 @@ class Screen:
             assert 1 <= row <= self.rows and column == 1, parameters
             self.row, self.column = row - 1, 0
         elif final == "K":
-            self.cells[self.row][self.column :] = [" "] * (self.columns - self.column)
+            # After a character in the last column the cursor still stands on it.
+            column = min(self.column, self.columns - 1)
+            self.cells[self.row][column:] = [" "] * (self.columns - column)
         elif final == "J":
             self.clear()
         else:
@@ -104,10 +106,11 @@ class Screen:
 class Terminal:
     """A terminal in which a program runs: ./tools/panel, with options, or another one."""
 
-    def __init__(self, *options, rows=24, columns=80, program=None, **environment):
+    def __init__(self, *options, rows=24, columns=80, program=None, discipline="0", **environment):
         self.master, self.slave = os.openpty()
         self.resize(rows, columns)
-        self.before = termios.tcgetattr(self.slave)
+        subprocess.run(["stty", "line", discipline], stdin=self.slave, check=True)
+        self.before = self.settings()
         environment = {**os.environ, "LC_ALL": "C.UTF-8", **environment}
         self.process = subprocess.Popen(
             program or [PANEL, *options],
@@ -118,6 +121,13 @@ class Terminal:
     def resize(self, rows, columns):
         self.screen = Screen(rows, columns)
         fcntl.ioctl(self.slave, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
+
+    def settings(self):
+        """All of them: Python knows no line discipline."""
+        listed = subprocess.run(
+            ["stty", "-a"], stdin=self.slave, capture_output=True, text=True, check=True
+        ).stdout
+        return re.sub("(rows|columns) [0-9]+", "", listed), termios.tcgetattr(self.slave)
 
     def type(self, text):
         os.write(self.master, text.encode())
@@ -145,7 +155,7 @@ class Terminal:
         return self.process.returncode
 
     def is_as_before(self):
-        assert termios.tcgetattr(self.slave) == self.before
+        assert self.settings() == self.before
         assert self.screen.cursor and self.screen.wraps and not self.screen.second
         return True
 
@@ -211,6 +221,56 @@ def test_a_capital_holds_a_jog_and_lets_go_of_it(terminal):
     panel.shows_no_more("HELD")
 
 
+@pytest.mark.parametrize("pieces", [("\x1b ",), ("\x1b", " "), ("\x1b[", " ")])
+def test_space_right_after_esc_stops_the_drive(terminal, pieces):
+    panel = terminal()
+    panel.shows("READY        A1")
+    panel.type("s")
+    panel.shows("RUNNING      A1")
+    for piece in pieces:
+        panel.type(piece)
+    panel.shows("READY        A1")
+
+
+def test_stop_and_ctrl_c_do_not_wait_for_a_command(terminal):
+    panel = terminal()
+    panel.shows("READY        A1")
+    panel.type("s")
+    panel.shows("RUNNING      A1")
+    panel.type(":wait 600000\r")
+    panel.shows("waiting, 599 s left")
+    panel.type(" ")
+    panel.shows("ended early: wait 600000")
+    panel.shows("READY        A1")
+    panel.type(":hang 600000\r")
+    panel.shows("hang 600000")
+    panel.type("\x03")
+    assert panel.ends() == 130 and panel.is_as_before()
+
+
+def test_help_and_quit_may_be_typed_after_a_colon(terminal):
+    panel = terminal()
+    panel.shows("READY")
+    panel.type(":help\r")
+    panel.shows("press hold down up wait")
+    panel.type(":quit\r")
+    assert panel.ends() == 0 and panel.is_as_before()
+
+
+@pytest.mark.parametrize("discipline", ["0", "5"])
+@pytest.mark.parametrize("ending", ["q", "\x03", signal.SIGKILL])
+def test_the_line_discipline_stays_as_it_was(terminal, discipline, ending):
+    panel = terminal(discipline=discipline)
+    panel.shows("READY")
+    assert "line = %s;" % discipline in panel.before[0]
+    if ending == signal.SIGKILL:
+        os.kill(panel.program(), ending)
+    else:
+        panel.type(ending)
+    panel.ends()
+    assert panel.is_as_before()
+
+
 def test_a_held_key_is_let_go_by_esc(terminal):
     panel = terminal()
     panel.shows("READY")
@@ -254,7 +314,7 @@ def speed_shown(panel):
 def test_ctrl_c_leaves_the_terminal_as_it_was(terminal):
     panel = terminal()
     panel.shows("READY")
-    assert termios.tcgetattr(panel.slave) != panel.before
+    assert panel.settings() != panel.before
     panel.type("\x03")
     assert panel.ends() == 130 and panel.is_as_before()
     assert "ended by Ctrl-C" in panel.screen.text()
@@ -338,7 +398,8 @@ def test_an_exception_is_shown_on_a_terminal_as_it_was(terminal):
     )
     panel.shows("READY")
     panel.type("s")
-    assert panel.ends() == 1 and panel.is_as_before()
+    # Without ./tools/panel, which sets the line discipline right.
+    assert panel.ends() == 1 and termios.tcgetattr(panel.slave) == panel.before[1]
     assert "RuntimeError: on purpose" in panel.screen.text()
     assert "stopped [True]" in panel.screen.text()
 
@@ -359,12 +420,30 @@ def test_a_script_works_in_a_terminal_too(terminal, tmp_path):
 
 def test_a_small_terminal_shows_what_fits_and_says_so(terminal):
     panel = terminal(rows=12, columns=60)
-    panel.shows("60 x 12 is too small: the panel needs 79 x 24")
+    panel.shows("q quits. 60 x 12 is too small: the panel needs 79 x 24")
     panel.shows("READY        A1")
     panel.resize(24, 80)
     panel.shows("telegrams:")
     panel.shows("READY        A1")
     assert "too small" not in panel.screen.text()
+
+
+@pytest.mark.parametrize("columns", [62, 79, 80, 200])
+def test_no_column_is_lost(terminal, columns):
+    whole = " small letter: tap  CAPITAL: hold  Esc: let go  space: STOP  : command  q: quit"
+    panel = terminal(columns=columns)
+    panel.shows("telegrams:")
+    panel.waits(lambda: panel.screen.lines()[6] == whole[:columns].rstrip(), whole[:columns])
+
+
+def test_settings_that_name_other_drives_are_pointed_out(terminal, tmp_path):
+    kept = tmp_path / "settings.json"
+    kept.write_text('{"drives": [5, 6]}')
+    panel = terminal("--settings", str(kept), "--drives", "1,2")
+    panel.shows("the panel looks for drives 5,6; there are 1,2")
+    panel.shows("NO CONTACT   A5")
+    panel.type("q")
+    assert panel.ends() == 0 and panel.is_as_before()
 
 
 def test_many_drives_fit_the_screen(terminal):

@@ -25,7 +25,9 @@ PLAIN = "\x0f"
 
 OPEN = "\x1b[?1049h\x1b[?25l\x1b[?7l\x1b[2J"  # second screen, no cursor, no wrapping of lines
 CLOSE = "\x1b[0m\x1b[?7h\x1b[?25h\x1b[?1049l"
-LINE = "\x1b[%d;1H%s\x1b[0m\x1b[K"  # go there, write, plain again, clear what is left
+# Go there, clear it, write, plain again. Clearing comes first: after a character in the last
+# column the cursor still stands on it.
+LINE = "\x1b[%d;1H\x1b[K%s\x1b[0m"
 REVERSED = "\x1b[7m"
 NORMAL = "\x1b[27m"
 
@@ -39,6 +41,7 @@ READ_MAX = 64  # a paste is taken in pieces
 ARROWS = {b"\x1b[A": "UP", b"\x1b[B": "DOWN", b"\x1b[C": "RIGHT", b"\x1b[D": "LEFT"}
 ESCAPE = "ESCAPE"
 OTHER = "OTHER"  # a key that has no name here
+SPACE, DELETE = 0x20, 0x7F  # this one, and all up to that one, are no part of a key's sequence
 ESCAPE_MS = 60  # an escape sequence that was cut in two, as by ssh, is together again by then
 SEQUENCE_MAX = 16
 
@@ -66,7 +69,7 @@ class Terminal:
         try:
             self._write(CLOSE)
             termios.tcsetattr(0, FLUSH, settings)
-        except OSError:
+        except (EOFError, OSError):
             pass  # it has gone: there is nothing to restore
 
     def read(self, wait_ms):
@@ -83,7 +86,7 @@ class Terminal:
         return typed
 
     def draw(self, lines):
-        """Show these lines from the top; only those that differ are written."""
+        """Show these lines from the top; those that differ are written. EOFError: as `read`."""
         pieces = []
         for row, line in enumerate(lines):
             if row >= len(self._shown) or self._shown[row] != line:
@@ -107,11 +110,18 @@ class Terminal:
         return rows or USUAL_ROWS, columns or USUAL_COLUMNS
 
     def _write(self, text):
-        sys.stdout.write(text)
+        try:
+            sys.stdout.write(text)
+        except OSError:
+            raise EOFError
 
 
 class Strokes:
-    """From bytes to strokes: a character, "UP" ... for the arrows, ESCAPE, or OTHER."""
+    """From bytes to strokes: a character, "UP" ... for the arrows, ESCAPE, or OTHER.
+
+    Nothing that is typed after Esc is lost for that: what begins no sequence is a stroke of its
+    own, and a space or a control character ends every sequence.
+    """
 
     def __init__(self):
         self._sequence = b""  # the beginning of an escape sequence
@@ -124,33 +134,33 @@ class Strokes:
             strokes.append(ESCAPE if self._sequence == b"\x1b" else OTHER)
             self._sequence = b""
         for byte in typed:
-            stroke = self._take(byte, now_ms)
-            if stroke:
-                strokes.append(stroke)
+            self._take(byte, now_ms, strokes)
         return strokes
 
-    def _take(self, byte, now_ms):
+    def _take(self, byte, now_ms, strokes):
+        if self._sequence and not self._goes_on(byte):
+            strokes.append(ESCAPE if self._sequence == b"\x1b" else OTHER)
+            self._sequence = b""
         if self._sequence:
-            return self._continue(byte)
-        if byte == 0x1B:
+            self._continue(byte, strokes)
+        elif byte == 0x1B:
             self._sequence = b"\x1b"
             self._began_ms = now_ms
-            return None
-        if byte < 0x80:
-            return chr(byte)
-        return OTHER if byte >= 0xC0 else None  # once for a character of several bytes
+        elif byte < 0x80:
+            strokes.append(chr(byte))
+        elif byte >= 0xC0:  # once for a character of several bytes
+            strokes.append(OTHER)
 
-    def _continue(self, byte):
-        sequence = self._sequence + bytes((byte,))
-        if len(sequence) == 2:
-            if byte == 0x1B:
-                return ESCAPE  # and the second one may begin a sequence
-            going_on = byte in b"[O"
-        else:
-            # The Linux console has one [ more in its function keys.
-            going_on = byte < 0x40 or sequence == b"\x1b[["
-        if going_on and len(sequence) < SEQUENCE_MAX:
-            self._sequence = sequence
-            return None
-        self._sequence = b""
-        return ARROWS.get(sequence.replace(b"\x1bO", b"\x1b["), OTHER)
+    def _goes_on(self, byte):
+        if self._sequence == b"\x1b":
+            return byte in b"[O"
+        return byte > SPACE and byte != DELETE
+
+    def _continue(self, byte, strokes):
+        self._sequence += bytes((byte,))
+        sequence = self._sequence
+        # The Linux console has one [ more in its function keys.
+        going_on = len(sequence) == 2 or byte < 0x40 or sequence == b"\x1b[["
+        if not going_on or len(sequence) >= SEQUENCE_MAX:
+            self._sequence = b""
+            strokes.append(ARROWS.get(sequence.replace(b"\x1bO", b"\x1b["), OTHER))

@@ -2,14 +2,16 @@
 
     live(world, speed=1)        # until q, Ctrl-C or the terminal's end
 
-It joins the pieces: `terminal` (bytes and lines), `hand` (keys), `panel_picture` (what is shown).
+It joins the pieces: `terminal` (bytes and lines), `hand` (keys), `errand` (commands that take
+time), `panel_picture` (what is shown).
 Whatever ends it, the drives are stopped and the terminal is as it was before.
 """
 
 import os
 import time
 
-from boards.sim.script import ExpectationFailed, Script, ScriptError
+from boards.sim.script import ORDER, ExpectationFailed, Script, ScriptError
+from tools.errand import ERRANDS, Errand
 from tools.hand import LETTERS, STOP, Hand
 from tools.panel_picture import COLUMNS, SAID_ROWS, Picture, fitted
 from tools.terminal import ESCAPE, Strokes, Terminal
@@ -28,22 +30,29 @@ CTRL_C, CTRL_D, CTRL_U = "\x03", "\x04", "\x15"
 BACKSPACES = ("\x08", "\x7f")
 ENTERS = ("\r", "\n")
 COMMAND_MAX = 70
-PASS_MAX_MS = 60_000  # a command that lets more time pass would leave the keys unheard too long
-PASSING = ("wait", "hold", "hang")
-KEY_COMMANDS = ("press", "hold", "down", "up")
+KEY_COMMANDS = ("down", "up")
+QUITS = ("quit", "q")
+HELP = (
+    " ".join(ORDER),
+    "and help, quit; a command that misses something says how it is used",
+)
+WAITING = "waiting, %d s left (space: STOP, Esc: no further): %s"
 
 KEYS = {letter: key for letter, key in LETTERS}
 KEYS.update({" ": STOP, "UP": "UP", "DOWN": "DOWN", "RIGHT": "NEXT", "LEFT": "PREVIOUS"})
 
 
-def live(world, speed):
-    """Run until somebody leaves; then stop the drives. KeyboardInterrupt: that was by Ctrl-C."""
+def live(world, speed, said=()):
+    """Run until somebody leaves; then stop the drives. KeyboardInterrupt: that was by Ctrl-C.
+
+    said: lines for the person, until the first stroke.
+    """
     terminal = Terminal()
-    session = Session(world, shows_boxes(os.getenv))
+    session = Session(world, shows_boxes(os.getenv), said)
     there = True
     try:
         terminal.open()
-        run(session, terminal, Pace(world, session.hand, speed, time))
+        run(session, terminal, Pace(world.clock, session, speed, time))
     except EOFError:
         there = False
     finally:
@@ -80,16 +89,18 @@ def run(session, terminal, pace):
 class Pace:
     """Lets the world's time follow real time, so many times as fast.
 
-    time: has ticks_us and ticks_diff. now_ms: real time since the beginning. speed: the true one.
-    late: the machine is too slow. What it does not manage is dropped, never made up for.
+    clock: of the world. session: has a `hand`, and `run` for the world. time: has ticks_us and
+    ticks_diff. now_ms: real time since the beginning. speed: the true one. late: the machine is
+    too slow. What it does not manage is dropped, never made up for.
     """
 
-    def __init__(self, world, hand, speed, time):
+    def __init__(self, clock, session, speed, time):
         self.now_ms = 0
         self.speed = speed
         self.late = False
-        self._world = world
-        self._hand = hand
+        self._clock = clock
+        self._run = session.run
+        self._hand = session.hand
         self._wanted = speed
         self._ticks_us = time.ticks_us
         self._ticks_diff = time.ticks_diff
@@ -97,11 +108,11 @@ class Pace:
         self._rest_us = 0  # real time that is no whole millisecond yet
         self._owed_us = 0  # of the world's time
         self._measured_ms = 0
-        self._measured_us = world.clock.now_us
+        self._measured_us = clock.now_us
 
     def follow(self):
         """Let as much time pass in the world as has really passed since the last call."""
-        clock = self._world.clock
+        clock = self._clock
         began_us = self._ticks_us()
         real_us = self._ticks_diff(began_us, self._seen_us)
         self._seen_us = began_us
@@ -117,7 +128,7 @@ class Pace:
                 self._owed_us = 0
                 break
             before_us = clock.now_us
-            self._world.run(SLICE_MS)
+            self._run(SLICE_MS)
             self._owed_us -= clock.now_us - before_us
             self._hand.step(self.now_ms)
         self._measure()
@@ -125,7 +136,7 @@ class Pace:
     def _measure(self):
         passed_ms = self.now_ms - self._measured_ms
         if passed_ms >= SPEED_MS:
-            world_us = self._world.clock.now_us
+            world_us = self._clock.now_us
             self.speed = (world_us - self._measured_us) / (passed_ms * 1000)
             self._measured_ms = self.now_ms
             self._measured_us = world_us
@@ -134,15 +145,18 @@ class Pace:
 class Session:
     """What a person does to the world, and sees of it, whatever the terminal: strokes and lines.
 
-    left: the person wants to go. command: what is being typed after `:`, or None. said: up to two
-    lines for the person, until the next stroke.
+    left: the person wants to go. command: what is being typed after `:`, or None. errand: the
+    command that lets time pass now, or None. said: up to two lines for the person, until the next
+    stroke.
     """
 
-    def __init__(self, world, boxes):
+    def __init__(self, world, boxes, said=()):
         self.hand = Hand(world)
         self.left = False
         self.command = None
+        self.errand = None
         self.said = []
+        self._begun = ""  # the command that the errand is
         self._world = world
         self._picture = Picture(world, self.hand, boxes)
         self._script = Script(world, "keyboard", self._print)
@@ -151,6 +165,17 @@ class Session:
         self._telegrams_ms = -TELEGRAMS_MS
         self._broken = ""
         self._checked_ms = 0
+        for line in said:
+            self._print(line)
+
+    def run(self, ms):
+        """Let so much of the world's time pass, or less, when a command is over before that."""
+        if not self.errand:
+            self._world.run(ms)
+            return
+        self.errand.run(ms)
+        if not self.errand.left_us():
+            self._end_errand("done: ")
 
     def take(self, stroke, now_ms):
         """One stroke, as `Strokes` names them; now_ms is real time. KeyboardInterrupt: Ctrl-C."""
@@ -161,6 +186,8 @@ class Session:
             self._type(stroke, now_ms)
         elif stroke in ("q", CTRL_D):
             self.left = True
+        elif self.errand:
+            self._interrupt(stroke, now_ms)
         elif stroke == ":":
             self.command = ""
         elif stroke == ESCAPE:
@@ -179,8 +206,15 @@ class Session:
         if now_ms - self._checked_ms >= CHECK_MS:
             self._checked_ms = now_ms
             self._check()
-        said = self.said if self.command is None else [":" + self.command + "_"]
-        return self._picture.lines(self._telegrams, said, self._broken, speed)
+        return self._picture.lines(self._telegrams, self._bottom(), self._broken, speed)
+
+    def _bottom(self):
+        if self.command is not None:
+            return [":" + self.command + "_"]
+        if self.errand:
+            seconds = -(-self.errand.left_us() // 1_000_000)
+            return [WAITING % (seconds, self._begun)] + self.said[-1:]
+        return self.said
 
     def _press(self, stroke, now_ms):
         small = stroke.lower() if len(stroke) == 1 else stroke
@@ -193,13 +227,29 @@ class Session:
         elif not self.hand.tap(key):
             self.said = ["too fast: this %s was left out" % key]
 
+    def _interrupt(self, stroke, now_ms):
+        """A stroke while a command lets time pass: STOP and Esc end that, the others wait."""
+        if stroke == ESCAPE:
+            self.hand.let_go()
+        elif KEYS.get(stroke.lower()) == STOP:
+            self._press(stroke, now_ms)  # before the command lets go of its key
+        else:
+            self.said = ["a key has to wait until the command is done"]
+            return
+        self._end_errand("ended early: ")
+
+    def _end_errand(self, how):
+        self.errand.end()
+        self.errand = None
+        self._print(how + self._begun)
+
     def _type(self, stroke, now_ms):
         command = self.command
         if stroke == ESCAPE or stroke in ENTERS:
             self.command = None
             if stroke in ENTERS:
                 self._do(command)
-        elif stroke == " " and not command:  # a space is STOP, and no command begins with one
+        elif stroke == " " and command[-1:] in ("", " "):  # no command needs it: it is STOP
             self.command = None
             self._press(stroke, now_ms)
         elif stroke in BACKSPACES:
@@ -210,21 +260,32 @@ class Session:
             self.command = command + stroke
 
     def _do(self, command):
-        """One line of the script language; what it prints, or what is wrong with it, is said."""
-        words = command.split("#")[0].split()
-        if not words:
-            return
-        if words[0] in PASSING and words[-1].isdigit() and int(words[-1]) > PASS_MAX_MS:
-            self._print("%s: %d ms at the most" % (words[0], PASS_MAX_MS))
-            return
+        """What was typed after `:`; what it prints, or what is wrong with it, is said."""
+        word = command.split("#")[0].strip()
+        if word == "help":
+            self.said = list(HELP)
+        elif word in QUITS:
+            self.left = True
+        elif word:
+            self._obey(command)
+
+    def _obey(self, command):
+        """One line of the script language."""
         try:
-            self._script.run([command])
-        except (ScriptError, ExpectationFailed) as error:
-            for line in str(error).split("\n")[:SAID_ROWS]:
-                self._print(line)
-            return
-        if words[0] in KEY_COMMANDS:
-            self.hand.fix(words[1], words[0] == "down")
+            name, values = self._script.understood(command)
+            if name in ERRANDS:
+                self._begun = command
+                self.errand = Errand(self._world, self.hand, name, values)
+                return
+            self._script.do(name, values)
+            if name in KEY_COMMANDS:
+                self.hand.fix(values[0], name == "down")
+        except ScriptError as error:
+            self._print(str(error))
+        except ExpectationFailed as error:
+            wrong, row_1, row_2 = str(error).split("\n")
+            self._print(wrong)
+            self._print(row_1 + " " + row_2)
         if not self.said:
             self._print("done: " + command)
 

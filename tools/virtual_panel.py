@@ -1,7 +1,8 @@
 """What ./tools/panel runs: the panel's firmware on the virtual board, live or driven by a script.
 
 Runs on MicroPython. Exit status: 0, 1 when an expectation failed or a rule of the line was broken,
-2 when the command line or a script cannot be understood, 130 after Ctrl-C.
+2 when the command line or a script cannot be understood, 4 with a traceback when the firmware or
+the simulation failed, 130 after Ctrl-C.
 """
 
 import gc
@@ -9,11 +10,12 @@ import os
 import sys
 
 import main
+from boards.sim import mm420
 from boards.sim.script import ExpectationFailed, Script, ScriptError
 from boards.sim.board import WIRINGS
 from boards.sim.world import World
 from hal.store import FileStore
-from settings import load
+from settings import load, save
 from tools.terminal_panel import live
 from uss.telegram import NODE_MAX
 from uss.timing import BAUD_RATES
@@ -33,9 +35,12 @@ except ImportError:  # MicroPython's os has none: asking for the terminal's sett
 
 
 BYTE_ORDER_MARK = "\ufeff"  # some editors begin a text with it
+ENOENT = 2
 EPIPE = 32  # not in MicroPython's errno
+KIND, ORDINARY = 0xF000, 0x8000  # of a file, in its mode
 FAILED = 1
 NOT_UNDERSTOOD = 2
+CRASHED = 4  # 3 is that of the wrapper: no MicroPython
 INTERRUPTED = 130
 SPEED_MAX = 100
 # Bytes between two collections. Left alone, MicroPython fills the heap first, and takes ten times
@@ -49,17 +54,23 @@ usage: ./tools/panel [--speed N] [--drives 1,2,5] [--baud 19200] [--settings FIL
   --speed N       in a terminal: time passes N times as fast, 1...100 (1)
   --script FILE   do the commands in FILE, or from standard input (-), in virtual time
   --drives LIST   addresses of the simulated drives, 0...31 (1, or those of the settings)
-  --baud RATE     baud rate of the line (19200, or that of the settings)
-  --settings FILE keep the panel's settings in FILE; otherwise they end with the program
+  --baud RATE     baud rate of the line and its drives (19200, or that of the settings)
+  --settings FILE keep the panel's settings in FILE; otherwise they end with the program. The panel
+                  looks for the drives in FILE, whichever --drives simulates
   --keys WIRING   direct: each key has a pin of its own; matrix: all but START and STOP (direct)
   --seed N        other reply delays and loop times; 0 is the plain world (0)
   --polled        no receive interrupt: the link is polled
+  -h, --help      this text
 The simulated drive knows the rates from 1200 to 115200.
 Without --script, in a terminal: the live panel. It shows its keys; q ends it."""
 
 
 class UsageError(Exception):
-    pass
+    """The command line asks for something that cannot be."""
+
+
+class StreamError(Exception):
+    """Standard input or output failed; args[0] is the OSError."""
 
 
 def addresses(word):
@@ -70,6 +81,8 @@ def addresses(word):
     numbers = tuple(int(address) for address in listed)
     if len(set(numbers)) < len(numbers):
         raise UsageError("--drives %s: an address stands there twice" % word)
+    if len(numbers) > NODE_MAX:
+        raise UsageError("--drives %s: %d at the most" % (word, NODE_MAX))
     return numbers
 
 
@@ -77,7 +90,13 @@ def baud_rate(word):
     if not word.isdigit() or int(word) not in BAUD_RATES:
         rates = " ".join(str(rate) for rate in BAUD_RATES)
         raise UsageError("--baud %s: USS knows %s" % (word, rates))
-    return int(word)
+    return known_to_drives(int(word))
+
+
+def known_to_drives(baud):
+    if baud not in mm420.BAUD_CODES.values():
+        raise UsageError("a %s has no code for %d baud" % (mm420.NAME, baud))
+    return baud
 
 
 def number(word):
@@ -109,6 +128,7 @@ OPTIONS = {
     "--seed": ("seed", 0, number),
     "--polled": ("polled", False, None),
     "--help": ("help", False, None),
+    "-h": ("help", False, None),
 }
 
 
@@ -133,27 +153,60 @@ def options(words):
 
 
 def world_of(chosen):
-    """The virtual world that the options ask for. UsageError when there is no such drive."""
-    store = None
+    """The virtual world that the options ask for, and what the person should know of it: lines.
+
+    UsageError: there is no such drive, or the settings cannot be kept.
+    """
+    store, kept = None, None
     drives, baud = chosen["drives"], chosen["baud"]
+    if chosen["settings"] is not None:
+        try:
+            store, kept = store_of(chosen["settings"], drives, baud)
+        except OSError as error:
+            raise UsageError("--settings %s: cannot be kept (%s)" % (chosen["settings"], error))
+        drives = drives or kept.drives
+        if baud not in (None, kept.baud):
+            raise UsageError("--baud %d: %s says %d" % (baud, chosen["settings"], kept.baud))
+        baud = known_to_drives(kept.baud)
+    drives = drives or (1,)
+    world = World(
+        main.start,
+        drives,
+        baud or 19200,
+        seed=chosen["seed"],
+        polled=chosen["polled"],
+        keys=chosen["keys"],
+        store=store,
+    )
+    return world, difference(chosen["settings"], kept.drives, drives) if kept else []
+
+
+def store_of(path, drives, baud):
+    """The store in this file, and the settings in it. A new file gets these drives and this rate.
+
+    OSError: it cannot be read or written. UsageError: it is a folder, a pipe or the like, which
+    could keep the panel waiting for ever.
+    """
+    store = FileStore(path, open, os)
     try:
-        if chosen["settings"] is not None:
-            store = FileStore(chosen["settings"], open, os)
-            kept = load(store)
-            drives, baud = drives or kept.drives, baud or kept.baud
-        return World(
-            main.start,
-            drives or (1,),
-            baud or 19200,
-            seed=chosen["seed"],
-            polled=chosen["polled"],
-            keys=chosen["keys"],
-            store=store,
-        )
-    except ValueError as error:
-        raise UsageError(error)
+        if os.stat(path)[0] & KIND != ORDINARY:
+            raise UsageError("--settings %s: is no ordinary file" % path)
     except OSError as error:
-        raise UsageError("--settings %s: cannot be kept (%s)" % (chosen["settings"], error))
+        if error.args[0] != ENOENT:
+            raise
+        new = load(store)
+        new.drives, new.baud = drives or new.drives, baud or new.baud
+        save(store, new)
+    store.read()  # what `load` would make the best of is an error here
+    return store, load(store)
+
+
+def difference(path, kept, drives):
+    """What the person should know where the settings name other drives than are simulated."""
+    if sorted(kept) == sorted(drives):
+        return []
+    kept, drives = (",".join(map(str, some)) for some in (kept, drives))
+    return ["by %s the panel looks for drives %s; there are %s" % (path, kept, drives)]
 
 
 def lines_of(name):
@@ -175,13 +228,22 @@ def standard_input():
             line = sys.stdin.readline()
         except UnicodeError:
             raise UsageError("standard input is no text")
+        except OSError as error:
+            raise StreamError(error)
         if not line:
             return
         yield line
 
 
+def show(line):
+    try:
+        print(line)
+    except OSError as error:
+        raise StreamError(error)
+
+
 def run_script(world, name):
-    Script(world, "standard input" if name == "-" else name).run(lines_of(name))
+    Script(world, "standard input" if name == "-" else name, show).run(lines_of(name))
 
 
 def panel(words):
@@ -189,32 +251,46 @@ def panel(words):
     try:
         chosen = options(words)
         if chosen["help"]:
-            print(USAGE)
+            show(USAGE)
             return 0
         if chosen["script"] is None and not (isatty(0) and isatty(1)):
             raise UsageError("this is no terminal: give the panel a --script FILE, or --script -")
-        world = world_of(chosen)
+        world, said = world_of(chosen)
+        for line in said:
+            complain(line)
         if chosen["script"] is None:
-            live(world, chosen["speed"])
+            live(world, chosen["speed"], said)
         else:
             run_script(world, chosen["script"])
-        world.check()
     except UsageError as error:
         return complain("%s\n%s" % (error, USAGE), NOT_UNDERSTOOD)
     except ScriptError as error:
         return complain(error, NOT_UNDERSTOOD)
-    except (ExpectationFailed, AssertionError) as error:
+    except ExpectationFailed as error:
         return complain(error, FAILED)
     except KeyboardInterrupt:
         return complain("ended by Ctrl-C", INTERRUPTED)
-    except OSError as error:
-        if error.errno == EPIPE:
+    except StreamError as error:
+        if error.args[0].errno == EPIPE:
             return FAILED  # whoever read the output has gone
         return complain("input or output failed: %s" % error, FAILED)
+    except Exception as error:
+        sys.print_exception(error, sys.stderr)
+        return complain("the firmware or the simulation failed", CRASHED)
+    return judged(world)
+
+
+def judged(world):
+    """The status of a run that came to its end."""
+    try:
+        world.check()
+    except AssertionError as error:
+        return complain(error, FAILED)
     return 0
 
 
-def complain(message, status):
+def complain(message, status=0):
+    """A line on standard error; answers the status."""
     print("panel: %s" % message, file=sys.stderr)
     return status
 

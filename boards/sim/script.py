@@ -5,7 +5,8 @@
     expect RUNNING
 
 The commands are the table COMMANDS. A line that cannot be understood is a ScriptError that names
-script and line; an expectation that fails is an ExpectationFailed that shows the display.
+script and line; an expectation that fails is an ExpectationFailed that shows the display. What the
+firmware raises while a command lets time pass goes through as it is.
 """
 
 FAULT_MAX = 9999
@@ -17,6 +18,10 @@ class ScriptError(Exception):
 
 class ExpectationFailed(Exception):
     """The display does not show what was expected. Text: script:line: what, and the display."""
+
+
+class Refused(Exception):
+    """What a command says to a value that was read well, and is none for the drive."""
 
 
 class Script:
@@ -31,18 +36,20 @@ class Script:
     def run(self, lines):
         """Do what the lines say, one after the other."""
         for line in lines:
-            self._line += 1
-            self.do(line)
+            name, values = self.understood(line)
+            if name:
+                self.do(name, values)
 
-    def do(self, line):
-        """Do one line; blank lines and comments are nothing to do."""
+    def understood(self, line):
+        """The next line: the name of its command and the values for it, or None and nothing."""
+        self._line += 1
         words = line.split("#", 1)[0].split()
         if not words:
-            return
+            return None, ()
         name = words[0]
         if name not in COMMANDS:
             raise self._error("unknown command %s (there are: %s)" % (name, " ".join(ORDER)))
-        usage, readers, optional, command = COMMANDS[name]
+        usage, readers, optional, _ = COMMANDS[name]
         arguments = words[1:]
         if readers and readers[-1] is text:
             arguments = arguments[: len(readers) - 1] + [" ".join(arguments[len(readers) - 1 :])]
@@ -51,10 +58,17 @@ class Script:
         if not len(readers) - optional <= len(arguments) <= len(readers):
             raise self._error("use: %s" % usage)
         try:
-            values = [reader(self.world, word) for reader, word in zip(readers, arguments)]
-            command(self, *values)
-        except (ValueError, KeyError) as error:
+            return name, [reader(self.world, word) for reader, word in zip(readers, arguments)]
+        except ValueError as error:
             raise self._error("%s (use: %s)" % (error.args[0], usage))
+
+    def do(self, name, values):
+        """Do a command, as `understood` answered it."""
+        usage, _, _, command = COMMANDS[name]
+        try:
+            command(self, *values)
+        except Refused as error:
+            raise self._error("%s (use: %s)" % (error, usage))
 
     # --- what the commands do -------------------------------------------------------------------
 
@@ -69,9 +83,19 @@ class Script:
 
     def param(self, drive, parameter, value=None):
         number, index = parameter
-        if value is not None:
-            drive.write(number, index, value)
-        self.show("%s=%s" % (parameter_name(number, index), drive.read(number, index)))
+        try:
+            if value is not None:
+                drive.write(number, index, value)
+            now = drive.read(number, index)
+        except (ValueError, KeyError) as error:
+            raise Refused(error.args[0])
+        self.show("%s=%s" % (parameter_name(number, index), now))
+
+    def fault(self, drive, number):
+        try:
+            drive.fault(number)
+        except ValueError as error:
+            raise Refused(error.args[0])
 
     def expect(self, wanted):
         if not self.world.reads(wanted):
@@ -159,7 +183,7 @@ COMMANDS = {
     "bus": ("bus N", (count,), 0, Script.bus),
     "drive": ("drive A", (drive,), 0, lambda do, drive: do.show(drive.report())),
     "param": ("param A P0700[0] [VALUE]", (drive, parameter, value), 1, Script.param),
-    "fault": ("fault A F0001", (drive, fault), 0, lambda do, drive, number: drive.fault(number)),
+    "fault": ("fault A F0001", (drive, fault), 0, Script.fault),
     "unplug": ("unplug A", (drive,), 0, lambda do, drive: drive.unplug()),
     "plug": ("plug A", (drive,), 0, lambda do, drive: drive.plug()),
     "hang": ("hang MS", (milliseconds,), 0, lambda do, ms: do.world.hang(ms)),

@@ -1,0 +1,64 @@
+"""A command of the script language that lets time pass, done slice by slice.
+
+So the keys are heard and the picture lives on while it lasts, and it can be ended early:
+
+    errand = Errand(world, hand, "hold", ("UP", 3000))      # the key is down now
+    while errand.left_us():
+        errand.run(10)
+    errand.end()                                            # the key is up
+"""
+
+from boards.sim.world import RELEASE_MS, TAP_MS
+
+
+class Errand:
+    """world: a `World`. hand: a `Hand`, which is told of the key. name: of one of ERRANDS.
+
+    values: those of the command, as `Script.understood` has them.
+    """
+
+    def __init__(self, world, hand, name, values):
+        self._world = world
+        self._hand = hand
+        self._key, down_ms, up_ms = ERRANDS[name](*values)
+        self._up_us = world.clock.now_us + down_ms * 1000  # when the key is let go
+        self._end_us = self._up_us + up_ms * 1000
+        self._lives = world.resets if name == "hang" else None
+        if self._key:
+            world.down(self._key)
+            hand.fix(self._key, True)
+
+    def left_us(self):
+        """How much of the world's time it still takes."""
+        return max(0, self._end_us - self._world.clock.now_us)
+
+    def run(self, ms):
+        """Let so much of the world's time pass, or what is left of it."""
+        world = self._world
+        until_us = self._up_us if self._key else self._end_us
+        ms = min(ms, -(-(until_us - world.clock.now_us) // 1000))
+        if self._lives == world.resets:  # a chip that the watchdog restarts hangs no longer
+            world.hang(ms)
+        else:
+            world.run(ms)
+        if world.clock.now_us >= self._up_us:
+            self._let_go()
+
+    def end(self):
+        """It is over, or nobody wants the rest."""
+        self._let_go()
+
+    def _let_go(self):
+        if self._key:
+            self._world.up(self._key)
+            self._hand.fix(self._key, False)
+            self._key = None
+
+
+# Command: from its values to the key that is down, for how long, and the time after that, in ms.
+ERRANDS = {
+    "press": lambda key: (key, TAP_MS, RELEASE_MS),
+    "hold": lambda key, ms: (key, ms, RELEASE_MS),
+    "wait": lambda ms: (None, 0, ms),
+    "hang": lambda ms: (None, 0, ms),
+}
