@@ -22,8 +22,7 @@ from panel.panel import Panel
 from panel.screen import GLYPHS
 from settings import load, save
 
-CLOSE_MS = const(1_000)  # for the drives to answer their OFF1, and a little for each of them
-CLOSE_PER_DRIVE_MS = const(100)
+CLOSE_MS = const(1_000)  # for the drives to answer their OFF1, and a round of the bus on top
 SAVE_AGAIN_MS = const(10_000)  # after the store failed
 
 
@@ -110,7 +109,7 @@ class App:
         """Let the engine work until `condition()` is true, or as long as may be expected."""
         clock = self.board.clock
         began_ms = clock.ticks_ms()
-        patience_ms = CLOSE_MS + CLOSE_PER_DRIVE_MS * len(self.bus.drives)
+        patience_ms = CLOSE_MS + self.bus.longest_cycle_us() // 1000
         while True:
             try:
                 waited_ms = elapsed(clock.ticks_ms(), began_ms, self._mask)

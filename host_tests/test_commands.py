@@ -5,6 +5,7 @@ Control words as in USS.md 4.8 of the protocol notes: r0054 of a MICROMASTER 4.
 
 from master_bench import Bus
 from uss import pzd
+from uss.drive import Drive
 
 READY, RUNNING, FAULT = 0xFB31, 0xFB34, 0xFB78
 EXCHANGE_US = 30_000  # with room: 16 characters each way at 19200
@@ -204,3 +205,16 @@ def test_the_longest_round_counts_every_drive_of_the_list():
     four.master.add(4)
     assert four.master.longest_cycle_us() == 5 * one.master.longest_cycle_us()
     assert one.master.longest_cycle_us() > EXCHANGE_US
+
+
+def test_a_second_acknowledgement_has_an_edge_of_its_own():
+    """It is wanted in the very moment in which the first one was confirmed."""
+    drive, net = Drive(1, 0x3FFFFFFF), bytearray(20)
+    words = []
+    for _ in range(4):
+        if len(words) in (0, 1):
+            drive.acknowledge()
+        drive.fill(net, 3, 0)
+        words.append(net[11] << 8 | net[12])
+        drive.take(net, 3, 0)
+    assert words == [0x04FE, 0x047E, 0x04FE, 0x047E]

@@ -8,6 +8,7 @@ from boards.sim.switches import Switches
 from boards.sim.world import World
 from hal.keypad import Keypad, Matrix
 from panel.keys import Keys
+from panel_bench import panel
 
 try:
     from micropython import heap_lock, heap_unlock
@@ -346,3 +347,14 @@ def test_keys_stay_down_over_a_reset_of_the_chip():
 
 def test_keys_are_wired_one_way_or_the_other():
     assert "direct" in refused(World, main.start, keys="diagonal")
+
+
+def test_keys_on_pins_of_their_own_are_never_unclear():
+    world = panel(keys="matrix")
+    for key in ("JOG_RIGHT", "DOWN", "PARAM"):
+        world.down(key)
+    world.run(100)
+    keypad = world.app.board.keypad
+    unclear = [name for bit, name in enumerate(keypad.names) if keypad.unclear >> bit & 1]
+    assert unclear and set(unclear) == set(keypad.names) - {"START", "STOP"}
+    world.check()

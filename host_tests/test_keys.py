@@ -152,3 +152,12 @@ def test_a_key_that_could_not_be_told_for_a_moment_must_be_seen_up_before_it_cou
         keys.update(jog, now_ms)
         pressed |= keys.pressed
     assert pressed == jog
+
+
+def test_a_key_that_cannot_be_told_repeats_nothing():
+    hand = Hand().hold(UP, 538)  # two milliseconds before it repeats again
+    assert len(hand.repeated) == 1
+    for _ in range(300):
+        hand.keys.update(UP, hand.at_ms, UP)
+        assert not hand.keys.repeated and not hand.keys.down
+        hand.at_ms += 1

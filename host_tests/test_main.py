@@ -5,6 +5,7 @@ import sys
 import main
 from boards.sim.clock import Event
 from boards.sim.world import World
+from panel_bench import panel, unsupervised
 
 
 class Switch:
@@ -143,3 +144,29 @@ def test_a_board_without_the_escape_key_has_no_escape():
             return 3
 
     assert main.escape_wanted(Keypad()) is False
+
+
+def test_closing_waits_until_every_drive_of_a_long_list_was_sent_off():
+    """Eight drives at 1200 baud: a round takes longer than two seconds. P2014 = 0."""
+    world = panel(baud=1200, **unsupervised(1, 2, 3, 4, 5, 6, 7, 8))
+    world.run(30_000)
+    for address in range(1, 9):
+        world.press("START")
+        while world.drives[address].state != "running":
+            world.run(100)
+        world.press("ADDRESS_UP")
+    world.app.close()
+    world.clock.advance(20_000_000)
+    for drive in world.drives.values():
+        assert drive.state == "ready", drive.report()
+    world.check()
+
+
+def test_closing_a_short_list_does_not_wait_for_drives_that_are_away():
+    world = panel(addresses=(1, 2))
+    world.drives[1].unplug()
+    world.drives[2].unplug()
+    began_us = world.clock.now_us
+    world.app.close()
+    assert world.clock.now_us - began_us < 2_000_000
+    world.check()

@@ -395,3 +395,13 @@ def test_other_delays_and_loop_times_change_nothing():
         world.run(8000)
         assert world.drives[1].hz() == 0 and starts(world) == 1
         world.check()
+
+
+def test_down_goes_on_from_the_setpoint_that_is_shown():
+    world = panel()
+    world.drives[1].write(1082, 0, 5.0)
+    world.run(3000)
+    assert row_1(world).startswith("S:  5.0")
+    world.press("DOWN")
+    assert row_1(world).startswith("S:  4.9")
+    world.check()

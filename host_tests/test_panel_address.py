@@ -321,3 +321,54 @@ def test_start_and_jog_wait_until_the_address_is_written():
     world.run(5000)
     assert starts(world) == 0 and world.drives[1].address == 5
     world.check()
+
+
+def test_a_drive_whose_new_address_was_saved_does_not_wait_for_other_settings():
+    """They are saved when no drive runs."""
+    world = parameter("P2011", addresses=(1, 2, 3))
+    write(world, 5)
+    world.run(3000)
+    world.press("PARAM")
+    assert stored(world)["drives"] == [5, 2, 3]
+    world.press("ADDRESS_DOWN")
+    world.press("START")
+    world.run(1000)
+    world.press("ADDRESS_DOWN")
+    world.drives[2].write(2014, 0, 0)
+    world.run(3000)
+    world.press("START")
+    wait_for(world, "SET=FIX START=GO")
+    world.run(1200)
+    world.press("START")
+    world.run(3000)
+    assert starts(world, 2) == starts(world, 3) == 1 and world.app.settings.dirty
+    world.press("ADDRESS_DOWN")
+    world.press("START")
+    world.run(1000)
+    assert starts(world, 1) == 1
+    world.check()
+
+
+def test_an_address_is_not_changed_while_another_drive_may_run_out_of_contact():
+    world = running(addresses=(1, 2), parameters={2014: 0}, settings={"unsupervised": [1, 2]})
+    world.drives[1].unplug()
+    world.run(2000)
+    world.press("ADDRESS_UP")
+    edit(show(world, "P2011"), 4)
+    world.press("SET", 40)
+    assert row_2(world) == "STOP ALL FIRST"
+    world.check()
+
+
+def test_an_address_is_not_changed_while_another_drive_is_sent_on():
+    """It does not run yet, but may in the next moment."""
+    world = panel(addresses=(1, 2))
+    world.drives[1].write(10, 0, 1)
+    world.run(300)
+    world.press("START")
+    world.press("ADDRESS_UP")
+    edit(show(world, "P2011"), 4)
+    assert world.app.bus.drives[0].is_on()
+    world.press("SET", 40)
+    assert row_2(world) == "STOP ALL FIRST"
+    world.check()

@@ -371,3 +371,26 @@ def test_a_short_period_wraps_many_times_in_an_hour():
     world.run(8000)
     assert row_2(world) == "READY        A1"
     world.check()
+
+
+def test_a_gap_that_the_loop_has_slept_through_was_the_line():
+    world = running(settings={"lost_ms": 100})
+    world.drives[1].unplug()
+    world.hang(180)
+    world.drives[1].plug()
+    world.hang(80)
+    assert world.app.bus.drives[0].contact and world.app.bus.dead_man_trips == 0
+    world.run(6000)
+    assert row_2(world) == "LINE FAILED  A1"
+    world.check()
+
+
+def test_a_drive_that_is_lost_while_it_ramps_down_may_run():
+    world = running(**unsupervised())
+    world.drives[1].write(1121, 0, 60.0)
+    world.press("STOP")
+    world.run(300)
+    world.drives[1].unplug()
+    world.run(1500)
+    assert row_1(world) == "NO CONTACT,     "
+    world.check()

@@ -10,7 +10,11 @@ from panel_bench import (
     telegrams,
     unsupervised,
 )
+from panel.fault import Fault
+from uss import pkw
+from uss.drive import Drive
 
+FAULT_ZSW, READY_ZSW = 0xFB38, 0xFB31
 ON, ON_REVERSE, OFF1, OFF2, OFF3 = 0x047F, 0x0C7F, 0x047E, 0x047C, 0x047A
 JOG_RIGHT, JOG_LEFT = 0x057E, 0x067E
 
@@ -459,3 +463,90 @@ def test_a_fault_whose_cause_stays_comes_back():
     world.run(1500)
     assert row_2(world) == "FAULT F0002  A1"
     world.check()
+
+
+def test_a_jog_that_follows_a_slow_ramp_is_no_stop_that_failed():
+    world = panel()
+    world.drives[1].write(1061, 0, 650.0)
+    world.press("JOG_RIGHT", 2000)
+    world.run(60)
+    assert row_2(world) == "STOPPING     A1"
+    world.down("JOG_RIGHT")
+    world.run(300)
+    for _ in range(60):
+        world.run(100)
+        assert row_2(world) == "JOG RIGHT    A1", world.lcd()
+    world.check()
+
+
+def test_jog_does_not_weaken_a_second_stop():
+    """Not even while what ramps down is a jog."""
+    world = panel()
+    world.drives[1].write(1061, 0, 650.0)
+    world.drives[1].write(1135, 0, 60.0)
+    world.press("JOG_RIGHT", 2000)
+    world.press("STOP", 1600)
+    world.press("JOG_RIGHT", 500)
+    assert row_2(world) == "NO: QUICK STOP"
+    assert words(world, 0)[-1] == OFF3
+    world.check()
+
+
+def test_jog_while_a_start_is_being_checked_is_refused():
+    world = panel()
+    world.down("START")
+    world.run(40)
+    world.press("JOG_LEFT", 300)
+    world.up("START")
+    assert row_2(world) == "NO JOG: IT RUNS"
+    world.run(3000)
+    assert words(world, 0) == [OFF1, ON] and starts(world) == 1
+    world.check()
+
+
+def test_a_stop_in_the_moment_of_the_next_trip_leaves_that_fault_on_the_display():
+    world = running()
+    world.drives[1].fault(12)
+    world.run(1500)
+    world.press("STOP")
+    world.run(300)
+    world.drives[1].fault(30)
+    world.run(200)
+    world.press("STOP")
+    world.run(1500)
+    assert row_2(world) == "FAULT F0030  A1"
+    world.check()
+
+
+def test_a_fault_that_took_the_place_of_another_is_shown():
+    world = panel()
+    world.drives[1].fault(12)
+    world.run(1500)
+    assert row_2(world) == "FAULT F0012  A1"
+    world.drives[1]._process.faults[0] = 30
+    world.run(1000)
+    assert row_2(world) == "FAULT F0030  A1"
+    world.check()
+
+
+def test_the_number_of_an_earlier_fault_is_not_shown_for_the_next():
+    """The drive takes its time to answer; it was acknowledged and has tripped again by then."""
+    asked = []
+
+    def ask(job):
+        job.state = pkw.PENDING
+        asked.append(job)
+
+    drive = Drive(1, 0x3FFFFFFF)
+    drive.ask = ask
+    drive.contact = True
+    fault = Fault(drive, 0x3FFFFFFF)
+    for drive.zsw in (FAULT_ZSW, READY_ZSW, FAULT_ZSW):
+        fault.step(0)
+    asked[0].state, asked[0].low = pkw.DONE, 12
+    fault.step(1000)
+    assert fault.number == 0
+    fault.step(2000)
+    asked[-1].state, asked[-1].low = pkw.DONE, 30
+    fault.step(3000)
+    assert len(asked) == 2 and fault.number == 30

@@ -402,3 +402,63 @@ def test_a_drive_that_does_not_start_is_not_left_waiting_with_on():
     world.run(3000)
     assert starts(world) == 0
     world.check()
+
+
+def test_start_of_a_drive_that_runs_changes_nothing():
+    """Not even when it would be asked about by now."""
+    world = running()
+    world.drives[1].write(2014, 0, 0)
+    world.press("START")
+    for _ in range(40):
+        world.run(50)
+        assert row_2(world) == "RUNNING      A1", world.lcd()
+    assert starts(world) == 1
+    world.check()
+
+
+def test_a_drive_that_ran_before_is_not_left_waiting_with_on_either():
+    world = running()
+    world.press("STOP")
+    world.run(5000)
+    world.drives[1].write(10, 0, 1)  # commissioning: it does not run
+    world.run(300)
+    world.press("START")
+    world.run(6500)
+    assert row_2(world) == "NOT STARTED  A1"
+    world.drives[1].write(10, 0, 0)
+    world.run(3000)
+    assert starts(world) == 1
+    world.check()
+
+
+def test_a_start_that_was_taken_back_asks_the_drive_nothing_more():
+    world = panel()
+    world.down("START")
+    world.run(40)
+    drive = world.app.bus.drives[0]
+    assert drive.asking
+    world.press("STOP", 20)
+    assert not drive.asking
+    world.check()
+
+
+def test_a_source_of_zero_is_another_source():
+    """P0700 = 0 is the factory setting, P1000 = 0 no setpoint at all: neither is this bus."""
+    for number, reason in ((700, "NO:P0700 NOT USS"), (1000, "NO:P1000 NOT USS")):
+        world = panel()
+        world.drives[1].write(number, 0, 0)
+        world.run(3000)
+        refused(world, reason)
+
+
+def test_a_lowest_frequency_above_the_highest_is_no_matter():
+    """The drive never runs faster than P1082, and a telegram can say that."""
+    world = panel()
+    world.drives[1].write(2000, 0, 10.0)
+    world.drives[1].write(1080, 0, 30.0)
+    world.drives[1].write(1082, 0, 15.0)
+    world.run(3000)
+    world.press("START")
+    world.run(4000)
+    assert starts(world) == 1 and row_1(world).startswith("S: 15.0"), world.lcd()
+    world.check()

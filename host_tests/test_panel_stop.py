@@ -143,3 +143,51 @@ def test_stop_held_for_four_seconds_stops_all_drives():
         assert world.drives[address].hz() == 0
         assert starts(world, address) == 1
     world.check()
+
+
+def test_stop_pressed_again_and_again_does_not_put_the_alarm_off():
+    world = running()
+    world.drives[1].unplug()
+    for _ in range(4):
+        world.press("STOP", 100)
+        world.run(170)
+    assert row_2(world) == "STOP UNCONFIRMED"
+    world.check()
+
+
+def test_that_all_drives_were_stopped_is_said_after_stop_was_let_go():
+    world = all_running((1, 2))
+    world.press("STOP", 4200)
+    world.run(1500)
+    assert row_2(world) == "ALL DRIVES: STOP"
+    world.run(2000)
+    assert row_2(world)[13:] == "A1"
+    world.check()
+
+
+def test_a_stop_that_nobody_confirms_is_seen_while_stop_is_held():
+    world = running()
+    world.drives[1].unplug()
+    world.down("STOP")
+    world.run(1300)
+    assert world.lcd() == ("STOP UNCONFIRMED", "STOP, HOLD: OFF3")
+    world.check()
+
+
+def test_a_fault_of_another_drive_that_was_not_on_is_not_spoken_of():
+    world = panel(addresses=(1, 2))
+    world.drives[2].fault(12)
+    for _ in range(80):
+        world.run(50)
+        assert row_2(world) == "READY        A1"
+    world.check()
+
+
+def test_another_drive_is_announced_by_both_digits_of_its_address():
+    world = all_running((1, 12))
+    rows = set()
+    for _ in range(80):
+        world.run(50)
+        rows.add(row_2(world))
+    assert rows == {"RUNNING      A1", "A12 RUN,HOLD=ALL"}, rows
+    world.check()

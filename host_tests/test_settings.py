@@ -247,3 +247,11 @@ def test_31_drives_can_all_be_accepted_whatever_the_file_says_of_others():
     settings.save(store, chosen)
     assert settings.load(store).unsupervised == tuple(range(31))
     assert settings.load(store).complaint is None
+
+
+def test_what_is_still_to_be_saved_stays_so_though_nothing_new_is_accepted():
+    changed = settings.Settings()
+    changed.take({"drives": [1], "unsupervised": [1]})
+    changed.readdress(1, 5)
+    changed.accept_unsupervised(5)
+    assert changed.dirty and changed.unsupervised == (5,)
