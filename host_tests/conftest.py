@@ -7,6 +7,10 @@ ids and the summary work as ever. A file that is not for every tier says so at m
 
     INTERPRETERS = "unix64 unix32"      # a part of: unix64 unix32 coverage cpython
     INTERPRETERS = "host"               # an ordinary pytest file, with fixtures and all
+
+Tracing lines makes a test some ten times slower. Long ones that run no line of their own stay out:
+
+    NOT_TRACED = "test_every_baud_rate test_ten_minutes"
 """
 
 import ast
@@ -123,10 +127,15 @@ def absence(tier, reason):
 
 def interpreters(tree):
     """The names in the INTERPRETERS of a test file; all tiers where it has none."""
+    return words(tree, "INTERPRETERS") or list(TIERS)
+
+
+def words(tree, name):
+    """The words of the text that a test file assigns to `name`; None where it does not."""
     for node in tree.body:
-        if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "INTERPRETERS":
+        if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == name:
             return ast.literal_eval(node.value).split()
-    return list(TIERS)
+    return None
 
 
 class MicroPythonFile(pytest.File):
@@ -140,9 +149,15 @@ class MicroPythonFile(pytest.File):
         unknown = [name for name in self.interpreters if name not in TIERS]
         if unknown:
             raise self.CollectError(f"INTERPRETERS names {unknown[0]!r}, which is not a tier")
+        not_traced = words(self.tree, "NOT_TRACED") or []
+        for name in not_traced:
+            if name not in functions:
+                raise self.CollectError(f"NOT_TRACED names {name!r}, which is no test here")
+        traced = {name: functions[name] for name in functions if name not in not_traced}
         for name in self.interpreters:
             if name in self.config.stash[SURVEY].versions:
-                yield TierOfFile.from_parent(self, name=name, functions=functions)
+                chosen = traced if name == "coverage" else functions
+                yield TierOfFile.from_parent(self, name=name, functions=chosen)
 
     def functions(self):
         """Name -> line. What would silently not run as a test is refused."""

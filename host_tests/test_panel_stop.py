@@ -2,6 +2,10 @@
 
 from panel_bench import OFF1, all_running, panel, row_2, running, starts, telegrams
 
+NOT_TRACED = (
+    "test_a_long_list_is_no_reason_for_an_alarm test_the_slowest_ramp_of_a_drive_is_no_alarm"
+)
+
 
 def test_a_stop_that_nobody_confirms_is_an_alarm():
     world = running()

@@ -7,6 +7,11 @@ import json
 from panel.supervision import off_time_ms
 from panel_bench import ON, panel, row_1, row_2, starts, telegrams, unsupervised
 
+NOT_TRACED = (
+    "test_any_other_key_does_nothing_and_start_asks_again "
+    "test_the_time_written_is_three_rounds_of_the_bus_and_a_second_at_least"
+)
+
 OFF3 = 0x047A
 ASKED = "SET=FIX START=GO"
 OTHER_KEYS = ("STOP", "REVERSE", "JOG_RIGHT", "JOG_LEFT", "UP", "DOWN", "ADDRESS_UP",

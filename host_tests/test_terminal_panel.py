@@ -12,6 +12,8 @@ from tools.panel_picture import Picture, fitted, seen, telegram_line
 from tools.terminal import ESCAPE, OTHER, Strokes
 from tools.terminal_panel import WORK_MS, Pace, Session, farewell, shows_boxes, turning
 
+NOT_TRACED = "test_stop_ends_every_command_at_once_and_stops"
+
 FRAME_MS = 20
 
 
