@@ -19,7 +19,7 @@ quietly() {
     shift
     "$@" >"$log" 2>&1 && return
     say "    that failed:"
-    tail -n 5 "$log" | sed 's/^/    /' >&2
+    tail -n 8 "$log" | sed 's/^/    /' >&2
     return 1
 }
 

@@ -180,14 +180,6 @@ unpack_source() {
         unpack_tar "$view"/downloads/micropython_*.orig.tar.xz "$view/source"
 }
 
-# Python takes the compression off, since it is needed anyhow and xz may be missing.
-unpack_tar() {
-    python3 -c '
-import lzma, shutil, sys
-shutil.copyfileobj(lzma.open(sys.argv[1]), sys.stdout.buffer)
-' "$1" | tar -x -C "$2" --strip-components=1
-}
-
 compile() {
     local name=$1 view=$2 folder=$3
     say "    compiling it"

@@ -132,3 +132,13 @@ packages_unpack() {
 packages_dependencies() {
     apt_cache "$1" depends --no-recommends --no-suggests "$2" | awk '$1 == "Depends:" { print $2 }'
 }
+
+# unpack_tar FILE FOLDER: the tar of a source package, without the folder that it begins with.
+# Python takes the compression off, since it is needed anyhow and xz or bzip2 may be missing.
+unpack_tar() {
+    python3 -c '
+import bz2, lzma, shutil, sys
+opened = (bz2 if sys.argv[1].endswith(".bz2") else lzma).open(sys.argv[1])
+shutil.copyfileobj(opened, sys.stdout.buffer)
+' "$1" | tar -x -C "$2" --strip-components=1
+}

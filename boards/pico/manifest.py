@@ -1,0 +1,24 @@
+"""What panel.uf2 holds besides MicroPython: everything that runs, compiled beforehand, in flash.
+
+Read by MicroPython's tools/makemanifest.py, which defines the functions used here; paths start at
+this folder. A file on the chip's file system goes before a frozen one of that name, except for
+main.py: so a changed board.py can be tried without building anything.
+"""
+
+import os
+
+# The order in which they are frozen is part of the firmware's bytes, and that of a listing is not
+# the same everywhere.
+
+
+def python_files(folder):
+    for path, folders, files in os.walk(folder):
+        folders.sort()
+        for file in sorted(files):
+            if file.endswith(".py"):
+                yield os.path.relpath(os.path.join(path, file), folder)
+
+
+freeze("$(PORT_DIR)/modules", ("_boot.py", "_boot_fat.py", "rp2.py"))  # the port's own
+freeze("../../firmware", tuple(python_files("../../firmware")))
+module("board.py")

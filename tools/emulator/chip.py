@@ -1,0 +1,122 @@
+"""The Python end of the pipe to the emulated chip: the protocol, and nothing of what it is for.
+
+It is no chip and no world: it writes records, lets the chip run, and hands over what it answers.
+README.md has the table of the records. Runs on the Unix port, started by launch.py.
+
+    chip = connection()                     # the one chip of this process; its time never starts anew
+    chip.tell(chip.now_ns, "P", 13, 0)      # START is held down
+    chip.run(chip.now_ns + 1_000_000, take) # take(at_ns, kind, a, b, content) for every answer
+"""
+
+import json
+import os
+import struct
+
+RECORD = "<QBBH"
+RECORD_BYTES = 12
+CONTENT_MAX = 0xFFFF
+
+# Kinds of record that have a content behind them, of b bytes.
+WITH_CONTENT = "NUF!"
+
+
+class EmulatorError(Exception):
+    """The emulator failed, or has ended. Text: what it said."""
+
+
+class Chip:
+    """reader, writer: binary files, to the emulator and from it.
+
+    now_ns    how far the chip has come
+    batches   how often the pipe was used, for those who care for speed
+    """
+
+    def __init__(self, reader, writer):
+        self.now_ns = 0
+        self.batches = 0
+        self._reader = reader
+        self._writer = writer
+        self._waiting = []  # (at_ns, record and content), in the order of time
+        self._record = bytearray(RECORD_BYTES)
+
+    def begin(self, program, watch, baud, flash=None, keep=False, usb=True, i2c=()):
+        """A new chip in place of the old one; power comes now.
+
+        program: path of a UF2 file. watch: GPIOs whose output is told ("E"). baud: of the line.
+        flash: path of a flash image to begin with; keep: and the program in it stays. i2c:
+        addresses that acknowledge.
+        """
+        self._waiting = []
+        wanted = {
+            "uf2": program,
+            "flash": flash,
+            "keep": keep,
+            "usb": usb,
+            "baud": baud,
+            "watch": list(watch),
+            "i2c": list(i2c),
+        }
+        self.tell(self.now_ns, "N", content=json.dumps(wanted).encode())
+
+    def tell(self, at_ns, kind, a=0, b=0, content=None):
+        """Something happens to the chip at `at_ns`; what should have happened before, now."""
+        at_ns = max(at_ns, self.now_ns)
+        if content is not None:
+            if len(content) > CONTENT_MAX:
+                raise ValueError("a record holds %d bytes" % CONTENT_MAX)
+            b = len(content)
+        record = struct.pack(RECORD, at_ns, ord(kind), a, b) + (content or b"")
+        waiting = self._waiting
+        place = len(waiting)
+        while place and waiting[place - 1][0] > at_ns:
+            place -= 1
+        waiting.insert(place, (at_ns, record))
+
+    def run(self, until_ns, take):
+        """Let the chip run until `until_ns`, or until it stops early; `now_ns` says how far.
+
+        take(at_ns, kind, a, b, content) is called for everything that the chip did meanwhile.
+        """
+        waiting = self._waiting
+        while waiting and waiting[0][0] <= until_ns:
+            self._writer.write(waiting.pop(0)[1])
+        self._writer.write(struct.pack(RECORD, until_ns, ord("R"), 0, 0))
+        self.batches += 1
+        failure = None
+        while True:
+            at_ns, kind, a, b = self._next()
+            kind = chr(kind)
+            content = self._read(b) if kind in WITH_CONTENT else None
+            if kind == "D":
+                break
+            if kind == "!":
+                failure = failure or content.decode()
+            else:
+                take(at_ns, kind, a, b, content)
+        self.now_ns = at_ns
+        if failure:
+            raise EmulatorError(failure)
+
+    def _next(self):
+        if self._reader.readinto(self._record) != RECORD_BYTES:
+            raise EmulatorError("the emulator has ended")
+        return struct.unpack(RECORD, self._record)
+
+    def _read(self, count):
+        content = self._reader.read(count) if count else b""
+        if len(content) != count:
+            raise EmulatorError("the emulator has ended")
+        return content
+
+
+_connection = []
+
+
+def connection():
+    """The chip that launch.py has put beside this process. EmulatorError: there is none."""
+    if not _connection:
+        ends = [os.getenv(name) for name in ("USS_PICO_READ", "USS_PICO_WRITE")]
+        if None in ends:
+            raise EmulatorError("no chip: start this by tools/emulator/launch.py")
+        _connection.append(Chip(open(int(ends[0]), "rb"), open(int(ends[1]), "wb")))
+    return _connection[0]

@@ -1,0 +1,211 @@
+// The emulated Pico's server: reads records, runs the chip, answers (README.md has the protocol).
+//
+//     node main.mjs READ WRITE PTY
+//
+// are the numbers of inherited descriptors: two pipes and the master side of a pty for the chip's
+// USB serial port. launch.py starts it. It ends when the pipe that it reads ends.
+import fs from 'node:fs';
+import { FLASH_BYTES, layUf2 } from './flash.mjs';
+import { Pico } from './pico.mjs';
+import { practise } from './practice.mjs';
+import { Reader, Writer } from './records.mjs';
+import { Terminal } from './terminal.mjs';
+
+const SLICE_NANOS = 1e6; // how often the pty is looked at
+const ORPHAN_SLICES = 20; // and how often whether anybody still waits for the answer
+const COMPLAINTS = 20; // different ones, for each chip
+const PAYLOADS = new Set(['N', 'U', 'F']);
+const UNIT_NANOS = 10000; // of V's duration
+
+// What the chip reports, as records. It is the chip's logger as well.
+class Report {
+  constructor(server) {
+    this.server = server;
+    this.stop = false; // the run is to end here
+    this.complaints = new Set();
+  }
+
+  get now() {
+    return this.server.now;
+  }
+
+  add(kind, a, b, payload) {
+    this.server.writer.add(this.now, kind, a, b, payload);
+  }
+
+  character(start, byte, parityWrong, stopWrong) {
+    this.server.writer.add(start, 'T', byte, parityWrong | (stopWrong << 1));
+    this.stop = true;
+  }
+
+  pin(gpio, state) {
+    this.add('E', gpio, state);
+  }
+
+  written(address, byte) {
+    this.add('I', address, byte);
+  }
+
+  flash(code, nanos) {
+    this.add('V', code, nanos / UNIT_NANOS);
+  }
+
+  restarted(why) {
+    this.add('Z', why, 0);
+    this.stop = true;
+  }
+
+  serial(bytes) {
+    this.server.serialOut(bytes);
+  }
+
+  failed(text) {
+    if (this.complaints.size >= COMPLAINTS || this.complaints.has(text)) return;
+    this.complaints.add(text);
+    const bytes = Buffer.from(text).subarray(0, 1000);
+    this.add('!', 0, bytes.length, bytes);
+  }
+
+  debug() {}
+
+  info() {}
+
+  // What firmware touches that rp2040js has not got is of interest to who works on this.
+  warn(name, text) {
+    if (process.env.USS_EMULATOR_WARN) process.stderr.write(`${name}: ${text}\n`);
+  }
+
+  error(name, text) {
+    this.failed(`${name}: ${text}`);
+  }
+}
+
+class Server {
+  constructor(read, write, pty) {
+    this.reader = new Reader(read);
+    this.writer = new Writer(write);
+    this.terminal = new Terminal(pty);
+    this.pico = null;
+    this.report = new Report(this);
+    this.idleNanos = 0; // the time, while there is no chip
+    this.pending = []; // records not yet due, in order of time
+    this.parent = process.ppid;
+  }
+
+  get now() {
+    return this.pico ? this.pico.clock.nanosCounter : this.idleNanos;
+  }
+
+  serve() {
+    for (;;) {
+      const record = this.reader.record();
+      if (record === null) return;
+      if (PAYLOADS.has(record.kind)) {
+        const payload = this.reader.bytes(record.b);
+        if (payload === null) return;
+        record.payload = Buffer.from(payload);
+      }
+      if (record.kind === 'R') this.answer(record.time);
+      else this.queue(record);
+    }
+  }
+
+  queue(record) {
+    const { pending } = this;
+    let at = pending.length;
+    while (at > 0 && pending[at - 1].time > record.time) at--;
+    pending.splice(at, 0, record);
+  }
+
+  answer(until) {
+    this.report.stop = false;
+    try {
+      this.runAndApply(until);
+    } catch (error) {
+      this.report.failed(error.stack ?? String(error));
+      this.idleNanos = this.now;
+      this.pico = null;
+    }
+    this.writer.finish(this.now);
+  }
+
+  runAndApply(until) {
+    const { pending, report } = this;
+    while (!report.stop) {
+      while (pending.length && pending[0].time <= this.now) this.apply(pending.shift());
+      if (this.now >= until || report.stop) break;
+      this.runTo(pending.length ? Math.min(pending[0].time, until) : until);
+    }
+  }
+
+  runTo(instant) {
+    const { report, terminal } = this;
+    if (!this.pico) {
+      this.idleNanos = instant;
+      return;
+    }
+    for (let slice = 0; this.now < instant && !report.stop; slice++) {
+      if (terminal.on) this.pico.send(terminal.read());
+      if (slice % ORPHAN_SLICES === 0 && process.ppid !== this.parent) process.exit(0);
+      this.pico.run(Math.min(instant, this.now + SLICE_NANOS));
+    }
+  }
+
+  serialOut(bytes) {
+    if (this.terminal.on) this.terminal.write(bytes);
+    else this.report.add('U', 0, bytes.length, Buffer.from(bytes));
+  }
+
+  // Applying records
+
+  apply(record) {
+    const { kind, a, b, payload } = record;
+    const { pico } = this;
+    switch (kind) {
+      case 'N': this.newChip(JSON.parse(payload.toString())); break;
+      case 'S': this.terminal.on = a === 1; break;
+      case 'C': pico?.receive(a, !!(b & 1), !!(b & 2)); break;
+      case 'P': pico?.drive(a, b); break;
+      case 'U': pico?.send(payload); break;
+      case 'X': if (a === 1) pico?.cutPower(); else pico?.pulseRunPin(); break;
+      case 'F': this.saveFlash(payload.toString()); break;
+      default: this.report.failed(`there is no record of the kind "${kind}"`);
+    }
+  }
+
+  newChip(options) {
+    this.idleNanos = this.now;
+    this.pico = null;
+    this.report.complaints.clear();
+    try {
+      const image = (bytes) => fillFlash(bytes, options);
+      this.pico = new Pico(options, image, this.idleNanos, this.report);
+    } catch (error) {
+      this.report.failed(`no chip: ${error.message}`);
+    }
+  }
+
+  saveFlash(path) {
+    if (!this.pico) return;
+    try {
+      fs.writeFileSync(path, this.pico.flash.bytes);
+    } catch (error) {
+      this.report.failed(`the flash could not be saved: ${error.message}`);
+    }
+  }
+}
+
+function fillFlash(bytes, { uf2, flash, keep }) {
+  if (flash) {
+    const image = fs.readFileSync(flash);
+    if (image.length !== FLASH_BYTES) throw new Error(`${flash} has not got 2 MiB`);
+    bytes.set(image);
+  }
+  if (!keep) layUf2(fs.readFileSync(uf2), bytes);
+}
+
+process.env.TZ = 'UTC'; // the chip's calendar knows no other, and must not know this machine's
+console.warn = () => {}; // rp2040js has a logger, and in places forgets it
+practise();
+const [read, write, pty] = process.argv.slice(2).map(Number);
+new Server(read, write, pty).serve();

@@ -1,0 +1,169 @@
+// The emulated Pico: rp2040js's chip with what it lacks put in, its flash, the wires at its pins.
+//
+// One object is one Pico; `run` moves its time, `reset` and `cutPower` are what they are called.
+// It tells what happens through the `report` it was given (see the methods called on it below and
+// main.mjs). A reset makes a new chip; flash, wires and time stay.
+import { bootRom, RP2040 } from './library.mjs';
+import { Clock } from './clock.mjs';
+import { Core } from './core.mjs';
+import { LineDecoder } from './decoder.mjs';
+import { giveTime } from './dma.mjs';
+import { Flash, IoQspi, Ssi } from './flash.mjs';
+import { BitBangedI2c, SCL, SDA, TimedI2c } from './i2c.mjs';
+import { isUart, LOW, RELEASED, Wires } from './pins.mjs';
+import { TimedPio } from './pio.mjs';
+import { Sio } from './sio.mjs';
+import { ExactTimer } from './timer.mjs';
+import { TimedUart } from './uart.mjs';
+import { UsbSerial } from './usb.mjs';
+import { BY_TIMER, ChipReset, HAD_POWER_ON, HAD_RUN_PIN, Watchdog } from './watchdog.mjs';
+
+const LINE = { tx: 4, rx: 5, uart: 1 }; // GPIO numbers and the UART at the RX pin
+const START = 0x10000000; // of the second-stage boot loader, at the beginning of the flash
+const ROM = bootRom();
+const RUNS_IN_BUSY_FLASH = 'the program runs in the flash while that is being written';
+const WHY = { watchdog: 1, software: 2, runPin: 2, power: 3 }; // the chip restarted; as reported
+
+export class Pico {
+  // options: { baud, watch, i2c, usb, seed }; image(bytes) fills the flash.
+  constructor(options, image, nanos, report) {
+    this.report = report;
+    this.baud = options.baud ?? 9600;
+    this.watched = new Set(options.watch ?? []);
+    this.addresses = new Set(options.i2c ?? []);
+    this.hasUsb = options.usb ?? true;
+    this.flash = new Flash((code, duration) => report.flash(code, duration), options.seed ?? 1);
+    image(this.flash.bytes);
+    this.decoder = new LineDecoder(this.baud, (...character) => report.character(...character));
+    this.wires = new Wires((gpio, state) => this.pinChanged(gpio, state),
+      (gpio) => this.wireMoved(gpio));
+    this.pendingReset = 0;
+    this.build(nanos, HAD_POWER_ON);
+  }
+
+  // Making a chip
+
+  build(nanos, cause) {
+    this.cause = cause; // as CHIP_RESET tells it, which the watchdog does not touch
+    const clock = new Clock(nanos);
+    const mcu = new RP2040(clock);
+    this.clock = clock;
+    this.mcu = mcu;
+    mcu.logger = this.report;
+    mcu.bootrom.set(ROM);
+    const { bytes } = this.flash;
+    mcu.flash = bytes;
+    mcu.flash16 = new Uint16Array(bytes.buffer);
+    mcu.flashView = new DataView(bytes.buffer);
+    this.core = mcu.core = new Core(mcu);
+    this.core.SP = ROM[0];
+    this.core.PC = START;
+    this.flash.reset(clock);
+    this.decoder.reset(clock);
+    this.putIn(mcu, cause);
+    this.bus = new BitBangedI2c(this.addresses, this.written,
+      (low) => this.wires.drive(SDA, low ? LOW : RELEASED));
+    this.wires.join(mcu);
+  }
+
+  putIn(mcu, cause) {
+    const { peripherals, clock } = mcu;
+    for (const index of [0, 1]) {
+      const uart = new TimedUart(mcu, index, () => this.wires.uartMoved(index));
+      mcu.uart[index] = peripherals[0x40034 + 4 * index] = uart;
+      mcu.pio[index] = peripherals[0x50200 + 0x100 * index] = new TimedPio(mcu, index);
+    }
+    giveTime(mcu.dma);
+    mcu.sio = new Sio(mcu);
+    this.watchdog = new Watchdog(mcu, (reason) => this.bitten(reason));
+    this.written = (address, byte) => this.report.written(address, byte);
+    new TimedI2c(mcu, mcu.i2c[0], this.addresses, this.written);
+    new TimedI2c(mcu, mcu.i2c[1], new Set(), this.written);
+    peripherals[0x18000] = new Ssi(mcu, this.flash);
+    peripherals[0x40018] = new IoQspi(mcu, this.flash);
+    peripherals[0x40054] = new ExactTimer(mcu);
+    peripherals[0x40058] = this.watchdog;
+    peripherals[0x4005c].baselineNanos = clock.nanos; // the calendar starts with the chip
+    peripherals[0x40064] = new ChipReset(mcu, cause);
+    this.usb = this.hasUsb ? new UsbSerial(mcu, (bytes) => this.report.serial(bytes)) : null;
+  }
+
+  // Time
+
+  // Runs until the instant, or until `report.stop` is set.
+  run(until) {
+    const { report } = this;
+    while (this.clock.nanosCounter < until && !report.stop) {
+      const { clock, core } = this;
+      if (core.waiting) {
+        clock.skip(until);
+      } else {
+        if (core.inFlash && this.flash.busy) report.failed(RUNS_IN_BUSY_FLASH);
+        core.run(until);
+      }
+      clock.fire();
+      if (this.pendingReset) this.restartBitten();
+    }
+  }
+
+  // Restarting
+
+  bitten(reason) {
+    this.pendingReset = reason;
+    this.core.leave = true;
+  }
+
+  restartBitten() {
+    const reason = this.pendingReset;
+    const old = this.watchdog;
+    this.restart(this.cause, reason === BY_TIMER ? WHY.watchdog : WHY.software);
+    this.watchdog.takeOver(old, reason);
+  }
+
+  pulseRunPin() {
+    this.restart(HAD_RUN_PIN, WHY.runPin);
+  }
+
+  cutPower() {
+    this.flash.powerFails();
+    this.restart(HAD_POWER_ON, WHY.power);
+  }
+
+  // The flash knows no reset: what it is doing it finishes, and the boot ROM waits for that.
+  restart(cause, why) {
+    this.pendingReset = 0;
+    const now = this.clock.nanosCounter;
+    this.build(now, cause);
+    if (this.flash.busy) {
+      this.core.waiting = true;
+      this.clock.createAlarm(() => { this.core.waiting = false; }).at(this.flash.busyUntil);
+    }
+    this.report.restarted(why);
+  }
+
+  // The pins
+
+  drive(gpio, state) {
+    this.wires.drive(gpio, state);
+  }
+
+  pinChanged(gpio, state) {
+    if (this.watched.has(gpio)) this.report.pin(gpio, state);
+    if (gpio === LINE.tx) this.decoder.change(state === LOW ? 0 : 1);
+  }
+
+  wireMoved(gpio) {
+    if (gpio !== SDA && gpio !== SCL) return;
+    this.bus.levels(this.wires.level[SDA], this.wires.level[SCL]);
+  }
+
+  // A character has come in at the RX pin.
+  receive(byte, parityWrong, framingWrong) {
+    if (!isUart(this.mcu.gpio[LINE.rx])) return;
+    this.mcu.uart[LINE.uart].receive(byte, parityWrong, framingWrong, this.baud);
+  }
+
+  send(bytes) {
+    this.usb?.send(bytes);
+  }
+}

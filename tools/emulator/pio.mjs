@@ -1,0 +1,109 @@
+// PIO on the chip's clock: each enabled state machine executes one instruction at an edge of its
+// divided clock, with the divider's fraction and the delays.
+//
+// rp2040js knows the instructions but lets the machines run free on the host's time. A machine
+// that waits costs nothing: what it waits for (a FIFO written by the CPU or by DMA, a pin, an
+// interrupt flag) wakes it at the next edge.
+import { RPPIO, StateMachine } from './library.mjs';
+
+const CYCLE_NANOS = 8;
+const CTRL = 0x000, SM_FIRST = 0x0c8, SM_SIZE = 0x18, SM_LAST = 0x124;
+const CLKDIV = 0x00, INSTR = 0x10;
+const FRACTION = 256;
+
+class TimedMachine extends StateMachine {
+  constructor(mcu, pio, index) {
+    super(mcu, pio, index);
+    this.clock = mcu.clock;
+    this.alarm = this.clock.createAlarm(() => this.execute());
+    this.origin = 0; // the instant of edge 0 of the divided clock
+    this.edge = 0; // the number of the edge that the alarm is set to
+    this.executing = false;
+  }
+
+  get period() { // in cycles / FRACTION
+    return (this.clockDivInt || 65536) * FRACTION + this.clockDivFrac;
+  }
+
+  instant(edge) {
+    return this.origin + Math.floor((edge * this.period) / FRACTION) * CYCLE_NANOS;
+  }
+
+  clkDivRestart() {
+    this.origin = this.clock.nanos;
+    this.edge = 0;
+  }
+
+  // Sets the alarm to the first edge after now, unless the machine runs already or cannot.
+  wake() {
+    if (!this.enabled) {
+      this.alarm.cancel();
+      return;
+    }
+    if (this.executing || this.alarm.scheduled) return;
+    const now = this.clock.nanos;
+    const cycles = (now - this.origin) / CYCLE_NANOS;
+    this.edge = Math.floor((cycles * FRACTION) / this.period);
+    while (this.instant(this.edge) <= now) this.edge++;
+    this.alarm.at(this.instant(this.edge));
+  }
+
+  // What the library calls when something that a machine may wait for has changed.
+  checkWait() {
+    if (this.executing) super.checkWait();
+    else if (this.waiting) this.wake();
+  }
+
+  execute() {
+    if (!this.enabled) return;
+    this.executing = true;
+    const before = this.cycles;
+    let spent = 0;
+    if (this.waiting) {
+      super.checkWait();
+      spent = 1; // the edge at which the wait ended; its delay is in this.cycles
+    } else {
+      this.updatePC = true;
+      this.executeInstruction(this.pio.instructions[this.pc]);
+      if (this.updatePC) this.nextPC();
+    }
+    this.executing = false;
+    this.pio.checkChangedPins();
+    if (this.waiting) return;
+    this.edge += spent + this.cycles - before;
+    this.alarm.at(this.instant(this.edge));
+  }
+
+  // An instruction from the CPU is executed at once, in place of what the machine waits at.
+  executeNow(opcode) {
+    this.waiting = false;
+    this.executing = true;
+    this.executeInstruction(opcode & 0xffff);
+    this.executing = false;
+    this.wake();
+  }
+}
+
+export class TimedPio extends RPPIO {
+  constructor(mcu, index) {
+    const old = mcu.pio[index];
+    super(mcu, old.name, old.firstIrq, index);
+    this.machines = this.machines.map((_, i) => new TimedMachine(mcu, this, i));
+  }
+
+  run() {} // never free
+
+  writeUint32(offset, value) {
+    const inMachine = offset >= SM_FIRST && offset <= SM_LAST;
+    const register = (offset - SM_FIRST) % SM_SIZE;
+    const machine = inMachine ? this.machines[Math.floor((offset - SM_FIRST) / SM_SIZE)] : null;
+    if (inMachine && register === INSTR) {
+      machine.executeNow(value);
+    } else {
+      super.writeUint32(offset, value);
+      if (inMachine && register === CLKDIV) machine.clkDivRestart();
+    }
+    if (offset === CTRL) for (const each of this.machines) each.wake();
+    if (offset === CTRL || inMachine) this.checkChangedPins();
+  }
+}

@@ -1,0 +1,214 @@
+"""The transceiver of an emulated panel: the chip's TX, RX and driver enable as a station on the wire.
+
+What the chip sends comes as characters with the instant of their start bits, known when they are
+over; the world runs so far behind that they can still begin on the wire when they did. What others
+send goes to the chip character by character, each as late as it can be told in time, so that a
+collision garbles it and a cut ends it. As on `boards.sim.wire.Transceiver`, the receiver is off
+while the driver is on. It keeps the figures of the line, in nanoseconds of the chip's clock.
+"""
+
+from array import array
+
+from boards.sim.clock import Event
+
+BITS = 11  # of a character
+FOLLOWS_BITS_PERCENT = 40  # a later start bit is a gap; the world is that far behind
+EDGES_KEPT = 16  # of the driver: more than there are while one character lasts
+FIGURES_MAX = 20_000
+COMPLAINTS_MAX = 16
+
+PARITY_WRONG, STOP_WRONG = 1, 2  # flaws of a character
+
+
+class Figures:
+    """What was measured on the line, the first FIGURES_MAX of each kind, in nanoseconds.
+
+    lead_ns       from the driver's on to the first start bit, for every telegram of the chip
+    release_ns    from its last stop bit to the driver's off; negative: the driver cut it
+    idle_ns       from the last stop bit of another station to the chip's next start bit
+    driver        [(at_ns, on)] of its driver enable, since the world began
+    heard_ns      when the last character that the chip received was over
+    """
+
+    def __init__(self):
+        self.clear()
+
+    def clear(self):
+        """Forget what was measured so far."""
+        self.lead_ns = array("q")
+        self.release_ns = array("q")
+        self.idle_ns = array("q")
+        self.driver = []
+        self.heard_ns = None
+
+    @staticmethod
+    def note(figures, value):
+        if len(figures) < FIGURES_MAX:
+            figures.append(value)
+
+
+class Station:
+    """wire: the line. tell(at_ns, kind, a, b): to the chip. origin_ns: the chip's time when the
+    world's clock was 0.
+
+    complaints   characters that were no characters, as texts, the first 16
+    figures      see `Figures`
+    """
+
+    name = "panel"
+    has_driver_enable = True
+    is_panel = True
+
+    def __init__(self, wire, tell, origin_ns):
+        self.complaints = []
+        self.figures = Figures()
+        self._wire = wire
+        self._clock = wire.clock
+        self._tell = tell
+        self._origin_ns = origin_ns
+        self._character_ns = BITS * 1_000_000_000 // wire.baud
+        self._gap_ns = FOLLOWS_BITS_PERCENT * 10_000_000 // wire.baud
+        self._one = bytearray(1)
+        self._to_send = []  # (start_ns, byte): told, and not on the wire yet
+        self._burst = None  # ours, on the wire
+        self._sent_until_ns = 0  # end of the last stop bit, of what was told
+        self._begin = Event(self._begun)
+        self._rose_ns = None  # when the driver went on, until its telegram has begun
+        self._sending = False  # characters came since then
+        self._edges = []  # (at_ns, on) of the driver, of late
+        self._driving = False
+        self._coming = None  # the burst of somebody else
+        self._coming_us = 0
+        self._taken = 0  # how many of its characters have begun
+        self._next = Event(self._receive)
+        self._heard_until_ns = None  # the end of what the chip heard last, until it sends
+        wire.attach(self)
+
+    # --- from the chip --------------------------------------------------------------------------
+
+    def sent(self, at_ns, byte, flaws):
+        """A character left TX; its start bit began at `at_ns`."""
+        if flaws:
+            self._complain(at_ns, "character %02X with a wrong parity or stop bit" % byte)
+        if self._rose_ns is not None:
+            Figures.note(self.figures.lead_ns, at_ns - self._rose_ns)
+            self._rose_ns = None
+        follows = at_ns - self._sent_until_ns <= self._gap_ns
+        if not follows and self._heard_until_ns is not None:
+            Figures.note(self.figures.idle_ns, at_ns - self._heard_until_ns)
+            self._heard_until_ns = None
+        self._sending = True
+        self._sent_until_ns = at_ns + self._character_ns
+        self._to_send.append((at_ns, byte, follows))
+        self._put()
+
+    def driver(self, at_ns, on):
+        """The driver enable changed: told when it is known, before its turn in the world."""
+        if on:
+            self._rose_ns = at_ns
+            self._sending = False
+        elif self._sending:
+            Figures.note(self.figures.release_ns, at_ns - self._sent_until_ns)
+            self._sending = False
+        self._edges = self._edges[1 - EDGES_KEPT :] + [(at_ns, on)]
+        if on != self._driving:
+            self._driving = on
+            Figures.note(self.figures.driver, (at_ns - self._origin_ns, on))
+
+    def drive(self, at_ns, on):
+        """The driver enable changes now, in the world's time.
+
+        The wire counts whole microseconds: by them the last stop bit may seem not to be over.
+        """
+        burst = self._burst
+        if not on and burst is not None and at_ns >= self._sent_until_ns:
+            ends_us = burst.end_us
+            if self._clock.now_us < ends_us <= self._clock.now_us + 2:
+                self._clock.schedule(Event(lambda: self._wire.drive(self, False)), ends_us)
+                return
+        self._wire.drive(self, on)
+
+    def reset(self):
+        """The chip let go of everything: what it was sending ends here."""
+        self._clock.cancel(self._begin)
+        self._clock.cancel(self._next)
+        self._driving = False
+        self._wire.detach(self)
+        self._to_send = []
+        self._burst = None
+        self._coming = None
+        self._sending = False
+        self._rose_ns = None
+        self._heard_until_ns = None
+        self._edges = []
+        self._wire.attach(self)
+
+    def _put(self):
+        """Put on the wire what follows what is there; wait with what does not."""
+        while self._to_send:
+            at_ns, _, follows = self._to_send[0]
+            on_the_wire = self._burst is not None and self._burst.end_us > self._clock.now_us
+            if not (follows and on_the_wire):
+                if not self._begin.armed:
+                    at_us = (at_ns - self._origin_ns) // 1000
+                    self._clock.schedule(self._begin, at_us)
+                return
+            self._talk()
+
+    def _begun(self):
+        self._talk()
+        self._put()
+
+    def _talk(self):
+        at_ns, self._one[0], _ = self._to_send.pop(0)
+        try:
+            self._burst = self._wire.talk(self, self._one, 1)
+        except ValueError as error:  # longer than any telegram
+            self._complain(at_ns, error.args[0])
+
+    # --- from the wire --------------------------------------------------------------------------
+
+    def watch(self, burst):
+        if self._coming is not None and self._coming.end_us > self._clock.now_us:
+            return  # of two talkers at once, the first is heard, garbled
+        self._coming = burst
+        self._coming_us = burst.start_us
+        self._taken = 0
+        # Not now: who talks has not put all of its characters there yet.
+        self._clock.schedule(self._next, self._clock.now_us)
+
+    def hear(self, burst):
+        if burst is self._coming:
+            self._coming = None
+
+    def _receive(self):
+        """A character begins: the chip will have it when it is over."""
+        burst = self._coming
+        at = self._taken
+        if burst is None or burst.start_us != self._coming_us or at >= burst.count:
+            return
+        self._taken = at + 1
+        starts_ns = self._instant_ns(burst, at)
+        ends_ns = self._instant_ns(burst, at + 1)
+        if not self._deaf(starts_ns, ends_ns):
+            self._tell(ends_ns, "C", burst.data[at], 0)
+            self._heard_until_ns = ends_ns
+            self.figures.heard_ns = ends_ns - self._origin_ns
+        if at + 1 < burst.count:
+            self._clock.schedule(self._next, burst.start_us + burst.ends[at])
+
+    def _instant_ns(self, burst, characters):
+        """When so many characters of a burst are over."""
+        return self._origin_ns + burst.start_us * 1000 + characters * self._character_ns
+
+    def _deaf(self, from_ns, until_ns):
+        """Whether the driver was on, and so the receiver off, at any instant between these."""
+        edges = self._edges
+        while len(edges) > 1 and edges[1][0] <= from_ns:
+            edges.pop(0)
+        return any(on for at_ns, on in edges if at_ns < until_ns)
+
+    def _complain(self, at_ns, text):
+        if len(self.complaints) < COMPLAINTS_MAX:
+            at_us = (at_ns - self._origin_ns) // 1000
+            self.complaints.append("at %d: panel: %s" % (at_us, text))

