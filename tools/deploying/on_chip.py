@@ -1,0 +1,88 @@
+"""What tools/deploy has the chip do: look at files, put a new one in place of an old one, remove.
+
+This file is MicroPython. It is sent over the serial line and lives in the chip's RAM until the
+next restart; nothing of it is copied. Paths are relative to the top of the chip's file system.
+Answers are printed and read back as Python literals.
+"""
+
+import binascii
+import hashlib
+import os
+
+_FOLDER = 0x4000  # in the mode that os.stat tells
+_PIECE = 512  # bytes
+
+
+def look(paths):
+    """[(path, bytes, SHA-256)] of those that are there; of a folder (path, -1, "")."""
+    found = []
+    for path in paths:
+        try:
+            status = os.stat(path)
+        except OSError:
+            continue
+        if status[0] & _FOLDER:
+            found.append((path, -1, ""))
+        else:
+            found.append((path, status[6], sha256(path)))
+    return found
+
+
+def sha256(path):
+    total = hashlib.sha256()
+    piece = bytearray(_PIECE)
+    view = memoryview(piece)
+    with open(path, "rb") as file:
+        while True:
+            count = file.readinto(piece)
+            if not count:
+                return binascii.hexlify(total.digest()).decode()
+            total.update(view[:count])
+
+
+def read(path):
+    with open(path, "rb") as file:
+        return file.read()
+
+
+def free_blocks():
+    """(bytes of a block, blocks that are free) of the file system."""
+    status = os.statvfs(os.getcwd())
+    return status[0], status[3]
+
+
+def make_folder(path):
+    """The folder and those above it, unless they are there."""
+    for end in range(1, len(path) + 1):
+        if end == len(path) or path[end] == "/":
+            try:
+                os.stat(path[:end])
+            except OSError:
+                os.mkdir(path[:end])
+
+
+def replace(new, path):
+    """`new` takes the place of `path` at once: littlefs promises that (README, Usage)."""
+    os.rename(new, path)
+
+
+def remove(path):
+    os.remove(path)
+
+
+def remove_empty(folders):
+    """Those of the folders that are there and empty. An empty one would hide a frozen package."""
+    for folder in folders:
+        try:
+            os.rmdir(folder)
+        except OSError:
+            pass
+
+
+def stop_watchdog():
+    """Whether one was running on this RP2040: CTRL register, bit ENABLE (data sheet 4.7.6)."""
+    import machine
+
+    running = machine.mem32[0x40058000] >> 30 & 1
+    machine.mem32[0x4005B000] = 1 << 30  # the address that clears bits
+    return bool(running)
