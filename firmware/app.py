@@ -23,6 +23,7 @@ from panel.screen import GLYPHS
 from settings import load, save
 
 CLOSE_MS = const(1_000)  # for the drives to answer their OFF1, and a round of the bus on top
+FAREWELL_STEPS = const(100)  # for the display to show that nothing is controlled any more
 SAVE_AGAIN_MS = const(10_000)  # after the store failed
 
 
@@ -36,15 +37,14 @@ class App:
         self.link = board.make_link(settings.baud)
         timing = Timing(settings.baud, settings.reply_timeout_ms * 1000)
         self.bus = Master(self.link, timing, mask, settings.lost_ms * 1000)
-        self.pacer = Pacer(
-            self.bus, self.link, board.clock, board.timer, board.disable_irq, board.enable_irq
-        )
+        self.pacer = Pacer(self.bus, self.link, board.clock, board.timer)
         controls = []
         for address in settings.drives:
             drive = self.bus.add(address)
             controls.append(Control(drive, Survey(drive, mask), self.bus, mask, settings))
         board.display.define(GLYPHS)
-        self.panel = Panel(controls, self.bus, board.keypad.names, settings, mask)
+        notice = texts.WATCHDOG_RESTART if board.reset_cause else None
+        self.panel = Panel(controls, self.bus, board.keypad.names, settings, mask, notice)
         self._mask = mask
         self._progress = 0  # of the bus as last seen, and when it moved
         self._progress_at_ms = 0
@@ -68,14 +68,27 @@ class App:
         board.display.show(self.panel.screen.picture)
         if self._engine_works(now_ms):
             board.watchdog.feed()
-        if self.settings.dirty and not self.panel.any_runs():
-            self._save(now_ms)
+        if self.settings.dirty:
+            self._save_if_quiet(now_ms)
         board.idle()
 
-    def _save(self, now_ms):
-        """Writing flash may hold everything up for a while: only when no drive runs."""
-        if self._save_failed and elapsed(now_ms, self._saved_at_ms, self._mask) < SAVE_AGAIN_MS:
+    def _save_if_quiet(self, now_ms):
+        """Writing flash holds everything up for a while, interrupts too: only when no drive runs,
+        and between two exchanges."""
+        if self.panel.any_runs() or self._just_failed_to_save(now_ms):
+            self.bus.resume()
             return
+        self.bus.pause()
+        if self.bus.paused:
+            self._save(now_ms)
+            self.bus.resume()
+
+    def _just_failed_to_save(self, now_ms):
+        if not self._save_failed:
+            return False
+        return elapsed(now_ms, self._saved_at_ms, self._mask) < SAVE_AGAIN_MS
+
+    def _save(self, now_ms):
         self._saved_at_ms = now_ms
         self._save_failed = False
         try:
@@ -97,6 +110,7 @@ class App:
             self._persist(self._wait, self._is_closed)
         finally:
             self._persist(self.pacer.stop)
+        self._persist(self._say_farewell)
 
     def _persist(self, action, *arguments):
         while True:
@@ -104,6 +118,19 @@ class App:
                 return action(*arguments)
             except KeyboardInterrupt:
                 pass
+
+    def _say_farewell(self):
+        """The picture of a panel that has stopped would go on saying what no longer holds."""
+        screen = self.panel.screen
+        for row in range(len(texts.FAREWELL)):
+            screen.put(row, 0, texts.ROW_WIDTH, texts.FAREWELL[row])
+        try:
+            for _ in range(FAREWELL_STEPS):
+                if self.board.display.show(screen.picture):
+                    return
+                self.board.idle()
+        except Exception:  # it may be the display that has failed
+            pass
 
     def _wait(self, condition):
         """Let the engine work until `condition()` is true, or as long as may be expected."""

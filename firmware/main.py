@@ -1,12 +1,21 @@
 """Starts the panel on the board it finds.
 
-DOWN held at power-on leaves the chip at the prompt instead. So does Ctrl-C, after every drive has
-been stopped; but the watchdog, once it runs, cannot be stopped and restarts the chip 2 s later.
+Two ways lead to the prompt instead. DOWN held at power-on does before anything is sent. Ctrl-C does
+at any time: every drive is stopped first, no interrupt is left, and the watchdog is stopped, so
+that a person can work on the chip (maintenance mode). Ctrl-D there starts the panel again.
+
+Anything else that ends the panel is a failure of the firmware: the drives are stopped, and the
+watchdog restarts the chip within 2 s.
 """
 
 from app import App
 
 ESCAPE_KEY = "DOWN"
+
+RUNS = "USS panel: runs. Ctrl-C stops every drive and ends it."
+STOPPED = "USS panel: stopped, and every drive with it. Ctrl-D starts it again."
+KEPT_ON = "The watchdog of this board cannot be stopped: it restarts the chip soon."
+ESCAPED = "USS panel: not started, %s was down at power-on. Ctrl-D starts it." % ESCAPE_KEY
 
 
 def start(board):
@@ -17,12 +26,22 @@ def start(board):
 
 
 def loop(app):
-    """Step until something ends it: Ctrl-C, an exception. Then stop the drives."""
+    """Start the bus and step until something ends it: Ctrl-C, an exception. Then stop the drives."""
     try:
+        app.start()
+        print(RUNS)  # tools/deploy waits for this
         while True:
             app.step()
     finally:
         app.close()
+
+
+def run(board):
+    """The panel until Ctrl-C, or until the exception that ends it. Then maintenance mode."""
+    try:
+        loop(App(board))
+    except KeyboardInterrupt:
+        print(STOPPED if board.watchdog.stop() else KEPT_ON)
 
 
 def escape_wanted(keypad):
@@ -35,8 +54,10 @@ def escape_wanted(keypad):
 def main():
     import board  # the file that boards/<name>/ puts beside this one
 
-    if not escape_wanted(board.keypad):
-        loop(start(board))
+    if escape_wanted(board.keypad):
+        print(ESCAPED)
+    else:
+        run(board)
 
 
 if __name__ == "__main__":

@@ -3,7 +3,7 @@
 import random
 
 from boards.sim.chip import heap_lock, heap_unlock
-from hal.hd44780 import BYTES_PER_PIECE, REFRESH_US
+from hal.hd44780 import REFRESH_US, Hd44780
 from lcd_bench import HOURGLASS, LOOP_US, READY, RUNNING, UP_AND_DOWN, LcdBench
 
 REFRESH_MS = REFRESH_US // 1000
@@ -116,7 +116,7 @@ def test_only_what_differs_is_written():
 
 
 def test_a_piece_is_small_and_takes_less_than_a_millisecond():
-    """Through power-on, changes and a refresh. One byte more: the one that switches it on."""
+    """Through power-on, changes and a refresh."""
     bench = LcdBench()
     bench.boot(HOURGLASS * 8)
     picture = bytearray(RUNNING)
@@ -126,12 +126,12 @@ def test_a_piece_is_small_and_takes_less_than_a_millisecond():
         before, began_us = bench.written(), bench.clock.now_us
         bench.display.show(picture)
         largest = max(largest, bench.written() - before)
-        # What the computing takes stands in the driver; here only the waiting counts.
+        # What the computing takes stands in boards/pico/README.md; here only the waiting counts.
         assert bench.clock.now_us - began_us <= 600
         bench.clock.advance(LOOP_US)
         for position in range(32):
             picture[position] = 0x20 | picture[position] & 0x1F
-    assert largest == BYTES_PER_PIECE + 1
+    assert largest == Hd44780.bytes_per_piece
     assert bench.lcd.complaints == [] and bench.lcd.clears == 0
 
 

@@ -34,25 +34,75 @@ class Switch:
             raise error
 
     def power_on(self):
-        """Run main() to its end; answer the error that ended it, or None."""
+        """Run main() to its end; answer whether that is the prompt."""
         sys.modules["board"] = self.board
         try:
             main.main()
-        except (KeyboardInterrupt, ValueError) as error:
-            return error
+        except ValueError:
+            return False
         finally:
             del sys.modules["board"]
-        return None
+        return True
 
 
 def test_the_panel_runs_until_ctrl_c_and_then_everything_is_quiet():
     switch = Switch()
-    assert isinstance(switch.power_on(), KeyboardInterrupt)
+    assert switch.power_on()
     switch.world.clock.advance(200_000)
     sent = switch.world.wire.log.count
     switch.world.clock.advance(1_000_000)
     assert sent > 100 and switch.world.wire.log.count == sent
     switch.world.check()
+
+
+def test_after_ctrl_c_the_display_does_not_go_on_saying_what_no_longer_holds():
+    switch = Switch(ends_after_ms=4000)
+    world = switch.world
+    world.clock.schedule(Event(lambda: world.down("START")), world.clock.now_us + 1_500_000)
+    assert switch.power_on()
+    assert world.lcd() == ("PANEL STOPPED   ", "NO CONTROL      ")
+
+
+def test_a_display_that_fails_does_not_keep_the_panel_from_ending():
+    switch = Switch()
+
+    def fail(_picture):
+        raise ValueError
+
+    failure = Event(lambda: setattr(switch.board.display, "show", fail))
+    switch.world.clock.schedule(failure, switch.world.clock.now_us + 1_000_000)
+    assert not switch.power_on()
+    sent = switch.world.wire.log.count
+    switch.world.clock.advance(1_000_000)
+    assert switch.world.wire.log.count == sent
+
+
+def test_ctrl_c_ends_in_a_maintenance_mode_without_watchdog():
+    switch = Switch()
+    bites = []
+    switch.world.chip.on_bite = lambda: bites.append(switch.world.clock.now_us)
+    assert switch.power_on()
+    switch.world.clock.advance(10_000_000)
+    assert not bites
+
+
+def test_a_panel_that_failed_is_restarted_by_the_watchdog():
+    switch = Switch(error=ValueError("a defect of the firmware"))
+    bites = []
+    switch.world.chip.on_bite = lambda: bites.append(switch.world.clock.now_us)
+    assert not switch.power_on()
+    ended_us = switch.world.clock.now_us
+    switch.world.clock.advance(2_001_000)
+    assert len(bites) == 1 and bites[0] <= ended_us + 2_000_000
+
+
+def test_ctrl_c_while_the_bus_is_being_started_leaves_no_interrupt_behind():
+    switch = Switch()
+    switch.board.disable_irq = interrupting(switch.board.disable_irq)
+    assert switch.power_on()
+    sent = switch.world.wire.log.count
+    switch.world.clock.advance(1_000_000)
+    assert switch.world.wire.log.count == sent
 
 
 def test_ctrl_c_again_and_again_does_not_keep_the_drives_from_being_stopped():
@@ -67,7 +117,7 @@ def test_ctrl_c_again_and_again_does_not_keep_the_drives_from_being_stopped():
             raise KeyboardInterrupt
 
     switch.board.idle = impatient
-    assert isinstance(switch.power_on(), KeyboardInterrupt)
+    assert switch.power_on()
     assert world.drives[1].state == "stopping"
     sent = world.wire.log.count
     world.clock.advance(1_000_000)
@@ -90,6 +140,19 @@ def test_a_second_ctrl_c_wherever_it_strikes_leaves_no_motor_running():
         assert world.wire.log.count == sent, name
 
 
+def interrupting(function):
+    """The function, but that Ctrl-C strikes when it is called for the first time."""
+    calls = []
+
+    def interrupted():
+        calls.append(1)
+        if len(calls) == 1:
+            raise KeyboardInterrupt
+        return function()
+
+    return interrupted
+
+
 def interrupt(owner, name):
     """Ctrl-C strikes at the beginning of the first call of a method, and of the third."""
     method = getattr(owner, name)
@@ -108,7 +171,7 @@ def test_ctrl_c_stops_a_drive_that_runs_before_anything_else_ends():
     switch = Switch(ends_after_ms=4000)
     world = switch.world
     world.clock.schedule(Event(lambda: world.down("START")), world.clock.now_us + 1_500_000)
-    assert isinstance(switch.power_on(), KeyboardInterrupt)
+    assert switch.power_on()
     assert world.drives[1].state == "stopping"
     world.check()
 
@@ -118,7 +181,7 @@ def test_a_drive_that_does_not_answer_does_not_keep_the_program_from_ending():
     world = switch.world
     world.clock.schedule(Event(lambda: world.down("START")), world.clock.now_us + 1_500_000)
     world.clock.schedule(Event(world.drives[1].unplug), switch.end_us - 20_000)
-    assert isinstance(switch.power_on(), KeyboardInterrupt)
+    assert switch.power_on()
     assert world.clock.now_us - switch.end_us < 1_500_000
     sent = world.wire.log.count
     world.clock.advance(1_000_000)
@@ -127,14 +190,14 @@ def test_a_drive_that_does_not_answer_does_not_keep_the_program_from_ending():
 
 def test_down_held_at_power_on_leaves_the_chip_at_the_prompt():
     switch = Switch(held="DOWN")
-    assert switch.power_on() is None
+    assert switch.power_on()
     switch.world.clock.advance(2_000_000)
     assert switch.world.wire.log.count == 0
 
 
 def test_another_key_held_at_power_on_does_not():
     switch = Switch(held="START")
-    assert isinstance(switch.power_on(), KeyboardInterrupt)
+    assert switch.power_on()
     assert switch.world.wire.log.count > 0
 
 

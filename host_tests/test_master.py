@@ -559,3 +559,105 @@ def test_a_bad_reply_changes_nothing_in_the_image():
     bus.run(300_000)
     assert drive.zsw == zsw and drive.counters[0] <= good + 1
     assert drive.counters[3] > 5  # wrong BCC
+
+
+# --- a pause ------------------------------------------------------------------------------------
+
+
+def test_a_pause_begins_when_the_exchange_that_goes_on_is_over():
+    bus = Bus()
+    bus.run(300_000)
+    sent = len(bus.sent)
+    while len(bus.sent) == sent:
+        bus.run(500)
+    good = bus.drives[0].counters[0]
+    bus.master.pause()
+    assert not bus.master.paused
+    bus.run(50_000)
+    assert bus.master.paused and bus.drives[0].counters[0] == good + 1
+    sent = len(bus.sent)
+    progress = bus.master.progress
+    bus.run(500_000)
+    assert len(bus.sent) == sent and bus.master.progress != progress
+    bus.master.resume()
+    assert not bus.master.paused
+    bus.run(10_000)
+    assert len(bus.sent) == sent + 1
+    bus.run(300_000)
+    assert bus.drives[0].counters[1:] == [0] * 6
+
+
+def test_a_pause_that_nobody_ends_ends_after_a_second():
+    bus = Bus()
+    bus.run(300_000)
+    bus.master.pause()
+    bus.run(50_000)
+    assert bus.master.paused
+    sent = len(bus.sent)
+    bus.run(900_000)
+    assert bus.master.paused and len(bus.sent) == sent
+    bus.run(200_000)
+    assert not bus.master.paused and len(bus.sent) > sent
+    bus.master.resume()  # too late, and no harm
+    bus.run(100_000)
+    assert not bus.master.paused
+
+
+def test_a_stop_is_sent_in_a_pause_and_the_pause_goes_on():
+    bus = Bus((1, 2))
+    bus.run(300_000)
+    bus.master.pause()
+    bus.run(60_000)
+    sent = len(bus.sent)
+    bus.drives[1].stop()
+    bus.run(60_000)
+    assert bus.addresses(sent) == [2] and bus.stws(2, sent) == [pzd.OFF1]
+    assert bus.master.paused
+
+
+def test_a_command_given_before_a_pause_is_sent_before_it():
+    bus = Bus((1, 2))
+    bus.run(300_000)
+    bus.drives[0].start(0x1000)
+    bus.drives[1].stop()
+    sent = len(bus.sent)
+    bus.master.pause()
+    while not bus.master.paused:
+        bus.run(500)
+    assert bus.addresses(sent)[-2:] == [2, 1] and bus.stws(1, sent)[-1] == pzd.ON
+
+
+def test_a_panel_whose_loop_hangs_in_a_pause_is_stopped_all_the_same():
+    bus = Bus()
+    bus.run(300_000)
+    bus.drives[0].start(0x1000)
+    bus.run(100_000)
+    bus.master.pause()
+    last = bus.now
+    bus.run(400_000, refresh=False)
+    offs = [at for at, characters in bus.sent if at > last and characters[12] == 0x7E]
+    assert offs and offs[0] - last <= DEAD_MAN_US + 22_000
+
+
+def test_a_closed_bus_does_not_wait_for_the_end_of_a_pause():
+    bus = Bus()
+    bus.run(300_000)
+    bus.master.pause()
+    bus.run(50_000)
+    bus.master.close()
+    bus.run(50_000)
+    assert bus.master.phase == CLOSED
+
+
+def test_while_it_listens_a_pause_is_in_force_at_once():
+    """Another master may talk for hours: what waits for the pause must not wait for that."""
+    bus = Bus()
+    bus.master.pause()
+    for _ in range(50):
+        bus._reply, bus._reply_at = b"\x02\x06\x01", bus.now
+        bus.run(50_000)
+        assert bus.master.paused
+    bus.run(900_000)
+    assert bus.master.paused and bus.sent == []
+    bus.run(400_000)
+    assert not bus.master.paused and bus.sent

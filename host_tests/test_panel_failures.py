@@ -260,6 +260,54 @@ def test_a_loop_that_hangs_for_good_restarts_the_chip():
     world.check()
 
 
+def test_saving_the_settings_spoils_no_telegram():
+    """Writing flash holds up all interrupts for a tenth of a second and more."""
+    for seed in range(1, 13):
+        print("seed", seed)
+        world = panel(addresses=(1, 2), seed=seed)
+        world.run(world.random(0, 60))
+        good = [drive.counters[0] for drive in world.app.bus.drives]
+        world.app.settings.accept_unsupervised(2)
+        began_us = world.clock.now_us
+        while world.app.settings.dirty:
+            world.run(2)
+        assert 100_000 < world.clock.now_us - began_us < 400_000
+        world.run(2000)
+        assert b'"unsupervised": [2]' in world.flash.files["settings.json"]
+        for drive, before in zip(world.app.bus.drives, good):
+            assert drive.counters[0] > before + 20 and not any(drive.counters[1:])
+        world.check()
+
+
+def test_a_start_while_the_settings_are_being_saved_is_not_lost():
+    world = panel()
+    world.app.settings.accept_unsupervised(1)
+    world.down("START")
+    world.run(1000)
+    world.up("START")
+    world.run(3000)
+    assert world.drives[1].state == "running" and not world.app.settings.dirty
+    world.check()
+
+
+def test_a_panel_that_the_watchdog_restarted_says_so():
+    world = panel()
+    assert not world.reads("WATCHDOG")
+    world.hang(2500)
+    assert world.resets == 1
+    world.run(1000)
+    assert row_2(world) == "WATCHDOG RESTART"
+    world.run(4000)
+    assert row_2(world) == "READY        A1"
+
+
+def test_a_panel_that_was_switched_on_has_nothing_to_say_about_the_watchdog():
+    world = panel()
+    world.reset()
+    world.run(1000)
+    assert not world.reads("WATCHDOG")
+
+
 def test_a_reset_ends_in_a_stopped_motor_and_no_start():
     world = running()
     reset_us = world.clock.now_us

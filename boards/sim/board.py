@@ -56,6 +56,13 @@ class Watchdog:
         else:
             self._wdt.feed()
 
+    def stop(self):
+        """By the bit of a register that the RP2040 has, and machine.WDT does not offer."""
+        if self._wdt is not None:
+            self._wdt.die()
+            self._wdt = None
+        return True
+
 
 class HardTimer(Timer):
     """A timer whose callbacks are hard interrupts, as the chip has them from 1.26 on."""
@@ -70,11 +77,13 @@ class Board:
     chip: a `chip.Chip` that is running. lcd: the controller of the panel's display. switches: of
     the panel's keys. polled: its UART offers no receive interrupt.
     loop_us: a function that answers how long this step of the main loop takes, in microseconds.
+    reset_cause: why the chip booted, see `hal`.
     """
 
     name = "SIMULATED"
 
-    def __init__(self, chip, lcd, switches, store, polled=False, loop_us=None):
+    def __init__(self, chip, lcd, switches, store, polled=False, loop_us=None, reset_cause=""):
+        self.reset_cause = reset_cause
         self.clock = chip.clock
         self.display = make_display(chip, lcd)
         self.keypad = make_keypad(chip, switches)

@@ -95,6 +95,13 @@ class Clock:
         before.next = event.next
         event.armed = False
 
+    def coming(self):
+        """The instants that are to come, in order: (at_us, callback) of each event."""
+        event = self._head.next
+        while event is not None:
+            yield event.at_us, event.callback
+            event = event.next
+
     def advance(self, us):
         """Let `us` microseconds pass."""
         self.advance_to(self.now_us + us)

@@ -32,18 +32,21 @@ class Drive:
 
     reply_delay_us  from the last character heard to the reply, 3 characters if None; any value may
                     be set, illegal ones too
+    any_baud        True: it talks at the line's rate whatever its P2010 says, for lines that this
+                    family does not know
     stale_replies   telegrams for which a new parameter task still gets the old reply
     plugged         whether the RS-485 connector is in
     powered         whether it has mains
     """
 
-    def __init__(self, clock, wire, address, parameters=None, reply_delay_us=None):
+    def __init__(self, clock, wire, address, parameters=None, reply_delay_us=None, any_baud=False):
         self._clock = clock
         self._wire = wire
         self.name = "drive %d" % address
         if reply_delay_us is None:
             reply_delay_us = -(-REPLY_DELAY_CHARACTERS * 11_000_000 // wire.baud)
         self.reply_delay_us = reply_delay_us
+        self._any_baud = any_baud
         self.plugged = True
         self.powered = False
         self._connected = False
@@ -233,10 +236,11 @@ class Drive:
     def _commission(self, address, parameters):
         """Set it up as delivered, then for USS at the line's baud rate, then as asked for."""
         code = [code for code, baud in mm420.BAUD_CODES.items() if baud == self._wire.baud]
-        if not code:
+        if not code and not self._any_baud:
             raise ValueError("a %s has no code for %d baud" % (mm420.NAME, self._wire.baud))
         settings = dict(mm420.COMMISSIONED)
-        settings[2010] = code[0]
+        if code:
+            settings[2010] = code[0]
         settings[2011] = address
         settings.update(parameters)
         for number, value in settings.items():
@@ -291,7 +295,7 @@ class Drive:
     def _configure_link(self):
         slave = self._slave
         ram = self._parameters.ram
-        slave.baud = mm420.BAUD_CODES[ram[2010][0]]
+        slave.baud = self._wire.baud if self._any_baud else mm420.BAUD_CODES[ram[2010][0]]
         slave.address = ram[2011][0]
         slave.pzd_words = ram[2012][0]
         slave.pkw_words = ram[2013][0]

@@ -1,8 +1,8 @@
 """Files on a flash memory whose power can be cut before every step of writing.
 
 It behaves like littlefs: a file that is written appears with its new content when it is closed,
-all at once, and rename overwrites at once (littlefs README, Usage). It has no folders, wears out
-never, and takes no time.
+all at once, and rename overwrites at once (littlefs README, Usage). It has no folders and wears out
+never. Its steps take as long as on the Pico, in which everything stands still, interrupts as well.
 
     flash = Flash()
     store = FileStore("settings.json", flash.open, flash)      # it stands for `open` and for `os`
@@ -20,6 +20,11 @@ EIO = 5
 ENOSPC = 28
 
 BLOCK_BYTES = 64  # written in one step; small, so that there are many steps
+
+# Winbond W25Q16JV (the Pico's), AC characteristics, typical: 0.4 ms a page, 45 ms a sector erased.
+# littlefs does not erase for each of its commits; here the worst is assumed.
+PROGRAM_US = 400
+ERASE_US = 45_000
 CAPACITY_BYTES = 64 * BLOCK_BYTES
 
 
@@ -30,7 +35,8 @@ class PowerCut(BaseException):
 class Flash:
     """torn: of a file that was being written at the cut, what had been written is visible.
 
-    littlefs promises better; a firmware that stands this needs no such promise.
+    littlefs promises better; a firmware that stands this needs no such promise. busy: called with
+    the microseconds that each step takes.
 
     files        path -> bytes, as a reader finds them; a test may put something there
     unreadable   paths that cannot be read: OSError
@@ -39,13 +45,14 @@ class Flash:
     cut_at       power is cut instead of the step with this number, counted from 0; None: never
     """
 
-    def __init__(self, capacity_bytes=CAPACITY_BYTES, torn=False):
+    def __init__(self, capacity_bytes=CAPACITY_BYTES, torn=False, busy=None):
         self.files = {}
         self.unreadable = ()
         self.steps = 0
         self.cut_at = None
         self._blocks_max = capacity_bytes // BLOCK_BYTES
         self._torn = torn
+        self._busy = busy
         self._has_power = True
         self._writing = {}  # path -> what has been written of it and is not committed
 
@@ -84,7 +91,7 @@ class Flash:
             raise OSError(ENOSPC)
         half = len(block) // 2
         self._writing[path] += block[:half]
-        self._step()
+        self._step(PROGRAM_US)
         self._writing[path] += block[half:]
 
     def commit(self, path):
@@ -92,7 +99,7 @@ class Flash:
         self._step()
         self.files[path] = self._writing.pop(path)
 
-    def _step(self):
+    def _step(self, takes_us=ERASE_US + PROGRAM_US):
         self._need_power()
         if self.steps == self.cut_at:
             self._has_power = False
@@ -101,6 +108,8 @@ class Flash:
             self._writing = {}
             raise PowerCut()
         self.steps += 1
+        if self._busy:
+            self._busy(takes_us)
 
     def _need_power(self):
         if not self._has_power:

@@ -31,16 +31,105 @@ HANG_SLICE_US = 1_000
 COMPLAINTS_SHOWN = 5
 
 
-class World:
-    """start: makes the firmware. addresses: of the drives on the wire. baud: of wire and panel.
+class Surroundings:
+    """All that is around the chip of a panel, whichever chip that is: a line with drives, the
+    controller of the display, switches; a hand that presses them, an eye, and a referee.
 
-    settings: what else the panel's settings file says. seed: 0 is the plain world, in which every
-    drive answers after 3 characters and every step of the loop takes 2 ms; any other number gives
-    each its own times, the same for the same number, and keys bounce. polled: no receive
-    interrupt. ticks_start, ticks_mask: of the chip's clock. keys: "direct", each with a pin of its
-    own, or "matrix", all but START and STOP. parameters: of every drive, {number: value}; without
-    them they are supervised, P2014, as commissioned drives are. store: keeps the panel's settings
-    in place of the flash; what it has already is not touched.
+    addresses: of the drives on the wire. baud: of wire and panel. settings: what else the panel's
+    settings file says. seed: 0 is the plain world, in which every drive answers after 3
+    characters; any other number gives each its own time, the same for the same number, and keys
+    bounce. keys: "direct", each with a pin of its own, or "matrix", all but START and STOP.
+    parameters: of every drive, {number: value}; without them they are supervised, P2014, as
+    commissioned drives are.
+
+    stored    what the panel's settings file is to say
+    resets    how often the chip has restarted
+    """
+
+    def __init__(self, clock, addresses, baud, settings, seed, keys="direct", parameters=None):
+        self.clock = clock
+        self.wire = Wire(clock, baud)
+        self.seed = seed
+        self._random = (seed * 0x2545F + 0x1234567) & 0x3FFFFFFF or 1  # never 0
+        if parameters is None:
+            parameters = {SUPERVISION: supervision_ms(baud, len(addresses))}
+        self.drives = {}
+        for address in addresses:
+            # Not before two characters have passed, not later than the master waits at this rate.
+            fastest_us = self.wire.start_interval_us
+            delay_us = self.random(fastest_us, max(15_000, 3 * fastest_us // 2)) if seed else None
+            self.drives[address] = Drive(
+                clock, self.wire, address, parameters, reply_delay_us=delay_us
+            )
+        self.stored = dict(settings or {})
+        self.stored.setdefault("baud", baud)
+        self.stored.setdefault("drives", list(addresses))
+        self.lcd_chip = Lcd(clock)
+        if keys not in WIRINGS:
+            raise ValueError("keys are wired %s, not %s" % (" or ".join(WIRINGS), keys))
+        self.keypad = Switches(
+            clock, KEYS, NORMALLY_CLOSED, WIRINGS[keys], self.random if seed else None
+        )
+        self.resets = 0
+
+    # --- a hand and an eye ----------------------------------------------------------------------
+
+    def press(self, key, ms=TAP_MS):
+        """Hold a key down for `ms` milliseconds, let it go, and let that be noticed."""
+        self.down(key)
+        self.run(ms)
+        self.up(key)
+        self.run(RELEASE_MS)
+
+    def down(self, key):
+        self.keypad.hold(key)
+
+    def up(self, key):
+        self.keypad.let_go(key)
+
+    def lcd(self):
+        """The two rows that can be read, 16 characters each."""
+        return self.lcd_chip.text()
+
+    def reads(self, text):
+        """Whether a person reads `text` on the display: in a row, or on across both rows."""
+        row_1, row_2 = self.lcd()
+        across = " ".join((row_1 + " " + row_2).split())
+        return text in row_1 or text in row_2 or text in across
+
+    # --- the referee ----------------------------------------------------------------------------
+
+    def check(self):
+        """AssertionError: a rule of line or display was broken, or an interrupt handler failed."""
+        complaints = self.complaints()
+        if complaints:
+            shown = complaints[:COMPLAINTS_SHOWN]
+            if len(complaints) > len(shown):
+                shown.append("and %d more" % (len(complaints) - len(shown)))
+            raise AssertionError("seed %d: %s" % (self.seed, "; ".join(shown)))
+
+    def complaints(self):
+        """What was done against the rules, as texts."""
+        complaints = list(self.wire.violations)
+        for complaint in self.lcd_chip.complaints:
+            complaints.append("display: " + complaint)
+        return complaints
+
+    def random(self, low, high):
+        """A number from low to high, of a sequence that the seed decides (xorshift)."""
+        state = self._random
+        state ^= (state << 7) & 0x3FFFFFFF
+        state ^= state >> 9
+        state ^= (state << 8) & 0x3FFFFFFF
+        self._random = state
+        return low + state % (high - low + 1)
+
+
+class World(Surroundings):
+    """start: makes the firmware. polled: no receive interrupt. ticks_start, ticks_mask: of the
+    chip's clock. store: keeps the panel's settings in place of the flash; what it has already is
+    not touched. The others are those of `Surroundings`; in the plain world every step of the loop
+    takes 2 ms, with a seed each its own time.
     """
 
     def __init__(
@@ -57,36 +146,15 @@ class World:
         parameters=None,
         store=None,
     ):
-        self.clock = Clock(ticks_start, ticks_mask)
-        self.wire = Wire(self.clock, baud)
-        self.seed = seed
-        self._random = (seed * 0x2545F + 0x1234567) & 0x3FFFFFFF or 1  # never 0
-        if parameters is None:
-            parameters = {SUPERVISION: supervision_ms(baud, len(addresses))}
-        self.drives = {}
-        for address in addresses:
-            # Not before two characters have passed, not later than the master waits at this rate.
-            fastest_us = self.wire.start_interval_us
-            delay_us = self.random(fastest_us, max(15_000, 3 * fastest_us // 2)) if seed else None
-            self.drives[address] = Drive(
-                self.clock, self.wire, address, parameters, reply_delay_us=delay_us
-            )
-        stored = dict(settings or {})
-        stored.setdefault("baud", baud)
-        stored.setdefault("drives", list(addresses))
-        self.lcd_chip = Lcd(self.clock)
-        if keys not in WIRINGS:
-            raise ValueError("keys are wired %s, not %s" % (" or ".join(WIRINGS), keys))
-        self.keypad = Switches(
-            self.clock, KEYS, NORMALLY_CLOSED, WIRINGS[keys], self.random if seed else None
-        )
-        self.flash = Flash()
+        clock = Clock(ticks_start, ticks_mask)
+        Surroundings.__init__(self, clock, addresses, baud, settings, seed, keys, parameters)
+        stored = json.dumps(self.stored).encode()
+        self.flash = Flash(busy=self._flash_is_busy)
         self.store = store or FileStore(SETTINGS_FILE, self.flash.open, self.flash)
         if store is None:
-            self.flash.files[SETTINGS_FILE] = json.dumps(stored).encode()
+            self.flash.files[SETTINGS_FILE] = stored
         elif store.read() is None:
-            store.replace(json.dumps(stored).encode())
-        self.resets = 0
+            store.replace(stored)
         self.app = None
         self._start = start
         self._polled = polled
@@ -124,65 +192,31 @@ class World:
         self.chip.reset()
         self._boot()
 
-    # --- a hand and an eye ----------------------------------------------------------------------
-
-    def press(self, key, ms=TAP_MS):
-        """Hold a key down for `ms` milliseconds, let it go, and let that be noticed."""
-        self.down(key)
-        self.run(ms)
-        self.up(key)
-        self.run(RELEASE_MS)
-
-    def down(self, key):
-        self.keypad.hold(key)
-
-    def up(self, key):
-        self.keypad.let_go(key)
-
-    def lcd(self):
-        """The two rows that can be read, 16 characters each."""
-        return self.lcd_chip.text()
-
-    def reads(self, text):
-        """Whether a person reads `text` on the display: in a row, or on across both rows."""
-        row_1, row_2 = self.lcd()
-        across = " ".join((row_1 + " " + row_2).split())
-        return text in row_1 or text in row_2 or text in across
-
-    # --- the referee ----------------------------------------------------------------------------
-
-    def check(self):
-        """AssertionError: a rule of line or display was broken, or an interrupt handler failed."""
-        complaints = list(self.wire.violations)
-        for complaint in self.lcd_chip.complaints:
-            complaints.append("display: " + complaint)
+    def complaints(self):
+        complaints = Surroundings.complaints(self)
         for chip in self.chips:
             for error in chip.handler_errors:
                 complaints.append("interrupt handler: %r" % (error,))
-        if complaints:
-            shown = complaints[:COMPLAINTS_SHOWN]
-            if len(complaints) > len(shown):
-                shown.append("and %d more" % (len(complaints) - len(shown)))
-            raise AssertionError("seed %d: %s" % (self.seed, "; ".join(shown)))
-
-    def random(self, low, high):
-        """A number from low to high, of a sequence that the seed decides (xorshift)."""
-        state = self._random
-        state ^= (state << 7) & 0x3FFFFFFF
-        state ^= state >> 9
-        state ^= (state << 8) & 0x3FFFFFFF
-        self._random = state
-        return low + state % (high - low + 1)
+        return complaints
 
     def _boot(self):
+        cause = "WATCHDOG" if self._bitten else ""
         self._bitten = False
         self.chip = Chip(self.clock, self.wire)
         self.chip.on_bite = self._bite
         self.chips.append(self.chip)
         self.clock.advance(BOOT_US)
         loop_us = self._uneven_loop_us if self.seed else None
-        board = Board(self.chip, self.lcd_chip, self.keypad, self.store, self._polled, loop_us)
+        board = Board(
+            self.chip, self.lcd_chip, self.keypad, self.store, self._polled, loop_us, cause
+        )
         self.app = self._start(board)
+
+    def _flash_is_busy(self, us):
+        # The firmware runs from the same flash: nothing of it does meanwhile.
+        irq = self.chip.disable_irq()
+        self.clock.advance(us)
+        self.chip.enable_irq(irq)
 
     def _bite(self):
         # Inside an event: the world restarts the chip when it has the floor again.

@@ -10,6 +10,7 @@ means that the caller may be a hard interrupt: such a method allocates nothing a
 
 board
     name                text, at most 16 characters
+    reset_cause         "" after power-on or a restart that was wanted, "WATCHDOG" after it bit
     clock               see below
     display, keypad, store, watchdog   see below
     timer               a machine.Timer of its own for the bus; None: the main loop paces it, and
@@ -29,7 +30,8 @@ link                    half duplex; the driver enable is the link's affair
     interrupts          True: on_activity is called without anyone asking; False: it must be polled
     resolution_us       how late received_at and sent_at may be, at the most
     on_activity         None or a function of no arguments; called (interrupt) when a burst of
-                        characters has ended and when sending has ended
+                        characters has ended; when sending has ended only by a link that could
+                        not tell of it otherwise: `sending_us` and `sent_at` do
     send(buffer, count) interrupt. Begins to send the first `count` characters; the caller
                         leaves the buffer alone until sending_us answers 0
     sending_us(now)     interrupt. Microseconds until the last stop bit has left and the driver is
@@ -64,4 +66,5 @@ store                   keeps one small file over power cuts; any method may rai
 
 watchdog
     feed()              the first call starts it; 2 s without a further call restart the chip
+    stop() -> bool      no restart any more, until the next feed(); False where the chip cannot
 """

@@ -1,12 +1,12 @@
 """Calls the bus engine when something is due, from whatever the port offers.
 
 The receive interrupt, a one-shot timer and the main loop all end in `run`, which enters the engine
-once at a time and re-arms the timer for what the engine asks. So interrupt and polled operation
-share one path. An exception in the engine must not get out: a hard interrupt that raises is
-disabled for good by MicroPython. It is counted, every ON is taken back, and the engine begins
+once at a time and has the timer come when the engine asks for it. So interrupt and polled
+operation share one path. An exception in the engine must not get out: a hard interrupt that raises
+is disabled for good by MicroPython. It is counted, every ON is taken back, and the engine begins
 anew.
 
-    pacer = Pacer(bus, link, board.clock, board.timer, board.disable_irq, board.enable_irq)
+    pacer = Pacer(bus, link, board.clock, board.timer)
     pacer.start()
     ... each step of the main loop: pacer.tend()
     pacer.stop()
@@ -28,7 +28,7 @@ class Pacer:
     caught last; the engine counts them).
     """
 
-    def __init__(self, engine, link, clock, timer, disable_irq, enable_irq):
+    def __init__(self, engine, link, clock, timer):
         self.runs = 0
         self.failure = None
         self._engine = engine
@@ -36,117 +36,117 @@ class Pacer:
         self._ticks_us = clock.ticks_us
         self._mask = clock.ticks_mask
         self._timer = timer
-        self._disable_irq = disable_irq
-        self._enable_irq = enable_irq
-        self._inside = False
+        # Whoever interrupts is through before the interrupted goes on: for a flag that is enough.
+        self._inside = True  # until `start`, and from `stop` on: then nobody comes in
         self._again = False
-        self._stopped = True
-        self._armed_at = 0
-        self._armed_us = 0
-        self._ctrl_c = False
-        self._on_interrupt = self._interrupted  # bound once: binding allocates
+        self._asked_at = 0  # when the engine asked to be entered
+        self._due_us = 0  # so long after that
+        self._armed_at = 0  # when the timer was set
+        self._armed_us = 0  # to come so long after that
+        self._thrown = None  # what the main loop is to hear of: Ctrl-C
+        self._on_interrupt = self.run  # bound once: binding allocates
+        self._on_timer = self._timer_came
 
     def start(self):
-        self._stopped = False
+        self._inside = False
         self._link.on_activity = self._on_interrupt
         self.run()
 
     def stop(self):
         """No interrupt enters the engine any more; the link is closed."""
-        self._stopped = True
+        self._inside = True
         if self._timer:
             self._timer.deinit()
+        self._armed_us = 0
         self._link.on_activity = None
         self._link.close()
 
     def tend(self):
         """From the main loop: drives the engine where there is no timer, and wakes a stuck one.
 
-        Raises the KeyboardInterrupt that came while an interrupt was served.
+        Raises the KeyboardInterrupt that came while somebody was inside the engine.
         """
-        if self._ctrl_c:
-            self._ctrl_c = False
-            raise KeyboardInterrupt
-        waited_us = (self._ticks_us() - self._armed_at) & self._mask
-        if self._timer is None or waited_us > self._armed_us + OVERDUE_US:
+        if self._timer is None or self._early_us() + OVERDUE_US < 0:
             self.run()
+        if self._thrown is not None:
+            thrown, self._thrown = self._thrown, None
+            raise thrown
 
-    def run(self):
-        """Enter the engine unless somebody is inside; then have it entered once more."""
-        if not self._may_enter():
+    def run(self, early_us=0):
+        """Enter the engine unless somebody is inside; then have it entered once more.
+
+        early_us: above 0, nothing is due before that: the timer is only set again. Raises nothing:
+        it may be a handler, and MicroPython may raise a pending Ctrl-C wherever it happens to be.
+        """
+        if self._inside:
+            self._again = True
             return
         try:
-            self._work()
-        except BaseException:  # Ctrl-C in the main loop: it goes on its way, the engine too
-            try:
-                self._recover()  # still inside: no interrupt may come in on half of it
-            finally:
-                self._inside = False
-            raise
-
-    def _may_enter(self):
-        irq = self._disable_irq()
-        try:
-            if self._inside or self._stopped:
-                self._again = True
-                return False
             self._inside = True
-            return True
-        finally:
-            self._enable_irq(irq)
-
-    def _may_leave(self):
-        irq = self._disable_irq()
-        try:
-            if self._again:
-                return False
+            for _ in range(ROUNDS_MAX):
+                self._again = False
+                if early_us > 0:
+                    self._arm(early_us)
+                    early_us = 0
+                else:
+                    try:
+                        due_us = self._engine.poll(self._ticks_us())
+                        self._plan(due_us)
+                    except Exception as failure:
+                        self.failure = failure
+                        self._recover()
+                    self.runs = (self.runs + 1) & 0xFFFF
+                self._inside = False  # from here on an interrupt finds its way in by itself
+                if not self._again:
+                    return
+                self._inside = True
             self._inside = False
-            return True
-        finally:
-            self._enable_irq(irq)
-
-    def _work(self):
-        for _ in range(ROUNDS_MAX):
-            self._again = False
-            self._enter()
-            if self._may_leave():
-                return
-        self._inside = False
-        if self._again:
             # The one-shot may have been the event that was put off, and so be used up.
             self._arm(WAKE_US)
-
-    def _enter(self):
-        self.runs = (self.runs + 1) & 0xFFFF
-        try:
-            self._arm(self._engine.poll(self._ticks_us()))
-        except Exception as failure:
-            self.failure = failure
-            self._recover()
+        except BaseException as thrown:
+            self._inside = True  # no interrupt may come in on half of it
+            self._thrown = thrown
+            try:
+                self._recover()
+            finally:
+                self._inside = False
 
     def _recover(self):
         try:
             self._engine.recover(self._ticks_us())
-            self._arm(RETRY_US)
+            self._plan(RETRY_US)
         except Exception as failure:  # nothing works: the main loop tries again, or the watchdog
             self.failure = failure
 
-    def _arm(self, after_us):
-        self._armed_at = self._ticks_us()
-        self._armed_us = after_us
-        timer = self._timer
-        if timer and not self._stopped:
-            timer.init(
-                mode=timer.ONE_SHOT,
-                period=max(after_us, PERIOD_MIN_US),
-                tick_hz=1_000_000,
-                callback=self._on_interrupt,
-            )
+    def _plan(self, after_us):
+        """Have the engine entered in `after_us`.
 
-    def _interrupted(self, _source=None):
-        # MicroPython raises a pending Ctrl-C wherever it happens to be, here as well; it would be
-        # the end of this handler. The main loop is where it belongs.
-        try:
-            self.run()
-        except KeyboardInterrupt:
-            self._ctrl_c = True
+        To set the timer takes long. Each exchange moves the instant a little further away: a timer
+        that will come earlier is left as it is, and set again when it comes.
+        """
+        self._asked_at = now = self._ticks_us()
+        self._due_us = after_us
+        comes_us = self._armed_us - ((now - self._armed_at) & self._mask)
+        if comes_us <= 0 or comes_us > after_us:
+            self._arm(after_us)
+
+    def _arm(self, after_us):
+        timer = self._timer
+        if not timer:
+            return
+        self._armed_us = 0  # in case it fails
+        self._armed_at = self._ticks_us()
+        timer.init(
+            mode=timer.ONE_SHOT,
+            period=max(after_us, PERIOD_MIN_US),
+            tick_hz=1_000_000,
+            callback=self._on_timer,
+        )
+        self._armed_us = after_us
+
+    def _early_us(self):
+        """How long there is until the engine wants to be entered; below 0, how late it is."""
+        return self._due_us - ((self._ticks_us() - self._asked_at) & self._mask)
+
+    def _timer_came(self, _timer):
+        self.run(self._early_us())

@@ -135,6 +135,11 @@ class Control:
         refusal, self.refusal = self.refusal, None
         return refusal
 
+    def keep_quiet(self):
+        """Forget what would be said and asked: another drive is shown."""
+        self.refusal = None
+        self.question = False
+
     # --- what is known --------------------------------------------------------------------------
 
     def actual_centihertz(self):
@@ -188,19 +193,11 @@ class Control:
             self.lost_running = drive.was_running and not drive.contact
         if self._checking:
             self._finish_check(now)
-        if drive.stopped_by_engine():
-            self._take_back(self._command.why_stopped())
-        elif drive.is_on():
-            notice = self._command.why_in_vain(self.jogging, now)
-            if notice is not None:
-                self._take_back(notice)
+        if drive.wanted:
+            self._watch_command(now)
         if drive.off != pzd.OFF1:
             self._watch_second_stop()
-        if not self.stop_watch.active and self._runs_against_off():
-            self.stop_watch.begin(now)
-        self.stop_watch.step(now)
-        if not (self.jogging or self.stop_watch.active):
-            self._jogged = False
+        self._watch_stop(now)
         if self.moved and not self._settings.dirty:
             self.moved = False
 
@@ -245,6 +242,26 @@ class Control:
             self._jogged = False
             self.drive.start(self.drive.hsw, self._on())
 
+    def _watch_command(self, now):
+        """ON, or JOG, is taken back here when the engine did so or when it leads to nothing."""
+        if self.drive.stopped_by_engine():
+            self._take_back(self._command.why_stopped())
+        elif self.drive.is_on():
+            notice = self._command.why_in_vain(self.jogging, now)
+            if notice is not None:
+                self._take_back(notice)
+
+    def _watch_stop(self, now):
+        """Whether a drive that is to stand still comes to rest; a STOP is watched from the key on,
+        and one that runs against OFF from when that is seen."""
+        watch = self.stop_watch
+        if not watch.active and not self.drive.wanted and self._runs_against_off():
+            watch.begin(now)
+        if watch.active:
+            watch.step(now)
+        if self._jogged and not (self.jogging or watch.active):
+            self._jogged = False
+
     def _take_back(self, notice):
         self.drive.stop(self.drive.off)
         self.jogging = 0
@@ -263,7 +280,6 @@ class Control:
         """Whether a drive of this bus runs though nobody wants it to: it may not obey OFF1."""
         return (
             self.runs()
-            and not self.drive.wanted
             and self.survey.complete
             and not permits.is_local(self.survey)
         )

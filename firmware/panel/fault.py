@@ -38,6 +38,8 @@ class Fault:
 
     def step(self, now):
         drive = self._drive
+        if not (self.active or self._asked or drive.zsw & pzd.ZSW_FAULT):
+            return  # as it mostly is
         active = drive.contact and drive.state() == pzd.FAULT
         if active != self.active:
             self.active = active

@@ -8,16 +8,20 @@ from uss import pzd
 
 
 class JogKeys:
-    """One for the panel, because a hand jogs one drive at a time."""
+    """One for the panel, because a hand jogs one drive at a time. right, left: bits of the keys."""
 
-    def __init__(self):
+    def __init__(self, right, left):
+        self._right = right
+        self._left = left
         self._control = None  # the drive that is jogged
         self._key = 0  # and the bit of the key that does it
 
     def step(self, keys, control, allowed):
         """keys: `Keys`, up to date. control: of the drive that is shown."""
-        right, left = keys.bit("JOG_RIGHT"), keys.bit("JOG_LEFT")
+        right, left = self._right, self._left
         down = keys.down & (right | left)
+        if not down and self._control is None:
+            return
         if self._control is not None:
             if down != self._key or control is not self._control or not allowed:
                 self._control.end_jog()

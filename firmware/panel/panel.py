@@ -34,23 +34,27 @@ READING_MS = const(1_000)  # so long a START does not answer a question: it may 
 class Panel:
     """controls: a `Control` for each drive, at least one. key_names: as the keypad has its bits.
 
-    settings: a `Settings`. mask: the clock's period - 1.
+    settings: a `Settings`. mask: the clock's period - 1. notice: a row that is said after the
+    splash, or None.
 
     For pages and view: `selected`, the control that is shown; `message`, a row that is shown for a
     while, or None; `stop_key`; `setpoint_step` in centihertz.
     """
 
-    def __init__(self, controls, bus, key_names, settings, mask):
+    def __init__(self, controls, bus, key_names, settings, mask, notice=None):
         self.controls = controls
         self.selected = controls[0]
         self.screen = Screen()
         self.message = None
         self.setpoint_step = settings.setpoint_step_centihertz
-        self.stop_key = StopKey(controls, settings.second_stop, mask, self.say)
         self._bus = bus
         self._mask = mask
-        self._keys = Keys(key_names, mask)
-        self._jog_keys = JogKeys()
+        self._keys = keys = Keys(key_names, mask)
+        self.stop_key = StopKey(
+            keys.bit("STOP"), controls, settings.second_stop, mask, self.say
+        )
+        self._jog_keys = JogKeys(keys.bit("JOG_RIGHT"), keys.bit("JOG_LEFT"))
+        self._turn = 0  # of the controls: the one that was looked at last
         self._writer = Writer(bus, settings, mask)
         self._home = Home(self)
         self._parameters = Parameters(self, self._writer, mask)
@@ -59,33 +63,33 @@ class Panel:
         self._over = self._splash  # what hides the page: the splash, a question, or None
         self._view = View(self, self.screen)
         self._began_at = None
-        self._complaint = settings.complaint
+        self._notice = texts.SETTINGS_DAMAGED if settings.complaint else notice
         self._message_at = 0
-        self._drawn_at = None
+        self._drawn_at = 0
+        self._keys_were_down = False
+        self._looks = False  # this step looks at the drive that is shown
 
     def step(self, raw_keys, now_ms, now_us, unclear_keys=0):
         """raw_keys: the keys down now, as bits; unclear_keys: those that cannot be told.
 
-        Both times are readings of the clock.
+        Both times are readings of the clock. What an operator does is done, and what comes of it
+        is taken up, in this very step. Else every second step looks at the drive that is shown,
+        and the others draw a field of the picture or look at another drive: each stays short.
         """
-        for control in self.controls:
-            control.step(now_us)
         keys = self._keys
         keys.update(raw_keys, now_ms, unclear_keys)
-        self._take_keys(keys, now_ms)
-        self._writer.step(now_us)
-        if self._page is self._parameters:
-            self._parameters.step(keys, now_ms)
-        self._collect(now_ms)
-        if self._over is self._splash:
-            self._end_splash(now_ms)
-        if (
-            keys.pressed
-            or self._drawn_at is None
-            or elapsed(now_ms, self._drawn_at, self._mask) >= DRAW_MS
-        ):
+        if keys.down or self._keys_were_down:
+            self._keys_were_down = keys.down != 0  # once more after the last one went up
+            self._take_keys(keys, now_ms)
+        acts = keys.pressed | keys.repeated
+        self._looks = not self._looks
+        if self._looks or acts:
+            self._look(now_ms, now_us)
+        if acts or elapsed(now_ms, self._drawn_at, self._mask) >= DRAW_MS:
             self._drawn_at = now_ms
-            self._view.draw(self._over or self._page, now_ms)
+            self._view.begin(self._over or self._page)
+        if not self._looks and not self._view.step(now_ms):
+            self._look_at_another(now_us)
 
     # --- for the pages --------------------------------------------------------------------------
 
@@ -119,6 +123,26 @@ class Panel:
     def line_in_use(self):
         """Whether another master was heard before the first telegram, so that none is sent."""
         return self._bus.is_line_in_use()
+
+    def _look(self, now_ms, now_us):
+        self.selected.step(now_us)
+        self._writer.step(now_us)
+        if self._page is self._parameters:
+            self._parameters.step(self._keys, now_ms)
+        self._collect(now_ms)
+        if self._over is self._splash:
+            self._end_splash(now_ms)
+
+    def _look_at_another(self, now_us):
+        """The next drive in turn. One that is not shown has nothing to say and nothing to ask:
+        START has to be pressed anew, with that drive in sight."""
+        if len(self.controls) == 1:
+            return
+        self._turn = (self._turn + 1) % len(self.controls)
+        control = self.controls[self._turn]
+        if control is not self.selected:
+            control.step(now_us)
+            control.keep_quiet()
 
     # --- keys -----------------------------------------------------------------------------------
 
@@ -160,6 +184,7 @@ class Panel:
 
     def _select(self, direction):
         """Show another drive. It starts and stops nothing."""
+        self.selected.keep_quiet()
         position = self.controls.index(self.selected) + direction
         self.selected = self.controls[position % len(self.controls)]
 
@@ -167,16 +192,13 @@ class Panel:
 
     def _collect(self, now_ms):
         """Take up what the drives and the writer have to say and to ask."""
-        for control in self.controls:
-            refusal = control.take_refusal()
-            if control is not self.selected:
-                control.question = False  # START has to be pressed anew, with that drive in sight
-            elif refusal:
-                self.say(refusal, now_ms)
-        result = self._writer.take_result(self.selected)
+        selected = self.selected
+        refusal = selected.take_refusal()
+        if refusal:
+            self.say(refusal, now_ms)
+        result = self._writer.take_result(selected)
         if result:
             self.say(result, now_ms)
-        selected = self.selected
         if selected.question and self._over is None:
             answers = {"SET": self._supervise, "START": self._accept_unsupervised}
             text = texts.ASK_UNSUPERVISED
@@ -206,7 +228,7 @@ class Panel:
             self._began_at = now_ms
         if elapsed(now_ms, self._began_at, self._mask) >= SPLASH_MS or self._keys.pressed:
             self._over = None
-            if self._complaint:
-                self.say(texts.SETTINGS_DAMAGED, now_ms)
+            if self._notice:
+                self.say(self._notice, now_ms)
             elif self._keys.pressed & self._keys.bit("START"):
                 self.say(texts.REFUSED_EARLY, now_ms)

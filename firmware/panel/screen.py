@@ -33,9 +33,17 @@ class Screen:
 
     def put(self, row, column, width, text):
         """Write `text` (bytes) into a field of `width`, cut or filled with blanks on the right."""
+        picture = self.picture
         at = row * COLUMNS + column
-        for index in range(width):
-            self.picture[at + index] = text[index] if index < len(text) else _BLANK
+        end = at + width
+        for code in text:
+            if at == end:
+                return
+            picture[at] = code
+            at += 1
+        while at < end:
+            picture[at] = _BLANK
+            at += 1
 
     def number(self, row, column, width, hundredths, decimals):
         """Write a number right-aligned with up to `decimals` (0...2) decimals, rounded.
@@ -75,21 +83,28 @@ class Screen:
         """Write `digits`, a point before the last `decimals`; False when the field is short."""
         negative = negative and digits != 0  # -0.00 reads as if it turned
         picture = self.picture
-        point = decimals > 0
         position = at + width - 1
-        written = 0
-        while position >= at:
-            if point and written == decimals:
-                picture[position] = _POINT
-                point = False
-            elif digits or written <= decimals:  # at least one digit before the point
+        if decimals:
+            if width < decimals + 2:  # at least one digit before the point
+                return False
+            for _ in range(decimals):
                 picture[position] = _ZERO + digits % 10
                 digits //= 10
-                written += 1
-            elif negative:
-                picture[position] = _MINUS
-                negative = False
-            else:
-                picture[position] = _BLANK
+                position -= 1
+            picture[position] = _POINT
             position -= 1
-        return not (digits or negative or point) and written > decimals
+        while position >= at:
+            picture[position] = _ZERO + digits % 10
+            digits //= 10
+            position -= 1
+            if not digits:
+                break
+        if digits or negative and position < at:
+            return False
+        if negative:
+            picture[position] = _MINUS
+            position -= 1
+        while position >= at:
+            picture[position] = _BLANK
+            position -= 1
+        return True

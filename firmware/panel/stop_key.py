@@ -28,16 +28,17 @@ SAID = {
 
 
 class StopKey:
-    """controls: of all drives. second_stop: of the settings. mask: the clock's period - 1.
+    """bit: of the key. controls: of all drives. second_stop: of the settings. mask: of the clock.
 
     say: say(text, now_ms) has a row shown for a while.
 
     text: what is to be said while it is held, or None. is_down: no START and no JOG meanwhile.
     """
 
-    def __init__(self, controls, second_stop, mask, say):
+    def __init__(self, bit, controls, second_stop, mask, say):
         self.text = None
         self.is_down = False
+        self._bit = bit
         self._controls = controls
         self._said = SAID[second_stop]
         self._mask = mask
@@ -48,7 +49,7 @@ class StopKey:
 
     def step(self, keys, control, now_ms):
         """keys: `Keys`, up to date. control: of the drive that is shown."""
-        stop = keys.bit("STOP")
+        stop = self._bit
         self.is_down = keys.down & stop != 0
         if keys.pressed & stop:
             self._stage = PRESSED

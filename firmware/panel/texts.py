@@ -43,6 +43,8 @@ ALL_STOPPED = b"ALL DRIVES: STOP"
 LINE_IN_USE = b"LINE IN USE"  # another master talks; nothing is sent
 SETTINGS_DAMAGED = b"SETTINGS DAMAGED"  # defaults are used for what is wrong
 NOT_SAVED = b"SETTINGS UNSAVED"  # the flash is full or broken
+WATCHDOG_RESTART = b"WATCHDOG RESTART"  # after the splash: the panel hung, and was restarted
+FAREWELL = (b"PANEL STOPPED", b"NO CONTROL")  # left behind by a panel that was ended
 
 # What a STOP that is held does next, or has done.
 HOLD_FOR_OFF3 = b"STOP, HOLD: OFF3"

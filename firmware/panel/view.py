@@ -29,38 +29,79 @@ ANNOUNCEMENTS = (
 )
 
 
+# The fields of a picture, in the order in which they are drawn.
+SETPOINT, ACTUAL, ROW_2, ADDRESS, DONE = range(5)
+
+
 class View:
-    """panel: the `Panel` that is shown on `screen`."""
+    """panel: the `Panel` that is shown on `screen`, a field in a step: drawing takes its time.
+
+    view.begin(page)        # a new picture
+    view.step(now_ms)       # each step of the loop
+    """
 
     def __init__(self, panel, screen):
         self._panel = panel
         self._screen = screen
+        self._page = None
+        self._next = DONE  # the field that is drawn next
 
-    def draw(self, page, now_ms):
-        screen = self._screen
+    def begin(self, page):
+        """A new picture, of this page."""
+        self._page = page
+        self._next = SETPOINT
+
+    def step(self, now_ms):
+        """Draw the next field of it; False when there is none left."""
+        field = self._next
+        if field == DONE:
+            return False
+        page, screen, control = self._page, self._screen, self._panel.selected
+        self._next = field + 1
         if page.whole:
+            self._next = DONE
             page.draw(screen, now_ms)
             if not now_ms // ANNOUNCE_MS & 1:
                 self._announce(0, page, LOST)  # an alarm is not hidden by a question
-            return
-        panel = self._panel
+        elif field == ADDRESS:
+            _draw_address(screen, control)
+        elif field == ROW_2:
+            if not self._draw_row_2(page, now_ms):
+                self._next = DONE  # no room for an address
+        elif field == ACTUAL:
+            _draw_actual(screen, control)
+        elif not self._draw_alarm(control):
+            _draw_setpoint(screen, control)
+        else:
+            self._next = ROW_2
+        return True
+
+    def _draw_alarm(self, control):
+        """What takes all of row 1 in place of the frequencies; False when nothing does."""
+        if control.stop_watch.unconfirmed and self._panel.stop_key.text:
+            self._screen.put(0, 0, texts.ROW_WIDTH, texts.STOP_UNCONFIRMED)
+        elif control.lost_running:
+            self._screen.put(0, 0, texts.ROW_WIDTH, texts.NO_CONTACT_ROW)
+        else:
+            return False
+        return True
+
+    def _draw_row_2(self, page, now_ms):
+        """Answers whether the address of the drive stands behind it."""
+        screen, panel = self._screen, self._panel
         control, held = panel.selected, panel.stop_key.text
         alarm = texts.STOP_UNCONFIRMED if control.stop_watch.unconfirmed else None
-        if alarm and held:
-            screen.put(0, 0, texts.ROW_WIDTH, alarm)
-        elif control.lost_running:
-            screen.put(0, 0, texts.ROW_WIDTH, texts.NO_CONTACT_ROW)
-        else:
-            _draw_frequencies(screen, control)
         if held or alarm:
             screen.put(1, 0, texts.ROW_WIDTH, held or alarm)
         elif control.lost_running:
             screen.put(1, 0, ADDRESS_COLUMN, texts.MAY_RUN)
-            draw_address(screen, control)
+            return True
         elif panel.message or panel.line_in_use():
             screen.put(1, 0, texts.ROW_WIDTH, panel.message or texts.LINE_IN_USE)
         elif now_ms // ANNOUNCE_MS & 1 or not self._announce(1, page, RUNS):
             page.draw(screen, now_ms)
+            return True
+        return False
 
     def _announce(self, row, page, least):
         """Speak in `row` of the drive that needs it most, at least so much, and is not told of by
@@ -108,19 +149,22 @@ def draw_fault(screen, row, column, fault):
         screen.digits(row, column + 1, 4, fault.number)
 
 
-def draw_address(screen, control):
+def _draw_address(screen, control):
     """A and the address of a drive, left-aligned at the end of row 2."""
     address = control.drive.address
     screen.put(1, ADDRESS_COLUMN, 3, b"A")
     screen.number(1, ADDRESS_COLUMN + 1, 1 if address < 10 else 2, address * 100, 0)
 
 
-def _draw_frequencies(screen, control):
+def _draw_setpoint(screen, control):
     setpoint = control.setpoint.centihertz
     screen.put(0, 0, 2, b"S:")
     screen.number(0, 2, 5, -setpoint if control.reversed else setpoint, 1)
     if control.reversed and not setpoint:
         screen.put(0, 3, 1, b"-")  # the direction is to be seen before it turns
+
+
+def _draw_actual(screen, control):
     screen.put(0, 7, 3, b" F:")
     actual = control.actual_centihertz()
     if actual is None:

@@ -94,6 +94,8 @@ class Writer:
         return b"A%d%s" % (self._control.drive.address, outcome)
 
     def step(self, now):
+        if self._phase == IDLE:
+            return
         if self._phase == WAITING:
             self._ask()
         elif self._phase == PROBING:

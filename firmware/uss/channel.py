@@ -24,11 +24,15 @@ TRIES_MIN = const(3)  # a task was sent at least so often before it times out
 class Channel:
     """mask: the clock's period - 1.
 
-    Written by the loop: _in. By the engine: everything else. A Job belongs to the loop, but to the
-    engine from `ask` until its state is no longer PENDING.
+    idle: nothing is asked, and the words in the telegram say so: neither `fill` nor `take` would
+    do anything.
+
+    Written by the loop: _in, and idle to False. By the engine: everything else. A Job belongs to
+    the loop, but to the engine from `ask` until its state is no longer PENDING.
     """
 
     def __init__(self, mask):
+        self.idle = False
         self._mask = mask
         self._queue = [None] * (JOBS_MAX + 1)
         self._in = 0
@@ -53,6 +57,7 @@ class Channel:
         job.state = pkw.PENDING
         self._queue[self._in] = job
         self._in = (self._in + 1) % len(self._queue)
+        self.idle = False
 
     # --- for the engine: allocates nothing ------------------------------------------------------
 
@@ -63,6 +68,7 @@ class Channel:
         if job is None or self._rest:
             for index in range(at, at + PKW_COUNT):
                 net[index] = 0
+            self.idle = job is None and not self._rest
             return
         # Only a write carries a value; a read's words are where its result will stand.
         is_write = job.task != pkw.READ

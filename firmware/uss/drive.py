@@ -24,7 +24,8 @@ from micropython import const
 
 from uss import pzd
 from uss.channel import PKW_COUNT, Channel
-from uss.telegram import NODE_MAX, get_word, put_word
+from uss.pzd import STW_ON, STW_RUN, ZSW_FAULT, ZSW_INHIBIT, ZSW_RUNNING
+from uss.telegram import NET, NODE_MAX, put_word
 from uss.timing import elapsed
 
 PZD_COUNT = const(4)  # characters of STW and HSW, of ZSW and HIW
@@ -45,9 +46,13 @@ COUNTERS = (
 
 
 class Drive:
-    """address: node 0...31, ValueError beyond. mask: the clock's period - 1."""
+    """address: node 0...31, ValueError beyond. mask: the clock's period - 1.
 
-    def __init__(self, address, mask):
+    attention: a bytearray of one, shared by the drives of a bus; 1 as long as one of them may be
+    in a hurry, so that the engine need not ask each of them before every telegram.
+    """
+
+    def __init__(self, address, mask, attention=None):
         if not 0 <= address <= NODE_MAX:
             raise ValueError("drive address %r is not 0...31" % (address,))
         self.address = address
@@ -55,7 +60,11 @@ class Drive:
         self.telegram_us = 0  # the time one takes; the master knows the line
         self.residual_us = 0  # the time a reply may take
         self.channel = Channel(mask)
+        self.request = bytearray(NET + self.net_count + 1)  # the telegram to it
+        self.sealed = False  # it is whole: frame and BCC fit its words
+        self.steady = False  # nothing has happened that would change its words, but perhaps `hsw`
         self._mask = mask
+        self._attention = attention or bytearray(1)
         # Written by the loop.
         self.wanted = 0  # the control word that makes it run, 0 for none
         self.off = pzd.OFF1  # the control word that makes it stop
@@ -86,6 +95,8 @@ class Drive:
         self.acknowledged = 0  # `acknowledgements` that a valid reply has confirmed
         self._heard_at = 0
         self._sent_stw = 0
+        self._sent_hsw = 0
+        self._hsw = 0  # `hsw` when the telegram was built
         self._acknowledging = 0  # `acknowledgements` when bit 7 was sent
         self._edge_was_answered = False
         self._may_run = False  # sent ON or seen running, and not seen standing after OFF1
@@ -113,6 +124,7 @@ class Drive:
         """Another control word for a drive that is wanted to run; it starts none that is not."""
         if self.wanted:
             self.wanted = stw
+            self.steady = False
 
     def stop(self, off=pzd.OFF1):
         """OFF, whatever state the drive is in, ahead of the list. It stays OFF until `start`.
@@ -131,7 +143,17 @@ class Drive:
 
     def hurry(self):
         """Let the next telegram on the line be one to this drive."""
+        # Behind what has changed, because the engine may come in between: it would find nothing to
+        # change, or not be called for it.
         self.urgent = (self.served + 1) & TICKET_MASK
+        self.steady = False
+        self._attention[0] = 1
+
+    def want_turns(self, asking):
+        """Whether it is to have more than its turn in the list, for its parameters."""
+        self.asking = asking
+        if asking:
+            self._attention[0] = 1
 
     def is_on(self):
         """Whether ON or JOG is being sent."""
@@ -160,8 +182,10 @@ class Drive:
         """Void the ticket in force: no ON until the next `start`, and OFF1 ahead of the list."""
         if self.is_on():
             self.taken_back = True
+            self._attention[0] = 1
         self.void = self.ticket
         self.ran = False
+        self.steady = False
 
     def urgency(self):
         """How much this drive is in a hurry.
@@ -174,17 +198,28 @@ class Drive:
             return 1 if self.insist or self.asking else 0
         if self.is_on():
             return 2
-        return 4 if self._may_run or self.zsw & pzd.ZSW_RUNNING else 3
+        return 4 if self._may_run or self.zsw & ZSW_RUNNING else 3
 
     def fill(self, net, at, now):
-        """Write this drive's request, PKW and PZD words, into `net` from index `at` on."""
+        """Bring the words of the request up to date, PKW and PZD, in `net` from index `at` on.
+
+        net: the same buffer every time, mostly `request`. What changes in it breaks its seal.
+        """
+        hsw = self.hsw
+        channel = self.channel
+        if self.steady and channel.idle and hsw == self._hsw:
+            return
+        self._hsw = hsw
         self.served = self.urgent
-        self.channel.fill(net, at, now)
-        on = self.is_on()
+        if not channel.idle:
+            self.sealed = False
+            channel.fill(net, at, now)
+        on = self.wanted and self.is_on()
         if self.taken_back or self.stops != self.stops_sent:
             self.taken_back = False
             self.stops_sent = self.stops
             self.insist = INSIST_MAX
+            self._attention[0] = 1
         elif self.insist:
             self.insist -= 1
         if on:
@@ -194,37 +229,50 @@ class Drive:
             stw = self.wanted
         else:
             self.ran = False
-            stw = self._off_word()
-        self._sent_stw = stw
-        put_word(net, at + PKW_COUNT, stw)
-        put_word(net, at + PKW_COUNT + 2, self.hsw if stw & pzd.STW_ON else 0)
+            stw = self.off
+            if self.acknowledgements != self.acknowledged or self._edge_was_answered:
+                stw |= self._acknowledge_bit()
+        self.steady = not self.insist and self.acknowledgements == self.acknowledged
+        if not stw & STW_ON:
+            hsw = 0
+        if stw != self._sent_stw or hsw != self._sent_hsw:
+            self.sealed = False
+            put_word(net, at + PKW_COUNT, stw)
+            put_word(net, at + PKW_COUNT + 2, hsw)
+            self._sent_stw = stw
+            self._sent_hsw = hsw
 
     def take(self, net, at, now):
         """Take the words of a valid reply that stands in `net` from index `at` on, behind ADR."""
         self._heard_at = now
         self.answered_address = net[at - 1]
         self.silent = 0
-        self._count(0)
+        counters = self.counters
+        counters[0] = (counters[0] + 1) & COUNTER_MASK
         if not self.contact:
             # Contact is made before anything is sent on it, and what was wanted before is void.
             self.revoke()
             self.contacts = (self.contacts + 1) & COUNTER_MASK
             self.was_running = False
             self.contact = True
-        self.zsw = get_word(net, at + PKW_COUNT)
-        self.hiw = get_word(net, at + PKW_COUNT + 2)
-        self.answered_stw = self._sent_stw
-        self.answered_off = not self._sent_stw & pzd.STW_RUN
-        if not self.answered_off:
-            self._watch_running()
+        pzd_at = at + PKW_COUNT
+        self.zsw = zsw = net[pzd_at] << 8 | net[pzd_at + 1]
+        self.hiw = net[pzd_at + 2] << 8 | net[pzd_at + 3]
+        self.answered_stw = stw = self._sent_stw
+        if stw & STW_RUN:
+            self.answered_off = False
+            self._watch_running(zsw)
         else:
-            if self._sent_stw & pzd.STW_ACKNOWLEDGE:
+            self.answered_off = True
+            if not self.steady and stw & pzd.STW_ACKNOWLEDGE:
                 self.acknowledged = self._acknowledging
                 self._edge_was_answered = True
+                self.steady = False
             self.off_answers = (self.off_answers + 1) & COUNTER_MASK
             self.insist = 0
-            self._may_run = self.zsw & pzd.ZSW_RUNNING != 0
-        self.channel.take(net, at)
+            self._may_run = zsw & ZSW_RUNNING != 0
+        if not self.channel.idle:
+            self.channel.take(net, at)
 
     def miss(self, finding, now, lost_us):
         """Count an exchange that brought no valid reply; after `lost_us` of them contact is lost.
@@ -247,26 +295,25 @@ class Drive:
             self.answered_stw = 0
             self.contact = False
 
-    def _off_word(self):
-        """OFF1, OFF2 or OFF3, and bit 7 for an acknowledgement until a reply has confirmed it.
+    def _acknowledge_bit(self):
+        """Bit 7 for an acknowledgement until a reply has confirmed it, or 0.
 
         It acts by its rising edge: after one that was confirmed a word goes without.
         """
-        stw = self.off
-        if self.acknowledgements != self.acknowledged and not self._edge_was_answered:
-            self._acknowledging = self.acknowledgements
-            stw |= pzd.STW_ACKNOWLEDGE
-        self._edge_was_answered = False
-        return stw
+        if self._edge_was_answered:
+            self._edge_was_answered = False
+            return 0
+        self._acknowledging = self.acknowledgements
+        return pzd.STW_ACKNOWLEDGE
 
-    def _watch_running(self):
+    def _watch_running(self, zsw):
         # A drive that ran on this ticket and runs no more, trips or inhibits itself has stopped of
         # its own accord. It must not start again of its own accord when the cause goes away.
-        if self.zsw & pzd.ZSW_RUNNING:
+        if zsw & ZSW_RUNNING:
             self.ran = True
         elif self.ran:
             self.revoke()
-        if self.zsw & (pzd.ZSW_FAULT | pzd.ZSW_INHIBIT):
+        if zsw & (ZSW_FAULT | ZSW_INHIBIT):
             self.revoke()
 
     def _count(self, counter):

@@ -63,7 +63,7 @@ class Survey:
     def drop_recheck(self):
         """Nobody waits for it any more."""
         self.unchecked = 0
-        self.drive.asking = False
+        self.drive.want_turns(False)
 
     def step(self, now):
         """Take an answer that has come, ask for the next; allocates only when a value is new."""
@@ -82,7 +82,7 @@ class Survey:
         elif drive.contact:
             if self._is_in_a_hurry() or elapsed(now, self._read_at, self._mask) >= REREAD_US:
                 self._ask()
-        drive.asking = self.unchecked > 0
+        drive.want_turns(self.unchecked > 0)
 
     def _is_in_a_hurry(self):
         return self.unchecked > 0 or not self.complete

@@ -12,6 +12,8 @@ data mean is the subject of `pkw` and `pzd`. Source: specification A-4 and A-5.2
 
 from micropython import const
 
+from uss.fast import exclusive_or
+
 STX = const(0x02)
 NET = const(3)  # net data begin here
 NET_COUNT_MAX = const(252)
@@ -44,15 +46,9 @@ def get_word(buffer, at):
     return buffer[at] << 8 | buffer[at + 1]
 
 
-def bcc(buffer, count):
-    """Exclusive or of the first `count` characters, STX included (specification A-4.4).
-
-    Over a whole telegram with its BCC the result is 0.
-    """
-    check = 0
-    for index in range(count):
-        check ^= buffer[index]
-    return check
+# Over all characters before it this is the BCC, STX included (specification A-4.4). Over a whole
+# telegram with its BCC it is 0.
+bcc = exclusive_or
 
 
 def seal(buffer, address, net_count):
@@ -68,7 +64,7 @@ def seal(buffer, address, net_count):
     buffer[1] = net_count + 2
     buffer[2] = address
     end = NET + net_count
-    buffer[end] = bcc(buffer, end)
+    buffer[end] = exclusive_or(buffer, end)
     return end + 1
 
 
@@ -85,7 +81,7 @@ def judge(buffer, count, address, net_count):
         return BAD_LENGTH
     if net_count is not None and net_count != count - 4:
         return BAD_LENGTH
-    if bcc(buffer, count):
+    if exclusive_or(buffer, count):
         return BAD_BCC
     if address is not None and buffer[2] != address:
         return BAD_ADDRESS

@@ -4,5 +4,5 @@
     tells_state         its row 2 says what the drive shown does (pages that are not whole)
     obeys               START, REVERSE, JOG, address keys and PARAM act while it is shown
     take_keys(keys, now_ms)     called while a key is down
-    draw(screen, now_ms)        both rows, or row 2
+    draw(screen, now_ms)        both rows, or row 2 in front of the address
 """

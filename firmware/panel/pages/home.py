@@ -3,11 +3,11 @@
     S: 10.0 F:  9.98        row 1: setpoint and actual frequency in Hz, negative turns left
     RUNNING      A1         row 2: state in words, address
 
-Row 1 is drawn by `panel.view`, because parameter mode shows it too.
+Row 1 and the address are drawn by `panel.view`, because parameter mode shows them too.
 """
 
 from panel import state, texts
-from panel.view import draw_address, draw_fault
+from panel.view import draw_fault
 
 
 class Home:
@@ -33,4 +33,3 @@ class Home:
         screen.put(1, 0, texts.STATE_WIDTH + 1, text)
         if text is texts.FAULT:
             draw_fault(screen, 1, len(text) + 1, control.fault)
-        draw_address(screen, control)

@@ -14,7 +14,6 @@ from micropython import const
 from panel import texts
 from panel.pages.question import Question
 from panel.screen import BUSY, EDITS
-from panel.view import draw_address
 from panel.writer import refusal
 from uss import pkw, profiles
 from uss.timing import elapsed
@@ -222,4 +221,3 @@ class Parameters:
             screen.put(1, texts.PARAMETER_WIDTH, texts.VALUE_WIDTH, unknown)
         mark = GLYPHS[BUSY] if self._writing else GLYPHS[EDITS] if self._editing else b""
         screen.put(1, MARK_COLUMN, 1, mark)
-        draw_address(screen, self._panel.selected)

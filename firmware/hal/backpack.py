@@ -1,0 +1,83 @@
+"""A character display behind a PCF8574 backpack: the HD44780's four data lines through I2C.
+
+Fulfils the contract `display` of `hal`; what is written when is `hal.hd44780`. A backpack that is
+unplugged, or whose wires a pulse has upset, is tried again every AGAIN_US and set up anew when it
+answers; the panel goes on meanwhile.
+
+    answers(i2c, 0x27)                  # whether one is there
+    display = Backpack(make_i2c, 0x27, clock)
+    display.show(picture)               # each step of the loop, until it answers True
+    display.failures                    # transfers that were not acknowledged
+"""
+
+from micropython import const
+
+from hal.hd44780 import CharacterDisplay
+
+AGAIN_US = const(500_000)
+
+# What the outputs P0...P7 lead to on every backpack of this kind. R/W, P1, stays low.
+_REGISTER_SELECT = const(0x01)
+_ENABLE = const(0x04)
+_BACKLIGHT = const(0x08)
+_DATA = const(0xF0)  # D4...D7
+
+# Two bytes for the controller, each 4 on the bus and one before them when the register changes. With
+# the address that is 1 ms at 100 kHz.
+_LONGEST = const(10)
+
+
+def answers(i2c, address):
+    """Whether a backpack is there. Switches its backlight on and writes nothing."""
+    try:
+        i2c.writeto(address, bytes((_BACKLIGHT,)))
+    except OSError:
+        return False
+    return True
+
+
+class Backpack(CharacterDisplay):
+    """make_i2c: a function that frees the wires, if need be, and answers an I2C of 100 kHz at most;
+    called again after each failure. address: of the PCF8574. clock: contract of `hal`.
+    """
+
+    bytes_per_piece = 2
+
+    def __init__(self, make_i2c, address, clock):
+        self.failures = 0
+        self._make_i2c = make_i2c
+        self._i2c_address = address
+        self._write_to = make_i2c().writeto
+        self._buffer = bytearray(_LONGEST)
+        # Slices made once: making one takes heap.
+        self._pieces = tuple(memoryview(self._buffer)[:end] for end in range(_LONGEST + 1))
+        self._count = 0
+        self._register = -1  # what P0 was last set for; -1 unknown
+        CharacterDisplay.__init__(self, clock)
+
+    def _nibble(self, register, code):
+        lines = code & _DATA | _BACKLIGHT | (_REGISTER_SELECT if register else 0)
+        buffer, count = self._buffer, self._count
+        if register != self._register:
+            # The register must stand 40 ns before E rises; data need not before E falls.
+            self._register = register
+            buffer[count] = lines
+            count += 1
+        buffer[count] = lines | _ENABLE
+        buffer[count + 1] = lines
+        self._count = count + 2
+
+    def _pause(self, us):
+        """From one nibble to the next two bytes on the bus take 180 us: longer than any pause."""
+
+    def _end_piece(self):
+        count, self._count = self._count, 0
+        try:
+            self._write_to(self._i2c_address, self._pieces[count])
+        except OSError:
+            self.failures = (self.failures + 1) & 0xFFFF
+            self._register = -1
+            self._write_to = self._make_i2c().writeto
+            self._start_over(AGAIN_US)
+            return False
+        return True

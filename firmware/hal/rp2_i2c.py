@@ -1,0 +1,61 @@
+"""Writing through I2C of the RP2040 without waiting: the bytes are put into the FIFO, which sends.
+
+A backpack's piece takes 1 ms on the bus; the loop has better things to do. Has the one method of
+machine.I2C that `hal.backpack` uses. Whether a transfer was acknowledged is known at the next one.
+
+    i2c = PostedI2C(machine.I2C(0, ...), 0x4004_4000, machine.mem32, clock)
+    i2c.writeto(0x27, buffer)           # OSError: this one, or the one before, has failed
+
+One device only: the first transfer, which the port makes, sets its address. After an OSError the
+machine.I2C is to be made anew, and this with it. Runs on the chip alone.
+"""
+
+from micropython import const
+
+EIO = const(5)
+ETIMEDOUT = const(110)
+FIFO_LENGTH = const(16)
+WAIT_MAX_US = const(2_000)  # for room in the FIFO: it empties within 1.5 ms
+
+# Registers of the DW_apb_i2c (RP2040 data sheet, 4.3.17), and what is used of them.
+DATA_CMD = const(0x10)
+STOP = const(0x200)
+RAW_INTR_STAT = const(0x34)
+TX_ABRT = const(0x40)
+TXFLR = const(0x74)  # how many bytes the FIFO holds
+
+
+class PostedI2C:
+    """i2c: a machine.I2C. base: address of its registers. memory: mem32. clock: of `hal`."""
+
+    def __init__(self, i2c, base, memory, clock):
+        self._i2c = i2c
+        self._memory = memory
+        self._data_command = base + DATA_CMD
+        self._status = base + RAW_INTR_STAT
+        self._level = base + TXFLR
+        self._ticks_us = clock.ticks_us
+        self._mask = clock.ticks_mask
+        self._is_first = True
+
+    def writeto(self, address, buffer):
+        """Send at most FIFO_LENGTH bytes. OSError: nobody acknowledges, or the bus is stuck."""
+        if self._is_first:
+            self._i2c.writeto(address, buffer)
+            self._is_first = False
+            return
+        memory, register = self._memory, self._data_command
+        if memory[self._status] & TX_ABRT:
+            raise OSError(EIO)
+        last = len(buffer) - 1
+        if memory[self._level] + last >= FIFO_LENGTH:
+            self._wait_for(last)
+        for index in range(last):
+            memory[register] = buffer[index]
+        memory[register] = buffer[last] | STOP
+
+    def _wait_for(self, last):
+        began_at = self._ticks_us()
+        while self._memory[self._level] + last >= FIFO_LENGTH:
+            if (self._ticks_us() - began_at) & self._mask > WAIT_MAX_US:
+                raise OSError(ETIMEDOUT)

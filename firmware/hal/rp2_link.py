@@ -1,0 +1,208 @@
+"""A half-duplex RS-485 link of the RP2040: a PIO state machine sends, UART 1 receives.
+
+Fulfils the contract `link` of `hal`. The state machine puts the characters on the line (8E1) and
+switches the driver, fed by DMA out of a buffer: once `send` has returned nothing depends on Python
+any more, neither a garbage collection nor the writing of flash moves an edge. The driver is on 3/8
+of a bit before the first start bit and off 1/8 of a bit after the last stop bit, at every rate.
+
+    driver_enable = Pin(6, Pin.OUT, value=0)        # low before anything else
+    rx = Pin(5, Pin.IN, Pin.PULL_UP)                # nobody drives it while the driver is on
+    uart = UART(1, baud, bits=8, parity=0, stop=1, tx=Pin(4), rx=rx, rxbuf=256, txbuf=32)
+    link = Rp2Link(uart, 0, rp2.DMA(), Pin(4), driver_enable, clock, baud)
+
+Runs on the chip alone; it is proven on the emulated one.
+"""
+
+from array import array
+
+import micropython
+import rp2
+from micropython import const
+
+IDLE_BITS = const(32)  # silence after which the UART reports the end of a burst (PL011)
+CYCLES_PER_BIT = const(8)  # of the state machine; its divider allows 239 baud ... 15 Mbaud
+LEAD_CYCLES = const(4)  # from the DMA's first word to the first start bit, at the most
+BITS_PER_CHARACTER = const(11)
+SIZE_MAX = const(256)
+COMING = const(-1)  # what `receive` says of characters whose end will be announced
+WORDS = const(1)  # code of the DMA for transfers of 16 bits
+
+
+@rp2.asm_pio(
+    sideset_init=rp2.PIO.OUT_LOW,
+    out_init=rp2.PIO.OUT_HIGH,
+    out_shiftdir=rp2.PIO.SHIFT_RIGHT,
+)
+def transmitter():
+    """First word: characters - 1. Then a word for each character, as `_bit_patterns` has them.
+
+    The DMA writes 16 bits, which the chip puts on both halves of the 32-bit bus: `out(y, 16)`
+    takes one of them, where `mov(y, osr)` would count to 65537 times as many.
+    """
+    pull(block).side(0)
+    out(y, 16).side(1)
+    label("character")
+    pull(block).side(1)
+    set(x, BITS_PER_CHARACTER - 1).side(1)
+    label("bit")
+    out(pins, 1).side(1)[6]
+    jmp(x_dec, "bit").side(1)
+    jmp(y_dec, "character").side(1)
+
+
+def _bit_patterns():
+    """For each character its 11 bits in the order sent: 0, 8 bits, even parity, 1."""
+    patterns = array("H", bytes(512))
+    for character in range(256):
+        parity = character ^ character >> 4
+        parity ^= parity >> 2
+        parity ^= parity >> 1
+        patterns[character] = character << 1 | (parity & 1) << 9 | 1 << 10
+    return patterns
+
+
+@micropython.viper
+def _transmit(buffer: ptr8, count: int, words: ptr16, patterns: ptr16, channel: ptr32):
+    """Put what the state machine wants into `words`, and start the DMA channel that brings it."""
+    words[0] = count - 1
+    index = 0
+    while index < count:
+        words[index + 1] = patterns[buffer[index]]
+        index += 1
+    channel[14] = count + 1  # AL3_TRANS_COUNT
+    channel[15] = int(words)  # AL3_READ_ADDR_TRIG: begins
+
+
+@micropython.viper
+def _holds_characters() -> bool:
+    """Whether characters stand in the FIFO of UART 1.
+
+    The driver below Python leaves one there as long as the burst goes on.
+    """
+    flags = ptr32(0x40038018)  # UARTFR
+    return flags[0] & 0x10 == 0  # RXFE: the FIFO is empty
+
+
+@micropython.viper
+def _copy(source: ptr8, target: ptr8, at: int, count: int):
+    index = 0
+    while index < count:
+        target[at + index] = source[index]
+        index += 1
+
+
+class Rp2Link:
+    """uart: UART 1 as above, made before this. state_machine: its number, 0...7.
+
+    dma: an rp2.DMA that the link may keep; `close` gives the channel back. tx_pin and
+    driver_enable: pins, which the state machine takes over. baud: 300...187500.
+    """
+
+    interrupts = True
+    foreseen = True
+
+    def __init__(self, uart, state_machine, dma, tx_pin, driver_enable, clock, baud):
+        self.on_activity = None
+        self.received_at = 0
+        self.sent_at = 0
+        self._idle_us = IDLE_BITS * 1_000_000 // baud
+        self.resolution_us = self._idle_us
+        self._uart = uart
+        self._dma = dma
+        self._tx_pin = tx_pin
+        self._driver_enable = driver_enable
+        self._is_driving = driver_enable.value
+        self._ticks_us = clock.ticks_us
+        self._mask = clock.ticks_mask
+        self._frequency = CYCLES_PER_BIT * baud
+        # A table, because the product does not fit a small integer at every rate.
+        self._durations_us = array("i", [_duration_us(baud, count) for count in range(257)])
+        self._started_at = 0
+        self._duration_us = 0
+        self._burst_ended = False
+        self._burst_ended_at = 0
+        self._scratch = bytearray(SIZE_MAX)
+        self._words = array("H", bytes(2 * (SIZE_MAX + 1)))
+        self._patterns = _bit_patterns()
+        self._state_machine = rp2.StateMachine(state_machine)
+        self._set_up()
+        request = (state_machine >> 2) * 8 + (state_machine & 3)  # "its FIFO has room"
+        control = dma.pack_ctrl(size=WORDS, inc_read=True, inc_write=False, treq_sel=request)
+        dma.config(read=self._words, write=self._state_machine, count=1, ctrl=control)
+        self._channel = dma.registers
+        uart.irq(handler=self._on_idle, trigger=uart.IRQ_RXIDLE, hard=True)
+
+    def send(self, buffer, count):
+        if self._is_driving():  # the last one did not come to its end: nothing on the chip does that
+            self._dma.active(0)
+            self._set_up()
+        self._burst_ended = False
+        duration_us = self._durations_us[count]
+        self._started_at = started_at = self._ticks_us()
+        _transmit(buffer, count, self._words, self._patterns, self._channel)
+        self._duration_us = duration_us
+        self.sent_at = (started_at + duration_us) & self._mask
+
+    def sending_us(self, now):
+        passed_us = (now - self._started_at) & self._mask
+        if passed_us > self._mask >> 1:  # `now` was read before the sending began
+            passed_us = 0
+        if passed_us < self._duration_us:
+            return self._duration_us - passed_us
+        self._duration_us = 0  # or else, much later, the clock would have gone round
+        return 1 if self._is_driving() else 0
+
+    def receive(self, buffer, at):
+        uart = self._uart
+        if not self._burst_ended and _holds_characters():
+            return COMING  # to take them now would use up the interrupt that announces their end
+        count = uart.any()
+        if not count:
+            self._burst_ended = False
+            return 0
+        if at:
+            count = min(count, len(buffer) - at, SIZE_MAX)
+            if count:
+                uart.readinto(self._scratch, count)
+                _copy(self._scratch, buffer, at, count)
+        else:
+            count = uart.readinto(buffer, count)  # as far as there is room
+        if self._burst_ended:
+            self._burst_ended = False
+            self.received_at = self._burst_ended_at
+        else:
+            self.received_at = self._ticks_us()
+        return count
+
+    def close(self):
+        self._uart.irq(handler=None, trigger=0)
+        self._driver_enable.init(self._driver_enable.OUT, value=0)
+        self._tx_pin.init(self._tx_pin.IN, self._tx_pin.PULL_UP)
+        self._state_machine.active(0)
+        self._dma.active(0)
+        self._dma.close()
+        self._duration_us = 0
+        self._uart.deinit()
+
+    def _set_up(self):
+        """The state machine at its beginning, the driver off, nothing in its FIFO."""
+        self._state_machine.init(
+            transmitter,
+            freq=self._frequency,
+            sideset_base=self._driver_enable,
+            out_base=self._tx_pin,
+        )
+        self._state_machine.active(1)
+
+    def _on_idle(self, _uart):
+        self._burst_ended_at = (self._ticks_us() - self._idle_us) & self._mask
+        self._burst_ended = True
+        on_activity = self.on_activity
+        if on_activity:
+            on_activity()
+
+
+def _duration_us(baud, count):
+    """From the start of the DMA to the end of the last stop bit, in microseconds, rounded up."""
+    cycles = CYCLES_PER_BIT * BITS_PER_CHARACTER * count + LEAD_CYCLES
+    return -(-cycles * 1_000_000 // (CYCLES_PER_BIT * baud))
