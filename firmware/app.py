@@ -12,6 +12,7 @@ sends ON only while `step` refreshes it, and `step` feeds the watchdog only whil
 from micropython import const
 
 # From the bottom of the house up: an import inside an import inside an import takes stack.
+import uss.fast  # noqa: F401
 from uss.timing import Timing, elapsed
 from uss.survey import Survey
 from uss.master import CLOSED, Master

@@ -1,8 +1,8 @@
 """Starts the panel on the board it finds.
 
-Two ways lead to the prompt instead. DOWN held at power-on does before anything is sent. Ctrl-C does
-at any time: every drive is stopped first, no interrupt is left, and the watchdog is stopped, so
-that a person can work on the chip (maintenance mode). Ctrl-D there starts the panel again.
+Two ways lead to the prompt instead. DOWN held at power-on does, before anything is sent. Ctrl-C
+does, at any time: every drive is stopped first, no interrupt is left, and the watchdog is stopped,
+so that a person can work on the chip (maintenance mode). Ctrl-D there starts the panel again.
 
 Anything else that ends the panel is a failure of the firmware: the drives are stopped, and the
 watchdog restarts the chip within 2 s.
@@ -26,7 +26,7 @@ def start(board):
 
 
 def loop(app):
-    """Start the bus and step until something ends it: Ctrl-C, an exception. Then stop the drives."""
+    """Start the bus and step until Ctrl-C or an exception ends that. Then stop the drives."""
     try:
         app.start()
         print(RUNS)  # tools/deploy waits for this

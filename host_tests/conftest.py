@@ -6,6 +6,7 @@ function is a pytest item of its own: `test_telegram.py::unix32::test_bcc`. So `
 ids and the summary work as ever. A file that is not for every tier says so at module level:
 
     INTERPRETERS = "unix64 unix32"      # a part of: unix64 unix32 coverage cpython
+    INTERPRETERS = "pico"               # beside an emulated Pico: tools/emulator/world.py
     INTERPRETERS = "host"               # an ordinary pytest file, with fixtures and all
 
 Tracing lines makes a test some ten times slower. Long ones that run no line of their own stay out:
@@ -126,8 +127,8 @@ def absence(tier, reason):
 
 
 def interpreters(tree):
-    """The names in the INTERPRETERS of a test file; all tiers where it has none."""
-    return words(tree, "INTERPRETERS") or list(TIERS)
+    """The names in the INTERPRETERS of a test file; the tiers for every file where it has none."""
+    return words(tree, "INTERPRETERS") or [name for name in TIERS if TIERS[name].everywhere]
 
 
 def words(tree, name):

@@ -1,9 +1,12 @@
-"""What the tests of the display share: the simulated controller, and the driver wired to it."""
+"""What the tests of the displays share: the simulated controller, and a driver wired to it."""
 
+from boards.sim.backpack import I2C
+from boards.sim.backpack import Backpack as BackpackChip
 from boards.sim.chip import Chip, Pin
 from boards.sim.clock import Clock
 from boards.sim.lcd import POWER_ON_US, Lcd
 from boards.sim.wire import Wire
+from hal.backpack import Backpack, answers
 from hal.hd44780 import Hd44780
 
 LOOP_US = 2_000  # from one call of show to the next
@@ -95,3 +98,30 @@ class LcdBench:
             self.clock.advance(wait_us)
         for code, wait_us in ((0x28, 53), (0x08, 53), (0x01, 2_160), (0x06, 53), (0x0C, 53)):
             self.command(code, wait_us)
+
+
+class BackpackBench(LcdBench):
+    """The same controller behind a backpack on I2C."""
+
+    def wire(self):
+        self.chip_of_backpack = BackpackChip(self.clock, self.lcd)
+        self.made = 0  # how often the I2C was made
+
+    def make_i2c(self):
+        self.made += 1
+        return I2C(self.clock, self.chip_of_backpack)
+
+    def boot(self, glyphs=b""):
+        """As a board file does: look whether it is there, then make the driver."""
+        assert answers(I2C(self.clock, self.chip_of_backpack), self.chip_of_backpack.address)
+        self.display = Backpack(self.make_i2c, self.chip_of_backpack.address, self.clock)
+        self.display.define(glyphs)
+        return self.display
+
+    def restart(self):
+        """The microcontroller resets and boots again; the backpack keeps its outputs."""
+        self.chip.reset()
+        self.clock.advance(10_000)
+
+    def check(self):
+        assert self.lcd.complaints == [] and self.chip_of_backpack.complaints == []

@@ -54,6 +54,15 @@ def row_2(world):
     return world.lcd()[1].rstrip()
 
 
+def settled_row_2(world):
+    """Row 2 as a person reads it: a picture that changes needs some steps of the main loop."""
+    seen = None
+    while seen != row_2(world):
+        seen = row_2(world)
+        world.run(10)
+    return seen
+
+
 def starts(world, address=1):
     """How often the motor has been set going."""
     return int(world.drives[address].report().split("starts=")[1].split()[0])

@@ -2,7 +2,7 @@
 
 import json
 
-from panel_bench import panel, row_2
+from panel_bench import panel, row_2, settled_row_2
 
 WRITES = {2: "RAM", 14: "EEPROM"}  # AK of a task: where it writes a word to
 ASKED = "SET=DO  PARAM=NO"
@@ -12,7 +12,7 @@ NAMES = ("P0700", "P1000", "P2011", "r2024", "r2025")
 def wait_for(world, text, ms=9000):
     """Let time pass until row 2 begins with a text."""
     for _ in range(ms // 20):
-        if row_2(world).startswith(text):
+        if settled_row_2(world).startswith(text):
             return
         world.run(20)
     raise AssertionError("%r does not come: %r" % (text, world.lcd()))
@@ -101,6 +101,6 @@ def lose_answer(world, number, value, silent_ms=200):
 def rows_in_turn(world, ms=4000):
     seen = set()
     for _ in range(ms // 50):
-        world.run(50)
-        seen.add(row_2(world))
+        world.run(40)
+        seen.add(settled_row_2(world))
     return seen

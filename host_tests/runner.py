@@ -24,7 +24,16 @@ PROMISES = {
     "unix32": ("micropython", 31, False),
     "coverage": ("micropython", 63, True),
     "cpython": ("cpython", 0, True),
+    "pico": ("micropython", 63, False),
 }
+
+# What the emulated Pico is made of; tools/test puts it there.
+PICO_FILES = (
+    "build/emulator/bootrom.bin",
+    "build/emulator/node_modules/rp2040js/package.json",
+    "build/pico/panel.uf2",
+    "build/pico/stock.uf2",
+)
 
 # Bytes between two collections: MicroPython would fill its heap first, and take ever longer to
 # find the last holes in it.
@@ -39,7 +48,7 @@ def main(tier, path=None, *names):
     sys.path[:] = search_path()
     version = prove(tier)
     if path is None:
-        print(version)
+        print(chip() if tier == "pico" else version)
         return
     lines = None
     if tier == "coverage":
@@ -96,6 +105,30 @@ def prove(tier):
     if found[0] == "cpython":
         return "CPython " + sys.version.split()[0]
     return "%s, small integers of %d bits" % (sys.version.split("; ")[-1], found[1])
+
+
+def chip():
+    """Boots the emulated Pico and returns a line about it; ends the process when it does not."""
+    import json
+
+    for path in PICO_FILES:
+        try:
+            open(path).close()
+        except OSError:
+            print("there is no " + path)
+            sys.exit(1)
+    with open(PICO_FILES[1]) as package:
+        emulator = json.load(package)["version"]
+    from tools.emulator.world import PicoWorld
+
+    world = PicoWorld("stock", addresses=())
+    world.repl.open()
+    version, error = world.repl.execute("import sys; print(sys.version)")
+    if error:
+        print("the emulated Pico does not run: " + error)
+        sys.exit(1)
+    version = version.split("; ")[1].split(" on ")[0]
+    return "%s on an emulated RP2040 (rp2040js %s)" % (version, emulator)
 
 
 def small_integer_bits():

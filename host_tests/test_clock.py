@@ -283,6 +283,18 @@ def random_run(seed):
     assert book == naive.book
 
 
+def test_what_is_coming_can_be_seen_in_order():
+    clock = Clock()
+    _, events = recorders(clock, "ab")
+    assert list(clock.coming()) == []
+    clock.schedule(events[0], 30)
+    clock.schedule(events[1], 10)
+    assert [at_us for at_us, _ in clock.coming()] == [10, 30]
+    assert [callback for _, callback in clock.coming()][0] is events[1].callback
+    clock.advance(20)
+    assert [at_us for at_us, _ in clock.coming()] == [30]
+
+
 def test_random_runs_agree_with_a_naive_clock():
     for seed in range(100):
         try:

@@ -122,6 +122,9 @@ def test_an_unknown_word_is_exit_status_2_and_names_file_and_line(tmp_path):
         (("--speed", "101"), "--speed 101: time passes 1...100 times as fast"),
         (("--speed=fast",), "--speed fast: time passes 1...100 times as fast"),
         (("--polled=yes", "--script", "-"), "--polled takes no value"),
+        (("--board", "arduino", "--script", "-"), "--board arduino: there are sim and pico"),
+        (("--flash", "file", "--script", "-"), "--flash is not for --board sim"),
+        (("--display", "wires", "--script", "-"), "--display is not for --board sim"),
     ],
 )
 def test_a_wrong_command_line_is_exit_status_2(words, said):

@@ -661,3 +661,67 @@ def test_while_it_listens_a_pause_is_in_force_at_once():
     assert bus.master.paused and bus.sent == []
     bus.run(400_000)
     assert not bus.master.paused and bus.sent
+
+
+# --- links that know more -----------------------------------------------------------------------
+
+
+class ForeseeingBus(Bus):
+    """Its link knows beforehand when the last stop bit will have left, as a PIO does."""
+
+    foreseen = True
+
+    def send(self, buffer, count):
+        Bus.send(self, buffer, count)
+        self.sent_at = self._sending_until & MASK
+
+
+def test_a_link_that_foresees_the_end_of_sending_is_not_asked_again():
+    bus = ForeseeingBus((1, 2))
+    polls = [0]
+    poll = bus.master.poll
+
+    def counted(now):
+        polls[0] += 1
+        return poll(now)
+
+    bus.master.poll = counted
+    bus.run(300_000)
+    polls[0], sent = 0, len(bus.sent)
+    for drive in bus.drives:
+        drive.start(0x1000)
+    bus.run(1_000_000)
+    instants = [at for at, _ in bus.sent[sent:]]
+    gaps = [after - before for before, after in zip(instants, instants[1:])]
+    exchange_us = TIMING.exchange_us(12, REPLY_DELAY_US)
+    assert all(exchange_us <= gap <= exchange_us + 5 for gap in gaps), gaps[:5]
+    for drive in bus.drives:
+        assert drive.counters[0] > 20 and not any(drive.counters[1:]), drive.counters
+        assert bus.stws(drive.address)[-1] == pzd.ON
+
+
+def test_a_silent_drive_costs_the_response_delay_on_such_a_link_too():
+    bus = ForeseeingBus()
+    bus.silent.add(1)
+    bus.run(1_000_000)
+    instants = [at for at, _ in bus.sent]
+    for before, after in zip(instants, instants[1:]):
+        waited_us = after - before - TIMING.telegram_us(12)
+        assert 0 <= waited_us - TIMING.reply_timeout_us <= 3 * TIMING.character_us, waited_us
+    assert bus.drives[0].counters[5] >= len(instants) - 1
+
+
+def test_while_characters_come_in_nothing_is_sent_into_them():
+    """A link that announces the end of what comes says so instead of handing it over."""
+    bus = ForeseeingBus()
+    bus.run(300_000)
+    receive, sent = bus.receive, len(bus.sent)
+    bus.receive = lambda buffer, at: -1
+    began_us = bus.now
+    bus.run(400_000)
+    assert len(bus.sent) - sent <= 1  # the one that could go out before it began
+    bus.run(300_000)
+    assert len(bus.sent) - sent <= 3 and bus.now - began_us >= 700_000  # babble is talked over
+    bus.receive = receive
+    bus.run(300_000)
+    assert len(bus.sent) - sent > 8

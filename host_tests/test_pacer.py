@@ -48,6 +48,7 @@ class Engine:
         self.inside = 0
         self.recovered = 0
         self.meanwhile = None
+        self.due_us = 700
 
     def poll(self, now):
         self.entries += 1
@@ -56,7 +57,7 @@ class Engine:
         if self.meanwhile:
             self.meanwhile()
         self.inside -= 1
-        return 700
+        return self.due_us
 
     def recover(self, now):
         self.inside = 0
@@ -67,17 +68,60 @@ class Bench:
     def __init__(self, timer=True):
         self.clock, self.engine, self.link = Clock(), Engine(), Link()
         self.timer = Timer() if timer else None
-        self.pacer = Pacer(
-            self.engine, self.link, self.clock, self.timer, lambda: 0, lambda state: None
-        )
+        self.pacer = Pacer(self.engine, self.link, self.clock, self.timer)
         self.pacer.start()
+
+    def let_timer_fire(self):
+        self.clock.now += self.timer.period
+        self.timer.callback(self.timer)
 
 
 def test_the_timer_is_set_to_what_the_engine_asks():
     bench = Bench()
     assert bench.engine.entries == 1 and bench.timer.period == 700
+    bench.let_timer_fire()
+    assert bench.engine.entries == 2 and bench.timer.period == 700
+
+
+def test_a_timer_that_will_come_early_enough_is_not_set_again():
+    """To set it takes long, and each exchange moves the instant only further away."""
+    bench = Bench()
+    for after_us in (100, 200, 200):
+        bench.timer.period = None
+        bench.clock.now += after_us
+        bench.link.on_activity()
+        assert bench.timer.period is None
+    assert bench.engine.entries == 4
+    bench.clock.now += 200  # the 700 us since it was set are over
     bench.timer.callback(bench.timer)
-    assert bench.engine.entries == 2
+    assert bench.engine.entries == 4 and bench.timer.period == 500  # nothing was due yet
+    bench.let_timer_fire()
+    assert bench.engine.entries == 5 and bench.timer.period == 700
+
+
+def test_a_timer_that_would_come_too_late_is_set_again():
+    bench = Bench()
+    bench.engine.due_us = 300
+    bench.link.on_activity()
+    assert bench.timer.period == 300
+    bench.let_timer_fire()
+    assert bench.engine.entries == 3
+
+
+def test_a_timer_that_got_lost_is_set_again_by_the_next_interrupt():
+    bench = Bench()
+    bench.clock.now += 701
+    bench.timer.period = None
+    bench.link.on_activity()
+    assert bench.timer.period == 700
+
+
+def test_after_a_stop_and_a_start_the_timer_is_set():
+    bench = Bench()
+    bench.pacer.stop()
+    assert bench.timer.period is None
+    bench.pacer.start()
+    assert bench.timer.period == 700
 
 
 def test_activity_on_the_link_enters_the_engine():
@@ -158,11 +202,12 @@ def test_no_interrupt_comes_in_while_the_engine_recovers_from_ctrl_c():
 
     bench.engine.meanwhile = interrupted
     bench.engine.recover = recover_interrupted
+    bench.clock.now += 700 + 2 * OVERDUE_US
     try:
-        bench.pacer.run()
+        bench.pacer.tend()
     except KeyboardInterrupt:
         assert entries == [0]
-        bench.timer.callback(bench.timer)
+        bench.let_timer_fire()
         assert bench.engine.entries == 3
         return
     raise AssertionError("Ctrl-C got lost")
@@ -177,7 +222,7 @@ def test_ctrl_c_that_lands_in_an_interrupt_reaches_the_main_loop():
         raise KeyboardInterrupt
 
     bench.engine.meanwhile = interrupted
-    bench.timer.callback(bench.timer)
+    bench.let_timer_fire()
     bench.link.on_activity()
     assert bench.engine.entries == 3
     try:
@@ -196,7 +241,7 @@ def test_a_timer_that_cannot_be_set_is_tried_again_by_the_main_loop():
         raise OSError("no alarm left")
 
     bench.timer.init = fail
-    bench.pacer.run()
+    bench.let_timer_fire()
     assert isinstance(bench.pacer.failure, OSError)
     bench.timer.init = init
     bench.clock.now += 2 * OVERDUE_US
@@ -215,7 +260,9 @@ def test_an_exception_is_kept_in_and_the_engine_begins_anew():
     assert bench.engine.recovered == 1
     assert str(bench.pacer.failure) == "on purpose"
     bench.engine.meanwhile = None
-    bench.timer.callback(bench.timer)
+    bench.let_timer_fire()  # it was set before, and comes 300 us too early
+    assert bench.engine.entries == 2
+    bench.let_timer_fire()
     assert bench.engine.entries == 3
 
 

@@ -1,6 +1,6 @@
 """The operator's manual, STOP: it is always sent, repeated, and watched until the motor rests."""
 
-from panel_bench import OFF1, all_running, panel, row_2, running, starts, telegrams
+from panel_bench import OFF1, all_running, panel, row_2, settled_row_2, running, starts, telegrams
 
 NOT_TRACED = (
     "test_a_long_list_is_no_reason_for_an_alarm test_the_slowest_ramp_of_a_drive_is_no_alarm"
@@ -191,7 +191,7 @@ def test_another_drive_is_announced_by_both_digits_of_its_address():
     world = all_running((1, 12))
     rows = set()
     for _ in range(80):
-        world.run(50)
-        rows.add(row_2(world))
+        world.run(40)
+        rows.add(settled_row_2(world))
     assert rows == {"RUNNING      A1", "A12 RUN,HOLD=ALL"}, rows
     world.check()

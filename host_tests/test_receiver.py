@@ -206,3 +206,34 @@ def test_noise_of_any_kind_is_survived_and_the_next_reply_taken():
 def test_every_finding_has_a_name():
     assert len(receiver.FINDINGS) == CUT_OFF + 1
     assert receiver.FINDINGS[: len(telegram.FINDINGS)] == telegram.FINDINGS
+
+
+# --- a link that announces the end of what is coming --------------------------------------------
+
+
+class Coming(Link):
+    """Characters are coming in; to take them before their end is announced would be too early."""
+
+    def receive(self, buffer, at):
+        return Link.receive(self, buffer, at) or receiver.COMING
+
+
+def coming():
+    line = Line()
+    line.link = Coming()
+    return line
+
+
+def test_a_reply_that_is_coming_in_is_waited_for_beyond_the_response_delay():
+    line = coming()
+    assert line.silence(line.receiver.window_us + 1) == WAITING
+    due_us = line.receiver.due_us(line.link, SENT_AT + line.receiver.window_us + 1)
+    assert due_us == LINE.residual_us(12) - 1
+    assert line.come(REPLY, line.receiver.window_us - TCH) == GOOD
+
+
+def test_what_comes_in_without_end_is_not_waited_for_longer_than_a_reply_takes():
+    line = coming()
+    last_us = line.receiver.window_us + LINE.residual_us(12)
+    assert line.silence(last_us - 1) == WAITING
+    assert line.silence(last_us) == BAD_START

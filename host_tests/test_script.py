@@ -109,6 +109,22 @@ def test_hang_and_reset():
     assert session.world.resets == 1
 
 
+def test_power_that_is_cut_is_back_at_once_and_the_display_begins_anew():
+    session = Session()
+    session.do("wait 1000", "press START", "wait 1000", "power cut")
+    assert session.world.resets == 1
+    assert session.do("lcd") == ["|%s|" % (16 * " ")] * 2
+    session.do("wait 9000", "expect READY")
+    assert "starts=1" in session.do("drive 1")[0]
+    assert "use: power cut" in session.refused("power on")
+
+
+def test_what_a_world_cannot_do_is_refused_before_anything_is_done():
+    session = Session()
+    session.world.refused = {"hang": "this one never hangs"}
+    assert session.refused("hang 100") == "test.txt:1: this one never hangs"
+
+
 def test_an_expectation_that_fails_shows_the_display():
     session = Session()
     session.do("wait 1000")

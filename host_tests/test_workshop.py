@@ -1,12 +1,18 @@
-"""The workshop itself: how tests are collected and judged, and how MicroPython is obtained.
+"""The workshop itself: how tests are collected and judged, and how MicroPython, node and the
+firmware for the Pico are obtained.
 
 What it does when all is well, every run of the tests shows; here stands what goes wrong.
 """
 
+import bz2
+import io
+import lzma
 import os
 import shutil
+import struct
 import subprocess
 import sys
+import tarfile
 
 import line_coverage
 import pytest
@@ -52,7 +58,7 @@ def test_each_function_is_an_item_under_each_interpreter(run_pytest):
     expected = [
         f"test_it.py::{tier}::{function}"
         for tier in tiers.TIERS
-        if tier in tiers.survey().versions
+        if tier in tiers.survey().versions and tiers.TIERS[tier].everywhere
         for function in ("test_one", "test_two")
     ]
     assert run.stdout.splitlines()[: len(expected)] == expected
@@ -225,7 +231,10 @@ case "$*" in
 esac
 """
 
-NEEDED = "bash env readlink mkdir rm mv ln cat sed awk grep tail timeout flock sleep".split()
+NEEDED = (
+    "bash env readlink mkdir rm mv ln cat sed awk grep head tail timeout flock sleep "
+    "find sort xargs sha256sum stat cp tar chmod date"
+).split()
 
 
 class Machine:
@@ -252,8 +261,7 @@ class Machine:
     def panel(self, *arguments):
         return self.run(self.top / "tools" / "panel", *arguments, input="standard input", cwd="/")
 
-    def shell(self, commands):
-        files = ("folder", "packages", "micropython")
+    def shell(self, commands, files=("folder", "packages", "micropython")):
         sourced = " ".join(f'. "$top/tools/workshop/{file}.sh";' for file in files)
         return self.run("bash", "-c", f'set -euo pipefail; top=$0; {sourced} {commands}', self.top)
 
@@ -352,3 +360,249 @@ def test_what_could_not_be_made_leaves_nothing_behind(machine):
     )
     assert machine.shell(commands).stdout == "failed\n"
     assert os.listdir(machine.top / "build") == ["lock"]
+
+
+def test_a_tar_of_sources_is_unpacked_without_its_outermost_folder(machine, tmp_path):
+    (machine.programs / "python3").symlink_to(sys.executable)
+    packed = io.BytesIO()
+    with tarfile.open(fileobj=packed, mode="w") as archive:
+        archive.addfile(tarfile.TarInfo("name-1.0/py/empty.c"))
+    for ending, compression in (("xz", lzma), ("bz2", bz2)):
+        (tmp_path / f"it.tar.{ending}").write_bytes(compression.compress(packed.getvalue()))
+        (tmp_path / ending).mkdir()
+        machine.shell(f'unpack_tar "{tmp_path}/it.tar.{ending}" "{tmp_path}/{ending}"')
+        assert (tmp_path / ending / "py" / "empty.c").exists()
+
+
+# ---- obtaining node -------------------------------------------------------------------------
+
+NODE_FILES = ("folder", "packages", "pytest", "node")
+
+
+def test_an_installed_node_is_used_when_it_is_new_enough(machine):
+    machine.install("node", "#!/bin/sh\nexit 0\n")  # it is asked whether it is, by its status
+    machine.install("npm", "#!/bin/sh\necho npm\n")
+    run = machine.shell('get_pytest() { :; }; get_node; "$build/node/npm"', NODE_FILES)
+    assert (run.returncode, run.stdout) == (0, "npm\n")
+    assert f"using {machine.programs}/node" in run.stderr
+
+
+@pytest.mark.parametrize("installed", [(), ("node",), ("node", "npm")])
+def test_an_old_node_or_one_without_npm_is_not_used(machine, installed):
+    for name in installed:
+        machine.install(name, "#!/bin/sh\nexit 1\n")
+    run = machine.shell("get_pytest() { :; }; get_node", NODE_FILES)
+    assert run.returncode == 1 and "using" not in run.stderr
+    assert "apt-get install nodejs npm" in run.stderr
+    assert os.listdir(machine.top / "build") == ["lock"]
+
+
+# ---- the firmware for the Pico --------------------------------------------------------------
+
+PICO_FILES = ("folder", "packages", "pytest", "pico")
+
+# Stands in for the compilers: what it "compiles" is the manifest and one Python file.
+PICO_STAND_IN = """
+    has_python() { :; }
+    has_pico_compiler() { [[ -e $1/versions ]]; }
+    has_pico_tools() { has_pico_compiler "$1"; }
+    has_pico_sources() { has_pico_compiler "$1"; }
+    make_pico_compiler() { echo gcc 1 >"$1/versions"; }
+    make_pico_tools() { : >"$1/versions"; }
+    make_pico_sources() { echo micropython 2 >"$1/versions"; }
+    pico_do() {
+        case $1 in
+            ninja) cat "$3/manifest.py" "$top/firmware/app.py" >"$3/firmware.bin" ;;
+            python) cp "${@: -1}" "${@: -2:1}" ;;
+        esac
+    }
+"""
+
+
+@pytest.fixture
+def pico(machine):
+    """The machine, with a small firmware and compilers that take no time."""
+    for folder in ("firmware/uss", "boards/pico"):
+        (machine.top / folder).mkdir(parents=True)
+    (machine.top / "firmware" / "app.py").write_text("first\n")
+    (machine.top / "boards" / "pico" / "manifest.py").write_text("")
+    return machine
+
+
+def get_firmware(machine, name, also=""):
+    """Gets it; answers whether it was built, and what it holds."""
+    run = machine.shell(f"{PICO_STAND_IN} {also} get_pico_firmware {name}", PICO_FILES)
+    assert run.returncode == 0, run.stderr
+    return "building" in run.stderr, (machine.top / "build/pico" / f"{name}.uf2").read_text()
+
+
+def test_a_firmware_is_built_anew_when_something_in_it_has_changed(pico):
+    assert get_firmware(pico, "panel")[0]
+    firmware = pico.top / "firmware"
+    changes = [
+        lambda: (firmware / "app.py").write_text("second\n"),
+        lambda: (firmware / "uss" / "new.py").write_text(""),
+        lambda: (firmware / "uss" / "new.py").rename(firmware / "new.py"),
+        lambda: (firmware / "new.py").unlink(),
+        lambda: (pico.top / "boards" / "pico" / "board.py").write_text(""),
+        lambda: (pico.top / "tools" / "workshop" / "pico_requirements.txt").write_text("cmake\n"),
+    ]
+    for number, change in enumerate(changes):
+        change()
+        assert get_firmware(pico, "panel")[0], number
+        assert not get_firmware(pico, "panel")[0], number
+    assert get_firmware(pico, "panel", "pico_released=2026-01-01;")[0]
+
+
+def test_what_is_not_in_a_firmware_does_not_have_it_built_anew(pico):
+    get_firmware(pico, "panel")
+    get_firmware(pico, "stock")
+    (pico.top / "firmware" / "app.py").write_text("first\n")  # the same, at another time
+    (pico.top / "firmware" / "notes.txt").write_text("")
+    with (pico.top / "tools" / "workshop" / "pico.sh").open("a") as script:
+        script.write("# a comment\n")
+    assert not get_firmware(pico, "panel")[0]
+    (pico.top / "firmware" / "app.py").write_text("second\n")
+    assert not get_firmware(pico, "stock")[0]
+    assert get_firmware(pico, "panel")[0]
+
+
+def test_the_panel_and_stock_differ_in_what_is_frozen(pico):
+    manifest = f"include('{pico.top}/boards/pico/manifest.py')"
+    assert manifest in get_firmware(pico, "panel")[1]
+    stock = get_firmware(pico, "stock")[1]
+    assert manifest not in stock and "freeze('$(PORT_DIR)/modules'" in stock
+
+
+def test_a_firmware_that_cannot_be_built_is_not_there_and_says_why(pico):
+    get_firmware(pico, "panel")
+    (pico.top / "firmware" / "app.py").write_text("second\n")
+    fail = 'pico_do() { [[ $1 != ninja ]] || { echo "error compiling app.py"; return 1; }; };'
+    run = pico.shell(f"{PICO_STAND_IN} {fail} get_pico_firmware panel", PICO_FILES)
+    assert run.returncode == 1 and "error compiling app.py" in run.stderr
+    assert os.listdir(pico.top / "build" / "pico") == []
+    assert get_firmware(pico, "panel")[1].endswith("second\n")
+
+
+def test_the_old_firmware_stays_until_the_new_one_is_there(pico):
+    get_firmware(pico, "panel")
+    (pico.top / "firmware" / "app.py").write_text("second\n")
+    show = """
+        eval "as_before_$(declare -f pico_do)"
+        pico_do() { cat "$build/pico/panel.uf2"; as_before_pico_do "$@"; }
+        quietly() { shift; "$@"; }
+    """
+    run = pico.shell(f"{PICO_STAND_IN} {show} get_pico_firmware panel", PICO_FILES)
+    assert run.returncode == 0 and run.stdout.count("first\n") >= 2, run.stderr
+
+
+def test_two_that_want_a_firmware_at_once_build_it_once(pico):
+    get = "get_pico_firmware panel"
+    run = pico.shell(f"{PICO_STAND_IN} {get} & {get} & wait; {get}", PICO_FILES)
+    assert run.stderr.count("building") == 1
+
+
+def test_the_compiler_is_unpacked_without_what_is_for_other_chips(pico, tmp_path):
+    gcc, newlib = "usr/lib/gcc/arm-none-eabi/14.2.1", "usr/lib/arm-none-eabi/newlib"
+    wanted = {
+        *("usr/bin/arm-none-eabi-gcc", f"{gcc}/cc1", f"{gcc}/thumb/v6-m/nofp/libgcc.a"),
+        *(f"{newlib}/thumb/v6-m/nofp/libc.a", f"{newlib}/nosys.specs"),
+        *("usr/include/newlib/stdio.h", "usr/lib/gcc/arm-none-eabi/14.2.1/include/arm_acle.h"),
+    }
+    other = {
+        *(f"{gcc}/lto1", f"{gcc}/libgcc.a", f"{gcc}/thumb/nofp/libgcc.a", f"{gcc}/plugin/x.h"),
+        *(f"{gcc}/arm/v5te/hard/libgcc.a", f"{newlib}/thumb/v8-m.main+fp/hard/libc.a"),
+        *(f"{newlib}/libc.a", f"{newlib}/thumb/v7-m/nofp/libm.a", "usr/share/doc/copyright"),
+        *("usr/bin/arm-none-eabi-lto-dump", f"{newlib}/thumb/v6-m/nofp/libc_nano.a"),
+    }
+    library = "usr/lib/x86_64-linux-gnu/libmpc.so.3"
+    with tarfile.open(tmp_path / "it.tar", "w") as archive:
+        for name in sorted(wanted | other | {library}):
+            archive.addfile(tarfile.TarInfo(f"./{name}"))
+    pico.install("dpkg-deb", '#!/bin/sh\ncat "$2"\n')
+    folder = tmp_path / "compiler"
+    run = pico.shell(
+        "packages_open() { :; }; packages_dependencies() { echo libc6; echo libmpc3; };"
+        'packages_download() { echo "${@:3}"; mkdir -p "$1/downloads"; '
+        f'cp "{tmp_path}/it.tar" "$1/downloads/gcc.deb"; }};'
+        f'mkdir "{folder}"; unpack_pico_compiler "{folder}" trixie; rm -r "{folder}/view"',
+        PICO_FILES,
+    )
+    assert run.stdout.split()[-2:] == ["libnewlib-dev", "libmpc3"], run.stderr
+    found = {str(file.relative_to(folder)) for file in folder.rglob("*") if file.is_file()}
+    assert found == wanted | {"libraries/libmpc.so.3", f"{newlib}/libstdc++.a"}
+
+
+@pytest.mark.parametrize(
+    "offered, says",
+    [
+        ("1.25.0+ds-1", ""),
+        ("1.25.0", ""),
+        ("1.26.1-2", "micropython 1.25.0 is wanted there, and it has 1.26.1-2"),
+        ("", "micropython 1.25.0 is wanted there, and it has none"),
+    ],
+)
+def test_sources_are_taken_in_the_very_version_that_was_tried(pico, offered, says):
+    run = pico.shell(
+        f"packages_version() {{ echo {offered}; }}; pico_offers view micropython 1.25.0", PICO_FILES
+    )
+    assert (run.returncode, run.stderr.strip()) == (bool(says), says)
+
+
+def have_firmware(machine):
+    """Puts one there that was made of what is in the tree, as the real compilers would have."""
+    run = machine.shell(
+        'mkdir -p "$build/pico"; echo first >"$build/pico/panel.uf2";'
+        '{ pico_fingerprint panel; echo micropython 2; } >"$build/pico/panel.made_of"',
+        PICO_FILES,
+    )
+    assert run.returncode == 0, run.stderr
+
+
+def test_uf2_tells_where_the_file_is_and_how_it_gets_onto_the_pico(pico, tmp_path):
+    have_firmware(pico)
+    uf2 = pico.top / "tools" / "uf2"
+    plain = pico.run(uf2)
+    assert plain.returncode == 0 and plain.stderr == ""
+    assert plain.stdout.startswith(f"{pico.top}/build/pico/panel.uf2: 1 KB")
+    assert "    micropython 2\n" in plain.stdout and "BOOTSEL" in plain.stdout
+    for output, file in ((tmp_path / "a file", "a file"), (tmp_path / "bin", "bin/panel.uf2")):
+        run = pico.run(uf2, "--output", output)
+        assert run.stdout.startswith(f"{tmp_path}/{file}: 1 KB"), run.stderr
+        assert (tmp_path / file).read_text() == "first\n"
+
+
+def test_uf2_says_what_is_wrong(pico, tmp_path):
+    uf2 = pico.top / "tools" / "uf2"
+    for arguments in (("--wrong",), ("--output",), ("--output", ""), ("a", "b", "c")):
+        run = pico.run(uf2, *arguments)
+        assert run.returncode == 2 and "usage: tools/uf2" in run.stderr, arguments
+    run = pico.run(uf2)
+    assert run.returncode == 3 and "wants Python 3.11" in run.stderr
+    (pico.programs / "python3").symlink_to(sys.executable)
+    run = pico.run(uf2)
+    assert run.returncode == 3 and "could not be built" in run.stderr and run.stdout == ""
+    have_firmware(pico)
+    assert pico.run(uf2, "--output", tmp_path / "no" / "such").returncode == 1
+
+
+@pytest.mark.parametrize("name", ["panel", "stock"])
+def test_the_firmware_is_one_for_the_pico_and_tells_nothing_of_this_machine(name):
+    file = tiers.TOP / "build" / "pico" / f"{name}.uf2"
+    if not file.exists():
+        pytest.skip("it could not be built here: tools/test said why")
+    image = bytearray()
+    blocks = file.read_bytes()
+    for at in range(0, len(blocks), 512):
+        head = struct.unpack_from("<8I", blocks, at)
+        assert head[:3] == (0x0A324655, 0x9E5D5157, 0x2000)  # a block of a file for a family
+        assert head[7] == 0xE48BFF56  # the RP2040
+        assert head[3] == 0x10000000 + len(image)
+        image += blocks[at + 32 : at + 32 + head[4]]
+    assert b"v1.25.0 on 2025-04-15" in image
+    for path in (str(tiers.TOP), os.path.expanduser("~/"), "/tmp/", "/usr/"):
+        assert path.encode() not in image
+    firmware = tiers.TOP / "firmware"
+    ours = {str(path.relative_to(firmware)) for path in firmware.rglob("*.py")}
+    for frozen in ours - {"main.py"} | {"board.py"}:  # a name that MicroPython knows
+        assert (b"\0" + frozen.encode() + b"\0" in image) == (name == "panel"), frozen

@@ -1,6 +1,7 @@
 """The tiers: the interpreters that every test file runs on, and the processes that run it there.
 
-A tier is one interpreter; runner.py is what runs inside it. `survey` asks each tier for its
+A tier is one interpreter; runner.py is what runs inside it. `pico` is one of them with an emulated
+Raspberry Pi Pico beside it, for the files that ask for it. `survey` asks each tier for its
 version; a FileRun runs functions of one file on one tier and publishes a verdict for each, also
 when the process crashes or hangs in the middle: then the function at fault fails, and the ones
 after it run in a new process. This module knows nothing of pytest; conftest.py uses it.
@@ -32,6 +33,7 @@ class Tier(NamedTuple):
     name: str
     command: tuple[str, ...]
     remedy: str  # the command that lets tools/test have the tier
+    everywhere: bool = True  # False: only files that name it run there
 
 
 # Alone with the standard library, printing at once, leaving no caches in firmware/, and with
@@ -39,8 +41,12 @@ class Tier(NamedTuple):
 CPYTHON_OPTIONS = ("-I", "-u", "-B", "-X", "utf8", "-X", "no_debug_ranges")
 
 
-def _micropython(name: str) -> tuple[str, ...]:
-    return (f"{TOP}/build/{name}/micropython", "-X", "heapsize=32M")
+def _micropython(name: str, heap: str = "32M") -> tuple[str, ...]:
+    return (f"{TOP}/build/{name}/micropython", "-X", f"heapsize={heap}")
+
+
+# It becomes the interpreter, with the chip at the end of two pipes.
+BESIDE_A_CHIP = (sys.executable, "-I", "-B", f"{TOP}/tools/emulator/launch.py")
 
 
 TIERS = {
@@ -50,6 +56,12 @@ TIERS = {
         Tier("unix32", _micropython("unix32"), "apt-get install gcc-multilib make python3"),
         Tier("coverage", _micropython("coverage"), "apt-get install gcc libc6-dev make python3"),
         Tier("cpython", (sys.executable, *CPYTHON_OPTIONS), ""),
+        Tier(
+            "pico",
+            (*BESIDE_A_CHIP, *_micropython("unix64", heap="64M")),
+            "tools/panel --board pico (it fetches 450 MB)",
+            everywhere=False,
+        ),
     )
 }
 
@@ -76,7 +88,7 @@ def survey() -> Survey:
                 cwd=TOP,
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.PIPE,
-                stderr=subprocess.STDOUT,
+                stderr=subprocess.PIPE,
                 text=True,
                 timeout=SURVEY_TIMEOUT_S,
             )
@@ -86,8 +98,13 @@ def survey() -> Survey:
             found.missing[tier.name] = str(error)
         else:
             heard = found.versions if answer.returncode == 0 else found.missing
-            heard[tier.name] = answer.stdout.strip()
+            heard[tier.name] = _one_line(answer.stdout) or _one_line(answer.stderr)
     return found
+
+
+def _one_line(output):
+    """The last line of what a program said: where it failed, that is the reason."""
+    return output.strip().rpartition("\n")[2]
 
 
 class FileRun:

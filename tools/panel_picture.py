@@ -83,7 +83,8 @@ class Picture:
 
     def _title(self, speed):
         tenths = self._world.clock.now_us // 100_000
-        return " USS panel on the virtual board   time %d:%02d:%02d.%d   speed x %.1f" % (
+        return " USS panel on %s   time %d:%02d:%02d.%d   speed x %.1f" % (
+            self._world.place,
             tenths // 36000, tenths // 600 % 60, tenths // 10 % 60, tenths % 10, speed,
         )  # fmt: skip
 
@@ -136,7 +137,7 @@ class Picture:
         return drive.read(ADDRESS) == self._selected() or drive.hz() != 0
 
     def _selected(self):
-        return self._world.app.panel.selected.drive.address
+        return self._world.selected()
 
     def _drive(self, address):
         drive = self._world.drives[address]

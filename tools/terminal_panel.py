@@ -33,8 +33,8 @@ COMMAND_MAX = 70
 KEY_COMMANDS = ("down", "up")
 QUITS = ("quit", "q")
 HELP = (
-    " ".join(ORDER),
-    "and help, quit; a command that misses something says how it is used",
+    " ".join(ORDER[:-2]),
+    " ".join(ORDER[-2:]) + " help quit; a command that misses something says how it is used",
 )
 WAITING = "waiting, %d s left (space: STOP, Esc: no further): %s"
 
@@ -58,7 +58,7 @@ def live(world, speed, said=()):
     finally:
         ran = turning(world)
         try:
-            world.app.close()
+            world.close()
         finally:
             terminal.close()
         if there:

@@ -1,8 +1,9 @@
 """What ./tools/panel runs: the panel's firmware on the virtual board, live or driven by a script.
 
-Runs on MicroPython. Exit status: 0, 1 when an expectation failed or a rule of the line was broken,
-2 when the command line or a script cannot be understood, 4 with a traceback when the firmware or
-the simulation failed, 130 after Ctrl-C.
+With --board pico it is the firmware file for the Raspberry Pi Pico on an emulated one: then this
+runs under emulator/launch.py. Runs on MicroPython. Exit status: 0, 1 when an expectation failed or
+a rule of the line was broken, 2 when the command line or a script cannot be understood, 4 with a
+traceback when the firmware or the simulation failed, 130 after Ctrl-C.
 """
 
 import gc
@@ -38,6 +39,7 @@ BYTE_ORDER_MARK = "\ufeff"  # some editors begin a text with it
 ENOENT = 2
 EPIPE = 32  # not in MicroPython's errno
 KIND, ORDINARY = 0xF000, 0x8000  # of a file, in its mode
+NEW = ".new"  # behind the name of a file that is being written
 FAILED = 1
 NOT_UNDERSTOOD = 2
 CRASHED = 4  # 3 is that of the wrapper: no MicroPython
@@ -50,6 +52,7 @@ COLLECT_AFTER = 1_000_000
 USAGE = """\
 usage: ./tools/panel [--speed N] [--drives 1,2,5] [--baud 19200] [--settings FILE] ...
        ./tools/panel --script FILE|- ...
+       ./tools/panel --board pico [--flash FILE] ...
 
   --speed N       in a terminal: time passes N times as fast, 1...100 (1)
   --script FILE   do the commands in FILE, or from standard input (-), in virtual time
@@ -60,8 +63,13 @@ usage: ./tools/panel [--speed N] [--drives 1,2,5] [--baud 19200] [--settings FIL
   --keys WIRING   direct: each key has a pin of its own; matrix: all but START and STOP (direct)
   --seed N        other reply delays and loop times; 0 is the plain world (0)
   --polled        no receive interrupt: the link is polled
+  --board BOARD   sim: the simulated board; pico: the firmware file for the Raspberry Pi Pico on an
+                  emulated one (sim). Not with --settings, --polled and --keys matrix
+  --flash FILE    pico: keep the chip's flash in FILE, and with it the settings of the panel
+  --display KIND  pico: wires, four data lines, or backpack, on I2C (wires)
   -h, --help      this text
 The simulated drive knows the rates from 1200 to 115200.
+An emulated Pico tells the path of its USB serial port, for mpremote and tools/deploy.
 Without --script, in a terminal: the live panel. It shows its keys; q ends it."""
 
 
@@ -117,6 +125,17 @@ def wiring(word):
     return word
 
 
+def one_of(option, *words):
+    """A reader that takes these words."""
+
+    def reader(word):
+        if word not in words:
+            raise UsageError("%s %s: there are %s" % (option, word, " and ".join(words)))
+        return word
+
+    return reader
+
+
 # Option: name of the value, default, reader. An option without a reader is a switch.
 OPTIONS = {
     "--script": ("script", None, str),
@@ -127,9 +146,17 @@ OPTIONS = {
     "--keys": ("keys", "direct", wiring),
     "--seed": ("seed", 0, number),
     "--polled": ("polled", False, None),
+    "--board": ("board", "sim", one_of("--board", "sim", "pico")),
+    "--flash": ("flash", None, str),
+    "--display": ("display", None, one_of("--display", "wires", "backpack")),
     "--help": ("help", False, None),
     "-h": ("help", False, None),
 }
+
+
+# Options that one board alone knows.
+ONLY_SIM = ("--settings", "--polled", "--keys")
+ONLY_PICO = ("--flash", "--display")
 
 
 def options(words):
@@ -152,33 +179,128 @@ def options(words):
     return values
 
 
-def world_of(chosen):
-    """The virtual world that the options ask for, and what the person should know of it: lines.
+def fit_for_board(chosen):
+    """UsageError: an option that the board does not know."""
+    board = chosen["board"]
+    for option in ONLY_SIM if board == "pico" else ONLY_PICO:
+        name, default, _ = OPTIONS[option]
+        if chosen[name] != default:
+            raise UsageError("%s is not for --board %s" % (option, board))
 
-    UsageError: there is no such drive, or the settings cannot be kept.
+
+def world_of(chosen):
+    """The world that the options ask for, and what the person should know of it: lines.
+
+    UsageError: there is no such drive, or what is to be kept cannot be.
     """
+    fit_for_board(chosen)
+    if chosen["board"] == "pico":
+        return pico_world(chosen)
     store, kept = None, None
-    drives, baud = chosen["drives"], chosen["baud"]
     if chosen["settings"] is not None:
         try:
-            store, kept = store_of(chosen["settings"], drives, baud)
+            store, kept = store_of(chosen["settings"], chosen["drives"], chosen["baud"])
         except OSError as error:
             raise UsageError("--settings %s: cannot be kept (%s)" % (chosen["settings"], error))
-        drives = drives or kept.drives
-        if baud not in (None, kept.baud):
-            raise UsageError("--baud %d: %s says %d" % (baud, chosen["settings"], kept.baud))
-        baud = known_to_drives(kept.baud)
-    drives = drives or (1,)
+    drives, baud, said = fitting(chosen, kept, chosen["settings"])
     world = World(
         main.start,
         drives,
-        baud or 19200,
+        baud,
         seed=chosen["seed"],
         polled=chosen["polled"],
         keys=chosen["keys"],
         store=store,
     )
-    return world, difference(chosen["settings"], kept.drives, drives) if kept else []
+    return world, said
+
+
+def pico_world(chosen):
+    """As `world_of`: an emulated Pico, whose flash is kept in a file if that is wanted."""
+    from tools.emulator.world import PicoWorld
+
+    image, kept = chosen["flash"], None
+    if image is not None:
+        image, kept = flash_of(image)
+    drives, baud, said = fitting(chosen, kept, chosen["flash"])
+    world = PicoWorld(
+        "panel",
+        drives,
+        baud,
+        seed=chosen["seed"],
+        display=chosen["display"] or "wires",
+        flash=image,
+    )
+    return world, said + ["USB serial of the emulated Pico: %s" % world.open_serial()]
+
+
+def fitting(chosen, kept, path):
+    """Drives and baud rate of a world, and lines about them.
+
+    kept: the settings in the file `path`, which go before what is usual; None: there are none.
+    """
+    drives, baud = chosen["drives"], chosen["baud"]
+    if not kept:
+        return drives or (1,), baud or 19200, []
+    drives = drives or kept.drives
+    if baud not in (None, kept.baud):
+        raise UsageError("--baud %d: %s says %d" % (baud, path, kept.baud))
+    return drives, known_to_drives(kept.baud), difference(path, kept.drives, drives)
+
+
+def flash_of(path):
+    """The flash image to begin with and the settings in it; None and None for a new file.
+
+    UsageError: it is something else, or could not be written.
+    """
+    from tools.emulator.flash_image import FlashImage
+    from tools.emulator.world import SETTINGS_FILE
+
+    stored, image = None, None
+    try:
+        if is_new(path):
+            open(path + NEW, "wb").close()  # it is there at the end, or never
+            os.remove(path + NEW)
+        else:
+            if os.stat(path)[0] & KIND != ORDINARY:
+                raise UsageError("--flash %s: is no ordinary file" % path)
+            open(path, "r+b").close()
+            image, stored = path, FlashImage(path).read(SETTINGS_FILE)
+    except ValueError as error:
+        raise UsageError("--flash %s" % error)
+    except OSError as error:
+        raise UsageError("--flash %s: cannot be kept (%s)" % (path, error))
+    return image, load(Stored(stored)) if stored else None
+
+
+def is_new(path):
+    """Whether there is nothing at `path`."""
+    try:
+        os.stat(path)
+    except OSError as error:
+        if error.args[0] != ENOENT:
+            raise
+        return True
+    return False
+
+
+class Stored:
+    """A store that holds what was found."""
+
+    def __init__(self, data):
+        self._data = data
+
+    def read(self):
+        return self._data
+
+
+def keep_flash(world, path):
+    """Write the chip's flash to its file, in place of what it held."""
+    try:
+        world.save_flash(path + NEW)
+        os.rename(path + NEW, path)
+    except Exception as error:
+        complain("--flash %s: was not kept (%s)" % (path, error))
 
 
 def store_of(path, drives, baud):
@@ -258,10 +380,14 @@ def panel(words):
         world, said = world_of(chosen)
         for line in said:
             complain(line)
-        if chosen["script"] is None:
-            live(world, chosen["speed"], said)
-        else:
-            run_script(world, chosen["script"])
+        try:
+            if chosen["script"] is None:
+                live(world, chosen["speed"], said)
+            else:
+                run_script(world, chosen["script"])
+        finally:
+            if chosen["flash"] is not None:
+                keep_flash(world, chosen["flash"])
     except UsageError as error:
         return complain("%s\n%s" % (error, USAGE), NOT_UNDERSTOOD)
     except ScriptError as error:

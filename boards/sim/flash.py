@@ -1,8 +1,9 @@
 """Files on a flash memory whose power can be cut before every step of writing.
 
 It behaves like littlefs: a file that is written appears with its new content when it is closed,
-all at once, and rename overwrites at once (littlefs README, Usage). It has no folders and wears out
-never. Its steps take as long as on the Pico, in which everything stands still, interrupts as well.
+all at once, and rename overwrites at once (littlefs README, Usage). It has no folders and never
+wears out. Its steps take as long as on the Pico; everything stands still meanwhile, interrupts as
+well.
 
     flash = Flash()
     store = FileStore("settings.json", flash.open, flash)      # it stands for `open` and for `os`

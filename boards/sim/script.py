@@ -49,6 +49,8 @@ class Script:
         name = words[0]
         if name not in COMMANDS:
             raise self._error("unknown command %s (there are: %s)" % (name, " ".join(ORDER)))
+        if name in self.world.refused:
+            raise self._error(self.world.refused[name])
         usage, readers, optional, _ = COMMANDS[name]
         arguments = words[1:]
         if readers and readers[-1] is text:
@@ -164,6 +166,12 @@ def fault(world, word):
     return int(word[1:])
 
 
+def cut(world, word):
+    if word != "cut":
+        raise ValueError("%s is nothing that power does here" % word)
+    return word
+
+
 def text(world, words):
     return words
 
@@ -188,10 +196,11 @@ COMMANDS = {
     "plug": ("plug A", (drive,), 0, lambda do, drive: drive.plug()),
     "hang": ("hang MS", (milliseconds,), 0, lambda do, ms: do.world.hang(ms)),
     "reset": ("reset", (), 0, lambda do: do.world.reset()),
+    "power": ("power cut", (cut,), 0, lambda do, _: do.world.cut_power()),
     "expect": ("expect TEXT", (text,), 0, Script.expect),
 }  # fmt: skip
 
 ORDER = (
     "press", "hold", "down", "up", "wait", "lcd", "expect", "bus", "drive", "param", "fault",
-    "unplug", "plug", "hang", "reset",
+    "unplug", "plug", "hang", "reset", "power",
 )  # fmt: skip

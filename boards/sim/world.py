@@ -44,7 +44,12 @@ class Surroundings:
 
     stored    what the panel's settings file is to say
     resets    how often the chip has restarted
+    place     where the panel runs, for people
+    refused   commands of the script language that cannot be done here: name -> why
     """
+
+    place = "the virtual board"
+    refused = {}
 
     def __init__(self, clock, addresses, baud, settings, seed, keys="direct", parameters=None):
         self.clock = clock
@@ -191,6 +196,20 @@ class World(Surroundings):
         self.lcd_chip.let_go()
         self.chip.reset()
         self._boot()
+
+    def cut_power(self):
+        """Power goes, for the display as well, and is back at once."""
+        self.lcd_chip.let_go()
+        self.lcd_chip.power_on()
+        self.reset()
+
+    def close(self):
+        """Stop the drives, and the panel with them."""
+        self.app.close()
+
+    def selected(self):
+        """The address of the drive that the panel shows."""
+        return self.app.panel.selected.drive.address
 
     def complaints(self):
         complaints = Surroundings.complaints(self)

@@ -12,7 +12,7 @@ answers; the panel goes on meanwhile.
 
 from micropython import const
 
-from hal.hd44780 import CharacterDisplay
+from hal.hd44780 import POWER_ON_US, CharacterDisplay
 
 AGAIN_US = const(500_000)
 
@@ -22,8 +22,8 @@ _ENABLE = const(0x04)
 _BACKLIGHT = const(0x08)
 _DATA = const(0xF0)  # D4...D7
 
-# Two bytes for the controller, each 4 on the bus and one before them when the register changes. With
-# the address that is 1 ms at 100 kHz.
+# Two bytes for the controller, each 4 on the bus, and one before them when the register changes.
+# With the address that is 1 ms at 100 kHz.
 _LONGEST = const(10)
 
 
@@ -37,7 +37,7 @@ def answers(i2c, address):
 
 
 class Backpack(CharacterDisplay):
-    """make_i2c: a function that frees the wires, if need be, and answers an I2C of 100 kHz at most;
+    """make_i2c: a function that frees the wires if need be and answers an I2C of at most 100 kHz;
     called again after each failure. address: of the PCF8574. clock: contract of `hal`.
     """
 
@@ -53,6 +53,7 @@ class Backpack(CharacterDisplay):
         self._pieces = tuple(memoryview(self._buffer)[:end] for end in range(_LONGEST + 1))
         self._count = 0
         self._register = -1  # what P0 was last set for; -1 unknown
+        self._lost = False  # the last transfer failed
         CharacterDisplay.__init__(self, clock)
 
     def _nibble(self, register, code):
@@ -72,12 +73,20 @@ class Backpack(CharacterDisplay):
 
     def _end_piece(self):
         count, self._count = self._count, 0
+        if self._lost:  # only a look whether it is there again: the display may just get power
+            self._buffer[0] = _BACKLIGHT
+            count = 1
         try:
             self._write_to(self._i2c_address, self._pieces[count])
         except OSError:
             self.failures = (self.failures + 1) & 0xFFFF
-            self._register = -1
+            self._lost = True
             self._write_to = self._make_i2c().writeto
             self._start_over(AGAIN_US)
+            return False
+        if self._lost:
+            self._lost = False
+            self._register = -1
+            self._start_over(POWER_ON_US)
             return False
         return True

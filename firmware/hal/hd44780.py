@@ -25,7 +25,7 @@ _PULSE_US = const(1)  # 450 ns
 _COMMAND_US = const(53)  # 37 us
 _DATA_US = const(61)  # the same, and 1.5 clocks until the address has moved
 _HOME_US = const(2_160)  # 1.52 ms
-_POWER_ON_US = const(40_000)
+POWER_ON_US = const(40_000)
 _SLEEP_LIMIT_US = const(100)  # whoever must wait longer comes back later
 _NEXT_PIECE_US = const(101)
 
@@ -71,7 +71,7 @@ class CharacterDisplay:
         self._glyphs = b""
         self._shown = bytearray(_CELLS)
         self._cell = 0  # the one that is looked at next
-        self._start_over(_POWER_ON_US)
+        self._start_over(POWER_ON_US)
 
     def define(self, glyphs):
         """glyphs: 8 bytes for each of at most 8 characters. ValueError: any other length."""

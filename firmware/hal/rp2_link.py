@@ -23,6 +23,7 @@ IDLE_BITS = const(32)  # silence after which the UART reports the end of a burst
 CYCLES_PER_BIT = const(8)  # of the state machine; its divider allows 239 baud ... 15 Mbaud
 LEAD_CYCLES = const(4)  # from the DMA's first word to the first start bit, at the most
 BITS_PER_CHARACTER = const(11)
+BITS_BEFORE_STOP = const(10)
 SIZE_MAX = const(256)
 COMING = const(-1)  # what `receive` says of characters whose end will be announced
 WORDS = const(1)  # code of the DMA for transfers of 16 bits
@@ -36,18 +37,21 @@ WORDS = const(1)  # code of the DMA for transfers of 16 bits
 def transmitter():
     """First word: characters - 1. Then a word for each character, as `_bit_patterns` has them.
 
-    The DMA writes 16 bits, which the chip puts on both halves of the 32-bit bus: `out(y, 16)`
-    takes one of them, where `mov(y, osr)` would count to 65537 times as many.
+    A bit takes 8 cycles; characters follow each other without a gap, because fetching the next one
+    is part of the stop bit. The DMA writes 16 bits, which the chip puts on both halves of the
+    32-bit bus: `out(y, 16)` takes one of them, where `mov(y, osr)` would count far too many.
     """
     pull(block).side(0)
     out(y, 16).side(1)
     label("character")
     pull(block).side(1)
-    set(x, BITS_PER_CHARACTER - 1).side(1)
+    set(x, BITS_BEFORE_STOP - 1).side(1)
     label("bit")
     out(pins, 1).side(1)[6]
     jmp(x_dec, "bit").side(1)
+    out(pins, 1).side(1)[4]  # the stop bit, which lasts until the next `out`
     jmp(y_dec, "character").side(1)
+    nop().side(1)[2]  # to its end, and one cycle more
 
 
 def _bit_patterns():
@@ -133,7 +137,7 @@ class Rp2Link:
         uart.irq(handler=self._on_idle, trigger=uart.IRQ_RXIDLE, hard=True)
 
     def send(self, buffer, count):
-        if self._is_driving():  # the last one did not come to its end: nothing on the chip does that
+        if self._is_driving():  # the last one never ended; nothing on the chip does that
             self._dma.active(0)
             self._set_up()
         self._burst_ended = False

@@ -29,6 +29,9 @@ class Command:
         self._contacts = 0  # drive.contacts, bus.dead_man_trips and bus.failures when it was given
         self._dead_man_trips = 0
         self._failures = 0
+        self._version = -1  # of the survey, as judged last; none
+        self._is_local = False  # commands, and setpoints, come from elsewhere
+        self._is_foreign = False
 
     def give(self, now):
         self._contacts = self._drive.contacts
@@ -68,12 +71,15 @@ class Command:
         listens to somebody else by now.
         """
         survey = self._survey
-        if permits.is_local(survey):
+        if survey.version != self._version:  # else there is nothing new to judge
+            self._version = survey.version
+            self._is_local = permits.is_local(survey)
+            self._is_foreign = permits.is_foreign(survey, profiles.SETPOINT_SOURCE)
+        if self._is_local or self._is_foreign and not jogs:
             return texts.TAKEN_AWAY
-        if not jogs and permits.is_foreign(survey, profiles.SETPOINT_SOURCE):
-            return texts.TAKEN_AWAY
-        if self._drive.state() == pzd.RUNNING:
-            self._ran = True
-        elif not self._ran and elapsed(now, self._since, self._mask) >= START_US:
-            return texts.DID_NOT_START
+        if not self._ran:
+            if self._drive.state() == pzd.RUNNING:
+                self._ran = True
+            elif elapsed(now, self._since, self._mask) >= START_US:
+                return texts.DID_NOT_START
         return None

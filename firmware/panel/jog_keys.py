@@ -8,7 +8,7 @@ from uss import pzd
 
 
 class JogKeys:
-    """One for the panel, because a hand jogs one drive at a time. right, left: bits of the keys."""
+    """One for the panel, because a hand jogs one drive at a time. right, left: bits of keys."""
 
     def __init__(self, right, left):
         self._right = right

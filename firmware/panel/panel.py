@@ -72,9 +72,9 @@ class Panel:
     def step(self, raw_keys, now_ms, now_us, unclear_keys=0):
         """raw_keys: the keys down now, as bits; unclear_keys: those that cannot be told.
 
-        Both times are readings of the clock. What an operator does is done, and what comes of it
-        is taken up, in this very step. Else every second step looks at the drive that is shown,
-        and the others draw a field of the picture or look at another drive: each stays short.
+        Both times are readings of the clock. What an operator does is done in this very step, what
+        comes of it is taken up in the next. Every second step looks at the drive that is shown;
+        the others draw a field of the picture or look at what is left, so that each stays short.
         """
         keys = self._keys
         keys.update(raw_keys, now_ms, unclear_keys)
@@ -82,13 +82,17 @@ class Panel:
             self._keys_were_down = keys.down != 0  # once more after the last one went up
             self._take_keys(keys, now_ms)
         acts = keys.pressed | keys.repeated
-        self._looks = not self._looks
-        if self._looks or acts:
+        self._looks = not (self._looks or acts)
+        if self._looks:
             self._look(now_ms, now_us)
+        if self._over is self._splash:
+            self._end_splash(now_ms)
         if acts or elapsed(now_ms, self._drawn_at, self._mask) >= DRAW_MS:
             self._drawn_at = now_ms
             self._view.begin(self._over or self._page)
-        if not self._looks and not self._view.step(now_ms):
+        if acts or not (self._looks or self._view.step(now_ms)):
+            if self._page is self._parameters:
+                self._parameters.step(keys, now_ms)
             self._look_at_another(now_us)
 
     # --- for the pages --------------------------------------------------------------------------
@@ -127,11 +131,7 @@ class Panel:
     def _look(self, now_ms, now_us):
         self.selected.step(now_us)
         self._writer.step(now_us)
-        if self._page is self._parameters:
-            self._parameters.step(self._keys, now_ms)
         self._collect(now_ms)
-        if self._over is self._splash:
-            self._end_splash(now_ms)
 
     def _look_at_another(self, now_us):
         """The next drive in turn. One that is not shown has nothing to say and nothing to ask:

@@ -12,10 +12,11 @@ writer at each end, so that neither side waits for the other.
 from micropython import const
 
 from uss import pkw
-from uss.telegram import get_word, put_word
+from uss.fast import copy
 from uss.timing import elapsed
 
 PKW_COUNT = const(8)  # characters of the four PKW words
+NO_TASK = bytes(PKW_COUNT)
 JOBS_MAX = const(8)
 REST_MAX = const(20)  # telegrams without a task that are tried before the next one is sent anyway
 TRIES_MIN = const(3)  # a task was sent at least so often before it times out
@@ -63,31 +64,31 @@ class Channel:
 
     def fill(self, net, at, now):
         """Write the PKW words of the next request into `net` from index `at` on."""
-        self.supervise(now)
         job = self._job
+        if self._out != self._in or self._tries >= TRIES_MIN:
+            self.supervise(now)
+            job = self._job
         if job is None or self._rest:
-            for index in range(at, at + PKW_COUNT):
-                net[index] = 0
+            copy(NO_TASK, net, at, PKW_COUNT)
             self.idle = job is None and not self._rest
             return
-        # Only a write carries a value; a read's words are where its result will stand.
-        is_write = job.task != pkw.READ
-        put_word(net, at, job.pke)
-        put_word(net, at + 2, job.ind)
-        put_word(net, at + 4, job.high if is_write else 0)
-        put_word(net, at + 6, job.low if is_write else 0)
+        copy(job.words, net, at, PKW_COUNT)
         if self._tries < TRIES_MIN:
             self._tries += 1
 
     def take(self, net, at):
         """Take the PKW words of a valid reply that stand in `net` from index `at` on."""
-        pke = get_word(net, at)
+        pke = net[at] << 8 | net[at + 1]
+        job = self._job
         if self._rest:
             # The task was withdrawn; until the drive says AK 0 an old reply may still come.
             self._rest = 0 if pke >> 12 == pkw.NO_REPLY else self._rest - 1
-        elif self._job is not None:
-            ind, high, low = get_word(net, at + 2), get_word(net, at + 4), get_word(net, at + 6)
-            if self._job.answer(pke, ind, high, low):
+            self.idle = job is None and not self._rest and self._in == self._out
+        elif job is not None:
+            ind = net[at + 2] << 8 | net[at + 3]
+            high = net[at + 4] << 8 | net[at + 5]
+            low = net[at + 6] << 8 | net[at + 7]
+            if job.answer(pke, ind, high, low):
                 self._end()
 
     def miss(self, now):

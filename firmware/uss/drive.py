@@ -205,15 +205,15 @@ class Drive:
 
         net: the same buffer every time, mostly `request`. What changes in it breaks its seal.
         """
-        hsw = self.hsw
         channel = self.channel
-        if self.steady and channel.idle and hsw == self._hsw:
-            return
-        self._hsw = hsw
-        self.served = self.urgent
         if not channel.idle:
             self.sealed = False
             channel.fill(net, at, now)
+        hsw = self.hsw
+        if self.steady and hsw == self._hsw:
+            return
+        self._hsw = hsw
+        self.served = self.urgent
         on = self.wanted and self.is_on()
         if self.taken_back or self.stops != self.stops_sent:
             self.taken_back = False
@@ -267,7 +267,6 @@ class Drive:
             if not self.steady and stw & pzd.STW_ACKNOWLEDGE:
                 self.acknowledged = self._acknowledging
                 self._edge_was_answered = True
-                self.steady = False
             self.off_answers = (self.off_answers + 1) & COUNTER_MASK
             self.insist = 0
             self._may_run = zsw & ZSW_RUNNING != 0

@@ -27,11 +27,17 @@ def is_telegram(buffer, count, address):
     )
 
 
-IN_PYTHON = (exclusive_or, is_telegram)  # for the test that compares them with the others
+def copy(source, target, at, count):
+    """Put the first `count` characters of `source` into `target` from index `at` on."""
+    for index in range(count):
+        target[at + index] = source[index]
+
+
+IN_PYTHON = (exclusive_or, is_telegram, copy)  # for the test that compares them with the others
 
 # What importing it raises: CPython knows no viper; no emitter in a port that compiles the source,
 # or one for another processor in a port that is handed bytecode.
 try:
-    from uss.fast_viper import exclusive_or, is_telegram
+    from uss.fast_viper import copy, exclusive_or, is_telegram
 except (ImportError, AttributeError, NameError, SyntaxError, ValueError):
     pass

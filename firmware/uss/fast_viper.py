@@ -26,3 +26,11 @@ def is_telegram(buffer: ptr8, count: int, address: int) -> bool:
         check ^= buffer[index]
         index += 1
     return check == 0
+
+
+@micropython.viper
+def copy(source: ptr8, target: ptr8, at: int, count: int):
+    index = 0
+    while index < count:
+        target[at + index] = source[index]
+        index += 1

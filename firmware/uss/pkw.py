@@ -126,6 +126,7 @@ class Job:
     """
 
     def __init__(self, task, number, index=0, high=0, low=0):
+        self.words = bytearray(8)  # PKE, IND, PWE1, PWE2 as they are sent
         self.aim(task, number, index, high, low)
 
     def aim(self, task, number, index=0, high=0, low=0):
@@ -143,6 +144,10 @@ class Job:
         self.ind = ind(number, index)
         self.high = high
         self.low = low
+        # `high` and `low` are also where the result will stand; only a write carries a value.
+        if task == READ:
+            high = low = 0
+        struct.pack_into(">HHHH", self.words, 0, self.pke, self.ind, high, low)
         self.state = NEW
         self.width = 0
         self.error = 0

@@ -142,4 +142,7 @@ class Receiver:
         window_us = self.window_us + late_us if self._coming else self.window_us
         if elapsed(now, self._sent_at, self._mask) < window_us:
             return WAITING
-        return telegram.BAD_START if self.stray or self._coming else SILENT
+        if self._coming:
+            self.heard_at = now  # the line is not silent
+            return telegram.BAD_START
+        return telegram.BAD_START if self.stray else SILENT

@@ -30,7 +30,8 @@ def arguments(words):
     )
     add = parser.add_argument
     add("--port", metavar="PATH", help="serial port of the Pico; needed when there are several")
-    add("--board", default="pico", choices=[name for name in boards if name != VIRTUAL])
+    real = [name for name in boards if name != VIRTUAL]
+    add("--board", default="pico", choices=real, help="a folder of boards/; pico unless named")
     add("--board-file", metavar="FILE", help=f"a {BOARD} of your own, over any that is there")
     add("--replace", action="store_true", help="also files of others that are in the way")
     add("--remove", action="store_true", help="take away what tools/deploy has copied")

@@ -13,9 +13,11 @@ emulated chip may be slower than a real one.
 """
 
 import ast
+import io
 import os
 import struct
 import time
+from contextlib import redirect_stdout
 from pathlib import Path
 
 import serial
@@ -25,7 +27,7 @@ from mpremote.transport_serial import SerialTransport
 from errors import DeployError
 
 OPEN_S = 2  # for another program to let go of the line
-ANSWER_S = 30  # for an answer to begin, and between two characters of it
+ANSWER_S = 10  # for an answer to begin, and between two characters of it
 INTERRUPT_S = 5  # between two Ctrl-C; a panel that is stopping its drives is not disturbed by one
 STOP_S = 90  # for a panel to stop 31 drives at 300 baud
 POLL_S = 0.02
@@ -56,6 +58,7 @@ class Chip:
 
     def interrupt(self):
         """End whatever runs, by Ctrl-C; what was heard until the prompt."""
+        self.hear()  # what was said before does not count
         heard = b""
         deadline = time.monotonic() + STOP_S
         while not heard.endswith(PROMPT):
@@ -68,14 +71,16 @@ class Chip:
     def enter(self):
         """A fresh interpreter at the raw prompt: nothing of an earlier program is left in it."""
         try:
-            self._line.enter_raw_repl(soft_reset=True, timeout_overall=ANSWER_S)
+            with silence():
+                self._line.enter_raw_repl(soft_reset=True, timeout_overall=ANSWER_S)
         except LINE_ERRORS as error:
             raise DeployError(f"{self.port} does not come to the raw prompt: {error}") from None
 
     def execute(self, code):
         """Run it; what it printed."""
         try:
-            printed, failed = self._line.exec_raw(code, timeout=ANSWER_S)
+            with silence():
+                printed, failed = self._line.exec_raw(code, timeout=ANSWER_S)
         except LINE_ERRORS as error:
             raise DeployError(f"{self.port} does not answer any more: {error}") from None
         if failed:
@@ -102,7 +107,8 @@ class Chip:
     def write(self, path, data):
         """A file with these bytes, at once its own and not in place of another."""
         try:
-            self._line.fs_writefile(path, data, chunk_size=PIECE)
+            with silence():
+                self._line.fs_writefile(path, data, chunk_size=PIECE)
         except TransportExecError as error:
             reason = _last_line(error.error_output)
             raise DeployError(f"{path} cannot be written: {reason}") from None
@@ -140,6 +146,11 @@ class Chip:
         while time.monotonic() < deadline and not heard.endswith(ending):
             heard += self.hear() or _pause()
         return heard
+
+
+def silence():
+    """mpremote prints what it could not understand, besides raising an error."""
+    return redirect_stdout(io.StringIO())
 
 
 def _pause():

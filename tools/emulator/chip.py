@@ -3,7 +3,7 @@
 It is no chip and no world: it writes records, lets the chip run, and hands over what it answers.
 README.md has the table of the records. Runs on the Unix port, started by launch.py.
 
-    chip = connection()                     # the one chip of this process; its time never starts anew
+    chip = connection()                     # the one of this process; its time goes on and on
     chip.tell(chip.now_ns, "P", 13, 0)      # START is held down
     chip.run(chip.now_ns + 1_000_000, take) # take(at_ns, kind, a, b, content) for every answer
 """
@@ -36,6 +36,7 @@ class Chip:
         self.batches = 0
         self._reader = reader
         self._writer = writer
+        self._whole = True  # no answer was broken off, as by Ctrl-C
         self._waiting = []  # (at_ns, record and content), in the order of time
         self._record = bytearray(RECORD_BYTES)
 
@@ -77,6 +78,9 @@ class Chip:
 
         take(at_ns, kind, a, b, content) is called for everything that the chip did meanwhile.
         """
+        if not self._whole:
+            raise EmulatorError("the emulator was interrupted in the middle of an answer")
+        self._whole = False
         waiting = self._waiting
         while waiting and waiting[0][0] <= until_ns:
             self._writer.write(waiting.pop(0)[1])
@@ -94,6 +98,7 @@ class Chip:
             else:
                 take(at_ns, kind, a, b, content)
         self.now_ns = at_ns
+        self._whole = True
         if failure:
             raise EmulatorError(failure)
 

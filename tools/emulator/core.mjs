@@ -73,6 +73,9 @@ const writeCycles = (address) => {
   return digit === 0xd ? 1 : digit === 4 ? 5 : 2;
 };
 
+// What is a HardFault on the chip.
+export class Fault extends Error {}
+
 export class Core extends CortexM0Core {
   constructor(mcu) {
     super(mcu);
@@ -121,9 +124,22 @@ export class Core extends CortexM0Core {
       || this.rp2040.clock.dueAt < this.start + this.budget * CYCLE_NANOS;
   }
 
+  // Throws where the chip has a HardFault: unaligned, where nothing is, into the flash.
+  check(address, bytes, writing) {
+    const digit = address >>> 28;
+    const there = digit >= 4 ? digit <= 5 || digit === 0xd || digit === 0xe
+      : digit === 1 && (!writing || address >>> 26 !== FLASH_WINDOWS);
+    if (there && (address & (bytes - 1)) === 0) return;
+    const how = writing ? 'writes to' : 'reads from';
+    throw new Fault(`the program ${how} ${(address >>> 0).toString(16)}, ${bytes} bytes`);
+  }
+
   load32(address, left) {
-    if (address >>> 26 === FLASH_WINDOWS) return this.flash32[(address & FLASH_MASK) >> 2];
-    if (address >>> 0 < ROM_BYTES) return this.rom32[address >> 2];
+    if ((address & 3) === 0) {
+      if (address >>> 26 === FLASH_WINDOWS) return this.flash32[(address & FLASH_MASK) >> 2];
+      if (address >>> 0 < ROM_BYTES) return this.rom32[address >> 2];
+    }
+    this.check(address, 4, false);
     this.before(left);
     const value = address >>> 28 === 0xd ? this.rp2040.sio.readUint32(address & 0xfffffff)
       : this.rp2040.readUint32(address >>> 0);
@@ -132,17 +148,18 @@ export class Core extends CortexM0Core {
   }
 
   load16(address, left) {
-    if (address >>> 26 === FLASH_WINDOWS) return this.flash16[(address & FLASH_MASK) >> 1];
+    if (address & 1) this.check(address, 2, false);
     const word = this.load32(address & ~3, left);
     return address & 2 ? word >>> 16 : word & 0xffff;
   }
 
   load8(address, left) {
-    if (address >>> 26 === FLASH_WINDOWS) return this.flash8[address & FLASH_MASK];
     return (this.load32(address & ~3, left) >>> (8 * (address & 3))) & 0xff;
   }
 
   store32(address, value, left) {
+    if (address >>> 0 < ROM_BYTES) return; // the USB driver does that; the chip ignores it
+    this.check(address, 4, true);
     this.before(left);
     if (address >>> 28 === 0xd) this.rp2040.sio.writeUint32(address & 0xfffffff, value >>> 0);
     else this.rp2040.writeUint32(address >>> 0, value >>> 0);
@@ -150,12 +167,16 @@ export class Core extends CortexM0Core {
   }
 
   store16(address, value, left) {
+    if (address >>> 0 < ROM_BYTES) return;
+    this.check(address, 2, true);
     this.before(left);
     this.rp2040.writeUint16(address >>> 0, value & 0xffff);
     this.after();
   }
 
   store8(address, value, left) {
+    if (address >>> 0 < ROM_BYTES) return;
+    this.check(address, 1, true);
     this.before(left);
     this.rp2040.writeUint8(address >>> 0, value & 0xff);
     this.after();
@@ -168,7 +189,7 @@ export class Core extends CortexM0Core {
       case 1: return this.flash16;
       case 2: return this.ram16;
     }
-    throw new Error(`the program has run to ${(address >>> 0).toString(16)}, where no code is`);
+    throw new Fault(`the program has run to ${(address >>> 0).toString(16)}, where no code is`);
   }
 
   // Executes instructions until the instant, or until an alarm or an interrupt is due.
@@ -452,7 +473,7 @@ export class Core extends CortexM0Core {
           const address = (r[(op >> 3) & 7] + r[(op >> 6) & 7]) | 0;
           const offset = (address - RAM) | 0;
           pc += 2;
-          if (offset >>> 0 < RAM_BYTES) {
+          if (offset >>> 0 < RAM_BYTES && (address & 3) === 0) {
             ram32[offset >> 2] = r[op & 7];
             left -= 2; continue;
           }
@@ -464,7 +485,7 @@ export class Core extends CortexM0Core {
           const address = (r[(op >> 3) & 7] + r[(op >> 6) & 7]) | 0;
           const offset = (address - RAM) | 0;
           pc += 2;
-          if (offset >>> 0 < RAM_BYTES) {
+          if (offset >>> 0 < RAM_BYTES && (address & 1) === 0) {
             ram16[offset >> 1] = r[op & 7];
             left -= 2; continue;
           }
@@ -500,11 +521,11 @@ export class Core extends CortexM0Core {
           const address = (r[(op >> 3) & 7] + r[(op >> 6) & 7]) | 0;
           const offset = (address - RAM) | 0;
           pc += 2;
-          if (offset >>> 0 < RAM_BYTES) {
+          if (offset >>> 0 < RAM_BYTES && (address & 3) === 0) {
             r[op & 7] = ram32[offset >> 2];
             left -= 2; continue;
           }
-          if (address >>> 24 === 0x10) {
+          if (address >>> 24 === 0x10 && (address & 3) === 0) {
             r[op & 7] = flash32[(address & FLASH_MASK) >> 2];
             left -= 2; continue;
           }
@@ -516,11 +537,11 @@ export class Core extends CortexM0Core {
           const address = (r[(op >> 3) & 7] + r[(op >> 6) & 7]) | 0;
           const offset = (address - RAM) | 0;
           pc += 2;
-          if (offset >>> 0 < RAM_BYTES) {
+          if (offset >>> 0 < RAM_BYTES && (address & 1) === 0) {
             r[op & 7] = ram16[offset >> 1];
             left -= 2; continue;
           }
-          if (address >>> 24 === 0x10) {
+          if (address >>> 24 === 0x10 && (address & 1) === 0) {
             r[op & 7] = flash16[(address & FLASH_MASK) >> 1];
             left -= 2; continue;
           }
@@ -548,7 +569,7 @@ export class Core extends CortexM0Core {
           const address = (r[(op >> 3) & 7] + r[(op >> 6) & 7]) | 0;
           const offset = (address - RAM) | 0;
           pc += 2;
-          if (offset >>> 0 < RAM_BYTES) {
+          if (offset >>> 0 < RAM_BYTES && (address & 1) === 0) {
             r[op & 7] = (ram16[offset >> 1] << 16) >> 16;
             left -= 2; continue;
           }
@@ -560,7 +581,7 @@ export class Core extends CortexM0Core {
           const address = (r[(op >> 3) & 7] + ((op >> 4) & 0x7c)) | 0;
           const offset = (address - RAM) | 0;
           pc += 2;
-          if (offset >>> 0 < RAM_BYTES) {
+          if (offset >>> 0 < RAM_BYTES && (address & 3) === 0) {
             ram32[offset >> 2] = r[op & 7];
             left -= 2; continue;
           }
@@ -572,11 +593,11 @@ export class Core extends CortexM0Core {
           const address = (r[(op >> 3) & 7] + ((op >> 4) & 0x7c)) | 0;
           const offset = (address - RAM) | 0;
           pc += 2;
-          if (offset >>> 0 < RAM_BYTES) {
+          if (offset >>> 0 < RAM_BYTES && (address & 3) === 0) {
             r[op & 7] = ram32[offset >> 2];
             left -= 2; continue;
           }
-          if (address >>> 24 === 0x10) {
+          if (address >>> 24 === 0x10 && (address & 3) === 0) {
             r[op & 7] = flash32[(address & FLASH_MASK) >> 2];
             left -= 2; continue;
           }
@@ -616,7 +637,7 @@ export class Core extends CortexM0Core {
           const address = (r[(op >> 3) & 7] + ((op >> 5) & 0x3e)) | 0;
           const offset = (address - RAM) | 0;
           pc += 2;
-          if (offset >>> 0 < RAM_BYTES) {
+          if (offset >>> 0 < RAM_BYTES && (address & 1) === 0) {
             ram16[offset >> 1] = r[op & 7];
             left -= 2; continue;
           }
@@ -628,11 +649,11 @@ export class Core extends CortexM0Core {
           const address = (r[(op >> 3) & 7] + ((op >> 5) & 0x3e)) | 0;
           const offset = (address - RAM) | 0;
           pc += 2;
-          if (offset >>> 0 < RAM_BYTES) {
+          if (offset >>> 0 < RAM_BYTES && (address & 1) === 0) {
             r[op & 7] = ram16[offset >> 1];
             left -= 2; continue;
           }
-          if (address >>> 24 === 0x10) {
+          if (address >>> 24 === 0x10 && (address & 1) === 0) {
             r[op & 7] = flash16[(address & FLASH_MASK) >> 1];
             left -= 2; continue;
           }
@@ -750,7 +771,7 @@ export class Core extends CortexM0Core {
           pc += 2; left -= 1; continue;
         case 63: { // STMIA
           const offset = (r[(op >> 8) & 7] - RAM) | 0;
-          if (offset >>> 0 > RAM_BYTES - 36) {
+          if (offset >>> 0 > RAM_BYTES - 36 || (offset & 3) !== 0) {
             this.rare = true;
             break;
           }
@@ -768,7 +789,7 @@ export class Core extends CortexM0Core {
         case 64: { // LDMIA
           const to = (op >> 8) & 7;
           const offset = (r[to] - RAM) | 0;
-          if (offset >>> 0 > RAM_BYTES - 36) {
+          if (offset >>> 0 > RAM_BYTES - 36 || (offset & 3) !== 0) {
             this.rare = true;
             break;
           }
@@ -875,7 +896,7 @@ export class Core extends CortexM0Core {
           this.rare = true;
           break;
         default:
-          throw new Error(`the program has run to ${(pc >>> 0).toString(16)}, past the memory`);
+          throw new Fault(`the program has run to ${(pc >>> 0).toString(16)}, past the memory`);
       }
       if (this.rare || this.changed) {
         unspent = left;

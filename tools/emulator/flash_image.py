@@ -1,4 +1,4 @@
-"""Files on the Pico's flash, put there and read from outside: an image of 2 MiB in the host's memory.
+"""Files on the Pico's flash, put there and read from outside: an image of 2 MiB in memory.
 
 MicroPython's board RPI_PICO keeps its littlefs in the last 1408 KiB (FLASH_STORAGE_BYTES of its
 mpconfigboard.h), in blocks of 4096 bytes that are programmed 256 bytes at a time (_boot.py).

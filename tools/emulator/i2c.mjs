@@ -9,6 +9,11 @@ const CYCLE_NANOS = 8;
 const BYTE_BITS = 9; // with the acknowledge bit
 const TX_EMPTY = 1 << 4; // of the raw interrupts
 
+const RESET_STATE = {
+  state: 0, busy: false, stop: false, pendingRestart: false, firstByte: false,
+  enable: 0, abortSource: 0, intRaw: 0, intEnable: 0,
+};
+
 // The peripheral: rp2040js's, given time and devices.
 export class TimedI2c {
   // written(address, byte): a byte was written and acknowledged.
@@ -36,6 +41,13 @@ export class TimedI2c {
     });
     peripheral.onReadByte = () => after(BYTE_BITS, () => peripheral.completeRead(0xff));
     peripheral.onStop = () => after(1, () => peripheral.completeStop());
+    peripheral.reset = () => {
+      alarm.cancel();
+      peripheral.txFIFO.reset();
+      peripheral.rxFIFO.reset();
+      Object.assign(peripheral, RESET_STATE);
+      peripheral.checkInterrupts();
+    };
   }
 }
 
@@ -56,14 +68,21 @@ export class BitBangedI2c {
     this.acknowledging = false;
   }
 
+  powerFails() {
+    this.idle();
+    this.hold(false);
+  }
+
+  // A reset of the chip is none for the device: it goes on with what the pins do.
   levels(sda, scl) {
     const before = { sda: this.sda, scl: this.scl };
     this.sda = sda;
     this.scl = scl;
     if (before.scl && scl && before.sda !== sda) {
-      if (this.acknowledging) this.hold(false);
+      const held = this.acknowledging;
       this.idle();
       if (!sda) this.bits = 0; // a start condition; otherwise it was a stop
+      if (held) this.hold(false);
     } else if (!before.scl && scl) {
       this.clockRises(sda);
     } else if (before.scl && !scl) {

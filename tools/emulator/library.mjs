@@ -13,9 +13,10 @@ async function library(file) {
   return import(pathToFileURL(`${FOLDER}/node_modules/rp2040js/dist/esm/${file}`).href);
 }
 
-export const { BasePeripheral, GPIOPin, RP2040, USBCDC } = await library('index.js');
+export const { BasePeripheral, FIFO, GPIOPin, RP2040, USBCDC } = await library('index.js');
 export const { CortexM0Core } = await library('cortex-m0-core.js');
 export const { RPPIO, StateMachine } = await library('peripherals/pio.js');
+export const { RPReset } = await library('peripherals/reset.js');
 export const { RPSIO } = await library('sio.js');
 export const { RPTimer } = await library('peripherals/timer.js');
 

@@ -5,6 +5,7 @@
 // are the numbers of inherited descriptors: two pipes and the master side of a pty for the chip's
 // USB serial port. launch.py starts it. It ends when the pipe that it reads ends.
 import fs from 'node:fs';
+import { Fault } from './core.mjs';
 import { FLASH_BYTES, layUf2 } from './flash.mjs';
 import { Pico } from './pico.mjs';
 import { practise } from './practice.mjs';
@@ -122,7 +123,7 @@ class Server {
     try {
       this.runAndApply(until);
     } catch (error) {
-      this.report.failed(error.stack ?? String(error));
+      this.report.failed(error instanceof Fault ? `HardFault: ${error.message}` : error.stack);
       this.idleNanos = this.now;
       this.pico = null;
     }

@@ -1,8 +1,8 @@
 // The emulated Pico: rp2040js's chip with what it lacks put in, its flash, the wires at its pins.
 //
-// One object is one Pico; `run` moves its time, `reset` and `cutPower` are what they are called.
-// It tells what happens through the `report` it was given (see the methods called on it below and
-// main.mjs). A reset makes a new chip; flash, wires and time stay.
+// One object is one Pico; `run` moves its time, `pulseRunPin` and `cutPower` are what they are
+// called. It tells what happens through the `report` it was given (see the methods called on it
+// below and main.mjs). A reset makes a new chip; flash, wires and time stay.
 import { bootRom, RP2040 } from './library.mjs';
 import { Clock } from './clock.mjs';
 import { Core } from './core.mjs';
@@ -12,6 +12,7 @@ import { Flash, IoQspi, Ssi } from './flash.mjs';
 import { BitBangedI2c, SCL, SDA, TimedI2c } from './i2c.mjs';
 import { isUart, LOW, RELEASED, Wires } from './pins.mjs';
 import { TimedPio } from './pio.mjs';
+import { Resets } from './resets.mjs';
 import { Sio } from './sio.mjs';
 import { ExactTimer } from './timer.mjs';
 import { TimedUart } from './uart.mjs';
@@ -36,7 +37,10 @@ export class Pico {
     image(this.flash.bytes);
     this.decoder = new LineDecoder(this.baud, (...character) => report.character(...character));
     this.wires = new Wires((gpio, state) => this.pinChanged(gpio, state),
-      (gpio) => this.wireMoved(gpio));
+      (gpio) => this.wireMoved(gpio), this.addresses.size ? [SDA, SCL] : []);
+    this.written = (address, byte) => report.written(address, byte);
+    this.bus = new BitBangedI2c(this.addresses, this.written,
+      (low) => this.wires.drive(SDA, low ? LOW : RELEASED));
     this.pendingReset = 0;
     this.build(nanos, HAD_POWER_ON);
   }
@@ -61,8 +65,6 @@ export class Pico {
     this.flash.reset(clock);
     this.decoder.reset(clock);
     this.putIn(mcu, cause);
-    this.bus = new BitBangedI2c(this.addresses, this.written,
-      (low) => this.wires.drive(SDA, low ? LOW : RELEASED));
     this.wires.join(mcu);
   }
 
@@ -76,9 +78,9 @@ export class Pico {
     giveTime(mcu.dma);
     mcu.sio = new Sio(mcu);
     this.watchdog = new Watchdog(mcu, (reason) => this.bitten(reason));
-    this.written = (address, byte) => this.report.written(address, byte);
     new TimedI2c(mcu, mcu.i2c[0], this.addresses, this.written);
     new TimedI2c(mcu, mcu.i2c[1], new Set(), this.written);
+    peripherals[0x4000c] = new Resets(mcu, 'RESETS');
     peripherals[0x18000] = new Ssi(mcu, this.flash);
     peripherals[0x40018] = new IoQspi(mcu, this.flash);
     peripherals[0x40054] = new ExactTimer(mcu);
@@ -126,6 +128,7 @@ export class Pico {
 
   cutPower() {
     this.flash.powerFails();
+    this.bus.powerFails();
     this.restart(HAD_POWER_ON, WHY.power);
   }
 

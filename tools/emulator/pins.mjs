@@ -1,6 +1,6 @@
 // The wires at the chip's pins: three states on each side, and who is told of them.
 //
-// A pin's level is what the chip drives, else what the outside drives, else what the pull makes of
+// A pin's level is what the chip drives, else what the outside drives, else what the pulls make of
 // it. The chip reads that level back, also of a pin that it drives itself (in rp2040js an input
 // knows only what it was told). Pins whose function is UART show the level of their TX line.
 import { GPIOPin } from './library.mjs';
@@ -32,9 +32,11 @@ export const isUart = (pin) => (pin.ctrl & 0x1f) === FUNCTION_UART;
 export class Wires {
   // changed(gpio, state): what the chip does at a pin: LOW, HIGH, RELEASED.
   // moved(gpio, level): the level of a wire.
-  constructor(changed, moved) {
+  // pulledUp: the wires with a resistor to the supply, stronger than the chip's own pulls.
+  constructor(changed, moved, pulledUp) {
     this.changed = changed;
     this.moved = moved;
+    this.pulledUp = pulledUp;
     this.outside = new Uint8Array(PINS).fill(RELEASED);
     this.chip = new Uint8Array(PINS).fill(RELEASED);
     this.level = new Uint8Array(PINS);
@@ -73,18 +75,18 @@ export class Wires {
       this.chip[gpio] = chip;
       this.changed(gpio, chip);
     }
-    const level = this.resolve(value, this.outside[gpio], this.level[gpio]);
+    const level = this.resolve(gpio, value);
     if (level === this.level[gpio]) return;
     this.level[gpio] = level;
     pin.setInputValue(level === HIGH);
     this.moved(gpio, level);
   }
 
-  resolve(value, outside, before) {
+  resolve(gpio, value) {
     if (value <= HIGH) return value;
-    if (outside !== RELEASED) return outside;
-    if (value === PULL_UP) return HIGH;
+    if (this.outside[gpio] !== RELEASED) return this.outside[gpio];
+    if (value === PULL_UP || this.pulledUp.includes(gpio)) return HIGH;
     if (value === PULL_DOWN) return LOW;
-    return before; // it floats
+    return this.level[gpio]; // it floats
   }
 }

@@ -4,11 +4,13 @@
 // rp2040js knows the instructions but lets the machines run free on the host's time. A machine
 // that waits costs nothing: what it waits for (a FIFO written by the CPU or by DMA, a pin, an
 // interrupt flag) wakes it at the next edge.
-import { RPPIO, StateMachine } from './library.mjs';
+import { FIFO, RPPIO, StateMachine } from './library.mjs';
 
 const CYCLE_NANOS = 8;
 const CTRL = 0x000, SM_FIRST = 0x0c8, SM_SIZE = 0x18, SM_LAST = 0x124;
 const CLKDIV = 0x00, INSTR = 0x10;
+const JOIN_RX = 1 << 31, JOIN_TX = 1 << 30;
+const FIFO_WORDS = 4;
 const FRACTION = 256;
 
 class TimedMachine extends StateMachine {
@@ -74,6 +76,15 @@ class TimedMachine extends StateMachine {
     this.alarm.at(this.instant(this.edge));
   }
 
+  // Joining or parting the FIFOs empties them; the SDK does it for that alone.
+  join(control) {
+    const words = (joined, other) => (joined ? 2 * FIFO_WORDS : other ? 0 : FIFO_WORDS);
+    this.txFIFO = new FIFO(words(control & JOIN_TX, control & JOIN_RX));
+    this.rxFIFO = new FIFO(words(control & JOIN_RX, control & JOIN_TX));
+    this.updateDMATx();
+    this.updateDMARx();
+  }
+
   // An instruction from the CPU is executed at once, in place of what the machine waits at.
   executeNow(opcode) {
     this.waiting = false;
@@ -100,8 +111,13 @@ export class TimedPio extends RPPIO {
     if (inMachine && register === INSTR) {
       machine.executeNow(value);
     } else {
+      const before = machine?.shiftCtrl;
       super.writeUint32(offset, value);
       if (inMachine && register === CLKDIV) machine.clkDivRestart();
+      if (inMachine && (before ^ machine.shiftCtrl) & (JOIN_RX | JOIN_TX)) {
+        machine.join(machine.shiftCtrl);
+        this.checkInterrupts();
+      }
     }
     if (offset === CTRL) for (const each of this.machines) each.wake();
     if (offset === CTRL || inMachine) this.checkChangedPins();

@@ -40,7 +40,7 @@ export class Writer {
   constructor(descriptor) {
     this.descriptor = descriptor;
     this.buffer = Buffer.alloc(65536);
-    this.records = []; // [time, order, bytes] of this answer
+    this.records = []; // { time, bytes } of this answer
   }
 
   add(time, kind, a, b, payload) {
@@ -60,8 +60,11 @@ export class Writer {
     this.add(time, 'D', 0, 0);
     const all = Buffer.concat(this.records.map((record) => record.bytes));
     this.records = [];
-    for (let at = 0; at < all.length;) {
-      at += fs.writeSync(this.descriptor, all, at);
+    try {
+      for (let at = 0; at < all.length;) at += fs.writeSync(this.descriptor, all, at);
+    } catch (error) {
+      if (error.code !== 'EPIPE') throw error;
+      process.exit(0); // nobody waits for the answer any more
     }
   }
 }

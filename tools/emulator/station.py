@@ -1,4 +1,4 @@
-"""The transceiver of an emulated panel: the chip's TX, RX and driver enable as a station on the wire.
+"""The transceiver of an emulated panel: TX, RX and driver enable as a station on the wire.
 
 What the chip sends comes as characters with the instant of their start bits, known when they are
 over; the world runs so far behind that they can still begin on the wire when they did. What others
@@ -132,7 +132,6 @@ class Station:
         """The chip let go of everything: what it was sending ends here."""
         self._clock.cancel(self._begin)
         self._clock.cancel(self._next)
-        self._driving = False
         self._wire.detach(self)
         self._to_send = []
         self._burst = None

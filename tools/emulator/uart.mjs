@@ -32,16 +32,24 @@ export class TimedUart extends BasePeripheral {
     this.onLevel = onLevel;
     this.bitAlarm = mcu.clock.createAlarm(() => this.nextBit());
     this.timeoutAlarm = mcu.clock.createAlarm(() => this.timeout());
+    this.level = 1; // of the TX line
+    this.reset();
+  }
+
+  reset() {
+    this.bitAlarm.cancel();
+    this.timeoutAlarm.cancel();
     this.cr = TX_ON | RX_ON;
     this.lcr = this.ibrd = this.fbrd = this.imsc = this.ris = this.dmacr = 0;
     this.ifls = 0x12;
     this.tx = [];
     this.rx = [];
     this.overrun = false;
-    this.level = 1; // of the TX line
     this.bits = null; // of the character being sent: levels, one for each bit
     this.bitsSent = 0;
     this.bitsStart = 0;
+    this.setLevel(1);
+    this.update();
   }
 
   clkPeriChanged() {}
@@ -107,10 +115,13 @@ export class TimedUart extends BasePeripheral {
     while (at < bits.length && bits[at] === level) at++;
     this.bitsSent = at;
     this.bitAlarm.at(this.bitsStart + at * this.bitNanos);
-    if (level !== this.level) {
-      this.level = level;
-      this.onLevel();
-    }
+    this.setLevel(level);
+  }
+
+  setLevel(level) {
+    if (level === this.level) return;
+    this.level = level;
+    this.onLevel();
   }
 
   // Receiving

@@ -7,7 +7,7 @@
     world.check()
 
 It has the face of `boards.sim.world.World`, but for what only a program inside the chip can do
-(`hang`). It runs on the Unix port under launch.py. The world's clock stands behind the chip's by
+(hang). It runs on the Unix port under launch.py. The world's clock stands behind the chip's by
 a little less than a character, so that whatever the chip sends is known before its turn comes, and
 whatever it receives still lies before it.
 """
@@ -105,6 +105,9 @@ class PicoWorld(Surroundings):
     repl           the MicroPython prompt, over USB
     """
 
+    place = "an emulated Raspberry Pi Pico"
+    refused = {"hang": "nobody can hang the emulated chip from outside"}
+
     def __init__(
         self,
         program="panel",
@@ -124,6 +127,7 @@ class PicoWorld(Surroundings):
         self.restarts = []
         self.flash_log = []
         self.led = []
+        self._selected = None
         self.usb = bytearray()
         self.repl = Repl(self)
         self._origin_ns = self.chip.now_ns
@@ -148,7 +152,7 @@ class PicoWorld(Surroundings):
         until_us = clock.now_us + ms * 1000
         while clock.now_us < until_us:
             # What happens in the world at an instant reaches the chip a character later.
-            bound_us = min(until_us, self._next_event_us(until_us))
+            bound_us = self._next_event_us(until_us)
             self.chip.run(self._chip_ns(bound_us), self._take)
             reached_us = (self.chip.now_ns - self._origin_ns - self._behind_ns) // 1000
             clock.advance_to(max(clock.now_us, min(reached_us, until_us)))
@@ -161,9 +165,6 @@ class PicoWorld(Surroundings):
                 return False
             self.run(WAIT_STEP_MS)
         return True
-
-    def hang(self, ms):
-        raise ValueError("nobody can hang the emulated chip from outside")
 
     def reset(self):
         """The chip's RUN pin is pulsed low."""
@@ -186,6 +187,19 @@ class PicoWorld(Surroundings):
         self.tell("S", 0)
         self.repl.write(b"\x03")
         self.run_until(lambda: not any(drive.hz() for drive in self.drives.values()), CLOSE_MS)
+
+    def open_serial(self):
+        """Join the chip's USB serial to the pty of launch.py; its path, for other programs."""
+        self.tell("S", 1)
+        self._settle()
+        return os.getenv("USS_PICO_SERIAL")
+
+    def selected(self):
+        """The address that the display showed last."""
+        word = self.lcd()[1].rstrip().rpartition(" ")[2]
+        if word[:1] == "A" and word[1:].isdigit():
+            self._selected = int(word[1:])
+        return self._selected
 
     def tell(self, kind, a=0, b=0, content=None):
         """Something happens to the chip now; what the world does is a character late for it."""
@@ -265,11 +279,15 @@ class PicoWorld(Surroundings):
     def _next_event_us(self, until_us):
         """When the world does something next that the chip might notice.
 
-        What it does by itself because of a record, the chip has done already.
+        What it does because of a record, the chip has done already. But for a restart it may not
+        be late: what the chip sends after that is not what the restart has cut.
         """
+        for at_ns, kind, _, _ in self._records:
+            if kind == "Z":
+                until_us = min(until_us, self._world_us(at_ns))
         for at_us, callback in self.clock.coming():
             if callback is not self._due.callback:
-                return at_us
+                return min(at_us, until_us)
         return until_us
 
     def _take(self, at_ns, kind, a, b, content):

@@ -1,0 +1,257 @@
+"""The display behind an I2C backpack: the same pictures, and a panel that outlives its cable."""
+
+import random
+
+from boards.sim.chip import heap_lock, heap_unlock
+from hal.backpack import AGAIN_US, answers
+from hal.hd44780 import REFRESH_US
+from lcd_bench import HOURGLASS, LOOP_US, READY, RUNNING, UP_AND_DOWN, BackpackBench
+
+REFRESH_MS = REFRESH_US // 1000
+START_MS = 200  # until the first picture is seen
+AGAIN_MS = AGAIN_US // 1000
+PIECE_US = 1_000  # of the bus, at 100 kHz
+
+
+def shown(codes):
+    """A picture as a person reads it."""
+    return "".join(chr(code) for code in codes)
+
+
+def running(glyphs=b"", **options):
+    """A display that shows RUNNING, at rest."""
+    bench = BackpackBench(**options)
+    bench.boot(glyphs)
+    assert bench.run(bytearray(RUNNING), START_MS) and bench.text() == shown(RUNNING)
+    bench.check()
+    return bench
+
+
+def taken(bench):
+    """How many bytes went over the bus so far."""
+    return bench.chip_of_backpack.bytes_taken
+
+
+def test_a_backpack_is_found_by_its_acknowledgement():
+    bench = BackpackBench()
+    i2c = bench.make_i2c()
+    assert answers(i2c, 0x27) and not answers(i2c, 0x3F)
+    bench.chip_of_backpack.plugged = False
+    assert not answers(i2c, 0x27)
+
+
+def test_looking_for_it_lights_it_and_writes_nothing():
+    bench = BackpackBench()
+    assert answers(bench.make_i2c(), 0x27)
+    assert bench.chip_of_backpack.lit and bench.written() == 0
+
+
+def test_the_first_picture_after_power_on():
+    """Nothing is seen before it is whole, and nothing is claimed before it is seen."""
+    bench = BackpackBench()
+    bench.boot(HOURGLASS + UP_AND_DOWN)
+    picture = bytearray(b"\x00" + RUNNING[1:])
+    while not bench.turn(picture):
+        assert bench.text() in (" " * 32, "⧗" + shown(RUNNING[1:]))
+        assert bench.clock.now_us < START_MS * 1000
+    assert bench.text() == "⧗" + shown(RUNNING[1:]) and bench.chip_of_backpack.lit
+    bench.check()
+
+
+def test_the_light_never_flickers():
+    bench = running()
+    picture = bytearray(RUNNING)
+    until_us = bench.clock.now_us + REFRESH_US
+    while bench.clock.now_us < until_us:
+        picture[bench.clock.now_us >> 8 & 31] ^= 1
+        bench.turn(picture)
+        assert bench.chip_of_backpack.lit
+
+
+def test_at_rest_nothing_goes_over_the_bus():
+    bench = running()
+    before = taken(bench)
+    assert bench.run(bytearray(RUNNING), REFRESH_MS // 2)
+    assert taken(bench) == before
+
+
+def test_only_what_differs_goes_over_the_bus():
+    """Positions that change: bytes on the bus, 4 for each command or character, and one more
+    whenever one follows the other. The last thing before was a command: the display on."""
+    for positions, count in (
+        ((0,), 9),
+        ((31,), 9),
+        ((3, 4), 13),
+        ((3, 5), 19),
+        ((15, 16), 19),
+        ((0, 1, 2, 3, 4), 25),
+    ):
+        bench = running()
+        picture = bytearray(RUNNING)
+        for position in positions:
+            picture[position] = ord("#")
+        before = taken(bench)
+        assert bench.run(picture, 30)
+        assert taken(bench) - before == count, positions
+        assert bench.text() == shown(picture)
+
+
+def test_a_piece_takes_a_millisecond_of_the_bus():
+    """Through power-on, changes and a refresh."""
+    bench = BackpackBench()
+    bench.boot(HOURGLASS * 8)
+    picture = bytearray(RUNNING)
+    longest_us = 0
+    while bench.clock.now_us < 2 * REFRESH_US:
+        picture[bench.clock.now_us // LOOP_US * 7 % 32] = 0x30 + bench.clock.now_us % 10
+        began_us = bench.clock.now_us
+        bench.display.show(picture)
+        longest_us = max(longest_us, bench.clock.now_us - began_us)
+        bench.clock.advance(LOOP_US)
+    assert PIECE_US // 2 < longest_us <= PIECE_US
+    assert bench.lcd.clears == 0
+    bench.check()
+
+
+def test_whatever_is_shown_arrives():
+    seed = 20240608
+    print("seed", seed)
+    random.seed(seed)
+    bench = running()
+    picture = bytearray(RUNNING)
+    for _ in range(300):
+        for _ in range(random.getrandbits(4)):
+            picture[random.getrandbits(5)] = 0x41 + random.getrandbits(4)
+        for _ in range(random.getrandbits(3)):
+            claimed = bench.turn(picture)
+            assert claimed == (bench.text() == shown(picture))
+    assert bench.run(picture, 150) and bench.text() == shown(picture)
+    bench.check()
+
+
+def test_showing_takes_no_heap():
+    bench = running(HOURGLASS)
+    write_to = bench.display._write_to
+
+    def unlocked(address, data):
+        heap_unlock()  # the simulated bus may take some
+        try:
+            write_to(address, data)
+        finally:
+            heap_lock()
+
+    bench.display._write_to = unlocked
+    picture, turns = bytearray(RUNNING), 0
+    until_us = bench.clock.now_us + REFRESH_US + 200_000
+    heap_lock()
+    try:
+        while bench.clock.now_us < until_us:
+            turns += 1
+            if turns & 15 == 0:
+                picture[turns & 31] = 0x30 | turns >> 5 & 7
+                picture[turns >> 4 & 31] ^= 1
+            bench.turn(picture)
+    finally:
+        heap_unlock()
+    assert bench.run(picture, 150) and bench.text() == shown(picture)
+    bench.check()
+
+
+class Reset(Exception):
+    pass
+
+
+def reset_after(bench, count):
+    """The microcontroller resets when the backpack has acknowledged `count` bytes more."""
+    i2c = bench.make_i2c()
+    left = [count]
+
+    def write_to(address, data):
+        for code in data:
+            if not left[0]:
+                raise Reset
+            left[0] -= 1
+            i2c.writeto(address, bytes((code,)))
+
+    bench.display._write_to = write_to
+
+
+def test_a_reset_after_every_single_byte():
+    """The backpack holds what it was told last, the driver begins anew."""
+    count = 0
+    while True:
+        bench = BackpackBench()
+        bench.boot(HOURGLASS)
+        reset_after(bench, count)
+        try:
+            bench.run(bytearray(RUNNING), 120)
+            bench.run(bytearray(b"\x00" + READY[1:]), 40)
+        except Reset:
+            bench.restart()
+            bench.boot(HOURGLASS)
+            assert bench.run(bytearray(b"\x00" + READY[1:]), START_MS), count
+            assert bench.text() == "⧗" + shown(READY[1:]), count
+            # What became of a nibble that was cut short may be complained about, but not seen.
+            assert bench.lcd.clears == 0, count
+            count += 1
+            continue
+        break
+    assert count > 250
+
+
+# --- the cable -----------------------------------------------------------------------------------
+
+
+def test_a_backpack_that_is_unplugged_does_not_stop_the_panel():
+    bench = running()
+    bench.chip_of_backpack.plugged = False
+    assert not bench.run(bytearray(READY), 5_000)
+    # A look every half a second, each with the I2C made anew; no more than that.
+    assert 9 <= bench.display.failures <= 11 and bench.made == bench.display.failures + 1
+
+
+def test_it_is_set_up_anew_when_it_is_plugged_in_again():
+    bench = running(HOURGLASS)
+    bench.chip_of_backpack.plugged = False
+    bench.run(bytearray(READY), 3_000)
+    bench.chip_of_backpack.power_on()  # it had no power meanwhile, and the display neither
+    bench.chip_of_backpack.plugged = True
+    picture = bytearray(b"\x00" + READY[1:])
+    assert bench.run(picture, AGAIN_MS + START_MS) and bench.text() == "⧗" + shown(READY[1:])
+
+
+def test_a_single_transfer_that_fails_heals_within_a_second():
+    bench = running()
+    bench.chip_of_backpack.plugged = False
+    picture = bytearray(READY)
+    assert not bench.turn(picture) and bench.display.failures == 1
+    bench.chip_of_backpack.plugged = True
+    assert bench.run(picture, AGAIN_MS + START_MS) and bench.text() == shown(READY)
+    assert bench.display.failures == 1
+
+
+def test_a_failure_is_noticed_at_rest_by_the_next_refresh():
+    bench = running()
+    bench.chip_of_backpack.plugged = False
+    assert not bench.run(bytearray(RUNNING), REFRESH_MS + 100)
+    assert bench.display.failures
+
+
+def test_garbled_characters_heal():
+    bench = running()
+    for cell in range(80):
+        bench.lcd.ddram[cell] ^= 0x55
+    assert bench.text() != shown(RUNNING)
+    bench.run(bytearray(RUNNING), REFRESH_MS + START_MS)
+    assert bench.text() == shown(RUNNING)
+    bench.check()
+
+
+def test_a_refresh_is_not_seen():
+    bench = running(HOURGLASS)
+    homes = bench.lcd.homes
+    until_us = bench.clock.now_us + 3 * REFRESH_US
+    while bench.clock.now_us < until_us:
+        assert bench.turn(bytearray(RUNNING)) and bench.text() == shown(RUNNING)
+    assert bench.lcd.homes >= homes + 2 and bench.lcd.clears == 0
+    bench.check()

@@ -1,0 +1,141 @@
+"""tools/bench: its command line, and that a figure which does not hold is shown and told.
+
+What it measures is measured on the emulated chip, by tools/bench itself: no test repeats it.
+"""
+
+import ast
+import importlib.util
+import subprocess
+import sys
+from pathlib import Path
+
+INTERPRETERS = "host"
+
+TOP = Path(__file__).resolve().parent.parent
+BENCH = TOP / "tools" / "benching"
+
+
+def module(name):
+    """A file of tools/benching, under a name that no other test uses."""
+    found = importlib.util.spec_from_file_location("benching_" + name, BENCH / (name + ".py"))
+    loaded = importlib.util.module_from_spec(found)
+    found.loader.exec_module(loaded)
+    return loaded
+
+
+report = module("report")
+rows = module("rows")
+
+ON_CHIP = rows.Task(("line", "9600"))
+ON_HOST = rows.Task(("codec",), on_chip=False)
+LOW = rows.Row(ON_CHIP, "a duration", "<= 5", lambda f: "%d" % f["it"], lambda f: f["it"] <= 5)
+PLAIN = rows.Row(ON_CHIP, "a number", "", lambda f: "%d" % f["it"], None)
+HOST = rows.Row(ON_HOST, "a speed", ">= 5", lambda f: "%d" % f["it"], lambda f: f["it"] >= 5)
+
+
+def judged(chip, host=None):
+    return report.judge([LOW, PLAIN, HOST], {ON_CHIP: chip, ON_HOST: host or {"it": 9}})
+
+
+def bench(*arguments):
+    done = subprocess.run(
+        [sys.executable, "-I", "-B", str(BENCH), "--check", *arguments],
+        capture_output=True,
+        text=True,
+    )
+    return done.returncode, done.stderr
+
+
+def test_bars_that_hold_are_told_as_met():
+    lines = judged({"it": 5})
+    assert [line.verdict for line in lines] == ["met", "", "met"]
+    assert report.status(lines) == 0
+
+
+def test_a_bar_of_the_chip_that_does_not_hold_is_shown_and_is_status_1():
+    lines = judged({"it": 6})
+    assert report.status(lines) == 1
+    assert "| a duration | <= 5 | 6 | NOT MET |" in report.table(lines)
+
+
+def test_a_bar_of_the_host_is_shown_and_changes_no_status():
+    lines = judged({"it": 5}, {"it": 1})
+    assert report.status(lines) == 0
+    assert "| a speed | >= 5 | 1 | NOT MET |" in report.table(lines)
+
+
+def test_a_measurement_that_failed_says_why_and_is_status_1():
+    lines = judged({"error": "no | reply (status 1)"})
+    assert report.status(lines) == 1
+    assert "| a duration | <= 5 | no / reply (status 1) | FAILED |" in report.table(lines)
+
+
+def test_the_page_says_what_was_measured_when_and_how_and_that_it_was_quick():
+    page = report.page(judged({"it": 5}), ["micropython 1"], "2026-01-31", "./tools/bench", False)
+    for text in ("2026-01-31", "`./tools/bench`", "micropython 1", "## On the chip", "a speed"):
+        assert text in page, text
+    assert "QUICK" not in page
+    quick = report.page(judged({"it": 5}), [], "2026-01-31", "./tools/bench --quick", True)
+    assert "QUICK" in quick
+
+
+def test_every_task_is_a_measurement_that_exists_and_has_a_row():
+    tree = ast.parse((BENCH / "measurements.py").read_text(encoding="utf-8"))
+    arguments = {
+        node.name: len(node.args.args) for node in tree.body if isinstance(node, ast.FunctionDef)
+    }
+    for task in rows.TASKS:
+        assert arguments[task.name] == len(task.command), task  # quick stands for the name
+        assert [row for row in rows.ROWS if row.task == task], task
+    assert {row.task for row in rows.ROWS} == set(rows.TASKS)
+
+
+def line_figures(**changed):
+    figures = {
+        "rate": 250.0,
+        "idle_ns": [1, 700_000, 1_000_000, 1_000_000, 10_000],
+        "release_ns": [1_000, 1_100, 1_100, 1_200, 10_000],
+        "lead_ns": [1_000, 1_100, 1_100, 1_200, 10_000],
+        "steps_us": [1_000, 1_500, 1_900, 1_000],
+        "character_ns": 95_486,
+        "complaints": [],
+        "restarts": [],
+    }
+    figures.update(changed)
+    return figures
+
+
+def missed(figures):
+    """What is NOT MET of the rows at 115200 baud."""
+    task = rows.LINES[115200]
+    lines = report.judge([row for row in rows.ROWS if row.task == task], {task: figures})
+    return [line.row.what.split(",")[0] for line in lines if line.verdict == report.NOT_MET]
+
+
+def test_the_bars_of_the_line_are_where_the_design_puts_them():
+    release = "driver off after the last stop bit"
+    idle = "reply to next start bit beyond the start interval"
+    for changed, wanted in (
+        ({}, []),
+        ({"rate": 219.9}, ["exchanges per second"]),
+        ({"idle_ns": [1, 795_486, 1_095_486, 9_999_999, 10_000]}, []),
+        ({"idle_ns": [1, 795_487, 1_000_000, 1_000_000, 10_000]}, [idle]),
+        ({"idle_ns": [1, 700_000, 1_095_487, 1_100_000, 10_000]}, [idle]),
+        ({"release_ns": [0, 1, 1, 95_486, 10_000]}, []),
+        ({"release_ns": [-1, 1, 1, 95_486, 10_000]}, [release]),
+        ({"release_ns": [0, 1, 1, 95_487, 10_000]}, [release]),
+        ({"release_ns": [0, 1, 1, 1, 9_999]}, [release]),
+        ({"lead_ns": [0, 1, 1, 95_487, 10_000]}, ["driver on before the first start bit"]),
+        ({"steps_us": [1_000, 1_500, 2_001, 9]}, ["a step of the main loop"]),
+        ({"complaints": ["at 1: a gap"]}, ["rules of line and display broken"]),
+        ({"restarts": ["watchdog at 1"]}, ["rules of line and display broken"]),
+    ):
+        assert missed(line_figures(**changed)) == wanted, changed
+
+
+def test_a_command_line_that_cannot_be_understood_is_status_2():
+    assert bench() == (0, "")
+    assert bench("--quick", "--only", "stop", "--only", "boot") == (0, "")
+    for arguments in (("--only",), ("--only", "coffee"), ("--fast",), ("stop",)):
+        status, said = bench(*arguments)
+        assert status == 2 and "usage: tools/bench" in said, arguments

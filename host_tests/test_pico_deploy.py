@@ -1,0 +1,157 @@
+"""tools/deploy on the emulated Pico: the real mpremote, a real file system, and a motor that runs.
+
+The tool is a process of its own at the chip's serial port; meanwhile the world's time goes on.
+"""
+
+import os
+import time
+
+from tools.emulator.world import PicoWorld, temporary
+
+INTERPRETERS = "pico"
+
+HOST_LIMIT_S = 100
+STEP_MS = 5
+OWN_BOARD = "boards/pico/board.py"
+
+
+def read(path):
+    try:
+        with open(path) as file:
+            return file.read()
+    except OSError:
+        return ""
+
+
+class Deploy:
+    """tools/deploy at work; `done` when it has ended, `said` is what it has printed so far."""
+
+    def __init__(self, world, *arguments):
+        self.world = world
+        self._output = temporary()
+        world.tell("S", 1)
+        os.system(
+            "{ ./tools/deploy --port $USS_PICO_SERIAL %s; echo EXIT $?; } >%s 2>&1 </dev/null &"
+            % (" ".join(arguments), self._output)
+        )
+
+    @property
+    def said(self):
+        return read(self._output)
+
+    def goes_on_until(self, condition):
+        began = time.time()
+        while not condition():
+            assert time.time() - began < HOST_LIMIT_S, self.said
+            self.world.run(STEP_MS)
+
+    def ends(self):
+        """Its exit status and what it said."""
+        self.goes_on_until(lambda: "EXIT " in self.said)
+        said, _, status = self.said.rpartition("EXIT ")
+        os.remove(self._output)
+        self.world.tell("S", 0)
+        return int(status), said
+
+
+def deploy(world, *arguments):
+    return Deploy(world, *arguments).ends()
+
+
+def ready(world):
+    """A person waits for the panel. A drive that heard nothing meanwhile has tripped: STOP."""
+    up = ("READY", "F0072")
+    assert world.run_until(lambda: any(map(world.reads, up)), 15_000), world.lcd()
+    if world.reads("F0072"):
+        world.run(1_500)
+        world.press("STOP")
+    assert world.run_until(lambda: world.reads("READY"), 5_000), world.lcd()
+
+
+def start(world):
+    ready(world)
+    world.press("START")
+    assert world.run_until(lambda: world.reads("RUNNING"), 5_000), world.lcd()
+    world.run(1_000)
+    assert world.drives[1].hz() > 1
+
+
+def quiet(world, ms):
+    """Whether the panel sends nothing for so long."""
+    before = world.wire.log.count
+    world.run(ms)
+    return world.wire.log.count == before
+
+
+def test_what_cannot_be_is_told_before_anything_is_done():
+    output = temporary()
+    for arguments, status, reason in (
+        ("--board esp8266", 2, "invalid choice: 'esp8266'"),
+        ("--board-file /no/such/file", 2, "there is no file /no/such/file"),
+        ("--remove --replace", 2, "--remove goes with none of"),
+        ("--port /no/such/port", 1, "there is no /no/such/port"),
+        ("--port /dev/null", 1, "/dev/null cannot be opened"),
+    ):
+        ended = os.system("./tools/deploy %s >%s 2>&1 </dev/null" % (arguments, output))
+        said = read(output)
+        assert ended >> 8 == status and reason in said, said
+    os.remove(output)
+
+
+def test_a_stock_pico_becomes_a_panel_and_a_running_panel_is_stopped_and_brought_up_to_date():
+    world = PicoWorld("stock", files={"boot.py": b"# mine"})
+    status, said = deploy(world)
+    assert status == 0 and said.endswith("The panel runs.\n"), said
+    assert "It is Raspberry Pi Pico with RP2040, micropython 1.25.0." in said
+    assert "app.mpy" in said  # compiled for the chip
+    start(world)
+    world.check()
+
+    with open(OWN_BOARD) as file:
+        own = file.read() + "# mine\n"
+    board = temporary()
+    with open(board, "w") as file:
+        file.write(own)
+    status, said = deploy(world, "--board-file", board)
+    os.remove(board)
+    assert status == 0 and "It has stopped them." in said, said
+    assert "copy    board.py" in said and "app.mpy" not in said
+    assert world.restarts[-1][1] == "reset"
+    ready(world)
+    world.run(1_000)
+    assert world.drives[1].hz() == 0 and world.drives[1].state == "ready"
+
+    # The board file is one's own now, and nothing else differs.
+    status, said = deploy(world)
+    assert status == 0 and "nothing is copied" in said, said
+    assert "board.py on the chip is not the tree's, and is kept" in said
+    assert world.read_file("board.py").decode() == own
+    assert world.read_file("boot.py") == b"# mine"
+    assert world.settings()["drives"] == [1]
+    start(world)
+
+
+def test_over_a_frozen_panel_the_files_go_first_a_half_of_them_starts_nothing_and_all_can_go():
+    world = PicoWorld("panel")
+    start(world)
+    tool = Deploy(world)
+    tool.goes_on_until(lambda: "copy    hal/keypad.mpy" in tool.said)
+    world.cut_power()
+    status, said = tool.ends()
+    assert status == 1 and "It starts no panel until tools/deploy has run" in said, said
+    assert "It has stopped them." in said and "which stays the frozen one" in said
+    world.reset()
+    assert quiet(world, 5_000) and world.drives[1].hz() == 0
+
+    status, said = deploy(world)
+    assert status == 0 and "The panel runs." in said, said
+    assert "copy    uss/master.mpy" in said and "copy    app.mpy" not in said, said
+    assert world.read_file("app.mpy") and world.read_file("main.py") is None
+    start(world)
+
+    status, said = deploy(world, "--remove")
+    assert status == 0 and "remove  uss/master.mpy" in said, said
+    for path in ("app.mpy", "app.py", "board.py", "uss/master.mpy", "deployed.json"):
+        assert world.read_file(path) is None, path
+    start(world)
+    world.check()

@@ -1,0 +1,238 @@
+"""The emulated Pico itself, with plain MicroPython on it, where a wrong model would make us
+believe something false: how long things take, what a reset leaves, what a power cut leaves."""
+
+from tools.emulator.world import PicoWorld
+
+INTERPRETERS = "pico"
+
+BAUD = 19200
+CHARACTER_US = 11_000_000 / BAUD
+BIT_US = 1_000_000 / BAUD
+
+SET_UP = """
+import time, machine, rp2
+from machine import UART, Pin, Timer
+driver = Pin(6, Pin.OUT, value=0)
+uart = UART(1, 19200, bits=8, parity=0, stop=1, tx=Pin(4), rx=Pin(5), rxbuf=256)
+flash = rp2.Flash()
+"""
+
+
+class Talker:
+    """A station that only talks."""
+
+    name = "talker"
+
+    def __init__(self, world):
+        self.world = world
+        world.wire.attach(self)
+
+    def hear(self, burst):
+        pass
+
+    def say(self, data):
+        self.world.wire.talk(self, data, len(data))
+
+
+def stock(code=SET_UP, **how):
+    """A Pico with plain MicroPython at its prompt that has done `code`."""
+    world = PicoWorld("stock", (), **how)
+    world.repl.open()
+    does(world, code)
+    return world
+
+
+def does(world, code, ms=5000):
+    """What `code` prints on the chip."""
+    printed, error = world.repl.execute(code, ms)
+    assert not error, error
+    return printed.strip()
+
+
+def number(world, code):
+    return int(does(world, code))
+
+
+def close_to(measured, expected, tolerance):
+    assert abs(measured - expected) <= tolerance, (measured, expected)
+
+
+def test_characters_leave_with_the_timing_of_the_baud_rate():
+    world = stock()
+    took_us = number(
+        world,
+        "driver(1)\nt = time.ticks_us()\nuart.write(bytes(range(16)))\n"
+        "while not uart.txdone(): pass\nprint(time.ticks_diff(time.ticks_us(), t))\ndriver(0)",
+    )
+    assert 16 * CHARACTER_US < took_us < 16 * CHARACTER_US + 300
+    assert [text for _, _, text in world.wire.log.last(9)] == [bytes(range(16))]
+    assert 0 <= world.figures.release_ns[0] < 300_000  # Python switched it
+    assert not world.station.complaints  # parity and stop bits were right
+
+
+def test_the_end_of_a_burst_is_reported_32_bit_times_after_its_last_character():
+    world = stock()
+    does(
+        world,
+        "def idle(uart):\n    driver(1)\n"
+        "uart.irq(handler=idle, trigger=UART.IRQ_RXIDLE, hard=True)\n",
+    )
+    Talker(world).say(b"\x02\x00\x01\x03\xff")
+    world.run(20)
+    at_ns, on = world.figures.driver[-1]
+    assert on
+    close_to((at_ns - world.figures.heard_ns) / 1000, 32 * BIT_US, 30)
+    assert does(world, "print(uart.read())") == repr(b"\x02\x00\x01\x03\xff")
+
+
+def test_who_looks_at_the_receiver_gets_no_report():
+    world = stock()
+    does(
+        world,
+        "came = []\n"
+        "def idle(uart):\n    came.append(1)\n"
+        "uart.irq(handler=idle, trigger=UART.IRQ_RXIDLE, hard=False)\n",
+    )
+    world.repl.begin("for _ in range(5000): uart.any()")
+    Talker(world).say(b"12345")
+    world.run(100)
+    world.repl.wait_for(b"\x04>")
+    assert does(world, "print(came, uart.any())") == "[] 5"
+
+
+def test_the_receiver_is_deaf_while_the_driver_is_on():
+    world = stock()
+    does(world, "driver(1)")
+    talker = Talker(world)
+    talker.say(b"ABC")
+    world.run(10)
+    does(world, "driver(0)")
+    talker.say(b"DEF")
+    world.run(10)
+    assert does(world, "print(uart.read())") == repr(b"DEF")
+
+
+def test_erasing_a_sector_and_writing_a_page_take_their_time():
+    world = stock()
+    took = does(
+        world,
+        "a = time.ticks_us()\nflash.ioctl(6, 300)\n"
+        "b = time.ticks_us()\nflash.writeblocks(300, bytes(256), 0)\n"
+        "c = time.ticks_us()\nprint(time.ticks_diff(b, a), time.ticks_diff(c, b))",
+    )
+    erased_us, written_us = map(int, took.split())
+    close_to(erased_us, 45_000, 1_000)
+    close_to(written_us, 700, 300)
+    assert [what for _, what, _ in world.flash_log] == [1, 2]
+    assert does(world, "b = bytearray(256)\nflash.readblocks(300, b)\nprint(b == bytes(256))") == (
+        "True"
+    )
+
+
+def test_nothing_is_received_beyond_the_32_characters_of_the_fifo_while_flash_is_erased():
+    world = stock()
+    world.repl.begin("flash.ioctl(6, 300)")
+    world.run_until(lambda: world.flash_log, 100)
+    Talker(world).say(bytes(range(60)))  # 34 ms
+    world.run(80)
+    assert does(world, "print(uart.read())") == repr(bytes(range(32)))
+
+
+def test_power_that_is_cut_while_a_sector_is_being_erased_leaves_garbage_in_it():
+    world = stock()
+    does(world, "for page in range(16): flash.writeblocks(300, b'U' * 256, 256 * page)")
+    world.repl.begin("flash.ioctl(6, 300)")
+    world.run(20)
+    assert world.flash_log[-1][1] == 1
+    world.cut_power()
+    world.repl.open()
+    assert world.reset_causes == ["power"]
+    found = "import rp2\nb = bytearray(4096)\nrp2.Flash().readblocks(300, b)\nprint(%s)"
+    assert does(world, found % "b != b'U' * 4096 and b != b'\\xff' * 4096") == "True"
+
+
+def test_the_watchdog_bites_when_it_should_and_leaves_its_cause():
+    world = stock()
+    world.repl.begin("w = machine.WDT(timeout=1000)\ndriver(1)\nwhile True: pass")
+    world.run(1500)
+    (bitten_us, cause), (fed_ns, _) = world.restarts[0], world.figures.driver[0]
+    assert cause == "watchdog" and len(world.restarts) == 1
+    close_to(bitten_us - fed_ns / 1000, 1_000_000, 5_000)
+    world.repl.open()
+    wanted = "import machine\nprint(machine.reset_cause() == machine.WDT_RESET, %s)"
+    started = "hex(machine.mem32[0x4005801C])"
+    assert does(world, wanted % started) == "True 0x6ab73121"
+    world.repl.begin("machine.reset()")
+    world.run(300)
+    assert world.reset_causes == ["watchdog", "reset"]
+    world.repl.open()
+    assert does(world, wanted % started) == "True 0x0"  # the SDK's watchdog_reboot
+
+
+def test_a_watchdog_whose_enable_bit_was_cleared_does_not_bite():
+    world = stock()
+    does(world, "w = machine.WDT(timeout=500)\nmachine.mem32[0x4005B000] = 1 << 30")
+    world.run(2_000)
+    assert not world.restarts
+
+
+def test_a_power_on_is_no_watchdog():
+    world = stock()
+    assert does(world, "print(machine.reset_cause() == machine.PWRON_RESET)") == "True"
+
+
+def test_a_timer_fires_when_it_should():
+    world = stock()
+    does(
+        world,
+        "timer = Timer()\ndriver(1)\n"
+        "timer.init(mode=Timer.ONE_SHOT, period=10_000, tick_hz=1_000_000,"
+        " callback=lambda timer: driver(0))\ntime.sleep_ms(20)",
+    )
+    (rose_ns, _), (fell_ns, _) = world.figures.driver
+    close_to((fell_ns - rose_ns) / 1000, 10_000, 250)
+
+
+def test_the_keys_are_wires_to_ground_and_stop_is_closed():
+    world = stock()
+    levels = "print([Pin(gpio, Pin.IN, Pin.PULL_UP)() for gpio in (13, 14)])"
+    assert does(world, levels) == "[1, 0]"
+    world.down("START")
+    world.down("STOP")
+    assert does(world, levels) == "[0, 1]"
+    world.up("START")
+    world.keypad.cut("STOP")
+    assert does(world, levels) == "[1, 1]"
+
+
+def test_a_byte_to_the_backpack_takes_nine_clocks():
+    world = stock("import time\nfrom machine import I2C, Pin\n", display="backpack")
+    does(world, "i2c = I2C(0, sda=Pin(0), scl=Pin(1), freq=100_000)")
+    assert does(world, "print(i2c.scan())") == "[39]"
+    taken = world.backpack.bytes_taken
+    took_us = number(
+        world,
+        "t = time.ticks_us()\ni2c.writeto(0x27, bytes(20))\n"
+        "print(time.ticks_diff(time.ticks_us(), t))",
+    )
+    close_to(took_us, 21 * 90, 150)
+    assert world.backpack.bytes_taken - taken == 20
+
+
+def test_files_put_on_the_flash_are_there_and_files_written_come_back():
+    world = PicoWorld("stock", (), files={"lib/seven.py": b"VALUE = 7\n"})
+    world.repl.open()
+    assert does(world, "import seven\nprint(seven.VALUE)") == "7"
+    does(world, "with open('told.txt', 'w') as file: file.write('hello')")
+    assert world.read_file("told.txt") == b"hello"
+    assert world.read_file("nothing.txt") is None
+    assert world.settings()["baud"] == BAUD
+
+
+def test_the_same_again_is_the_same_to_the_nanosecond():
+    def run():
+        world = stock()
+        does(world, "driver(1)\nuart.write(b'12345')\ntime.sleep_ms(5)\ndriver(0)")
+        return world.figures.driver
+
+    assert run() == run()

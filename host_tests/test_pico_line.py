@@ -1,0 +1,95 @@
+"""The rules of the RS-485 line on the chip, at every usual baud rate and while the panel has
+other things to do: collections, the display, saving. Figures are nanoseconds of its clock."""
+
+from pico_bench import scripted, set_off, stands, start
+from tools.emulator.world import PicoWorld
+
+INTERPRETERS = "pico"
+
+RATES = (2_400, 9_600, 19_200, 38_400, 57_600, 115_200)
+TELEGRAMS = 40
+
+# What a panel may be busy with: lines that take the place of the main loop.
+BUSY = {
+    "collections": "while True:\n    app.step()\n    gc.collect()",
+    "garbage": "while True:\n    app.step()\n    bytearray(5000)",
+    "display": "while True:\n    app.step()\n"
+    "    app.panel.screen.put(0, 0, 16, b'%016d' % app.bus.progress)",
+    "slow": "while True:\n    app.step()\n    time.sleep_ms(150)",
+}
+
+
+def character_ns(baud):
+    return 11_000_000_000 // baud
+
+
+def judge(world):
+    """The rules of DE and of the start interval, by the chip's clock."""
+    figures = world.figures
+    one = character_ns(world.wire.baud)
+    assert len(figures.release_ns) >= TELEGRAMS, len(figures.release_ns)
+    assert 0 <= min(figures.release_ns) and max(figures.release_ns) <= one
+    assert 0 <= min(figures.lead_ns) and max(figures.lead_ns) <= one
+    assert min(figures.idle_ns) >= 2 * one - 1_000
+    world.check()
+
+
+def enough(world, ms=60_000):
+    assert world.run_until(lambda: len(world.figures.release_ns) >= TELEGRAMS, ms)
+
+
+def test_the_driver_is_on_from_just_before_a_telegram_until_just_after_it():
+    for baud in RATES:
+        world = PicoWorld("panel", baud=baud)
+        enough(world)
+        judge(world)
+
+
+def test_whatever_the_panel_is_busy_with():
+    for busy in BUSY.values():
+        world = scripted(busy)
+        set_off(world)
+        world.figures.clear()
+        enough(world)
+        judge(world)
+
+
+def test_while_it_saves_its_settings():
+    world = scripted(
+        "app.settings.accept_unsupervised(2)\nwhile True:\n    app.step()",
+        motor_on=False,
+        addresses=(1, 2),
+        baud=115_200,
+    )
+    world.figures.clear()
+    set_off(world)
+    world.run(1_000)
+    assert world.flash_log
+    judge(world)
+
+
+def test_with_drives_that_answer_each_in_its_own_time():
+    world = PicoWorld("panel", addresses=(1, 2, 3), seed=7)
+    world.run(1_500)
+    start(world)
+    world.press("STOP")
+    assert stands(world)
+    judge(world)
+
+
+def test_a_chip_that_resets_in_the_middle_of_a_telegram_lets_go_of_the_line():
+    cut = 0
+    for offset_ms in range(0, 24, 4):
+        world = PicoWorld("panel")
+        world.run(1_000 + offset_ms)
+        was_on = world.figures.driver[-1][1]
+        reset_us = world.clock.now_us
+        world.reset()
+        world.run(100)
+        later = [on for at_ns, on in world.figures.driver if at_ns // 1000 >= reset_us]
+        assert later in ([], [False]), later
+        cut += was_on and later == [False]
+        world.run(900)
+        assert world.run_until(lambda: world.reads("READY"), 1_000)
+        world.check()
+    assert cut  # or nothing was tried

@@ -1,0 +1,134 @@
+"""The telegram to a drive stands ready in a buffer, and only what has changed is written anew.
+
+Whatever an operator, the line and the drive do: it must be the one that would be built from
+scratch. A STOP that stayed out of it would be the worst of all defects.
+"""
+
+import random
+
+from uss import pkw, pzd, telegram
+from uss.drive import Drive
+from uss.survey import Survey
+
+MASK = (1 << 30) - 1
+LOST_US = 1_000_000
+OFFS = (pzd.OFF1, pzd.OFF2, pzd.OFF3)
+RUNS = (pzd.ON, pzd.ON_REVERSE, pzd.JOG_RIGHT, pzd.JOG_LEFT)
+ZSWS = (0xFB31, 0xFB34, 0xFB34, 0xFB34, 0xFB78, 0xFB71)
+
+
+class Pair:
+    """The same happens to two drives. The second one forgets its telegram before every exchange."""
+
+    def __init__(self):
+        self.drives = (Drive(5, MASK), Drive(5, MASK))
+        self.now = 0
+
+    def both(self, what, *arguments):
+        for drive in self.drives:
+            getattr(drive, what)(*arguments)
+
+    def sent(self):
+        """The two telegrams as they go on the line."""
+        ready, anew = self.drives
+        anew.steady = anew.sealed = anew.channel.idle = False
+        for index in range(len(anew.request)):
+            anew.request[index] = 0xEE
+        anew._sent_stw = -1
+        for drive in self.drives:
+            drive.fill(drive.request, telegram.NET, self.now)
+            if not drive.sealed:
+                telegram.seal(drive.request, drive.address, drive.net_count)
+                drive.sealed = True
+        return bytes(ready.request), bytes(anew.request)
+
+    def answered(self, zsw):
+        """A reply that answers the parameter task, if there is one, about every second time."""
+        net = bytearray(16)
+        asked = bytes(self.drives[0].request)
+        if asked[3] >> 4 and random.randrange(2):
+            net[3:11] = asked[3:11]
+            net[3] = (1 << 4) | asked[3] & 0x07
+        telegram.put_word(net, 11, zsw)
+        for drive in self.drives:
+            drive.take(net, telegram.NET, self.now)
+
+
+def does_something(pair):
+    """Something that may happen between two telegrams; mostly nothing does."""
+    chance = random.randrange(40)
+    if chance == 0:
+        pair.both("start", random.randrange(0x4000), random.choice(RUNS))
+    elif chance == 1:
+        pair.both("stop", random.choice(OFFS))
+    elif chance == 2:
+        pair.both("turn", random.choice((pzd.ON, pzd.ON_REVERSE)))
+    elif chance == 3:
+        pair.both("acknowledge")
+    elif chance == 4:
+        pair.both("revoke")
+    elif chance == 5:
+        pair.both("lose")
+    elif chance in (6, 7):
+        hsw = random.randrange(0x4000)
+        for drive in pair.drives:
+            drive.hsw = hsw
+    elif chance in (8, 9, 10):
+        number = random.choice((700, 700, 1082, 2000))
+        for drive in pair.drives:
+            if not drive.channel.is_full():
+                drive.ask(pkw.read(number))
+    elif chance == 11:
+        pair.both("hurry")
+
+
+def test_the_telegram_that_stands_ready_is_the_one_that_would_be_built():
+    kinds = set()
+    for seed in range(40):
+        random.seed(seed)
+        pair = Pair()
+        for step in range(500):
+            for _ in range(random.randrange(3)):
+                does_something(pair)
+            ready, anew = pair.sent()
+            assert ready == anew, (seed, step, ready, anew)
+            kinds.add((ready[11] << 8 | ready[12], ready[3] >> 4))
+            pair.now += random.choice((4_000, 4_000, 4_000, 400_000))
+            if random.randrange(8):
+                pair.answered(random.choice(ZSWS))
+            else:
+                pair.both("miss", 5, pair.now, LOST_US)
+    for stw in OFFS + RUNS + (pzd.OFF1 | pzd.STW_ACKNOWLEDGE,):
+        assert {(stw, 0), (stw, 1)} <= kinds, hex(stw)
+
+
+def test_most_telegrams_are_not_built_at_all():
+    pair = Pair()
+    drive = pair.drives[0]
+    for _ in range(3):
+        pair.sent()
+        pair.answered(0xFB31)
+    assert drive.steady and drive.sealed and drive.channel.idle
+    drive.stop()
+    assert not drive.steady
+    pair.sent()
+    assert drive.request[12] == 0x7E
+
+
+def test_a_drive_that_is_asked_for_everything_is_not_left_waiting():
+    """Every row of the survey is asked for and answered, though the channel falls idle between."""
+    drive = Drive(5, MASK)
+    survey = Survey(drive, MASK)
+    net = bytearray(16)
+    telegram.put_word(net, 11, 0xFB31)
+    now = 0
+    for _ in range(200):
+        survey.step(now)
+        drive.fill(drive.request, telegram.NET, now)
+        net[3:11] = bytes(8)
+        if drive.request[3] >> 4:
+            net[3:11] = b"\x20" + drive.request[4:7] + b"\x42\x48\x00\x00"
+            net[3] |= drive.request[3] & 0x07
+        drive.take(net, telegram.NET, now)
+        now += 4_000
+    assert survey.complete

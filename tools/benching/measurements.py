@@ -1,0 +1,442 @@
+"""The measurements of the bench: an emulated Pico with the frozen firmware, or the host alone.
+
+One process, one measurement: it prints its figures as a line of JSON. What they are held against
+is none of its business (rows.py). Runs on the Unix port, started by __main__.py; by hand
+
+    python3 tools/emulator/launch.py build/unix64/micropython -X heapsize=64M \\
+        tools/benching/measurements.py quick stop 19200
+"""
+
+import gc
+import json
+import sys
+import time
+
+sys.path[:] = ["", "firmware", ".frozen"]
+
+# Bytes between two collections: MicroPython would fill its heap first, and find no holes in it.
+COLLECT_AFTER = 1_000_000
+
+CHARACTER_BITS = 11
+TELEGRAM_CHARACTERS = 16
+COLLECT_MS = 100
+REPLY_CHARACTERS = 2
+SETTLE_MS = 3_000  # from power-on of the panel until it knows its drive
+READY_MS = 1_200  # until it shows READY
+OLD_SETPOINT = 1_000  # 0.01 Hz
+SAVE_MS = 300  # from one save to the next
+SAVES = 3  # the last of which erases a sector
+STOP_HZ = 0.3  # the motor turns
+ON, JOGS = 0x0001, 0x0300  # bits of STW
+STW_AT = 11  # in a telegram with a PKW area of 4 words
+
+BOOT_MS = 600
+ON_CHIP = "tools/benching/on_chip.py"
+
+
+# --- the chip and what is around it -------------------------------------------------------------
+
+
+def world_at(baud, seed=0, **more):
+    """A Pico with the panel's firmware at the line of one drive, which answers at any rate."""
+    from boards.sim.drive import Drive
+    from tools.emulator.world import PicoWorld
+
+    settings = {"drives": [1]}
+    settings.update(more.pop("settings", {}))
+    world = PicoWorld("panel", addresses=(), baud=baud, settings=settings, seed=seed, **more)
+    world.drives[1] = Drive(
+        world.clock,
+        world.wire,
+        1,
+        {2014: 2_000},
+        reply_delay_us=-(-REPLY_CHARACTERS * CHARACTER_BITS * 1_000_000 // baud),
+        any_baud=True,
+    )
+    return world
+
+
+def at_the_prompt(world):
+    """DOWN held at power-on leaves the chip at its prompt; then what is in on_chip.py is there."""
+    world.down("DOWN")
+    world.run(BOOT_MS)
+    world.repl.open()
+    world.up("DOWN")
+    with open(ON_CHIP) as file:
+        printed, error = world.repl.execute(file.read())
+    if error:
+        raise RuntimeError(error)
+
+
+def result(world, ms):
+    """What a function of on_chip.py has printed, once it is over."""
+    printed = world.repl.wait_for(b"\x04", ms, since=2)
+    error = world.repl.wait_for(b"\x04>", ms, since=2 + len(printed))
+    if len(error) > 2:
+        raise RuntimeError(error.decode())
+    return json.loads(printed[:-1].decode())
+
+
+def start_the_motor(world):
+    """START, and the motor turns: the measurement would be of nothing otherwise."""
+    world.run(SETTLE_MS)
+    world.press("START")
+    if not world.run_until(lambda: world.drives[1].hz() > STOP_HZ, 4_000):
+        raise RuntimeError("the motor does not turn: %r" % (world.lcd(),))
+
+
+def character_ns(baud):
+    return CHARACTER_BITS * 1_000_000_000 // baud
+
+
+def spread(figures):
+    """[least, median, 99 of 100, greatest, how many] of some figures."""
+    figures = sorted(figures)
+    count = len(figures)
+    if not count:
+        return [None, None, None, None, 0]
+    return [figures[0], figures[count // 2], figures[count * 99 // 100], figures[-1], count]
+
+
+def percentile(table, percent):
+    """Of [[value, count], ...] in the order of values."""
+    left = sum(count for _, count in table) * percent
+    for value, count in table:
+        left -= count * 100
+        if left <= 0:
+            return value
+
+
+def steps_of(table, bucket_us=20):
+    """[median, 99 of 100, greatest, how many] of a table of durations, at their buckets' ends."""
+    figures = [percentile(table, percent) + bucket_us for percent in (50, 99, 100)]
+    return figures + [sum(count for _, count in table)]
+
+
+def checked(world, figures):
+    """What broke the rules of the line or the display is a figure as well."""
+    figures["complaints"] = world.complaints()[:5]
+    figures["restarts"] = ["%s at %d" % (cause, at) for at, cause in world.restarts[:5]]
+    return figures
+
+
+# --- on the chip --------------------------------------------------------------------------------
+
+
+def line(quick, baud):
+    """Exchanges, idle time, driver enable; keys and display busy, a collection every 100 ms."""
+    baud = int(baud)
+    telegrams = 100 if baud < 57600 else 500 if quick else 10_000
+    world = world_at(baud)
+    at_the_prompt(world)
+    busy_ms = telegrams * 1000 // rate_limit(baud) * 13 // 10 + 2_000
+    whole_ms = busy_ms + SETTLE_MS + 3_000
+    world.repl.begin("steps(%d, 1, %d)" % (whole_ms, COLLECT_MS))
+    start_the_motor(world)
+    figures = world.figures
+    first = [len(figures.lead_ns), len(figures.release_ns), len(figures.idle_ns)]
+    began_us = world.clock.now_us
+    while len(figures.release_ns) - first[1] < telegrams and world.clock.now_us < whole_ms * 1000:
+        world.press(("UP", "UP", "DOWN", "UP", "DOWN", "DOWN")[world.random(0, 5)], 60)
+    passed_us = world.clock.now_us - began_us
+    answered = len(figures.idle_ns) - first[2]
+    start_ns = 2 * character_ns(baud)
+    found = {
+        "baud": baud,
+        "limit": rate_limit(baud),
+        "rate": round(answered * 1e6 / passed_us, 1),
+        "lead_ns": spread(figures.lead_ns[first[0] :]),
+        "release_ns": spread(figures.release_ns[first[1] :]),
+        "idle_ns": spread([idle - start_ns for idle in figures.idle_ns[first[2] :]]),
+        "character_ns": character_ns(baud),
+    }
+    inside = result(world, whole_ms)
+    found["steps_us"] = steps_of(inside["steps"][0])
+    found["collections_us"] = spread(inside["collections_us"])
+    return checked(world, found)
+
+
+def rate_limit(baud):
+    """Exchanges a second that the wire allows: silence, two telegrams, the drive's own time."""
+    characters = 2 + 2 * TELEGRAM_CHARACTERS + REPLY_CHARACTERS
+    return baud // (characters * CHARACTER_BITS)
+
+
+def saving(quick):
+    """The driver enable while the settings are written."""
+    times = 5 if quick else 20
+    world = world_at(19200)
+    at_the_prompt(world)
+    world.repl.begin("saving(%d, %d, %d)" % (SETTLE_MS, times, SAVE_MS))
+    found = result(world, 12_000 + times * SAVE_MS)
+    figures = world.figures
+    found.update({
+        "flash": len(world.flash_log),
+        "lead_ns": spread(figures.lead_ns),
+        "release_ns": spread(figures.release_ns),
+        "character_ns": character_ns(19200),
+    })  # fmt: skip
+    return checked(world, found)
+
+
+def cuts(quick):
+    """Power is cut within and behind every flash operation of a save: the old settings, the new?
+
+    The same records give the same run, to the microsecond: one tells when the others are cut.
+    """
+    world = saving_again()
+    result(world, 10_000)
+    instants = []
+    for at_us, _, duration_us in last_save(world.flash_log):
+        for percent in (60,) if quick else (10, 60, 105):
+            instants.append(at_us + duration_us * percent // 100)
+    instants.append(instants[-1] + 1_000)
+    found = {"old": 0, "new": 0, "neither": 0, "complaints": [], "restarts": []}
+    for at_us in instants:
+        world = saving_again()
+        world.cut_power(at_us)
+        if not world.run_until(lambda: bool(world.restarts), 10_000):
+            raise RuntimeError("power was not cut at %d us" % at_us)
+        world.run(1_500)
+        found[whose(world, OLD_SETPOINT + 10 * (SAVES - 1))] += 1
+        found["complaints"] = (found["complaints"] + world.complaints())[:5]
+    return found
+
+
+def saving_again():
+    world = world_at(19200, settings={"setpoint_centihertz": OLD_SETPOINT})
+    at_the_prompt(world)
+    world.repl.begin("saving(%d, %d, %d)" % (READY_MS, SAVES, SAVE_MS))
+    return world
+
+
+def last_save(flash_log):
+    """The flash operations of the last of several saves."""
+    ends_us = flash_log[-1][0]
+    return [operation for operation in flash_log if ends_us - operation[0] < SAVE_MS * 500]
+
+
+def whose(world, old):
+    """Which settings the panel has after it restarted, by what it shows and what it keeps."""
+    for name, setpoint in (("old", old), ("new", old + 10)):
+        kept = world.settings().get("setpoint_centihertz") == setpoint
+        if kept and world.reads("S:%5.1f" % (setpoint / 100)) and world.reads("READY"):
+            return name
+    return "neither"
+
+
+def memory(quick):
+    """Heap taken by exchanges."""
+    exchanges = 500 if quick else 10_000
+    world = world_at(115200)
+    at_the_prompt(world)
+    world.repl.begin("memory(%d)" % exchanges)
+    start_the_motor(world)
+    return checked(world, result(world, 20_000 + exchanges * 10))
+
+
+def stop(quick, baud):
+    """STOP, from the contact to the end of the telegram that carries OFF1."""
+    baud = int(baud)
+    presses = 5 if quick else 20
+    world = world_at(baud, seed=5)
+    at_the_prompt(world)
+    world.repl.begin("collecting(%d, %d)" % (presses * 20_000, COLLECT_MS))
+    took_us = []
+    world.run(SETTLE_MS)
+    for _ in range(presses):
+        start_the_motor_again(world)
+        world.run(world.random(1, 150))
+        since_us = world.clock.now_us
+        world.down("STOP")
+        world.run(world.random(150, 250))
+        world.up("STOP")
+        took_us.append(off_after_us(world, since_us, ON))
+        world.run_until(lambda: world.drives[1].hz() == 0, 3_000)
+        world.run(300)
+    exchange_us = 1_000_000 // rate_limit(baud)
+    found = {"baud": baud, "took_us": sorted(took_us), "exchange_us": exchange_us}
+    return checked(world, found)
+
+
+def start_the_motor_again(world):
+    for _ in range(5):
+        world.press("START")
+        if world.run_until(lambda: world.drives[1].hz() > STOP_HZ, 2_000):
+            return
+    raise RuntimeError("the motor does not turn: %r" % (world.lcd(),))
+
+
+def off_after_us(world, since_us, bits):
+    """Microseconds until the end of the first telegram of the panel without these bits of STW."""
+    telegram_us = TELEGRAM_CHARACTERS * CHARACTER_BITS * 1_000_000 // world.wire.baud
+    for start_us, from_panel, telegram in world.wire.log.last(500):
+        if from_panel and start_us >= since_us and len(telegram) == TELEGRAM_CHARACTERS:
+            if not (telegram[STW_AT] << 8 | telegram[STW_AT + 1]) & bits:
+                return start_us + telegram_us - since_us
+    raise RuntimeError("no OFF on the wire after %d us" % since_us)
+
+
+def hang(quick, how, drive):
+    """The main loop hangs while jogging: until OFF on the wire."""
+    world = world_at(19200)
+    at_the_prompt(world)
+    world.repl.begin("hang(%r, %d)" % (how, SETTLE_MS + 2_000))
+    world.run(SETTLE_MS)
+    world.down("JOG_RIGHT")
+    found = {}
+    while world.usb.find(b"HANGS") < 0:
+        world.run(1)
+    since_us = world.clock.now_us
+    if world.drives[1].hz() <= STOP_HZ:
+        raise RuntimeError("the motor does not turn: %r" % (world.lcd(),))
+    if drive == "silent":
+        world.drives[1].unplug()
+    world.run(700)
+    found["took_us"] = off_after_us(world, since_us, ON | JOGS)
+    world.run(2_000)
+    return checked(world, found)
+
+
+def steps(quick):
+    """A step of the main loop: the home page, a changing display, the parameter page."""
+    phase_ms = 4_000 if quick else 10_000
+    world = world_at(19200)
+    at_the_prompt(world)
+    world.repl.begin("steps(%d, 3, %d)" % (phase_ms, COLLECT_MS))
+    began_us = world.clock.now_us
+    world.run(500)
+    rest_of(world, began_us, phase_ms)
+    start_the_motor(world)
+    while world.clock.now_us < began_us + 2 * phase_ms * 1000:
+        world.press("UP", 900)
+        world.press("DOWN", 900)
+    world.press("PARAM")
+    while world.clock.now_us < began_us + 3 * phase_ms * 1000:
+        world.press("NEXT", 300)
+    inside = result(world, 5_000)
+    names = ("home", "changing", "parameters")
+    found = {name: steps_of(table) for name, table in zip(names, inside["steps"])}
+    found["collections_us"] = spread(inside["collections_us"])
+    return checked(world, found)
+
+
+def rest_of(world, began_us, ms):
+    world.run(max(0, began_us + ms * 1000 - world.clock.now_us) // 1000)
+
+
+def boot(quick, display):
+    """From power-on to the first telegram, and to the home page."""
+    world = world_at(19200, display=display)
+    found = {}
+    while not world.wire.log.count and world.clock.now_us < 5_000_000:
+        world.run(1)
+    found["telegram_us"] = world.wire.log.last(1)[0][0]
+    while not world.reads("READY") and world.clock.now_us < 10_000_000:
+        world.run(1)
+    found["home_us"] = world.clock.now_us
+    return checked(world, found)
+
+
+def heap(quick, drives):
+    """Free heap with so many drives in the settings."""
+    addresses = [address % 32 for address in range(1, int(drives) + 1)]
+    world = world_at(19200, settings={"drives": addresses})
+    at_the_prompt(world)
+    world.repl.begin("heap()")
+    return checked(world, result(world, 5_000))
+
+
+# --- on the host, by the processor's time: others may be using it as well ------------------------
+
+
+def codec(quick):
+    """Characters a second through the receiver, and through the builder of telegrams."""
+    from uss import telegram
+
+    rounds = 200_000 if quick else 2_000_000
+    buffer = bytearray(TELEGRAM_CHARACTERS)
+    net = TELEGRAM_CHARACTERS - 4
+
+    def build():
+        telegram.seal(buffer, 1, net)
+
+    receiver, link, request_at = awaiting(buffer)
+
+    def receive():
+        receiver.open(1, net, 100_000, request_at)
+        if receiver.take(link, request_at) != telegram.GOOD:
+            raise RuntimeError("the receiver takes no telegram")
+
+    build()
+    return {
+        "builder": TELEGRAM_CHARACTERS * rate_of(build, rounds),
+        "receiver": TELEGRAM_CHARACTERS * rate_of(receive, rounds),
+    }
+
+
+class Reply:
+    """A link that has one whole telegram, each time it is asked."""
+
+    resolution_us = 0
+    interrupts = True
+    received_at = 20_000
+
+    def __init__(self, characters):
+        self._characters = characters
+
+    def receive(self, buffer, at):
+        count = len(self._characters)
+        buffer[at : at + count] = self._characters
+        return count
+
+
+def awaiting(characters):
+    from uss.receiver import Receiver
+    from uss.timing import Timing
+
+    return Receiver(Timing(19200), 0x3FFFFFFF), Reply(characters), 1_000
+
+
+def rate_of(function, rounds):
+    began = time.clock()
+    for _ in range(rounds):
+        function()
+    return round(rounds / (time.clock() - began))
+
+
+def simulation(quick):
+    """Simulated seconds a second: the whole panel, LCD model, one drive at 19200, running."""
+    import main
+    from boards.sim.world import World
+
+    seconds = 20 if quick else 200
+    world = World(main.start)
+    world.run(2_000)
+    world.press("START")
+    world.run(2_000)
+    if world.drives[1].hz() <= STOP_HZ:
+        raise RuntimeError("the motor does not turn: %r" % (world.lcd(),))
+    began = time.clock()
+    world.run(seconds * 1000)
+    return checked_host(world, {"times": round(seconds / (time.clock() - began))})
+
+
+def checked_host(world, figures):
+    figures["complaints"] = world.complaints()[:5]
+    return figures
+
+
+MEASUREMENTS = {
+    function.__name__: function
+    for function in (line, saving, cuts, memory, stop, hang, steps, boot, heap, codec, simulation)
+}
+
+
+def main_program(quick, name, *arguments):
+    gc.threshold(COLLECT_AFTER)
+    print(json.dumps(MEASUREMENTS[name](quick == "quick", *arguments)))
+
+
+if __name__ == "__main__":
+    main_program(*sys.argv[1:])

@@ -1,0 +1,133 @@
+"""What the bench runs inside the emulated chip, typed in at the raw prompt (measurements.py).
+
+It builds the panel of the frozen modules, as the frozen main.py does, and steps it while it looks
+at the clock and at the heap. It is no part of the firmware, and no host can import it.
+"""
+
+import gc
+import json
+import time
+from array import array
+
+import board
+import main
+
+BUCKET_US = 20  # of a table of durations
+BUCKETS = 1000  # the last one holds what is longer, too
+SETTLED_MS = 6_000  # after that the panel knows its drive and the splash is over
+
+idle_at = 0
+
+
+def idle():
+    """The board's, which tells when a step has done its work."""
+    global idle_at
+    idle_at = time.ticks_us()
+    time.sleep_ms(1)
+
+
+def steps(phase_ms, phases, collect_ms):
+    """Step the panel; print {"steps": [[[us, count], ...] for each phase], "collections_us"}."""
+    ticks_us, ticks_ms, since = time.ticks_us, time.ticks_ms, time.ticks_diff
+    tables = [array("H", bytes(2 * BUCKETS)) for _ in range(phases)]
+    collections = array("I")
+    board.idle = idle
+    app = main.start(board)
+    gc.collect()
+    try:
+        began = collected = ticks_ms()
+        passed = 0
+        while passed < phases * phase_ms:
+            table = tables[passed // phase_ms]
+            at = ticks_us()
+            app.step()
+            took = since(idle_at, at) // BUCKET_US
+            table[took if took < BUCKETS else BUCKETS - 1] += 1
+            now = ticks_ms()
+            passed = since(now, began)
+            if collect_ms and since(now, collected) >= collect_ms:
+                collected = now
+                at = ticks_us()
+                gc.collect()
+                if len(collections) < 100:
+                    collections.append(since(ticks_us(), at))
+    finally:
+        app.close()
+    found = [[[at * BUCKET_US, n] for at, n in enumerate(table) if n] for table in tables]
+    print(json.dumps({"steps": found, "collections_us": list(collections)}))
+
+
+def memory(exchanges):
+    """Heap taken while so many exchanges are made, no collection: by all of it, page at rest."""
+    app = main.start(board)
+    try:
+        step_for(app, SETTLED_MS)
+        gc.collect()
+        gc.disable()
+        first = app.bus.exchanges
+        before = gc.mem_alloc()
+        while (app.bus.exchanges - first) & 0xFFFF < exchanges:
+            app.step()
+        taken = gc.mem_alloc() - before
+        gc.enable()
+        made = (app.bus.exchanges - first) & 0xFFFF
+        runs = app.panel.any_runs()
+    finally:
+        app.close()
+    print(json.dumps({"taken": taken, "exchanges": made, "runs": runs}))
+
+
+def step_for(app, ms):
+    began = time.ticks_ms()
+    while time.ticks_diff(time.ticks_ms(), began) < ms:
+        app.step()
+
+
+def collecting(ms, collect_ms):
+    """The panel, a collection every so often, for people to press keys."""
+    app = main.start(board)
+    try:
+        while ms > 0:
+            step_for(app, collect_ms)
+            gc.collect()
+            ms -= collect_ms
+    finally:
+        app.close()
+
+
+def hang(how, after_ms):
+    """The panel, until its main loop hangs for good."""
+    app = main.start(board)
+    step_for(app, after_ms)
+    print("HANGS")
+    while how == "pass":
+        pass
+    while how == "sleep":
+        time.sleep_ms(100)
+    while how == "collect":
+        gc.collect()
+
+
+def saving(settle_ms, times, every_ms):
+    """The panel, with new settings written into the flash so many times, each with a setpoint that
+    is 0.1 Hz higher."""
+    app = main.start(board)
+    try:
+        step_for(app, settle_ms)
+        for _ in range(times):
+            app.settings.setpoint_centihertz += 10  # what is there already is not written
+            app.settings.dirty = True
+            step_for(app, every_ms)
+        dirty = app.settings.dirty
+    finally:
+        app.close()
+    print(json.dumps({"unsaved": dirty}))
+
+
+def heap():
+    """Free heap once the panel is up."""
+    app = main.start(board)
+    step_for(app, 1_000)
+    gc.collect()
+    print(json.dumps({"free": gc.mem_free(), "used": gc.mem_alloc()}))
+    app.close()

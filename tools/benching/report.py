@@ -1,0 +1,71 @@
+"""From figures to the table that people read. It measures nothing and knows no row by name.
+
+    judged = judge(ROWS, {task: figures})
+    print(page(judged, versions, "2026-01-31", "./tools/bench", quick=False))
+    sys.exit(status(judged))
+"""
+
+from typing import NamedTuple
+
+MET, NOT_MET, NO_BAR, FAILED = "met", "NOT MET", "", "FAILED"
+
+HEAD = ("what", "bar", "figure", "")
+
+
+class Judged(NamedTuple):
+    row: object
+    figure: str
+    verdict: str
+
+
+def judge(rows, figures):
+    """figures: {task: {name: figure}}, with "error" where there are none."""
+    return [judge_row(row, figures[row.task]) for row in rows]
+
+
+def judge_row(row, figures):
+    if "error" in figures:
+        return Judged(row, figures["error"], FAILED)
+    if row.holds is None:
+        return Judged(row, row.show(figures), NO_BAR)
+    return Judged(row, row.show(figures), MET if row.holds(figures) else NOT_MET)
+
+
+def status(judged):
+    """0: every bar of the chip holds. 1: one does not, or could not be measured."""
+    bad = [line for line in judged if line.row.task.on_chip and line.verdict in (NOT_MET, FAILED)]
+    return 1 if bad else 0
+
+
+def table(judged):
+    lines = [HEAD, ("---",) * len(HEAD)]
+    for row, figure, verdict in judged:
+        lines.append((row.what, row.bar, figure.replace("|", "/"), verdict))
+    return "\n".join("| " + " | ".join(cells) + " |" for cells in lines)
+
+
+def page(judged, versions, date, command, quick):
+    """All of it, Markdown."""
+    chip = [line for line in judged if line.row.task.on_chip]
+    host = [line for line in judged if not line.row.task.on_chip]
+    parts = ["# What the firmware does, in figures", INTRODUCTION]
+    if quick:
+        parts.append("QUICK: few samples. What is rare may not have shown itself.")
+    parts.append("%s, `%s`\n\n    %s" % (date, command, "\n    ".join(versions)))
+    if chip:
+        parts += ["## On the chip", CHIP, table(chip)]
+    if host:
+        parts += ["## On this host", table(host)]
+    return "\n\n".join(parts)
+
+
+INTRODUCTION = (
+    "Written by `tools/bench`. A figure that does not reach its bar is shown as it is."
+)
+
+CHIP = """\
+An emulated Raspberry Pi Pico with the firmware frozen in (`tools/uf2`); computing time is right to
+30 %, the wires to the nanosecond. While it is measured, keys are pressed, the display changes, and
+garbage is collected every 100 ms, unless the row says otherwise. One drive, telegrams of 16
+characters, replies after 2 characters. The intervals of the S7-200 (poll time of an active drive)
+and the S7-1200 (scan interval) are those of their system manuals; they offer no 187500."""

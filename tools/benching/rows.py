@@ -1,0 +1,322 @@
+"""The rows of the bench: what is measured, the bar it is held against, how it reads.
+
+The bars are facts and stand here; the figures come from measurements.py, whose functions and
+arguments are the tasks. Nothing here measures.
+"""
+
+from typing import Callable, NamedTuple
+
+
+class Task(NamedTuple):
+    """command: function of measurements.py and its arguments."""
+
+    command: tuple
+    on_chip: bool = True
+
+    @property
+    def name(self):
+        return self.command[0]
+
+
+class Row(NamedTuple):
+    """show: figures -> text. holds: figures -> whether the bar is reached; None: there is none."""
+
+    task: Task
+    what: str
+    bar: str
+    show: Callable
+    holds: Callable | None
+
+
+CHARACTER_BITS = 11
+CHARACTERS = 2 + 16 + 2 + 16  # of an exchange: start interval, request, the drive's time, reply
+
+# Baud -> milliseconds between two telegrams to a drive, and how many telegrams are measured.
+S7_200_MS = {9600: 50, 19200: 35, 38400: 30, 57600: 25, 115200: 25}
+S7_1200_MS = {9600: 116.3, 19200: 68.2, 38400: 44.1, 57600: 36.1, 115200: 28.1}
+BAUDS = (9600, 19200, 38400, 115200, 187500)
+FAST_BAUD = 57600
+TELEGRAMS_FAST, TELEGRAMS_SLOW = 10_000, 50  # bar of the driver enable
+
+RATE_BAR = 220  # exchanges a second at 115200
+IDLE_MEDIAN_NS, IDLE_P99_NS = 700_000, 1_000_000  # besides one character
+DEBOUNCE_US = 20_000
+HANG_US = 400_000
+STEP_US = 2_000
+FIRST_TELEGRAM_US = 1_000_000
+FREE_BYTES = 110 * 1024
+SIMULATION_TIMES = 100
+
+HANGS = (("pass", "drive"), ("sleep", "drive"), ("collect", "drive"), ("pass", "silent"))
+HANG_TEXT = {"pass": "`while True: pass`", "sleep": "time.sleep_ms", "collect": "gc.collect"}
+
+LINES = {baud: Task(("line", str(baud))) for baud in BAUDS}
+SAVING = Task(("saving",))
+CUTS = Task(("cuts",))
+MEMORY = Task(("memory",))
+STOPS = {baud: Task(("stop", str(baud))) for baud in (19200, 115200)}
+HANGING = {which: Task(("hang", *which)) for which in HANGS}
+STEPS = Task(("steps",))
+BOOTS = {display: Task(("boot", display)) for display in ("wires", "backpack")}
+HEAPS = {drives: Task(("heap", str(drives))) for drives in (1, 31)}
+CODEC = Task(("codec",), on_chip=False)
+SIMULATION = Task(("simulation",), on_chip=False)
+
+# The long ones first, so that the last one does not run alone for long.
+TASKS = (
+    LINES[115200], LINES[187500], MEMORY, *STOPS.values(), STEPS, *HANGING.values(), SAVING, CUTS,
+    LINES[9600], LINES[19200], LINES[38400], *BOOTS.values(), *HEAPS.values(), CODEC, SIMULATION,
+)  # fmt: skip
+
+
+def names():
+    return sorted({task.name for task in TASKS})
+
+
+# --- how figures read ---------------------------------------------------------------------------
+
+
+def ms(ns):
+    return "-" if ns is None else "%.2f ms" % (ns / 1e6)
+
+
+def us(ns):
+    return "-" if ns is None else "%.1f us" % (ns / 1e3)
+
+
+def least_to_most(spread):
+    """Of [least, median, 99 of 100, greatest, how many], in nanoseconds."""
+    least, median, _, most, count = spread
+    return "%s / %s / %s of %d" % (us(least), us(median), us(most), count)
+
+
+def within_a_character(spread, character_ns):
+    return spread[4] > 0 and 0 <= spread[0] and spread[3] <= character_ns
+
+
+# --- rows ---------------------------------------------------------------------------------------
+
+
+def rate_row(baud):
+    limit = "wire's limit %.1f" % (baud / CHARACTERS / CHARACTER_BITS)
+    others = [
+        "%s %.1f" % (name, 1000 / intervals[baud])
+        for name, intervals in (("S7-200", S7_200_MS), ("S7-1200", S7_1200_MS))
+        if baud in intervals
+    ]
+    return Row(
+        LINES[baud],
+        "exchanges per second, %d baud (%s)" % (baud, ", ".join([limit, *others])),
+        ">= %d" % RATE_BAR if baud == 115200 else "",
+        lambda figures: "%.1f" % figures["rate"],
+        (lambda figures: figures["rate"] >= RATE_BAR) if baud == 115200 else None,
+    )
+
+
+def idle_row(baud):
+    character_ns = CHARACTER_BITS * 1_000_000_000 // baud
+    median_ns, p99_ns = character_ns + IDLE_MEDIAN_NS, character_ns + IDLE_P99_NS
+
+    def show(figures):
+        _, median, p99, most, count = figures["idle_ns"]
+        return "%s / %s / %s of %d" % (ms(median), ms(p99), ms(most), count)
+
+    def holds(figures):
+        _, median, p99, _, count = figures["idle_ns"]
+        return count > 0 and median <= median_ns and p99 <= p99_ns
+
+    return Row(
+        LINES[baud],
+        "reply to next start bit beyond the start interval, %d baud: median / p99 / max" % baud,
+        "<= %s / %s" % (ms(median_ns), ms(p99_ns)),
+        show,
+        holds,
+    )
+
+
+def release_row(baud):
+    wanted = TELEGRAMS_FAST if baud >= FAST_BAUD else TELEGRAMS_SLOW
+
+    def holds(figures):
+        spread = figures["release_ns"]
+        return within_a_character(spread, figures["character_ns"]) and spread[4] >= wanted
+
+    return Row(
+        LINES[baud],
+        "driver off after the last stop bit, %d baud: min / median / max" % baud,
+        "0...%s, all of %d" % (us(CHARACTER_BITS * 1_000_000_000 // baud), wanted),
+        lambda figures: least_to_most(figures["release_ns"]),
+        holds,
+    )
+
+
+def lead_row(baud):
+    return Row(
+        LINES[baud],
+        "driver on before the first start bit, %d baud: min / median / max" % baud,
+        "0...%s" % us(CHARACTER_BITS * 1_000_000_000 // baud),
+        lambda figures: least_to_most(figures["lead_ns"]),
+        lambda figures: within_a_character(figures["lead_ns"], figures["character_ns"]),
+    )
+
+
+def saving_row():
+    return Row(
+        SAVING,
+        "driver off after the last stop bit while settings are written, 19200 baud: "
+        "min / median / max",
+        "0...%s" % us(CHARACTER_BITS * 1_000_000_000 // 19200),
+        lambda figures: "%s; %d flash operations"
+        % (least_to_most(figures["release_ns"]), figures["flash"]),
+        lambda figures: figures["flash"] > 0
+        and not figures["unsaved"]
+        and within_a_character(figures["release_ns"], figures["character_ns"]),
+    )
+
+
+def cuts_row():
+    return Row(
+        CUTS,
+        "power cut while settings are written: panel starts with the old ones, the new ones",
+        "none lost",
+        lambda figures: "%(old)d old, %(new)d new, %(neither)d lost" % figures,
+        lambda figures: figures["neither"] == 0 and figures["old"] > 0 and figures["new"] > 0,
+    )
+
+
+def memory_row():
+    return Row(
+        MEMORY,
+        "heap taken by exchanges and the home page, motor running, no collection",
+        "0 bytes in 10000 exchanges",
+        lambda figures: "%d bytes in %d exchanges" % (figures["taken"], figures["exchanges"]),
+        lambda figures: figures["taken"] == 0 and figures["runs"],
+    )
+
+
+def stop_row(baud):
+    def bound_us(figures):
+        return DEBOUNCE_US + 2 * figures["exchange_us"]
+
+    def show(figures):
+        took = figures["took_us"]
+        middle = took[len(took) // 2]
+        shown = tuple(at / 1000 for at in (took[0], middle, took[-1]))
+        return "%.1f / %.1f / %.1f ms of %d" % (*shown, len(took))
+
+    return Row(
+        STOPS[baud],
+        "STOP pressed to the end of the OFF1 telegram, 1 drive, %d baud: min / median / max" % baud,
+        "<= %.1f ms: debounce and 2 exchanges"
+        % ((DEBOUNCE_US + 2e6 * CHARACTERS * CHARACTER_BITS / baud) / 1000),
+        show,
+        lambda figures: figures["took_us"][-1] <= bound_us(figures),
+    )
+
+
+def hang_row(which):
+    how, drive = which
+    return Row(
+        HANGING[which],
+        "main loop hangs in %s while jogging%s: OFF1 on the wire after"
+        % (HANG_TEXT[how], ", drive silent" if drive == "silent" else ""),
+        "<= %d ms" % (HANG_US // 1000),
+        lambda figures: "%.0f ms" % (figures["took_us"] / 1000),
+        lambda figures: figures["took_us"] <= HANG_US,
+    )
+
+
+def step_row(task, name, what):
+    def of(figures):
+        return figures[name] if name else figures["steps_us"]
+
+    return Row(
+        task,
+        "a step of the main loop, %s: median / p99 / max" % what,
+        "max <= %.1f ms" % (STEP_US / 1000),
+        lambda figures: "%d / %d / %d us of %d" % tuple(of(figures)),
+        lambda figures: of(figures)[2] <= STEP_US,
+    )
+
+
+def collection_row():
+    return Row(
+        STEPS,
+        "a garbage collection, 19200 baud: median / max",
+        "",
+        lambda figures: "%.1f / %.1f ms" % (
+            figures["collections_us"][1] / 1000, figures["collections_us"][3] / 1000
+        ),
+        None,
+    )  # fmt: skip
+
+
+def boot_rows(display):
+    on = "display on four data lines" if display == "wires" else "display on I2C"
+    return (
+        Row(
+            BOOTS[display],
+            "power-on to the first telegram, frozen, %s" % on,
+            "<= %.1f s" % (FIRST_TELEGRAM_US / 1e6),
+            lambda figures: "%.2f s" % (figures["telegram_us"] / 1e6),
+            lambda figures: figures["telegram_us"] <= FIRST_TELEGRAM_US,
+        ),
+        Row(
+            BOOTS[display],
+            "power-on to READY on the home page, frozen, %s" % on,
+            "",
+            lambda figures: "%.2f s" % (figures["home_us"] / 1e6),
+            None,
+        ),
+    )
+
+
+def heap_row(drives):
+    return Row(
+        HEAPS[drives],
+        "free heap after boot, frozen, %d drive%s in the settings" % (drives, "s"[: drives > 1]),
+        ">= %d KB" % (FREE_BYTES // 1024) if drives == 31 else "",
+        lambda figures: "%.1f KB" % (figures["free"] / 1024),
+        (lambda figures: figures["free"] >= FREE_BYTES) if drives == 31 else None,
+    )
+
+
+def rules_row(task):
+    """A broken rule of line or display is a figure as well."""
+    return Row(
+        task,
+        "rules of line and display broken, and restarts, in `%s`" % " ".join(task.command),
+        "none",
+        lambda figures: "; ".join(figures["complaints"] + figures["restarts"]) or "none",
+        lambda figures: not figures["complaints"] and not figures["restarts"],
+    )
+
+
+ROWS = (
+    *(rate_row(baud) for baud in BAUDS),
+    *(idle_row(baud) for baud in BAUDS),
+    *(release_row(baud) for baud in BAUDS),
+    saving_row(),
+    *(lead_row(baud) for baud in BAUDS),
+    memory_row(),
+    *(stop_row(baud) for baud in STOPS),
+    *(hang_row(which) for which in HANGS),
+    step_row(STEPS, "home", "home page, 19200 baud"),
+    step_row(STEPS, "changing", "changing display, 19200 baud"),
+    step_row(STEPS, "parameters", "parameter page, 19200 baud"),
+    step_row(LINES[115200], None, "changing display, 115200 baud"),
+    collection_row(),
+    *(row for display in BOOTS for row in boot_rows(display)),
+    *(heap_row(drives) for drives in HEAPS),
+    cuts_row(),
+    *(rules_row(task) for task in TASKS if task.on_chip and task.name != "hang"),
+    Row(CODEC, "receiver, characters per second", "", lambda f: "%d" % f["receiver"], None),
+    Row(CODEC, "builder, characters per second", "", lambda f: "%d" % f["builder"], None),
+    Row(
+        SIMULATION,
+        "simulation, whole panel, display, one drive at 19200, running: x real time",
+        ">= %d" % SIMULATION_TIMES,
+        lambda figures: "%d" % figures["times"],
+        lambda figures: figures["times"] >= SIMULATION_TIMES and not figures["complaints"],
+    ),
+)
