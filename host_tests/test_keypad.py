@@ -358,3 +358,49 @@ def test_keys_on_pins_of_their_own_are_never_unclear():
     unclear = [name for bit, name in enumerate(keypad.names) if keypad.unclear >> bit & 1]
     assert unclear and set(unclear) == set(keypad.names) - {"START", "STOP"}
     world.check()
+
+
+# --- all pins in one register --------------------------------------------------------------------
+
+
+def test_one_reading_of_all_pins_decides_alone():
+    """A contact that bounces must not be remembered as it was a moment later: every reading is
+    what the register says at that instant, whatever the pins say when they are asked."""
+    chip = Chip(Clock(), None)
+    pins = [Pin(chip, Pin.IN, Pin.PULL_UP) for _ in range(2)]
+    levels = [0]
+    keypad = Keypad(
+        (("START", pins[0]), ("STOP", pins[1])),
+        closed=("STOP",),
+        levels=lambda: levels[0],
+        masks=(1 << 13, 1 << 14),
+    )
+    start_down, stop_down = 0b01, 0b10
+    for level, down in (
+        (1 << 13, 0),
+        (0, start_down),
+        (0, start_down),
+        (1 << 14, start_down | stop_down),
+        (1 << 13 | 1 << 14, stop_down),
+        (1 << 13 | 1 << 14, stop_down),
+        (1 << 13, 0),
+    ):
+        for other in (0, 1):
+            for pin in pins:
+                pin.apply(other)
+            levels[0] = level
+            assert keypad.read() == down, (level, other)
+
+
+def test_the_register_is_read_without_taking_heap():
+    chip = Chip(Clock(), None)
+    stop = Pin(chip, Pin.IN, Pin.PULL_UP)
+    levels = [1]
+    keypad = Keypad((("STOP", stop),), levels=lambda: levels[0], masks=(1,))
+    heap_lock()
+    try:
+        for turn in range(100):
+            levels[0] = turn >> 2 & 1
+            assert keypad.read() == 1 - levels[0]
+    finally:
+        heap_unlock()

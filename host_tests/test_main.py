@@ -98,7 +98,7 @@ def test_a_panel_that_failed_is_restarted_by_the_watchdog():
 
 def test_ctrl_c_while_the_bus_is_being_started_leaves_no_interrupt_behind():
     switch = Switch()
-    switch.board.disable_irq = interrupting(switch.board.disable_irq)
+    switch.board.timer.init = interrupting(switch.board.timer.init)
     assert switch.power_on()
     sent = switch.world.wire.log.count
     switch.world.clock.advance(1_000_000)
@@ -144,11 +144,11 @@ def interrupting(function):
     """The function, but that Ctrl-C strikes when it is called for the first time."""
     calls = []
 
-    def interrupted():
+    def interrupted(**arguments):
         calls.append(1)
         if len(calls) == 1:
             raise KeyboardInterrupt
-        return function()
+        return function(**arguments)
 
     return interrupted
 

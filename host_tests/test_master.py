@@ -725,3 +725,16 @@ def test_while_characters_come_in_nothing_is_sent_into_them():
     bus.receive = receive
     bus.run(300_000)
     assert len(bus.sent) - sent > 8
+
+
+def test_a_list_that_is_emptied_ends_the_telegrams_and_nothing_else():
+    bus = Bus()
+    bus.run(300_000)
+    bus.master.list = []
+    bus.run(100_000)
+    sent = len(bus.sent)
+    bus.run(500_000)
+    assert len(bus.sent) == sent and bus.master.failures == 0
+    bus.master.list = list(bus.drives)
+    bus.run(500_000)
+    assert len(bus.sent) > sent + 5

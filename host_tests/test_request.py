@@ -18,7 +18,7 @@ ZSWS = (0xFB31, 0xFB34, 0xFB34, 0xFB34, 0xFB78, 0xFB71)
 
 
 class Pair:
-    """The same happens to two drives. The second one forgets its telegram before every exchange."""
+    """The same happens to two drives. The second forgets its telegram before every exchange."""
 
     def __init__(self):
         self.drives = (Drive(5, MASK), Drive(5, MASK))

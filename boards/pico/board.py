@@ -170,7 +170,8 @@ def make_display():
 
 def make_keypad():
     pins = tuple((key, Pin(number, Pin.IN, Pin.PULL_UP)) for key, number in KEYS)
-    return Keypad(pins, closed=NORMALLY_CLOSED, levels=key_levels)
+    masks = tuple(1 << number for _, number in KEYS)
+    return Keypad(pins, closed=NORMALLY_CLOSED, levels=key_levels, masks=masks)
 
 
 def key_levels():
@@ -217,5 +218,3 @@ keypad = make_keypad()
 store = FileStore(SETTINGS_FILE, open, os)
 watchdog = Watchdog()
 timer = make_timer()
-disable_irq = machine.disable_irq
-enable_irq = machine.enable_irq

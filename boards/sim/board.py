@@ -90,8 +90,6 @@ class Board:
         self.store = store
         self.watchdog = Watchdog(chip)
         self.timer = HardTimer(chip)
-        self.disable_irq = chip.disable_irq
-        self.enable_irq = chip.enable_irq
         self._chip = chip
         self._polled = polled
         self._loop_us = loop_us or _usual_loop_us

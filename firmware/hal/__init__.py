@@ -17,7 +17,6 @@ board
                         while that hangs nothing stops the drives before the watchdog does
     make_link(baud)     builds the link for that baud rate; called once
     idle()              end of a step of the main loop: lets the machine work, 2 ms at most
-    disable_irq() -> state, enable_irq(state)    as in `machine`
 
 clock
     ticks_us() -> int   interrupt. Microseconds since some instant; wraps to 0 after ticks_mask
@@ -37,9 +36,12 @@ link                    half duplex; the driver enable is the link's affair
     sending_us(now)     interrupt. Microseconds until the last stop bit has left and the driver is
                         off, at least 1; 0 when that is over
     sent_at             clock.ticks_us() of that instant
+    foreseen            optional; True: sent_at holds as soon as `send` has returned
     receive(buffer, at) -> int   interrupt. Moves what was received to buffer[at:], as far as there
                         is room, and answers how many characters. Whoever calls it processes them:
-                        a look may use up the interrupt that would have announced them.
+                        a look may use up the interrupt that would have announced them. -1:
+                        characters are coming in, and on_activity will announce their end; none is
+                        handed over before.
     received_at         clock.ticks_us() of the end of the last of them
     close()             driver off, nothing sent any more, no interrupt left
 

@@ -25,13 +25,13 @@ class Keypad:
     """direct: (name, Pin) for each key with a pin of its own, inputs with pull-ups.
 
     matrix: a `Matrix` or None. closed: names of the direct keys that are normally closed.
-    levels: None, or a function that answers a number which is another one whenever a pin of a
-    direct key has another level: asking each pin takes 100 us on an RP2040, its register 15.
+    levels, masks: None, or a function that answers the levels of all pins at one instant as bits,
+    and the bit of each direct key's pin: asking each pin takes 100 us on an RP2040.
     ValueError: STOP has no pin of its own, a name stands twice, more than 30 keys, a normally
     closed key that is not among the direct ones.
     """
 
-    def __init__(self, direct, matrix=None, closed=(), levels=None):
+    def __init__(self, direct, matrix=None, closed=(), levels=None, masks=()):
         own = tuple(name for name, _ in direct)
         self.names = own + (matrix.names if matrix else ())
         check_names(self.names, own, closed)
@@ -41,23 +41,32 @@ class Keypad:
         self._matrix = matrix
         self._shift = len(own)
         self._levels = levels
-        self._seen = -1  # what `levels` answered when the pins were asked last; no level
-        self._down = 0
+        self._masks = tuple((1 << bit, mask) for bit, mask in enumerate(masks))
+        self._seen = -1  # what `levels` answered last, at first no level
+        self._down = self._closed  # what that means
         self.unclear = 0
 
     def read(self):
         if self._levels is None:
             down = self._read_direct()
         else:
-            levels = self._levels()
-            if levels != self._seen:
-                self._seen = levels
-                self._down = self._read_direct()
-            down = self._down
+            down = self._read_levels()
         if self._matrix:
             down |= self._matrix.read() << self._shift
             self.unclear = self._matrix.unclear << self._shift
         return down
+
+    def _read_levels(self):
+        """Nothing but the levels decides: a pin that is asked once more may have bounced since."""
+        levels = self._levels()
+        if levels != self._seen:
+            low = 0
+            for bit, mask in self._masks:
+                if not levels & mask:
+                    low |= bit
+            self._down = low ^ self._closed
+            self._seen = levels
+        return self._down
 
     def _read_direct(self):
         low = 0

@@ -5,6 +5,7 @@ in an interrupt). They share words, not structures; each field has one writer:
 
     loop     wanted, off, ticket, stops, hsw, urgent, asking, acknowledgements
     engine   void, zsw, hiw, contact, contacts, was_running, silent, served, counters and the rest
+    both     steady: False by whoever changes something, at last; True by the engine alone
 
 ON and JOG are sent only on a ticket. Every `start` draws a new one; the engine voids the one in
 force when the drive is lost, faults, stops of its own accord, or the loop stops refreshing. A void

@@ -385,6 +385,8 @@ class Master:
         self._quiet_since = quiet_since = receiver.heard_at
         silent_us = (now - quiet_since) & self._mask
         if self._start_interval_us <= silent_us < BABBLE_US and not self._held:
-            return self._send(self._choose(), now)  # the link's own pause was as long as the rest
+            drive = self._choose()  # the link took longer to report the reply than the rest lasts
+            if drive is not None:
+                return self._send(drive, now)
         self._begin_rest(now)
         return self._rest(now)

@@ -238,14 +238,14 @@ def memory(quick):
 def stop(quick, baud):
     """STOP, from the contact to the end of the telegram that carries OFF1."""
     baud = int(baud)
-    presses = 5 if quick else 20
+    presses = 5 if quick else 50
     world = world_at(baud, seed=5)
     at_the_prompt(world)
     world.repl.begin("collecting(%d, %d)" % (presses * 20_000, COLLECT_MS))
-    took_us = []
+    took_us, lost_starts = [], 0
     world.run(SETTLE_MS)
     for _ in range(presses):
-        start_the_motor_again(world)
+        lost_starts += start_the_motor_again(world)
         world.run(world.random(1, 150))
         since_us = world.clock.now_us
         world.down("STOP")
@@ -256,14 +256,16 @@ def stop(quick, baud):
         world.run(300)
     exchange_us = 1_000_000 // rate_limit(baud)
     found = {"baud": baud, "took_us": sorted(took_us), "exchange_us": exchange_us}
+    found["lost_starts"] = lost_starts
     return checked(world, found)
 
 
 def start_the_motor_again(world):
-    for _ in range(5):
+    """How many times START did nothing before it did."""
+    for lost in range(5):
         world.press("START")
         if world.run_until(lambda: world.drives[1].hz() > STOP_HZ, 2_000):
-            return
+            return lost
     raise RuntimeError("the motor does not turn: %r" % (world.lcd(),))
 
 

@@ -202,7 +202,8 @@ def stop_row(baud):
         took = figures["took_us"]
         middle = took[len(took) // 2]
         shown = tuple(at / 1000 for at in (took[0], middle, took[-1]))
-        return "%.1f / %.1f / %.1f ms of %d" % (*shown, len(took))
+        lost = "; %d STARTs did nothing" % figures["lost_starts"] if figures["lost_starts"] else ""
+        return "%.1f / %.1f / %.1f ms of %d" % (*shown, len(took)) + lost
 
     return Row(
         STOPS[baud],
@@ -210,7 +211,8 @@ def stop_row(baud):
         "<= %.1f ms: debounce and 2 exchanges"
         % ((DEBOUNCE_US + 2e6 * CHARACTERS * CHARACTER_BITS / baud) / 1000),
         show,
-        lambda figures: figures["took_us"][-1] <= bound_us(figures),
+        lambda figures: figures["took_us"][-1] <= bound_us(figures)
+        and not figures["lost_starts"],
     )
 
 
