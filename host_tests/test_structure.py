@@ -8,7 +8,8 @@ INTERPRETERS = "host"
 TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 
 # Room: what it may import of the project, and of the outside. A room is a file, a folder, or the
-# beginning of a file's name; the longest that fits counts. `micropython` is the language itself (const, viper).
+# beginning of a file's name; the longest that fits counts. `micropython` is the language itself
+# (const, viper).
 RULES = (
     ("firmware/main.py", ("app",), ("board",)),
     ("firmware/app.py", ("panel", "settings", "uss", "hal"), ("micropython",)),

@@ -543,9 +543,8 @@ def test_the_compiler_is_unpacked_without_what_is_for_other_chips(pico, tmp_path
     ],
 )
 def test_sources_are_taken_in_the_very_version_that_was_tried(pico, offered, says):
-    run = pico.shell(
-        f"packages_version() {{ echo {offered}; }}; pico_offers view micropython 1.25.0", PICO_FILES
-    )
+    stand_in = f"packages_version() {{ echo {offered}; }}"
+    run = pico.shell(f"{stand_in}; pico_offers view micropython 1.25.0", PICO_FILES)
     assert (run.returncode, run.stderr.strip()) == (bool(says), says)
 
 

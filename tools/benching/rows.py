@@ -207,7 +207,8 @@ def stop_row(baud):
 
     return Row(
         STOPS[baud],
-        "STOP pressed to the end of the OFF1 telegram, 1 drive, %d baud: min / median / max" % baud,
+        "STOP pressed to the end of the OFF1 telegram, 1 drive, %d baud: min / median / max"
+        % baud,
         "<= %.1f ms: debounce and 2 exchanges"
         % ((DEBOUNCE_US + 2e6 * CHARACTERS * CHARACTER_BITS / baud) / 1000),
         show,
