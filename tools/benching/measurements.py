@@ -95,7 +95,7 @@ def spread(figures):
     count = len(figures)
     if not count:
         return [None, None, None, None, 0]
-    return [figures[0], figures[count // 2], figures[count * 99 // 100], figures[-1], count]
+    return [figures[0], figures[count // 2], figures[(count * 99 - 1) // 100], figures[-1], count]
 
 
 def percentile(table, percent):
@@ -126,7 +126,7 @@ def checked(world, figures):
 def line(quick, baud):
     """Exchanges, idle time, driver enable; keys and display busy, a collection every 100 ms."""
     baud = int(baud)
-    telegrams = 100 if baud < 57600 else 500 if quick else 10_000
+    telegrams = (100 if quick else 400) if baud < 57600 else 500 if quick else 10_000
     world = world_at(baud)
     at_the_prompt(world)
     busy_ms = telegrams * 1000 // rate_limit(baud) * 13 // 10 + 2_000
