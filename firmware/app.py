@@ -105,6 +105,7 @@ class App:
         turning.
         """
         try:
+            self._persist(self.bus.resume)
             self._persist(self.bus.stop_all)
             self._persist(self._wait, self._all_stopped)
             self._persist(self.bus.close)

@@ -6,6 +6,7 @@ scratch. A STOP that stayed out of it would be the worst of all defects.
 
 import random
 
+from uss import drive as drive_module
 from uss import pkw, pzd, telegram
 from uss.drive import Drive
 from uss.survey import Survey
@@ -132,3 +133,56 @@ def test_a_drive_that_is_asked_for_everything_is_not_left_waiting():
         drive.take(net, telegram.NET, now)
         now += 4_000
     assert survey.complete
+
+
+def test_words_that_were_written_half_are_written_anew():
+    """The engine fails between STW and HSW, takes ON back and goes on: OFF1 has to be sent."""
+    put_word = drive_module.put_word
+    for failing_at in (0, 1):
+        drive = ready_drive()
+        drive.start(0x0CCD)
+        left = [failing_at]
+
+        def fail(net, at, word):
+            if left[0] == 0:
+                raise MemoryError
+            left[0] -= 1
+            put_word(net, at, word)
+
+        drive_module.put_word = fail
+        try:
+            drive.fill(drive.request, telegram.NET, 0)
+        except MemoryError:
+            pass
+        else:
+            raise AssertionError("nothing failed")
+        finally:
+            drive_module.put_word = put_word
+        drive.revoke()
+        for _ in range(3):
+            drive.fill(drive.request, telegram.NET, 0)
+            assert bytes(drive.request[11:15]) == b"\x04\x7e\x00\x00", drive.request
+
+
+def ready_drive():
+    """A drive in contact that was sent OFF1 and has nothing else to be told."""
+    drive = Drive(5, MASK)
+    reply = bytearray(16)
+    telegram.put_word(reply, 11, 0xFB31)
+    telegram.seal(reply, 5, 12)
+    for _ in range(3):
+        drive.fill(drive.request, telegram.NET, 0)
+        drive.take(reply, telegram.NET, 0)
+    return drive
+
+
+def test_a_setpoint_that_is_no_word_is_refused():
+    drive = ready_drive()
+    for hsw, error in ((0x10000, ValueError), (-1, ValueError), (0.5, TypeError)):
+        try:
+            drive.start(hsw)
+        except error:
+            pass
+        else:
+            raise AssertionError(hsw)
+        assert not drive.wanted

@@ -32,6 +32,7 @@ from uss.timing import elapsed
 PZD_COUNT = const(4)  # characters of STW and HSW, of ZSW and HIW
 TICKET_MASK = const(0xFFFF)
 INSIST_MAX = const(10)  # telegrams out of turn that an OFF1 may take until the drive answers one
+UNKNOWN = const(-1)  # no control word
 COUNTER_MASK = const(0xFFFF)  # counters wrap like the drive's own (specification A-5.2.3)
 
 # What each receiver finding is counted as. Named as in specification A-5.2.3.
@@ -108,7 +109,10 @@ class Drive:
         """Have the drive run with setpoint word `hsw` (0...FFFFh) on a new ticket.
 
         stw: pzd.ON, ON_REVERSE, JOG_RIGHT or JOG_LEFT; a jog has its speed from the drive.
+        ValueError: no such word. TypeError: no integer.
         """
+        if hsw & 0xFFFF != hsw:
+            raise ValueError("HSW %r is not 0...FFFFh" % hsw)
         self.hsw = hsw
         self.off = pzd.OFF1
         ticket = (self.ticket + 1) & TICKET_MASK
@@ -233,15 +237,16 @@ class Drive:
             stw = self.off
             if self.acknowledgements != self.acknowledged or self._edge_was_answered:
                 stw |= self._acknowledge_bit()
-        self.steady = not self.insist and self.acknowledgements == self.acknowledged
         if not stw & STW_ON:
             hsw = 0
         if stw != self._sent_stw or hsw != self._sent_hsw:
             self.sealed = False
+            self._sent_stw = UNKNOWN  # should this fail half way, both are written anew
             put_word(net, at + PKW_COUNT, stw)
             put_word(net, at + PKW_COUNT + 2, hsw)
             self._sent_stw = stw
             self._sent_hsw = hsw
+        self.steady = not self.insist and self.acknowledgements == self.acknowledged
 
     def take(self, net, at, now):
         """Take the words of a valid reply that stands in `net` from index `at` on, behind ADR."""
