@@ -65,8 +65,8 @@ class App:
         self.bus.refresh(clock.ticks_us())
         self.pacer.tend()
         keypad = board.keypad
-        self.panel.step(keypad.read(), now_ms, clock.ticks_us(), keypad.unclear)
-        board.display.show(self.panel.screen.picture)
+        if self.panel.step(keypad.read(), now_ms, clock.ticks_us(), keypad.unclear):
+            board.display.show(self.panel.screen.picture)
         if self._engine_works(now_ms):
             board.watchdog.feed()
         if self.settings.dirty:

@@ -100,6 +100,17 @@ def test_a_burst_is_announced_and_its_end_known():
     bench.check()
 
 
+def test_a_burst_before_anybody_wants_to_know_is_kept():
+    bench = Bench()
+    clock, wire = bench.clock, bench.wire
+    uart, timer = bench.uart, HardTimer(bench.chip)
+    link = Rs485Link(uart, bench.driver_enable, timer, clock, 19200)
+    wire.talk(bench.neighbour, REQUEST, len(REQUEST))
+    clock.advance(20_000)
+    assert link.receive(bytearray(260), 0) == 16
+    bench.check()
+
+
 def test_a_burst_may_be_taken_in_pieces():
     bench = Bench(interrupts=False)
     burst = bench.wire.talk(bench.neighbour, REQUEST, len(REQUEST))

@@ -237,3 +237,23 @@ def test_what_comes_in_without_end_is_not_waited_for_longer_than_a_reply_takes()
     last_us = line.receiver.window_us + LINE.residual_us(12)
     assert line.silence(last_us - 1) == WAITING
     assert line.silence(last_us) == BAD_START
+
+
+def test_what_is_still_coming_when_a_reply_is_given_up_keeps_the_line_from_being_silent():
+    """The silence before the next telegram begins only when it is over."""
+    line = coming()
+    line.come(REPLY[:5], 3 * TCH)
+    given_up_us = 3 * TCH + LINE.residual_us(12) + 2
+    assert line.silence(given_up_us) == CUT_OFF
+    assert line.receiver.heard_at == SENT_AT + given_up_us
+
+
+def test_what_was_heard_before_the_request_had_left_is_no_reply_to_it():
+    """The late reply to the request before it, say: taken only now, and not a word of it true."""
+    for before_us in (1, TCH, 100 * TCH):
+        line = Line(polled_us=2 * TCH)
+        line.link.burst = REPLY
+        line.link.received_at = (SENT_AT - before_us) & MASK
+        assert line.receiver.take(line.link, SENT_AT + 1) == WAITING
+        assert line.receiver.heard_at == SENT_AT
+        assert line.come(REPLY, 3 * TCH) == GOOD  # the one that belongs to it

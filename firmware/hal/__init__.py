@@ -28,9 +28,11 @@ clock
 link                    half duplex; the driver enable is the link's affair
     interrupts          True: on_activity is called without anyone asking; False: it must be polled
     resolution_us       how late received_at and sent_at may be, at the most
-    on_activity         None or a function of no arguments; called (interrupt) when a burst of
-                        characters has ended; when sending has ended only by a link that could
-                        not tell of it otherwise: `sending_us` and `sent_at` do
+    on_activity         a function of no arguments, at first one that does nothing; called
+                        (interrupt) when a burst of characters has ended; when sending has ended
+                        only by a link that is not `foreseen`. There is no jump before the call:
+                        MicroPython raises a pending Ctrl-C at the next jump, and an interrupt
+                        handler that raises is gone for good
     send(buffer, count) interrupt. Begins to send the first `count` characters; the caller
                         leaves the buffer alone until sending_us answers 0
     sending_us(now)     interrupt. Microseconds until the last stop bit has left and the driver is

@@ -58,7 +58,6 @@ class Pacer:
         if self._timer:
             self._timer.deinit()
         self._armed_us = 0
-        self._link.on_activity = None
         self._link.close()
 
     def tend(self):
@@ -72,22 +71,25 @@ class Pacer:
             thrown, self._thrown = self._thrown, None
             raise thrown
 
-    def run(self, early_us=0):
+    def run(self, only_if_due=False):
         """Enter the engine unless somebody is inside; then have it entered once more.
 
-        early_us: above 0, nothing is due before that: the timer is only set again. Raises nothing:
-        it may be a handler, and MicroPython may raise a pending Ctrl-C wherever it happens to be.
+        only_if_due: when nothing is, the timer is only set again. Raises nothing: it may be a
+        handler, and MicroPython may raise a pending Ctrl-C wherever it happens to be.
         """
-        if self._inside:
-            self._again = True
-            return
-        try:
-            self._inside = True
+        inside = self._inside
+        try:  # before the first jump: a pending Ctrl-C is raised at jumps
+            if inside:
+                self._again = True
+                return
             for _ in range(ROUNDS_MAX):
+                # In this order, or an interrupt in between is forgotten: it either comes in by
+                # itself, or is noted. What is due is asked after that, for it may change it.
                 self._again = False
+                self._inside = True
+                early_us = self._early_us() if only_if_due else 0
                 if early_us > 0:
                     self._arm(early_us)
-                    early_us = 0
                 else:
                     try:
                         due_us = self._engine.poll(self._ticks_us())
@@ -96,16 +98,19 @@ class Pacer:
                         self.failure = failure
                         self._recover()
                     self.runs = (self.runs + 1) & 0xFFFF
+                only_if_due = False
                 self._inside = False  # from here on an interrupt finds its way in by itself
                 if not self._again:
                     return
-                self._inside = True
+            self._inside = True
+            self._plan(min(self._due_us, WAKE_US))
             self._inside = False
-            # The one-shot may have been the event that was put off, and so be used up.
-            self._arm(WAKE_US)
         except BaseException as thrown:
-            self._inside = True  # no interrupt may come in on half of it
             self._thrown = thrown
+            self._again = True
+            if inside:
+                return  # whoever is inside enters once more
+            self._inside = True  # no interrupt may come in on half of it
             try:
                 self._recover()
             finally:
@@ -149,4 +154,4 @@ class Pacer:
         return self._due_us - ((self._ticks_us() - self._asked_at) & self._mask)
 
     def _timer_came(self, _timer):
-        self.run(self._early_us())
+        self.run(True)

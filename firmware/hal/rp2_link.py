@@ -95,6 +95,10 @@ def _copy(source: ptr8, target: ptr8, at: int, count: int):
         index += 1
 
 
+def _nobody():
+    """Whom the link tells of what it hears, until somebody wants to know."""
+
+
 class Rp2Link:
     """uart: UART 1 as above, made before this. state_machine: its number, 0...7.
 
@@ -106,7 +110,7 @@ class Rp2Link:
     foreseen = True
 
     def __init__(self, uart, state_machine, dma, tx_pin, driver_enable, clock, baud):
-        self.on_activity = None
+        self.on_activity = _nobody
         self.received_at = 0
         self.sent_at = 0
         self._idle_us = IDLE_BITS * 1_000_000 // baud
@@ -201,9 +205,7 @@ class Rp2Link:
     def _on_idle(self, _uart):
         self._burst_ended_at = (self._ticks_us() - self._idle_us) & self._mask
         self._burst_ended = True
-        on_activity = self.on_activity
-        if on_activity:
-            on_activity()
+        self.on_activity()  # no jump before it: a pending Ctrl-C would end this handler for good
 
 
 def _duration_us(baud, count):

@@ -19,6 +19,10 @@ POLLED_RESOLUTION_US = const(5_000)  # how late a polled link may be looked at
 RELEASES_MAX = const(16)  # looks at the transmitter, a quarter of a character apart
 
 
+def _nobody():
+    """Whom the link tells of what it hears, until somebody wants to know."""
+
+
 class Rs485Link:
     """uart: 8E1 at `baud`, buffers of at least 256 characters. driver_enable: a Pin, 1 sends.
 
@@ -27,7 +31,7 @@ class Rs485Link:
     """
 
     def __init__(self, uart, driver_enable, timer, clock, baud, interrupts=True, hard=True):
-        self.on_activity = None
+        self.on_activity = _nobody
         self.interrupts = interrupts
         self.received_at = 0
         self.sent_at = 0
@@ -105,8 +109,7 @@ class Rs485Link:
     def _on_idle(self, _uart):
         self._burst_ended_at = (self._ticks_us() - self._idle_us) & self._mask
         self._burst_ended = True
-        if self.on_activity:
-            self.on_activity()
+        self.on_activity()  # no jump before it: a pending Ctrl-C would end this handler for good
 
     def _release(self, _timer):
         if not self._uart.txdone() and self._releases < RELEASES_MAX:
@@ -119,8 +122,7 @@ class Rs485Link:
         if self._releases == RELEASES_MAX:
             self.late_releases = (self.late_releases + 1) & 0xFFFF
         self._sending = False
-        if self.on_activity:
-            self.on_activity()
+        self.on_activity()
 
     def _arm(self, after_us):
         timer = self._timer

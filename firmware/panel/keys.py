@@ -50,6 +50,10 @@ class Keys:
         """The bit of a key by name; 0 when this board has no such key."""
         return self._bits.get(key, 0)
 
+    def bits(self, names):
+        """The bits of several keys."""
+        return sum(self.bit(key) for key in names)
+
     def forget(self):
         """What is down repeats nothing any more: it has to be pressed anew."""
         self._last = 0
@@ -78,28 +82,35 @@ class Keys:
         if self._first:
             self._first = False
             self._raw = raw
-            for position in range(len(self._changed_at)):
-                self._changed_at[position] = now_ms
+            self._changed_at = [now_ms] * len(self._changed_at)
         self.pressed = 0
         self.repeated = 0
         changed = raw ^ self._raw
         self._raw = raw
-        if changed or raw != self.down or self._released != self._all:
-            self._debounce(raw, changed, now_ms)
+        unsettled = changed | raw ^ self.down | self._all & ~self._released
+        if unsettled:
+            self._debounce(changed, unsettled, now_ms)
         self._released &= ~unclear
         if self._last:
             self._repeat(now_ms)
 
-    def _debounce(self, raw, changed, now_ms):
-        bit = 1
-        for position in range(len(self._changed_at)):
+    def _debounce(self, changed, unsettled, now_ms):
+        """unsettled: the keys, as bits, that moved just now or are not yet what they read."""
+        position = 0
+        while unsettled:
+            bit = 1 << position
             if changed & bit:
                 self._changed_at[position] = now_ms
-            elif raw & bit & self._eager:
-                self._settle(bit, raw & bit, now_ms)
-            elif elapsed(now_ms, self._changed_at[position], self._mask) >= DEBOUNCE_MS:
-                self._settle(bit, raw & bit, now_ms)
-            bit <<= 1
+            elif unsettled & bit and self._is_steady(position, bit, now_ms):
+                self._settle(bit, self._raw & bit, now_ms)
+            unsettled &= ~bit
+            position += 1
+
+    def _is_steady(self, position, bit, now_ms):
+        """Whether a key that did not move just now has been the same for long enough."""
+        if self._raw & bit & self._eager:
+            return True
+        return elapsed(now_ms, self._changed_at[position], self._mask) >= DEBOUNCE_MS
 
     def _settle(self, bit, is_down, now_ms):
         if not is_down:

@@ -1,8 +1,8 @@
 """The panel: keys that act on every page, which drive is selected, which page is shown.
 
     panel = Panel(controls, bus, keypad.names, settings, clock.ticks_mask)
-    panel.step(keypad.read(), now_ms, now_us)      # each step of the loop
-    display.show(panel.screen.picture)
+    if panel.step(keypad.read(), now_ms, now_us):   # each step of the loop
+        display.show(panel.screen.picture)
 
 STOP acts on every page, before everything else. START, REVERSE, the jog and the address keys act
 on every page that shows the drive they act on; PARAM changes between home and parameter mode.
@@ -29,6 +29,11 @@ SPLASH_MS = const(800)
 DRAW_MS = const(50)
 MESSAGE_MS = const(3_000)
 READING_MS = const(1_000)  # so long a START does not answer a question: it may be a double tap
+
+# They act on every page that shows the drive they act on. STOP acts on every page.
+COMMAND_KEYS = (
+    "START", "REVERSE", "JOG_RIGHT", "JOG_LEFT", "ADDRESS_UP", "ADDRESS_DOWN", "PARAM",
+)  # fmt: skip
 
 
 class Panel:
@@ -66,34 +71,32 @@ class Panel:
         self._notice = texts.SETTINGS_DAMAGED if settings.complaint else notice
         self._message_at = 0
         self._drawn_at = 0
-        self._keys_were_down = False
-        self._looks = False  # this step looks at the drive that is shown
+        self._were_down = 0  # the keys that were down in the last step, as bits
+        # What they do ends when they go up, or goes on; the others act when they are pressed.
+        self._held_keys = keys.bits(("STOP", "JOG_RIGHT", "JOG_LEFT"))
+        self._command_keys = keys.bits(COMMAND_KEYS)
+        # What is not done at once takes turns, so that each step of the loop stays short.
+        self._turns = (self._look, self._follow, self._draw, self._let_show)
+        self._next_turn = 0
 
     def step(self, raw_keys, now_ms, now_us, unclear_keys=0):
         """raw_keys: the keys down now, as bits; unclear_keys: those that cannot be told.
 
-        Both times are readings of the clock. What an operator does is done in this very step, what
-        comes of it is taken up in the next. Every second step looks at the drive that is shown;
-        the others draw a field of the picture or look at what is left, so that each stays short.
+        Both times are readings of the clock. What an operator does is done in this very step; what
+        comes of it is taken up in the next ones, each of which does one thing of several in turn.
+        Answers whether the rest of the step is for the display.
         """
         keys = self._keys
         keys.update(raw_keys, now_ms, unclear_keys)
-        if keys.down or self._keys_were_down:
-            self._keys_were_down = keys.down != 0  # once more after the last one went up
+        if (keys.down | self._were_down) & self._held_keys or keys.pressed or keys.repeated:
             self._take_keys(keys, now_ms)
-        acts = keys.pressed | keys.repeated
-        self._looks = not (self._looks or acts)
-        if self._looks:
-            self._look(now_ms, now_us)
+        self._were_down = keys.down
         if self._over is self._splash:
             self._end_splash(now_ms)
-        if acts or elapsed(now_ms, self._drawn_at, self._mask) >= DRAW_MS:
-            self._drawn_at = now_ms
-            self._view.begin(self._over or self._page)
-        if acts or not (self._looks or self._view.step(now_ms)):
-            if self._page is self._parameters:
-                self._parameters.step(keys, now_ms)
-            self._look_at_another(now_us)
+        if keys.pressed or keys.repeated:
+            self._begin_picture(now_ms)
+            return False
+        return self._take_turn(now_ms, now_us)
 
     # --- for the pages --------------------------------------------------------------------------
 
@@ -128,16 +131,42 @@ class Panel:
         """Whether another master was heard before the first telegram, so that none is sent."""
         return self._bus.is_line_in_use()
 
-    def _look(self, now_ms, now_us):
+    # --- what takes turns: each answers whether the step has time left for the display ----------
+
+    def _take_turn(self, now_ms, now_us):
+        turn = self._next_turn
+        self._next_turn = turn + 1 if turn + 1 < len(self._turns) else 0
+        return self._turns[turn](now_ms, now_us)
+
+    def _look(self, _now_ms, now_us):
         self.selected.step(now_us)
+        return False
+
+    def _follow(self, now_ms, now_us):
         self._writer.step(now_us)
         self._collect(now_ms)
+        if self._page is self._parameters:
+            self._parameters.step(self._keys, now_ms)
+        if len(self.controls) > 1:
+            self._look_at_another(now_us)
+        return False
+
+    def _draw(self, now_ms, _now_us):
+        if elapsed(now_ms, self._drawn_at, self._mask) >= DRAW_MS:
+            self._begin_picture(now_ms)
+        self._view.step(now_ms)
+        return False
+
+    def _begin_picture(self, now_ms):
+        self._drawn_at = now_ms
+        self._view.begin(self._over or self._page)
+
+    def _let_show(self, _now_ms, _now_us):
+        return True
 
     def _look_at_another(self, now_us):
         """The next drive in turn. One that is not shown has nothing to say and nothing to ask:
         START has to be pressed anew, with that drive in sight."""
-        if len(self.controls) == 1:
-            return
         self._turn = (self._turn + 1) % len(self.controls)
         control = self.controls[self._turn]
         if control is not self.selected:
@@ -152,11 +181,11 @@ class Panel:
         self.stop_key.step(keys, self.selected, now_ms)
         page = self._over or self._page
         self._jog_keys.step(keys, self.selected, page.obeys and not self.stop_key.is_down)
-        if not keys.down:
-            return
-        if page.obeys:
+        acts = keys.pressed | keys.repeated
+        if acts & self._command_keys and page.obeys:
             self._take_command(keys, now_ms)
-        page.take_keys(keys, now_ms)
+        if acts:
+            page.take_keys(keys, now_ms)
 
     def _take_command(self, keys, now_ms):
         if keys.pressed & keys.bit("START"):
@@ -200,14 +229,16 @@ class Panel:
         if result:
             self.say(result, now_ms)
         if selected.question and self._over is None:
-            answers = {"SET": self._supervise, "START": self._accept_unsupervised}
-            text = texts.ASK_UNSUPERVISED
-            self.ask(Question(self, text, answers, self._mask, READING_MS))
+            self._ask_unsupervised()
         if self._over is not None and self._over is not self._splash:
             if selected.needs_attention() or self._over.is_stale(now_ms):
                 self.close_question()  # an alarm is not to be hidden
         if self.message and elapsed(now_ms, self._message_at, self._mask) >= MESSAGE_MS:
             self.message = None
+
+    def _ask_unsupervised(self):
+        answers = {"SET": self._supervise, "START": self._accept_unsupervised}
+        self.ask(Question(self, texts.ASK_UNSUPERVISED, answers, self._mask, READING_MS))
 
     def _supervise(self, now_ms):
         """Have the drive stop by itself when this panel falls silent."""

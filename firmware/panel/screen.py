@@ -8,6 +8,8 @@ Drawing writes into the picture and allocates nothing; a display driver finds th
 
 from micropython import const
 
+from uss import fast
+
 ROWS = const(2)
 COLUMNS = const(16)
 
@@ -19,6 +21,7 @@ GLYPHS = bytes(
 )
 
 _BLANK = const(0x20)
+_BLANKS = bytes((_BLANK,)) * COLUMNS
 _MINUS = const(0x2D)
 _POINT = const(0x2E)
 _ZERO = const(0x30)
@@ -33,17 +36,10 @@ class Screen:
 
     def put(self, row, column, width, text):
         """Write `text` (bytes) into a field of `width`, cut or filled with blanks on the right."""
-        picture = self.picture
         at = row * COLUMNS + column
-        end = at + width
-        for code in text:
-            if at == end:
-                return
-            picture[at] = code
-            at += 1
-        while at < end:
-            picture[at] = _BLANK
-            at += 1
+        count = min(len(text), width)
+        fast.copy(text, self.picture, at, count)
+        fast.copy(_BLANKS, self.picture, at + count, width - count)
 
     def number(self, row, column, width, hundredths, decimals):
         """Write a number right-aligned with up to `decimals` (0...2) decimals, rounded.

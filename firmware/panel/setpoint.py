@@ -25,8 +25,8 @@ class Setpoint:
 
     def change(self, centihertz):
         """Move it by so much, within the limits of the drive and of the settings."""
-        self._asked_centihertz = self._limited(self.centihertz + centihertz)
-        self._apply()
+        self._apply(self.centihertz + centihertz)
+        self._asked_centihertz = self.centihertz
 
     def step(self):
         """A limit that comes or goes moves it at once; what the operator set is remembered.
@@ -36,7 +36,7 @@ class Setpoint:
         if self._survey.version != self._version:
             self._version = self._survey.version
             if self._survey.complete or not self._drive.wanted:
-                self._apply()
+                self._apply(self._asked_centihertz)
 
     def _limited(self, centihertz):
         survey = self._survey
@@ -46,7 +46,7 @@ class Setpoint:
             lowest = max(lowest, survey.lowest())
         return max(min(centihertz, highest), min(lowest, highest))
 
-    def _apply(self):
-        self.centihertz = self._limited(self._asked_centihertz)
+    def _apply(self, centihertz):
+        self.centihertz = self._limited(centihertz)
         if self._survey.complete:
             self._drive.hsw = self._survey.scaling.hsw(self.centihertz)

@@ -30,7 +30,7 @@ ANNOUNCEMENTS = (
 
 
 # The fields of a picture, in the order in which they are drawn.
-SETPOINT, ACTUAL, ROW_2, ADDRESS, DONE = range(5)
+SETPOINT, ACTUAL, ROW_2, PAGE, ADDRESS, DONE = range(6)
 
 
 class View:
@@ -45,6 +45,8 @@ class View:
         self._screen = screen
         self._page = None
         self._next = DONE  # the field that is drawn next
+        self._announced = None  # the drive that needs most to be spoken of, and how much
+        self._highest = SILENT_ABOUT
 
     def begin(self, page):
         """A new picture, of this page."""
@@ -52,29 +54,36 @@ class View:
         self._next = SETPOINT
 
     def step(self, now_ms):
-        """Draw the next field of it; False when there is none left."""
-        field = self._next
-        if field == DONE:
-            return False
-        page, screen, control = self._page, self._screen, self._panel.selected
-        self._next = field + 1
-        if page.whole:
+        """Draw the next field of it, if there is one left."""
+        if self._next == DONE:
+            return
+        if self._page.whole:
+            self._draw_whole(now_ms)
             self._next = DONE
-            page.draw(screen, now_ms)
-            if not now_ms // ANNOUNCE_MS & 1:
-                self._announce(0, page, LOST)  # an alarm is not hidden by a question
-        elif field == ADDRESS:
-            _draw_address(screen, control)
-        elif field == ROW_2:
-            if not self._draw_row_2(page, now_ms):
-                self._next = DONE  # no room for an address
+        else:
+            self._next = self._draw(self._next, now_ms)
+
+    def _draw_whole(self, now_ms):
+        self._page.draw(self._screen, now_ms)
+        if not now_ms // ANNOUNCE_MS & 1:
+            self._announce(0, LOST)  # an alarm is not hidden by a question
+
+    def _draw(self, field, now_ms):
+        """Draw a field; answers the one that is drawn next."""
+        screen, control = self._screen, self._panel.selected
+        if field == SETPOINT:
+            if self._draw_alarm(control):
+                return ROW_2
+            _draw_setpoint(screen, control)
         elif field == ACTUAL:
             _draw_actual(screen, control)
-        elif not self._draw_alarm(control):
-            _draw_setpoint(screen, control)
+        elif field == ROW_2:
+            return self._draw_row_2(now_ms)
+        elif field == PAGE:
+            self._page.draw(screen, now_ms)
         else:
-            self._next = ROW_2
-        return True
+            _draw_address(screen, control)
+        return field + 1
 
     def _draw_alarm(self, control):
         """What takes all of row 1 in place of the frequencies; False when nothing does."""
@@ -86,46 +95,63 @@ class View:
             return False
         return True
 
-    def _draw_row_2(self, page, now_ms):
-        """Answers whether the address of the drive stands behind it."""
-        screen, panel = self._screen, self._panel
-        control, held = panel.selected, panel.stop_key.text
-        alarm = texts.STOP_UNCONFIRMED if control.stop_watch.unconfirmed else None
-        if held or alarm:
-            screen.put(1, 0, texts.ROW_WIDTH, held or alarm)
-        elif control.lost_running:
-            screen.put(1, 0, ADDRESS_COLUMN, texts.MAY_RUN)
-            return True
-        elif panel.message or panel.line_in_use():
-            screen.put(1, 0, texts.ROW_WIDTH, panel.message or texts.LINE_IN_USE)
-        elif now_ms // ANNOUNCE_MS & 1 or not self._announce(1, page, RUNS):
-            page.draw(screen, now_ms)
-            return True
-        return False
+    def _draw_row_2(self, now_ms):
+        """What must be said before the page; answers the field that is drawn next."""
+        text = self._why_no_page()
+        if text is not None:
+            self._screen.put(1, 0, texts.ROW_WIDTH, text)
+            return DONE  # no room for an address
+        if self._panel.selected.lost_running:
+            self._screen.put(1, 0, ADDRESS_COLUMN, texts.MAY_RUN)
+            return ADDRESS
+        if not now_ms // ANNOUNCE_MS & 1 and self._announce(1, RUNS):
+            return DONE
+        return PAGE
 
-    def _announce(self, row, page, least):
+    def _why_no_page(self):
+        """The text that takes all of row 2; None when there is none."""
+        panel = self._panel
+        if panel.stop_key.text:
+            return panel.stop_key.text
+        if panel.selected.stop_watch.unconfirmed:
+            return texts.STOP_UNCONFIRMED
+        if panel.selected.lost_running:
+            return None
+        if panel.message:
+            return panel.message
+        return texts.LINE_IN_USE if panel.line_in_use() else None
+
+    def _announce(self, row, least):
         """Speak in `row` of the drive that needs it most, at least so much, and is not told of by
         the page; False when none does.
         """
-        highest, announced = least - 1, None
+        self._announced, self._highest = None, least - 1
         for control in self._panel.controls:
-            if control is not self._panel.selected or not page.tells_state:
-                rank = _rank(control, control is self._panel.selected)
-                if rank > highest:
-                    highest, announced = rank, control
-        if announced is None:
+            self._consider(control)
+        if self._announced is None:
             return False
-        screen, address = self._screen, announced.drive.address
-        text = ANNOUNCEMENTS[highest]
+        self._draw_announcement(row)
+        return True
+
+    def _consider(self, control):
+        selected = control is self._panel.selected
+        if selected and self._page.tells_state:
+            return
+        rank = _rank(control, selected)
+        if rank > self._highest:
+            self._highest, self._announced = rank, control
+
+    def _draw_announcement(self, row):
+        screen, announced = self._screen, self._announced
+        address, text = announced.drive.address, ANNOUNCEMENTS[self._highest]
         column = 2 if address < 10 else 3
         screen.put(row, 0, texts.ROW_WIDTH, b"A")
         screen.number(row, 1, column - 1, address * 100, 0)
         screen.put(row, column, texts.ROW_WIDTH - column, text)
-        if highest == NOTED:
+        if self._highest == NOTED:
             screen.put(row, column + 1, texts.ROW_WIDTH - column - 1, announced.notice)
-        elif highest == TRIPPED:
+        elif self._highest == TRIPPED:
             draw_fault(screen, row, column + len(text) + 1, announced.fault)
-        return True
 
 
 def _rank(control, selected):

@@ -86,12 +86,21 @@ STATES = (  # mask, value, state
 )
 
 
-def state(zsw):
-    """One of NOT_READY, READY, RUNNING, FAULT, INHIBITED for a status word."""
+def _look_up(zsw):
     for mask, value, name in STATES:
         if zsw & mask == value:
             return name
     return NOT_READY
+
+
+# The state for each value of the bits that STATES looks at: the panel asks many times a second.
+_STATE_BITS = const(0x7F)
+_STATE_OF = bytes(_look_up(zsw) for zsw in range(_STATE_BITS + 1))
+
+
+def state(zsw):
+    """One of NOT_READY, READY, RUNNING, FAULT, INHIBITED for a status word."""
+    return _STATE_OF[zsw & _STATE_BITS]
 
 
 # --- scaling ------------------------------------------------------------------------------------

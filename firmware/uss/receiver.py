@@ -90,8 +90,12 @@ class Receiver:
         resolution_us = link.resolution_us
         size = self._size
         if count == 0:
+            since_us = (received_at - self.heard_at) & mask
+            if since_us > mask >> 1:  # it was over before the request was: no reply to that
+                self.stray = True
+                return WAITING
             length_us = added * self._character_us
-            pause_us = ((received_at - self.heard_at) & mask) - length_us + ROUNDING_US
+            pause_us = since_us - length_us + ROUNDING_US
             # A link that sees late says so by its resolution: only a pause that was certainly too
             # short is held against the telegram. Behind stray characters it must be a certain one:
             # a look may have fallen between them and what follows without a pause.
@@ -136,13 +140,16 @@ class Receiver:
     def _judge_silence(self, link, now, added):
         """Nothing to take: whether it is too late for what may still come, or is just coming."""
         late_us = self._residual_us + link.resolution_us
-        if self.count:
-            return CUT_OFF if elapsed(now, self._began_at, self._mask) > late_us else WAITING
         self._coming = added == COMING
-        window_us = self.window_us + late_us if self._coming else self.window_us
-        if elapsed(now, self._sent_at, self._mask) < window_us:
-            return WAITING
+        if self.count:
+            if elapsed(now, self._began_at, self._mask) <= late_us:
+                return WAITING
+            finding = CUT_OFF
+        else:
+            window_us = self.window_us + late_us if self._coming else self.window_us
+            if elapsed(now, self._sent_at, self._mask) < window_us:
+                return WAITING
+            finding = telegram.BAD_START if self.stray or self._coming else SILENT
         if self._coming:
             self.heard_at = now  # the line is not silent
-            return telegram.BAD_START
-        return telegram.BAD_START if self.stray else SILENT
+        return finding
