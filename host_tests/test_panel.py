@@ -32,6 +32,30 @@ def test_a_second_later_it_shows_setpoint_frequency_state_and_address():
     world.check()
 
 
+def test_the_display_works_a_week_after_power_on_as_well():
+    """Ctrl-D starts the panel anew while the chip's clock counts on."""
+    world = World(main.start, ticks_start=600_000_000_000)  # more than half of the clock's period
+    assert world.clock.ticks_ms() > world.clock.ticks_mask // 2
+    world.run(1000)
+    assert world.lcd() == ("S: 10.0 F:  0.00", "READY        A1 ")
+    world.check()
+
+
+def test_a_slow_loop_draws_the_whole_picture():
+    world = panel(addresses=(1, 2))
+    board = world.app.board
+    usual_idle = board.idle
+    for more_us in (8_000, 20_000, 40_000):
+        board.idle = lambda more_us=more_us: (usual_idle(), world.clock.advance(more_us))
+        world.drives[1].fault(7)
+        world.run(4_000)
+        assert row_2(world) == "FAULT F0007  A1", (more_us, world.lcd())
+        world.press("STOP", 300)
+        world.run(4_000)
+        assert row_2(world) == "READY        A1", (more_us, world.lcd())
+    world.check()
+
+
 def test_the_first_telegram_to_any_drive_is_off1_with_the_control_bit():
     world = panel(addresses=(1, 2, 3))
     for address in (1, 2, 3):

@@ -93,9 +93,10 @@ class Panel:
         self._were_down = keys.down
         if self._over is self._splash:
             self._end_splash(now_ms)
-        if keys.pressed or keys.repeated:
+        if keys.pressed:
             self._begin_picture(now_ms)
-            return False
+        if keys.pressed or keys.repeated:
+            return False  # that was enough for a step
         return self._take_turn(now_ms, now_us)
 
     # --- for the pages --------------------------------------------------------------------------
@@ -152,7 +153,8 @@ class Panel:
         return False
 
     def _draw(self, now_ms, _now_us):
-        if elapsed(now_ms, self._drawn_at, self._mask) >= DRAW_MS:
+        # In a slow loop a picture takes longer than DRAW_MS: it is drawn to its end all the same.
+        if self._view.is_done() and elapsed(now_ms, self._drawn_at, self._mask) >= DRAW_MS:
             self._begin_picture(now_ms)
         self._view.step(now_ms)
         return False
@@ -257,6 +259,7 @@ class Panel:
     def _end_splash(self, now_ms):
         if self._began_at is None:
             self._began_at = now_ms
+            self._begin_picture(now_ms)
         if elapsed(now_ms, self._began_at, self._mask) >= SPLASH_MS or self._keys.pressed:
             self._over = None
             if self._notice:

@@ -53,6 +53,10 @@ class View:
         self._page = page
         self._next = SETPOINT
 
+    def is_done(self):
+        """Whether all of it is drawn."""
+        return self._next == DONE
+
     def step(self, now_ms):
         """Draw the next field of it, if there is one left."""
         if self._next == DONE:
