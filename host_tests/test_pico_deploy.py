@@ -98,6 +98,13 @@ def test_what_cannot_be_is_told_before_anything_is_done():
     os.remove(output)
 
 
+def test_the_mpremote_that_the_readme_names_is_there():
+    output = temporary()
+    assert os.system("build/mpremote/bin/mpremote --version >%s 2>&1" % output) == 0, read(output)
+    assert read(output).startswith("mpremote ")
+    os.remove(output)
+
+
 def test_a_stock_pico_becomes_a_panel_and_a_running_panel_is_stopped_and_brought_up_to_date():
     world = PicoWorld("stock", files={"boot.py": b"# mine"})
     status, said = deploy(world)

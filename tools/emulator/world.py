@@ -105,7 +105,7 @@ class PicoWorld(Surroundings):
     repl           the MicroPython prompt, over USB
     """
 
-    place = "an emulated Raspberry Pi Pico"
+    place = "an emulated Pico"
     refused = {"hang": "nobody can hang the emulated chip from outside"}
 
     def __init__(
@@ -192,7 +192,9 @@ class PicoWorld(Surroundings):
         """Join the chip's USB serial to the pty of launch.py; its path, for other programs."""
         self.tell("S", 1)
         self._settle()
-        return os.getenv("USS_PICO_SERIAL")
+        path = os.getenv("USS_PICO_SERIAL")
+        self.place = "an emulated Pico, USB %s" % path
+        return path
 
     def selected(self):
         """The address that the display showed last."""

