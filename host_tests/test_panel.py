@@ -251,17 +251,25 @@ def test_a_stop_that_noise_destroys_is_repeated_out_of_turn():
     world.check()
 
 
-def test_stop_held_down_since_power_on_beats_start():
+def test_stop_held_down_since_power_on_beats_start_and_is_said():
     """Jammed, or its wire is broken."""
-    world = panel()
-    world.down("STOP")
-    world.reset()
-    world.run(1000)
-    world.press("START")
-    assert row_2(world) == "NO: STOP IS DOWN"
-    world.run(5000)
-    assert starts(world) == 0
-    world.check()
+    for happens in ("down", "cut"):
+        world = panel()
+        if happens == "down":
+            world.down("STOP")
+        else:
+            world.keypad.cut("STOP")
+        world.reset()
+        world.run(2000)
+        assert row_2(world) == "STOP IS DOWN", happens
+        world.press("START")
+        world.run(5000)
+        assert row_2(world) == "STOP IS DOWN" and starts(world) == 0
+        if happens == "down":
+            world.up("STOP")
+            world.run(200)
+            assert row_2(world) == "READY        A1"
+        world.check()
 
 
 def test_start_during_the_splash_starts_nothing():

@@ -72,6 +72,11 @@ def test_a_file_that_is_no_flash_is_refused_and_left_as_it_is():
         assert status == 2 and "is no image of the Pico's flash" in said, said
         with open(path) as file:
             assert file.read() == "a letter"
+        with open(path, "wb") as file:
+            for _ in range(2048):
+                file.write(b"\x5a" * 1024)
+        status, said = panel("--flash " + path)
+        assert status == 2 and "holds no file system, or a damaged one" in said, said
         status, said = panel("--flash host_tests")
         assert status == 2 and "is no ordinary file" in said, said
         status, said = panel("--flash /proc/nowhere/flash")

@@ -265,7 +265,11 @@ def flash_of(path):
             if os.stat(path)[0] & KIND != ORDINARY:
                 raise UsageError("--flash %s: is no ordinary file" % path)
             open(path, "r+b").close()
-            image, stored = path, FlashImage(path).read(SETTINGS_FILE)
+            image = path
+            try:
+                stored = FlashImage(path).read(SETTINGS_FILE)
+            except OSError:
+                raise ValueError("%s holds no file system, or a damaged one" % path)
     except ValueError as error:
         raise UsageError("--flash %s" % error)
     except OSError as error:

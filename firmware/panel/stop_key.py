@@ -61,6 +61,8 @@ class StopKey:
             self.text = None
         if self._stage != RELEASED:
             self._hold(now_ms)
+        elif self.is_down:  # and nobody pressed it since power-on
+            self.text = texts.STOP_IS_DOWN
 
     def _hold(self, now_ms):
         held_ms = elapsed(now_ms, self._pressed_at, self._mask)

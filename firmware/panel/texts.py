@@ -52,6 +52,7 @@ HOLD_FOR_OFF2 = b"STOP, HOLD: OFF2"
 HOLD_FOR_ALL = b"STOP, HOLD: ALL"
 OFF3_HOLD_FOR_ALL = b"OFF3, HOLD: ALL"
 OFF2_HOLD_FOR_ALL = b"OFF2, HOLD: ALL"
+STOP_IS_DOWN = b"STOP IS DOWN"  # and was at power-on: it is jammed, or its wire is broken
 
 # Why a key was not obeyed, shown for a while: at most ROW_WIDTH.
 REFUSED_SILENT = b"NO: NO CONTACT"
