@@ -589,7 +589,7 @@ def test_uf2_says_what_is_wrong(pico, tmp_path):
 def test_the_firmware_is_one_for_the_pico_and_tells_nothing_of_this_machine(name):
     file = tiers.TOP / "build" / "pico" / f"{name}.uf2"
     if not file.exists():
-        pytest.skip("it could not be built here: tools/test said why")
+        pytest.skip("no firmware is here: tools/panel --board pico has it built")
     image = bytearray()
     blocks = file.read_bytes()
     for at in range(0, len(blocks), 512):

@@ -59,7 +59,7 @@ TIERS = {
         Tier(
             "pico",
             (*BESIDE_A_CHIP, *_micropython("unix64", heap="64M")),
-            "tools/panel --board pico (it fetches 450 MB)",
+            "tools/panel --board pico (it takes 550 MB)",
             everywhere=False,
         ),
     )
