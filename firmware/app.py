@@ -26,6 +26,7 @@ from settings import load, save
 CLOSE_MS = const(1_000)  # for the drives to answer their OFF1, and a round of the bus on top
 FAREWELL_STEPS = const(100)  # for the display to show that nothing is controlled any more
 SAVE_AGAIN_MS = const(10_000)  # after the store failed
+FEED_MS = const(100)  # of the watchdog, which bites after 2 s
 
 
 class App:
@@ -47,28 +48,32 @@ class App:
         notice = texts.WATCHDOG_RESTART if board.reset_cause else None
         self.panel = Panel(controls, self.bus, board.keypad.names, settings, mask, notice)
         self._mask = mask
+        self._ticks_us = board.clock.ticks_us
+        self._ticks_ms = board.clock.ticks_ms
         self._progress = 0  # of the bus as last seen, and when it moved
         self._progress_at_ms = 0
+        self._fed_at_ms = 0
         self._save_failed = False
         self._saved_at_ms = 0
 
     def start(self):
-        self._progress_at_ms = self.board.clock.ticks_ms()
-        self.bus.refresh(self.board.clock.ticks_us())
+        self._progress_at_ms = now_ms = self._ticks_ms()
+        self._fed_at_ms = (now_ms - FEED_MS) & self._mask
+        self.bus.refresh(self._ticks_us())
         self.pacer.start()
 
     def step(self):
         """One turn of the main loop, 2 ms of work at most; ends in the board's `idle`."""
         board = self.board
-        clock = board.clock
-        now_ms = clock.ticks_ms()
-        self.bus.refresh(clock.ticks_us())
-        self.pacer.tend()
         keypad = board.keypad
-        if self.panel.step(keypad.read(), now_ms, clock.ticks_us(), keypad.unclear):
+        now_ms = self._ticks_ms()
+        now_us = self._ticks_us()
+        self.bus.refresh(now_us)
+        self.pacer.tend()
+        if self.panel.step(keypad.read(), now_ms, now_us, keypad.unclear):
             board.display.show(self.panel.screen.picture)
-        if self._engine_works(now_ms):
-            board.watchdog.feed()
+        if (now_ms - self._fed_at_ms) & self._mask >= FEED_MS:
+            self._feed(now_ms)
         if self.settings.dirty:
             self._save_if_quiet(now_ms)
         board.idle()
@@ -153,17 +158,19 @@ class App:
     def _all_stopped(self):
         """Whether every drive in contact has answered OFF1, and the others were sent it."""
         for drive in self.bus.drives:
-            if drive.urgent != drive.served or (drive.contact and not drive.answered_off):
+            if drive.urgent != drive.served or (drive.contact and not drive.answered_off()):
                 return False
         return True
 
     def _is_closed(self):
         return self.bus.phase == CLOSED
 
-    def _engine_works(self, now_ms):
+    def _feed(self, now_ms):
+        """Feed the watchdog, as long as the engine works."""
+        self._fed_at_ms = now_ms
         if self.bus.progress != self._progress:
             self._progress = self.bus.progress
             self._progress_at_ms = now_ms
-            return True
         stands_ms = elapsed(now_ms, self._progress_at_ms, self._mask)
-        return stands_ms * 1000 < self.bus.patience_us
+        if stands_ms * 1000 < self.bus.patience_us:
+            self.board.watchdog.feed()

@@ -46,10 +46,10 @@ class Bench:
 
     name = "master"
 
-    def __init__(self, parameters=None, address=1, baud=19200):
+    def __init__(self, parameters=None, address=1, baud=19200, **more):
         self.clock = Clock()
         self.wire = Wire(self.clock, baud)
-        self.drive = Drive(self.clock, self.wire, address, parameters)
+        self.drive = Drive(self.clock, self.wire, address, parameters, **more)
         self.heard = []
         self.wire.attach(self)
 
@@ -73,6 +73,13 @@ class Bench:
         while not self.heard and self.clock.now_us < too_late_us:
             self.clock.advance(self.wire.character_us)
         return self.heard[0][1] if self.heard else None
+
+    def exchange(self, *words):
+        """The net data words of the reply to these, in whatever layout; None without a reply."""
+        reply = self.ask(telegram(self.drive.address, *words))
+        if reply is None:
+            return None
+        return [reply[i] << 8 | reply[i + 1] for i in range(3, len(reply) - 1, 2)]
 
     def control(self, stw, hsw=0):
         """ZSW and HIW in answer to a control word and a setpoint."""

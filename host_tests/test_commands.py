@@ -209,12 +209,12 @@ def test_the_longest_round_counts_every_drive_of_the_list():
 
 def test_a_second_acknowledgement_has_an_edge_of_its_own():
     """It is wanted in the very moment in which the first one was confirmed."""
-    drive, net = Drive(1, 0x3FFFFFFF), bytearray(20)
+    drive, reply = Drive(1, 0x3FFFFFFF), bytearray(16)
     words = []
     for _ in range(4):
         if len(words) in (0, 1):
             drive.acknowledge()
-        drive.fill(net, 3, 0)
-        words.append(net[11] << 8 | net[12])
-        drive.take(net, 3, 0)
+        drive.fill(0)
+        words.append(drive.request[11] << 8 | drive.request[12])
+        drive.take(reply, 16, 0)
     assert words == [0x04FE, 0x047E, 0x04FE, 0x047E]

@@ -4,9 +4,19 @@ The simulated chip locks the heap while an interrupt runs, so whatever allocates
 MemoryError. On the 32-bit port small integers have 31 bits, as on the RP2040 and the ESP32.
 """
 
+import gc
+import sys
+
 import main
+from boards.sim import generic
 from boards.sim.world import World
-from uss import pkw
+from fleet_bench import Fleet
+from uss import pkw, pzd
+from uss.drive import ATTENTION, Drive
+from uss.layout import Layout
+from uss.master import Master
+from uss.single import Broadcast, Mirror, Special
+from uss.timing import Timing
 
 INTERPRETERS = "unix64 unix32"
 
@@ -96,3 +106,147 @@ def test_an_engine_that_takes_memory_would_be_noticed():
     bus.poll = wasteful
     world.run(100)
     assert bus.failures > 0 and isinstance(world.app.pacer.failure, MemoryError)
+
+
+# --- every layout, and everything that a bus does -----------------------------------------------
+
+LAYOUTS = [(pkw_words, pzd_words) for pkw_words in (0, 3, 4, 127) for pzd_words in range(17)][1:]
+
+
+def fleet_of(layouts):
+    """Drives of these layouts, the first at address 0."""
+    kinds = {}
+    for address, (pkw_words, pzd_words) in enumerate(layouts):
+        parameters = {2013: pkw_words, 2012: pzd_words}
+        kinds[address] = {"family": generic, "parameters": parameters, "reply_delay_us": 1_300}
+    return Fleet(kinds, baud=115200)
+
+
+def all_ask(fleet):
+    """Everybody with a parameter channel is asked something, again and again."""
+    jobs = {}
+
+    def again():
+        for address, drive in fleet.drives.items():
+            job = jobs.get(address)
+            if drive.layout.pkw_words and not (job and job.state == pkw.PENDING):
+                jobs[address] = pkw.read(2011)
+                drive.ask(jobs[address])
+
+    return again
+
+
+def check_locked(fleet, work, ms):
+    """Let time pass, and do `work()` now and then; in the engine the heap was locked each time."""
+    master = fleet.master
+    entries = [0, 0]
+    poll = master.poll
+
+    def counted(now):
+        entries[0] += 1
+        entries[1] += heap_is_locked()
+        return poll(now)
+
+    master.poll = counted
+    for _ in range(ms // 10):
+        work()
+        fleet.run(10)
+    assert entries[0] > ms // 10 and entries[1] > 0.8 * entries[0], entries
+    fleet.check()
+
+
+def test_no_layout_takes_memory():
+    for first in range(0, len(LAYOUTS), 23):
+        layouts = LAYOUTS[first : first + 23]
+        fleet = fleet_of(layouts)
+        fleet.run(500)
+        for drive in fleet.master.drives:
+            if drive.layout.pzd_words:
+                drive.start(0x1000)
+            for place in range(3, drive.layout.pzd_words + 1):
+                drive.put(place, 0x1111 * place & 0xFFFF)
+        check_locked(fleet, all_ask(fleet), 1_500)
+        for drive in fleet.master.drives:
+            assert drive.counters[0] > 3 and not any(drive.counters[1:]), (drive, drive.counters)
+
+
+def test_nothing_that_a_bus_does_takes_memory():
+    """Retries, back-off, turns for the off time, a fixed cycle, an echo; telegrams outside the
+    list; drives that come and go, off and on."""
+    fleet = Fleet(baud=115200)
+    master = fleet.master
+    fleet.run(1_000)
+    fleet.start_all(but=(3, 4))
+    master.retries = 2
+    master.cycle_us = 400_000
+    master.supervise(fleet.drives[1], 400)
+    fleet.motors[3].unplug()
+    fleet.motors[5].unplug()
+    ask = all_ask(fleet)
+    step = [0]
+
+    def work():
+        ask()
+        step[0] += 1
+        singles = (
+            Mirror(9),
+            Broadcast((pzd.OFF1, 0), {2: 0xFFFF}),
+            Special(9, b"\x01\x02"),
+            Special(None, b"\x01"),
+        )
+        if step[0] % 20 == 0 and not 120 < step[0] < 310:
+            master.post(singles[step[0] // 20 % 4])
+        if step[0] % 50 == 0:
+            fleet.wire.echo = not fleet.wire.echo
+        if step[0] == 120:
+            master.off()
+        if step[0] == 300:
+            master.on()
+        if step[0] % 8 == 0:
+            fleet.drives[step[0] // 8 % 31].acknowledge()
+
+    check_locked(fleet, work, 6_000)
+
+
+# --- how much it takes once ---------------------------------------------------------------------
+
+WORD = 4 if sys.maxsize < 1 << 32 else 8
+MASK = (1 << 30) - 1
+
+
+class Nowhere:
+    """A link that is never used."""
+
+    interrupts = True
+
+
+def taken(make):
+    """Bytes of heap that stay taken by what `make` makes."""
+    make()  # whatever is made only once is there
+    gc.collect()
+    before = gc.mem_alloc()
+    made = make()
+    gc.collect()
+    after = gc.mem_alloc()
+    return after - before if made else 0
+
+
+def test_a_drive_takes_less_than_600_bytes():
+    """On the 32-bit build, in the layout that most drives have."""
+    shared = bytearray(ATTENTION)
+    used = taken(lambda: [Drive(1, MASK, shared) for _ in range(100)]) / 100
+    print("%d bytes" % used)
+    assert used < 600 * WORD // 4
+
+
+def test_a_bus_with_31_drives_takes_less_than_32_kb():
+    def make(layouts):
+        master = Master(Nowhere(), Timing(19200), MASK)
+        for address in range(31):
+            master.add(address, Layout(*layouts[address % len(layouts)]))
+        return master
+
+    for layouts in (((4, 2),), ((4, 2), (3, 2), (127, 6), (4, 16), (0, 2))):
+        used = taken(lambda: make(layouts))
+        print("%d bytes" % used)
+        assert used < 32_768 * WORD // 4

@@ -1,10 +1,12 @@
 """The machine code of the bus engine means what its twins in plain Python mean."""
 
 import random
+from array import array
 
 from uss import fast
 
 ROUNDS = 3000
+NAMES = ("exclusive_or", "is_reply", "agreeing", "get_words", "copy", "greatest")
 
 
 def characters(count):
@@ -18,7 +20,7 @@ def framed(count):
         buffer[0] = 0x02 if random.randrange(8) else buffer[0]
         buffer[1] = count - 2 if random.randrange(8) else buffer[1]
         buffer[2] = 5 if random.randrange(8) else buffer[2]
-        in_python, _, _ = fast.IN_PYTHON
+        in_python = fast.IN_PYTHON[0]
         if random.randrange(4):
             buffer[count - 1] = in_python(buffer, count - 1)
     return buffer
@@ -26,7 +28,7 @@ def framed(count):
 
 def test_the_exclusive_or_is_the_same():
     random.seed(11)
-    in_python, _, _ = fast.IN_PYTHON
+    in_python = fast.IN_PYTHON[0]
     for _ in range(ROUNDS):
         count = random.randrange(257)
         buffer = characters(count)
@@ -36,20 +38,76 @@ def test_the_exclusive_or_is_the_same():
 
 def test_a_telegram_is_recognised_by_both_or_by_none():
     random.seed(12)
-    _, in_python, _ = fast.IN_PYTHON
+    in_python = fast.IN_PYTHON[1]
     found = 0
     for _ in range(ROUNDS):
         count = random.randrange(0, 40)
         buffer = framed(count)
-        expected = in_python(buffer, count, 5)
-        assert bool(fast.is_telegram(buffer, count, 5)) == expected, (count, buffer)
+        request = bytearray(framed(count) + bytes(8))
+        request[2] = 5
+        if random.randrange(8) == 0:
+            request[: len(buffer)] = buffer  # an echo
+        expected = in_python(buffer, count, request)
+        assert bool(fast.is_reply(buffer, count, request)) == expected, (count, buffer, request)
         found += expected
     assert ROUNDS // 10 < found < ROUNDS * 9 // 10
 
 
+def test_what_was_sent_is_no_reply():
+    request = b"\x02\x06\x05\x04\x7e\x00\x00\x7b"
+    for is_reply in (fast.is_reply, fast.IN_PYTHON[1]):
+        assert not is_reply(request, 8, request)
+        assert is_reply(b"\x02\x06\x05\xfb\x31\x00\x00\xcb", 8, request)
+        assert is_reply(b"\x02\x04\x05\xfb\x31\xc9", 6, request)
+
+
+def test_agreeing_characters_are_counted_up_to_the_first_that_differs():
+    random.seed(14)
+    in_python = fast.IN_PYTHON[2]
+    lengths = set()
+    for _ in range(ROUNDS // 10):
+        buffer = bytes(random.getrandbits(1) for _ in range(20))
+        other = bytes(random.getrandbits(1) for _ in range(20))
+        at, other_at, count = random.randrange(10), random.randrange(10), random.randrange(11)
+        expected = in_python(buffer, at, other, other_at, count)
+        assert fast.agreeing(buffer, at, other, other_at, count) == expected
+        assert buffer[at : at + expected] == other[other_at : other_at + expected]
+        lengths.add(expected)
+    assert {0, 1, 2, 3} <= lengths
+
+
+def test_words_are_taken_high_byte_first():
+    random.seed(15)
+    in_python = fast.IN_PYTHON[3]
+    for _ in range(ROUNDS // 10):
+        buffer, at, count = characters(40), random.randrange(9), random.randrange(16)
+        taken, expected = array("H", bytes(40)), array("H", bytes(40))
+        fast.get_words(buffer, at, taken, 4, count)
+        in_python(buffer, at, expected, 4, count)
+        assert list(taken) == list(expected)
+        for index in range(count):
+            word = buffer[at + 2 * index] << 8 | buffer[at + 2 * index + 1]
+            assert taken[4 + index] == word
+
+
+def test_the_greatest_is_found_going_round():
+    random.seed(16)
+    in_python = fast.IN_PYTHON[5]
+    found = set()
+    for _ in range(ROUNDS):
+        values = bytes(random.choice((0, 0, 0, 0, 1, 2, 4)) for _ in range(10))
+        start = random.randrange(6)
+        expected = in_python(values, 2, 6, start)
+        assert fast.greatest(values, 2, 6, start) == expected, (values, start)
+        if expected >= 0:
+            assert values[2 + expected] == max(values[2:8])
+        found.add(expected)
+    assert found == {-1, 0, 1, 2, 3, 4, 5}
+
+
 def test_characters_are_copied_to_the_same_place():
     random.seed(13)
-    _, _, in_python = fast.IN_PYTHON
+    in_python = fast.IN_PYTHON[4]
     for _ in range(ROUNDS // 10):
         source, before = characters(20), characters(40)
         at, count = random.randrange(20), random.randrange(21)
@@ -68,7 +126,7 @@ def test_micropython_has_the_machine_code():
         import uss.fast_viper
     except AttributeError:
         has_viper = False  # CPython
-    for quick, plain in zip((fast.exclusive_or, fast.is_telegram, fast.copy), fast.IN_PYTHON):
+    for quick, plain in zip([getattr(fast, name) for name in NAMES], fast.IN_PYTHON):
         assert (quick is plain) != has_viper
     if has_viper:
         assert uss.fast_viper.copy is fast.copy

@@ -245,9 +245,7 @@ def test_a_stop_that_noise_destroys_is_repeated_out_of_turn():
     drive.plug()
     world.run(100)  # one of 16 silent drives takes 30 ms, a round half a second
     assert drive.state == "stopping"
-    own, all_of_them = telegrams(world, pressed_us, 1), telegrams(world, pressed_us)
-    # The STOP itself, and its repetitions, between which the others have their turns.
-    assert len(own) >= 3 and len(all_of_them) >= 2 * (len(own) - 1)
+    assert len(telegrams(world, pressed_us, 1)) >= 3  # the STOP itself, and its repetitions
     world.check()
 
 

@@ -381,11 +381,15 @@ class Failing:
     def heard_at(self):
         return self._receiver.heard_at
 
-    def open(self, address, net_count, residual_us, sent_at):
+    @property
+    def count(self):
+        return self._receiver.count
+
+    def open(self, awaited, sent_at):
         if self.times:
             self.times -= 1
             raise ERROR
-        self._receiver.open(address, net_count, residual_us, sent_at)
+        self._receiver.open(awaited, sent_at)
 
 
 def test_an_exception_in_the_bus_engine_stops_the_motor_and_is_shown():

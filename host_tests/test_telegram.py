@@ -15,13 +15,13 @@ def built(net, address):
 
 def test_every_valid_golden_telegram_is_built_from_its_net_data():
     for example in golden.VALID:
-        assert built(example.net, example.characters[2]) == example.characters, example.id
-    assert len(golden.VALID) == 60
+        assert built(example.net, example.address()) == example.characters, example.id
+    assert len(golden.VALID) == 60 + 67
 
 
 def test_every_valid_golden_telegram_is_received():
     for example in golden.VALID:
-        count, address = len(example.characters), example.characters[2]
+        count, address = len(example.characters), example.address()
         net_count = 2 * (example.pkw_words + example.pzd_words)
         finding = telegram.judge(example.characters, count, address, net_count)
         assert finding == telegram.GOOD, example.id

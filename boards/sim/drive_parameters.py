@@ -6,8 +6,10 @@ who may write, and when, is the business of parameter_channel.py.
     store = Parameters(mm420.ROWS, mm420.PERMITTED, reading)
     store.set(1120, 0, 5.0)         # as from the drive's own keypad: RAM and EEPROM
     store.get(1120, 0)              # 5.0
+    words_of("F", 5.0)              # (0x40A0, 0)
 
-A U16 or U32 is an int; a float has single precision, because that is what the drive keeps.
+A U16, I16 or U32 is an int; an F has single precision, because that is what the drive keeps. An
+index counts from 0, whatever the family does.
 """
 
 import struct
@@ -25,32 +27,77 @@ def single(value):
     return struct.unpack(">f", struct.pack(">f", value))[0]
 
 
+def is_word(kind):
+    """Whether a value of this type has 16 bits."""
+    return kind in ("U16", "I16")
+
+
+def words_of(kind, value):
+    """The words that carry a value of this type, one or two, the high one first."""
+    if is_word(kind):
+        return (value & 0xFFFF,)
+    return struct.unpack(">HH", struct.pack(">f" if kind == "F" else ">I", value))
+
+
+def value_of(kind, words):
+    """What one or two words say, as this type means it."""
+    if kind == "U16":
+        return words[0]
+    if kind == "I16":
+        return words[0] - 0x10000 if words[0] & 0x8000 else words[0]
+    return struct.unpack(">f" if kind == "F" else ">I", struct.pack(">HH", *words))[0]
+
+
+def rows_like(rows, changes, without=()):
+    """The rows of another family, sorted, with `changes` in their place, or beside them.
+
+    changes: whole rows. without: numbers that this family does not have.
+    """
+    by_number = {row[NUMBER]: row for row in rows}
+    by_number.update({row[NUMBER]: row for row in changes})
+    return tuple(by_number[number] for number in sorted(by_number) if number not in without)
+
+
+def default_values(row):
+    """The values of a row as delivered, by index."""
+    default = row[DEFAULT]
+    return list(default if isinstance(default, tuple) else (default,) * row[INDICES])
+
+
 class Parameters:
     """rows, permitted: a family's tables. reading(number, index): the value of a read-only number.
+    retained: a number that, other than 0, has every change kept in the EEPROM as well.
 
     ram[number] is the list of the values in force, by index; look, and change it through store().
+    It stays the same list.
+    eeprom_writes   how often a value, or all at once, was put into the EEPROM since delivery
     """
 
-    def __init__(self, rows, permitted, reading):
+    def __init__(self, rows, permitted, reading, retained=None):
         self.rows = {row[NUMBER]: row for row in rows}
         self.numbers = sorted(self.rows)
         self.ram = {}
+        self.eeprom_writes = 0
         self._eeprom = {}
         self._permitted = permitted
         self._reading = reading
+        self._retained = retained
         for row in rows:
             if row[CHANGE]:
-                default = row[DEFAULT]
-                if not isinstance(default, tuple):
-                    default = (default,) * row[INDICES]
-                self.ram[row[NUMBER]] = list(default)
+                self.ram[row[NUMBER]] = default_values(row)
         self.save()
+        self.eeprom_writes = 0
 
     def value(self, number, index):
         """The present value of a number and index that exist."""
         if number in self.ram:
             return self.ram[number][index]
         return self._reading(number, index)
+
+    def is_changed(self, number):
+        """Whether it has another value than it was delivered with."""
+        values = self.ram.get(number)
+        return values is not None and values != default_values(self.rows[number])
 
     def objection(self, number, index, value):
         """The error number that forbids `value` here, or None."""
@@ -64,11 +111,13 @@ class Parameters:
     def store(self, number, index, value, permanently):
         """Keep a value that was checked, in RAM and, if `permanently`, in the EEPROM."""
         self.ram[number][index] = value
-        if permanently:
+        if permanently or self._retained is not None and self.ram[self._retained][0]:
             self._eeprom[number][index] = value
+            self.eeprom_writes += 1
 
     def save(self):
         """RAM to EEPROM, as P0971 does."""
+        self.eeprom_writes += 1
         self._eeprom = {number: list(values) for number, values in self.ram.items()}
 
     def load(self):
@@ -82,6 +131,20 @@ class Parameters:
             if candidate > number:
                 return candidate
         return 0
+
+    def number_before(self, number):
+        """The next number below one that does not exist; 0 below the first."""
+        before = 0
+        for candidate in self.numbers:
+            if candidate >= number:
+                break
+            before = candidate
+        return before
+
+    def nearest(self, number, value):
+        """The limit that a value out of limits is beyond."""
+        row = self.rows[number]
+        return row[MAXIMUM] if value > row[MAXIMUM] else row[MINIMUM]
 
     # Behind the bus's back
 

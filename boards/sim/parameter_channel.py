@@ -1,7 +1,9 @@
 """The parameter channel of a simulated drive: PKW tasks in, replies out.
 
-It carries out tasks 1, 2, 3, 6 ... 9 and 11 ... 14 (specification C-4.2) on a parameter store and
-refuses the others with error 106. It does not know where on the line the words come from.
+It carries out tasks 1 ... 9 and 11 ... 15 (specification C-4.2), as far as the family knows them,
+on a parameter store and refuses the others with error 106. It does not know where on the line the
+words come from. Descriptions and texts are made in drive_texts.py, change reports in
+change_reports.py.
 
     channel.accept([0x1460, 0, 0, 0], 4)    # the PKW words of a request, and P2013: read P1120
     channel.reply(4)                        # [0x2460, 0, 0x4120, 0]: a double word, 10.0
@@ -11,9 +13,18 @@ present one. For the first `stale_replies` telegrams of a new task the reply is 
 task before, which the specification allows (C-4.2.1.1) and real drives do.
 """
 
-import struct
-
-from boards.sim.drive_parameters import CHANGE, INDICES, LEVEL, TYPE
+from boards.sim.change_reports import BIT, Reports
+from boards.sim.drive_parameters import (
+    CHANGE,
+    INDICES,
+    LEVEL,
+    OUT_OF_LIMITS,
+    TYPE,
+    is_word,
+    value_of,
+    words_of,
+)
+from boards.sim.drive_texts import Texts, element
 from boards.sim.slave import VARIABLE
 
 READ, WRITE, COUNT = range(3)
@@ -32,12 +43,14 @@ TASKS = {
     13: (WRITE, 2, False, True),
     14: (WRITE, 1, False, True),
 }
+READ_DESCRIPTION, WRITE_DESCRIPTION, TEXT_TASK = 4, 5, 15
 
 # AK of a reply.
-WORD, DOUBLE_WORD, ARRAY_WORD, ARRAY_DOUBLE_WORD = 1, 2, 4, 5
+WORD, DOUBLE_WORD, DESCRIPTION, ARRAY_WORD, ARRAY_DOUBLE_WORD = 1, 2, 3, 4, 5
 ELEMENTS = 6
 REFUSED = 7
 NO_RIGHTS = 8
+TEXT = 15
 
 # Error numbers of a REFUSED task; two more are in drive_parameters.py.
 UNKNOWN_NUMBER = 0
@@ -45,17 +58,21 @@ READ_ONLY = 1
 WRONG_SUBINDEX = 3
 NO_ARRAY = 4
 WRONG_TYPE = 5
+DESCRIPTION_FIXED = 7
+NO_DESCRIPTION = 9
+NO_TEXT_ARRAY = 15
 WRONG_STATE = 17
 CHANNEL_TOO_SMALL = 102
 NOT_IMPLEMENTED = 106
+TEXT_FIXED = 107
+WRONG_VALUE_COUNT = 108
 ACCESS_LEVEL = 204
 
-UNKNOWN = (REFUSED, UNKNOWN_NUMBER)
-
 ALL_ELEMENTS = 255
-VIA_COM_LINK = 0x0008  # P0927
+NET_WORDS = 126  # of a telegram, at most
 
-NO_TASK = (0, 0, 0, 0, 0)
+NO_TASK = (0, 0, ())
+NO_REPLY = {3: [0, 0, 0], 4: [0, 0, 0, 0], VARIABLE: [0, 0, 0]}
 
 # Bits of IND that make the page of 2000 numbers: bit, its weight.
 PAGE_BITS = (
@@ -71,17 +88,29 @@ def number_of(pke, ind):
     return pnu + 2000 * sum([weight for bit, weight in PAGE_BITS if ind & bit])
 
 
+def page_of(number):
+    """The high byte of IND for a parameter number, in its place."""
+    return sum([bit for bit, weight in PAGE_BITS if number // 2000 & weight])
+
+
 class ParameterChannel:
-    """state() is "C", "U" or "T": commissioning, running, ready. changed(number) hears of writes.
+    """family: a module such as mm420. state() is "C", "U" or "T": commissioning, running, ready.
+    changed(number) hears of writes. reports: it tells of changes that others make.
 
     stale_replies   telegrams that a new task waits for its own reply
+    reexecute       a write that stands is carried out again with every telegram, which the
+                    specification does not forbid
     """
 
-    def __init__(self, parameters, state, changed):
+    def __init__(self, parameters, family, state, changed, reports=False):
         self.stale_replies = 0
+        self.reexecute = False
         self._parameters = parameters
+        self._family = family.CHANNEL
+        self._texts = Texts(family.CHANNEL["texts"])
         self._state = state
         self._changed = changed
+        self._tells_changes = reports
         self.reset()
 
     def reset(self):
@@ -89,119 +118,244 @@ class ParameterChannel:
         self._task = self._answered = NO_TASK
         self._waiting = 0
         self._number = None  # of the answered task
-        self._refusal = None  # AK and error number, if it failed
+        self._refusal = None  # AK, error number and what is told with it, if it failed
+        self._reports = Reports() if self._tells_changes else None
 
     def accept(self, words, layout):
         """Take the PKW words of a request; `layout` is P2013 (3, 4 or VARIABLE)."""
-        task = self._decoded(words, layout)
+        task = NO_TASK
+        pke = words[0]
+        if pke >> 12:
+            # Bit 11 acknowledges change reports.
+            task = (pke & 0xF7FF, words[1] if len(words) > 1 else 0, tuple(words[2:]))
+        if self._reports is not None:
+            self._reports.hear(pke & BIT)
         if task != self._task:
             self._task = task
             self._waiting = self.stale_replies
         elif self._waiting:
             self._waiting -= 1
-        if not self._waiting and self._answered is not self._task:
+        if not self._waiting and (self._answered is not self._task or self.reexecute):
             self._answered = self._task
-            self._number = number_of(self._task[0], self._task[1])
-            self._refusal = self._carry_out(self._task)
+            self._refusal = self._carry_out(self._task, layout) if task is not NO_TASK else None
 
-    def reply(self, layout):
-        """The PKW words of the reply, with the present value."""
-        pke, ind = self._answered[:2]
-        ak, high, low, wide = self._answer(pke, ind, layout)
-        if wide and layout == 3:
-            ak, low, wide = REFUSED, CHANNEL_TOO_SMALL, False
-        head = [ak << 12 | pke & 0x07FF, ind] if ak else [0, 0]
-        if layout == 4 or wide:
-            return head + [high, low]
-        return head + [low]
+    def reply(self, layout, pzd_words=2):
+        """The PKW words of the reply, with the present value; so many PZD words go with them."""
+        reports = self._reports
+        if reports is None:
+            if not self._answered[0]:
+                return NO_REPLY[layout]
+            return self._reply(self._answered[0], self._answered[1], layout, pzd_words)
+        report = reports.send()
+        if report is None:
+            words = self._reply(self._answered[0], self._answered[1], layout, pzd_words)
+        else:
+            words = self._report(report[0], report[1], layout)
+        words[0] |= reports.bit
+        return words
+
+    def report(self, number, index):
+        """Somebody else has changed this element, or ALL_ELEMENTS."""
+        if self._reports is not None:
+            self._reports.add(number, index)
 
     # Words
 
-    def _decoded(self, words, layout):
-        pke, ind, pwe1, pwe2 = (list(words) + [0, 0, 0, 0])[:4]
-        if not pke >> 12:
-            return NO_TASK
-        word = pwe2 if layout == 4 else pwe1
-        if layout == VARIABLE and len(words) > 3 and pwe2 and not pwe1:
-            word = pwe2  # a master that always sends four words
-        # Bit 11 acknowledges change reports, of which a MICROMASTER makes none.
-        return (pke & 0xF7FF, ind, word, pwe1 << 16 | pwe2, len(words))
+    def _reply(self, pke, ind, layout, pzd_words):
+        if not pke:
+            return list(NO_REPLY[layout])
+        ak, values = self._answer(pke >> 12, ind, layout)
+        room = layout - 2 if layout != VARIABLE else NET_WORDS - 2 - pzd_words
+        if len(values) > room:
+            ak, values = REFUSED, (CHANNEL_TOO_SMALL,)
+        return [ak << 12 | pke & 0x07FF, ind] + placed(values, layout)
 
-    def _answer(self, pke, ind, layout):
-        """AK, high word, low word, and whether it takes both."""
-        if not pke >> 12:
-            return 0, 0, 0, False
+    def _answer(self, ak, ind, layout):
+        """AK of the reply and its value words."""
         number = self._number
         if self._refusal is not None:
-            ak, error = self._refusal
-            if layout == VARIABLE and (ak, error) == UNKNOWN and number is not None:
-                return ak, error, self._parameters.next_number(number), True  # to browse by
-            return ak, 0, error, False
+            ak, error, advice = self._refusal
+            return ak, (error,) + advice if layout == VARIABLE else (error,)
+        if ak in (READ_DESCRIPTION, WRITE_DESCRIPTION):
+            return DESCRIPTION, self._description(number, ind & 0xFF)
+        if ak == TEXT_TASK:
+            return TEXT, self._texts.words(number, ind)
         row = self._parameters.rows[number]
-        task = TASKS[pke >> 12]
-        if task[0] == COUNT:
-            return ELEMENTS, 0, row[INDICES], False
-        value = self._parameters.value(number, self._index(row, task, ind))
-        array = task[2]
-        if row[TYPE] == "U16":
-            return ARRAY_WORD if array else WORD, 0, value & 0xFFFF, False
-        high, low = struct.unpack(">HH", struct.pack(">f" if row[TYPE] == "F" else ">I", value))
-        return ARRAY_DOUBLE_WORD if array else DOUBLE_WORD, high, low, True
+        what, _, array, _ = TASKS[ak]
+        if what == COUNT:
+            return ELEMENTS, (row[INDICES],)
+        words = self._value_words(row, number, self._position(row, array, ind))
+        if is_word(row[TYPE]):
+            return ARRAY_WORD if array else WORD, words
+        return ARRAY_DOUBLE_WORD if array else DOUBLE_WORD, words
 
-    def _index(self, row, task, ind):
-        # A scalar that is addressed as an array answers to index 0 and to index 1 (RM420).
-        return 0 if task[2] and row[INDICES] == 1 else ind & 0xFF
+    def _value_words(self, row, number, position):
+        kind = row[TYPE]
+        if position is not None:
+            return words_of(kind, self._parameters.value(number, position))
+        words = ()
+        for i in range(row[INDICES]):
+            words += words_of(kind, self._parameters.value(number, i))
+        return words
+
+    def _report(self, number, index, layout):
+        """PKW words that tell the value of an element that somebody else has changed."""
+        row = self._parameters.rows[number]
+        array = row[INDICES] > 1
+        position = index if index != ALL_ELEMENTS else None
+        ind = index if position is None or not array else index + self._family["first index"]
+        ak = (11 if array else 9) + (0 if is_word(row[TYPE]) else 1)
+        values = (0,)
+        if position is not None or layout == VARIABLE:  # a whole array has no room otherwise
+            values = self._value_words(row, number, position)
+        if layout == 3:
+            values = values[:1]
+        return [ak << 12 | number % 2000, page_of(number) | ind] + placed(values, layout)
+
+    def _description(self, number, which):
+        parameters = self._parameters
+        row = parameters.rows[number]
+        return element(row, which, parameters.is_changed(number), self._texts.has(number))
+
+    def _position(self, row, array, ind):
+        """The place of the element that IND names; None: all of them."""
+        index = ind & 0xFF
+        if array and index == ALL_ELEMENTS:
+            return None
+        if array and row[INDICES] == 1:
+            return 0  # a scalar that is addressed as an array answers to index 0 and 1 (RM420)
+        first = self._family["first index"]
+        return index - first if array or index else 0
 
     # Tasks
 
-    def _carry_out(self, task):
-        """Execute a new task. The refusal, AK and error number, or None."""
-        pke, ind, word, double_word, count = task
+    def _carry_out(self, task, layout):
+        """Execute a task. The refusal, AK, error number and what is told with it, or None."""
+        pke, ind, values = task
         ak = pke >> 12
-        if not ak:
-            return None
-        if ak not in TASKS:
-            return REFUSED, NOT_IMPLEMENTED
-        what, width = TASKS[ak][:2]
-        if what == WRITE and not self._parameters.ram[927][0] & VIA_COM_LINK:
-            return NO_RIGHTS, 0
-        number = self._number
-        error = self._misaddressed(number, TASKS[ak], ind & 0xFF)
-        if error is None and width == 2 and count < 4:
-            error = CHANNEL_TOO_SMALL
-        if error is None and what == WRITE:
-            error = self._write(number, TASKS[ak], ind, word if width == 1 else double_word)
-        return None if error is None else (REFUSED, error)
+        self._number = number = self._number_of(pke, ind)
+        if ak not in self._family["tasks"]:
+            return REFUSED, NOT_IMPLEMENTED, ()
+        writes = ak in (WRITE_DESCRIPTION,) or ak in TASKS and TASKS[ak][0] == WRITE
+        if (writes or ak == TEXT_TASK and Texts.writes(ind)) and not self._has_rights():
+            return NO_RIGHTS, 0, ()
+        if number not in self._parameters.rows:
+            return REFUSED, UNKNOWN_NUMBER, self._neighbours(number)
+        if ak in (READ_DESCRIPTION, WRITE_DESCRIPTION):
+            error = self._describe(ak, ind & 0xFF)
+        elif ak == TEXT_TASK:
+            error = self._text(ind, values, layout)
+        else:
+            error = self._misaddressed(TASKS[ak], ind & 0xFF, layout)
+            if error is None and TASKS[ak][1] == 2 and len(values) < 2:
+                error = CHANNEL_TOO_SMALL
+            if error is None and writes:
+                return self._write(TASKS[ak], ind, values, layout)
+        return None if error is None else (REFUSED, error, ())
 
-    def _misaddressed(self, number, task, index):
-        row = self._parameters.rows.get(number)
-        if row is None:
-            return UNKNOWN_NUMBER
+    def _number_of(self, pke, ind):
+        if self._family["pages"]:
+            return number_of(pke, ind)
+        return None if ind >> 8 else pke & 0x07FF
+
+    def _has_rights(self):
+        rights = self._family["rights"]
+        return rights is None or self._parameters.ram[rights[0]][0] & rights[1]
+
+    def _neighbours(self, number):
+        """To browse by (RM420, G110D): the next number that exists, and the one before."""
+        if number is None:
+            return ()
+        parameters = self._parameters
+        found = (parameters.next_number(number) & 0xFFFF, parameters.number_before(number))
+        return found[: self._family["neighbours"]]
+
+    def _misaddressed(self, task, index, layout):
+        row = self._parameters.rows[self._number]
         if task[0] == COUNT:
             return None
         if task[2]:
-            if index == ALL_ELEMENTS:
-                return CHANNEL_TOO_SMALL
             if row[INDICES] == 1:
-                return NO_ARRAY if index > 1 else None
-        return WRONG_SUBINDEX if index >= row[INDICES] else None
+                return NO_ARRAY if index > 1 or not self._family["scalar as array"] else None
+            if index == ALL_ELEMENTS:
+                return None if layout == VARIABLE else CHANNEL_TOO_SMALL
+        return None if 0 <= self._position(row, task[2], index) < row[INDICES] else WRONG_SUBINDEX
 
-    def _write(self, number, task, ind, raw):
-        """Put a value into an existing element; the error number, or None."""
+    def _describe(self, ak, which):
+        elements = self._family["elements"]
+        if which not in elements and not (which == ALL_ELEMENTS and 10 in elements):
+            return NO_DESCRIPTION
+        return DESCRIPTION_FIXED if ak == WRITE_DESCRIPTION else None
+
+    def _text(self, ind, values, layout):
+        if layout != VARIABLE or ind & 0xFF == ALL_ELEMENTS:
+            return CHANNEL_TOO_SMALL
+        if not self._texts.has(self._number):
+            return NO_TEXT_ARRAY
+        if not self._texts.exists(self._number, ind):
+            return WRONG_SUBINDEX
+        if Texts.writes(ind) and not self._texts.write(self._number, ind, values):
+            return WRONG_VALUE_COUNT
+        return None
+
+    def _write(self, task, ind, values, layout):
+        """Put values into elements that exist, all or none; the refusal, or None."""
         parameters = self._parameters
+        number = self._number
         row = parameters.rows[number]
+        width = task[1]
+        error = self._unwritable(row, width)
+        if error is not None:
+            return REFUSED, error, ()
+        position = self._position(row, task[2], ind)
+        places = range(row[INDICES]) if position is None else (position,)
+        raw = values if position is None else sent_value(values, width, layout)
+        if len(raw) != width * len(places):
+            return REFUSED, WRONG_VALUE_COUNT, ()
+        starts = range(0, len(raw), width)
+        wanted = [value_of(row[TYPE], raw[start : start + width]) for start in starts]
+        for place, value in zip(places, wanted):
+            error = parameters.objection(number, place, value)
+            if error is not None:
+                return REFUSED, error, self._legal(row, error, value)
+        for place, value in zip(places, wanted):
+            parameters.store(number, place, value, task[3])
+        self._changed(number)
+        return None
+
+    def _unwritable(self, row, width):
         if not row[CHANGE]:
             return READ_ONLY
-        if (row[TYPE] == "U16") != (task[1] == 1):
+        if is_word(row[TYPE]) != (width == 1):
             return WRONG_TYPE
         if self._state() not in row[CHANGE]:
             return WRONG_STATE
-        if row[LEVEL] > parameters.ram[3][0] and number != 3:
+        level = self._family["level"]
+        if self._number != level and row[LEVEL] > self._parameters.ram[level][0]:
             return ACCESS_LEVEL
-        value = struct.unpack(">f", struct.pack(">I", raw))[0] if row[TYPE] == "F" else raw
-        index = self._index(row, task, ind)
-        error = parameters.objection(number, index, value)
-        if error is None:
-            parameters.store(number, index, value, task[3])
-            self._changed(number)
-        return error
+        return None
+
+    def _legal(self, row, error, value):
+        """The next and the previous legal value (RM420), which both are the limit.
+
+        How a double word would be told, no document says.
+        """
+        if error != OUT_OF_LIMITS or not self._family["neighbours"] or not is_word(row[TYPE]):
+            return ()
+        return 2 * words_of(row[TYPE], self._parameters.nearest(self._number, value))
+
+
+def sent_value(values, width, layout):
+    """The words of one value among those behind PKE and IND."""
+    if width == 2:
+        return values[:2]
+    if layout == 4 or layout == VARIABLE and len(values) > 1 and values[1] and not values[0]:
+        return values[1:2]  # in variable length: a master that always sends four words
+    return values[:1]
+
+
+def placed(values, layout):
+    """Value words where the layout has them."""
+    if layout == 4 and len(values) == 1:
+        return [0, values[0]]
+    return list(values) or [0]

@@ -1,11 +1,11 @@
 """The process data of a simulated drive: from STW and HSW to a turning motor, ZSW and HIW.
 
-Control and status words are those of the USS specification (C-5.2.1) with the MICROMASTER 4's own
-bits (r0052 ... r0054), the status words as recorded on real drives. It knows no telegrams and no
-parameter tasks; drive.py hands it the PZD words.
+Control and status words are those of the USS specification (C-5.2.1) with the bits of the drive's
+own family (mm420.py tells how a family says so), the status words as recorded on real drives. It
+knows no telegrams and no parameter tasks; drive.py hands it the PZD words.
 
     process.accept([0x047F, 0x2000])    # PZD words as received
-    process.words(2)                    # PZD words to send: ZSW and HIW, as P2019 has them
+    process.words(2)                    # PZD words to send: ZSW and HIW, or as P2019 has them
 
 Nothing runs in the background: what time does (a ramp ends, pulses go off) is worked out when
 somebody asks, for the instant at which it happened.
@@ -27,6 +27,7 @@ JOG_LEFT = 0x0200
 JOG = JOG_RIGHT | JOG_LEFT
 BY_PLC = 0x0400
 REVERSE = 0x0800
+RIGHT, LEFT = 0x0800, 0x1000  # of a family with a bit for each direction
 
 # States, named as in a report.
 INHIBITED = "inhibited"
@@ -37,58 +38,87 @@ STOPPING = "stopping"
 FAULT = "fault"
 OFF = "off"
 
-# Status word 1: bits 0 to 3 and 6, which exclude each other on a MICROMASTER 4.
-STATE_BITS = {
-    INHIBITED: 0x0041,
-    READY: 0x0001,
-    READY_TO_RUN: 0x0002,
-    RUNNING: 0x0004,
-    STOPPING: 0x0004,
-    FAULT: 0x0048,
-}
+# Bits of status word 1 that no family has elsewhere.
 ZSW_NO_OFF2 = 0x0010
 ZSW_NO_OFF3 = 0x0020
 ZSW_WARNING = 0x0080
 ZSW_NO_DEVIATION = 0x0100
-ZSW_AT_MAXIMUM = 0x0400
+ZSW_REACHED = 0x0400
 ZSW_RIGHT = 0x4000
-# Bits that never change here: 9 control requested, 11 no current limit, 12 (1 in every capture),
-# 13 no motor overload, 15 no inverter overload.
-ZSW_ALWAYS = 0xBA00
 
 # Status word 2: 7 DC link voltage in order, 10 technology controller at its minimum, being off.
 ZSW2_ALWAYS = 0x0480
 
-# P0700: what the drive obeys instead of the COM link. Open terminals and an untouched keypad say
-# OFF1 and nothing worse; a link on which nobody ever spoke says 0000.
+# What an obeyed source says that is not this bus: open terminals and an untouched keypad say OFF1
+# and nothing worse; a link on which nobody ever spoke says 0000.
 NO_COMMAND = NO_OFF2 | NO_OFF3 | PULSES | RAMP_OUTPUT | RAMP_RUN | SETPOINT
-OTHER_SOURCES = {0: NO_COMMAND, 1: NO_COMMAND, 2: NO_COMMAND, 4: 0, 6: 0}
-COM_LINK = 5
+
+# Setpoint sources that make a difference here.
+POTENTIOMETER, COM_LINK = 1, 5
+
+# What a reading shows, and a PZD word carries: the second column of a family's READINGS.
+NOTHING = "nothing"
+STATUS_1, STATUS_2 = "status word 1", "status word 2"
+CONTROL_1, CONTROL_2 = "control word 1", "control word 2"
+WANTED, ACTUAL = "frequency wanted", "actual frequency"
+RECEIVED = "word received"
+FAULTS = "fault numbers"
+COUNTERS = "telegram counters"
+
+STEPS = 0  # in the place of a divisor: a frequency in 0.1 Hz, or in 0.01 Hz as `scaling` says
+
+WORDS = 16  # process data words, at most
+PLAIN = (STATUS_1, ACTUAL) + (NOTHING,) * (WORDS - 2)
 
 
 class Process:
     """state    one of the names above
     starts   how often the pulses were switched on
-    image    the process data in force, by word: STW, HSW and what P2012 adds
+    image    the process data in force, by word: STW, HSW and what the layout adds
     faults   r0947: the present trip in the first two places, older ones behind, two places each
+
+    The settings that it goes by are attributes, in Hz and seconds, taken from the parameters
+    whenever one of these has changed.
     """
 
-    def __init__(self, clock, parameters):
+    # What a family has that cannot set it.
+    commissioning = 0
+    command_source = setpoint_source = COM_LINK
+    scaling = 0
+    potentiometer_hz = 0.0
+    jog_right_hz = jog_left_hz = 5.0
+    jog_up_s = jog_down_s = 10.0
+    minimum_hz = 0.0
+    off3_s = 5.0
+    tolerance_hz = 3.0  # of ZSW bit 8
+    slow_hz = 1.0  # ZSW2 bit 1
+    threshold_hz = 30.0  # ZSW2 bits 4, 5
+
+    def __init__(self, clock, parameters, family):
         self._clock = clock
         self._ram = parameters.ram
+        self._family = family
         self._motor = Motor()
         self.starts = 0
-        self.image = [0, 0, 0, 0]
+        self.image = [0] * WORDS
         self.faults = [0] * 8
         self.state = OFF
         self._jogging = False  # running, or stopping, on a JOG command
         self._off3 = False  # stopping on OFF3, which cannot be taken back
         self._previous = 0
+        style = family.STYLE
+        self._state_bits = style["states"]
+        self._right_at_zero = style["right at zero"]
+        self._signed = style["signed"]
+        self._two_directions = style["two directions"]
+        self._obeyed_bits = style["obeyed bits"]
+        self._control_fault = style["control fault"]
+        self._take_settings()
 
     def power_on(self):
         """Everything in the image is 0: OFF2, OFF3, inhibited. A fault counts as acknowledged."""
         self._file_faults()
-        self.image = [0, 0, 0, 0]
+        self.image = [0] * WORDS
         self.state = INHIBITED
         self._jogging = self._off3 = False
         self.refresh()
@@ -100,19 +130,24 @@ class Process:
 
     def accept(self, words):
         """Take over the PZD words of a telegram, unless STW bit 10 declares them invalid."""
-        if words and words[0] & BY_PLC:
+        if not words:
+            return
+        if words[0] & BY_PLC:
             self.image[: len(words)] = words
             self._obey()
+        elif self._control_fault and self.state == RUNNING:
+            self.trip(self._control_fault)
 
     def accept_broadcast(self, enable, words):
         """Take over what the enable array (a, b, c, d) of a broadcast lets through.
 
         The array is the specification's (A-3, C-5.2.3 and appendix): bit 0 of a is the flag, its
-        other bits name the words; b and c are bit masks for PZD1 and PZD4.
+        other bits name PZD1 ... PZD15; b, c and d are bit masks for PZD1, PZD4 and PZD5. There is
+        no bit for PZD16.
         """
         if not enable[0] & 1:
             return
-        masks = {0: enable[1], 3: enable[2]}  # PZD1 and PZD4 are taken bit by bit
+        masks = {0: enable[1], 3: enable[2], 4: enable[3]}  # these are taken bit by bit
         merged = []
         for i in range(len(words)):
             mask = masks.get(i, 0xFFFF) if enable[0] >> (i + 1) & 1 else 0
@@ -121,6 +156,7 @@ class Process:
 
     def refresh(self):
         """A parameter changed: go by it from now on. No command counts as given by that."""
+        self._take_settings()
         self._previous = self.command_word()
         self._command(self._previous, 0)
 
@@ -132,25 +168,59 @@ class Process:
             self.faults[1] = number
         self._pulses_off(FAULT)
 
+    def acknowledge(self):
+        """The fault counts as seen; its cause is gone."""
+        if self.state == FAULT:
+            self._file_faults()
+            self.state = INHIBITED
+
+    def steps_per_hz(self):
+        """Of a family whose frequencies are whole numbers."""
+        return 100 if self.scaling else 10
+
+    def _take_settings(self):
+        ram = self._ram
+        family = self._family
+        for name, number, divisor in family.SETTINGS:
+            value = ram[number][0]
+            if divisor != 1:
+                value = value / (divisor or self.steps_per_hz())
+            setattr(self, name, value)
+        self._other_command = family.OTHER_COMMANDS.get(self.command_source)
+        source = family.SETPOINT_SOURCES.get(self.setpoint_source, self.setpoint_source)
+        self._sources = (source % 10, source // 10)  # main, additional
+        self._absolute = self.scaling == family.STYLE["absolute"]
+        self._sent = PLAIN
+        if family.LINK["sent"]:
+            readings = family.READINGS
+            self._sent = [readings.get(n >> 16, (NOTHING,))[0] for n in ram[family.LINK["sent"]]]
+
     # Process data out
 
     def words(self, count):
-        """The first `count` PZD words of a reply, by P2019."""
+        """The first `count` PZD words of a reply."""
         return [self._word(i) for i in range(count)]
 
     def _word(self, place):
-        number = self._ram[2019][place] >> 16
-        if number in (20, 21, 24):
-            hz = self.setpoint_hz() if number == 20 else self.hz()
-            return self._scaled(hz, place == 1 and self._ram[2009][0])
-        if number == 52:
+        sent = self._sent
+        what = sent[place] if place < len(sent) else NOTHING
+        if what == STATUS_1:
             return self.zsw()
-        if number == 53:
+        if what == ACTUAL:
+            return self._scaled(self.hz(), place)
+        if what == WANTED:
+            return self._scaled(self.setpoint_hz(), place)
+        if what == STATUS_2:
             return self.zsw2()
-        return self.command_word() if number == 54 else 0
+        if what == CONTROL_1:
+            return self.command_word()
+        return self.image[3] if what == CONTROL_2 else 0
 
-    def _scaled(self, hz, absolute):
-        value = round(hz * 100) if absolute else round(hz * 16384 / self._ram[2000][0])
+    def _scaled(self, hz, place):
+        if not self._signed:
+            hz = abs(hz)
+        absolute = place == 1 and self._absolute
+        value = round(hz * 100) if absolute else round(hz * 16384 / self.reference_hz)
         return max(-32768, min(32767, value)) & 0xFFFF
 
     def zsw(self):
@@ -159,7 +229,7 @@ class Process:
         if self.state == OFF:
             return 0
         stw = self.command_word()
-        zsw = ZSW_ALWAYS | STATE_BITS[self.state]
+        zsw = self._state_bits[self.state]
         if stw & NO_OFF2:
             zsw |= ZSW_NO_OFF2
         if stw & NO_OFF3 and not self._off3:
@@ -167,11 +237,11 @@ class Process:
         # Before the first PZD the captures warn. Two JOG commands at once are warning A0923.
         if not stw or stw & JOG == JOG and not stw & ON:
             zsw |= ZSW_WARNING
-        if abs(self.setpoint_hz() - hz) <= self._ram[2164][0]:
+        if abs(self.setpoint_hz() - hz) <= self.tolerance_hz:
             zsw |= ZSW_NO_DEVIATION
-        if abs(hz) >= self._ram[1082][0]:
-            zsw |= ZSW_AT_MAXIMUM
-        if hz >= 0:
+        if abs(hz) >= self.reached_hz:
+            zsw |= ZSW_REACHED
+        if hz > 0 or not hz and self._right_at_zero:
             zsw |= ZSW_RIGHT
         return zsw
 
@@ -182,9 +252,9 @@ class Process:
             return 0
         size = abs(hz)
         zsw2 = ZSW2_ALWAYS
-        zsw2 |= 0x0002 if size > self._ram[2167][0] else 0
-        zsw2 |= 0x0004 if size > self._ram[1080][0] else 0
-        zsw2 |= 0x0010 if size > self._ram[2155][0] else 0x0020
+        zsw2 |= 0x0002 if size > self.slow_hz else 0
+        zsw2 |= 0x0004 if size > self.minimum_hz else 0
+        zsw2 |= 0x0010 if size > self.threshold_hz else 0x0020
         zsw2 |= 0x0040 if size >= abs(self.setpoint_hz()) else 0
         zsw2 |= 0x0200 if self._clock.now_us >= self._motor.end_us else 0
         return zsw2
@@ -200,9 +270,15 @@ class Process:
         if self._jogging and self.state == RUNNING:
             if stw & JOG == JOG:
                 return self.hz()
-            return self._limited(-self._ram[1059][0] if stw & JOG_LEFT else self._ram[1058][0], 0)
-        sources = self._ram[1000][0]
-        hz = self._source_hz(sources % 10) + self._source_hz(sources // 10)
+            return self._limited(-self.jog_left_hz if stw & JOG_LEFT else self.jog_right_hz, 0)
+        main, additional = self._sources
+        hz = self._source_hz(main)
+        if additional:
+            hz += self._source_hz(additional)
+        if self._two_directions:
+            if stw & (RIGHT | LEFT) not in (RIGHT, LEFT):
+                return 0.0  # neither, or both
+            stw = REVERSE if stw & LEFT else 0
         if stw & REVERSE:
             hz = -hz
         return self._limited(hz, stw & REVERSE)
@@ -210,17 +286,17 @@ class Process:
     # Setpoint channel
 
     def _source_hz(self, source):
-        if source == 1:
-            return self._ram[1040][0]  # nobody turns the potentiometer
+        if source == POTENTIOMETER:
+            return self.potentiometer_hz  # nobody turns the potentiometer
         if source != COM_LINK:
             return 0.0  # terminals without a signal, links on which nobody talks
         hsw = self.image[1]
         if hsw & 0x8000:
             hsw -= 0x10000
-        return hsw / 100 if self._ram[2009][0] else hsw * self._ram[2000][0] / 16384
+        return hsw / 100 if self._absolute else hsw * self.reference_hz / 16384
 
     def _limited(self, hz, reverse):
-        size = min(max(abs(hz), self._ram[1080][0]), self._ram[1082][0])
+        size = min(max(abs(hz), self.minimum_hz), self.maximum_hz)
         if not size:
             return 0.0
         return -size if hz < 0 or not hz and reverse else size
@@ -228,8 +304,9 @@ class Process:
     # State machine
 
     def command_word(self):
-        """The control word that is obeyed, r0054: that of the COM link if P0700 says so."""
-        return OTHER_SOURCES.get(self._ram[700][0], self.image[0])
+        """The control word that is obeyed, r0054: that of this bus if P0700 says so."""
+        word = self._other_command
+        return self.image[0] & self._obeyed_bits if word is None else word
 
     def _obey(self):
         stw = self.command_word()
@@ -244,8 +321,7 @@ class Process:
             return
         if self.state == FAULT:
             if rising & ACKNOWLEDGE:
-                self._file_faults()
-                self.state = INHIBITED
+                self.acknowledge()
         elif not stw & NO_OFF2:
             self._pulses_off(INHIBITED)
         elif not stw & NO_OFF3:
@@ -253,7 +329,7 @@ class Process:
         elif self.state == INHIBITED:
             if not stw & ON:
                 self.state = READY
-        elif self._ram[10][0]:
+        elif self.commissioning:
             self._step(stw & ~(ON | JOG), 0)  # commissioning: the motor must not run
         else:
             self._step(stw, rising)
@@ -312,15 +388,14 @@ class Process:
 
     def _steer(self, stw):
         """Give the motor its course: ramp times are for 0...P1082."""
-        ram = self._ram
         now_us = self._clock.now_us
-        full_hz = ram[1082][0]
-        up_s, down_s = ram[1120][0], ram[1121][0]
+        full_hz = self.maximum_hz
+        up_s, down_s = self.up_s, self.down_s
         if self._jogging:
-            up_s, down_s = ram[1060][0], ram[1061][0]
+            up_s, down_s = self.jog_up_s, self.jog_down_s
         if self.state == STOPPING:
             if self._off3:
-                down_s = ram[1135][0]
+                down_s = self.off3_s
             self._motor.ramp(now_us, 0.0, full_hz, up_s, down_s)
             self._pass_time()
         elif self.state != RUNNING:

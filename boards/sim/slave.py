@@ -36,6 +36,7 @@ def xor_of(data, count):
 class Slave:
     """address, pkw_words (0, 3, 4 or VARIABLE), pzd_words, baud: as the drive is set up now.
 
+    takes_broadcast       False: a broadcast is not for it
     counters              since power-up, see GOOD ... LENGTH; 16 bits each
     residual_time_errors  telegrams that did not end in time, which no reading shows
     """
@@ -46,6 +47,7 @@ class Slave:
         self.pkw_words = 4
         self.pzd_words = 2
         self.baud = wire.baud
+        self.takes_broadcast = True
         self.telegram = bytearray(256)
         self.reset()
 
@@ -141,7 +143,7 @@ class Slave:
 
     def _form(self, adr):
         if not adr & (SPECIAL_BIT | MIRROR_BIT) and adr & BROADCAST_BIT:
-            return BROADCAST
+            return BROADCAST if self.takes_broadcast else None
         if adr == self.address:
             return STANDARD
         if adr == self.address | MIRROR_BIT:

@@ -13,6 +13,7 @@ A station has these attributes, all but the first optional:
     hear(burst)         called when somebody else's burst has ended
     watch(burst)        called when it begins
     name                for the texts of the violations
+    hear_itself(burst)  called when its own burst has ended, where `Wire.echo` is on
     has_driver_enable   True: its driver is switched by Wire.drive, and judged; any other station's
                         transceiver switches by itself, without fault
     is_panel            True: its telegrams are the panel's in the log
@@ -112,6 +113,7 @@ class _Tap:
         self.talking = False  # the burst is on the line
         self.end = Event(self.ended)
         self.has_driver_enable = getattr(station, "has_driver_enable", False)
+        self.hear_itself = getattr(station, "hear_itself", None)
         self.driving = False
         self.driver_on_us = 0
         self.driver_needed_us = 0  # until when there was a reason to have it enabled
@@ -128,6 +130,8 @@ class Wire:
     character_us        one character, rounded up
     start_interval_us   two characters, rounded up: silence that must precede a telegram (USS
                         specification 5.1.2)
+    echo                True: who can, hears what it sends itself, as on two wires with a receiver
+                        that is never off
     log                 the last 1000 telegrams
     violation_count     how many breaches were noted; `violations` tells the first 100
     """
@@ -138,6 +142,7 @@ class Wire:
         self.character_us = -(-11_000_000 // baud)
         self.start_interval_us = -(-22_000_000 // baud)
         self.ends = array("i", [(i + 1) * 11_000_000 // baud for i in range(BURST_LIMIT)])
+        self.echo = False
         self.log = Log()
         self._taps = {}
         self._attached = []
@@ -270,6 +275,8 @@ class Wire:
         if not burst.count:
             return
         self.log.add(burst, tap.from_panel)
+        if self.echo and tap.hear_itself is not None:
+            tap.hear_itself(burst)
         for other in self._attached:
             # Who was plugged in meanwhile has missed the beginning.
             if other is not tap and other.attached_us <= burst.start_us:
@@ -429,7 +436,7 @@ class Transceiver:
     """The RS-485 chip that joins a UART and its driver enable pin to the line: one station.
 
     Receiver and driver share the enable pin, so the UART hears the line while the pin is low and
-    never itself.
+    never itself; where the line has `echo`, the receiver is on all the time.
     """
 
     has_driver_enable = True
@@ -453,6 +460,8 @@ class Transceiver:
     def send(self, data, count):
         """Called by the UART. Returns when the last stop bit will be over, in virtual time."""
         burst = self._wire.talk(self, data, count)
+        if self._wire.echo and burst is not self._burst:
+            self.watch(burst)
         return burst.end_us
 
     def unplug(self):
@@ -463,9 +472,9 @@ class Transceiver:
     def _enable(self, on):
         self.collect()
         burst = self._burst
-        if burst is not None:
+        if burst is not None and not self._wire.echo:
             self._switch_within(burst, on)
-        self._deaf = on
+        self._deaf = on and not self._wire.echo
         self._wire.drive(self, on)
 
     def _switch_within(self, burst, on):
@@ -492,6 +501,8 @@ class Transceiver:
             self._uart.receive(burst.data, 0, burst.count)
         if not self._deaf:
             self._uart.quiet_since(burst.end_us)
+
+    hear_itself = hear
 
     def collect(self):
         """Hand the UART the characters that have arrived by now."""

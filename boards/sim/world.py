@@ -12,6 +12,7 @@ The world knows nothing of the firmware: `start(board)` makes it and answers an 
 
 import json
 
+from boards.sim import mm420
 from boards.sim.board import KEYS, LOOP_US, NORMALLY_CLOSED, WIRINGS, Board
 from boards.sim.chip import Chip
 from boards.sim.clock import Clock
@@ -24,7 +25,6 @@ from hal.store import FileStore
 
 BOOT_US = 100_000  # from reset to the first step of the firmware
 SETTINGS_FILE = "settings.json"
-SUPERVISION = 2014  # P2014, telegram off time
 TAP_MS = 100
 RELEASE_MS = 40  # a key that was let go is up for so long before the hand is at the next one
 HANG_SLICE_US = 1_000
@@ -40,7 +40,8 @@ class Surroundings:
     characters; any other number gives each its own time, the same for the same number, and keys
     bounce. keys: "direct", each with a pin of its own, or "matrix", all but START and STOP.
     parameters: of every drive, {number: value}; without them they are supervised, P2014, as
-    commissioned drives are.
+    commissioned drives are. kinds: {address: what else `Drive` is given there}, such as
+    {3: {"family": g110, "parameters": {2013: 0}, "reply_delay_us": 4_000}}; fleet.py has some.
 
     stored    what the panel's settings file is to say
     resets    how often the chip has restarted
@@ -51,21 +52,32 @@ class Surroundings:
     place = "the virtual board"
     refused = {}
 
-    def __init__(self, clock, addresses, baud, settings, seed, keys="direct", parameters=None):
+    def __init__(
+        self,
+        clock,
+        addresses,
+        baud,
+        settings,
+        seed,
+        keys="direct",
+        parameters=None,
+        kinds=None,
+    ):
         self.clock = clock
         self.wire = Wire(clock, baud)
         self.seed = seed
         self._random = (seed * 0x2545F + 0x1234567) & 0x3FFFFFFF or 1  # never 0
-        if parameters is None:
-            parameters = {SUPERVISION: supervision_ms(baud, len(addresses))}
+        supervised_ms = supervision_ms(baud, len(addresses))
         self.drives = {}
         for address in addresses:
             # Not before two characters have passed, not later than the master waits at this rate.
             fastest_us = self.wire.start_interval_us
             delay_us = self.random(fastest_us, max(15_000, 3 * fastest_us // 2)) if seed else None
-            self.drives[address] = Drive(
-                clock, self.wire, address, parameters, reply_delay_us=delay_us
-            )
+            kind = {"reply_delay_us": delay_us, "parameters": parameters}
+            kind.update((kinds or {}).get(address, {}))
+            if kind["parameters"] is None:
+                kind["parameters"] = supervision(kind.get("family", mm420), supervised_ms)
+            self.drives[address] = Drive(clock, self.wire, address, **kind)
         self.stored = dict(settings or {})
         self.stored.setdefault("baud", baud)
         self.stored.setdefault("drives", list(addresses))
@@ -150,9 +162,12 @@ class World(Surroundings):
         keys="direct",
         parameters=None,
         store=None,
+        kinds=None,
     ):
         clock = Clock(ticks_start, ticks_mask)
-        Surroundings.__init__(self, clock, addresses, baud, settings, seed, keys, parameters)
+        Surroundings.__init__(
+            self, clock, addresses, baud, settings, seed, keys, parameters, kinds
+        )
         stored = json.dumps(self.stored).encode()
         self.flash = Flash(busy=self._flash_is_busy)
         self.store = store or FileStore(SETTINGS_FILE, self.flash.open, self.flash)
@@ -245,6 +260,12 @@ class World(Surroundings):
 
     def _uneven_loop_us(self):
         return self.random(LOOP_US // 4, LOOP_US * 2)
+
+
+def supervision(family, ms):
+    """The parameter that has a drive of a family supervise its line, at least for so long."""
+    unit_us = family.LINK["unit us"]
+    return {family.LINK["off time"]: -(-ms * 1000 // unit_us)}
 
 
 def supervision_ms(baud, drives):

@@ -26,6 +26,7 @@ clock
     sleep_us(us)        wait so long or a little longer, 100 us at most; interrupts are served
 
 link                    half duplex; the driver enable is the link's affair
+    clock               the board's: that of sent_at and received_at
     interrupts          True: on_activity is called without anyone asking; False: it must be polled
     resolution_us       how late received_at and sent_at may be, at the most
     on_activity         a function of no arguments, at first one that does nothing; called

@@ -54,6 +54,7 @@ class CharacterDisplay:
     """Whoever brings nibbles to the controller inherits this. clock: contract of `hal`.
 
     bytes_per_piece     2 at least; what `show` writes at the most
+    cells_per_piece     2 at least; so many are looked at for what differs
     _nibble(register, code)     bits 7...4 of `code`. register: 0 instruction, 1 data
     _byte(register, code)       both nibbles and a pause, where there is a better way than this one
     _pause(us)                  nothing may reach the controller for so long
@@ -64,6 +65,7 @@ class CharacterDisplay:
     rows = 2
     columns = _COLUMNS
     bytes_per_piece = 2
+    cells_per_piece = _CELLS
 
     def __init__(self, clock):
         self._ticks_us = clock.ticks_us
@@ -143,9 +145,9 @@ class CharacterDisplay:
         return 2 if index == 0 else 1
 
     def _write_cells(self, picture, left):
-        """What differs, once round and with `left` bytes at the most; answers what is left."""
+        """What differs in the next cells, with `left` bytes at the most; answers what is left."""
         shown, at = self._shown, self._cell
-        for _ in range(_CELLS):
+        for _ in range(self.cells_per_piece):
             if shown[at] != picture[at] or self._unsure > 1:
                 cost = 1 if at == self._leads_to else 2
                 if left < cost:

@@ -65,7 +65,8 @@ class Pacer:
 
         Raises the KeyboardInterrupt that came while somebody was inside the engine.
         """
-        if self._timer is None or self._early_us() + OVERDUE_US < 0:
+        late_us = ((self._ticks_us() - self._asked_at) & self._mask) - self._due_us
+        if self._timer is None or late_us > OVERDUE_US:
             self.run()
         if self._thrown is not None:
             thrown, self._thrown = self._thrown, None

@@ -111,6 +111,7 @@ class Rp2Link:
 
     def __init__(self, uart, state_machine, dma, tx_pin, driver_enable, clock, baud):
         self.on_activity = _nobody
+        self.clock = clock
         self.received_at = 0
         self.sent_at = 0
         self._idle_us = IDLE_BITS * 1_000_000 // baud

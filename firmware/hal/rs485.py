@@ -32,12 +32,12 @@ class Rs485Link:
 
     def __init__(self, uart, driver_enable, timer, clock, baud, interrupts=True, hard=True):
         self.on_activity = _nobody
+        self.clock = clock
         self.interrupts = interrupts
         self.received_at = 0
         self.sent_at = 0
         self.late_releases = 0  # transmissions that did not end when they should have
-        self._idle_us = IDLE_BITS * 1_000_000 // baud
-        self.resolution_us = self._idle_us if interrupts else POLLED_RESOLUTION_US
+        self.resolution_us = IDLE_BITS * 1_000_000 // baud if interrupts else POLLED_RESOLUTION_US
         self._uart = uart
         self._driver_enable = driver_enable
         self._timer = timer
@@ -45,7 +45,6 @@ class Rs485Link:
         self._mask = clock.ticks_mask
         # A table, because the product does not fit a small integer at every rate.
         self._durations_us = [-(-11_000_000 * count // baud) for count in range(257)]
-        self._quarter_us = self._durations_us[1] // 4 + 1
         self._sending = False
         self._started_at = 0
         self._duration_us = 0
@@ -107,7 +106,7 @@ class Rs485Link:
         self._uart.deinit()
 
     def _on_idle(self, _uart):
-        self._burst_ended_at = (self._ticks_us() - self._idle_us) & self._mask
+        self._burst_ended_at = (self._ticks_us() - self.resolution_us) & self._mask
         self._burst_ended = True
         self.on_activity()  # no jump before it: a pending Ctrl-C would end this handler for good
 
@@ -115,7 +114,7 @@ class Rs485Link:
         if not self._uart.txdone() and self._releases < RELEASES_MAX:
             # The UART's clock is a little slower than the timer's: look again in a moment.
             self._releases += 1
-            self._arm(self._quarter_us)
+            self._arm(self._durations_us[1] // 4 + 1)
             return
         self._driver_enable.value(0)
         self.sent_at = self._ticks_us()

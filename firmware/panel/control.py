@@ -4,7 +4,8 @@ The rules that keep a motor from starting by surprise and a STOP from getting lo
 `permits` and in `uss.drive`; pages only show, keys only ask.
 
     control = Control(drive, survey, bus, mask, settings)
-    control.step(now)                   # each step of the loop
+    control.ask(now)                    # again and again, in steps of their own:
+    control.watch(now)                  # each takes its time
     control.start()                     # START: asks the drive first, then ON, or `refusal`
     control.stop()                      # STOP
     control.jog(pzd.JOG_LEFT)           # a jog key goes down
@@ -32,11 +33,12 @@ class Control:
     settings: a `Settings`.
 
     Fields for a page: `setpoint`; `reversed`, the direction START takes; `jogging`, 0 or the
-    control word of the jog that is held; `refusal`, why a key was not obeyed, to be shown once;
-    `question`, START waits to be told that the drive may run unsupervised; `notice`, why the drive
-    is not on any more, or None; `lost_running`, it was running when contact was lost and nobody
-    has acknowledged that; `stop_watch`, whether a STOP is obeyed; `fault`; `moving`, it is being
-    given another address; `moved`, it has been.
+    control word of the jog that is held; `checking`, START was obeyed and the drive is being
+    asked; `refusal`, why a key was not obeyed, to be shown once; `question`, START waits to be
+    told that the drive may run unsupervised; `notice`, why the drive is not on any more, or None;
+    `lost_running`, it was running when contact was lost and nobody has acknowledged that;
+    `stop_watch`, whether a STOP is obeyed; `fault`; `moving`, it is being given another address;
+    `moved`, it has been.
     """
 
     def __init__(self, drive, survey, bus, mask, settings):
@@ -49,6 +51,7 @@ class Control:
         self.moved = False
         self.reversed = False
         self.jogging = 0
+        self.checking = False
         self.refusal = None
         self.question = False
         self.notice = None
@@ -57,8 +60,9 @@ class Control:
         self._settings = settings
         self._now = 0
         self._contact = False  # as last seen
+        self._quiet = False  # there was nothing to watch
+        self._zsw = 0  # drive.zsw then
         self._jogged = False  # what turns, or ramps down, is a jog of this panel
-        self._checking = False  # the drive is being asked before it is sent ON
 
     # --- what an operator does ------------------------------------------------------------------
 
@@ -70,7 +74,7 @@ class Control:
         self.refusal = permits.why_not_start(self)
         if self.refusal is None and not self.is_starting():
             self._obey()
-            self._checking = True
+            self.checking = True
             self.survey.recheck()
 
     def accept_unsupervised(self):
@@ -157,9 +161,23 @@ class Control:
         """Whether its motor turns by the last status word. False without contact."""
         return self.drive.contact and self.drive.state() == pzd.RUNNING
 
+    def is_active(self):
+        """Whether it runs, is told to, or may run out of contact."""
+        return self.lost_running or self.drive.wanted != 0 or self.runs()
+
+    def is_quiet(self):
+        """Whether it stands, as when `watch` found nothing that would have to be watched."""
+        drive = self.drive
+        return (
+            self._quiet
+            and drive.zsw == self._zsw
+            and drive.contact == self._contact
+            and not self.moved
+        )
+
     def is_starting(self):
         """Whether START has been obeyed: the drive is being asked, or ON is sent."""
-        return self._checking or self.drive.is_on()
+        return self.checking or self.drive.is_on()
 
     def needs_attention(self):
         """Whether it may run though it should not: an alarm."""
@@ -181,34 +199,54 @@ class Control:
 
     # --- what goes on ---------------------------------------------------------------------------
 
-    def step(self, now):
-        """Look at the drive; each step of the loop."""
-        self._now = now
+    def ask(self, now):
+        """Learn the settings of the drive, and keep the setpoint within them.
+
+        Answers whether there was news: then it took long, and the step is for nothing else.
+        """
         self.survey.step(now)
-        self.setpoint.step()
-        self.fault.step(now)
+        if self.setpoint.step():
+            return True
+        if self.checking:
+            self.survey.step(now)  # somebody waits: what was just answered is not all
+        return False
+
+    def watch(self, now):
+        """Look what became of the commands, and whether the drive does as it is told."""
+        self._now = now
         drive = self.drive
+        self.fault.step(now)
         if drive.contact != self._contact:
             self._contact = drive.contact
             self.lost_running = drive.was_running and not drive.contact
-        if self._checking:
+        if self.checking:
             self._finish_check(now)
+            return  # that may have taken long
         if drive.wanted:
             self._watch_command(now)
-        if drive.off != pzd.OFF1:
+        elif drive.off != pzd.OFF1:
             self._watch_second_stop()
         self._watch_stop(now)
         if self.moved and not self._settings.dirty:
             self.moved = False
+        self._zsw = zsw = drive.zsw
+        self._quiet = not (
+            zsw & (pzd.ZSW_RUNNING | pzd.ZSW_FAULT)
+            or drive.wanted
+            or self.lost_running
+            or self.stop_watch.active
+            or drive.off != pzd.OFF1
+        )
 
     def _stop(self, off):
         self.drive.stop(off)
         self.jogging = 0
         self.question = False
-        self._checking = False
+        self.checking = False
+        self._quiet = False
         self.survey.drop_recheck()
         if not self.stop_watch.active:  # pressing again does not put the alarm off
-            self.stop_watch.begin(self._now)
+            self.stop_watch.begin()
 
     def _on(self):
         return pzd.ON_REVERSE if self.reversed else pzd.ON
@@ -217,6 +255,7 @@ class Control:
         """A key was obeyed: what was said of the drive is over."""
         self.notice = None
         self.question = False
+        self._quiet = False
         self._command.give(self._now)
 
     def _finish_check(self, now):
@@ -226,7 +265,7 @@ class Control:
             if not self._command.is_overdue(now):
                 return
             refusal = texts.REFUSED_CHECKING
-        self._checking = False
+        self.checking = False
         self.survey.drop_recheck()
         if self._command.is_stale():
             self.notice = texts.PANEL_HUNG
@@ -255,10 +294,10 @@ class Control:
         """Whether a drive that is to stand still comes to rest; a STOP is watched from the key on,
         and one that runs against OFF from when that is seen."""
         watch = self.stop_watch
-        if not watch.active and not self.drive.wanted and self._runs_against_off():
-            watch.begin(now)
         if watch.active:
             watch.step(now)
+        elif not self.drive.wanted and self._runs_against_off():
+            watch.begin()
         if self._jogged and not (self.jogging or watch.active):
             self._jogged = False
 
@@ -279,7 +318,8 @@ class Control:
     def _runs_against_off(self):
         """Whether a drive of this bus runs though nobody wants it to: it may not obey OFF1."""
         return (
-            self.runs()
+            self.drive.zsw & pzd.ZSW_RUNNING != 0  # looked at first: it mostly does not
+            and self.runs()
             and self.survey.complete
             and not permits.is_local(self.survey)
         )

@@ -39,12 +39,13 @@ class Keys:
         self._mask = mask
         self._eager = self.bit("STOP")
         self._raw = 0
-        self._changed_at = [0] * len(names)
+        self._changed_at = {bit: 0 for bit in self._bits.values()}
         self._all = (1 << len(names)) - 1
         self._released = 0  # keys that were seen up since the start
         self._last = 0  # the key pressed last, while it is down
         self._repeat_at = 0
         self._first = True
+        self._at_rest = False  # no key is down or has just been, and each has been seen up
 
     def bit(self, key):
         """The bit of a key by name; 0 when this board has no such key."""
@@ -58,9 +59,9 @@ class Keys:
         """What is down repeats nothing any more: it has to be pressed anew."""
         self._last = 0
 
-    def moved(self, key):
-        """1 when a key went down or repeated just now, else 0."""
-        return 1 if (self.pressed | self.repeated) & self.bit(key) else 0
+    def moved(self, bit):
+        """1 when the key of this bit went down or repeated just now, else 0."""
+        return 1 if (self.pressed | self.repeated) & bit else 0
 
     def pace(self, highest=10):
         """Steps for a value that a held key moves: more the longer it is held, up to `highest`."""
@@ -73,7 +74,12 @@ class Keys:
     def update(self, raw, now_ms, unclear=0):
         """raw: what the keypad reads now, as bits. unclear: the keys among them of which it cannot
         tell; they are up, and each must be seen up before it counts again.
+
+        Answers whether there is anything to be seen: a key is down, or was until now.
         """
+        if self._at_rest and not (raw or unclear):
+            return False  # as it mostly is
+        were_down = self.down
         if unclear:
             raw &= ~unclear
             self.down &= ~unclear
@@ -82,7 +88,8 @@ class Keys:
         if self._first:
             self._first = False
             self._raw = raw
-            self._changed_at = [now_ms] * len(self._changed_at)
+            for bit in self._changed_at:
+                self._changed_at[bit] = now_ms
         self.pressed = 0
         self.repeated = 0
         changed = raw ^ self._raw
@@ -93,24 +100,25 @@ class Keys:
         self._released &= ~unclear
         if self._last:
             self._repeat(now_ms)
+        seen = self.down | were_down
+        self._at_rest = not (seen or unsettled or unclear)
+        return seen != 0
 
     def _debounce(self, changed, unsettled, now_ms):
         """unsettled: the keys, as bits, that moved just now or are not yet what they read."""
-        position = 0
         while unsettled:
-            bit = 1 << position
+            bit = unsettled & -unsettled  # the lowest of them
+            unsettled ^= bit
             if changed & bit:
-                self._changed_at[position] = now_ms
-            elif unsettled & bit and self._is_steady(position, bit, now_ms):
+                self._changed_at[bit] = now_ms
+            elif self._is_steady(bit, now_ms):
                 self._settle(bit, self._raw & bit, now_ms)
-            unsettled &= ~bit
-            position += 1
 
-    def _is_steady(self, position, bit, now_ms):
+    def _is_steady(self, bit, now_ms):
         """Whether a key that did not move just now has been the same for long enough."""
         if self._raw & bit & self._eager:
             return True
-        return elapsed(now_ms, self._changed_at[position], self._mask) >= DEBOUNCE_MS
+        return elapsed(now_ms, self._changed_at[bit], self._mask) >= DEBOUNCE_MS
 
     def _settle(self, bit, is_down, now_ms):
         if not is_down:

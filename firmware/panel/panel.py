@@ -29,6 +29,7 @@ SPLASH_MS = const(800)
 DRAW_MS = const(50)
 MESSAGE_MS = const(3_000)
 READING_MS = const(1_000)  # so long a START does not answer a question: it may be a double tap
+LAST_TURN = const(7)
 
 # They act on every page that shows the drive they act on. STOP acts on every page.
 COMMAND_KEYS = (
@@ -49,35 +50,56 @@ class Panel:
     def __init__(self, controls, bus, key_names, settings, mask, notice=None):
         self.controls = controls
         self.selected = controls[0]
-        self.screen = Screen()
+        self.screen = screen = Screen()
         self.message = None
         self.setpoint_step = settings.setpoint_step_centihertz
         self._bus = bus
         self._mask = mask
+        self._settings = settings
         self._keys = keys = Keys(key_names, mask)
         self.stop_key = StopKey(
             keys.bit("STOP"), controls, settings.second_stop, mask, self.say
         )
         self._jog_keys = JogKeys(keys.bit("JOG_RIGHT"), keys.bit("JOG_LEFT"))
-        self._turn = 0  # of the controls: the one that was looked at last
         self._writer = Writer(bus, settings, mask)
-        self._home = Home(self)
-        self._parameters = Parameters(self, self._writer, mask)
+        self._off_time_ms = off_time_ms(bus.longest_cycle_us())
+        self._home = Home(self, keys)
+        self._parameters = Parameters(self, keys, self._writer, mask)
         self._page = self._home
         self._splash = Splash()
         self._over = self._splash  # what hides the page: the splash, a question, or None
-        self._view = View(self, self.screen)
         self._began_at = None
         self._notice = texts.SETTINGS_DAMAGED if settings.complaint else notice
         self._message_at = 0
+        self._view = View(self, screen)
+        self._view.begin(self._splash)
         self._drawn_at = 0
-        self._were_down = 0  # the keys that were down in the last step, as bits
-        # What they do ends when they go up, or goes on; the others act when they are pressed.
-        self._held_keys = keys.bits(("STOP", "JOG_RIGHT", "JOG_LEFT"))
-        self._command_keys = keys.bits(COMMAND_KEYS)
+        self._name_keys(keys)
+        self._around = 0  # of the controls: the one besides the selected that was looked at last
+        self._neighbour = None  # it was asked, and is still to be watched
+        self._at_rest = 0  # so many of them in a row were found at rest
         # What is not done at once takes turns, so that each step of the loop stays short.
-        self._turns = (self._look, self._follow, self._draw, self._let_show)
-        self._next_turn = 0
+        around = self._look_around if len(controls) > 1 else self._ask
+        self._turns = (
+            self._draw, self._ask, self._let_show, self._watch,
+            self._draw, self._follow, self._let_show, around,
+        )  # fmt: skip
+        self._turn = 0
+
+    def _name_keys(self, keys):
+        """The bits of keys, because names take long to look up."""
+        self._stop_bit = keys.bit("STOP")
+        self._start_key = keys.bit("START")
+        self._reverse_key = keys.bit("REVERSE")
+        self._jog_bits = keys.bits(("JOG_RIGHT", "JOG_LEFT"))
+        self._motion_keys = self._start_key | self._jog_bits
+        self._up_key = keys.bit("ADDRESS_UP")
+        self._down_key = keys.bit("ADDRESS_DOWN")
+        self._parameter_key = keys.bit("PARAM")
+        self._command_keys = keys.bits(COMMAND_KEYS)
+        # What these do ends when they go up, or goes on; the others act when they are pressed.
+        self._held_keys = self._jog_bits | self._stop_bit
+        self._were_down = 0  # the keys that were down in the last step, as bits
 
     def step(self, raw_keys, now_ms, now_us, unclear_keys=0):
         """raw_keys: the keys down now, as bits; unclear_keys: those that cannot be told.
@@ -87,17 +109,14 @@ class Panel:
         Answers whether the rest of the step is for the display.
         """
         keys = self._keys
-        keys.update(raw_keys, now_ms, unclear_keys)
-        if (keys.down | self._were_down) & self._held_keys or keys.pressed or keys.repeated:
-            self._take_keys(keys, now_ms)
-        self._were_down = keys.down
-        if self._over is self._splash:
-            self._end_splash(now_ms)
-        if keys.pressed:
-            self._begin_picture(now_ms)
-        if keys.pressed or keys.repeated:
+        if keys.update(raw_keys, now_ms, unclear_keys) and self._take_keys(keys, now_ms):
             return False  # that was enough for a step
-        return self._take_turn(now_ms, now_us)
+        if self.stop_key.left:
+            self.stop_key.stop_next()
+            return False
+        turn = self._turn
+        self._turn = turn + 1 & LAST_TURN
+        return self._turns[turn](now_ms, now_us)
 
     # --- for the pages --------------------------------------------------------------------------
 
@@ -116,17 +135,15 @@ class Panel:
 
     def is_taken(self, address):
         """Whether another drive of this panel than the selected one has this address."""
-        for control in self.controls:
-            if control is not self.selected and control.drive.address == address:
-                return True
-        return self._writer.takes(address)
+        if self._writer.takes(address):
+            return True
+        return address != self.selected.drive.address and address in self._settings.drives
 
     def any_runs(self):
-        """Whether a drive of this panel runs, is told to, or may run out of contact."""
-        for control in self.controls:
-            if control.runs() or control.drive.is_on() or control.lost_running:
-                return True
-        return False
+        """Whether a drive of this panel runs, is told to, or may run out of contact, as far as it
+        is known: each of those that are not shown is looked at again and again.
+        """
+        return self.selected.is_active() or self._at_rest + 1 < len(self.controls)
 
     def line_in_use(self):
         """Whether another master was heard before the first telegram, so that none is sent."""
@@ -134,29 +151,31 @@ class Panel:
 
     # --- what takes turns: each answers whether the step has time left for the display ----------
 
-    def _take_turn(self, now_ms, now_us):
-        turn = self._next_turn
-        self._next_turn = turn + 1 if turn + 1 < len(self._turns) else 0
-        return self._turns[turn](now_ms, now_us)
+    def _ask(self, _now_ms, now_us):
+        self.selected.ask(now_us)
+        return False
 
-    def _look(self, _now_ms, now_us):
-        self.selected.step(now_us)
+    def _watch(self, _now_ms, now_us):
+        selected = self.selected
+        selected.watch(now_us)
+        self._view.look(selected)
         return False
 
     def _follow(self, now_ms, now_us):
+        if self._over is self._splash:
+            self._wait_for_splash(now_ms)
         self._writer.step(now_us)
         self._collect(now_ms)
         if self._page is self._parameters:
             self._parameters.step(self._keys, now_ms)
-        if len(self.controls) > 1:
-            self._look_at_another(now_us)
         return False
 
     def _draw(self, now_ms, _now_us):
         # In a slow loop a picture takes longer than DRAW_MS: it is drawn to its end all the same.
-        if self._view.is_done() and elapsed(now_ms, self._drawn_at, self._mask) >= DRAW_MS:
+        view = self._view
+        if view.is_done() and elapsed(now_ms, self._drawn_at, self._mask) >= DRAW_MS:
             self._begin_picture(now_ms)
-        self._view.step(now_ms)
+        view.step(now_ms)
         return False
 
     def _begin_picture(self, now_ms):
@@ -166,44 +185,71 @@ class Panel:
     def _let_show(self, _now_ms, _now_us):
         return True
 
-    def _look_at_another(self, now_us):
-        """The next drive in turn. One that is not shown has nothing to say and nothing to ask:
+    def _look_around(self, _now_ms, now_us):
+        """The next of the drives that are not shown. It has nothing to say and nothing to ask:
         START has to be pressed anew, with that drive in sight."""
-        self._turn = (self._turn + 1) % len(self.controls)
-        control = self.controls[self._turn]
-        if control is not self.selected:
-            control.step(now_us)
-            control.keep_quiet()
+        control = self._neighbour
+        if control is None:
+            control = self._next_neighbour()
+            if not control.ask(now_us) and control.is_quiet():
+                self._at_rest += 1
+            else:
+                self._neighbour = control  # that was enough for a step
+            return False
+        self._neighbour = None
+        control.watch(now_us)
+        control.keep_quiet()
+        self._view.look(control)
+        self._at_rest = 0 if control.is_active() else self._at_rest + 1
+        return False
+
+    def _next_neighbour(self):
+        controls = self.controls
+        around = self._around
+        while True:
+            around = around + 1 if around + 1 < len(controls) else 0
+            if controls[around] is not self.selected:
+                self._around = around
+                return controls[around]
 
     # --- keys -----------------------------------------------------------------------------------
 
     def _take_keys(self, keys, now_ms):
+        """A key is down, or was until now. Answers whether there was much to do."""
+        down = keys.down | self._were_down
+        self._were_down = keys.down
+        acts = keys.pressed | keys.repeated
+        if not (acts or down & self._held_keys):
+            return False
         if keys.pressed:
             self.message = None
-        self.stop_key.step(keys, self.selected, now_ms)
+        if down & self._stop_bit:
+            self.stop_key.step(keys, self.selected, now_ms)
         page = self._over or self._page
-        self._jog_keys.step(keys, self.selected, page.obeys and not self.stop_key.is_down)
-        acts = keys.pressed | keys.repeated
-        if acts & self._command_keys and page.obeys:
-            self._take_command(keys, now_ms)
+        if down & self._jog_bits:
+            self._jog_keys.step(keys, self.selected, page.obeys and not self.stop_key.is_down)
         if acts:
+            if acts & self._command_keys and page.obeys:
+                self._take_command(keys, now_ms)
             page.take_keys(keys, now_ms)
+        if keys.pressed:
+            if self._over is self._splash:
+                self._end_splash(now_ms)
+            self._begin_picture(now_ms)
+        return acts != 0
 
     def _take_command(self, keys, now_ms):
-        if keys.pressed & keys.bit("START"):
-            if self.stop_key.is_down:
-                self.say(texts.REFUSED_STOP, now_ms)
-            else:
-                self.selected.start()
-        if keys.pressed & keys.bit("REVERSE"):
+        pressed = keys.pressed
+        if self.stop_key.is_down and pressed & self._motion_keys:
+            self.say(texts.REFUSED_STOP, now_ms)
+        elif pressed & self._start_key:
+            self.selected.start()
+        if pressed & self._reverse_key:
             self.selected.reverse()
-        if keys.pressed & (keys.bit("JOG_RIGHT") | keys.bit("JOG_LEFT")):
-            if self.stop_key.is_down:
-                self.say(texts.REFUSED_STOP, now_ms)
-        direction = keys.moved("ADDRESS_UP") - keys.moved("ADDRESS_DOWN")
+        direction = keys.moved(self._up_key) - keys.moved(self._down_key)
         if direction:
             self._select(direction)
-        if keys.pressed & keys.bit("PARAM"):
+        if pressed & self._parameter_key:
             self._toggle_parameters()
 
     def _toggle_parameters(self):
@@ -216,8 +262,12 @@ class Panel:
     def _select(self, direction):
         """Show another drive. It starts and stops nothing."""
         self.selected.keep_quiet()
-        position = self.controls.index(self.selected) + direction
-        self.selected = self.controls[position % len(self.controls)]
+        position = self.controls.index(self.selected)
+        self.selected = self.controls[(position + direction) % len(self.controls)]
+        # The one that is shown no longer is looked at next, and all are counted anew.
+        self._around = position - 1
+        self._neighbour = None
+        self._at_rest = 0
 
     # --- what has to be said --------------------------------------------------------------------
 
@@ -245,8 +295,7 @@ class Panel:
     def _supervise(self, now_ms):
         """Have the drive stop by itself when this panel falls silent."""
         number, index = profiles.TELEGRAM_OFF_TIME, profiles.COM_LINK
-        value_ms = off_time_ms(self._bus.longest_cycle_us())
-        reason = self._writer.write(self.selected, number, index, value_ms, False)
+        reason = self._writer.write(self.selected, number, index, self._off_time_ms, False)
         if reason is not None:
             self.say(reason, now_ms)
 
@@ -256,13 +305,17 @@ class Panel:
         else:
             self.selected.accept_unsupervised()
 
-    def _end_splash(self, now_ms):
+    def _wait_for_splash(self, now_ms):
+        """It ends by itself."""
         if self._began_at is None:
             self._began_at = now_ms
             self._begin_picture(now_ms)
-        if elapsed(now_ms, self._began_at, self._mask) >= SPLASH_MS or self._keys.pressed:
-            self._over = None
-            if self._notice:
-                self.say(self._notice, now_ms)
-            elif self._keys.pressed & self._keys.bit("START"):
-                self.say(texts.REFUSED_EARLY, now_ms)
+        elif elapsed(now_ms, self._began_at, self._mask) >= SPLASH_MS:
+            self._end_splash(now_ms)
+
+    def _end_splash(self, now_ms):
+        self._over = None
+        if self._notice:
+            self.say(self._notice, now_ms)
+        elif self._keys.pressed & self._start_key:
+            self.say(texts.REFUSED_EARLY, now_ms)

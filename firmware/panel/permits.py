@@ -30,14 +30,15 @@ def why_not_start(control):
         return texts.REFUSED_JOG
     if control.second_stop_active():
         return texts.REFUSED_STOPPING
-    reason = _why_no_command(control)
+    state = drive.state()
+    reason = _why_no_command(control, state)
     if reason is not None:
         return reason
     if is_foreign(survey, profiles.SETPOINT_SOURCE):
         return texts.REFUSED_SETPOINT
     if min(survey.lowest(), survey.values[profiles.HIGHEST]) > survey.scaling.limit_centihertz():
         return texts.REFUSED_MINIMUM
-    return _why_not_now(drive)
+    return _why_not_now(state)
 
 
 def why_not_jog(control):
@@ -45,17 +46,18 @@ def why_not_jog(control):
     drive, survey = control.drive, control.survey
     if control.second_stop_active():
         return texts.REFUSED_STOPPING
-    reason = _why_no_command(control)
+    state = drive.state()
+    reason = _why_no_command(control, state)
     if reason is not None:
         return reason
-    if control.is_starting() or drive.state() == pzd.RUNNING and not control.own_jog_ends():
+    if control.is_starting() or state == pzd.RUNNING and not control.own_jog_ends():
         return texts.REFUSED_RUNS
     if is_unsupervised(survey) and not control.accepts_unsupervised():
         return texts.REFUSED_UNSUPERVISED
-    return _why_not_now(drive)
+    return _why_not_now(state)
 
 
-def _why_no_command(control):
+def _why_no_command(control, state):
     drive, survey = control.drive, control.survey
     if not drive.contact:
         return texts.REFUSED_SILENT
@@ -63,7 +65,7 @@ def _why_no_command(control):
         return texts.WRITER_BUSY
     if control.is_unsaved():
         return texts.REFUSED_UNSAVED
-    if drive.state() == pzd.FAULT:
+    if state == pzd.FAULT:
         return texts.REFUSED_FAULT
     if not survey.complete:
         return texts.REFUSED_SCALING if survey.unreadable else texts.REFUSED_CHECKING
@@ -72,8 +74,7 @@ def _why_no_command(control):
     return None
 
 
-def _why_not_now(drive):
-    state = drive.state()
+def _why_not_now(state):
     if state == pzd.INHIBITED:
         return texts.REFUSED_INHIBITED
     if state == pzd.NOT_READY:

@@ -1,7 +1,7 @@
 """The setpoint of one drive: what the operator set, kept within every limit, as a word to send.
 
     setpoint = Setpoint(drive, survey, settings)
-    setpoint.step()                     # each step of the loop: limits may have been read
+    setpoint.step()                     # again and again: limits may have been read
     setpoint.change(10)                 # 0.1 Hz up
     setpoint.centihertz                 # what is shown and sent, without its sign
 """
@@ -17,7 +17,8 @@ class Setpoint:
     def __init__(self, drive, survey, settings):
         self.centihertz = settings.setpoint_centihertz
         self._asked_centihertz = settings.setpoint_centihertz  # what the operator set
-        self._lowest = settings.lowest_centihertz
+        self._settings = settings
+        self._lowest = settings.lowest_centihertz  # that the settings and the drive allow
         self._highest = settings.highest_centihertz
         self._drive = drive
         self._survey = survey
@@ -25,28 +26,34 @@ class Setpoint:
 
     def change(self, centihertz):
         """Move it by so much, within the limits of the drive and of the settings."""
+        self.step()
         self._apply(self.centihertz + centihertz)
         self._asked_centihertz = self.centihertz
 
     def step(self):
         """A limit that comes or goes moves it at once; what the operator set is remembered.
 
-        While a drive runs and does not tell its limits, what is shown stays what is sent.
+        While a drive runs and does not tell its limits, what is shown stays what is sent. Answers
+        whether the survey has news.
         """
-        if self._survey.version != self._version:
-            self._version = self._survey.version
-            if self._survey.complete or not self._drive.wanted:
-                self._apply(self._asked_centihertz)
+        if self._survey.version == self._version:
+            return False
+        self._version = self._survey.version
+        self._find_limits()
+        if self._survey.complete or not self._drive.wanted:
+            self._apply(self._asked_centihertz)
+        return True
 
-    def _limited(self, centihertz):
-        survey = self._survey
-        highest, lowest = self._highest, self._lowest
+    def _find_limits(self):
+        survey, settings = self._survey, self._settings
+        highest, lowest = settings.highest_centihertz, settings.lowest_centihertz
         if survey.complete:
             highest = min(highest, survey.highest())
             lowest = max(lowest, survey.lowest())
-        return max(min(centihertz, highest), min(lowest, highest))
+        self._highest = highest
+        self._lowest = min(lowest, highest)
 
     def _apply(self, centihertz):
-        self.centihertz = self._limited(centihertz)
+        self.centihertz = centihertz = max(min(centihertz, self._highest), self._lowest)
         if self._survey.complete:
-            self._drive.hsw = self._survey.scaling.hsw(self.centihertz)
+            self._drive.hsw = self._survey.scaling.hsw(centihertz)

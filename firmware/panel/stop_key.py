@@ -33,11 +33,13 @@ class StopKey:
     say: say(text, now_ms) has a row shown for a while.
 
     text: what is to be said while it is held, or None. is_down: no START and no JOG meanwhile.
+    left: how many looks `stop_next` has still to take, until every drive was told to stop.
     """
 
     def __init__(self, bit, controls, second_stop, mask, say):
         self.text = None
         self.is_down = False
+        self.left = 0
         self._bit = bit
         self._controls = controls
         self._said = SAID[second_stop]
@@ -64,6 +66,15 @@ class StopKey:
         elif self.is_down:  # and nobody pressed it since power-on
             self.text = texts.STOP_IS_DOWN
 
+    def stop_next(self):
+        """OFF1 to one drive after the other: all at once take too long for a step of the loop, and
+        the line takes them one by one. Once round for those that run, once for all.
+        """
+        self.left -= 1
+        control = self._controls[self.left % len(self._controls)]
+        if self.left < len(self._controls) or control.is_active():
+            control.stop_unseen()
+
     def _hold(self, now_ms):
         held_ms = elapsed(now_ms, self._pressed_at, self._mask)
         if self._stage == PRESSED and held_ms >= SECOND_MS:
@@ -71,8 +82,7 @@ class StopKey:
             self._control.second_stop()
         if self._stage == SECOND_SENT and held_ms >= ALL_MS:
             self._stage = ALL_SENT
-            for control in self._controls:
-                control.stop_unseen()
+            self.left = 2 * len(self._controls)
             self._say(texts.ALL_STOPPED, now_ms)
         if self._stage == ALL_SENT:
             self.text = texts.ALL_STOPPED

@@ -4,8 +4,8 @@ An answer alone says that OFF1 was heard, not that it is obeyed: a drive that ta
 from elsewhere answers as well. So its speed is watched until the motor stands still.
 
     watch = StopWatch(drive, mask)
-    watch.begin(now)                # OFF1 is being sent
-    watch.step(now)                 # each step of the loop
+    watch.begin()                   # OFF1 is being sent; the time counts from the next step on
+    watch.step(now)                 # again and again
     watch.unconfirmed               # an alarm
 """
 
@@ -32,18 +32,19 @@ class StopWatch:
         self.unconfirmed = False
         self._drive = drive
         self._mask = mask
+        self._begins = False
         self._slowed = False  # it has been seen to slow down
         self._seems_slower = False  # by less than the word may tremble
         self._slowed_at = 0  # when that was last, at first when the watch began
         self._off_answers = 0  # drive.off_answers then
         self._speed = 0  # |HIW| then, at first the highest since the watch began
 
-    def begin(self, now):
+    def begin(self):
         self.active = True
         self.unconfirmed = False
+        self._begins = True
         self._slowed = False
         self._seems_slower = False
-        self._slowed_at = now
         self._off_answers = self._drive.off_answers
         self._speed = 0
 
@@ -55,6 +56,9 @@ class StopWatch:
     def step(self, now):
         if not self.active:
             return
+        if self._begins:
+            self._begins = False
+            self._slowed_at = now
         drive = self._drive
         if drive.contact:
             answers = (drive.off_answers - self._off_answers) & 0xFFFF

@@ -12,25 +12,14 @@ never the last one known.
 from micropython import const
 
 from panel import texts
+from panel.announcer import LOST, RUNS, Announcer
 
 ADDRESS_COLUMN = const(13)
 ANNOUNCE_MS = const(1_500)  # another drive is announced so long, then the page is as long
 
-
-# How much another drive needs to be spoken of, and what is said.
-SILENT_ABOUT, RUNS, NOTED, TRIPPED, LOST, UNCONFIRMED = range(6)
-ANNOUNCEMENTS = (
-    b"",
-    texts.OTHER_RUNS,
-    b"",  # and its notice
-    texts.OTHER_TRIPPED,
-    texts.OTHER_LOST,
-    texts.OTHER_UNCONFIRMED,
-)
-
-
-# The fields of a picture, in the order in which they are drawn.
-SETPOINT, ACTUAL, ROW_2, PAGE, ADDRESS, DONE = range(6)
+# The fields of a picture, in the order in which they are drawn. The last one may take the place of
+# PAGE and ADDRESS; a page that is WHOLE is the only one.
+SETPOINT, ACTUAL, ROW_2, PAGE, ADDRESS, DONE, ANNOUNCEMENT, WHOLE = range(8)
 
 
 class View:
@@ -38,6 +27,7 @@ class View:
 
     view.begin(page)        # a new picture
     view.step(now_ms)       # each step of the loop
+    view.look(control)      # a drive that may have to be announced, one at a time
     """
 
     def __init__(self, panel, screen):
@@ -45,32 +35,27 @@ class View:
         self._screen = screen
         self._page = None
         self._next = DONE  # the field that is drawn next
-        self._announced = None  # the drive that needs most to be spoken of, and how much
-        self._highest = SILENT_ABOUT
+        self._announcer = Announcer(screen)
 
     def begin(self, page):
         """A new picture, of this page."""
         self._page = page
-        self._next = SETPOINT
+        self._next = WHOLE if page.whole else SETPOINT
 
     def is_done(self):
         """Whether all of it is drawn."""
         return self._next == DONE
 
+    def look(self, control):
+        """Look whether a drive needs to be announced."""
+        selected = control is self._panel.selected
+        self._announcer.look(control, selected, self._page.tells_state)
+
     def step(self, now_ms):
         """Draw the next field of it, if there is one left."""
-        if self._next == DONE:
-            return
-        if self._page.whole:
-            self._draw_whole(now_ms)
-            self._next = DONE
-        else:
-            self._next = self._draw(self._next, now_ms)
-
-    def _draw_whole(self, now_ms):
-        self._page.draw(self._screen, now_ms)
-        if not now_ms // ANNOUNCE_MS & 1:
-            self._announce(0, LOST)  # an alarm is not hidden by a question
+        field = self._next
+        if field != DONE:
+            self._next = self._draw(field, now_ms)
 
     def _draw(self, field, now_ms):
         """Draw a field; answers the one that is drawn next."""
@@ -85,8 +70,14 @@ class View:
             return self._draw_row_2(now_ms)
         elif field == PAGE:
             self._page.draw(screen, now_ms)
-        else:
+        elif field == ADDRESS:
             _draw_address(screen, control)
+        elif field == WHOLE:
+            self._page.draw(screen, now_ms)
+            self._announce(0, LOST, now_ms)  # an alarm is not hidden by a question
+            return DONE
+        else:
+            return DONE if self._announce(1, RUNS, now_ms) else PAGE
         return field + 1
 
     def _draw_alarm(self, control):
@@ -108,9 +99,7 @@ class View:
         if self._panel.selected.lost_running:
             self._screen.put(1, 0, ADDRESS_COLUMN, texts.MAY_RUN)
             return ADDRESS
-        if not now_ms // ANNOUNCE_MS & 1 and self._announce(1, RUNS):
-            return DONE
-        return PAGE
+        return ANNOUNCEMENT if self._announcer.rank >= RUNS else PAGE
 
     def _why_no_page(self):
         """The text that takes all of row 2; None when there is none."""
@@ -125,58 +114,18 @@ class View:
             return panel.message
         return texts.LINE_IN_USE if panel.line_in_use() else None
 
-    def _announce(self, row, least):
-        """Speak in `row` of the drive that needs it most, at least so much, and is not told of by
-        the page; False when none does.
+    def _announce(self, row, least, now_ms):
+        """Speak in all of `row` of the drive that needs it most, if it is time to, and if it needs
+        it at least so much; False otherwise.
         """
-        self._announced, self._highest = None, least - 1
-        for control in self._panel.controls:
-            self._consider(control)
-        if self._announced is None:
+        announcer = self._announcer
+        if now_ms // ANNOUNCE_MS & 1 or announcer.rank < least:
             return False
-        self._draw_announcement(row)
+        self.look(announcer.control)  # it may have been a while ago
+        if announcer.rank < least:
+            return False
+        announcer.draw(row)
         return True
-
-    def _consider(self, control):
-        selected = control is self._panel.selected
-        if selected and self._page.tells_state:
-            return
-        rank = _rank(control, selected)
-        if rank > self._highest:
-            self._highest, self._announced = rank, control
-
-    def _draw_announcement(self, row):
-        screen, announced = self._screen, self._announced
-        address, text = announced.drive.address, ANNOUNCEMENTS[self._highest]
-        column = 2 if address < 10 else 3
-        screen.put(row, 0, texts.ROW_WIDTH, b"A")
-        screen.number(row, 1, column - 1, address * 100, 0)
-        screen.put(row, column, texts.ROW_WIDTH - column, text)
-        if self._highest == NOTED:
-            screen.put(row, column + 1, texts.ROW_WIDTH - column - 1, announced.notice)
-        elif self._highest == TRIPPED:
-            draw_fault(screen, row, column + len(text) + 1, announced.fault)
-
-
-def _rank(control, selected):
-    """How much a drive needs to be spoken of: SILENT_ABOUT ... UNCONFIRMED."""
-    if control.stop_watch.unconfirmed:
-        return UNCONFIRMED
-    if control.lost_running:
-        return LOST
-    if control.fault.active and (selected or control.notice is not None):
-        return TRIPPED  # a drive that was on, or one that is worked on
-    if control.runs():
-        return SILENT_ABOUT if selected else RUNS
-    return NOTED if selected and control.notice is not None else SILENT_ABOUT
-
-
-def draw_fault(screen, row, column, fault):
-    """F and the number of a fault, once it is known: it has been seen now."""
-    fault.seen = True
-    if fault.number:
-        screen.put(row, column, 1, texts.FAULT_LETTER)
-        screen.digits(row, column + 1, 4, fault.number)
 
 
 def _draw_address(screen, control):

@@ -27,7 +27,7 @@ IDLE, PROBING, WAITING, WRITING, LOOKING = range(5)
 
 
 class Writer:
-    """bus: the `Master`. settings: a `Settings`. mask: the clock's period - 1.
+    """bus: the `Master`, its drives added. settings: a `Settings`. mask: the clock's period - 1.
 
     busy: a write is on its way. written: the last one was confirmed by the drive.
     """
@@ -38,6 +38,9 @@ class Writer:
         self._bus = bus
         self._settings = settings
         self._mask = mask
+        # A clock of a short period cannot tell more than half of it.
+        patience_us = max(LOOK_US, LOOK_CYCLES * bus.longest_cycle_us())
+        self._patience_us = min(patience_us, mask >> 2)
         self._phase = IDLE
         self._job = pkw.read(0)
         self._control = None
@@ -198,10 +201,9 @@ class Writer:
 
     def _look(self, now):
         drive = self._control.drive
-        patience_us = max(LOOK_US, LOOK_CYCLES * self._bus.longest_cycle_us())
         if not drive.silent and drive.answered_address == self._value:
             self._confirm()
-        elif elapsed(now, self._since, self._mask) >= min(patience_us, self._mask >> 2):
+        elif elapsed(now, self._since, self._mask) >= self._patience_us:
             self._bus.readdress(drive, self._old_address)
             self._end(texts.NO_ANSWER, False)
 

@@ -5,8 +5,9 @@ fitting reply comes, then "no task" follows (specification C-4.2.1.1). The queue
 writer at each end, so that neither side waits for the other.
 
     channel.ask(pkw.read(700))                  # loop
-    channel.fill(net, at, now)                  # engine: the PKW words of the next request
-    channel.take(net, at)                       # engine: those of the reply
+    channel.fill(net, at, now)                  # engine: the PKW words of the next request,
+    channel.size                                # so many characters
+    channel.take(net, at, count)                # engine: those of the reply
 """
 
 from micropython import const
@@ -15,113 +16,173 @@ from uss import pkw
 from uss.fast import copy
 from uss.timing import elapsed
 
-PKW_COUNT = const(8)  # characters of the four PKW words
-NO_TASK = bytes(PKW_COUNT)
-JOBS_MAX = const(8)
+NO_TASK = bytes(8)
+JOBS_MAX = const(8)  # of a drive, with the one on the line; a power of two
 REST_MAX = const(20)  # telegrams without a task that are tried before the next one is sent anyway
 TRIES_MIN = const(3)  # a task was sent at least so often before it times out
+WORK_TIMEOUT_US = const(2_000_000)  # a reply may lag some cycles
+EEPROM_TIMEOUT_US = const(5_000_000)
+
+NO_QUEUE = (None,)  # of a drive without PKW words
+ANY = const(-1)
+
+_VARIABLE = const(127)  # of `layout`, which would be an import too deep for the 32-bit port
+
+# Of `pkw`, for the compiler.
+_THREE_WORDS = const(6)
+_FOUR_WORDS = const(8)
+_VARIABLE_LENGTH = const(0x100)
+_FOLLOWED = const(0x200)  # in _form: somebody follows change reports
+_POSITION = const(7)  # bits of _turn: where the job on the line stands in the queue
+_REST = const(8)  # above: telegrams without a task still to be tried for an answer with AK 0
+_WAITING = const(-1)  # tries of a job whose turn has not come
+_PENDING = const(1)
+_FIRST_PERMANENT = const(11)
 
 
 class Channel:
-    """mask: the clock's period - 1.
+    """mask: the clock's period - 1. pkw_words: 0, 3, 4 or layout.VARIABLE. longest: with VARIABLE
+    the most PKW words that a request has room for.
 
     idle: nothing is asked, and the words in the telegram say so: neither `fill` nor `take` would
-    do anything.
+    do anything. size: characters of the PKW area that `fill` wrote.
 
     Written by the loop: _in, and idle to False. By the engine: everything else. A Job belongs to
     the loop, but to the engine from `ask` until its state is no longer PENDING.
     """
 
-    def __init__(self, mask):
-        self.idle = False
+    # Eight fields: with one more each drive would take 16 bytes more.
+
+    def __init__(self, mask, pkw_words=4, longest=10):
+        variable = pkw_words == _VARIABLE
+        self.idle = pkw_words == 0
+        self.size = _THREE_WORDS if variable else 2 * pkw_words
+        self._form = _VARIABLE_LENGTH | 2 * longest if variable else 2 * pkw_words
         self._mask = mask
-        self._queue = [None] * (JOBS_MAX + 1)
+        self._queue = [None] * JOBS_MAX if pkw_words else NO_QUEUE
         self._in = 0
-        self._out = 0
-        self._job = None  # the task on the line
-        self._since = 0
-        self._tries = 0
-        self._rest = 0  # telegrams without a task still to be tried for an answer with AK 0
-        self._ended_pke = 0  # the job that ended last
-        self._ended_ind = 0
+        self._turn = 0  # see _POSITION and _REST
+        self._ended = ANY  # the key of the job that must be told apart from the next, or ANY
 
     def is_full(self):
-        """Whether `ask` would be refused for want of room."""
-        return (self._in + 1) % len(self._queue) == self._out
+        """Whether `ask` would be refused, for want of room or of PKW words."""
+        return not self._form or self._queue[self._in] is not None
 
     def ask(self, job):
-        """Queue a job. RuntimeError when JOBS_MAX wait already or it is pending."""
-        if self.is_full():
+        """Queue a job. RuntimeError when JOBS_MAX wait already, it is pending, or the drive has no
+        parameter channel. One that the channel is too small for is REFUSED at once.
+        """
+        form = self._form
+        position = self._in
+        if not form:
+            raise RuntimeError("the drive has no parameter channel")
+        if self._queue[position] is not None:
             raise RuntimeError("%d jobs wait already" % JOBS_MAX)
-        if job.state == pkw.PENDING:
+        if job.state == _PENDING:
             raise RuntimeError("%r is pending already" % (job,))
-        job.state = pkw.PENDING
-        self._queue[self._in] = job
-        self._in = (self._in + 1) % len(self._queue)
+        if not job.fits(form):
+            job.refuse(pkw.TOO_SMALL)
+            return
+        job.tries = _WAITING
+        job.state = _PENDING
+        self._queue[position] = job
+        self._in = position + 1 & _POSITION
+        self.idle = False
+
+    def follow(self, reports):
+        """Hand every reply to `reports` (see `pkw_text`), and its bit to every task; None ends it.
+
+        RuntimeError when the drive has no parameter channel.
+        """
+        if not self._form:
+            raise RuntimeError("the drive has no parameter channel")
+        if reports is None:
+            self._form &= _FOLLOWED - 1
+        else:
+            self.reports = reports
+            self._form |= _FOLLOWED
         self.idle = False
 
     # --- for the engine: allocates nothing ------------------------------------------------------
 
     def fill(self, net, at, now):
         """Write the PKW words of the next request into `net` from index `at` on."""
-        job = self._job
-        if self._out != self._in or self._tries >= TRIES_MIN:
-            self.supervise(now)
-            job = self._job
-        if job is None or self._rest:
-            copy(NO_TASK, net, at, PKW_COUNT)
-            self.idle = job is None and not self._rest
-            return
-        copy(job.words, net, at, PKW_COUNT)
-        if self._tries < TRIES_MIN:
-            self._tries += 1
+        turn = self._turn
+        job = self._queue[turn & _POSITION]
+        if job is None:
+            self.idle = turn < _REST and self._form < _FOLLOWED
+        elif job.tries == _WAITING:
+            self._begin(job, now)
+        elif job.tries >= TRIES_MIN:
+            self._watch(job, now)
+        words = NO_TASK
+        if job is not None and self._turn < _REST:
+            words = job.words
+            if job.tries < TRIES_MIN:
+                job.tries += 1
+        if self._form == _FOUR_WORDS:
+            copy(words, net, at, _FOUR_WORDS)
+        else:
+            self._place(job, words, net, at)
 
-    def take(self, net, at):
-        """Take the PKW words of a valid reply that stand in `net` from index `at` on."""
-        pke = net[at] << 8 | net[at + 1]
-        job = self._job
-        if self._rest:
+    def _place(self, job, words, net, at):
+        """Write words where other than four fixed ones have their place, and the report bit."""
+        form = self._form
+        size = form & 0xFF
+        if form & _VARIABLE_LENGTH:
+            size = _THREE_WORDS if words is NO_TASK else job.size()
+        copy(words, net, at, size)
+        if size == _THREE_WORDS:  # the one word of a value stands where the high one was
+            net[at + 4] = words[6]
+            net[at + 5] = words[7]
+        if form & _FOLLOWED:
+            net[at] |= self.reports.bit
+        self.size = size
+
+    def take(self, net, at, count=8):
+        """Take the PKW words of a valid reply, `count` characters in `net` from index `at` on."""
+        form = self._form
+        if form >= _FOLLOWED:
+            form -= _FOLLOWED
+            self.reports.take(net, at, count, form)
+        turn = self._turn
+        job = self._queue[turn & _POSITION]
+        if turn >= _REST:
             # The task was withdrawn; until the drive says AK 0 an old reply may still come.
-            self._rest = 0 if pke >> 12 == pkw.NO_REPLY else self._rest - 1
-            self.idle = job is None and not self._rest and self._in == self._out
-        elif job is not None:
-            ind = net[at + 2] << 8 | net[at + 3]
-            high = net[at + 4] << 8 | net[at + 5]
-            low = net[at + 6] << 8 | net[at + 7]
-            if job.answer(pke, ind, high, low):
-                self._end()
+            self._turn = turn = turn & _POSITION if net[at] < 0x10 else turn - _REST
+            if job is None and turn < _REST and self._form < _FOLLOWED:
+                self.idle = True
+        elif job is not None and job.tries > 0 and job.answer(net, at, count, form):
+            self._end(job, job.task >= _FIRST_PERMANENT)
 
     def miss(self, now):
         """There was no valid reply."""
-        if self._rest:
-            self._rest -= 1
-        self.supervise(now)
-
-    def supervise(self, now):
-        """Time out a job that takes long; take the next one from the queue when there is none."""
-        job = self._job
-        if job is not None:
-            if self._tries < TRIES_MIN or elapsed(now, self._since, self._mask) < job.timeout_us:
-                return
-            job.state = pkw.TIMED_OUT
-            self._end()
-        if self._out != self._in:
-            self._begin(self._queue[self._out], now)
+        turn = self._turn
+        if turn >= _REST:
+            self._turn = turn - _REST
+        job = self._queue[turn & _POSITION]
+        if job is not None and job.tries >= TRIES_MIN:
+            self._watch(job, now)
 
     def _begin(self, job, now):
-        self._job = job
-        self._since = now
-        self._tries = 0
-        # Only to the same question could an old reply be taken for the answer.
-        if job.ind != self._ended_ind or (job.pke ^ self._ended_pke) & 0x07FF:
-            self._rest = 0
-        self._queue[self._out] = None
-        self._out = (self._out + 1) % len(self._queue)
+        job.since = now
+        job.tries = 0
+        # Mostly only to the same question could an old reply be taken for the answer.
+        if self._ended != ANY and self._ended != job.key:
+            self._turn &= _POSITION
 
-    def _end(self):
+    def _watch(self, job, now):
+        """Time out a job that takes long."""
+        timeout_us = WORK_TIMEOUT_US if job.task < _FIRST_PERMANENT else EEPROM_TIMEOUT_US
+        if elapsed(now, job.since, self._mask) >= timeout_us:
+            job.state = pkw.TIMED_OUT
+            self._end(job, job.writes())
+
+    def _end(self, job, strictly):
         # A task is never left standing. Two of the same parameter must be told apart
         # (specification C-4.2.1.1): "no task" stands between them until the drive has answered it.
-        self._ended_pke = self._job.pke
-        self._ended_ind = self._job.ind
-        self._job = None
-        self._rest = REST_MAX
+        # strictly: it stands before any other, for what wears out or may still be carried out.
+        self._ended = ANY if strictly else job.key
+        position = self._turn & _POSITION
+        self._queue[position] = None
+        self._turn = REST_MAX * _REST | position + 1 & _POSITION

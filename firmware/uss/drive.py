@@ -3,7 +3,8 @@
 Two sides share a drive: the *loop* (panel, own program) and the *engine* (`master.poll`, possibly
 in an interrupt). They share words, not structures; each field has one writer:
 
-    loop     wanted, off, ticket, stops, hsw, urgent, asking, acknowledgements
+    loop     wanted, off, ticket, stops, hsw, urgent, asking, acknowledgements, further words on
+             their way out
     engine   void, zsw, hiw, contact, contacts, was_running, silent, served, counters and the rest
     both     steady: False by whoever changes something, at last; True by the engine alone
 
@@ -19,23 +20,33 @@ comes.
     drive.stop(pzd.OFF3)                # as fast as the drive can, until `stop` is for OFF1 again
     drive.acknowledge()                 # a fault
     drive.ask(pkw.read(700))            # see `channel`
+    drive.put(4, 0x2000)                # further words of its layout: PZD4, here STW2
+    drive.word(4)                       # ZSW2
 """
+
+from array import array
 
 from micropython import const
 
 from uss import pzd
-from uss.channel import PKW_COUNT, Channel
+from uss.channel import Channel
+from uss.fast import get_words
+from uss.layout import STANDARD
 from uss.pzd import STW_ON, STW_RUN, ZSW_FAULT, ZSW_INHIBIT, ZSW_RUNNING
 from uss.telegram import NET, NODE_MAX, put_word
 from uss.timing import elapsed
 
-PZD_COUNT = const(4)  # characters of STW and HSW, of ZSW and HIW
 TICKET_MASK = const(0xFFFF)
 INSIST_MAX = const(10)  # telegrams out of turn that an OFF1 may take until the drive answers one
+SILENT_MAX = const(3)  # without contact and so often silent, a drive need not have every turn
 UNKNOWN = const(-1)  # no control word
+NO_EDGE = const(-1)  # no acknowledgement on its way
+ANSWERED = const(-2)  # one was confirmed: a word without bit 7 must follow
 COUNTER_MASK = const(0xFFFF)  # counters wrap like the drive's own (specification A-5.2.3)
 
-# What each receiver finding is counted as. Named as in specification A-5.2.3.
+# What each receiver finding is counted as, and its bit of the error status word. Both named as in
+# specification A-5.2.3. Characters with a wrong parity or stop bit, and lost ones, have no place:
+# no UART of MicroPython tells of them; they show as telegrams too short or with a wrong BCC.
 COUNTERS = (
     "good",  # answered without an error
     "start",  # telegram start not identified
@@ -45,28 +56,44 @@ COUNTERS = (
     "no_reply",
     "residual",  # residual run time expired
 )
+STATUS_BITS = (0x00, 0x08, 0x40, 0x10, 0x08, 0x80, 0x20)
+
+# What the drives of a bus let the engine know: by address, the urgency of a command; from WANTS
+# on, by address, whether a drive is to have more than its turn; at ANY, whether there may be
+# anything to see. The engine alone clears them.
+NODES = const(32)
+WANTS = const(32)
+ANY = const(64)
+ATTENTION = const(65)
+
+# Bits of STW that `control` may change, and those that are 1 in every control word of `pzd`. The
+# others start, stop, acknowledge, turn round or give up control.
+CONTROL_BITS = const(0xE078)
+CONTROL_ON = const(0x0078)
 
 
 class Drive:
-    """address: node 0...31, ValueError beyond. mask: the clock's period - 1.
+    """address: node 0...31, ValueError beyond. mask: the clock's period - 1. layout: a `Layout`.
 
-    attention: a bytearray of one, shared by the drives of a bus; 1 as long as one of them may be
-    in a hurry, so that the engine need not ask each of them before every telegram.
+    attention: shared by the drives of a bus, see ATTENTION, so that the engine need not ask each
+    of them before every telegram.
+
+    Fields to look at: `zsw`, `hiw`, `contact`, `was_running`; `silent`, telegrams without a valid
+    reply in a row; `counters`, see COUNTERS; `status`, the error status word: what went wrong
+    since the last valid reply, 0 after one.
     """
 
-    def __init__(self, address, mask, attention=None):
+    def __init__(self, address, mask, attention=None, layout=STANDARD):
         if not 0 <= address <= NODE_MAX:
             raise ValueError("drive address %r is not 0...31" % (address,))
         self.address = address
-        self.net_count = PKW_COUNT + PZD_COUNT  # net characters of a request and of a reply
-        self.telegram_us = 0  # the time one takes; the master knows the line
-        self.residual_us = 0  # the time a reply may take
-        self.channel = Channel(mask)
-        self.request = bytearray(NET + self.net_count + 1)  # the telegram to it
+        self.layout = layout
+        self.channel = Channel(mask, layout.pkw_words, layout.longest)
+        self.request = bytearray(NET + layout.net_max + 1)  # the telegram to it
+        self.size = NET + layout.net_count + 1  # characters of it
         self.sealed = False  # it is whole: frame and BCC fit its words
         self.steady = False  # nothing has happened that would change its words, but perhaps `hsw`
-        self._mask = mask
-        self._attention = attention or bytearray(1)
+        self._attention = attention or bytearray(ATTENTION)
         # Written by the loop.
         self.wanted = 0  # the control word that makes it run, 0 for none
         self.off = pzd.OFF1  # the control word that makes it stop
@@ -76,6 +103,7 @@ class Drive:
         self.urgent = 0
         self.asking = False  # somebody waits for its parameters
         self.acknowledgements = 0  # of faults
+        self.further = None  # PZD words beyond two: those to the drive, then those from it
         # Written by the engine.
         self.void = 0
         self.zsw = 0
@@ -85,23 +113,24 @@ class Drive:
         self.was_running = False  # when contact was lost: it may run still
         self.ran = False  # seen running on the ticket in force
         self.off_answers = 0  # valid replies to telegrams without ON; wraps
-        self.answered_off = False  # the last valid reply was one to a telegram without ON
         self.answered_stw = 0  # the control word of that telegram; 0 without contact
         self.answered_address = address  # of the last valid reply
-        self.silent = 0  # telegrams without a valid reply in a row
+        self.silent = 0
+        self.status = 0
         self.served = 0
         self.stops_sent = 0  # `stops` when the last telegram was built
-        self.taken_back = False  # ON was revoked and the telegram that says so is still to be sent
         self.insist = 0  # telegrams out of turn left to an OFF1 that no answer has confirmed
-        self.counters = [0] * len(COUNTERS)
+        self.counters = array("H", bytes(2 * len(COUNTERS)))
         self.acknowledged = 0  # `acknowledgements` that a valid reply has confirmed
-        self._heard_at = 0
+        self._tried_at = 0  # the last valid reply; without contact, the last telegram
+        self._toggled = 0  # bits of STW that are other than usual
+        self._behind = layout.pzd_count + 1  # characters of a telegram from its PZD on
         self._sent_stw = 0
-        self._sent_hsw = 0
         self._hsw = 0  # `hsw` when the telegram was built
-        self._acknowledging = 0  # `acknowledgements` when bit 7 was sent
-        self._edge_was_answered = False
+        self._edge = NO_EDGE  # of bit 7: `acknowledgements` when it was sent
         self._may_run = False  # sent ON or seen running, and not seen standing after OFF1
+        if layout.pzd_words > 2:
+            self.further = array("H", bytes(4 * (layout.pzd_words - 2)))
 
     # --- for the loop ---------------------------------------------------------------------------
 
@@ -109,10 +138,12 @@ class Drive:
         """Have the drive run with setpoint word `hsw` (0...FFFFh) on a new ticket.
 
         stw: pzd.ON, ON_REVERSE, JOG_RIGHT or JOG_LEFT; a jog has its speed from the drive.
-        ValueError: no such word. TypeError: no integer.
+        ValueError: no such word, or a layout without PZD. TypeError: no integer.
         """
         if hsw & 0xFFFF != hsw:
             raise ValueError("HSW %r is not 0...FFFFh" % hsw)
+        if not self.layout.pzd_words:
+            raise ValueError("the telegrams to drive %d have no control word" % self.address)
         self.hsw = hsw
         self.off = pzd.OFF1
         ticket = (self.ticket + 1) & TICKET_MASK
@@ -152,13 +183,70 @@ class Drive:
         # change, or not be called for it.
         self.urgent = (self.served + 1) & TICKET_MASK
         self.steady = False
-        self._attention[0] = 1
+        self.call()
+
+    def call(self):
+        """Let the engine look how urgent this drive is."""
+        attention = self._attention
+        attention[self.address] = self.urgency()
+        attention[WANTS + self.address] = 1
+        attention[ANY] = 1
+
+    def _call_for_turns(self):
+        attention = self._attention
+        attention[WANTS + self.address] = 1
+        attention[ANY] = 1
 
     def want_turns(self, asking):
         """Whether it is to have more than its turn in the list, for its parameters."""
         self.asking = asking
         if asking:
-            self._attention[0] = 1
+            self._call_for_turns()
+
+    def control(self, bits, on):
+        """Have these bits of STW 1, or 0, in every telegram, also while it runs.
+
+        bits: any of 3...6, which are 1 otherwise, and 13...15, which are 0. ValueError: others.
+        """
+        if bits & CONTROL_BITS != bits:
+            raise ValueError("STW bits %04Xh are no matter of control()" % (bits & ~CONTROL_BITS))
+        usual = CONTROL_ON if on else CONTROL_BITS & ~CONTROL_ON
+        self._toggled = self._toggled & ~bits | bits & ~usual
+        self.steady = False
+
+    def put(self, place, word):
+        """Send `word`, 0...FFFFh, as PZD word `place` from the next telegram on.
+
+        place: 3...16; the first two are STW and HSW, 4 is mostly STW2. ValueError: no such word,
+        or not in its layout.
+        """
+        if not 3 <= place <= self.layout.pzd_words or word & 0xFFFF != word:
+            raise ValueError("PZD%r = %r to drive %d" % (place, word, self.address))
+        self.further[place - 3] = word
+        self.steady = False
+
+    def word(self, place):
+        """PZD word `place`, 1...16, of the last valid reply; 1 is ZSW, 2 HIW, 4 mostly ZSW2.
+
+        ValueError: not in its layout. Means nothing without contact.
+        """
+        words = self.layout.pzd_words
+        if not 1 <= place <= words:
+            raise ValueError("drive %d sends no PZD%r" % (self.address, place))
+        if place < 3:
+            return self.zsw if place == 1 else self.hiw
+        return self.further[words - 2 + place - 3]
+
+    # A method, not a property: with one in its class, storing any attribute of an object takes
+    # MicroPython three times as long, in the interrupts too.
+
+    def answered_off(self):
+        """Whether the last valid reply was one to a telegram without ON."""
+        return self.contact and not self.answered_stw & STW_RUN
+
+    def may_run(self):
+        """Whether the motor may turn: told to, seen to, or lost while it did."""
+        return self._may_run or self.was_running or self.is_on()
 
     def is_on(self):
         """Whether ON or JOG is being sent."""
@@ -178,19 +266,30 @@ class Drive:
         return pzd.state(self.zsw)
 
     def ask(self, job):
-        """Queue a parameter job. RuntimeError when too many wait already or it is pending."""
+        """Queue a parameter job. RuntimeError when too many wait already or it is pending.
+
+        ValueError when it does not fit its layout.
+        """
         self.channel.ask(job)
 
     # --- for the engine: allocates nothing ------------------------------------------------------
 
     def revoke(self):
         """Void the ticket in force: no ON until the next `start`, and OFF1 ahead of the list."""
-        if self.is_on():
-            self.taken_back = True
-            self._attention[0] = 1
+        was_on = self.is_on()
         self.void = self.ticket
         self.ran = False
         self.steady = False
+        if was_on:
+            self.stops_sent = (self.stops - 1) & TICKET_MASK  # one stop is still to be sent
+            self.call()
+
+    def probe(self):
+        """From the loop: it backs off, but is to be asked soon."""
+        if not self.insist:
+            self.insist = 1
+        self.steady = False
+        self._call_for_turns()
 
     def urgency(self):
         """How much this drive is in a hurry.
@@ -199,32 +298,33 @@ class Drive:
         is answered, or parameters are waited for. 2: a command. 3: a stop. 4: a stop of a drive
         that runs, or may run.
         """
-        if self.urgent == self.served and not self.taken_back and self.stops == self.stops_sent:
+        if self.urgent == self.served and self.stops == self.stops_sent:
             return 1 if self.insist or self.asking else 0
         if self.is_on():
             return 2
         return 4 if self._may_run or self.zsw & ZSW_RUNNING else 3
 
-    def fill(self, net, at, now):
-        """Bring the words of the request up to date, PKW and PZD, in `net` from index `at` on.
-
-        net: the same buffer every time, mostly `request`. What changes in it breaks its seal.
-        """
+    def fill(self, now):
+        """Bring the words of the request up to date. What changes in it breaks its seal."""
         channel = self.channel
         if not channel.idle:
             self.sealed = False
-            channel.fill(net, at, now)
+            channel.fill(self.request, NET, now)
+            size = NET + channel.size + self._behind
+            if size != self.size:  # variable length: the PZD have moved
+                self.size = size
+                self.steady = False
         hsw = self.hsw
         if self.steady and hsw == self._hsw:
             return
         self._hsw = hsw
         self.served = self.urgent
+        self._attention[self.address] = 0  # with this telegram it is served
         on = self.wanted and self.is_on()
-        if self.taken_back or self.stops != self.stops_sent:
-            self.taken_back = False
+        if self.stops != self.stops_sent:
             self.stops_sent = self.stops
             self.insist = INSIST_MAX
-            self._attention[0] = 1
+            self._call_for_turns()
         elif self.insist:
             self.insist -= 1
         if on:
@@ -235,24 +335,36 @@ class Drive:
         else:
             self.ran = False
             stw = self.off
-            if self.acknowledgements != self.acknowledged or self._edge_was_answered:
+            if self.acknowledgements != self.acknowledged or self._edge == ANSWERED:
                 stw |= self._acknowledge_bit()
         if not stw & STW_ON:
             hsw = 0
-        if stw != self._sent_stw or hsw != self._sent_hsw:
-            self.sealed = False
-            self._sent_stw = UNKNOWN  # should this fail half way, both are written anew
-            put_word(net, at + PKW_COUNT, stw)
-            put_word(net, at + PKW_COUNT + 2, hsw)
-            self._sent_stw = stw
-            self._sent_hsw = hsw
+        stw ^= self._toggled
+        self.sealed = self.steady = False  # should this fail half way, it is done anew
+        self._sent_stw = UNKNOWN
+        self._put_words(stw, hsw, self.further)
+        self._sent_stw = stw
         self.steady = not self.insist and self.acknowledgements == self.acknowledged
 
-    def take(self, net, at, now):
-        """Take the words of a valid reply that stands in `net` from index `at` on, behind ADR."""
-        self._heard_at = now
-        self.answered_address = net[at - 1]
-        self.silent = 0
+    def _put_words(self, stw, hsw, further):
+        """The PZD words, as far as the layout has them, to the end of the request."""
+        request = self.request
+        words = self._behind >> 1
+        at = self.size - self._behind
+        if words:
+            put_word(request, at, stw)
+        if words > 1:
+            put_word(request, at + 2, hsw)
+        for index in range(words - 2):
+            put_word(request, at + 4 + 2 * index, further[index])
+
+    def take(self, buffer, count, now):
+        """Take the words of a valid reply: the first `count` characters of `buffer`."""
+        self._tried_at = now
+        self.answered_address = buffer[2]
+        if self.silent:
+            self.silent = 0
+            self.status = 0
         counters = self.counters
         counters[0] = (counters[0] + 1) & COUNTER_MASK
         if not self.contact:
@@ -261,35 +373,62 @@ class Drive:
             self.contacts = (self.contacts + 1) & COUNTER_MASK
             self.was_running = False
             self.contact = True
-        pzd_at = at + PKW_COUNT
-        self.zsw = zsw = net[pzd_at] << 8 | net[pzd_at + 1]
-        self.hiw = net[pzd_at + 2] << 8 | net[pzd_at + 3]
+        behind = self._behind
+        at = count - behind
+        zsw = buffer[at] << 8 | buffer[at + 1] if behind > 1 else 0
+        if behind >= 5:
+            self.hiw = buffer[at + 2] << 8 | buffer[at + 3]
+            if behind > 5:
+                words = (behind >> 1) - 2
+                get_words(buffer, at + 4, self.further, words, words)
+        self.zsw = zsw
         self.answered_stw = stw = self._sent_stw
         if stw & STW_RUN:
-            self.answered_off = False
             self._watch_running(zsw)
         else:
-            self.answered_off = True
             if not self.steady and stw & pzd.STW_ACKNOWLEDGE:
-                self.acknowledged = self._acknowledging
-                self._edge_was_answered = True
+                self.acknowledged = self._edge
+                self._edge = ANSWERED
             self.off_answers = (self.off_answers + 1) & COUNTER_MASK
             self.insist = 0
             self._may_run = zsw & ZSW_RUNNING != 0
         if not self.channel.idle:
-            self.channel.take(net, at)
+            self.channel.take(buffer, NET, at - NET)
 
-    def miss(self, finding, now, lost_us):
+    def miss(self, finding, now, lost_us, mask):
         """Count an exchange that brought no valid reply; after `lost_us` of them contact is lost.
 
         finding: one of the receiver's, not GOOD.
         """
-        self._count(finding)
+        self.counters[finding] = (self.counters[finding] + 1) & COUNTER_MASK
+        self.status |= STATUS_BITS[finding]
         if self.silent < COUNTER_MASK:
             self.silent += 1
-        if elapsed(now, self._heard_at, self._mask) >= lost_us:
+        if not self.contact:
+            self._tried_at = now
+        elif elapsed(now, self._tried_at, mask) >= lost_us:
             self.lose()
         self.channel.miss(now)
+
+    def fits(self, net_count):
+        """Whether a reply may have so many net characters."""
+        return self.layout.fits(net_count)
+
+    def keeps_silent(self):
+        """Whether it need not have every turn: silent again and again, and nobody can have told it
+        to run. One that was running when contact was lost keeps its turns.
+        """
+        return self.silent > SILENT_MAX and not self.contact and not self.was_running
+
+    def silent_us(self, now, mask):
+        """How long ago the last valid reply came; without contact, the last telegram."""
+        return (now - self._tried_at) & mask
+
+    def may_reply_alike(self):
+        """Whether its reply may be the very request: not where a control word meets a status word,
+        which has bit 9 set when bit 3 is not.
+        """
+        return not self.layout.pzd_words
 
     def lose(self):
         """Contact is lost; ON, if it was being sent, is void."""
@@ -305,10 +444,10 @@ class Drive:
 
         It acts by its rising edge: after one that was confirmed a word goes without.
         """
-        if self._edge_was_answered:
-            self._edge_was_answered = False
+        if self._edge == ANSWERED:
+            self._edge = NO_EDGE
             return 0
-        self._acknowledging = self.acknowledgements
+        self._edge = self.acknowledgements
         return pzd.STW_ACKNOWLEDGE
 
     def _watch_running(self, zsw):
@@ -320,9 +459,6 @@ class Drive:
             self.revoke()
         if zsw & (ZSW_FAULT | ZSW_INHIBIT):
             self.revoke()
-
-    def _count(self, counter):
-        self.counters[counter] = (self.counters[counter] + 1) & COUNTER_MASK
 
     def __repr__(self):
         return "<drive %d ZSW %04X HIW %04X>" % (self.address, self.zsw, self.hiw)

@@ -13,8 +13,9 @@ def exclusive_or(buffer, count):
     return check
 
 
-def is_telegram(buffer, count, address):
-    """Whether the `count` characters are a whole telegram with this ADR.
+def is_reply(buffer, count, request):
+    """Whether the `count` characters are a whole telegram with the ADR of `request`, but not that
+    request itself, which a line with two wires may bring back.
 
     STX and LGE stand where they should and the BCC is right; `telegram.judge` says what is wrong.
     """
@@ -22,9 +23,27 @@ def is_telegram(buffer, count, address):
         count >= 5
         and buffer[0] == 0x02
         and buffer[1] == count - 2
-        and buffer[2] == address
+        and buffer[2] == request[2]
         and exclusive_or(buffer, count) == 0
+        and (buffer[1] != request[1] or agreeing(buffer, 0, request, 0, count) < count)
     )
+
+
+def agreeing(buffer, at, other, other_at, count):
+    """How many of `count` characters agree, from these indices on, until the first that differs.
+
+    The caller sees to it that both are long enough.
+    """
+    index = 0
+    while index < count and buffer[at + index] == other[other_at + index]:
+        index += 1
+    return index
+
+
+def get_words(buffer, at, words, to, count):
+    """Bring `count` words, high byte first, from buffer[at:] to words[to:], an array("H")."""
+    for index in range(count):
+        words[to + index] = buffer[at + 2 * index] << 8 | buffer[at + 2 * index + 1]
 
 
 def copy(source, target, at, count):
@@ -33,11 +52,27 @@ def copy(source, target, at, count):
         target[at + index] = source[index]
 
 
-IN_PYTHON = (exclusive_or, is_telegram, copy)  # for the test that compares them with the others
+def greatest(values, at, count, start):
+    """Which of the `count` characters from values[at:] on is the greatest, or -1 if all are 0.
+
+    Of equal ones the first behind number `start`, going round.
+    """
+    found = -1
+    highest = 0
+    for step in range(1, count + 1):
+        number = (start + step) % count
+        if values[at + number] > highest:
+            highest = values[at + number]
+            found = number
+    return found
+
+
+# For the test that compares them with the others.
+IN_PYTHON = (exclusive_or, is_reply, agreeing, get_words, copy, greatest)
 
 # What importing it raises: CPython knows no viper; no emitter in a port that compiles the source,
 # or one for another processor in a port that is handed bytecode.
 try:
-    from uss.fast_viper import copy, exclusive_or, is_telegram
+    from uss.fast_viper import agreeing, copy, exclusive_or, get_words, greatest, is_reply
 except (ImportError, AttributeError, NameError, SyntaxError, ValueError):
     pass

@@ -17,15 +17,42 @@ def exclusive_or(buffer: ptr8, count: int) -> int:
 
 
 @micropython.viper
-def is_telegram(buffer: ptr8, count: int, address: int) -> bool:
-    if count < 5 or buffer[0] != 0x02 or buffer[1] != count - 2 or buffer[2] != address:
+def is_reply(buffer: ptr8, count: int, request: ptr8) -> bool:
+    if count < 5 or buffer[0] != 0x02 or buffer[1] != count - 2 or buffer[2] != request[2]:
         return False
     check = 0
     index = 0
     while index < count:
         check ^= buffer[index]
         index += 1
-    return check == 0
+    if check != 0:
+        return False
+    if buffer[1] != request[1]:
+        return True
+    index = 0
+    while index < count:
+        if buffer[index] != request[index]:
+            return True
+        index += 1
+    return False
+
+
+@micropython.viper
+def agreeing(buffer: ptr8, at: int, other: ptr8, other_at: int, count: int) -> int:
+    index = 0
+    while index < count:
+        if buffer[at + index] != other[other_at + index]:
+            break
+        index += 1
+    return index
+
+
+@micropython.viper
+def get_words(buffer: ptr8, at: int, words: ptr16, to: int, count: int):
+    index = 0
+    while index < count:
+        words[to + index] = buffer[at + 2 * index] << 8 | buffer[at + 2 * index + 1]
+        index += 1
 
 
 @micropython.viper
@@ -34,3 +61,20 @@ def copy(source: ptr8, target: ptr8, at: int, count: int):
     while index < count:
         target[at + index] = source[index]
         index += 1
+
+
+@micropython.viper
+def greatest(values: ptr8, at: int, count: int, start: int) -> int:
+    found = -1
+    highest = 0
+    number = start
+    step = 0
+    while step < count:
+        number += 1
+        if number >= count:
+            number = 0
+        if values[at + number] > highest:
+            highest = values[at + number]
+            found = number
+        step += 1
+    return found

@@ -1,4 +1,6 @@
-"""The USS master: who talks when on the bus, and what becomes of it.
+"""The USS master: telegrams to the drives one after the other, and what becomes of each.
+
+Whose turn it is, is the subject of `turns`; this is the exchange: silence, request, reply.
 
 `poll(now)` does whatever is due - take received characters, judge them, choose the next drive,
 build and send its telegram, time out - and answers in how many microseconds it has something to do
@@ -8,7 +10,7 @@ allocates nothing, uses no float, and must not be entered twice at once (`hal.pa
 Not a clock and not a driver: the time is an argument, and the link is a duck type of `hal`.
 
     bus = Master(link, Timing(19200), clock.ticks_mask)
-    drive = bus.add(1)
+    drive = bus.add(1)              # or bus.add(1, Layout(VARIABLE, 4))
     bus.refresh(now)                # from the main loop, or every motor is stopped after 300 ms
     wait_us = bus.poll(now)
 """
@@ -16,11 +18,11 @@ Not a clock and not a driver: the time is an argument, and the link is a duck ty
 from micropython import const
 
 from uss import telegram
-from uss.drive import Drive
+from uss.drive import ANY, SILENT_MAX
 from uss.receiver import COMING, SILENT, WAITING, Receiver
 from uss.timing import elapsed
+from uss.turns import Turns
 
-LIST_MAX = const(255)  # entries of the circulating list
 LOST_US = const(1_000_000)  # without a valid reply for so long, contact with a drive is lost
 DEAD_MAN_US = const(300_000)  # without `refresh` for so long, the loop is taken for dead
 LISTEN_US = const(100_000)  # silence that must be heard before the first telegram
@@ -28,11 +30,10 @@ BABBLE_US = const(500_000)  # a line that never falls silent is sent on all the 
 STUCK_US = const(50_000)  # a transmission that takes so much longer than it should has failed
 PAUSE_US = const(1_000_000)  # a pause ends after so long, whether or not anybody ends it
 PAUSE_LOOK_US = const(5_000)  # how soon its end, or a command, is noticed
+SHARED_EXCHANGES = const(1_000)  # so many after its last telegram another master counts as gone
 FAILURES_MAX = const(3)  # exceptions in a row after which nothing is known of the drives any more
 
-# Of `telegram`, for the compiler: these are needed in every exchange.
-_NET = const(3)
-_GOOD = const(0)
+_GOOD = const(0)  # of `telegram`, for the compiler: needed in every exchange
 
 # What the engine is doing.
 LISTENING = const(0)
@@ -40,25 +41,28 @@ RESTING = const(1)
 SENDING = const(2)
 AWAITING = const(3)
 CLOSED = const(4)
+OFF = const(5)
+
+HELD_BY_PAUSE = const(1)
+HELD_BY_OFF = const(2)
+HELD_BY_CLOSE = const(4)
 
 
-class Master:
-    """The bus and its circulating list of drives.
+class Master(Turns):
+    """The bus: its circulating list (`Turns`) and the exchanges with its drives.
 
     link: what is sent on and received from. timing: `Timing` of its baud rate. mask: the clock's
     period - 1, at most 2**30 - 1. All figures of counters are unsigned 16-bit and wrap.
 
     Fields to look at: `phase`; `exchanges` (telegrams sent); `progress`, which moves as long as
     the engine gets anything done; `dead_man_trips`; `failures` (exceptions in `poll`); `foreign`
-    (bursts heard while listening: another master is on the line); `paused` (nothing is sent and
-    nothing awaited, by order of `pause`). `patience_us` is how long `progress` may stand still on
-    a bus that works.
+    (heard from another master: bursts before the first telegram, telegrams after it); `paused`
+    (nothing is sent and nothing awaited, by order of `pause`). `patience_us` is how long
+    `progress` may stand still on a bus that works.
     """
 
     def __init__(self, link, timing, mask, lost_us=LOST_US):
-        self.drives = []  # each once, in the order added
-        self.list = []  # the circulating list; a drive may stand in it several times
-        self.timing = timing
+        Turns.__init__(self, timing, mask)
         self.phase = LISTENING
         self.exchanges = 0
         self.progress = 0
@@ -66,23 +70,18 @@ class Master:
         self.dead_man_trips = 0
         self.failures = 0
         self.foreign = 0
+        self._foreign_at = 0  # `exchanges` then
         self.paused = False
         self._link = link
-        self._mask = mask
         self._lost_us = lost_us
         self._receiver = Receiver(timing, mask)
         self._foreseen = getattr(link, "foreseen", False)
         self._reply_window_us = self._receiver.window_us
-        self._attention = bytearray(1)  # 1: a drive may be in a hurry
-        self._drive = None  # the one whose turn it is
-        self._insisted = False  # it was its turn because it is to have more than its turn
-        self._look_from = 0  # where the search for one with a hurry begins
+        self._character_us = timing.character_us
+        self._drive = None  # the one whose turn it is, or a telegram outside the list
         self._failures_in_row = 0
-        self._next = 0
         self._first = True  # poll was never called
-        self._closing = False
-        self._pausing = False
-        self._held = False  # by one of these
+        self._held = 0  # what keeps the next exchange from beginning: bits of HELD_BY_...
         self._paused_since = 0
         self._quiet_since = 0  # the last character on the line, either direction
         self._resting_since = 0
@@ -94,80 +93,66 @@ class Master:
 
     # --- for the loop ---------------------------------------------------------------------------
 
-    def add(self, address):
-        """Put a drive at the end of the circulating list; answer its `Drive`.
-
-        The same address again gives the same drive one more turn. ValueError when the address is
-        not 0...31 or the list is full.
-        """
-        if len(self.list) >= LIST_MAX:
-            raise ValueError("the circulating list holds %d entries" % LIST_MAX)
-        for drive in self.drives:
-            if drive.address == address:
-                break
-        else:
-            drive = Drive(address, self._mask, self._attention)
-            drive.residual_us = self.timing.residual_us(drive.net_count)
-            drive.telegram_us = self.timing.telegram_us(drive.net_count)
-            longest_us = drive.telegram_us + self.timing.reply_timeout_us + drive.residual_us
-            self.patience_us = max(self.patience_us, longest_us + BABBLE_US + STUCK_US)
-            # New lists, because an interrupt may be walking the old ones.
-            self.drives = self.drives + [drive]
-        self.list = self.list + [drive]
-        return drive
-
-    def readdress(self, drive, address):
-        """From the next telegram on, `drive` answers at another address.
-
-        ValueError when it is not 0...31 or another drive of this bus has it.
-        """
-        if not 0 <= address <= telegram.NODE_MAX:
-            raise ValueError("drive address %r is not 0...31" % (address,))
-        for other in self.drives:
-            if other is not drive and other.address == address:
-                raise ValueError("address %d is taken" % address)
-        drive.address = address
-
-    def longest_cycle_us(self):
-        """How long a round of the list takes when every drive is silent till the last moment."""
-        cycle_us = 0
-        for drive in self.list:
-            cycle_us += drive.telegram_us + self.timing.reply_timeout_us + drive.residual_us
-        return cycle_us
-
     def refresh(self, now):
         """The loop says that it is alive. Whatever ran when it was not stays stopped."""
         self._refreshed_at = now
         self._dead_man = False
+        if self._uneasy:
+            self._uneasy = self._care.look_after_silent(now)
+        if self._care.pressed:
+            self._care.look_after_pressed(now)
+
+    def _set_list(self, entries):
+        Turns._set_list(self, entries)
+        self.patience_us = BABBLE_US + STUCK_US + self.longest_exchange_us()
 
     def is_line_in_use(self):
         """Whether another master was heard and is listened to instead of talking."""
         return self.phase == LISTENING and self.foreign > 0
 
-    def stop_all(self):
-        """OFF1 to every drive by a telegram each; the engine takes those that run first."""
-        for drive in self.drives:
-            drive.stop()
+    def is_line_shared(self):
+        """Whether another master has spoken lately while this one does: its telegrams came in
+        between, or instead of a reply. Both will be misunderstood; nothing is done about it.
+        """
+        lately = (self.exchanges - self._foreign_at) & 0xFFFF < SHARED_EXCHANGES
+        return self.phase != LISTENING and self.foreign > 0 and lately
+
+    def has_echo(self):
+        """Whether what is sent comes back: two wires, and a receiver that stays on."""
+        return self._receiver.echo
+
+    def off(self):
+        """Leave the line to others: OFF1 to every drive first, then nothing is sent until `on`.
+
+        `phase` is OFF once it has come so far. Contact with every drive is lost then.
+        """
+        self.stop_all()
+        self._held |= HELD_BY_OFF
+
+    def on(self):
+        """Take the line again: listen first, as at the beginning. What ran needs a new `start`."""
+        self._held &= ~HELD_BY_OFF
+        if self.phase == OFF:
+            self._first = True
+            self.foreign = 0
+            self.phase = LISTENING
 
     def close(self):
         """Send nothing any more once the exchange that goes on is over; `phase` is CLOSED then.
 
         Stop the drives first.
         """
-        self._closing = True
-        self._held = True
+        self._held |= HELD_BY_CLOSE
 
     def pause(self):
         """Begin no exchange until `resume`, 1 s at the most; `paused` tells when it has come so
         far. Commands go first, also later ones: whoever must not hear them late asks them first.
         """
-        self._pausing = True
-        self._held = True
+        self._held |= HELD_BY_PAUSE
 
     def resume(self):
         """Go on; when nothing was paused that is no change."""
-        self._pausing = False
-        self._held = self._closing
+        self._held &= ~HELD_BY_PAUSE
         self.paused = False
 
     # --- the engine -----------------------------------------------------------------------------
@@ -185,6 +170,9 @@ class Master:
             return self._rest(now)
         if phase == LISTENING:
             return self._listen(now)
+        if phase == OFF:
+            self._get_on()
+            self._swallow(now)
         return DEAD_MAN_US
 
     def recover(self, now):
@@ -201,7 +189,8 @@ class Master:
         if self.phase != CLOSED and self.phase != LISTENING:
             self._begin_rest(now)
             if self._drive is not None:
-                self._rest_us = self.timing.reply_timeout_us + self._drive.residual_us
+                reply_us = self.timing.reply_timeout_us + 2 * self._drive.size * self._character_us
+                self._rest_us = reply_us
 
     def _check_dead_man(self, now):
         """Take ON back from all drives, also one started later, until the loop is back."""
@@ -222,11 +211,15 @@ class Master:
         if self._first:
             self._first = False
             self._quiet_since = now
-        if self._heard_something(now):
-            self.foreign = (self.foreign + 1) & 0xFFFF
+        if self._swallow(now):
+            self._count_foreign()
+        if self._held & (HELD_BY_OFF | HELD_BY_CLOSE):  # nobody was told anything yet
+            self.phase = CLOSED if self._held & HELD_BY_CLOSE else OFF
+            return DEAD_MAN_US
         left_us = LISTEN_US - elapsed(now, self._quiet_since, self._mask)
         if left_us > 0:
-            self.paused = self._pausing  # nothing is sent anyway, however long that takes
+            # Nothing is sent anyway, however long that takes.
+            self.paused = self._held & HELD_BY_PAUSE != 0
             self._paused_since = now
             return left_us
         self._begin_rest(now)
@@ -240,23 +233,45 @@ class Master:
     def _rest(self, now):
         """The start interval: the line is silent for two characters before every telegram."""
         if now != self._resting_since:  # what had come by then is taken already
-            self._heard_something(now)
+            heard = self._swallow(now)
+            if heard and self._is_foreign(heard):
+                self._count_foreign()
         left_us = self._rest_us - elapsed(now, self._quiet_since, self._mask)
         if left_us > 0 and elapsed(now, self._resting_since, self._mask) < BABBLE_US:
             return left_us
         if self._held:
-            if self._closing:
-                self.phase = CLOSED
-                return DEAD_MAN_US
-            if self._keeps_pausing(now):
-                return PAUSE_LOOK_US
-        drive = self._choose()
+            held_us = self._hold(now)
+            if held_us:
+                return held_us
+        drive = self._choose(now)
         if drive is None:
-            self._get_on()
-            self._begin_rest(now)
-            self._quiet_since = now
-            return DEAD_MAN_US
+            return self._wait(now)
         return self._send(drive, now)
+
+    def _wait(self, now):
+        """There is nothing to send: the list is empty, or the round is over before its time."""
+        self._get_on()
+        self._begin_rest(now)
+        self._quiet_since = (now - self._rest_us) & self._mask  # at the latest
+        left_us, self._round_left_us = self._round_left_us, 0
+        return min(left_us, PAUSE_LOOK_US) or PAUSE_LOOK_US
+
+    def _hold(self, now):
+        """By order of close, off or pause: how long nothing is sent, 0 when something is."""
+        if self._held & HELD_BY_CLOSE:
+            self.phase = CLOSED
+            return DEAD_MAN_US
+        if self._held & HELD_BY_OFF:
+            for drive in self.drives:
+                if drive.wanted:
+                    drive.revoke()  # started since `off`
+            if not self._all_told():
+                return 0
+            for drive in self.drives:
+                drive.lose()
+            self.phase = OFF
+            return DEAD_MAN_US
+        return PAUSE_LOOK_US if self._keeps_pausing(now) else 0
 
     def _keeps_pausing(self, now):
         """Whether `pause` is in force: no command is waiting, and it has not taken too long."""
@@ -270,70 +285,44 @@ class Master:
         self._begin_rest(now)
         return self.paused
 
-    def _has_command(self):
-        for drive in self.drives:
-            if drive.urgency() > 1:
-                return True
-        return False
-
-    def _heard_something(self, now):
-        """Swallow characters that nobody awaits; they move the beginning of the silence."""
+    def _swallow(self, now):
+        """Take characters that nobody awaits; they move the beginning of the silence. How many."""
         receiver = self._receiver
         link = self._link
         heard = link.receive(receiver.buffer, 0)
         if heard > 0:
             self._quiet_since = link.received_at
-        elif heard == COMING:
+            return heard
+        if heard == COMING:
             self._quiet_since = now
-        return heard > 0
+        return 0
 
-    def _choose(self):
-        """The next drive: a command that matters goes before the list, a stop before a start."""
-        if self._attention[0]:
-            drive = self._most_urgent()
-            if drive is not None:
-                return drive
-        entries = self.list
-        if not entries:
-            return None
-        position = self._next if self._next < len(entries) else 0
-        self._next = position + 1
-        return entries[position]
+    def _is_foreign(self, count):
+        """Whether these characters begin a telegram that none of us sent or asked for.
 
-    def _most_urgent(self):
-        """The drive that is in the greatest hurry; None when the list may go on.
-
-        What is only to have more than its turn gets every second telegram at the most, one drive
-        after the other, so that the list goes on in between.
+        What comes late from the drive that was asked last, or back from the line, is none.
         """
-        self._attention[0] = 0  # before looking: whoever calls for it from now on is not missed
-        chosen = None
-        highest = 1 if self._insisted else 0
-        drives = self.drives
-        position = self._look_from
-        for _ in range(len(drives)):
-            position = position + 1 if position + 1 < len(drives) else 0
-            urgency = drives[position].urgency()
-            if urgency:
-                self._attention[0] = 1
-                if urgency > highest:
-                    highest = urgency
-                    chosen = drives[position]
-                    self._look_from = position
-        self._insisted = chosen is not None and highest == 1
-        return chosen
+        buffer = self._receiver.buffer
+        if count < 3 or buffer[0] != telegram.STX or buffer[1] & 1 or not 4 <= buffer[1] <= 254:
+            return False
+        return self._drive is None or buffer[2] != self._drive.address
+
+    def _count_foreign(self):
+        self.foreign = (self.foreign + 1) & 0xFFFF
+        self._foreign_at = self.exchanges
 
     def _send(self, drive, now):
         self._drive = drive
         request = drive.request
-        drive.fill(request, _NET, now)
+        drive.fill(now)
+        size = drive.size
         if not drive.sealed or request[2] != drive.address:
-            telegram.seal(request, drive.address, drive.net_count)
+            telegram.seal(request, drive.address, size - 4)
             drive.sealed = True
         link = self._link
         self.phase = SENDING
         self._sending_since = now
-        link.send(request, drive.net_count + 4)
+        link.send(request, size)
         self.exchanges = (self.exchanges + 1) & 0xFFFF
         left_us = link.sending_us(now)
         if self._foreseen:
@@ -345,7 +334,7 @@ class Master:
         drive = self._drive
         if left_us:
             sending_us = elapsed(now, self._sending_since, self._mask)
-            if sending_us > drive.telegram_us + STUCK_US:
+            if sending_us > drive.size * self._character_us + STUCK_US:
                 return self._give_up(now)
             return self._sending_due_us(left_us)
         self._open(drive, self._link.sent_at)
@@ -354,7 +343,7 @@ class Master:
     def _open(self, drive, sent_at):
         """Await the reply to what was sent until, or will have been sent at `sent_at`."""
         self._quiet_since = sent_at
-        self._receiver.open(drive.address, drive.net_count, drive.residual_us, sent_at)
+        self._receiver.open(drive, sent_at)
         self.phase = AWAITING
 
     def _sending_due_us(self, left_us):
@@ -365,7 +354,7 @@ class Master:
 
     def _give_up(self, now):
         """The link does not get rid of a telegram. Try again; this is no progress."""
-        self._drive.miss(SILENT, now, self._lost_us)
+        self._drive.miss(SILENT, now, self._lost_us, self._mask)
         self._begin_rest(now)
         self._quiet_since = now
         self._resting_since = (now - BABBLE_US) & self._mask
@@ -375,18 +364,31 @@ class Master:
         receiver = self._receiver
         finding = receiver.take(self._link, now)
         if finding == _GOOD:
-            self._drive.take(receiver.buffer, _NET, now)
+            self._drive.take(receiver.buffer, receiver.count, now)
         elif finding == WAITING:
             return receiver.due_us(self._link, now)
         else:
-            self._drive.miss(finding, now, self._lost_us)
+            self._miss(finding, now)
         self._failures_in_row = 0
         self.progress = (self.progress + 1) & 0xFFFF
         self._quiet_since = quiet_since = receiver.heard_at
         silent_us = (now - quiet_since) & self._mask
         if self._start_interval_us <= silent_us < BABBLE_US and not self._held:
-            drive = self._choose()  # the link took longer to report the reply than the rest lasts
+            # The link took longer to report the reply than the rest lasts.
+            drive = self._choose(now)
             if drive is not None:
                 return self._send(drive, now)
         self._begin_rest(now)
         return self._rest(now)
+
+    def _miss(self, finding, now):
+        """There was no valid reply: it is counted, and the exchange repeated if it is to be."""
+        drive = self._drive
+        drive.miss(finding, now, self._lost_us, self._mask)
+        if finding == telegram.BAD_ADDRESS:
+            self._count_foreign()
+        if drive.silent > SILENT_MAX:
+            self._uneasy = True
+        if drive.silent <= self.retries:
+            self._again = drive
+            self._attention[ANY] = 1

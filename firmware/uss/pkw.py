@@ -1,11 +1,14 @@
 """The parameter channel: tasks, replies, numbers, values (specification C-4).
 
-Fixed layout of four PKW words:
+A request and its reply begin with PKE, IND and the value, whose place depends on the length:
 
     PKE                       IND                      PWE1        PWE2
-    AK 15-12 | 0 | PNU 10-0   page 15-10 | index 7-0   high word   low word, or the 16-bit value
+    AK 15-12 | 0 | PNU 10-0   page 15-10 | index 7-0   high word   low word    of a double word
+                                                       0           the word    4 words, fixed
+                                                       the word    -           3 words, or variable
 
-A `Job` is one task for one drive and, later, its result. Who carries it to the drive is `drive`.
+A `Job` is one task for one drive and, later, its result. Who carries it there is `channel`; what
+goes beyond one value is in `pkw_array` and `pkw_text`.
 
     job = read(2000)                     # or write_word(700, 5), write_float(1082, 40.5)
     drive.ask(job)                       # ... later:
@@ -22,56 +25,114 @@ NO_TASK = const(0)
 READ = const(1)
 WRITE_WORD = const(2)
 WRITE_DOUBLE = const(3)
+READ_DESCRIPTION = const(4)
+WRITE_DESCRIPTION = const(5)
+READ_ELEMENT = const(6)
+WRITE_ELEMENT_WORD = const(7)
+WRITE_ELEMENT_DOUBLE = const(8)
+COUNT_ELEMENTS = const(9)
+WRITE_ELEMENT_DOUBLE_EEPROM = const(11)
+WRITE_ELEMENT_WORD_EEPROM = const(12)
 WRITE_DOUBLE_EEPROM = const(13)
 WRITE_WORD_EEPROM = const(14)
+TEXT = const(15)
 
 NO_REPLY = const(0)
 WORD = const(1)
 DOUBLE = const(2)
+DESCRIPTION_REPLY = const(3)
+ELEMENT_WORD = const(4)
+ELEMENT_DOUBLE = const(5)
+COUNT_REPLY = const(6)
 REFUSED_REPLY = const(7)
 NO_RIGHTS_REPLY = const(8)
+TEXT_REPLY = const(15)
 
-# Replies that fit a task (specification tables 4.1, 4.2): besides these, 7 to any and 8 to writes.
-FITTING_REPLIES = {
-    READ: (WORD, DOUBLE),
-    WRITE_WORD: (WORD,),
-    WRITE_DOUBLE: (DOUBLE,),
-    WRITE_DOUBLE_EEPROM: (DOUBLE,),
-    WRITE_WORD_EEPROM: (WORD,),
-}
+_NO_RIGHTS = const(1 << 8)  # the bit of NO_RIGHTS_REPLY: of all tasks that write
 
-# Error numbers of reply 7 (specification table 4.9 up to 7, PROFIBUS profile and drives beyond).
-ERRORS = {
-    0: "no such parameter",
-    1: "read-only parameter",
-    2: "beyond the limits",
-    3: "no such index",
-    4: "not an array",
-    5: "wrong data type",
-    6: "may only be reset",
-    7: "description not changeable",
-    11: "no change rights",
-    12: "key word missing",
-    17: "not in this operating state",
-    18: "other error",
-    20: "value not allowed",
-    101: "parameter inactive",
-    102: "channel too small",
-    104: "value not permitted",
-    106: "task not implemented",
-    200: "below the limit in operation",
-    201: "above the limit in operation",
-    204: "access level too low",
-}
+# By task, one bit for each AK that answers it (specification tables 4.1...4.3 and 4.10...4.11);
+# 0: there is no such task.
+FITTING = (
+    0,
+    1 << WORD | 1 << DOUBLE | 1 << REFUSED_REPLY,
+    1 << WORD | 1 << REFUSED_REPLY | _NO_RIGHTS,
+    1 << DOUBLE | 1 << REFUSED_REPLY | _NO_RIGHTS,
+    1 << DESCRIPTION_REPLY | 1 << REFUSED_REPLY,
+    1 << DESCRIPTION_REPLY | 1 << REFUSED_REPLY | _NO_RIGHTS,
+    1 << ELEMENT_WORD | 1 << ELEMENT_DOUBLE | 1 << REFUSED_REPLY,
+    1 << ELEMENT_WORD | 1 << REFUSED_REPLY | _NO_RIGHTS,
+    1 << ELEMENT_DOUBLE | 1 << REFUSED_REPLY | _NO_RIGHTS,
+    1 << COUNT_REPLY | 1 << REFUSED_REPLY,
+    0,
+    1 << ELEMENT_DOUBLE | 1 << REFUSED_REPLY | _NO_RIGHTS,
+    1 << ELEMENT_WORD | 1 << REFUSED_REPLY | _NO_RIGHTS,
+    1 << DOUBLE | 1 << REFUSED_REPLY | _NO_RIGHTS,
+    1 << WORD | 1 << REFUSED_REPLY | _NO_RIGHTS,
+    1 << TEXT_REPLY | 1 << REFUSED_REPLY | _NO_RIGHTS,
+)
+
+# Sets of tasks, one bit for each.
+_DOUBLE_TASKS = const(1 << 3 | 1 << 8 | 1 << 11 | 1 << 13)
+_LONG_TASKS = const(1 << 4 | 1 << 5 | 1 << 15)  # their answer may be longer than a double word
+FIRST_PERMANENT = const(11)  # this task and those behind it write what outlives the power
+
+_WIDTHS = (0, 1, 2, 0, 1, 2, 1)  # by reply: words of its value, WORD or DOUBLE
+
+# --- errors -------------------------------------------------------------------------------------
+
+# Error numbers of reply 7: up to 7 from the specification (table 4.9), up to 100 the PROFIBUS
+# profile, beyond what each drive makes of them (MICROMASTER, V20, MASTERDRIVES, SIMOREG).
+ERRORS = (
+    (0, "no such parameter"),
+    (1, "read-only parameter"),
+    (2, "beyond the limits"),
+    (3, "no such index"),
+    (4, "not an array"),
+    (5, "wrong data type"),
+    (6, "may only be reset"),
+    (7, "description not changeable"),
+    (8, "not to be written in this telegram"),
+    (9, "no description"),
+    (10, "wrong access group"),
+    (11, "no change rights"),
+    (12, "key word missing"),
+    (13, "text not readable here"),
+    (14, "name not readable here"),
+    (15, "no text array"),
+    (16, "telegram cannot write"),
+    (17, "not in this operating state"),
+    (18, "other error"),
+    (20, "value not allowed"),
+    (21, "answer too long"),
+    (22, "parameter address invalid"),
+    (23, "format invalid"),
+    (24, "number of values inconsistent"),
+    (101, "parameter inactive"),
+    (102, "channel too small"),
+    (103, "wrong number of PKW words"),
+    (104, "value not permitted"),
+    (105, "parameter is indexed"),
+    (106, "task not implemented"),
+    (107, "text not changeable"),
+    (108, "wrong number of values"),
+    (200, "below the limit in operation"),
+    (201, "above the limit in operation"),
+    (204, "access level too low"),
+)
 
 NO_CHANGE_RIGHTS = const(-1)  # what `Job.error` holds after reply 8, which carries no number
+NO_PARAMETER = const(0)
+BEYOND_LIMITS = const(2)
+TOO_LONG = const(21)
+TOO_SMALL = const(102)
 
 
 def error_text(number):
     """Words for an error number of reply 7, or for NO_CHANGE_RIGHTS."""
-    if number == NO_CHANGE_RIGHTS:
-        return ERRORS[11]
-    return ERRORS.get(number, "error %d" % number)
+    for row, text in ERRORS:
+        if row == number:
+            return text
+    return "no change rights" if number == NO_CHANGE_RIGHTS else "error %d" % number
 
 
 # --- numbers ------------------------------------------------------------------------------------
@@ -79,9 +140,7 @@ def error_text(number):
 PNU_PER_PAGE = const(2000)
 NUMBER_MAX = const(63 * 2000 + 1999)
 INDEX_MAX = const(254)
-
-# Where the bits of the page number stand in IND (MM4 and G1xx; CU240S manual, SIDOOR table 6-64).
-PAGE_BITS = ((1, 15), (2, 12), (4, 13), (8, 14), (16, 10), (32, 11))  # weight, bit of IND
+ALL = const(255)  # as an index: all elements, or the whole description
 
 
 def pke(task, number):
@@ -90,13 +149,15 @@ def pke(task, number):
 
 
 def ind(number, index):
-    """The IND word: page of the parameter's number in the high byte, index in the low byte."""
+    """The IND word: page of the parameter's number in the high byte, index in the low byte.
+
+    The six bits of the page stand in bits 15, 12, 13, 14, 10 and 11, the lowest first (MM4 and
+    G1xx: CU240S manual; SIDOOR table 6-64).
+    """
     page = number // PNU_PER_PAGE
-    word = index
-    for weight, bit in PAGE_BITS:
-        if page & weight:
-            word |= 1 << bit
-    return word
+    if page == 0:
+        return index
+    return (page & 0x01) << 15 | (page & 0x0E) << 11 | (page & 0x30) << 6 | index
 
 
 def name(number, index=0):
@@ -110,84 +171,153 @@ def name(number, index=0):
 NEW, PENDING, DONE, REFUSED, TIMED_OUT = range(5)
 STATE_TEXTS = ("new", "pending", "done", "refused", "timed out")
 
-WORK_TIMEOUT_US = const(2_000_000)  # a reply may lag some cycles
-EEPROM_TIMEOUT_US = const(5_000_000)
+# The form of a parameter channel: its characters with fixed length, 6 or 8. With variable length
+# this bit, and in the low byte the most characters that a task may have.
+THREE_WORDS = const(6)
+FOUR_WORDS = const(8)
+VARIABLE_LENGTH = const(0x100)
+
+_HEAD = const(4)  # characters of PKE and IND
 
 
 class Job:
     """One parameter task and its result.
 
-    task: READ, WRITE_... . number: 0...127999. index: 0...254. high, low: the value as two words.
-    ValueError when one of them is out of range.
+    task: READ, WRITE_... . number: 0...127999. index: 0...254, counted as the drive does. high,
+    low: the value to write, as two words. ValueError when one of them is out of range, or the task
+    is one for `pkw_text`.
 
-    After it left PENDING: `state`; `error` when REFUSED (see error_text); when DONE `width` (WORD
-    or DOUBLE) and the words `high` and `low`, which for a write are what the drive confirmed. May
-    be handed to `Drive.ask` again when it is not PENDING; a write then needs its value anew.
+    After it left PENDING: `state`. When DONE `width` (WORD or DOUBLE) and the words `high` and
+    `low`, which for a write are what the drive confirmed. When REFUSED `error` (see error_text)
+    and what a drive with variable length offers instead, else None: `next` and `previous`, after
+    error 0 a parameter that exists, after error 2 a legal value of 16 bits. It may be asked again,
+    with the same value, when it is not PENDING.
     """
 
+    data = None  # room for an answer that is longer than a double word: see `pkw_array`
+
     def __init__(self, task, number, index=0, high=0, low=0):
-        self.words = bytearray(8)  # PKE, IND, PWE1, PWE2 as they are sent
+        self.words = bytearray(8)  # PKE, IND, PWE1, PWE2 as four fixed words have them
+        self.since = 0  # for the engine: when it was begun,
+        self.tries = 0  # and how often it was sent, as far as that matters
         self.aim(task, number, index, high, low)
 
     def aim(self, task, number, index=0, high=0, low=0):
         """Make this another job, as if new; for whoever asks often and must not allocate."""
-        if task not in FITTING_REPLIES:
+        fitting = FITTING[task] if 0 <= task <= TEXT else 0
+        if not fitting or _LONG_TASKS >> task & 1 and self.data is None:
             raise ValueError("task %r" % (task,))
         if not 0 <= number <= NUMBER_MAX:
             raise ValueError("parameter number %r" % (number,))
-        if not 0 <= index <= INDEX_MAX:
+        if not 0 <= index <= INDEX_MAX and (index != ALL or self.data is None):
             raise ValueError("index %r of %s" % (index, name(number)))
         self.task = task
         self.number = number
         self.index = index
-        self.pke = pke(task, number)
-        self.ind = ind(number, index)
         self.high = high
         self.low = low
         # `high` and `low` are also where the result will stand; only a write carries a value.
-        if task == READ:
+        if not fitting & _NO_RIGHTS:
             high = low = 0
-        struct.pack_into(">HHHH", self.words, 0, self.pke, self.ind, high, low)
+        pnu = number
+        page = index
+        if number >= PNU_PER_PAGE:
+            pnu = number % PNU_PER_PAGE
+            page = ind(number, index)
+        struct.pack_into(">HHHH", self.words, 0, task << 12 | pnu, page, high, low)
+        self.key = pnu << 16 | page  # what a reply has to be about
         self.state = NEW
         self.width = 0
         self.error = 0
-        self.fitting = 0  # one bit for each AK that answers this task
-        for reply in FITTING_REPLIES[task]:
-            self.fitting |= 1 << reply
-        eeprom = task == WRITE_DOUBLE_EEPROM or task == WRITE_WORD_EEPROM
-        self.timeout_us = EEPROM_TIMEOUT_US if eeprom else WORK_TIMEOUT_US
+        self.next = None
+        self.previous = None
 
-    def answer(self, reply_pke, reply_ind, high, low):
-        """Take the PKW words of a reply; True when they end this job.
+    def size(self):
+        """Characters of the task with variable length; with fixed length at least so many."""
+        return FOUR_WORDS if _DOUBLE_TASKS >> self.task & 1 else THREE_WORDS
 
-        A reply to an older task, or none, is no error (specification C-4.2.1.1): it is ignored.
-        Called by the engine: allocates nothing. Bit 11 of PKE (change report) is no part of PNU.
-        """
-        reply = reply_pke >> 12
-        if (reply_pke ^ self.pke) & 0x07FF or reply_ind != self.ind:
-            return False
-        if self.fitting >> reply & 1:
-            self.width = reply
-            self.high = high
-            self.low = low
-            self.state = DONE
-        elif reply == REFUSED_REPLY:
-            self.error = low
-            self.state = REFUSED
-        elif reply == NO_RIGHTS_REPLY and self.task != READ:
-            self.error = NO_CHANGE_RIGHTS
-            self.state = REFUSED
-        else:
-            return False
-        return True
+    def writes(self):
+        """Whether it changes something."""
+        return FITTING[self.task] & _NO_RIGHTS != 0
+
+    def fits(self, form):
+        """Whether a channel of this form can carry it."""
+        return self.size() <= form & 0xFF
+
+    def refuse(self, error):
+        """End it with an error number."""
+        self.error = error
+        self.state = REFUSED
 
     def integer_value(self):
         """The result as an unsigned number of 16 or 32 bits."""
         return self.low if self.width == WORD else self.high << 16 | self.low
 
+    def signed_value(self):
+        """The result as a number with a sign, of 16 or 32 bits."""
+        value = self.integer_value()
+        half = 1 << 16 * self.width - 1
+        return value - 2 * half if value >= half else value
+
     def float_value(self):
         """The result as the IEEE-754 single that MM4 uses for most 32-bit parameters."""
         return words_to_float(self.high, self.low)
+
+    # --- for the engine: allocates nothing ------------------------------------------------------
+
+    def answer(self, net, at, count, form):
+        """Take the PKW words of a reply, `count` characters in `net` from index `at` on.
+
+        True when they end this job. A reply to an older task, or none, is no error (specification
+        C-4.2.1.1): it is ignored, and so is one whose length does not fit its AK. Bit 11 of PKE
+        (change report) is no part of PNU.
+        """
+        reply = net[at] >> 4
+        if not FITTING[self.task] >> reply & 1:
+            return False
+        key = (net[at] & 0x07) << 24 | net[at + 1] << 16 | net[at + 2] << 8 | net[at + 3]
+        if key != self.key:
+            return False
+        if reply == REFUSED_REPLY:
+            self._keep_error(net, at + _HEAD, count - _HEAD, form)
+        elif reply == NO_RIGHTS_REPLY:
+            self.refuse(NO_CHANGE_RIGHTS)
+        elif form == FOUR_WORDS:
+            self.high = net[at + 4] << 8 | net[at + 5]
+            self.low = net[at + 6] << 8 | net[at + 7]
+            self.width = _WIDTHS[reply]
+            self.state = DONE
+        else:
+            return self._keep_value(reply, net, at + _HEAD, count - _HEAD, form)
+        return True
+
+    def _keep_value(self, reply, net, at, count, form):
+        """Keep the value that stands from index `at` on; whether its length fits the reply."""
+        width = _WIDTHS[reply]
+        if count != 2 * width:
+            return False
+        self.high = net[at] << 8 | net[at + 1] if width == DOUBLE else 0
+        self.low = net[at + count - 2] << 8 | net[at + count - 1]
+        self.width = width
+        self.state = DONE
+        return True
+
+    def _keep_error(self, net, at, count, form):
+        """Keep the error number and what a drive with variable length says behind it."""
+        if form == FOUR_WORDS:
+            self.refuse(net[at + 2] << 8 | net[at + 3])
+            return
+        error = net[at] << 8 | net[at + 1]
+        self.next = None
+        self.previous = None
+        if error == NO_PARAMETER or error == BEYOND_LIMITS:
+            if count >= 4:
+                following = net[at + 2] << 8 | net[at + 3]
+                # 0 comes behind no parameter: it says that there is none.
+                self.next = following if following or error == BEYOND_LIMITS else None
+            if count >= 6:
+                self.previous = net[at + 4] << 8 | net[at + 5]
+        self.refuse(error)
 
     def __repr__(self):
         return "<AK%d %s %s>" % (self.task, name(self.number, self.index), STATE_TEXTS[self.state])
@@ -199,25 +329,38 @@ def read(number, index=0):
 
 
 def write_word(number, value, index=0, eeprom=False):
-    """A job that writes a 16-bit value, 0...65535, to RAM or, when asked, to RAM and EEPROM."""
-    if not 0 <= value <= 0xFFFF:
-        raise ValueError("%r for the word %s" % (value, name(number, index)))
-    return Job(WRITE_WORD_EEPROM if eeprom else WRITE_WORD, number, index, 0, value)
+    """A job that writes a 16-bit value, -32768...65535, to RAM or, when asked, to EEPROM too."""
+    low = word_of(value)
+    return Job(WRITE_WORD_EEPROM if eeprom else WRITE_WORD, number, index, 0, low)
 
 
 def write_double(number, value, index=0, eeprom=False):
-    """A job that writes a 32-bit value, 0...2**32 - 1."""
-    if not 0 <= value <= 0xFFFFFFFF:
-        raise ValueError("%r for the double word %s" % (value, name(number, index)))
-    task = WRITE_DOUBLE_EEPROM if eeprom else WRITE_DOUBLE
-    return Job(task, number, index, value >> 16, value & 0xFFFF)
+    """A job that writes a 32-bit value, -2**31...2**32 - 1."""
+    high, low = words_of(value)
+    return Job(WRITE_DOUBLE_EEPROM if eeprom else WRITE_DOUBLE, number, index, high, low)
 
 
 def write_float(number, value, index=0, eeprom=False):
     """A job that writes a floating-point value, rounded to single precision."""
     high, low = float_to_words(value)
-    task = WRITE_DOUBLE_EEPROM if eeprom else WRITE_DOUBLE
-    return Job(task, number, index, high, low)
+    return Job(WRITE_DOUBLE_EEPROM if eeprom else WRITE_DOUBLE, number, index, high, low)
+
+
+# --- values -------------------------------------------------------------------------------------
+
+
+def word_of(value):
+    """A number of 16 bits, with or without a sign, as a word. ValueError beyond."""
+    if not -0x8000 <= value <= 0xFFFF:
+        raise ValueError("%r is no number of 16 bits" % (value,))
+    return value & 0xFFFF
+
+
+def words_of(value):
+    """A number of 32 bits, with or without a sign, as high and low word. ValueError beyond."""
+    if not -0x80000000 <= value <= 0xFFFFFFFF:
+        raise ValueError("%r is no number of 32 bits" % (value,))
+    return value >> 16 & 0xFFFF, value & 0xFFFF
 
 
 def float_to_words(value):

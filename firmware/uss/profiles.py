@@ -1,7 +1,8 @@
-"""What differs between drive families: data, not code.
+"""What the panel must know of a drive, a MICROMASTER 4 on its RS-485 terminals: data, not code.
 
-MICROMASTER 4 (MM410, MM420, MM430, MM440) on its RS-485 terminals, the COM link. Parameter numbers
-and meanings: MICROMASTER parameter lists; set up for USS with P0700 = P1000 = 5.
+MM410, MM420, MM430 and MM440 on the COM link. Parameter numbers and meanings: MICROMASTER
+parameter lists; set up for USS with P0700 = P1000 = 5. All else that a program may want to know of
+them, and the other families, is in `families`, which the panel does not import.
 """
 
 from micropython import const

@@ -12,23 +12,24 @@ from micropython import const
 
 # --- control word -------------------------------------------------------------------------------
 
-# Bit, name, meaning of 1. Bits 0-10: specification C-5.2.1; from 11 on: MICROMASTER 4, r0054.
+# Bit, name, whether 0 is the remarkable value (here never: the name says what 1 does).
+# Bits 0-10: specification C-5.2.1; from 11 on: MICROMASTER 4, r0054.
 STW_BITS = (
-    (0, "ON", "run; 0 is OFF1, ramp down and switch off"),
-    (1, "NO_OFF2", "0 coasts to a stop"),
-    (2, "NO_OFF3", "0 stops as fast as the drive can"),
-    (3, "PULSES", "enable the inverter"),
-    (4, "RAMP_OUTPUT", "0 forces the ramp's output to 0"),
-    (5, "RAMP_RUN", "0 holds the ramp"),
-    (6, "SETPOINT", "0 makes the setpoint 0"),
-    (7, "ACKNOWLEDGE", "its rising edge acknowledges a fault"),
-    (8, "JOG_RIGHT", ""),
-    (9, "JOG_LEFT", ""),
-    (10, "CONTROL", "these process data are valid; 0 leaves the old ones in force"),
-    (11, "REVERSE", "turn the other way"),
-    (13, "MOP_UP", ""),
-    (14, "MOP_DOWN", ""),
-    (15, "REMOTE", "local / remote, command data set bit 0"),
+    (0, "ON", False),  # 0 is OFF1: ramp down and switch off
+    (1, "NO_OFF2", False),  # 0 coasts to a stop
+    (2, "NO_OFF3", False),  # 0 stops as fast as the drive can
+    (3, "PULSES", False),  # enables the inverter
+    (4, "RAMP_OUTPUT", False),  # 0 forces the ramp's output to 0
+    (5, "RAMP_RUN", False),  # 0 holds the ramp
+    (6, "SETPOINT", False),  # 0 makes the setpoint 0
+    (7, "ACKNOWLEDGE", False),  # its rising edge acknowledges a fault
+    (8, "JOG_RIGHT", False),
+    (9, "JOG_LEFT", False),
+    (10, "CONTROL", False),  # these process data are valid; 0 leaves the old ones in force
+    (11, "REVERSE", False),  # turn the other way
+    (13, "MOP_UP", False),
+    (14, "MOP_DOWN", False),
+    (15, "REMOTE", False),  # local / remote, command data set bit 0
 )
 
 STW_ON = const(0x0001)

@@ -3,17 +3,18 @@
 A link hands over characters in bursts of any size and says when the last of them came, as exactly
 as it knows. The receiver puts them together, watches the response delay and the residual run time
 (specification A-5.2.1), and has `telegram.judge` look at the result. It keeps nothing after an
-error: `open` begins anew each time.
+error: `open` begins anew each time. A line with two wires brings back what was sent: that echo is
+recognised and skipped.
 
-    receiver.open(address, net_count, residual_us, sent_at)     # the request has just left
+    receiver.open(drive, sent_at)                   # its request has just left
     finding = receiver.take(link, now)              # WAITING until there is something to say
 """
 
 from micropython import const
 
 from uss import telegram
-from uss.fast import is_telegram
-from uss.timing import elapsed
+from uss.fast import agreeing, is_reply
+from uss.timing import BITS_PER_CHARACTER, elapsed
 
 WAITING = const(-1)  # nothing to say yet
 # 0 is telegram.GOOD, 1...4 are the BAD_ findings of telegram.judge.
@@ -28,6 +29,7 @@ POLL_US = const(1_000)  # how often a link without interrupts is looked at
 # Of `telegram`, for the compiler: these are needed in every exchange.
 _STX = const(0x02)
 _GOOD = const(0)
+_FRAME = const(4)  # characters of a telegram that are not net data
 
 ROUNDING_US = const(2)  # two instants, each rounded to a microsecond
 
@@ -38,7 +40,8 @@ class Receiver:
     timing: the line's `Timing`. mask: the clock's period - 1.
     After `take` said GOOD the telegram is `buffer[:count]`; `heard_at` is when its last character
     came. `heard_at` is also kept after an error, because the line must be silent before the next
-    telegram whoever spoke last. `window_us` after the request a reply is too late.
+    telegram whoever spoke last. `window_us` after the request a reply is too late. `echo`: what is
+    sent comes back on this line.
     """
 
     def __init__(self, timing, mask):
@@ -46,32 +49,34 @@ class Receiver:
         self.count = 0
         self.heard_at = 0
         self.stray = False  # characters came since `open` that begin no telegram
-        self._character_us = timing.character_us
+        self.echo = False
+        self._timing = timing
         self._start_interval_us = timing.start_interval_us
         # The first bit of STX may come at the very end of the response delay; it is seen a
         # character later.
         self.window_us = timing.reply_timeout_us + timing.character_us + ROUNDING_US
+        # Rounded down: no pause is taken for shorter than it was.
+        self._sixteen_us = 16 * BITS_PER_CHARACTER * 1_000_000 // timing.baud
         self._mask = mask
-        self._address = 0
-        self._size = 0
-        self._residual_us = 0
+        self._awaited = None
         self._sent_at = 0
         self._began_at = 0
+        self._echoed = 0  # characters of the request that have come back
         self._coming = False  # the link has announced nothing yet, but will
 
-    def open(self, address, net_count, residual_us, sent_at):
-        """Await a telegram of exactly `net_count` net characters from `address`.
+    def open(self, awaited, sent_at):
+        """Await the reply to `awaited`, a `Drive` or a telegram outside the list (`single`).
 
-        residual_us: `Timing.residual_us(net_count)`, computed beforehand by whoever calls this in
-        an interrupt. sent_at: when the last stop bit of the request had left.
+        Of it are needed: `address`, the ADR of the reply; `request` and `size`, the characters
+        sent, as many as the reply probably has; `fits(net_count)`, whether it may have so many net
+        characters; `may_reply_alike()`. sent_at: when the last stop bit of the request had left.
         """
-        self._address = address
-        self._size = net_count + 4
-        self._residual_us = residual_us
+        self._awaited = awaited
         self._sent_at = sent_at
         self.heard_at = sent_at
         self.count = 0
         self.stray = False
+        self._echoed = 0
         self._coming = False
 
     def take(self, link, now):
@@ -85,38 +90,114 @@ class Receiver:
         added = link.receive(buffer, count)
         if added <= 0:
             return self._judge_silence(link, now, added)
-        mask = self._mask
         received_at = link.received_at
-        resolution_us = link.resolution_us
-        size = self._size
         if count == 0:
+            mask = self._mask
             since_us = (received_at - self.heard_at) & mask
-            if since_us > mask >> 1:  # it was over before the request was: no reply to that
-                self.stray = True
-                return WAITING
-            length_us = added * self._character_us
+            length_us = added * self._sixteen_us >> 4
             pause_us = since_us - length_us + ROUNDING_US
             # A link that sees late says so by its resolution: only a pause that was certainly too
             # short is held against the telegram. Behind stray characters it must be a certain one:
             # a look may have fallen between them and what follows without a pause.
             if not self.stray:
-                pause_us += resolution_us
+                pause_us += link.resolution_us
+            if pause_us < self._start_interval_us or buffer[0] != _STX or since_us > mask >> 1:
+                return self._take_other(link, added, since_us)
             self.heard_at = received_at
-            if pause_us < self._start_interval_us or buffer[0] != _STX:
-                self.stray = True
-                return WAITING
-            if added == size and is_telegram(buffer, size, self._address):
-                self.count = size
+            awaited = self._awaited
+            if added == awaited.size and is_reply(buffer, added, awaited.request):
+                self.count = added
                 return _GOOD  # in one go, as nearly always
+            least_us = since_us - length_us - link.resolution_us
+            if not self._echoed and self._is_echo(added, least_us):
+                return self._take_other(link, added, since_us)
             self._began_at = (received_at - length_us) & mask
         self.heard_at = received_at
         self.count = count = count + added
+        return self._judge(link, count)
+
+    def _judge(self, link, count):
+        """What the characters that came make: they began with STX after a pause."""
+        buffer = self.buffer
+        awaited = self._awaited
+        if count < 2:
+            return WAITING
+        size = buffer[1] + 2
+        if not awaited.fits(size - _FRAME):
+            return telegram.BAD_LENGTH
         if count < size:
-            wrong = count >= 2 and buffer[1] != size - 2
-            return telegram.BAD_LENGTH if wrong else WAITING
-        if (received_at - self._began_at) & mask > self._residual_us + resolution_us:
+            return WAITING
+        passed_us = (self.heard_at - self._began_at) & self._mask
+        if passed_us > self._limit_us() + link.resolution_us:
             return CUT_OFF
-        return telegram.judge(buffer, count, self._address, size - 4)
+        return telegram.judge(buffer, count, awaited.address, size - _FRAME)
+
+    def _is_echo(self, added, pause_us):
+        """Whether the first characters are the request come back. pause_us: before them, at least.
+
+        A reply may be the same (mirror, or no words but an empty parameter channel). It is one
+        when there certainly was a pause; in doubt, when this line has not been heard to echo.
+        """
+        awaited = self._awaited
+        size = awaited.size
+        if added < size or agreeing(self.buffer, 0, awaited.request, 0, size) < size:
+            return False
+        if pause_us >= self._start_interval_us:
+            return False
+        return self.echo or not awaited.may_reply_alike()
+
+    def _take_other(self, link, added, since_us):
+        """Characters that begin no reply: what was sent has come back, or they are stray.
+
+        Behind an echo the reply may follow in the same burst. Of a telegram that is to come back
+        (mirror) the first copy is the echo where there is one.
+        """
+        buffer = self.buffer
+        awaited = self._awaited
+        count = min(added, awaited.size - self._echoed)
+        if agreeing(buffer, 0, awaited.request, self._echoed, count) == count and count:
+            self._echoed += count
+            if self._echoed == awaited.size:
+                return self._end_echo(link, added, count)
+        self.stray = True
+        if since_us <= self._mask >> 1:  # else it was over before the request was
+            self.heard_at = link.received_at
+        return WAITING
+
+    def _end_echo(self, link, added, count):
+        """The whole request has come back; the reply may follow these `count` characters."""
+        buffer = self.buffer
+        self.echo = True
+        self.stray = False
+        self.heard_at = self._sent_at
+        added -= count
+        if not added:
+            return WAITING
+        for index in range(added):
+            buffer[index] = buffer[count + index]
+        began_at = (link.received_at - (added * self._sixteen_us >> 4)) & self._mask
+        pause_us = elapsed(began_at, self._sent_at, self._mask) + ROUNDING_US
+        self.heard_at = link.received_at
+        if pause_us + link.resolution_us < self._start_interval_us or buffer[0] != _STX:
+            self.stray = True
+            return WAITING
+        self._began_at = began_at
+        self.count = added
+        return self._judge(link, added)
+
+    def _limit_us(self):
+        """Residual run time of the telegram that is coming in, the time of STX included.
+
+        One and a half times what follows STX takes without gaps (specification A-6.3); as long as
+        a telegram of variable length has not told its LGE, that of the longest (A-5.2.1.2).
+        """
+        if self.count >= 2:
+            size = self.buffer[1] + 2
+        elif self._awaited.fits(telegram.NET_COUNT_MAX):
+            size = telegram.SIZE_MAX
+        else:
+            size = self._awaited.size
+        return self._timing.residual_us(size - _FRAME)
 
     def due_us(self, link, now):
         """Microseconds until `take` has something to say, at least 1.
@@ -126,27 +207,30 @@ class Receiver:
         """
         passed_us = elapsed(now, self._sent_at, self._mask)
         if self.count:
-            left = self._residual_us + link.resolution_us + 1
+            left = self._limit_us() + link.resolution_us + 1
             left -= elapsed(now, self._began_at, self._mask)
         elif self._coming:
-            left = self.window_us + self._residual_us + link.resolution_us - passed_us
+            left = self.window_us + self._limit_us() + link.resolution_us - passed_us
         else:
             left = self.window_us - passed_us
         if not link.interrupts:
-            earliest_us = self._start_interval_us + self._size * self._character_us
+            earliest_us = self._start_interval_us
+            earliest_us += self._awaited.size * self._sixteen_us >> 4
             left = min(left, max(earliest_us - passed_us, POLL_US))
         return max(left, 1)
 
     def _judge_silence(self, link, now, added):
         """Nothing to take: whether it is too late for what may still come, or is just coming."""
-        late_us = self._residual_us + link.resolution_us
         self._coming = added == COMING
         if self.count:
-            if elapsed(now, self._began_at, self._mask) <= late_us:
+            passed_us = elapsed(now, self._began_at, self._mask)
+            if passed_us <= self._limit_us() + link.resolution_us:
                 return WAITING
             finding = CUT_OFF
         else:
-            window_us = self.window_us + late_us if self._coming else self.window_us
+            window_us = self.window_us
+            if self._coming:
+                window_us += self._limit_us() + link.resolution_us
             if elapsed(now, self._sent_at, self._mask) < window_us:
                 return WAITING
             finding = telegram.BAD_START if self.stray or self._coming else SILENT

@@ -41,6 +41,7 @@ class Timing:
             raise ValueError("baud rate %r is none of USS: %s" % (baud, BAUD_RATES))
         self.baud = baud
         self.character_us = characters_us(baud, 1)
+        self._sixteen_us = characters_us(baud, 16)
         self.start_interval_us = characters_us(baud, START_INTERVAL_CHARACTERS)
         self.reply_timeout_us = max(reply_timeout_us, 2 * self.start_interval_us)
 
@@ -50,13 +51,36 @@ class Timing:
 
     def residual_us(self, net_count):
         """Longest time from the start of STX to the end of BCC: one and a half times the
-        compressed time of the characters after STX (specification A-6.3), and STX itself."""
-        compressed = characters_us(self.baud, 3 * (net_count + FRAME_CHARACTERS - 1))
-        return (compressed + 1) // 2 + self.character_us
+        compressed time of the characters after STX (specification A-6.3), and STX itself.
 
-    def exchange_us(self, net_count, reply_delay_us):
-        """One request and its reply, both `net_count` long, with what has to be silent between."""
-        return self.start_interval_us + 2 * self.telegram_us(net_count) + reply_delay_us
+        Called by the engine: no product leaves the small integers."""
+        compressed_us = (net_count + FRAME_CHARACTERS - 1) * self._sixteen_us
+        return (3 * compressed_us >> 5) + self.character_us
+
+    def exchange_us(self, net_count, reply_delay_us, link_delay_us=0):
+        """One request and its reply, both `net_count` long, with what has to be silent between.
+
+        link_delay_us: how long after the end of a reply the link reports it; the RP2040 takes 32
+        bits (`idle_us` of its link), which is longer than the start interval.
+        """
+        return self.cycle_us(((net_count, net_count, reply_delay_us),), link_delay_us)
+
+    def cycle_us(self, exchanges, link_delay_us=0):
+        """A round of the circulating list (specification A-5.1.1), the master's own time apart.
+
+        exchanges: for each entry (net characters of the request, of the reply, reply delay in
+        microseconds). A reply delay of None is a broadcast, or a drive that does not answer: the
+        response delay is waited for.
+        """
+        pause_us = max(self.start_interval_us, link_delay_us)
+        cycle_us = 0
+        for request_count, reply_count, reply_delay_us in exchanges:
+            cycle_us += self.telegram_us(request_count)
+            if reply_delay_us is None:
+                cycle_us += self.start_interval_us + self.reply_timeout_us + self.character_us
+            else:
+                cycle_us += pause_us + reply_delay_us + self.telegram_us(reply_count)
+        return cycle_us
 
 
 def elapsed(now, since, mask):

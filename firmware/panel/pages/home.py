@@ -7,24 +7,26 @@ Row 1 and the address are drawn by `panel.view`, because parameter mode shows th
 """
 
 from panel import state, texts
-from panel.view import draw_fault
+from panel.announcer import draw_fault
 
 
 class Home:
-    """panel: the `Panel` whose selected drive is shown."""
+    """panel: the `Panel` whose selected drive is shown. keys: its `Keys`."""
 
     whole = False
     tells_state = True
     obeys = True
 
-    def __init__(self, panel):
+    def __init__(self, panel, keys):
         self._panel = panel
+        self._up = keys.bit("UP")
+        self._down = keys.bit("DOWN")
 
     def take_keys(self, keys, now_ms):
         """UP and DOWN move the setpoint, faster while they are held."""
-        panel = self._panel
-        direction = keys.moved("UP") - keys.moved("DOWN")
+        direction = keys.moved(self._up) - keys.moved(self._down)
         if direction:
+            panel = self._panel
             panel.selected.change(direction * panel.setpoint_step * keys.pace())
 
     def draw(self, screen, now_ms):

@@ -37,14 +37,17 @@ ASK = {profiles.CUTS_OFF: texts.ASK_CUTS_OFF, profiles.RESCALES: texts.ASK_RESCA
 
 
 class Parameters:
-    """panel: the `Panel`. writer: its `Writer`. mask: the clock's period - 1."""
+    """panel: the `Panel`. keys: its `Keys`. writer: its `Writer`. mask: the clock's period - 1."""
 
     whole = False
     tells_state = False
     obeys = True
 
-    def __init__(self, panel, writer, mask):
+    def __init__(self, panel, keys, writer, mask):
         self._panel = panel
+        self._up, self._down = keys.bit("UP"), keys.bit("DOWN")
+        self._next, self._previous = keys.bit("NEXT"), keys.bit("PREVIOUS")
+        self._edit_key, self._set_key = keys.bit("EDIT"), keys.bit("SET")
         self._writer = writer
         self._mask = mask
         self._row = 0
@@ -71,18 +74,18 @@ class Parameters:
 
     def take_keys(self, keys, now_ms):
         self._look_at_selected()
-        set_key = keys.bit("SET")
+        set_key = self._set_key
         if keys.pressed & ~set_key:
             self._set_at_ms = None
-        step = keys.moved("NEXT") - keys.moved("PREVIOUS")
+        step = keys.moved(self._next) - keys.moved(self._previous)
         if step:
             self._row = (self._row + step) % len(PARAMETERS)
             self._forget()
-        elif keys.pressed & keys.bit("EDIT"):
+        elif keys.pressed & self._edit_key:
             self._toggle_edit(now_ms)
         elif keys.pressed == set_key and set_key:  # with another key it is no clear wish
             self._set(now_ms)
-        direction = keys.moved("UP") - keys.moved("DOWN")
+        direction = keys.moved(self._up) - keys.moved(self._down)
         if direction:
             self._change(direction, keys, now_ms)
 
@@ -147,7 +150,7 @@ class Parameters:
         """Each step of the loop while it is shown."""
         self._look_at_selected()
         contact = self._control.drive.contact
-        if not contact or not keys.down & keys.bit("SET"):
+        if not contact or not keys.down & self._set_key:
             self._set_at_ms = None
         if not contact:
             self._value = None

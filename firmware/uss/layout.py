@@ -1,0 +1,73 @@
+"""How the net data of a drive's telegrams are divided: PKW words, then PZD words.
+
+    PKW  0, 3 or 4 words, or VARIABLE: as many as a task or its reply needs, 3 at the least
+    PZD  0...16 words, the same number both ways
+
+Both are agreed with each drive before the bus starts and may differ from drive to drive
+(specification A-4.2.2, C-3.1, C-7): P2013 and P2012 of a MICROMASTER 4. With a fixed length
+request and reply are equally long. Together they are 126 words at the most.
+
+    Layout(4, 2)                # STANDARD
+    Layout(VARIABLE, 4)         # P2013 = 127, P2012 = 4
+"""
+
+from micropython import const
+
+VARIABLE = const(127)
+PKW_WORDS = (0, 3, 4, VARIABLE)
+PZD_WORDS_MAX = const(16)
+WORDS_MAX = const(126)
+LEAST_PKW_WORDS = const(3)  # PKE, IND and one word of PWE: every task and every reply has them
+TEXT_PKW_WORDS = const(10)  # PKE, IND and a text of 16 characters
+ENABLE_WORDS = const(4)  # the PKW area of a broadcast holds the enable array (appendix)
+
+
+class Layout:
+    """pkw_words: 0, 3, 4 or VARIABLE. pzd_words: 0...16.
+
+    longest: with VARIABLE, the most PKW words of a request, 3...126; the buffer of the drive's
+    telegram is made for them. What the drive answers may be as long as it likes.
+
+    ValueError when there is no such layout, or nothing to send.
+
+    net_count: net characters of a request without a task. pzd_count: characters of the PZD.
+    net_max: net characters of the longest request.
+    """
+
+    def __init__(self, pkw_words=4, pzd_words=2, longest=TEXT_PKW_WORDS):
+        if pkw_words not in PKW_WORDS:
+            raise ValueError("PKW of %r words is none of %s" % (pkw_words, PKW_WORDS))
+        if pzd_words not in range(PZD_WORDS_MAX + 1):
+            raise ValueError("PZD of %r words is not 0...%d" % (pzd_words, PZD_WORDS_MAX))
+        if pkw_words + pzd_words == 0:
+            raise ValueError("a telegram of 0 PKW and 0 PZD words says nothing")
+        self.pkw_words = pkw_words
+        self.pzd_words = pzd_words
+        self.variable = pkw_words == VARIABLE
+        idle_words = LEAST_PKW_WORDS if self.variable else pkw_words
+        self.longest = longest if self.variable else pkw_words
+        if self.variable and not LEAST_PKW_WORDS <= longest <= WORDS_MAX - pzd_words:
+            raise ValueError("%r PKW words and %d PZD words" % (longest, pzd_words))
+        self.pzd_count = 2 * pzd_words
+        self.net_count = 2 * (idle_words + pzd_words)
+        self.net_max = 2 * (self.longest + pzd_words)
+
+    def fits(self, net_count):
+        """Whether a reply may have so many net characters."""
+        if not self.variable:
+            return net_count == self.net_count
+        return net_count & 1 == 0 and net_count >= self.net_count
+
+    def is_like(self, other):
+        """Whether drives set up so take the same telegrams."""
+        return self.pkw_words == other.pkw_words and self.pzd_words == other.pzd_words
+
+    def takes_broadcast(self):
+        """Whether the enable array of a broadcast has its place: a PKW area of four words."""
+        return self.pkw_words == ENABLE_WORDS and self.pzd_words > 0
+
+    def __repr__(self):
+        return "Layout(%d, %d)" % (self.pkw_words, self.pzd_words)
+
+
+STANDARD = Layout(4, 2)

@@ -1,0 +1,398 @@
+"""The blocks of the S7-200's USS library: USS_INIT, USS_CTRL, USS_RPM_W/D/R, USS_WPM_W/D/R.
+
+For people who know them: each block is an object that is called once a scan, with its inputs by
+name; its outputs are its attributes. On top of the engine, which goes on by itself between the
+calls. Never imported by the panel. README.md says where each pin and code went.
+
+    port = Port(open_bus, clock.ticks_mask)         # open_bus(baud) answers a `master.Master`
+    init, motor, frequency = USS_INIT(port), USS_CTRL(port), USS_RPM_R(port)
+    while True:                                     # the scan
+        port.scan(clock.ticks_us())
+        init(EN=True, MODE=1, BAUD=19200, ACTIVE=0b10)
+        motor(EN=True, RUN=switch(), DRIVE=1, TYPE=1, SPEED_SP=50.0)
+        frequency(EN=True, XMT_REQ=button(), DRIVE=1, PARAM=21)
+        if motor.ERROR: print(status.text(motor.ERROR))
+
+RUN makes a motor run by its rising edge only, and only a drive that could run at that moment.
+Power that comes back, a drive that answers again, a fault that is acknowledged or a scan that goes
+on start nothing: RUN has to go off and on. Source: S7-200 system manual, USS library.
+"""
+
+from micropython import const
+
+from uss import pkw, pzd, status
+from uss.families import MM3, MM4
+from uss.master import DEAD_MAN_US, OFF
+from uss.plc_parameters import (  # noqa: F401  (also blocks of this library)
+    USS_RPM_D,
+    USS_RPM_R,
+    USS_RPM_W,
+    USS_WPM_D,
+    USS_WPM_R,
+    USS_WPM_W,
+)
+from uss.scaling import RUNS_RIGHT, Scale, run_words, with_direction
+from uss.telegram import NODE_MAX
+from uss.timing import BAUD_RATES, elapsed
+from uss.words import may_start
+
+USS = const(1)  # MODE of USS_INIT
+PPI = const(0)  # the port is for something else
+
+TYPES = (MM3, MM4)  # what TYPE of USS_CTRL means: 0 and 1
+DEFAULT_TYPE = const(1)  # of an active drive that no USS_CTRL has named yet
+
+SPEED_LIMIT = const(200)  # percent
+PERCENT = Scale()  # of full speed, 4000h
+
+
+class Port:
+    """The serial port that all blocks share.
+
+    open_bus: function, baud -> a `Master` without drives on a link of that rate; it lets go of the
+        one before, whose phase is OFF then. mask: the clock's period - 1.
+    types: the family for each value of TYPE; one that differs is a class more, see `families`.
+    polled: `scan` makes the engine go on. False: something else does, such as `hal.pacer`, which
+        also goes on, and stops the motors, when the scan does not.
+
+    Fields to look at: `bus` (None while the port is not set up for USS), `drives` (by address),
+    `now` (the instant of this scan).
+    """
+
+    def __init__(self, open_bus, mask, types=TYPES, polled=True):
+        self.bus = None
+        self.now = 0
+        self.drives = [None] * (NODE_MAX + 1)
+        self.job = None  # the parameter job of the block that was served last
+        self._open_bus = open_bus
+        self._mask = mask
+        self._types = types
+        self._type_of = [min(DEFAULT_TYPE, len(types) - 1)] * (NODE_MAX + 1)
+        self._polled = polled
+        self._controls = [None] * (NODE_MAX + 1)  # the USS_CTRL that commands each drive
+        self._baud = 0
+        self._leaving = None  # the bus that is being left
+        self._following = None  # (baud, active) of the one after it
+
+    def scan(self, now):
+        """Once at the beginning of every scan. now: the clock in microseconds.
+
+        Motors are stopped when it is not called for 300 ms, and so is the one whose USS_CTRL is
+        not; where `polled`, not before it is called again.
+        """
+        self.now = now
+        bus = self._leaving or self.bus
+        if bus is None:
+            return
+        if self._polled:
+            bus.poll(now)  # before `refresh`, or a scan that hung would go unnoticed
+        bus.refresh(now)
+        for control in self._controls:
+            if control is not None and control.is_overdue():
+                control.leave()
+
+    # --- for the blocks -------------------------------------------------------------------------
+
+    def passed_us(self, since):
+        """Microseconds from the scan of the instant `since` to this one."""
+        return elapsed(self.now, since, self._mask)
+
+    def refusal(self, address):
+        """Why no block may use the drive at this address: a status code, or NO_ERROR."""
+        if self.bus is None:
+            return status.PORT_NOT_USS
+        if address not in range(NODE_MAX + 1):
+            return status.ILLEGAL_ADDRESS
+        if self.drives[address] is None:
+            return status.NOT_ACTIVE
+        return status.NO_ERROR
+
+    def family(self, address):
+        """What the drive at this address is, see `families`."""
+        return self._types[self._type_of[address]]
+
+    def refusal_to(self, control, address, type_number):
+        """Why this USS_CTRL may not command the drive at this address, as one of this TYPE."""
+        refusal = self.refusal(address)
+        if refusal:
+            return refusal
+        if self._controls[address] not in (None, control):
+            return status.INTERFERENCE
+        return self._set_type(address, type_number)
+
+    def hand_over(self, address, control):
+        """This USS_CTRL commands the drive from now on, None for nobody."""
+        self._controls[address] = control
+
+    def is_busy(self):
+        """Whether a parameter job is under way."""
+        return self.job is not None and self.job.state == pkw.PENDING
+
+    def is_waiting_for(self, job):
+        """Whether this one is; it is not when the line was left before it ended."""
+        return self.job is job and job.state == pkw.PENDING
+
+    def ask(self, drive, job):
+        """Have a parameter job carried out. RuntimeError when the drive takes none."""
+        drive.ask(job)
+        self.job = job
+
+    def set_up(self, mode, baud, active):
+        """Begin what USS_INIT is for; a code when that cannot be. `is_set_up` tells the end."""
+        refusal = self._refuses(mode, baud, active)
+        if refusal:
+            return refusal
+        if mode == PPI:
+            baud = active = 0
+        if self.bus is None:
+            if mode == USS:
+                self._open(baud, active)
+        elif baud == self._baud:
+            self._activate(active)
+        else:
+            self._activate(0)
+            self.bus.off()
+            self._leaving = self.bus
+            self._following = (baud, active)
+            self.bus = self.job = None
+        return status.NO_ERROR
+
+    def is_set_up(self):
+        """Whether the change that was begun is complete."""
+        if self._leaving is not None and self._leaving.phase == OFF:
+            self._leaving = None
+            baud, active = self._following
+            if baud:
+                self._open(baud, active)
+        return self._leaving is None
+
+    def _set_type(self, address, type_number):
+        if type_number not in range(len(self._types)):
+            return status.ILLEGAL_COMMAND
+        if not self._types[type_number].layout.pzd_words:
+            return status.ILLEGAL_COMMAND
+        if self._type_of[address] == type_number:
+            return status.NO_ERROR
+        if self.is_busy():
+            return status.PORT_BUSY
+        if self.drives[address].may_run():
+            return status.CHANGE_NOT_ALLOWED
+        self._remove(address)
+        self._type_of[address] = type_number
+        self._add(address)
+        return status.NO_ERROR
+
+    def _refuses(self, mode, baud, active):
+        if mode not in (PPI, USS):
+            return status.PROTOCOL
+        if mode == USS and baud not in BAUD_RATES:
+            return status.BAUD_RATE
+        if mode == USS and (active < 0 or active >> (NODE_MAX + 1)):
+            return status.ILLEGAL_ADDRESS
+        if self._leaving is not None or (self.is_busy() and not self.bus.is_line_in_use()):
+            return status.PORT_BUSY
+        keeps = active if mode == USS and baud == self._baud else 0
+        for drive in self.drives:
+            if drive is not None and not keeps >> drive.address & 1 and drive.may_run():
+                return status.CHANGE_NOT_ALLOWED
+        return status.NO_ERROR
+
+    def _open(self, baud, active):
+        self.bus = self._open_bus(baud)
+        self._baud = baud
+        self.bus.refresh(self.now)
+        self._activate(active)
+
+    def _activate(self, active):
+        for address in range(NODE_MAX + 1):
+            is_active = active >> address & 1
+            if is_active and self.drives[address] is None:
+                self._add(address)
+            elif not is_active and self.drives[address] is not None:
+                self._remove(address)
+
+    def _add(self, address):
+        self.drives[address] = self.bus.add(address, self.family(address).layout)
+
+    def _remove(self, address):
+        self.bus.remove(self.drives[address])
+        self.drives[address] = None
+
+
+class USS_INIT:
+    """Sets up the port; once for each change, by the rising edge of EN.
+
+    MODE: 1 USS, 0 the port is for something else. BAUD: bits per second. ACTIVE: bit n is drive n.
+    DONE: what was asked for last is over; it may take a scan or more. ERROR: a code of `status`;
+    STATUS_WORD: that of the S7-1200. With an error nothing has changed.
+    """
+
+    def __init__(self, port):
+        self.DONE = False
+        self.ERROR = status.NO_ERROR
+        self.STATUS_WORD = status.word(status.NO_ERROR)
+        self._port = port
+        self._was_enabled = False
+        self._is_at_work = False
+
+    def __call__(self, EN=False, MODE=USS, BAUD=9600, ACTIVE=0):
+        if EN and not self._was_enabled:
+            self.ERROR = self._port.set_up(MODE, BAUD, ACTIVE)
+            self.STATUS_WORD = status.word(self.ERROR)
+            self._is_at_work = self.ERROR == status.NO_ERROR
+            self.DONE = not self._is_at_work
+        self._was_enabled = bool(EN)
+        if self._is_at_work and self._port.is_set_up():
+            self._is_at_work = False
+            self.DONE = True
+
+
+class USS_CTRL:
+    """Commands one active drive and shows its state; to be called in every scan.
+
+    RUN: run, by its rising edge; off is OFF1, down the ramp. OFF2: coast; OFF3: as fast as the
+    drive can; both stop while they are on, and RUN counts anew after them. F_ACK: its rising edge
+    acknowledges a fault. DIR: the other direction. DRIVE: 0...31. TYPE: 0 MICROMASTER 3, 1
+    MICROMASTER 4. SPEED_SP: percent of full speed, -200...200; negative turns the direction round.
+    EN off: the block does nothing, and after 300 ms its motor is stopped.
+
+    RESP_R: on for one scan when the drive has answered; only then do the following change. STATUS:
+    ZSW. SPEED: percent. RUN_EN, INHIBIT, FAULT: bits of it; D_DIR: its bit 14, runs right.
+    ERROR: a code of `status`, of the inputs or of the last telegram; STATUS_WORD: the S7-1200's.
+    An error of the inputs stops the motor, but for SPEED_RANGE: it keeps its speed and direction.
+    RUN_VOID, which Siemens has not: RUN is on and makes nothing run; it has to go off and on.
+    """
+
+    def __init__(self, port):
+        self.RESP_R = False
+        self.ERROR = status.NO_ERROR
+        self.STATUS_WORD = status.word(status.NO_ERROR)
+        self.STATUS = 0
+        self.SPEED = 0.0
+        self.RUN_EN = False
+        self.D_DIR = False
+        self.INHIBIT = False
+        self.FAULT = False
+        self.RUN_VOID = False
+        self._port = port
+        self._drive = None
+        self._family = None  # of this drive
+        self._called_at = 0
+        self._run = True  # as of the last scan
+        self._f_ack = True
+        self._counters = [0] * len(status.COUNTER_CODES)  # of the drive, as of the last scan
+        self._reply_code = status.NO_ERROR
+
+    def __call__(
+        self, EN=True, RUN=False, OFF2=False, OFF3=False, F_ACK=False, DIR=False, DRIVE=0, TYPE=1,
+        SPEED_SP=0.0,
+    ):  # fmt: skip
+        self.RESP_R = False
+        if not EN:
+            return
+        error = self._take_drive(DRIVE, TYPE)
+        if error:
+            self.RUN_VOID = bool(RUN)
+        else:
+            off = pzd.OFF2 if OFF2 else pzd.OFF3 if OFF3 else pzd.OFF1
+            error = self._command(RUN, off, DIR, SPEED_SP)
+            self._acknowledge(F_ACK)
+            self._report()
+        self.ERROR = error or self._reply_code
+        self.STATUS_WORD = status.word(self.ERROR)
+
+    def is_overdue(self):
+        """Whether it was not called for so long that its motor is to be stopped."""
+        return self._port.passed_us(self._called_at) > DEAD_MAN_US
+
+    def leave(self):
+        """Stop the motor and let the drive go."""
+        drive = self._drive
+        if drive is None:
+            return
+        if drive.wanted:
+            drive.stop()
+        self._port.hand_over(drive.address, None)
+        self._drive = None
+
+    def _take_drive(self, address, type_number):
+        """Command the drive at this address and no other; a code when that cannot be."""
+        port = self._port
+        self._called_at = port.now
+        error = port.refusal_to(self, address, type_number)
+        drive = None if error else port.drives[address]
+        if drive is not self._drive:
+            self.leave()
+            if drive is not None:
+                self._begin(drive)
+        return error
+
+    def _begin(self, drive):
+        self._drive = drive
+        self._family = self._port.family(drive.address)
+        self._port.hand_over(drive.address, self)
+        # An input that is on already has no rising edge: it may have been on before power came.
+        self._run = True
+        self._f_ack = True
+        self._reply_code = status.NO_ERROR
+        self._note_counters()
+
+    def _command(self, run, off, reverse, speed):
+        """What the inputs say, to the drive; a code when the setpoint cannot be followed."""
+        drive = self._drive
+        rises = run and not self._run
+        self._run = bool(run)
+        in_range = -SPEED_LIMIT <= speed <= SPEED_LIMIT  # a NaN is not
+        run_allowed = run and off == pzd.OFF1
+        if off != drive.off or (drive.wanted and not run_allowed):
+            drive.stop(off)
+        elif run_allowed and in_range:
+            stw, hsw = run_words(self._family, PERCENT.from_percent(speed), bool(reverse))
+            if self._is_followed():
+                drive.hsw = hsw
+                if stw != drive.wanted:
+                    drive.turn(stw)
+            elif rises and drive.contact and may_start(drive.zsw):
+                drive.start(hsw, stw)
+        self.RUN_VOID = bool(run) and not self._is_followed()
+        return status.NO_ERROR if in_range else status.SPEED_RANGE
+
+    def _is_followed(self):
+        """Whether the drive is being told to run."""
+        return self._drive.wanted != 0 and not self._drive.stopped_by_engine()
+
+    def _acknowledge(self, f_ack):
+        if f_ack and not self._f_ack:
+            self._drive.acknowledge()
+        self._f_ack = bool(f_ack)
+
+    def _report(self):
+        """The outputs, as far as there is news of the drive."""
+        drive = self._drive
+        answers = drive.counters[0]
+        if drive.silent:
+            code = status.of_reply(drive.counters, self._counters)
+            self._reply_code = code or self._reply_code
+        elif self._port.bus.is_line_in_use():
+            self._reply_code = status.PORT_BUSY
+        else:
+            self._reply_code = status.NO_ERROR
+        self.RESP_R = answers != self._counters[0]
+        self._note_counters()
+        self._counters[0] = answers  # one that came meanwhile is for the next scan
+        if self.RESP_R:
+            zsw = drive.zsw
+            hiw = drive.hiw
+            if not self._family.hiw_is_signed:
+                hiw = with_direction(hiw, zsw)
+            self.STATUS = zsw
+            self.SPEED = PERCENT.percent(hiw)
+            self.RUN_EN = zsw & pzd.ZSW_RUNNING != 0
+            self.D_DIR = zsw & RUNS_RIGHT != 0
+            self.INHIBIT = zsw & pzd.ZSW_INHIBIT != 0
+            self.FAULT = zsw & pzd.ZSW_FAULT != 0
+
+    def _note_counters(self):
+        counters = self._counters
+        for index in range(len(counters)):
+            counters[index] = self._drive.counters[index]

@@ -1,0 +1,178 @@
+"""The blocks for parameters of the S7-200's USS library: USS_RPM_W/D/R, USS_WPM_W/D/R.
+
+W: a word; D: a double word; R: floating point. RPM reads, WPM writes. A part of `plc`, which has
+the port that they share; one of them at a time is at work there.
+
+    frequency = USS_RPM_R(port)
+    frequency(EN=True, XMT_REQ=button(), DRIVE=1, PARAM=21)     # once a scan, until DONE
+    if frequency.DONE and not frequency.ERROR: print(frequency.VALUE)
+"""
+
+from uss import pkw, status
+from uss.families import MM3
+
+
+class Parameter:
+    """What the blocks for parameters share; one of them at a time on a port.
+
+    EN: on until DONE. XMT_REQ: the request, once for each time that it and EN become on. DRIVE:
+    0...31. PARAM: 0...127999; INDEX: 0...254. Another edge is no request as long as one goes on.
+
+    DONE: it is over; until the next request. ERROR: a code of `status`; STATUS_WORD: that of the
+    S7-1200. PKW_ERROR: with PARAMETER_REPLY the number with which the drive refused, see
+    `pkw.error_text`; else None.
+    """
+
+    width = pkw.WORD
+
+    def __init__(self, port):
+        self.DONE = False
+        self.ERROR = status.NO_ERROR
+        self.STATUS_WORD = status.word(status.NO_ERROR)
+        self.PKW_ERROR = None
+        self._port = port
+        self._was_requested = False
+        self._job = None
+        self._drive = None
+        self._counters = None  # of the drive, when it was asked
+
+    def _serve(self, enabled, request, address, number, index, value=None, eeprom=False):
+        rises = enabled and request and not self._was_requested
+        self._was_requested = bool(enabled and request)
+        if not enabled:
+            return
+        if self._job is not None:
+            if not self._port.is_waiting_for(self._job):
+                self._finish()
+        elif rises:
+            self._request(address, number, index, value, eeprom)
+
+    def _request(self, address, number, index, value, eeprom):
+        self.DONE = False
+        self.PKW_ERROR = None
+        port = self._port
+        refusal = port.refusal(address)
+        if not refusal and port.is_busy():
+            refusal = status.PORT_BUSY
+        if not refusal and not _is_parameter(number, index):
+            refusal = status.PARAMETER_NUMBER
+        if refusal:
+            self._end(refusal)
+            return
+        drive = port.drives[address]
+        has_no_eeprom_task = issubclass(port.family(address), MM3)
+        if drive.layout.pkw_words == 0 or (eeprom and has_no_eeprom_task):
+            self._end(status.ILLEGAL_COMMAND)
+        else:
+            self._ask(drive, number, index, value, eeprom)
+
+    def _ask(self, drive, number, index, value, eeprom):
+        try:
+            job = self._make_job(number, index, value, eeprom)
+        except (ValueError, TypeError, OverflowError):
+            self._end(status.ILLEGAL_COMMAND, status.WRONG_VALUE_TYPE)
+            return
+        try:
+            self._port.ask(drive, job)
+        except RuntimeError:  # others than these blocks have filled its queue
+            self._end(status.PORT_BUSY)
+            return
+        self._job = job
+        self._drive = drive
+        self._counters = list(drive.counters)
+        self.ERROR = status.NO_ERROR
+        self.STATUS_WORD = status.word(status.NO_ERROR)
+
+    def _finish(self):
+        job = self._job
+        drive = self._drive
+        self._job = self._drive = None
+        reply_code = status.NO_ERROR
+        if job.state == pkw.PENDING:
+            self._end(status.PORT_NOT_USS)
+            return
+        if drive.silent:
+            reply_code = status.of_reply(drive.counters, self._counters)
+        code = status.of_job(job, self.width, reply_code)
+        if job.state == pkw.REFUSED:
+            self.PKW_ERROR = job.error
+        if code == status.NO_ERROR:
+            self._take(job)
+        self._end(code, status.word_of_job(job, code))
+
+    def _end(self, code, word=None):
+        self.ERROR = code
+        self.STATUS_WORD = word or status.word(code)
+        self.DONE = True
+
+    def _make_job(self, number, index, value, eeprom):
+        return pkw.read(number, index)
+
+    def _take(self, job):
+        """The value that was confirmed."""
+
+
+def _is_parameter(number, index):
+    return number in range(pkw.NUMBER_MAX + 1) and index in range(pkw.INDEX_MAX + 1)
+
+
+class USS_RPM_W(Parameter):
+    """Reads a parameter of 16 bits. VALUE: 0...65535, as of the last DONE without ERROR."""
+
+    def __init__(self, port):
+        super().__init__(port)
+        self.VALUE = 0
+
+    def __call__(self, EN=True, XMT_REQ=False, DRIVE=0, PARAM=0, INDEX=0):
+        self._serve(EN, XMT_REQ, DRIVE, PARAM, INDEX)
+
+    def _take(self, job):
+        self.VALUE = job.integer_value()
+
+
+class USS_RPM_D(USS_RPM_W):
+    """Reads a parameter of 32 bits. VALUE: 0...2**32 - 1."""
+
+    width = pkw.DOUBLE
+
+
+class USS_RPM_R(USS_RPM_W):
+    """Reads a floating-point parameter. VALUE: a float."""
+
+    width = pkw.DOUBLE
+
+    def _take(self, job):
+        self.VALUE = job.float_value()
+
+
+class USS_WPM_W(Parameter):
+    """Writes a parameter of 16 bits. VALUE: -32768...65535.
+
+    EEPROM: for good, not in RAM alone; not with TYPE 0.
+    """
+
+    def __call__(self, EN=True, XMT_REQ=False, EEPROM=False, DRIVE=0, PARAM=0, INDEX=0, VALUE=0):
+        self._serve(EN, XMT_REQ, DRIVE, PARAM, INDEX, VALUE, EEPROM)
+
+    def _make_job(self, number, index, value, eeprom):
+        return pkw.write_word(number, value, index, eeprom)
+
+
+class USS_WPM_D(USS_WPM_W):
+    """Writes a parameter of 32 bits. VALUE: -2**31...2**32 - 1."""
+
+    width = pkw.DOUBLE
+
+    def _make_job(self, number, index, value, eeprom):
+        return pkw.write_double(number, value, index, eeprom)
+
+
+class USS_WPM_R(USS_WPM_W):
+    """Writes a floating-point parameter. VALUE: a finite number."""
+
+    width = pkw.DOUBLE
+
+    def _make_job(self, number, index, value, eeprom):
+        if value - value != 0:
+            raise ValueError("%r for a parameter" % (value,))
+        return pkw.write_float(number, value, index, eeprom)

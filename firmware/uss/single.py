@@ -1,0 +1,204 @@
+"""Telegrams outside the circulating list: mirror, broadcast, special (specification A-4.3, A-5.3).
+
+Each is built once, handed to `Master.post`, sent in between as soon as there is room, and tells
+what became of it: NEW, PENDING, DONE or TIMED_OUT, the states of a parameter job. None of them
+starts a motor: a mirror is not acted on, a broadcast with a start bit is refused, and special
+telegrams mean nothing to a drive.
+
+    probe = single.Mirror(5)
+    bus.post(probe)                     # ... later:
+    probe.state == single.DONE          # node 5 is there
+
+    single.stop_all(bus)                # OFF1 to all at once, where all of them take broadcasts
+"""
+
+from micropython import const
+
+from uss import pzd, telegram
+from uss.layout import ENABLE_WORDS, PZD_WORDS_MAX
+from uss.pkw import DONE, NEW, PENDING, TIMED_OUT
+from uss.telegram import BROADCAST, MIRROR, NET, NODE_MAX, SPECIAL
+
+__all__ = ("DONE", "NEW", "PENDING", "TIMED_OUT", "Mirror", "Broadcast", "Special", "stop_all")
+
+PROBE = bytes(12)  # net data that name no task and, bit 10 of STW being 0, command nothing
+STW_CONTROL = const(0x0400)
+OFTEN = const(0xFFFF)  # `silent` of what nobody answers: it is not repeated for that
+
+# The enable array of a broadcast (appendix): a, b, c and d, in the places of the PKW words.
+ENABLE_FLAG = const(0x0001)  # in a: this is a broadcast; bit i: PZD i may be taken over
+UNMASKED = const(0xFFFF)
+ENABLED_PLACES = const(15)  # PZD 16 is never taken over
+
+
+class Single:
+    """The telegram with these net data to this ADR. ValueError when it cannot be one.
+
+    state, and finding: of the receiver, why there was no reply. reply: the net characters of it,
+    bytes, once DONE. The other fields are those that the engine has of a drive.
+    """
+
+    def __init__(self, address, net):
+        self.request = bytearray(len(net) + 4)
+        self.request[NET : NET + len(net)] = net
+        self.size = telegram.seal(self.request, address, len(net))
+        self.address = address
+        self.ahead = False  # of all other telegrams; otherwise it waits its turn
+        self.sealed = True
+        self.silent = 0  # times in a row
+        self.state = NEW
+        self.finding = telegram.GOOD
+
+    def fits(self, net_count):
+        """Whether a reply may have so many net characters."""
+        return net_count == self.size - 4
+
+    def may_reply_alike(self):
+        """Whether the reply may be the very request."""
+        return True
+
+    # --- for the engine: allocates nothing ------------------------------------------------------
+
+    def fill(self, now):
+        """The telegram stands as it is."""
+
+    def take(self, buffer, count, now):
+        self.state = DONE
+
+    def miss(self, finding, now, lost_us, mask):
+        self.silent += 1
+        self.finding = finding
+        self.state = TIMED_OUT
+
+    def __repr__(self):
+        return "<%s to ADR %02X>" % (type(self).__name__, self.address)
+
+
+class Mirror(Single):
+    """Asks a node to send the telegram back as it is (A-5.3). It acts on nothing in it.
+
+    node: 0...31. net: what is sent; a drive of fixed length answers only its own length. DONE when
+    it came back unchanged; `finding` tells what came instead.
+    """
+
+    def __init__(self, node, net=PROBE):
+        if not 0 <= node <= NODE_MAX:
+            raise ValueError("node %r is not 0...31" % (node,))
+        Single.__init__(self, node | MIRROR, net)
+        self.node = node
+
+    def take(self, buffer, count, now):
+        for index in range(count):
+            if buffer[index] != self.request[index]:
+                self.miss(telegram.BAD_BCC, now, 0, 0)
+                return
+        self.finding = telegram.GOOD
+        self.state = DONE
+
+
+class Broadcast(Single):
+    """Process data for all drives of one layout at the same time (A-3, C-5.2.3 and appendix).
+
+    words: 1...16 PZD words, STW first; every drive must have so many, and 4 PKW words. takes: what
+    they may take over of it, {place: mask}, place 1...15; of PZD 1, 4 and 5 bit by bit, of the
+    others only UNMASKED. All else they keep. Nobody answers: DONE says that it was sent and that
+    the line was left alone for the response delay after it. ValueError: it would start motors,
+    take control away, or cannot be sent so.
+    """
+
+    def __init__(self, words, takes):
+        if not 1 <= len(words) <= PZD_WORDS_MAX:
+            raise ValueError("%d PZD words" % len(words))
+        enable = ENABLE_FLAG
+        for place, mask in takes.items():
+            if not 1 <= place <= min(len(words), ENABLED_PLACES):
+                raise ValueError("PZD%r is not taken from a broadcast" % (place,))
+            if place not in (1, 4, 5) and mask != UNMASKED:
+                raise ValueError("PZD%d is taken as a whole" % place)
+            enable |= 1 << place
+        taken = takes.get(1, 0)
+        if taken & words[0] & pzd.STW_RUN:
+            raise ValueError("a broadcast starts no motors: STW %04Xh" % words[0])
+        if not words[0] & STW_CONTROL:
+            raise ValueError("STW %04Xh gives up control" % words[0])
+        net = bytearray(2 * (ENABLE_WORDS + len(words)))
+        telegram.put_word(net, 0, enable)
+        for index in range(3):
+            telegram.put_word(net, 2 + 2 * index, takes.get((1, 4, 5)[index], 0))
+        for index in range(len(words)):
+            telegram.put_word(net, 2 * (ENABLE_WORDS + index), words[index])
+        Single.__init__(self, BROADCAST, net)
+
+    def fits(self, net_count):
+        """Nothing does: nobody answers."""
+        return False
+
+    def may_reply_alike(self):
+        """What comes is no reply, but may be an echo."""
+        return False
+
+    def miss(self, finding, now, lost_us, mask):
+        self.silent = OFTEN
+        self.state = DONE
+
+
+class Special(Single):
+    """Net data of a kind of its own, for a node that knows them (A-5.3.1).
+
+    node: 0...31, or None for all of that kind, which do not answer. net: 1...252 characters.
+    reply_count: net characters of the reply, None for any number. hook(net, count), when given, is
+    called in the engine with the reply's net data in the first `count` characters of `net`; it
+    must not allocate.
+    """
+
+    def __init__(self, node, net, reply_count=None, hook=None):
+        if node is not None and not 0 <= node <= NODE_MAX:
+            raise ValueError("node %r is not 0...31" % (node,))
+        Single.__init__(self, SPECIAL | (BROADCAST if node is None else node), net)
+        self.reply = bytearray(telegram.NET_COUNT_MAX)
+        self.reply_count = 0
+        self._awaited_count = reply_count
+        self._to_all = node is None
+        self._hook = hook
+
+    def fits(self, net_count):
+        """Whether a reply may have so many net characters."""
+        if self._to_all:
+            return False
+        return self._awaited_count is None or net_count == self._awaited_count
+
+    def take(self, buffer, count, now):
+        net_count = count - 4
+        if not self.fits(net_count):
+            self.miss(telegram.BAD_LENGTH, now, 0, 0)
+            return
+        for index in range(net_count):
+            self.reply[index] = buffer[NET + index]
+        self.reply_count = net_count
+        if self._hook:
+            self._hook(self.reply, net_count)
+        self.state = DONE
+
+    def miss(self, finding, now, lost_us, mask):
+        Single.miss(self, finding, now, lost_us, mask)
+        if self._to_all:
+            self.silent = OFTEN
+            self.state = DONE
+
+
+def stop_all(bus):
+    """OFF1 to every drive in a single telegram ahead of all others, then by a telegram to each.
+
+    For drives that take broadcasts, which few document. ValueError unless all have 4 PKW words and
+    the same PZD words; each is sent its own OFF1 even so.
+    """
+    bus.stop_all()
+    layouts = [drive.layout for drive in bus.drives]
+    for layout in layouts:
+        if not layout.takes_broadcast() or layout.pzd_words != layouts[0].pzd_words:
+            raise ValueError("%r beside %r: no common broadcast" % (layout, layouts[0]))
+    if layouts:
+        words = [pzd.OFF1] + [0] * (layouts[0].pzd_words - 1)
+        broadcast = Broadcast(words, {1: pzd.STW_RUN})
+        broadcast.ahead = True
+        bus.post(broadcast)

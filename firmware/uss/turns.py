@@ -1,0 +1,303 @@
+"""Whose turn it is on the bus: the circulating list, and what goes before it.
+
+The list is worked through entry by entry (specification A-5.1): a drive that stands in it twice is
+asked twice as often. Before it goes, in this order,
+
+    a telegram outside the list that is `ahead`: a broadcast stop
+    a command that matters: a stop of a drive that runs, another stop, anything else
+    an exchange that is repeated because no valid reply came
+    every second telegram: one outside the list, or a drive that is to have more than its turn
+
+A drive that stays silent is counted and shown, and never taken off the list. Which of them back
+off, and whose turns are too far apart, is the subject of `care`. Sends nothing: `master` does.
+"""
+
+from micropython import const
+
+from uss import pkw, telegram
+from uss.care import Care
+from uss.drive import ANY, ATTENTION, COUNTERS, NODES, WANTS, Drive
+from uss.fast import greatest
+from uss.layout import STANDARD
+
+LIST_MAX = const(255)  # entries of the circulating list
+SINGLES_MAX = const(8)  # telegrams outside the list that wait
+
+
+class Turns:
+    """timing: `Timing` of the line. mask: the clock's period - 1.
+
+    Settings, at any time: `cycle_us`, a round of the list begins so long after the one before, 0
+    for at once; `retries`, how often an exchange without a valid reply is repeated at once.
+    `drives`, each once, in the order added; `list`, the circulating list: see `arrange`.
+    """
+
+    def __init__(self, timing, mask):
+        self.drives = []
+        self.list = []
+        self.timing = timing
+        self.cycle_us = 0
+        self.retries = 0
+        self._mask = mask
+        self._attention = bytearray(ATTENTION)
+        self._at = [None] * NODES  # drives by address
+        self.round = []  # the list without those that back off, which the engine walks:
+        self.round_count = 0  # so many of these
+        self._next = LIST_MAX  # place in it; behind its end a round begins
+        self._round_began_at = None
+        self._round_left_us = 0  # of the cycle time, when the round was over before it
+        self._again = None  # whose exchange is to be repeated
+        self._ahead = None  # a telegram outside the list that goes before everything
+        self._singles = [None] * (SINGLES_MAX + 1)  # the others: a ring, one writer at each end
+        self._singles_in = 0
+        self._singles_out = 0
+        self._insisted = False  # the last turn was one more than its turn in the list
+        self._look_from = 0  # behind which address the search for one with a hurry begins
+        self._uneasy = False  # a drive without contact was silent: the loop is to look after it
+        self._care = Care(self, timing, mask)
+
+    # --- for the loop ---------------------------------------------------------------------------
+
+    def add(self, address, layout=None):
+        """Put a drive at the end of the circulating list; answer its `Drive`.
+
+        layout: how its telegrams are divided, STANDARD if not given. The same address again gives
+        the same drive one more turn. ValueError when the address is not 0...31, the list is full,
+        or the drive has another layout already.
+        """
+        if len(self.list) >= LIST_MAX:
+            raise ValueError("the circulating list holds %d entries" % LIST_MAX)
+        for drive in self.drives:
+            if drive.address == address:
+                if layout and not layout.is_like(drive.layout):
+                    raise ValueError("drive %d has %r already" % (address, drive.layout))
+                break
+        else:
+            drive = Drive(address, self._mask, self._attention, layout or STANDARD)
+            # New lists, because an interrupt may be walking the old ones.
+            self._at[address] = drive
+            self.drives = self.drives + [drive]
+        self._set_list(self.list + [drive])
+        return drive
+
+    def remove(self, drive):
+        """Take a drive off the bus: it is not spoken to any more.
+
+        ValueError when it is not on it, or may be running.
+        """
+        if drive not in self.drives:
+            raise ValueError("drive %d is not on this bus" % drive.address)
+        if drive.may_run():
+            raise ValueError("drive %d may be running" % drive.address)
+        self._care.forget(drive)
+        self.drives = [other for other in self.drives if other is not drive]
+        self._set_list([entry for entry in self.list if entry is not drive])
+        self._at[drive.address] = None
+
+    def arrange(self, entries):
+        """Make this the circulating list: drives of this bus, each at least once, in any order.
+
+        A drive that stands in it more often is asked more often. The round begins anew. ValueError
+        when there are more than 255, or one is missing, or one is of another bus.
+        """
+        entries = list(entries)
+        if len(entries) > LIST_MAX:
+            raise ValueError("the circulating list holds %d entries" % LIST_MAX)
+        for drive in entries:
+            if drive not in self.drives:
+                raise ValueError("drive %d is not on this bus" % drive.address)
+        for drive in self.drives:
+            if drive not in entries:
+                raise ValueError("drive %d would have no turn" % drive.address)
+        self._set_list(entries)
+        self._next = LIST_MAX
+
+    def readdress(self, drive, address):
+        """From the next telegram on, `drive` answers at another address.
+
+        ValueError when it is not 0...31 or another drive of this bus has it.
+        """
+        if not 0 <= address <= telegram.NODE_MAX:
+            raise ValueError("drive address %r is not 0...31" % (address,))
+        old = drive.address
+        if address == old:
+            return
+        if self._at[address] is not None:
+            raise ValueError("address %d is taken" % address)
+        self._at[address] = drive
+        drive.address = address
+        drive.call()  # what called at the old address
+        self._care.readdressed(old, address)
+        self._at[old] = None
+
+    def supervise(self, drive, off_time_ms):
+        """Keep two telegrams to a drive that may run less than a third of `off_time_ms` apart: the
+        time without telegrams after which it trips, P2014 of a MICROMASTER 4. 0: it never does.
+
+        Where its turns in the list are further apart it gets more, through `refresh`.
+        """
+        self._care.supervise(drive, off_time_ms * 1000 // 3)
+
+    def _set_list(self, entries):
+        self.list = entries
+        self._care.list_changed()
+
+    def post(self, telegram_outside):
+        """Send a telegram outside the list once (see `single`): at the next but one telegram at
+        the latest when nothing else is in a hurry. RuntimeError when SINGLES_MAX wait, or it does.
+        """
+        if telegram_outside.state == pkw.PENDING:
+            raise RuntimeError("%r is pending already" % (telegram_outside,))
+        following = (self._singles_in + 1) % len(self._singles)
+        if following == self._singles_out:
+            raise RuntimeError("%d telegrams wait already" % SINGLES_MAX)
+        telegram_outside.state = pkw.PENDING
+        telegram_outside.silent = 0
+        if telegram_outside.ahead:
+            self._ahead = telegram_outside
+        else:
+            self._singles[self._singles_in] = telegram_outside
+            self._singles_in = following
+        self._attention[ANY] = 1
+
+    def longest_exchange_us(self):
+        """How long an exchange takes when the reply comes, and ends, at the last moment."""
+        timing = self.timing
+        longest_us = 0
+        for drive in self.drives:
+            layout = drive.layout
+            reply_count = telegram.NET_COUNT_MAX if layout.variable else layout.net_max
+            reply_us = timing.reply_timeout_us + timing.residual_us(reply_count)
+            longest_us = max(longest_us, timing.telegram_us(layout.net_max) + reply_us)
+        return longest_us
+
+    def longest_cycle_us(self):
+        """How long a round of the list takes when every drive is silent till the last moment."""
+        cycle_us = 0
+        for drive in self.list:
+            timing = self.timing
+            cycle_us += timing.telegram_us(drive.layout.net_max) + timing.reply_timeout_us
+            cycle_us += timing.residual_us(drive.layout.net_max)
+        return cycle_us
+
+    def stop_all(self):
+        """OFF1 to every drive by a telegram each; the engine takes those that run first."""
+        for drive in self.drives:
+            drive.stop()
+
+    def counters(self):
+        """The counters of all drives together, as named in `drive.COUNTERS`."""
+        sums = [0] * len(COUNTERS)
+        for drive in self.drives:
+            for index in range(len(sums)):
+                sums[index] += drive.counters[index]
+        return sums
+
+    def status(self):
+        """The error status word of the bus: what is wrong with any of its drives."""
+        status = 0
+        for drive in self.drives:
+            status |= drive.status
+        return status
+
+    # --- for the engine: allocates nothing ------------------------------------------------------
+
+    def _choose(self, now):
+        """The next drive: a command that matters goes before the list, a stop before a start.
+
+        None when nobody is to be asked now.
+        """
+        if self._attention[ANY]:
+            drive = self._most_urgent()
+            if drive is not None:
+                return drive
+        position = self._next
+        if position >= self.round_count:
+            if not self.round_count or self.cycle_us and not self._begin_round(now):
+                return None
+            position = 0
+        self._next = position + 1
+        return self.round[position]
+
+    def _begin_round(self, now):
+        """At the end of the list: whether the cycle time is over and it may begin anew."""
+        began_at = self._round_began_at
+        if began_at is not None:
+            passed_us = (now - began_at) & self._mask
+            if passed_us < self.cycle_us:
+                self._round_left_us = self.cycle_us - passed_us
+                return False
+            if passed_us < 2 * self.cycle_us:  # in step with the rounds before
+                now = (began_at + self.cycle_us) & self._mask
+        self._round_began_at = now
+        return True
+
+    def _most_urgent(self):
+        """Who is in the greatest hurry; None when the list may go on.
+
+        What is only to have more than its turn gets every second telegram at the most, one after
+        the other, so that the list goes on in between.
+        """
+        attention = self._attention
+        attention[ANY] = 0  # before looking: whoever calls for it from now on is not missed
+        if self._ahead is not None:
+            drive, self._ahead = self._ahead, None
+            attention[ANY] = 1
+            return drive
+        drive = self._find(0, 2)
+        if drive is None and self._again is not None:
+            drive, self._again = self._again, None
+            attention[ANY] = 1
+        if drive is not None:
+            self._insisted = False
+            return drive
+        if self._insisted:
+            self._insisted = False
+            attention[ANY] = 1
+            return None
+        drive = self._next_single() or self._find(WANTS, 1)
+        self._insisted = drive is not None
+        return drive
+
+    def _find(self, row, least):
+        """Of the drives that have called in this row, the one that is in the greatest hurry, and
+        at least so much; None if none is.
+        """
+        attention = self._attention
+        for _ in range(NODES):
+            address = greatest(attention, row, NODES, self._look_from)
+            if address < 0:
+                return None
+            attention[ANY] = 1
+            drive = self._at[address]
+            if drive is not None and drive.urgency() >= least:
+                self._look_from = address
+                return drive
+            attention[row + address] = 0  # it was served meanwhile, or is gone
+        return None
+
+    def _next_single(self):
+        place = self._singles_out
+        if place == self._singles_in:
+            return None
+        telegram_outside = self._singles[place]
+        self._singles[place] = None
+        self._singles_out = (place + 1) % len(self._singles)
+        self._attention[ANY] = 1
+        return telegram_outside
+
+    def _has_command(self):
+        if self._ahead is not None:
+            return True
+        for drive in self.drives:
+            if drive.urgency() > 1:
+                return True
+        return False
+
+    def _all_told(self):
+        """Whether every drive has answered its OFF1, or has been sent it often enough."""
+        for drive in self.drives:
+            insists = drive.insist and (drive.contact or drive.was_running)
+            if insists or drive.urgency() > 1:
+                return False
+        return self._ahead is None

@@ -1,0 +1,100 @@
+"""Every bit of the control and status words by its name, for programs that show or ask for them.
+
+Tables of rows (bit, name, whether 0 is the remarkable value). The first words of a MICROMASTER 4
+are in `pzd`, which is enough to run a drive; here are the second ones and the other families'.
+
+    names(0xFB34, ZSW_BITS)             # ["RUNNING", "CONTROL_REQUESTED", "BRAKE", "RUNS_RIGHT"]
+    drive.zsw & bit("WARNING", ZSW_BITS)
+    may_start(drive.zsw)
+"""
+
+from uss.pzd import STW_BITS, ZSW_BITS
+
+# Bits 0...10 are the specification's (C-5.2.1); what is above them each family has for itself.
+STW_BITS_PROFILE = STW_BITS[:11]
+ZSW_BITS_PROFILE = ZSW_BITS[:11]
+
+STW_BITS_MM3 = STW_BITS_PROFILE + (  # unverified but for the first
+    (11, "RUN_RIGHT", False),
+    (12, "RUN_LEFT", False),
+    (13, "MOP_UP", False),
+    (14, "MOP_DOWN", False),
+)
+ZSW_BITS_MM3 = ZSW_BITS_PROFILE + ((14, "RUNS_RIGHT", False),)  # unverified
+
+# No jog: bits 8 and 9 are reserved. PROFIdrive interface of the G120.
+STW_BITS_G120 = (
+    STW_BITS[:8]
+    + STW_BITS[10:12]
+    + (
+        (13, "MOP_UP", False),
+        (14, "MOP_DOWN", False),
+        (15, "DATA_SET_BIT_0", False),
+    )
+)
+ZSW_BITS_G120 = ZSW_BITS_PROFILE + (  # from 11 on unverified
+    (11, "CURRENT_LIMIT", True),
+    (12, "BRAKE_OPEN", False),
+    (13, "MOTOR_OVERLOAD", True),
+    (14, "RUNS_RIGHT", False),
+    (15, "INVERTER_OVERLOAD", True),
+)
+
+# PZD word 4 to a MICROMASTER 4 that takes four of them: r0055. The names are unverified.
+STW2_BITS = (
+    (0, "FIXED_FREQUENCY_BIT_0", False),
+    (1, "FIXED_FREQUENCY_BIT_1", False),
+    (2, "FIXED_FREQUENCY_BIT_2", False),
+    (3, "FIXED_FREQUENCY_BIT_3", False),  # MM440
+    (4, "DRIVE_DATA_SET_BIT_0", False),  # MM430, MM440
+    (5, "DRIVE_DATA_SET_BIT_1", False),
+    (8, "PID", False),  # enables the closed-loop controller
+    (9, "DC_BRAKE", False),
+    (11, "DROOP", False),  # MM440
+    (12, "TORQUE_CONTROL", False),  # MM440
+    (13, "EXTERNAL_FAULT", True),
+    (15, "COMMAND_DATA_SET_BIT_1", False),
+)
+
+# PZD word 4 from it: r0053. Unverified too; 06E0h was seen of one that stood.
+ZSW2_BITS = (
+    (0, "DC_BRAKE_ACTIVE", False),
+    (1, "ABOVE_OFF_FREQUENCY", False),  # |f| > P2167
+    (2, "ABOVE_MINIMUM_FREQUENCY", False),  # |f| > P1080
+    (3, "ABOVE_THRESHOLD_CURRENT", False),  # I >= P2170
+    (4, "ABOVE_THRESHOLD_FREQUENCY", False),  # f > P2155
+    (5, "BELOW_THRESHOLD_FREQUENCY", False),  # f <= P2155
+    (6, "SETPOINT_REACHED", False),  # f >= setpoint
+    (7, "BELOW_THRESHOLD_VOLTAGE", False),  # DC link, P2172
+    (8, "ABOVE_THRESHOLD_VOLTAGE", False),
+    (9, "RAMP_FINISHED", False),
+    (10, "PID_AT_MINIMUM", False),  # output at P2292
+    (11, "PID_AT_MAXIMUM", False),  # output at P2291
+    (14, "LOADS_DATA_SET_0", False),  # from the AOP
+    (15, "LOADS_DATA_SET_1", False),
+)
+
+# No fault, no inhibit, neither OFF2 nor OFF3 in force.
+_START_MASK = 0x0078
+_START_VALUE = 0x0030
+
+
+def names(word, bits):
+    """The names of the remarkable bits of a word, a list. bits: one of the tables."""
+    return [name for place, name, at_0 in bits if (word >> place & 1 == 0) == at_0]
+
+
+def bit(name, bits):
+    """The bit of that name as a mask: 0x0008 for "FAULT". ValueError when the table has none."""
+    for place, candidate, _ in bits:
+        if candidate == name:
+            return 1 << place
+    raise ValueError("no bit is called %s" % name)
+
+
+def may_start(zsw):
+    """Whether a status word lets ON make the drive run.
+
+    Not after OFF2, OFF3 or a fault, until OFF1 has lifted the inhibit (USS.md 4.9, 4.10).
+    """
+    return zsw & _START_MASK == _START_VALUE

@@ -1,0 +1,276 @@
+"""Whose line it is: bus off and on by command, and another master on it."""
+
+from round_bench import Bench, Node, framed
+from uss import pkw, pzd
+from uss.master import DEAD_MAN_US, LISTEN_US, LISTENING, OFF
+
+FOREIGN = framed(7, bytes(12))  # somebody else's request
+
+
+def nodes(count):
+    return [Node(address) for address in range(1, count + 1)]
+
+
+def go_off(bench):
+    bench.master.off()
+    bench.run_until(lambda: bench.master.phase == OFF, 6_000_000)
+
+
+# --- off ----------------------------------------------------------------------------------------
+
+
+def test_bus_off_stops_every_drive_and_then_there_is_silence():
+    bench = Bench(nodes(4))
+    bench.contact()
+    bench.drives[2].start(0x1000)
+    bench.drives[4].start(0x1000)
+    bench.run(500_000)
+    sent = len(bench.sent)
+    go_off(bench)
+    assert set(bench.addresses(sent)[:2]) == {2, 4}  # those that run go first
+    for address in (1, 2, 3, 4):
+        assert bench.stws(address)[-1] == pzd.OFF1
+    assert bench.nodes[2].zsw == bench.nodes[4].zsw == 0xFB31
+    sent = len(bench.sent)
+    bench.run(60_000_000)
+    assert len(bench.sent) == sent
+
+
+def test_it_is_off_soon_also_when_drives_are_dead():
+    bench = Bench(nodes(31))
+    bench.contact()
+    bench.drives[5].start(0x1000)
+    bench.run(1_000_000)
+    for address in range(4, 20):
+        bench.nodes[address].plugged = False
+    began = bench.now
+    sent = len(bench.sent)
+    go_off(bench)
+    assert bench.now - began < 6_000_000
+    assert bench.addresses(sent).count(5) >= 2  # it may run: it was told more than once
+
+
+def test_off_cuts_no_exchange():
+    for offset_us in range(0, 48_000, 1_009):
+        bench = Bench(nodes(2))
+        bench.run(300_000 + offset_us)
+        go_off(bench)
+        for drive in bench.master.drives:
+            assert not any(drive.counters[1:]), (offset_us, drive.counters)
+
+
+def test_while_it_is_off_the_loop_may_take_its_time():
+    """No alarm from the watch over the engine, and none from the engine over the loop."""
+    bench = Bench(nodes(2))
+    bench.contact()
+    go_off(bench)
+    for _ in range(20):
+        progress = bench.master.progress
+        bench.run(bench.master.patience_us)
+        assert bench.master.progress != progress
+
+
+def test_nothing_is_sent_for_any_command_or_task():
+    bench = Bench(nodes(2))
+    bench.contact()
+    go_off(bench)
+    sent = len(bench.sent)
+    one, two = bench.master.drives
+    one.start(0x1000)
+    two.stop()
+    two.acknowledge()
+    two.ask(pkw.read(700))
+    bench.run(3_000_000)
+    bench.refreshing = False
+    bench.run(1_000_000)
+    assert len(bench.sent) == sent
+
+
+def test_another_tool_may_have_the_line_meanwhile():
+    bench = Bench(nodes(2))
+    bench.contact()
+    go_off(bench)
+    sent = len(bench.sent)
+    for _ in range(100):
+        bench.talk(FOREIGN)
+        bench.run(30_000)
+    assert len(bench.sent) == sent and not any(bench.drives[1].counters[1:])
+
+
+# --- on -----------------------------------------------------------------------------------------
+
+
+def test_on_listens_first_and_then_goes_on():
+    bench = Bench(nodes(2))
+    bench.contact()
+    go_off(bench)
+    bench.run(1_000_000)
+    sent = len(bench.sent)
+    bench.master.on()
+    began = bench.now
+    bench.run_until(lambda: len(bench.sent) > sent)
+    assert bench.now - began >= LISTEN_US
+    bench.run(200_000)
+    assert all(drive.contact for drive in bench.master.drives)
+
+
+def test_after_on_nothing_starts_by_itself():
+    """What was wanted before, and what was pressed meanwhile, is void."""
+    bench = Bench(nodes(2))
+    bench.contact()
+    bench.drives[1].start(0x1000)
+    bench.run(300_000)
+    go_off(bench)
+    assert not bench.drives[1].contact or bench.drives[1].stopped_by_engine()
+    bench.drives[2].start(0x1000)
+    bench.run(500_000)
+    sent = len(bench.sent)
+    bench.master.on()
+    bench.run(3_000_000)
+    for address in (1, 2):
+        assert bench.drives[address].contact
+        assert set(bench.stws(address, sent)) == {pzd.OFF1}
+    bench.drives[1].start(0x1000)
+    bench.run(300_000)
+    assert bench.stws(1)[-1] == pzd.ON
+
+
+def test_on_waits_until_the_other_one_is_silent():
+    bench = Bench(nodes(2))
+    bench.contact()
+    go_off(bench)
+    sent = len(bench.sent)
+    bench.master.on()
+    for _ in range(100):
+        bench.talk(FOREIGN)
+        bench.run(60_000)
+        assert len(bench.sent) == sent
+    assert bench.master.is_line_in_use()
+    bench.run(300_000)
+    assert len(bench.sent) > sent and not bench.master.is_line_in_use()
+
+
+def test_on_before_it_was_off_altogether():
+    bench = Bench(nodes(3))
+    bench.contact()
+    bench.drives[2].start(0x1000)
+    bench.run(300_000)
+    bench.master.off()
+    bench.run(10_000)
+    bench.master.on()
+    sent = len(bench.sent)
+    bench.run(3_000_000)
+    assert pzd.ON not in bench.stws(2, sent)[2:]
+    assert all(drive.contact for drive in bench.master.drives)
+
+
+def test_off_and_on_again_a_hundred_times():
+    bench = Bench(nodes(2))
+    bench.contact()
+    for _ in range(100):
+        go_off(bench)
+        bench.master.on()
+        bench.run(600_000)
+        assert all(drive.contact for drive in bench.master.drives)
+    for drive in bench.master.drives:
+        assert not any(drive.counters[1:]), drive.counters
+
+
+def test_a_start_while_it_goes_off_is_not_carried_out():
+    """A motor would turn on a bus that nobody looks at."""
+    for offset_us in range(0, 80_000, 3_001):
+        bench = Bench(nodes(3))
+        bench.contact()
+        sent = len(bench.sent)
+        bench.master.off()
+        bench.run(offset_us)
+        bench.drives[1].start(0x1000)
+        bench.drives[3].start(0, pzd.JOG_LEFT)
+        bench.run(1_000_000)
+        assert bench.master.phase == OFF
+        assert set(bench.stws(1, sent) + bench.stws(3, sent)) <= {pzd.OFF1}, offset_us
+
+
+def test_off_while_it_listens():
+    bench = Bench(nodes(1))
+    bench.run(50_000)
+    bench.master.off()
+    bench.run(3_000_000)
+    assert bench.sent == [] and bench.master.phase == OFF
+    bench.master.on()
+    bench.run(300_000)
+    assert bench.drives[1].contact
+
+
+# --- another master -----------------------------------------------------------------------------
+
+
+def test_before_the_first_telegram_another_master_is_listened_to():
+    bench = Bench(nodes(2))
+    for _ in range(50):
+        bench.talk(FOREIGN)
+        bench.run(50_000)
+    assert bench.sent == [] and bench.master.phase == LISTENING
+    assert bench.master.is_line_in_use() and bench.master.foreign >= 50
+    bench.run(200_000)
+    assert bench.sent and not bench.master.is_line_in_use()
+
+
+def test_a_spike_is_no_master_for_long():
+    bench = Bench(nodes(1))
+    bench.run(30_000)
+    bench.talk(b"\x00")
+    bench.run(80_000)
+    assert bench.sent == []
+    bench.run(100_000)
+    assert bench.sent
+
+
+def test_another_master_that_comes_later_is_noticed():
+    """It talks when this one does not expect anything: it is counted, and said."""
+    bench = Bench(nodes(2))
+    bench.master.cycle_us = 200_000
+    bench.contact()
+    before = bench.master.foreign
+    for _ in range(30):
+        bench.talk(FOREIGN)
+        bench.run(97_000)
+    assert bench.master.foreign >= before + 5
+    assert all(drive.contact for drive in bench.master.drives)
+
+
+def test_a_bus_of_its_own_is_not_taken_for_another_masters():
+    bench = Bench(nodes(5), echo=True)
+    bench.contact()
+    bench.nodes[3].plugged = False
+    bench.run(10_000_000)
+    assert bench.master.foreign == 0 and not bench.master.is_line_in_use()
+
+
+def test_a_stop_is_sent_although_another_master_talks():
+    """It was not there at first. A motor turns, and it is this master that started it."""
+    bench = Bench(nodes(2))
+    bench.contact()
+    bench.drives[1].start(0x1000)
+    bench.run(300_000)
+    for _ in range(20):
+        bench.talk(FOREIGN)
+        bench.run(40_000)
+    bench.drives[1].stop()
+    for _ in range(20):
+        bench.talk(FOREIGN)
+        bench.run(40_000)
+    assert bench.nodes[1].zsw == 0xFB31
+
+
+def test_the_dead_man_works_however_the_bus_is_switched():
+    bench = Bench(nodes(1))
+    bench.contact()
+    go_off(bench)
+    bench.master.on()
+    bench.run(300_000)
+    bench.drives[1].start(0x1000)
+    bench.run(300_000)
+    bench.refreshing = False
+    bench.run(DEAD_MAN_US + 100_000)
+    assert bench.stws(1)[-1] == pzd.OFF1

@@ -1,0 +1,590 @@
+"""The parameter channel of a drive: one task at a time, repeated until the fitting reply comes.
+
+Specification C-4.2.1.1. Time is in microseconds and only passes when a test says so.
+"""
+
+import random
+
+from test_pkw import characters, refused
+from uss import pkw, pkw_array
+from uss.channel import JOBS_MAX, REST_MAX, Channel
+from uss.layout import VARIABLE
+
+MASK = (1 << 30) - 1
+NO_TASK = (0, 0, 0, 0)
+
+
+class Line:
+    """A channel and the telegrams that go to and fro."""
+
+    def __init__(self, pkw_words=4, longest=20):
+        self.channel = Channel(MASK, pkw_words, longest)
+        self.now = 0
+        self.sent = []  # PKW words of each request
+
+    def send(self, us=10_000):
+        """The PKW words of the next request."""
+        self.now += us
+        net = bytearray(260)
+        if not self.channel.idle:
+            self.channel.fill(net, 3, self.now)
+        size = self.channel.size
+        words = tuple(net[at] << 8 | net[at + 1] for at in range(3, 3 + size, 2))
+        assert net[3 + size :] == bytes(len(net) - 3 - size)
+        self.sent.append(words)
+        return words
+
+    def answer(self, *words):
+        """A reply comes."""
+        net = characters(*words)
+        if not self.channel.idle:
+            self.channel.take(b"\x02\x00\x05" + net, 3, len(net))
+
+    def miss(self):
+        """None comes."""
+        self.channel.miss(self.now)
+
+    def ask(self, job):
+        self.channel.ask(job)
+        return job
+
+
+def tasks(line):
+    """AK of each request."""
+    return [words[0] >> 12 for words in line.sent]
+
+
+def words_of(text):
+    return tuple([int(word, 16) for word in text.split()])
+
+
+# --- where the words stand ----------------------------------------------------------------------
+
+
+def test_without_a_task_the_words_are_zero():
+    for pkw_words, size in ((0, 0), (3, 6), (4, 8), (VARIABLE, 6)):
+        line = Line(pkw_words)
+        assert line.channel.size == size
+        assert line.send() == (0,) * (size // 2)
+        assert line.channel.idle and line.channel.size == size, pkw_words
+
+
+def test_every_task_in_every_layout():
+    """Specification C-4.2.3. None: the channel is too small, and nothing is sent."""
+    word, double = 0x1234, 0x12345678
+    read, write, write_long = (
+        pkw_array.read_element,
+        pkw_array.write_element_word,
+        pkw.write_double,
+    )
+    write_long_element = pkw_array.write_element_double
+    for job, three, four, variable in (
+        (pkw.read(2010, 1), "100A 8001 0", "100A 8001 0 0", "100A 8001 0"),
+        (pkw.write_word(700, word), "22BC 0 1234", "22BC 0 0 1234", "22BC 0 1234"),
+        (write_long(731, double), None, "32DB 0 1234 5678", "32DB 0 1234 5678"),
+        (read(304, 2), "6130 2 0", "6130 2 0 0", "6130 2 0"),
+        (write(304, 2, word), "7130 2 1234", "7130 2 0 1234", "7130 2 1234"),
+        (write_long_element(731, 2, double), None, "82DB 2 1234 5678", "82DB 2 1234 5678"),
+        (pkw_array.count_elements(304), "9130 0 0", "9130 0 0 0", "9130 0 0"),
+        (write_long_element(731, 2, double, True), None, "B2DB 2 1234 5678", "B2DB 2 1234 5678"),
+        (write(304, 2, word, True), "C130 2 1234", "C130 2 0 1234", "C130 2 1234"),
+        (write_long(731, double, 0, True), None, "D2DB 0 1234 5678", "D2DB 0 1234 5678"),
+        (pkw.write_word(700, word, 0, True), "E2BC 0 1234", "E2BC 0 0 1234", "E2BC 0 1234"),
+        (pkw_array.read_all(304), None, None, "6130 FF 0"),
+        (pkw_array.write_all_words(304, (1, 2, 3)), None, None, "7130 FF 1 2 3"),
+    ):
+        for pkw_words, expected in ((3, three), (4, four), (VARIABLE, variable)):
+            line = Line(pkw_words)
+            line.ask(job)
+            if expected is None:
+                assert job.state == pkw.REFUSED and job.error == 102, job
+                expected = "0 0 0 0" if pkw_words == 4 else "0 0 0"
+            assert line.send() == words_of(expected), (job, pkw_words)
+            job.state = pkw.NEW
+
+
+def test_a_job_may_go_to_drives_of_different_layouts_one_after_the_other():
+    """It knows its value; the channel knows the place."""
+    job = pkw.write_word(700, 5)
+    for pkw_words, words in (
+        (4, (0x22BC, 0, 0, 5)),
+        (3, (0x22BC, 0, 5)),
+        (VARIABLE, (0x22BC, 0, 5)),
+    ):
+        line = Line(pkw_words)
+        line.ask(job)
+        assert line.send() == words
+        line.answer(*((0x12BC,) + words[1:]))
+        assert job.state == pkw.DONE and job.integer_value() == 5, pkw_words
+
+
+def test_with_variable_length_the_task_makes_the_telegram_longer_and_shorter():
+    line = Line(VARIABLE)
+    for job, words in (
+        (pkw.read(700), (0x12BC, 0, 5)),
+        (pkw.write_double(731, 1), (0x22DB, 0, 0, 1)),
+        (pkw_array.write_all_words(304, (1, 2, 3, 4)), (0x4130, 0xFF, 1, 2, 3, 4)),
+    ):
+        line.ask(job)
+        size = len(line.send())
+        assert size == len(words) and line.channel.size == 2 * size
+        line.answer(*words)
+        assert job.state == pkw.DONE
+        assert line.send() == (0, 0, 0)
+        line.answer(0, 0, 0)
+
+
+def test_a_drive_without_pkw_words_cannot_be_asked():
+    line = Line(0)
+    assert line.channel.idle and line.channel.is_full()
+    try:
+        line.ask(pkw.read(700))
+    except RuntimeError as error:
+        assert "no parameter channel" in str(error)
+    else:
+        raise AssertionError("asked")
+    line.miss()
+    assert line.send() == ()
+
+
+# --- a task and its end -------------------------------------------------------------------------
+
+
+def test_a_task_stands_until_it_is_answered_and_not_longer():
+    line = Line()
+    job = line.ask(pkw.read(700))
+    for _ in range(5):
+        assert line.send() == (0x12BC, 0, 0, 0)
+        line.answer(*NO_TASK)
+    assert job.state == pkw.PENDING
+    line.send()
+    line.answer(0x12BC, 0, 0, 5)
+    assert job.state == pkw.DONE and job.integer_value() == 5
+    assert line.send() == NO_TASK
+    assert not line.channel.idle  # the drive has not said AK 0 yet
+    line.answer(*NO_TASK)
+    assert line.channel.idle
+
+
+def test_stale_replies_are_ignored_for_as_long_as_they_come():
+    """Old task, no reply yet, another parameter, somebody else's change, the wrong length."""
+    for pkw_words in (3, 4, VARIABLE):
+        word = (0, 7) if pkw_words == 4 else (7,)
+        line = Line(pkw_words)
+        job = line.ask(pkw.read(1000))
+        for round_number in range(30):
+            for head in (
+                (0x12BC, 0), (0, 0), (0x13E8, 1), (0x13E8, 0x8000), (0x93E8, 0), (0x9BE8, 0),
+                (0xA3E8, 0), (0xB3E8, 0), (0xC3E8, 0), (0x33E8, 0), (0x72BC, 0), (0xF3E8, 0),
+            ):  # fmt: skip
+                assert line.send(us=1000)[0] == 0x13E8, round_number
+                line.answer(*(head + word))
+                assert job.state == pkw.PENDING, head
+        line.send()
+        line.answer(*((0x1BE8, 0) + word))  # bit 11 is no part of the number
+        assert job.state == pkw.DONE and job.integer_value() == 7
+
+
+def test_two_tasks_of_one_parameter_have_no_task_between_them():
+    """Or the old reply would be taken for the answer, or the same write not be carried out."""
+    line = Line()
+    first, second = line.ask(pkw.write_word(700, 5)), line.ask(pkw.write_word(700, 5))
+    line.send()
+    line.answer(0x12BC, 0, 0, 5)
+    for _ in range(3):
+        assert line.send() == NO_TASK
+        line.answer(0x12BC, 0, 0, 5)  # the drive has not seen that yet
+        assert (first.state, second.state) == (pkw.DONE, pkw.PENDING)
+    line.send()
+    line.answer(*NO_TASK)
+    assert line.send() == (0x22BC, 0, 0, 5)
+    assert tasks(line) == [2, 0, 0, 0, 0, 2]
+
+
+def test_tasks_of_different_parameters_follow_each_other_at_once():
+    line = Line()
+    for number in (700, 1000, 700):
+        line.ask(pkw.read(number))
+    for number in (700, 1000, 700):
+        assert line.send() == (0x1000 | number, 0, 0, 0)
+        line.answer(0x1000 | number, 0, 0, 5)
+
+
+def test_what_went_into_the_eeprom_is_followed_by_no_task_whatever_comes_next():
+    for job in (
+        pkw.write_word(700, 5, eeprom=True),
+        pkw.write_double(700, 5, eeprom=True),
+        pkw_array.write_element_word(700, 0, 5, eeprom=True),
+        pkw_array.write_element_double(700, 0, 5, eeprom=True),
+    ):
+        line = Line()
+        line.ask(job)
+        line.ask(pkw.read(1000))
+        line.send()
+        reply = {11: 5, 12: 4, 13: 2, 14: 1}[job.task]
+        line.answer(reply << 12 | 700, 0, 0, 5)
+        assert job.state == pkw.DONE
+        assert line.send() == NO_TASK
+        line.answer(*NO_TASK)
+        assert line.send() == (0x13E8, 0, 0, 0)
+
+
+def test_a_write_that_timed_out_is_followed_by_no_task_as_well():
+    """It may be carried out late: its answer must not be taken for that of the next one."""
+    for eeprom, us in ((False, 2_000_000), (True, 5_000_000)):
+        for following, number in ((pkw.read(1000), 1000), (pkw.read(700), 700)):
+            line = Line()
+            job = line.ask(pkw.write_word(700, 5, 0, eeprom))
+            line.ask(following)
+            for _ in range(3):
+                line.send()
+                line.miss()
+            line.now += us
+            assert line.send() == NO_TASK and job.state == pkw.TIMED_OUT
+            line.answer(0x12BC, 0, 0, 5)
+            assert line.send() == NO_TASK
+            line.answer(*NO_TASK)
+            assert line.send() == (0x1000 | number, 0, 0, 0)
+
+
+def test_what_was_only_read_may_be_followed_by_another_task_at_once():
+    line = Line()
+    line.ask(pkw.read(700))
+    line.ask(pkw.read(1000))
+    for _ in range(3):
+        line.send(us=1_000_000)
+        line.miss()
+    assert line.send() == (0x13E8, 0, 0, 0)
+
+
+def test_a_drive_that_never_says_that_there_is_no_task_is_asked_all_the_same():
+    line = Line()
+    for _ in range(2 * JOBS_MAX):  # wherever in the ring of jobs that happens
+        job = line.ask(pkw.read(700))
+        while line.send() == NO_TASK:
+            line.answer(0x12BC, 0, 0, 5)
+            assert job.state == pkw.PENDING
+        line.answer(0x12BC, 0, 0, 5)
+        assert job.state == pkw.DONE
+    assert tasks(line) == [1] + ([0] * REST_MAX + [1]) * (2 * JOBS_MAX - 1)
+
+
+def test_a_drive_that_falls_silent_over_its_reply_is_asked_all_the_same():
+    """Wherever in the ring of jobs that happens."""
+    line = Line()
+    for _ in range(2 * JOBS_MAX):
+        line.ask(pkw.read(700))
+        line.send()
+        line.answer(0x12BC, 0, 0, 5)
+        job = line.ask(pkw.read(700))
+        for _ in range(REST_MAX):
+            assert line.send() == NO_TASK
+            line.miss()
+        assert line.send() == (0x12BC, 0, 0, 0)
+        line.answer(0x12BC, 0, 0, 5)
+        assert job.state == pkw.DONE
+        for _ in range(REST_MAX):
+            assert line.send() == NO_TASK and not line.channel.idle
+            line.miss()
+        line.send()
+        assert line.channel.idle
+        line.ask(pkw.read(1000))
+        line.send()
+        line.answer(0x13E8, 0, 0, 5)
+
+
+def test_a_refusal_ends_a_task():
+    line = Line(VARIABLE)
+    job = line.ask(pkw.read(1))
+    line.send()
+    line.answer(0x7001, 0, 0, 2)
+    assert job.state == pkw.REFUSED and job.error == 0 and job.next == 2
+    assert line.send() == (0, 0, 0)
+
+
+def test_a_drive_is_browsed_by_what_it_offers_next():
+    """MM420 Reference Manual 3.3.4: ask for any number; error 0 says which one comes next."""
+    existing = (2, 3, 700, 1000, 2011)
+    line, found, number = Line(VARIABLE), [], 0
+    while number is not None:
+        job = line.ask(pkw.read(number))
+        line.send()
+        head = (pkw.pke(0, number), pkw.ind(number, 0))
+        if number in existing:
+            found.append(number)
+            line.answer(0x1000 | head[0], head[1], 5)
+        else:
+            following = [other for other in existing if other > number]
+            line.answer(*((0x7000 | head[0], head[1], 0) + tuple(following[:1])))
+        number = number + 1 if job.state == pkw.DONE else job.next
+    assert tuple(found) == existing
+
+
+# --- jobs that wait -----------------------------------------------------------------------------
+
+
+def test_eight_jobs_wait_and_a_ninth_is_not_taken():
+    line = Line()
+    jobs = [line.ask(pkw.read(700 + number)) for number in range(JOBS_MAX)]
+    assert line.channel.is_full()
+    assert refused(RuntimeError, line.ask, pkw.read(700))
+    for number, job in enumerate(jobs):
+        assert line.send()[0] == 0x1000 | 700 + number
+        line.answer(0x1000 | 700 + number, 0, 0, number)
+        assert job.state == pkw.DONE and job.integer_value() == number
+    assert not line.channel.is_full()
+
+
+def test_a_pending_job_is_not_taken_twice():
+    line = Line()
+    job = line.ask(pkw.read(700))
+    assert refused(RuntimeError, line.ask, job)
+    assert refused(RuntimeError, Line().ask, job)
+
+
+def test_an_answered_job_may_be_asked_again():
+    line = Line()
+    job = pkw.write_word(700, 5)
+    for value in (5, 5, 5):
+        line.ask(job)
+        assert line.send() == (0x22BC, 0, 0, value)
+        line.answer(0x12BC, 0, 0, value)
+        line.send()
+        line.answer(*NO_TASK)
+        assert job.state == pkw.DONE
+
+
+def test_the_time_of_a_job_begins_when_it_is_its_turn():
+    """And it was sent three times at least, however long the bus takes for a round."""
+    line = Line()
+    first, second = [line.ask(pkw.read(number)) for number in (700, 1000)]
+    for _ in range(3):
+        assert first.state == second.state == pkw.PENDING
+        line.send(us=3_000_000)
+        line.miss()
+    assert first.state == pkw.TIMED_OUT and tasks(line) == [1, 1, 1]
+    for _ in range(4):
+        assert second.state == pkw.PENDING
+        line.send(us=600_000)
+        line.miss()
+    assert second.state == pkw.PENDING
+    line.now += 200_000
+    line.miss()
+    assert second.state == pkw.TIMED_OUT
+
+
+def test_a_slow_drive_has_two_seconds_and_five_for_its_eeprom():
+    for job, seconds in (
+        (pkw.read(700), 2),
+        (pkw.write_word(700, 5, 0, True), 5),
+        (pkw_array.write_element_double(700, 0, 5, True), 5),
+    ):
+        line = Line()
+        line.ask(job)
+        for _ in range(seconds * 100):
+            line.send(us=10_000)
+            line.answer(*NO_TASK)
+            assert job.state == pkw.PENDING
+        line.send(us=10_000)
+        assert job.state == pkw.TIMED_OUT
+
+
+# --- any tasks, any trouble ---------------------------------------------------------------------
+
+
+class PaperDrive:
+    """What a drive has to answer, worked out word by word from the tables of the specification.
+
+    It carries a task out once, when it changes, and may take some telegrams over its reply.
+    """
+
+    NARROW = {700: [5], 304: [400, 230, 110], 2010: [6, 7], 8820: [1, 2, 3]}
+    WIDE = {1082: [0x42480000], 731: [0x00340007, 1, 2], 64001: [9]}
+    READ_ONLY = {52: [0xFB31]}
+    LIMIT = 60000  # of a word
+
+    def __init__(self, pkw_words):
+        self.pkw_words = pkw_words
+        self.values = {}
+        for table in (self.NARROW, self.WIDE, self.READ_ONLY):
+            for number, values in table.items():
+                self.values[number] = list(values)
+        self.writes = 0
+        self.task = self.reply = (0, 0)
+        self.lag = 0
+
+    def hear(self, words):
+        """The reply to a request, both as words."""
+        if words != self.task:
+            self.task, self.old = words, self.reply
+            self.reply = self.carry_out(words)
+            self.lag = random.choice((0, 0, 1, 2, 6))
+        if self.lag:
+            self.lag -= 1
+            return self.old if random.randrange(3) else self.words(0, 0, 0, ())
+        return self.reply
+
+    def carry_out(self, words):
+        ak, index = words[0] >> 12, words[1] & 0xFF
+        page = 0
+        for bit, weight in ((15, 1), (12, 2), (13, 4), (14, 8), (10, 16), (11, 32)):
+            page += weight * (words[1] >> bit & 1)
+        number = (words[0] & 0x7FF) + 2000 * page
+        wide, array = number in self.WIDE, ak in (6, 7, 8, 11, 12)
+        if ak == 0:
+            return self.words(0, 0, 0, ())
+        if number not in self.values:
+            following = [other for other in self.values if other > number]
+            return self.refusal(words, 0, [min(following)] if following else [])
+        values = self.values[number]
+        if ak == 9:
+            return self.words(6, words[0], words[1], (len(values),))
+        if index != 255 and index >= len(values):
+            return self.refusal(words, 3, [])
+        if ak not in (1, 6):
+            if number == 700 and index == 0 and words[-1] == 0x7777:
+                return self.words(8, words[0], words[1], (0,))
+            error, hints = self.write(words, ak in (3, 8, 11, 13), number, index)
+            if error:
+                return self.refusal(words, error, hints)
+        told = values if index == 255 else [values[index]]
+        flat = [
+            part
+            for value in told
+            for part in ((value >> 16, value & 0xFFFF) if wide else (value,))
+        ]
+        return self.words(
+            (5 if wide else 4) if array else (2 if wide else 1), words[0], words[1], flat
+        )
+
+    def write(self, words, double, number, index):
+        if number in self.READ_ONLY:
+            return 1, []
+        if double != (number in self.WIDE):
+            return 5, []
+        given = list(words[2:])
+        if self.pkw_words == 4 and not double:
+            given = given[1:]
+        if double:
+            given = [given[at] << 16 | given[at + 1] for at in range(0, len(given), 2)]
+        if not double and max(given) > self.LIMIT:
+            return 2, [self.LIMIT, 0]
+        self.writes += 1
+        if index == 255:
+            self.values[number][:] = given
+        else:
+            self.values[number][index] = given[0]
+        return None, []
+
+    def refusal(self, words, error, hints):
+        if self.pkw_words != VARIABLE:
+            hints = []
+        return self.words(7, words[0], words[1], [error] + hints)
+
+    def words(self, ak, pke, ind, values):
+        """PKE and IND, and values in their place; two at the most where the length is fixed."""
+        head = (ak << 12 | pke & 0x7FF, ind)
+        if self.pkw_words == VARIABLE:
+            return head + (tuple(values) or (0,))
+        if self.pkw_words == 3 and len(values) > 1:
+            return (7 << 12 | pke & 0x7FF, ind, 102)
+        return head + (0,) * (self.pkw_words - 2 - len(values)) + tuple(values)
+
+
+def some_job(drive):
+    """Any task, mostly one that the drive can carry out; and the words it writes."""
+    wide = random.randrange(2)
+    number = random.choice(tuple(drive.WIDE if wide else drive.NARROW))
+    count = len(drive.values[number])
+    index = random.randrange(count)
+    value = random.choice((0, 1, 0x7777, 0xFFFF, random.getrandbits(16)))
+    value |= random.getrandbits(16) << 16 if wide else 0
+    eeprom = random.randrange(2) == 1
+    writes = (
+        (pkw.write_double, pkw_array.write_element_double, pkw_array.write_all_doubles)
+        if wide
+        else (pkw.write_word, pkw_array.write_element_word, pkw_array.write_all_words)
+    )
+    return random.choice(
+        (
+            lambda: pkw.read(number, index),
+            lambda: pkw_array.read_element(number, index),
+            lambda: pkw_array.count_elements(number),
+            lambda: writes[0](number, value, index, eeprom),
+            lambda: writes[1](number, index, value, eeprom),
+            lambda: pkw_array.read_all(number),
+            lambda: writes[2](number, [value] * count, eeprom),
+            lambda: pkw.read(random.choice((1, 52, 1999, 4000, 127999))),
+            lambda: pkw.write_word(52, 1),
+            lambda: pkw.write_word(1082, 1),  # a word for a double word
+            lambda: pkw.read(number, 77),
+        )
+    )()
+
+
+def expected(drive, reply):
+    """State, error, next, previous and values that a reply stands for."""
+    ak, values = reply[0] >> 12, list(reply[2:])
+    if ak == 8:
+        return pkw.REFUSED, pkw.NO_CHANGE_RIGHTS, None, None, None
+    if ak == 7:
+        if drive.pkw_words == 4:
+            values = values[1:]
+        values += [None, None]
+        return (pkw.REFUSED,) + tuple(values[:3]) + (None,)
+    if drive.pkw_words == 4 and ak in (1, 4, 6):
+        values = values[1:]
+    if ak in (2, 5):
+        values = [values[at] << 16 | values[at + 1] for at in range(0, len(values), 2)]
+    return pkw.DONE, 0, None, None, values
+
+
+def result(job):
+    if job.state == pkw.REFUSED:
+        return job.state, job.error, job.next, job.previous, None
+    values = job.values if isinstance(job, pkw_array.ArrayJob) else [job.integer_value()]
+    return job.state, job.error, job.next, job.previous, values
+
+
+def exchange(line, drive):
+    """One telegram, or what is left of it."""
+    words = line.send()
+    trouble = random.randrange(12)
+    if trouble == 0:  # the drive has not heard it
+        return line.miss()
+    reply = drive.hear(words)
+    if trouble == 1:  # its reply was lost
+        return line.miss()
+    if trouble == 2:  # somebody else's change
+        reply = (9 << 12 | 700,) + tuple(reply[1:])
+    if trouble == 3:  # nonsense
+        reply = tuple(random.getrandbits(16) & 0xF7FF for _ in range(len(reply)))
+    return line.answer(*reply)
+
+
+def test_whatever_is_asked_and_whatever_goes_wrong_each_job_has_its_own_answer():
+    """Against a drive on paper; a write is carried out once, and identical ones each once."""
+    states = set()
+    for seed in range(60):
+        random.seed(seed)
+        pkw_words = (3, 4, VARIABLE)[seed % 3]
+        line, drive = Line(pkw_words), PaperDrive(pkw_words)
+        for step in range(40):
+            job, writes = some_job(drive), drive.writes
+            line.ask(job)
+            if job.state == pkw.REFUSED:
+                assert job.error == 102 and pkw_words != VARIABLE, (seed, step, job)
+                continue
+            for _ in range(400):
+                if job.state != pkw.PENDING:
+                    break
+                exchange(line, drive)
+            wanted = expected(drive, drive.reply)
+            assert result(job) == wanted, (seed, step, job, result(job), wanted)
+            is_write = job.task not in (1, 6, 9)
+            done = is_write and job.state == pkw.DONE
+            assert drive.writes == writes + done, (seed, step, job)
+            states.add((pkw_words, job.task, job.state))
+    for pkw_words, count in ((3, 7), (4, 11), (VARIABLE, 11)):
+        seen = [task for words, task, state in states if words == pkw_words and state == pkw.DONE]
+        assert len(seen) == count, (pkw_words, sorted(seen))

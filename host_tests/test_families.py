@@ -1,0 +1,232 @@
+"""The drive families: each one's table agrees with itself, with the line and with the manuals.
+
+Numbers of chapters are those of the protocol notes, USS.md.
+"""
+
+from uss import pkw, profiles, pzd, words
+from uss.families import (
+    CU240S, FAMILIES, G110, G120, GENERIC, MM3, MM4, MM410, MM420, MM430, MM440, RPM, STEPS, V20,
+    baud_code, can_be_set_to, is_float, value,
+)  # fmt: skip
+from uss.layout import VARIABLE, Layout
+from uss.timing import BAUD_RATES
+
+CONTROL = 1 << 10
+KINDS = (profiles.WORD, profiles.CENTIHERTZ, RPM, STEPS)
+
+# Family: lowest and highest baud code and the rates they stand for, the rate as delivered (1.3).
+BAUD = (
+    (MM3, 3, 1200, 7, 19200, 9600),
+    (MM410, 3, 1200, 7, 19200, 9600),
+    (MM420, 3, 1200, 9, 57600, 9600),
+    (MM430, 4, 2400, 12, 115200, 9600),
+    (MM440, 4, 2400, 12, 115200, 9600),
+    (G110, 3, 1200, 9, 57600, 9600),
+    (V20, 6, 9600, 12, 115200, 38400),
+    (CU240S, 4, 2400, 12, 115200, 9600),
+    (G120, 4, 2400, 13, 187500, 38400),
+)
+
+# Family: parameters of baud rate, address, PZD, PKW, telegram-off time; its fault (1.3, 1.9, 4.7).
+LINK = (
+    (MM3, 92, 91, None, None, 93, "F008"),
+    (MM440, 2010, 2011, 2012, 2013, 2014, "F0072"),
+    (G110, 2010, 2011, 2012, 2013, 2014, "F0072"),
+    (V20, 2010, 2011, 2012, 2013, 2014, "F72"),
+    (G120, 2020, 2021, 2022, 2023, 2040, "F01910"),
+)
+
+
+def refused(work, *arguments):
+    try:
+        work(*arguments)
+    except ValueError:
+        return True
+    return False
+
+
+def start_words(family):
+    return [word for word in (family.on, family.on_reverse) if word]
+
+
+def jog_words(family):
+    return [word for word in (family.jog_right, family.jog_left) if word]
+
+
+def test_baud_codes_are_those_of_the_manuals():
+    for family, first, slowest, last, fastest, delivered in BAUD:
+        codes = family.baud_codes
+        assert min(codes) == first and codes[first] == slowest, family.name
+        assert max(codes) == last and codes[last] == fastest, family.name
+        assert sorted(codes) == list(range(first, last + 1)), family.name
+        assert family.baud == delivered and delivered in codes.values(), family.name
+
+
+def test_every_code_is_a_rate_of_the_line_and_back():
+    for family in FAMILIES:
+        for code, baud in family.baud_codes.items():
+            assert baud in BAUD_RATES
+            assert baud_code(family, baud) == code
+
+
+def test_a_rate_that_a_family_does_not_have_is_refused():
+    assert refused(baud_code, MM420, 115200)
+    assert refused(baud_code, V20, 4800)
+    assert refused(baud_code, GENERIC, 9600)  # nobody knows its codes
+
+
+def test_the_parameters_of_the_link():
+    for family, baud, address, pzd_words, pkw_words, off_time, fault in LINK:
+        assert family.baud_number == baud, family.name
+        assert family.address_number == address, family.name
+        assert family.pzd_words_number == pzd_words, family.name
+        assert family.pkw_words_number == pkw_words, family.name
+        assert family.off_time_number == off_time, family.name
+        assert family.fault_format % family.off_time_fault == fault, family.name
+
+
+def test_the_telegram_off_time_of_an_mm3_is_in_seconds():
+    for family in FAMILIES:
+        assert family.off_time_unit_ms == (1000 if family is MM3 else 1)
+
+
+def test_each_family_can_be_set_to_the_layout_it_is_given():
+    for family in FAMILIES:
+        assert can_be_set_to(family, family.layout), family.name
+
+
+def test_which_layouts_a_family_can_be_set_to():
+    assert can_be_set_to(MM420, Layout(4, 4)) and not can_be_set_to(MM420, Layout(4, 5))
+    assert can_be_set_to(MM440, Layout(VARIABLE, 8)) and not can_be_set_to(MM440, Layout(4, 9))
+    assert can_be_set_to(G110, Layout(0, 2))  # as in the B&R project
+    assert can_be_set_to(MM3, Layout(3, 2))
+    for layout in (Layout(4, 2), Layout(3, 4), Layout(0, 2), Layout(VARIABLE, 2)):
+        assert not can_be_set_to(MM3, layout)
+    for pkw_words in (0, 3, 4, VARIABLE):
+        assert can_be_set_to(GENERIC, Layout(pkw_words, 16))
+
+
+def test_no_word_gives_up_control():
+    for family in FAMILIES:
+        for word in start_words(family) + jog_words(family):
+            assert word & CONTROL, (family.name, hex(word))
+            assert word & pzd.OFF1 == pzd.OFF1, "nothing else that a running drive needs is 0"
+
+
+def test_words_that_start_have_on_or_a_jog_and_never_both():
+    for family in FAMILIES:
+        assert start_words(family)
+        for word in start_words(family):
+            assert word & pzd.STW_RUN == pzd.STW_ON, (family.name, hex(word))
+        for word in jog_words(family):
+            assert word & pzd.STW_RUN in (0x0100, 0x0200), (family.name, hex(word))
+    for word in (pzd.OFF1, pzd.OFF2, pzd.OFF3):
+        assert not word & pzd.STW_RUN and word & CONTROL
+
+
+def test_the_control_words_of_the_manuals():
+    """4.2 and 4.8."""
+    assert (MM440.on, MM440.on_reverse) == (0x047F, 0x0C7F)
+    assert (MM440.jog_right, MM440.jog_left) == (0x057E, 0x067E)
+    assert (MM3.on, MM3.on_reverse) == (0x0C7F, 0x147F)
+    assert (GENERIC.on, GENERIC.on_reverse) == (0x047F, 0)  # bits above 10 are the drive's own
+    assert not jog_words(GENERIC) and not jog_words(G120)
+
+
+def test_a_drive_that_takes_no_sign_has_a_word_for_the_other_direction():
+    for family in FAMILIES:
+        assert family.hsw_is_signed or family.on_reverse, family.name
+
+
+def test_the_words_bits_are_named_for_what_they_do():
+    def named(family, word):
+        return words.names(word & ~pzd.OFF1, family.stw_bits)
+
+    assert named(MM440, MM440.on_reverse) == ["ON", "REVERSE"]
+    assert named(MM3, MM3.on) == ["ON", "RUN_RIGHT"]
+    assert named(MM3, MM3.on_reverse) == ["ON", "RUN_LEFT"]
+    assert named(G120, G120.on_reverse) == ["ON", "REVERSE"]
+    assert named(MM440, MM440.jog_left) == ["JOG_LEFT"]
+
+
+def test_surveys_have_every_row_and_no_kind_that_nobody_reads():
+    for family in FAMILIES:
+        assert len(family.survey) == len(profiles.SURVEY), family.name
+        for row in family.survey:
+            if row is not None:
+                number, index, kind = row
+                assert 0 < number < 4000 and kind in KINDS, (family.name, row)
+                assert index == 0 or family.has_indices
+
+
+def test_a_value_that_is_expected_belongs_to_a_row():
+    for family in FAMILIES:
+        for row, expected in (
+            (profiles.COMMAND_SOURCE, family.command_value),
+            (profiles.SETPOINT_SOURCE, family.setpoint_value),
+            (profiles.ABSOLUTE, family.absolute_value),
+        ):
+            assert (family.survey[row] is None) == (expected is None), (family.name, row)
+
+
+def test_what_ends_control_when_it_is_changed_is_asked_for():
+    for family in FAMILIES:
+        links = (family.baud_number, family.address_number, family.pzd_words_number,
+                 family.pkw_words_number, family.off_time_number)  # fmt: skip
+        for number in links:
+            assert number is None or family.ask_first[number] == profiles.CUTS_OFF, number
+        for row in (profiles.REFERENCE, profiles.ABSOLUTE):
+            if family.survey[row] is not None:
+                number = family.survey[row][0]
+                assert family.ask_first[number] == profiles.RESCALES, (family.name, number)
+
+
+def test_what_is_always_permanent_is_asked_for_as_well():
+    for family in FAMILIES:
+        for number in family.permanent:
+            assert number in family.ask_first, (family.name, number)
+        if family.address_number is not None:
+            assert family.baud_number in family.permanent
+            assert family.address_number in family.permanent
+
+
+def test_the_panel_asks_before_everything_that_the_design_names():
+    named = (3, 10, 700, 719, 840, 918, 927, 970, 1000, 1070, 2000, 2009, 2010, 2011, 2012, 2013,
+             2014, 2016, 2019, 2023, 3900)  # fmt: skip
+    assert sorted(profiles.ASK_FIRST) == sorted(named)
+
+
+def test_values_of_a_survey():
+    frequency = pkw.read(2000)
+    frequency.high, frequency.low, frequency.width = 0x4248, 0x0000, 2
+    assert value(frequency, profiles.CENTIHERTZ) == 50.0
+    word = pkw.read(94)
+    word.high, word.low, word.width = 0, 500, 1
+    assert value(word, profiles.WORD) == 500
+    assert value(word, STEPS) == 50.0  # P095 = 0: in 0.1 Hz
+    assert value(word, STEPS, is_fine=True) == 5.0
+
+
+def test_which_32_bit_values_are_floating_point():
+    assert is_float(MM440, 1120) and is_float(MM440, 2000)
+    assert not is_float(MM440, 2019), "a connector: r0052 and an index"
+    assert not is_float(GENERIC, 2000), "nobody knows"
+
+
+def test_what_the_families_have_in_common_and_what_not():
+    assert MM4 is MM420
+    assert [family for family in FAMILIES if family.is_cumulative] == [GENERIC, G120]
+    assert [family for family in FAMILIES if not family.hiw_is_signed] == [MM3]
+    assert [family for family in FAMILIES if not family.has_eeprom_tasks] == [MM3]
+    assert [family for family in FAMILIES if not family.has_indices] == [MM3, G110]
+    assert not G120.takes_broadcast and not GENERIC.takes_broadcast
+    names = [family.name for family in FAMILIES]
+    assert len(set(names)) == len(names)
+
+
+def test_a_drive_of_ones_own_is_one_more_class():
+    class Pump(MM440):
+        layout = Layout(4, 4)
+
+    assert Pump.layout.pzd_words == 4 and Pump.on_reverse == 0x0C7F
+    assert MM440.layout.pzd_words == 2

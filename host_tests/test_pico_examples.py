@@ -1,0 +1,50 @@
+"""Examples of tools/examples on the chip: a program of one's own, on the firmware people flash."""
+
+from pico_bench import QUICK, stands
+from tools.emulator.world import PicoWorld
+
+INTERPRETERS = "pico"
+
+# As `mpremote run` does it, but without a host: after power-on alone.
+BOOT = b"""
+import board
+if not board.reset_cause:
+    exec(open("example.py").read(), {"__name__": "__main__"})
+"""
+
+
+def on_chip(name, **options):
+    """A chip that runs an example instead of the panel."""
+    with open("tools/examples/%s.py" % name, "rb") as file:
+        files = {"boot.py": BOOT, "example.py": file.read()}
+    return PicoWorld("panel", files=files, parameters=QUICK, **options)
+
+
+def turns(world, hertz, ms, address=1):
+    return world.run_until(lambda: abs(world.drives[address].hz() - hertz) < 0.1, ms)
+
+
+def test_one_drive_runs_and_stops():
+    world = on_chip("one_drive")
+    assert turns(world, 25.0, 10_000), world.drives[1].report()
+    assert stands(world, ms=20_000)
+    world.check()
+
+
+def test_three_drives_follow_each_other():
+    world = on_chip("three_drives", addresses=(1, 2, 3))
+    assert turns(world, 30.0, 10_000) and turns(world, 15.0, 3_000, 2), world.drives[2].report()
+    assert stands(world, ms=20_000) and stands(world, 2) and stands(world, 3)
+    world.check()
+
+
+def test_own_program_works_by_interrupts_and_obeys_its_keys():
+    world = on_chip("own_program")
+    world.run(3_000)
+    world.press("START")
+    assert turns(world, 40.0, 10_000), world.drives[1].report()
+    world.press("STOP")
+    assert stands(world)
+    world.press("START")
+    assert turns(world, 40.0, 10_000) and not world.resets
+    world.check()

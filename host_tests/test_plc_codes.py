@@ -1,0 +1,468 @@
+"""Each status code of the S7-200's library, provoked: one function for every code that can occur.
+
+A line on which one drive, node 3, answers what the test says, to the character.
+"""
+
+from line_bench import MASK, Line, of_words, words_of
+from uss import status
+from uss.layout import VARIABLE, Layout
+from uss.families import MM4
+from uss.plc import (
+    TYPES, USS_CTRL, USS_INIT, USS_RPM_D, USS_RPM_R, USS_RPM_W, USS_WPM_D, USS_WPM_R, USS_WPM_W,
+    Port,
+)  # fmt: skip
+
+NODE = 3
+READY, RUNNING = 0xFB31, 0xFB34
+
+# Codes that nothing on this link leads to, and why; README.md says so, too.
+NEVER = {
+    3: "parity",  # no UART of MicroPython tells of it: the character is wrong or missing
+    14: "DB_PTR",  # the blocks need no memory of the program
+}
+
+
+class Pump(MM4):
+    """A drive that takes no parameters over the line."""
+
+    layout = Layout(0, 2)
+
+
+class Store(MM4):
+    """A node of which only parameters are wanted."""
+
+    layout = Layout(4, 0)
+
+
+class Fan(MM4):
+    layout = Layout(VARIABLE, 2)
+
+
+class Plant:
+    """A port with node 3. answer: what it sends; by default it is ready, and runs when told to.
+
+    parameters: number -> (reply identifier, high word, low word); what is not in it is refused.
+    """
+
+    def __init__(self, answer=None, types=TYPES, active=1 << NODE):
+        self.line = Line(answer or self.well)
+        self.parameters = {}
+        self.zsw = READY
+        self.port = Port(lambda baud: self.line.master, MASK, types, polled=False)
+        self.motor = USS_CTRL(self.port)
+        self.inputs = {"DRIVE": NODE, "TYPE": 1, "SPEED_SP": 50.0}
+        self.init = USS_INIT(self.port)
+        self.init(EN=True, MODE=1, BAUD=19200, ACTIVE=active)
+        assert self.init.DONE and self.init.ERROR == 0
+
+    def well(self, request):
+        """The reply of a drive that works, as characters."""
+        words = words_of(request)
+        pkw = self.reply_pkw(words[:-2])
+        if words[-2] & 1:
+            self.zsw = RUNNING
+        return of_words(pkw + [self.zsw, words[-1]], request[2])
+
+    def reply_pkw(self, pkw):
+        if not pkw or pkw[0] >> 12 == 0:
+            return [0] * len(pkw)
+        number = (pkw[0] & 0x7FF) + (2000 if pkw[1] & 0x8000 else 0)
+        answer, high, low = self.parameters.get(number, (7, 0, 0))
+        return [answer << 12 | pkw[0] & 0x7FF, pkw[1], high, low]
+
+    def run(self, ms=300, *blocks):
+        """Scans for so long; blocks: what is called in each besides the USS_CTRL."""
+        until = self.line.now + ms * 1000
+        while self.line.now < until:
+            self.line.step()
+            self.port.scan(self.line.now)
+            self.motor(**self.inputs)
+            for block in blocks:
+                block()
+
+    def until_done(self, block, ms=7_000, **inputs):
+        self.run(300)
+        block(XMT_REQ=False, **inputs)
+        block(XMT_REQ=True, **inputs)
+        until = self.line.now + ms * 1000
+        while not block.DONE:
+            assert self.line.now < until, "not done"
+            self.run(5)
+            block(XMT_REQ=True, **inputs)
+        return block.ERROR
+
+
+def spoilt(change):
+    """An `answer` that is right, but for what `change` does to its characters."""
+
+    def answer(request):
+        reply = bytearray(of_words([0] * 4 + [READY, 0], request[2]))
+        return change(reply)
+
+    return answer
+
+
+def error_with(change):
+    """What USS_CTRL says of replies that `change` has spoilt."""
+    plant = Plant(spoilt(change))
+    plant.run()
+    assert not plant.motor.RESP_R and plant.motor.STATUS == 0
+    assert plant.motor.STATUS_WORD == status.word(plant.motor.ERROR)
+    return plant.motor.ERROR
+
+
+# --- the codes ----------------------------------------------------------------------------------
+
+
+def test_code_0_all_is_well():
+    plant = Plant()
+    plant.run()
+    assert (plant.motor.ERROR, plant.motor.STATUS_WORD) == (0, 0)
+    assert plant.motor.STATUS == READY
+
+
+def test_code_1_the_drive_does_not_answer():
+    assert error_with(lambda reply: None) == 1
+
+
+def test_code_2_the_checksum_of_the_reply_is_wrong():
+    def change(reply):
+        reply[13] ^= 0x10
+        return reply
+
+    assert error_with(change) == 2
+
+
+def test_code_4_a_second_block_commands_the_same_drive():
+    plant = Plant()
+    second = USS_CTRL(plant.port)
+    plant.run(300, lambda: second(RUN=True, DRIVE=NODE))
+    assert second.ERROR == 4 and second.RUN_VOID and plant.motor.ERROR == 0
+
+
+def test_code_5_what_the_blocks_or_the_drive_do_not_have():
+    plant = Plant()
+    plant.inputs["TYPE"] = 2
+    plant.run()
+    assert plant.motor.ERROR == 5
+    for value in (-32769, 65536, 1.5, None):
+        plant = Plant()
+        block = USS_WPM_W(plant.port)
+        assert plant.until_done(block, DRIVE=NODE, PARAM=700, VALUE=value) == 5, value
+        assert block.STATUS_WORD == 0x8181
+    for value in (float("nan"), float("inf"), -float("inf")):
+        plant = Plant()
+        assert plant.until_done(USS_WPM_R(plant.port), DRIVE=NODE, PARAM=700, VALUE=value) == 5
+    plant = Plant()
+    assert plant.until_done(USS_WPM_D(plant.port), DRIVE=NODE, PARAM=700, VALUE=1 << 32) == 5
+
+
+def test_code_5_eeprom_with_a_micromaster_3():
+    plant = Plant()
+    plant.inputs["TYPE"] = 0
+    write = USS_WPM_W(plant.port)
+    assert plant.until_done(write, DRIVE=NODE, PARAM=2, VALUE=10, EEPROM=True) == 5
+
+
+def test_code_5_parameters_of_a_drive_whose_telegrams_have_none():
+    plant = Plant(types=(Pump, Pump))
+    read = USS_RPM_W(plant.port)
+    assert plant.until_done(read, DRIVE=NODE, PARAM=700) == 5
+
+
+def test_code_5_a_drive_whose_telegrams_have_no_control_word():
+    plant = Plant(types=(Store, Store))
+    plant.inputs["RUN"] = False
+    plant.run()
+    plant.inputs["RUN"] = True
+    plant.run()
+    assert plant.motor.ERROR == 5 and plant.motor.RUN_VOID
+
+
+def test_code_6_an_address_beyond_31():
+    for address in (-1, 32, 255):
+        plant = Plant()
+        plant.inputs["DRIVE"] = address
+        plant.run()
+        assert (plant.motor.ERROR, plant.motor.STATUS_WORD) == (6, 0x8185)
+        assert plant.until_done(USS_RPM_W(plant.port), DRIVE=address, PARAM=700) == 6
+    init = USS_INIT(plant.port)
+    for active in (1 << 32, -1):
+        init(EN=False)
+        init(EN=True, MODE=1, BAUD=19200, ACTIVE=active)
+        assert (init.DONE, init.ERROR) == (True, 6)
+
+
+def test_code_7_the_port_is_not_set_up():
+    port = Port(None, MASK)
+    motor = USS_CTRL(port)
+    motor(RUN=True, DRIVE=NODE)
+    assert (motor.ERROR, motor.STATUS_WORD, motor.RUN_VOID) == (7, 0x818E, True)
+
+
+def test_code_8_a_parameter_block_is_at_work():
+    plant = Plant()
+    plant.parameters[700] = (1, 0, 5)
+    first, second = USS_RPM_W(plant.port), USS_WPM_W(plant.port)
+    plant.run()
+    first(XMT_REQ=True, DRIVE=NODE, PARAM=700)
+    second(XMT_REQ=True, DRIVE=NODE, PARAM=700, VALUE=1)
+    assert second.DONE and (second.ERROR, second.STATUS_WORD) == (8, 0x818A)
+    init = USS_INIT(plant.port)
+    init(EN=True, MODE=1, BAUD=19200, ACTIVE=1)
+    assert init.ERROR == 8 and plant.port.drives[NODE] is not None
+    plant.inputs["TYPE"] = 0
+    plant.motor(**plant.inputs)
+    assert plant.motor.ERROR == 8
+
+
+def babble(plant):
+    """Another master is heard, for a second."""
+    for _ in range(20):
+        plant.line._hear(plant.line.now, b"\x02\x06\x01")
+        plant.run(50)
+
+
+def test_code_8_another_master_is_on_the_line():
+    plant = Plant()
+    babble(plant)
+    assert plant.line.requests == [] and plant.motor.ERROR == 8
+    plant.run(500)
+    assert plant.motor.ERROR == 0 and plant.motor.STATUS == READY
+
+
+def test_the_line_can_be_left_to_another_master_whatever_waits():
+    plant = Plant()
+    babble(plant)
+    read = USS_RPM_W(plant.port)
+    read(XMT_REQ=True, DRIVE=NODE, PARAM=700)
+    init = USS_INIT(plant.port)
+    init(EN=True, MODE=0)
+    plant.line._hear(plant.line.now, b"\x02\x06\x01")
+    plant.run(50)
+    init()
+    assert init.DONE and init.ERROR == 0 and plant.motor.ERROR == 7
+    read()
+    assert read.DONE and read.ERROR == 7
+
+
+def test_code_9_a_setpoint_beyond_200_percent():
+    plant = Plant()
+    for percent in (200.01, -200.01, 1e9, float("nan")):
+        plant.inputs["SPEED_SP"] = percent
+        plant.run(50)
+        assert (plant.motor.ERROR, plant.motor.STATUS_WORD) == (9, 0x8186), percent
+
+
+def test_code_10_the_reply_ends_too_early():
+    for count in (3, 8, 15):
+        assert error_with(lambda reply: reply[:count]) == 10, count
+
+
+def test_code_11_the_first_character_is_no_stx():
+    def change(reply):
+        reply[0] = 0x03
+        return reply
+
+    assert error_with(change) == 11
+
+
+def test_code_12_the_length_character_is_not_that_of_the_layout():
+    for length in (0x00, 0x0D, 0x0F, 0xFF):
+
+        def change(reply):
+            reply[1] = length
+            return reply
+
+        assert error_with(change) == 12, length
+
+
+def test_code_13_another_drive_answers():
+    answer = of_words([0] * 4 + [READY, 0], NODE + 1)
+    assert error_with(lambda reply: answer) == 13
+
+
+def test_code_15_a_parameter_that_cannot_exist():
+    for number, index in ((-1, 0), (128_000, 0), (700, 256), (700, -1)):
+        plant = Plant()
+        read = USS_RPM_W(plant.port)
+        assert plant.until_done(read, DRIVE=NODE, PARAM=number, INDEX=index) == 15, number
+
+
+def test_code_16_a_mode_that_there_is_not():
+    plant = Plant()
+    init = USS_INIT(plant.port)
+    init(EN=True, MODE=2, BAUD=19200, ACTIVE=1)
+    assert (init.DONE, init.ERROR) == (True, 16)
+
+
+def test_code_17_a_change_while_the_motor_runs():
+    plant = Plant()
+    plant.inputs["RUN"] = False
+    plant.run()
+    plant.inputs["RUN"] = True
+    plant.run()
+    assert plant.motor.RUN_EN
+    init = USS_INIT(plant.port)
+    init(EN=True, MODE=1, BAUD=9600, ACTIVE=1 << NODE)
+    assert (init.DONE, init.ERROR) == (True, 17)
+    plant.inputs["TYPE"] = 0
+    plant.run(5)
+    assert plant.motor.ERROR == 17
+
+
+def test_code_18_a_rate_that_uss_does_not_have():
+    port = Port(None, MASK)
+    for baud in (0, 12_345, 14_400, -1):
+        init = USS_INIT(port)
+        init(EN=True, MODE=1, BAUD=baud, ACTIVE=1)
+        assert (init.DONE, init.ERROR, init.STATUS_WORD) == (True, 18, 0x8189), baud
+
+
+def test_code_19_a_drive_that_is_not_active():
+    plant = Plant()
+    plant.inputs["DRIVE"] = 5
+    plant.run()
+    assert (plant.motor.ERROR, plant.motor.STATUS_WORD) == (19, 0x818E)
+    assert plant.until_done(USS_RPM_W(plant.port), DRIVE=5, PARAM=700) == 19
+
+
+def test_code_20_the_drive_refuses():
+    plant = Plant()
+    plant.parameters[700] = (7, 0, 17)
+    read = USS_RPM_W(plant.port)
+    assert plant.until_done(read, DRIVE=NODE, PARAM=700) == 20
+    assert (read.PKW_ERROR, read.STATUS_WORD) == (17, 0x818C)
+    plant.parameters[700] = (8, 0, 0)
+    write = USS_WPM_W(plant.port)
+    assert plant.until_done(write, DRIVE=NODE, PARAM=700, VALUE=5) == 20
+    assert write.STATUS_WORD == 0x818D
+
+
+def test_code_20_the_drive_answers_something_else_for_good():
+    plant = Plant()
+    plant.reply_pkw = lambda pkw: [0, 0, 0, 0]
+    assert plant.until_done(USS_RPM_W(plant.port), DRIVE=NODE, PARAM=700) == 20
+
+
+def test_code_21_a_double_word_instead_of_a_word():
+    plant = Plant()
+    plant.parameters[1120] = (2, 0x4120, 0)
+    read = USS_RPM_W(plant.port)
+    assert plant.until_done(read, DRIVE=NODE, PARAM=1120) == 21
+    assert read.STATUS_WORD == 0x8182 and read.VALUE == 0
+
+
+def test_code_22_a_word_instead_of_a_double_word():
+    for block_class in (USS_RPM_D, USS_RPM_R):
+        plant = Plant()
+        plant.parameters[700] = (1, 0, 5)
+        read = block_class(plant.port)
+        assert plant.until_done(read, DRIVE=NODE, PARAM=700) == 22
+        assert read.STATUS_WORD == 0x8183 and read.VALUE == 0
+
+
+def test_a_parameter_block_says_why_nothing_came():
+    """What stands in the way of the replies is what it reports, not only that time is up."""
+
+    def silence(reply):
+        return None
+
+    def bad_bcc(reply):
+        reply[15] ^= 1
+        return reply
+
+    def cut(reply):
+        return reply[:7]
+
+    for change, code in ((silence, 1), (bad_bcc, 2), (cut, 10)):
+        plant = Plant()
+        plant.run()
+        plant.line.answer = spoilt(change)
+        read = USS_RPM_W(plant.port)
+        assert plant.until_done(read, DRIVE=NODE, PARAM=700) == code, code
+        assert read.STATUS_WORD == status.word(code)
+
+
+def test_every_code_is_provoked_or_cannot_occur():
+    names = list(globals())
+    for code in range(len(status.CODES)):
+        provoked = any(name.startswith("test_code_%d_" % code) for name in names)
+        assert provoked != (code in NEVER), code
+
+
+# --- what TYPE means on the line ----------------------------------------------------------------
+
+
+def test_the_words_of_both_types():
+    for type_number, reverse, words in (
+        (1, False, (0x047F, 0x2000)), (1, True, (0x0C7F, 0x2000)),
+        (0, False, (0x0C7F, 0x2000)), (0, True, (0x147F, 0x2000)),
+    ):  # fmt: skip
+        plant = Plant()
+        plant.inputs.update({"TYPE": type_number, "RUN": False, "DIR": reverse})
+        plant.run()
+        assert words_of(plant.line.requests[-1])[-2:] == [0x047E, 0]
+        plant.inputs["RUN"] = True
+        plant.run()
+        request = words_of(plant.line.requests[-1])
+        assert tuple(request[-2:]) == words, (type_number, reverse)
+        assert len(request) == (6 if type_number else 5)
+
+
+def test_no_on_is_sent_to_a_drive_that_cannot_run():
+    # Fault, inhibit, OFF2 and OFF3 in force, and one that has not answered yet.
+    for zsw in (0xFB39, 0xFB71, 0xFB21, 0xFB11, None):
+        plant = Plant()
+        plant.zsw = zsw
+        if zsw is None:
+            plant.line.answer = None
+        plant.inputs["RUN"] = False
+        plant.run()
+        plant.inputs["RUN"] = True
+        plant.run(5)
+        assert plant.motor.RUN_VOID, zsw
+        plant.run(1_500)
+        plant.line.answer = plant.well
+        plant.zsw = READY
+        plant.run(1_500)
+        assert plant.motor.RUN_VOID and plant.motor.ERROR == 0
+        for request in plant.line.requests:
+            assert not words_of(request)[-2] & 1, zsw
+
+
+def test_no_on_is_sent_to_a_drive_that_is_lost():
+    plant = Plant()
+    plant.inputs["RUN"] = False
+    plant.run()
+    plant.line.answer = None
+    plant.run(2_000)
+    plant.inputs["RUN"] = True
+    plant.run(5)
+    assert plant.motor.RUN_VOID and plant.motor.ERROR == 1
+    assert plant.motor.STATUS == READY  # as it was last
+    plant.line.answer = plant.well
+    plant.run(2_000)
+    assert plant.motor.RUN_VOID and not plant.motor.RUN_EN
+
+
+def test_a_micromaster_3_that_tells_its_speed_without_a_sign():
+    plant = Plant()
+    plant.inputs["TYPE"] = 0
+    plant.zsw = 0xBB34  # bit 14 is 0: it turns left
+    plant.line.answer = lambda request: of_words([0, 0, 0, plant.zsw, 0x2000], request[2])
+    plant.run()
+    assert plant.motor.SPEED == -50.0 and not plant.motor.D_DIR
+    plant.zsw = 0xFB34
+    plant.run()
+    assert plant.motor.SPEED == 50.0 and plant.motor.D_DIR
+
+
+def test_other_families_and_layouts_are_types_of_their_own():
+    plant = Plant(types=TYPES + (Fan,))
+    plant.parameters[700] = (1, 5, 0)
+    plant.inputs["TYPE"] = 2
+    plant.reply_pkw = lambda pkw: [0x12BC, 0, 5] if pkw[0] else [0, 0, 0]
+    read = USS_RPM_W(plant.port)
+    assert plant.until_done(read, DRIVE=NODE, PARAM=700) == 0 and read.VALUE == 5
+    assert len(words_of(plant.line.requests[-1])) == 5

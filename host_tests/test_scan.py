@@ -1,0 +1,313 @@
+"""Who is on the line, and at which rate: by mirror telegrams, which nobody acts on."""
+
+from round_bench import MASK, MIRROR, Bench, Node, framed
+from uss import scan as scanning
+from uss.scan import EVERY_NET_COUNT, NET_COUNTS, RATES, RateScan, Scan
+from uss.timing import BAUD_RATES
+
+
+def found_on(nodes, scan=None, **more):
+    """A scan of a line on which the master knows nobody; the bench and the scan."""
+    bench = Bench(nodes, listed=False, **more)
+    scan = Scan(bench.master, MASK)
+    bench.run_until(lambda: scan.step(bench.now), 60_000_000)
+    return bench, scan
+
+
+def only_harmless(bench):
+    """Whether nothing was sent but mirror telegrams of which no word has bit 10."""
+    for telegram in bench.sent:
+        net = telegram.characters[3:-1]
+        if telegram.address & ~0x1F != MIRROR or any(net):
+            return False
+    return True
+
+
+# --- who is there -------------------------------------------------------------------------------
+
+
+def test_everybody_is_found_with_the_length_that_he_takes():
+    layouts = {0: (4, 2), 3: (3, 2), 7: (0, 2), 12: (4, 4), 31: (4, 8)}
+    bench, scan = found_on([Node(address, *layout) for address, layout in layouts.items()])
+    assert scan.found == {0: 12, 3: 10, 7: 4, 12: 16, 31: 24}
+    assert not scan.variable and not scan.unclear
+    assert only_harmless(bench)
+
+
+def test_an_empty_line_takes_as_long_as_was_said():
+    bench = Bench([], listed=False)
+    scan = Scan(bench.master, MASK)
+    promised_ms = scan.longest_ms
+    bench.run_until(lambda: scan.step(bench.now) or bench.sent, 200_000)
+    began = bench.now
+    bench.run_until(lambda: scan.step(bench.now), 60_000_000)
+    assert scan.found == {} and scan.asked == 32 * len(NET_COUNTS) == len(bench.sent)
+    assert 0.8 * promised_ms <= (bench.now - began) / 1000 <= promised_ms
+    assert 4_000 < promised_ms < 7_000
+
+
+def test_an_unknown_node_is_never_told_that_its_control_word_counts():
+    """Bit 10 = 1 would be that, wherever in the telegram its control word may stand."""
+    for mirrors in (True, False):
+        nodes = [Node(address) for address in (1, 2, 17)]
+        for node in nodes:
+            node.mirrors = mirrors
+        bench, scan = found_on(nodes)
+        assert only_harmless(bench) and bool(scan.found) is mirrors
+
+
+def test_the_unusual_lengths_are_found_when_asked_for():
+    bench = Bench([Node(4, 4, 3), Node(9, 0, 16), Node(20, 3, 0)], listed=False)
+    scan = Scan(bench.master, MASK, (4, 9, 20, 21), EVERY_NET_COUNT)
+    bench.run_until(lambda: scan.step(bench.now), 60_000_000)
+    assert scan.found == {4: 14, 9: 32, 20: 6}
+
+
+def test_whoever_takes_any_length_is_said_to():
+    _, scan = found_on([Node(2), Node(5, 127, 2), Node(6, 127, 4)])
+    assert set(scan.found) == {2, 5, 6}
+    assert scan.variable == {5, 6}
+
+
+def test_two_nodes_of_one_address_are_told_from_none():
+    """Their replies lie on top of each other."""
+    bench = Bench([Node(3)], listed=False)
+    answer = bench.nodes[3].answer
+
+    def both(characters):
+        reply = answer(characters)
+        return reply and bytes(each | 0x11 for each in reply)
+
+    bench.nodes[3].answer = both
+    scan = Scan(bench.master, MASK, range(8))
+    bench.run_until(lambda: scan.step(bench.now), 60_000_000)
+    assert scan.found == {} and set(scan.unclear) == {3}
+
+
+def test_a_reply_that_was_spoilt_once_is_asked_for_again():
+    bench = Bench([Node(3)], listed=False)
+    answer = bench.nodes[3].answer
+    replies = []
+
+    def spoilt(characters):
+        reply = answer(characters)
+        if reply:
+            replies.append(reply)
+            if len(replies) == 1:
+                return reply[:6] + b"\x55" + reply[7:]
+        return reply
+
+    bench.nodes[3].answer = spoilt
+    scan = Scan(bench.master, MASK, range(8))
+    bench.run_until(lambda: scan.step(bench.now), 60_000_000)
+    assert scan.found == {3: 12} and scan.unclear == {}
+
+
+def test_it_waits_until_the_bus_has_listened():
+    bench = Bench([Node(1)], listed=False)
+    scan = Scan(bench.master, MASK)
+    bench.loop = lambda: scan.step(bench.now)
+    bench.run(90_000)
+    assert bench.sent == []
+    bench.run(20_000)
+    assert bench.sent
+
+
+# --- beside drives that are controlled ----------------------------------------------------------
+
+
+def test_drives_of_the_bus_are_found_without_being_asked():
+    bench = Bench([Node(1), Node(2, 3, 2), Node(3, 127, 2)])
+    bench.contact()
+    sent = len(bench.sent)
+    scan = Scan(bench.master, MASK, range(5))
+    bench.run_until(lambda: scan.step(bench.now), 60_000_000)
+    assert scan.found == {1: 12, 2: 10, 3: 10} and scan.variable == {3}
+    assert {address for address in bench.addresses(sent) if address & MIRROR} == {0x40, 0x44}
+
+
+def test_a_drive_of_the_bus_that_does_not_answer_is_looked_for():
+    """It is set to another layout, for example."""
+    bench = Bench([Node(1), Node(2)])
+    bench.nodes[2].pkw_words = 3
+    bench.run(1_000_000)
+    scan = Scan(bench.master, MASK, range(5))
+    bench.run_until(lambda: scan.step(bench.now), 60_000_000)
+    assert scan.found == {1: 12, 2: 10}
+
+
+def test_drives_that_were_not_asked_yet_are_waited_for():
+    bench = Bench([Node(1), Node(2)])
+    scan = Scan(bench.master, MASK, (1, 2))
+    bench.run_until(lambda: scan.step(bench.now), 60_000_000)
+    assert scan.found == {1: 12, 2: 12} and scan.asked == 0
+
+
+def test_while_it_scans_the_drives_keep_their_rate():
+    bench = Bench([Node(1), Node(2)])
+    bench.contact()
+    bench.drives[1].start(0x1000)
+    bench.run(1_000_000)
+    alone = bench.rate(1, 10_000_000)
+    scan = Scan(bench.master, MASK)
+    bench.loop = lambda: scan.step(bench.now & MASK)
+    assert bench.rate(1, 10_000_000) > 0.88 * alone
+    assert scan.asked > 25
+    bench.run_until(lambda: scan.over, 60_000_000)
+    assert scan.found == {1: 12, 2: 12} and bench.nodes[1].zsw == 0xFB34
+    assert not any(bench.drives[1].counters[1:])
+
+
+def test_it_is_over_when_it_said_beside_drives_too():
+    bench = Bench([Node(1)])
+    bench.contact()
+    scan = Scan(bench.master, MASK)
+    promised_ms = scan.longest_ms
+    began = bench.now
+    bench.loop = lambda: scan.step(bench.now & MASK)
+    bench.run_until(lambda: scan.over, 90_000_000)
+    assert (bench.now - began) / 1000 <= 1.1 * promised_ms
+
+
+def test_a_stop_does_not_wait_for_the_scan():
+    bench = Bench([Node(1), Node(2)])
+    bench.contact()
+    scan = Scan(bench.master, MASK)
+    bench.loop = lambda: scan.step(bench.now & MASK)
+    for step in range(50):
+        bench.drives[1].start(0x1000)
+        bench.run(300_000 + 3_571 * step)
+        sent = len(bench.sent)
+        bench.drives[1].stop()
+        bench.run(100_000)
+        assert bench.addresses(sent)[0] == 1, step
+
+
+# --- at which rate ------------------------------------------------------------------------------
+
+
+class Lines:
+    """Opens a bus at any rate; the nodes hear and answer at their own one only."""
+
+    def __init__(self, baud, nodes):
+        self.baud = baud
+        self.nodes = nodes
+        self.benches = []
+        self.opened = []
+
+    def open(self, baud):
+        bench = Bench(self.nodes if baud == self.baud else [], baud, listed=False)
+        self.benches.append(bench)
+        self.opened.append(baud)
+        return bench.master
+
+    def carry_out(self, scan, foreign=lambda bench: False):
+        """foreign: whether somebody else talks now."""
+        while True:
+            if self.benches:
+                bench = self.benches[-1]
+                if foreign(bench):
+                    bench.talk(framed(3, bytes(12)))
+                bench.run(20_000)
+                now = bench.now & MASK
+            else:
+                now = 0
+            if scan.step(now):
+                return
+
+
+def test_the_rate_is_found_and_who_is_there():
+    for baud in (9600, 19200, 187500, 2400):
+        lines = Lines(baud, [Node(2), Node(11, 3, 2)])
+        scan = RateScan(lines.open, MASK, nothing_runs=True, addresses=range(12))
+        lines.carry_out(scan)
+        assert (scan.baud, scan.found) == (baud, {2: 12, 11: 10})
+        assert lines.opened == list(RATES[: RATES.index(baud) + 1])
+        assert all(only_harmless(bench) for bench in lines.benches)
+
+
+def test_nothing_is_opened_unless_nothing_runs():
+    lines = Lines(9600, [])
+    for words in ({}, {"nothing_runs": False}, {"nothing_runs": 1}):
+        try:
+            RateScan(lines.open, MASK, **words)
+        except ValueError as error:
+            assert "nothing_runs=True" in str(error)
+            continue
+        raise AssertionError(words)
+    assert lines.opened == []
+
+
+def test_every_rate_is_tried_once():
+    assert sorted(RATES) == sorted(BAUD_RATES)
+    lines = Lines(None, [])
+    rates = (9600, 115200, 38400)
+    scan = RateScan(lines.open, MASK, nothing_runs=True, rates=rates, addresses=range(4))
+    lines.carry_out(scan)
+    assert scan.baud is None and scan.found == {} and lines.opened == list(rates)
+
+
+def test_drives_that_all_have_the_same_address_leave_a_trace():
+    """As delivered: their replies lie on top of each other, at one rate only."""
+    node = Node(0)
+    answer = node.answer
+    node.answer = lambda characters: bytes([each | 0x11 for each in answer(characters) or b""])
+    lines = Lines(19200, [node])
+    rates = (9600, 19200, 38400)
+    scan = RateScan(lines.open, MASK, nothing_runs=True, rates=rates, addresses=range(4))
+    lines.carry_out(scan)
+    assert scan.baud is None and set(scan.unclear) == {19200} and set(scan.unclear[19200]) == {0}
+
+
+def test_at_each_rate_it_listens_before_it_sends():
+    lines = Lines(None, [])
+    rates = (19200, 9600)
+    scan = RateScan(lines.open, MASK, nothing_runs=True, rates=rates, addresses=range(2))
+    lines.carry_out(scan)
+    for bench in lines.benches:
+        assert bench.sent[0].at >= 100_000
+
+
+def test_where_somebody_talks_nothing_is_sent():
+    lines = Lines(9600, [Node(1)])
+    scan = RateScan(lines.open, MASK, nothing_runs=True)
+    lines.carry_out(scan, lambda bench: True)
+    assert scan.line_in_use and scan.baud is None
+    for bench in lines.benches:
+        bench.run(3_000_000)
+        assert bench.sent == []
+
+
+def test_a_master_that_is_heard_later_ends_it():
+    """One that talks once a second: not while the bus listened."""
+    lines = Lines(9600, [])
+    scan = RateScan(lines.open, MASK, nothing_runs=True)
+    lines.carry_out(scan, lambda bench: bench.now % 1_000_000 == 600_000)
+    assert scan.line_in_use and scan.baud is None and lines.opened == [9600]
+
+
+def test_a_bus_with_drives_is_not_taken():
+    bench = Bench([Node(1)])
+    scan = RateScan(lambda baud: bench.master, MASK, nothing_runs=True)
+    try:
+        scan.step(0)
+    except ValueError as error:
+        assert "drives" in str(error)
+        return
+    raise AssertionError("taken")
+
+
+def test_a_rate_that_is_none_is_refused():
+    try:
+        RateScan(None, MASK, nothing_runs=True, rates=(9600, 14400))
+    except ValueError as error:
+        assert "14400" in str(error)
+        return
+    raise AssertionError("taken")
+
+
+def test_how_long_it_takes_is_said_beforehand():
+    scan = RateScan(None, MASK, nothing_runs=True)
+    slow = RateScan(None, MASK, nothing_runs=True, rates=(300,))
+    assert 60_000 < slow.longest_ms < scan.longest_ms < 600_000
+    assert scanning.NET_COUNTS[0] == 12

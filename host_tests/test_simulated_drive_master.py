@@ -1,0 +1,258 @@
+"""The bus master and the simulated drives, which share no code: every task, family and layout.
+
+What one of them has misread of the specification shows here against the other.
+"""
+
+from boards.sim import g110, g120, generic, mm3, mm420, mm440, v20
+from boards.sim.board import HardTimer
+from boards.sim.chip import UART, Chip, Pin
+from boards.sim.clock import Clock
+from boards.sim.drive import Drive
+from boards.sim.wire import Transceiver, Wire
+from hal.pacer import Pacer
+from hal.rs485 import Rs485Link
+from uss import families, pkw, pkw_array, pkw_text
+from uss.layout import VARIABLE, Layout
+from uss.master import Master
+from uss.timing import Timing
+
+LOOP_US = 2_000
+
+# The simulated family, and what the master takes it for.
+PAIRS = (
+    (generic, families.GENERIC), (mm3, families.MM3), (mm420, families.MM420),
+    (mm440, families.MM440), (g110, families.G110), (v20, families.V20), (g120, families.G120),
+)  # fmt: skip
+
+
+class Line:
+    """A master on the simulated chip, and one drive of a kind: keyword arguments of `Drive`."""
+
+    def __init__(self, longest=10, **kind):
+        self.clock = clock = Clock()
+        self.wire = wire = Wire(clock, 19200)
+        self.motor = Drive(clock, wire, 5, **kind)
+        self.chip = chip = Chip(clock, wire)
+        uart, driver_enable = UART(chip, 19200), Pin(chip)
+        Transceiver(wire, uart, driver_enable)
+        link = Rs485Link(uart, driver_enable, HardTimer(chip), clock, 19200, True)
+        self.master = Master(link, Timing(19200), clock.ticks_mask)
+        self.drive = self.master.add(5, Layout(*self.motor.layout, longest=longest))
+        self.pacer = Pacer(self.master, link, clock, HardTimer(chip))
+        self.pacer.start()
+        self.run(1_500)
+        assert self.drive.contact
+
+    def run(self, ms):
+        until = self.clock.now_us + ms * 1000
+        while self.clock.now_us < until:
+            self.master.refresh(self.clock.ticks_us())
+            self.pacer.tend()
+            self.clock.advance(LOOP_US)
+
+    def do(self, job):
+        """Ask, and wait for the end of it: the job."""
+        self.drive.ask(job)
+        for _ in range(3_000):
+            if job.state != pkw.PENDING:
+                break
+            self.run(2)
+        return job
+
+    def done(self, job):
+        assert self.do(job).state == pkw.DONE, (job, job.error)
+        return job
+
+    def refused(self, job):
+        assert self.do(job).state == pkw.REFUSED, job
+        return job.error
+
+    def check(self):
+        assert self.wire.violations == [] and self.chip.handler_errors == []
+        assert not any(self.drive.counters[1:]), self.drive.counters
+
+
+def kind_of(family, pkw_words, pzd_words=2, **more):
+    """A drive of this layout, if its family can be set to one."""
+    link = family.LINK
+    parameters = {link["off time"]: 0}
+    if link["layout"] is None:
+        parameters[link["pkw words"]] = pkw_words
+        parameters[link["pzd words"]] = pzd_words
+    more.update(family=family, parameters=parameters)
+    return more
+
+
+def test_each_family_is_run_both_ways_as_its_data_say():
+    for simulated, family in PAIRS:
+        line = Line(family=simulated, parameters={simulated.LINK["off time"]: 0})
+        assert line.motor.layout == (family.layout.pkw_words, family.layout.pzd_words)
+        line.drive.start(0x2000, family.on)
+        line.run(12_000)
+        assert line.motor.hz() == 25, family.name
+        if family.on_reverse:
+            line.drive.turn(family.on_reverse)
+        else:
+            line.drive.hsw = 0xE000
+        line.run(16_000)
+        assert line.motor.hz() == -25, family.name
+        hiw = line.drive.word(2)
+        assert hiw == (0xE000 if family.hiw_is_signed else 0x2000), family.name
+        assert not line.drive.word(1) & 0x4000
+        line.drive.stop()
+        line.run(12_000)
+        assert line.motor.state == "ready" and line.motor.starts == 1
+        line.check()
+
+
+def test_the_numbers_that_a_family_names_are_there():
+    for simulated, family in PAIRS:
+        line = Line(family=simulated, parameters={simulated.LINK["off time"]: 0})
+        numbers = [row[0] for row in family.survey if row is not None]
+        numbers += [family.baud_number, family.address_number, family.off_time_number]
+        numbers += [family.fault_number]
+        for number in numbers:
+            if number is not None:
+                line.done(pkw.read(number))
+        if family.address_number is not None:
+            assert line.done(pkw.read(family.address_number)).integer_value() == 5
+            code = line.done(pkw.read(family.baud_number)).integer_value()
+            assert family.baud_codes[code] == 19200
+        line.check()
+
+
+def test_values_of_every_width_in_every_layout():
+    for simulated in (mm420, mm440, g120, generic):
+        for pkw_words in (3, 4, VARIABLE):
+            line = Line(**kind_of(simulated, pkw_words))
+            address = simulated.LINK["address"]
+            assert line.done(pkw.read(address)).integer_value() == 5
+            if pkw_words == 3:
+                assert line.refused(pkw.read(1120)) == 102
+                assert line.refused(pkw.write_float(1120, 5.0)) == 102
+            else:
+                assert line.done(pkw.read(1120)).float_value() == 10.0
+                assert line.done(pkw.write_float(1120, 5.5)).float_value() == 5.5
+                assert line.motor.read(1120) == 5.5
+                assert line.done(pkw.write_float(1121, 6.5, eeprom=True)).float_value() == 6.5
+                assert line.motor.eeprom_writes == 1
+                assert line.refused(pkw.write_float(1120, -1.0)) == 2
+            assert line.refused(pkw.write_word(52, 1)) == 1
+            assert line.refused(pkw.read(1)) == 0
+            line.check()
+
+
+def test_arrays():
+    for simulated, first in ((mm440, 0), (generic, 1)):
+        for pkw_words in (3, 4, VARIABLE):
+            line = Line(**kind_of(simulated, pkw_words, 4))
+            assert line.done(pkw_array.count_elements(2010)).integer_value() == 2
+            job = pkw_array.write_element_word(2010, first + 1, 8)
+            assert line.done(job).integer_value() == 8
+            assert line.done(pkw_array.read_element(2010, first + 1)).integer_value() == 8
+            job = pkw_array.write_element_word(2010, first + 1, 6, eeprom=True)
+            assert line.done(job).integer_value() == 6 and line.motor.eeprom_writes == 1
+            assert line.refused(pkw_array.read_element(2010, first + 2)) == 3
+            if pkw_words == 3:
+                continue
+            job = pkw_array.write_element_double(2019, first + 2, 20 << 16)
+            assert line.done(job).integer_value() == 20 << 16
+            assert line.motor.read(2019, 2) == 20 << 16
+            line.check()
+
+
+def test_all_elements_at_once():
+    line = Line(longest=40, **kind_of(generic, VARIABLE, 4))
+    assert line.done(pkw_array.read_all(9)).values == [5, 5, 5]
+    assert line.done(pkw_array.write_all_words(9, (1, 2, 3))).values == [1, 2, 3]
+    assert line.done(pkw_array.read_all(4)).values == [1, 2, 3, 4]
+    line.done(pkw_array.write_all_doubles(4, (1 << 31, 2, 3, 4), eeprom=True))
+    assert line.motor.read(4) == 1 << 31 and line.motor.eeprom_writes == 4
+    assert len(line.done(pkw_array.read_all(2019)).values) == 16
+    assert line.refused(pkw_array.write_all_words(9, (1, 2))) == 108
+    line.check()
+
+
+def test_browsing_by_what_comes_with_an_error():
+    line = Line(**kind_of(generic, VARIABLE))
+    job = pkw.read(8)
+    assert line.refused(job) == 0 and (job.next, job.previous) == (9, 7)
+    job = pkw.write_word(2011, 40)
+    assert line.refused(job) == 2 and (job.next, job.previous) == (31, 31)
+    line = Line(**kind_of(mm440, VARIABLE))
+    numbers, number = [], 1
+    while True:
+        job = line.do(pkw.read(number))
+        if job.state == pkw.DONE:
+            numbers.append(number)
+            number += 1
+        elif job.next:
+            number = job.next
+        else:
+            break
+    assert numbers == [row[0] for row in mm440.ROWS]
+    line.check()
+
+
+def test_descriptions():
+    line = Line(**kind_of(generic, VARIABLE))
+    whole = line.done(pkw_text.read_description(1120)).description()
+    assert (whole.name, whole.lower, whole.upper) == ("ramp-up time", 0.0, 650.0)
+    assert whole.data_type() == pkw_text.FLOAT and whole.elements == 1
+    assert whole.factor == 1.0
+    signed = line.done(pkw_text.read_description(19)).description()
+    assert (signed.lower, signed.upper) == (-1000, 1000)
+    default = line.done(pkw_text.read_description(2011, pkw_text.UPPER_LIMIT)).description()
+    assert default.upper == 31
+    assert line.refused(pkw_text.read_description(1)) == 0
+    line = Line(**kind_of(mm440, 4))
+    job = pkw_text.read_description(1120, pkw_text.UPPER_LIMIT)
+    assert line.done(job).description().upper is not None
+    assert line.refused(pkw_text.read_description(1120, pkw_text.NAME)) == 9
+
+
+def test_texts():
+    line = Line(**kind_of(generic, VARIABLE))
+    assert line.done(pkw_text.read_text(7, 3)).text == "300 BAUD"
+    assert line.done(pkw_text.read_text(9, 4, field=2)).text == "1200 BAUD"
+    assert line.done(pkw_text.write_text(9, 2, "THE SECOND ONE")).text == "THE SECOND ONE"
+    assert line.done(pkw_text.read_text(9, 2)).text == "THE SECOND ONE"
+    assert line.refused(pkw_text.read_text(18, 1)) == 15
+    line.check()
+
+
+def test_change_reports():
+    for pkw_words in (3, 4, VARIABLE):
+        line = Line(**kind_of(generic, pkw_words, reports=True))
+        reports = pkw_text.Reports(line.drive.channel)
+        line.run(100)
+        line.motor.write(7, 0, 3)
+        line.motor.write(2011, 1, 9)
+        line.motor.write(1120, 0, 2.5)
+        line.run(600)
+        found = [reports.get() for _ in range(4)]
+        places = [(report.number, report.index) for report in found[:3]]
+        assert places == [(7, 0), (2011, 2), (1120, 0)]
+        assert found[3] is None
+        assert [report.integer_value() for report in found[:2]] == [3, 9]
+        if pkw_words == 3:
+            assert not found[2].width
+        else:
+            assert found[2].float_value() == 2.5
+        assert line.done(pkw.read(7)).integer_value() == 3  # and tasks go on
+        line.check()
+
+
+def test_stale_replies_and_standing_tasks():
+    """However late a drive answers, and however often it does what stands there: once."""
+    for stale in (0, 1, 5):
+        for reexecute in (False, True):
+            line = Line(**kind_of(mm440, 4))
+            line.motor.stale_replies = stale
+            line.motor.reexecute = reexecute
+            assert line.done(pkw.read(700)).integer_value() == 5
+            for value in (7, 8, 8):
+                job = pkw.write_word(2010, value, index=1, eeprom=True)
+                assert line.done(job).integer_value() == value
+            line.run(500)
+            assert line.motor.eeprom_writes == 3, (stale, reexecute)

@@ -1,0 +1,202 @@
+"""Telegrams outside the list: mirror, broadcast, special."""
+
+from round_bench import MIRROR, Bench, Node, framed
+from uss import pkw, pzd
+from uss.receiver import SILENT
+from uss.single import NEW, PENDING, TIMED_OUT, Broadcast, Mirror, Special, stop_all
+from uss.telegram import BAD_BCC
+
+NET = b"\x12\x34\x56\x78\x9a\xbc\xde\xf0\x00\x00\x00\x00"
+TOGETHER = Broadcast((pzd.OFF1, 0x1000), {2: 0xFFFF}).request  # a setpoint for all
+RESPONSE_DELAY_US = 20_000
+
+
+def nodes(count):
+    return [Node(address) for address in range(1, count + 1)]
+
+
+def through(bench, single):
+    """Post it and wait until it is through; the telegrams that carried it."""
+    sent = len(bench.sent)
+    bench.master.post(single)
+    assert single.state == PENDING
+    bench.run_until(lambda: single.state != PENDING)
+    wanted = bytes(single.request[: single.size])
+    bench.run(200_000)
+    return [telegram for telegram in bench.sent[sent:] if telegram.characters == wanted]
+
+
+def refused(what, *arguments):
+    try:
+        what(*arguments)
+    except ValueError:
+        return
+    raise AssertionError("taken: %r" % (arguments,))
+
+
+def test_each_is_sent_once():
+    for make in (
+        lambda: Mirror(1, NET),
+        lambda: Broadcast((pzd.OFF1, 0), {2: 0xFFFF}),
+        lambda: Special(None, b"\x01\x02\x03"),
+    ):
+        bench = Bench(nodes(3))
+        bench.contact()
+        assert len(through(bench, make())) == 1, make()
+
+
+def test_each_is_sent_once_where_there_are_retries():
+    """Nothing is missed where nobody is to answer."""
+    for make in (
+        lambda: Mirror(1, NET),
+        lambda: Broadcast((pzd.OFF1, 0), {2: 0xFFFF}),
+        lambda: Special(None, b"\x01\x02\x03"),
+    ):
+        bench = Bench(nodes(3))
+        bench.contact()
+        bench.master.retries = 3
+        single = make()
+        assert len(through(bench, single)) == 1 and single.state == pkw.DONE
+
+
+def test_a_mirror_telegram_comes_back_from_who_is_there():
+    bench = Bench(nodes(3))
+    bench.contact()
+    there, nobody = Mirror(2, NET), Mirror(9, NET)
+    assert there.state == NEW
+    through(bench, there)
+    through(bench, nobody)
+    assert there.state == pkw.DONE and bench.nodes[2].mirrored == 1
+    assert nobody.state == TIMED_OUT and nobody.finding == SILENT
+    assert all([drive.zsw == 0xFB31 for drive in bench.master.drives])
+
+
+def test_a_mirror_telegram_that_comes_back_otherwise_is_no_answer():
+    bench = Bench(nodes(2))
+    bench.contact()
+    node = bench.nodes[2]
+    other = framed(2 | MIRROR, b"\x55" + NET[1:])
+    node.answer = lambda characters: (
+        other if characters[2] & MIRROR else node.__class__.answer(node, characters)
+    )
+    mirror = Mirror(2, NET)
+    through(bench, mirror)
+    assert mirror.state == TIMED_OUT and mirror.finding == BAD_BCC
+
+
+def test_a_mirror_telegram_is_repeated_as_often_as_any_exchange():
+    bench = Bench(nodes(2))
+    bench.contact()
+    bench.master.retries = 2
+    assert len(through(bench, Mirror(9, NET))) == 3
+
+
+def test_after_a_broadcast_the_drives_have_time_to_take_it():
+    """Nobody answers; the line is left alone for the response delay (USS.md 1.5)."""
+    bench = Bench(nodes(3))
+    bench.contact()
+    broadcast = Broadcast((pzd.OFF1, 0x1000), {2: 0xFFFF})
+    (telegram,) = through(bench, broadcast)
+    assert broadcast.state == pkw.DONE and telegram.characters == TOGETHER
+    following = bench.sent[bench.sent.index(telegram) + 1]
+    pause_us = following.at - telegram.at - bench.timing.telegram_us(12)
+    assert RESPONSE_DELAY_US <= pause_us <= RESPONSE_DELAY_US + 1_000
+    assert not any([any(drive.counters[1:]) for drive in bench.master.drives])
+
+
+def test_a_special_telegram_brings_what_its_node_answers():
+    bench = Bench(nodes(1) + [Node(9)])
+    bench.contact()
+    seen = []
+    bench.nodes[9].answer = lambda characters: None
+    special = Special(9, b"\x01\x02\x03", 5, lambda net, count: seen.append(bytes(net[:count])))
+    send = bench.send
+
+    def answering(buffer, count):
+        send(buffer, count)
+        if buffer[2] == 0x89:
+            end = bench.now + bench.timing.telegram_us(count - 4)
+            bench.talk(framed(0x89, b"hello"), end + 3_000)
+
+    bench.send = answering
+    through(bench, special)
+    assert special.state == pkw.DONE and seen == [b"hello"]
+    assert bytes(special.reply[: special.reply_count]) == b"hello"
+
+
+def test_they_take_every_second_telegram_at_the_most():
+    bench = Bench(nodes(2))
+    bench.contact()
+    singles = [Mirror(address, NET) for address in (1, 2, 1, 2, 1)]
+    for single in singles:
+        bench.master.post(single)
+    sent = len(bench.sent)
+    bench.run_until(lambda: singles[-1].state != PENDING)
+    addresses = bench.addresses(sent)
+    for before, after in zip(addresses, addresses[1:]):
+        assert not (before & MIRROR and after & MIRROR), addresses
+
+
+def test_eight_may_wait_and_each_once():
+    bench = Bench(nodes(1))
+    bench.contact()
+    singles = [Mirror(1, NET) for _ in range(9)]
+    for single in singles[:8]:
+        bench.master.post(single)
+    for single in (singles[8], singles[0]):
+        try:
+            bench.master.post(single)
+        except RuntimeError:
+            continue
+        raise AssertionError("taken")
+    bench.run(3_000_000)
+    assert [single.state for single in singles] == [pkw.DONE] * 8 + [NEW]
+    bench.master.post(singles[0])  # again, now that it is through
+    bench.run(300_000)
+    assert singles[0].state == pkw.DONE and bench.nodes[1].mirrored == 9
+
+
+def test_a_bus_without_drives_sends_them_too():
+    bench = Bench([Node(4)], listed=False)
+    mirror = Mirror(4, NET)
+    through(bench, mirror)
+    assert mirror.state == pkw.DONE
+
+
+def test_the_broadcast_that_stops_goes_before_everything():
+    bench = Bench(nodes(6))
+    bench.contact()
+    for address in (2, 3):
+        bench.drives[address].start(0x1000)
+    bench.run(300_000)
+    sent = len(bench.sent)
+    bench.drives[1].stop()
+    stop_all(bench.master)
+    bench.run(500_000)
+    telegrams = bench.sent[sent:]
+    assert telegrams[0].address == 0x20
+    net = telegrams[0].characters[3:-1]
+    assert net == b"\x00\x03\x03\x01\x00\x00\x00\x00\x04\x7e\x00\x00", net  # ON and both jogs
+    assert set(bench.addresses(sent)[1:3]) == {2, 3}  # and each by a telegram of its own
+    assert {bench.stws(address)[-1] for address in range(1, 7)} == {pzd.OFF1}
+
+
+def test_a_broadcast_to_drives_of_several_layouts_is_refused_and_they_are_stopped():
+    bench = Bench([Node(1), Node(2, 3, 2)])
+    bench.contact()
+    bench.drives[2].start(0x1000)
+    bench.run(300_000)
+    refused(stop_all, bench.master)
+    bench.run(300_000)
+    assert 0x20 not in bench.addresses() and bench.nodes[2].zsw == 0xFB31
+
+
+def test_what_would_start_a_motor_or_is_no_telegram_is_refused():
+    refused(Broadcast, (pzd.ON, 0x1000), {1: 0xFFFF, 2: 0xFFFF})
+    refused(Broadcast, (0x0000, 0), {2: 0xFFFF})  # gives up control
+    refused(Broadcast, (pzd.OFF1, 0), {2: 0x00FF})  # a setpoint is taken as a whole
+    refused(Broadcast, (pzd.OFF1,) * 16, {16: 0xFFFF})  # PZD16 never
+    refused(Broadcast, (pzd.OFF1,) * 17, {2: 0xFFFF})
+    refused(Mirror, 32)
+    refused(Special, 40, b"\x00")
+    refused(Mirror, 1, bytes(253))

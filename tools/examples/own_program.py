@@ -1,0 +1,37 @@
+"""A program of its own, without a panel: START runs the pump, STOP stops it, for ever.
+
+The bus works by interrupts; the watchdog restarts the chip when this loop hangs, and 300 ms after
+that it was the bus that stopped the motor. Ctrl-C ends it.
+"""
+
+from hal.pacer import Pacer
+from uss.bus import Master, UssError
+from uss.families import MM420
+
+
+def main(board):
+    start, stop = (1 << board.keypad.names.index(name) for name in ("START", "STOP"))
+    with Master(board.make_link(19200), idle=board.watchdog.feed) as bus:
+        bus.pace(Pacer, board.timer)
+        pump = bus.add(1, MM420)
+        while True:
+            bus.step()
+            keys = board.keypad.read()
+            if keys & stop:
+                pump.stop()
+            elif keys & start and not pump.is_on():
+                try:
+                    pump.run(40.0)
+                except UssError as reason:
+                    print(reason)
+            board.watchdog.feed()
+            board.idle()
+
+
+if __name__ == "__main__":
+    import board
+
+    try:
+        main(board)
+    finally:
+        board.watchdog.stop()
