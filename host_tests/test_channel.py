@@ -542,7 +542,7 @@ def expected(drive, reply):
 def result(job):
     if job.state == pkw.REFUSED:
         return job.state, job.error, job.next, job.previous, None
-    values = job.values if isinstance(job, pkw_array.ArrayJob) else [job.integer_value()]
+    values = job.integer_values() if isinstance(job, pkw_array.ArrayJob) else [job.integer_value()]
     return job.state, job.error, job.next, job.previous, values
 
 

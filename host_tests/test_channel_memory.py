@@ -5,7 +5,8 @@ import sys
 
 import micropython
 from test_pkw import characters
-from uss import pkw, pkw_array, pkw_text
+from uss import pkw, pkw_array, pkw_description, pkw_text
+from uss.change_reports import Reports
 from uss.channel import Channel
 from uss.layout import VARIABLE
 
@@ -44,8 +45,8 @@ def test_tasks_of_every_kind_take_no_memory():
         (VARIABLE, pkw_array.read_all(304, 2), ([0x5130, 0xFF] + [0xFFFF] * 4,)),
         (VARIABLE, pkw_array.write_all_words(304, [0xFFFF] * 9), ([0x4130, 0xFF] + [0xFFFF] * 9,)),
         (VARIABLE, pkw_text.read_text(7, 3), ([0xF007, 3] + text,)),
-        (VARIABLE, pkw_text.read_description(52), ([0x3034, 0xFF] + [0xFFFF] * 20,)),
-        (4, pkw_text.read_description(52, 7), ((0x3034, 7, 0xFFFF, 0xFFFF),)),
+        (VARIABLE, pkw_description.read_description(52), ([0x3034, 0xFF] + [0xFFFF] * 20,)),
+        (4, pkw_description.read_description(52, 7), ((0x3034, 7, 0xFFFF, 0xFFFF),)),
     ):
         channel = Channel(MASK, pkw_words, 20)
         channel.ask(job)
@@ -64,7 +65,7 @@ def test_a_job_that_times_out_takes_no_memory():
 
 def test_change_reports_take_no_memory():
     channel = Channel(MASK)
-    reports = pkw_text.Reports(channel)
+    reports = Reports(channel)
     job = pkw.read(700)
     channel.ask(job)
     replies = [(0x9000 | (number & 1) << 11 | number, 0, 0, 0xFFFF) for number in range(12)]

@@ -6,7 +6,7 @@ from array import array
 from uss import fast
 
 ROUNDS = 3000
-NAMES = ("exclusive_or", "is_reply", "agreeing", "get_words", "copy", "greatest")
+NAMES = ("exclusive_or", "is_reply", "agreeing", "get_words", "copy", "greatest", "frame")
 
 
 def characters(count):
@@ -34,6 +34,20 @@ def test_the_exclusive_or_is_the_same():
         buffer = characters(count)
         assert fast.exclusive_or(buffer, count) == in_python(buffer, count), buffer
     assert fast.exclusive_or(b"", 0) == 0 and fast.exclusive_or(b"\x02\xd6", 2) == 0xD4
+
+
+def test_net_data_are_framed():
+    random.seed(17)
+    in_python = fast.IN_PYTHON[6]
+    for _ in range(ROUNDS // 10):
+        size, address = random.randrange(5, 257), random.randrange(256)
+        framed_by_both, expected = characters(256), bytearray(256)
+        expected[:] = framed_by_both
+        fast.frame(framed_by_both, size, address)
+        in_python(expected, size, address)
+        assert framed_by_both == expected
+        assert bytes(expected[:3]) == bytes((0x02, size - 2, address))
+        assert fast.exclusive_or(expected, size) == 0
 
 
 def test_a_telegram_is_recognised_by_both_or_by_none():

@@ -7,7 +7,8 @@ What is not valid changes nothing.
 
 import golden
 from line_bench import MASK, Line, of_words, sealed
-from uss import pkw, pkw_array, pkw_text, pzd, single, telegram
+from uss import pkw, pkw_array, pkw_description, pkw_text, pzd, single, telegram
+from uss.change_reports import Reports
 from uss.channel import Channel
 from uss.drive import Drive
 from uss.layout import Layout
@@ -66,7 +67,7 @@ MAKERS = {
     1: lambda asked: pkw.read(asked["number"], asked["index"]),
     2: lambda asked: write(asked, eeprom=False),
     3: lambda asked: write(asked, eeprom=False),
-    4: lambda asked: pkw_text.read_description(asked["number"], asked["index"]),
+    4: lambda asked: pkw_description.read_description(asked["number"], asked["index"]),
     6: lambda asked: pkw_array.read_element(asked["number"], asked["index"]),
     8: lambda asked: pkw_array.write_element_double(
         asked["number"], asked["index"], asked["double"]
@@ -258,7 +259,7 @@ def check_result(example, job):
 
 def check_value(name, job, meant):
     if "text" in meant:
-        assert job.text == meant["text"].rstrip(), name
+        assert job.text() == meant["text"].rstrip(), name
     elif "float" in meant:
         assert job.width == pkw.DOUBLE and job.float_value() == meant["float"], name
     elif "double" in meant:
@@ -316,7 +317,7 @@ def test_a_change_report_is_acknowledged_and_the_task_goes_on():
     idle = golden.BY_ID["V02"].characters
     line = Line(lambda request: idle)
     drive = line.master.add(1)
-    reports = pkw_text.Reports(drive.channel)
+    reports = Reports(drive.channel)
     line.exchange()
     job = pkw.read(1000)
     drive.ask(job)

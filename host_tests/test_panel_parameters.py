@@ -95,7 +95,7 @@ def test_a_value_is_that_of_the_drive_shown():
         assert row_2(world) == row
         world.press("ADDRESS_UP", 30)
         assert "?" in row_2(world) or row_2(world)[13:] != row[13:]
-        world.run(200)
+        world.run(300)
     world.check()
 
 

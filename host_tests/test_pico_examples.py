@@ -1,5 +1,7 @@
 """Examples of tools/examples on the chip: a program of one's own, on the firmware people flash."""
 
+import os
+
 from pico_bench import QUICK, stands
 from tools.emulator.world import PicoWorld
 
@@ -47,4 +49,20 @@ def test_own_program_works_by_interrupts_and_obeys_its_keys():
     assert stands(world)
     world.press("START")
     assert turns(world, 40.0, 10_000) and not world.resets
+    world.check()
+
+
+def test_plain_micropython_starts_with_a_program_of_ones_own():
+    """What firmware/uss/README.md has copied to it, as sources."""
+    files = {"board.py": "boards/pico/board.py", "main.py": "tools/examples/one_drive.py"}
+    for folder in ("uss", "hal"):
+        for name in os.listdir("firmware/" + folder):
+            if name.endswith(".py"):
+                files[folder + "/" + name] = "firmware/%s/%s" % (folder, name)
+    for path in files:
+        with open(files[path], "rb") as file:
+            files[path] = file.read()
+    world = PicoWorld("stock", files=files, parameters=QUICK)
+    assert turns(world, 25.0, 15_000), world.drives[1].report()
+    assert stands(world, ms=20_000)
     world.check()

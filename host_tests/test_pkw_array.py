@@ -52,22 +52,22 @@ def test_all_elements_are_read():
     assert sent(job) == [0x6130, 0x00FF, 0]
     assert answered(job, (0x4130, 0xFF, 400, 0x8000, 0xFFFF), VARIABLE)
     assert job.state == pkw.DONE and (job.high, job.low) == (400, 0x8000)
-    assert job.values == [400, 32768, 65535] and job.signed_values() == [400, -32768, -1]
+    assert job.integer_values() == [400, 32768, 65535] and job.signed_values() == [400, -32768, -1]
     assert answered(job, (0x5130, 0xFF, 0x4248, 0, 0xC120, 0), VARIABLE)
-    assert job.values == [0x42480000, 0xC1200000] and job.float_values() == [50.0, -10.0]
+    assert job.integer_values() == [0x42480000, 0xC1200000] and job.float_values() == [50.0, -10.0]
     assert answered(job, (0x5130, 0xFF, 0x3E20, 0, 0x4248, 0x8000), VARIABLE)
     assert job.float_values() == [0.15625, 50.125] and (job.high, job.low) == (0x3E20, 0)
     assert answered(job, (0x5130, 0xFF, 0x4248, 0, 0xC120, 0), VARIABLE)
     assert job.signed_values() == [0x42480000, 0xC1200000 - (1 << 32)]
     assert answered(job, (0x4130, 0xFF, 7), VARIABLE)
-    assert job.values == [7] and (job.high, job.low) == (0, 7)
+    assert job.integer_values() == [7] and (job.high, job.low) == (0, 7)
     assert answered(job, (0x4130, 0xFF, 7, 8), VARIABLE) and (job.high, job.low) == (7, 8)
 
 
 def test_the_longest_answer_has_124_words():
     job = pkw_array.read_all(304)
     assert answered(job, [0x4130, 0xFF] + list(range(124)), VARIABLE)
-    assert job.values == list(range(124))
+    assert job.integer_values() == list(range(124))
 
 
 def test_an_answer_longer_than_its_room_is_an_error():

@@ -3,6 +3,7 @@
 from round_bench import MASK, MIRROR, Bench, Node, framed
 from uss import scan as scanning
 from uss.scan import EVERY_NET_COUNT, NET_COUNTS, RATES, RateScan, Scan
+from uss.single import DONE, Mirror
 from uss.timing import BAUD_RATES
 
 
@@ -113,6 +114,17 @@ def test_it_waits_until_the_bus_has_listened():
     assert bench.sent
 
 
+def test_it_waits_behind_other_telegrams_outside_the_list():
+    bench = Bench([Node(1)], listed=False)
+    others = [Mirror(1) for _ in range(8)]
+    for other in others:
+        bench.master.post(other)
+    scan = Scan(bench.master, MASK, range(3))
+    bench.run_until(lambda: scan.step(bench.now), 60_000_000)
+    assert scan.found == {1: 12} and all([other.state == DONE for other in others])
+    assert scan.step(bench.now)  # it stays over
+
+
 # --- beside drives that are controlled ----------------------------------------------------------
 
 
@@ -213,6 +225,7 @@ class Lines:
             else:
                 now = 0
             if scan.step(now):
+                assert scan.step(now)  # it stays over
                 return
 
 

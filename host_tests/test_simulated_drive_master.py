@@ -4,59 +4,28 @@ What one of them has misread of the specification shows here against the other.
 """
 
 from boards.sim import g110, g120, generic, mm3, mm420, mm440, v20
-from boards.sim.board import HardTimer
-from boards.sim.chip import UART, Chip, Pin
-from boards.sim.clock import Clock
-from boards.sim.drive import Drive
-from boards.sim.wire import Transceiver, Wire
-from hal.pacer import Pacer
-from hal.rs485 import Rs485Link
-from uss import families, pkw, pkw_array, pkw_text
-from uss.layout import VARIABLE, Layout
-from uss.master import Master
-from uss.timing import Timing
+from fleet_bench import Fleet
+from uss import pkw, pkw_array, pkw_text
+from uss.change_reports import Reports
+from uss.layout import VARIABLE
+from uss.pkw_description import DEFAULT, FLOAT, NAME, UPPER_LIMIT, read_description
 
-LOOP_US = 2_000
-
-# The simulated family, and what the master takes it for.
-PAIRS = (
-    (generic, families.GENERIC), (mm3, families.MM3), (mm420, families.MM420),
-    (mm440, families.MM440), (g110, families.G110), (v20, families.V20), (g120, families.G120),
-)  # fmt: skip
+FAMILIES = (generic, mm3, mm420, mm440, g110, v20, g120)
 
 
-class Line:
-    """A master on the simulated chip, and one drive of a kind: keyword arguments of `Drive`."""
+class Line(Fleet):
+    """A master, its `drive`, and the simulated one, `motor`, of a kind: arguments of `Drive`."""
 
-    def __init__(self, longest=10, **kind):
-        self.clock = clock = Clock()
-        self.wire = wire = Wire(clock, 19200)
-        self.motor = Drive(clock, wire, 5, **kind)
-        self.chip = chip = Chip(clock, wire)
-        uart, driver_enable = UART(chip, 19200), Pin(chip)
-        Transceiver(wire, uart, driver_enable)
-        link = Rs485Link(uart, driver_enable, HardTimer(chip), clock, 19200, True)
-        self.master = Master(link, Timing(19200), clock.ticks_mask)
-        self.drive = self.master.add(5, Layout(*self.motor.layout, longest=longest))
-        self.pacer = Pacer(self.master, link, clock, HardTimer(chip))
-        self.pacer.start()
-        self.run(1_500)
+    def __init__(self, **kind):
+        Fleet.__init__(self, {5: kind})
+        self.motor, self.drive = self.motors[5], self.drives[5]
+        self.run(400)
         assert self.drive.contact
-
-    def run(self, ms):
-        until = self.clock.now_us + ms * 1000
-        while self.clock.now_us < until:
-            self.master.refresh(self.clock.ticks_us())
-            self.pacer.tend()
-            self.clock.advance(LOOP_US)
 
     def do(self, job):
         """Ask, and wait for the end of it: the job."""
         self.drive.ask(job)
-        for _ in range(3_000):
-            if job.state != pkw.PENDING:
-                break
-            self.run(2)
+        self.run_until(lambda: job.state != pkw.PENDING)
         return job
 
     def done(self, job):
@@ -67,8 +36,13 @@ class Line:
         assert self.do(job).state == pkw.REFUSED, job
         return job.error
 
+    def settle(self, hz):
+        """Wait until the motor turns at so many Hz, and the master has heard of it."""
+        self.run_until(lambda: self.motor.hz() == hz)
+        self.run(200)
+
     def check(self):
-        assert self.wire.violations == [] and self.chip.handler_errors == []
+        Fleet.check(self)
         assert not any(self.drive.counters[1:]), self.drive.counters
 
 
@@ -84,30 +58,30 @@ def kind_of(family, pkw_words, pzd_words=2, **more):
 
 
 def test_each_family_is_run_both_ways_as_its_data_say():
-    for simulated, family in PAIRS:
+    for simulated in FAMILIES:
         line = Line(family=simulated, parameters={simulated.LINK["off time"]: 0})
+        family = line.family(5)
         assert line.motor.layout == (family.layout.pkw_words, family.layout.pzd_words)
         line.drive.start(0x2000, family.on)
-        line.run(12_000)
-        assert line.motor.hz() == 25, family.name
+        line.settle(25)
         if family.on_reverse:
             line.drive.turn(family.on_reverse)
         else:
             line.drive.hsw = 0xE000
-        line.run(16_000)
-        assert line.motor.hz() == -25, family.name
+        line.settle(-25)
         hiw = line.drive.word(2)
         assert hiw == (0xE000 if family.hiw_is_signed else 0x2000), family.name
         assert not line.drive.word(1) & 0x4000
         line.drive.stop()
-        line.run(12_000)
+        line.settle(0)
         assert line.motor.state == "ready" and line.motor.starts == 1
         line.check()
 
 
 def test_the_numbers_that_a_family_names_are_there():
-    for simulated, family in PAIRS:
+    for simulated in FAMILIES:
         line = Line(family=simulated, parameters={simulated.LINK["off time"]: 0})
+        family = line.family(5)
         numbers = [row[0] for row in family.survey if row is not None]
         numbers += [family.baud_number, family.address_number, family.off_time_number]
         numbers += [family.fault_number]
@@ -162,13 +136,13 @@ def test_arrays():
 
 
 def test_all_elements_at_once():
-    line = Line(longest=40, **kind_of(generic, VARIABLE, 4))
-    assert line.done(pkw_array.read_all(9)).values == [5, 5, 5]
-    assert line.done(pkw_array.write_all_words(9, (1, 2, 3))).values == [1, 2, 3]
-    assert line.done(pkw_array.read_all(4)).values == [1, 2, 3, 4]
+    line = Line(**kind_of(generic, VARIABLE, 4))
+    assert line.done(pkw_array.read_all(9)).integer_values() == [5, 5, 5]
+    assert line.done(pkw_array.write_all_words(9, (1, 2, 3))).integer_values() == [1, 2, 3]
+    assert line.done(pkw_array.read_all(4)).integer_values() == [1, 2, 3, 4]
     line.done(pkw_array.write_all_doubles(4, (1 << 31, 2, 3, 4), eeprom=True))
     assert line.motor.read(4) == 1 << 31 and line.motor.eeprom_writes == 4
-    assert len(line.done(pkw_array.read_all(2019)).values) == 16
+    assert len(line.done(pkw_array.read_all(2019)).integer_values()) == 16
     assert line.refused(pkw_array.write_all_words(9, (1, 2))) == 108
     line.check()
 
@@ -196,27 +170,34 @@ def test_browsing_by_what_comes_with_an_error():
 
 def test_descriptions():
     line = Line(**kind_of(generic, VARIABLE))
-    whole = line.done(pkw_text.read_description(1120)).description()
+    whole = line.done(read_description(1120)).description()
     assert (whole.name, whole.lower, whole.upper) == ("ramp-up time", 0.0, 650.0)
-    assert whole.data_type() == pkw_text.FLOAT and whole.elements == 1
+    assert whole.data_type() == FLOAT and whole.elements == 1
     assert whole.factor == 1.0
-    signed = line.done(pkw_text.read_description(19)).description()
+    signed = line.done(read_description(19)).description()
     assert (signed.lower, signed.upper) == (-1000, 1000)
-    default = line.done(pkw_text.read_description(2011, pkw_text.UPPER_LIMIT)).description()
-    assert default.upper == 31
-    assert line.refused(pkw_text.read_description(1)) == 0
+    upper = line.done(read_description(2011, UPPER_LIMIT)).description()
+    assert upper.upper == 31 and upper.default is None
+    default = line.done(read_description(2010, DEFAULT)).description()
+    assert default.default == 6 and default.name is None
+    assert line.refused(read_description(1)) == 0
+    for pkw_words in (3, 4):
+        line = Line(**kind_of(generic, pkw_words))
+        job = read_description(18, UPPER_LIMIT)
+        assert line.done(job).description().upper == 0xFFFF
+        assert line.refused(read_description(18)) == 102
     line = Line(**kind_of(mm440, 4))
-    job = pkw_text.read_description(1120, pkw_text.UPPER_LIMIT)
+    job = read_description(1120, UPPER_LIMIT)
     assert line.done(job).description().upper is not None
-    assert line.refused(pkw_text.read_description(1120, pkw_text.NAME)) == 9
+    assert line.refused(read_description(1120, NAME)) == 9
 
 
 def test_texts():
     line = Line(**kind_of(generic, VARIABLE))
-    assert line.done(pkw_text.read_text(7, 3)).text == "300 BAUD"
-    assert line.done(pkw_text.read_text(9, 4, field=2)).text == "1200 BAUD"
-    assert line.done(pkw_text.write_text(9, 2, "THE SECOND ONE")).text == "THE SECOND ONE"
-    assert line.done(pkw_text.read_text(9, 2)).text == "THE SECOND ONE"
+    assert line.done(pkw_text.read_text(7, 3)).text() == "300 BAUD"
+    assert line.done(pkw_text.read_text(9, 4, field=2)).text() == "1200 BAUD"
+    assert line.done(pkw_text.write_text(9, 2, "THE SECOND ONE")).text() == "THE SECOND ONE"
+    assert line.done(pkw_text.read_text(9, 2)).text() == "THE SECOND ONE"
     assert line.refused(pkw_text.read_text(18, 1)) == 15
     line.check()
 
@@ -224,7 +205,7 @@ def test_texts():
 def test_change_reports():
     for pkw_words in (3, 4, VARIABLE):
         line = Line(**kind_of(generic, pkw_words, reports=True))
-        reports = pkw_text.Reports(line.drive.channel)
+        reports = Reports(line.drive.channel)
         line.run(100)
         line.motor.write(7, 0, 3)
         line.motor.write(2011, 1, 9)
@@ -243,16 +224,31 @@ def test_change_reports():
         line.check()
 
 
+def test_each_of_many_changes_is_reported_once_while_parameters_are_read():
+    line = Line(**kind_of(generic, 4, reports=True))
+    reports = Reports(line.drive.channel)
+    line.run(100)
+    for value in range(10):
+        line.motor.write(18, 0, 100 + value)
+        assert line.done(pkw.read(700)).integer_value() == 5
+        line.run(200)
+        report = reports.get()
+        assert (report.number, report.integer_value()) == (18, 100 + value)
+        assert reports.get() is None
+    line.check()
+
+
 def test_stale_replies_and_standing_tasks():
     """However late a drive answers, and however often it does what stands there: once."""
     for stale in (0, 1, 5):
         for reexecute in (False, True):
-            line = Line(**kind_of(mm440, 4))
-            line.motor.stale_replies = stale
-            line.motor.reexecute = reexecute
-            assert line.done(pkw.read(700)).integer_value() == 5
-            for value in (7, 8, 8):
-                job = pkw.write_word(2010, value, index=1, eeprom=True)
-                assert line.done(job).integer_value() == value
-            line.run(500)
-            assert line.motor.eeprom_writes == 3, (stale, reexecute)
+            for pkw_words in (3, 4, VARIABLE):
+                line = Line(**kind_of(mm440, pkw_words))
+                line.motor.stale_replies = stale
+                line.motor.reexecute = reexecute
+                assert line.done(pkw.read(700)).integer_value() == 5
+                for value in (7, 8, 8):
+                    job = pkw.write_word(2010, value, index=1, eeprom=True)
+                    assert line.done(job).integer_value() == value
+                line.run(500)
+                assert line.motor.eeprom_writes == 3, (stale, reexecute, pkw_words)

@@ -50,23 +50,22 @@ class Keypad:
         if self._levels is None:
             down = self._read_direct()
         else:
-            down = self._read_levels()
+            levels = self._levels()
+            down = self._down if levels == self._seen else self._take_levels(levels)
         if self._matrix:
             down |= self._matrix.read() << self._shift
             self.unclear = self._matrix.unclear << self._shift
         return down
 
-    def _read_levels(self):
+    def _take_levels(self, levels):
         """Nothing but the levels decides: a pin that is asked once more may have bounced since."""
-        levels = self._levels()
-        if levels != self._seen:
-            low = 0
-            for bit, mask in self._masks:
-                if not levels & mask:
-                    low |= bit
-            self._down = low ^ self._closed
-            self._seen = levels
-        return self._down
+        low = 0
+        for bit, mask in self._masks:
+            if not levels & mask:
+                low |= bit
+        self._down = down = low ^ self._closed
+        self._seen = levels
+        return down
 
     def _read_direct(self):
         low = 0

@@ -44,12 +44,11 @@ class Pacer:
         self._armed_at = 0  # when the timer was set
         self._armed_us = 0  # to come so long after that
         self._thrown = None  # what the main loop is to hear of: Ctrl-C
-        self._on_interrupt = self.run  # bound once: binding allocates
-        self._on_timer = self._timer_came
+        self._on_timer = self._timer_came  # bound once: binding allocates
 
     def start(self):
         self._inside = False
-        self._link.on_activity = self._on_interrupt
+        self._link.on_activity = self.run
         self.run()
 
     def stop(self):

@@ -21,6 +21,7 @@ from panel.setpoint import Setpoint
 from panel.stop_watch import StopWatch
 from uss import pzd
 
+UNKNOWN = const(-1)  # no status word
 SILENT_MAX = const(3)  # telegrams without an answer after which the speed is not known any more
 
 # settings.second_stop: what a held STOP sends.
@@ -60,8 +61,7 @@ class Control:
         self._settings = settings
         self._now = 0
         self._contact = False  # as last seen
-        self._quiet = False  # there was nothing to watch
-        self._zsw = 0  # drive.zsw then
+        self._quiet_zsw = UNKNOWN  # drive.zsw when there was nothing to watch
         self._jogged = False  # what turns, or ramps down, is a jog of this panel
 
     # --- what an operator does ------------------------------------------------------------------
@@ -168,12 +168,8 @@ class Control:
     def is_quiet(self):
         """Whether it stands, as when `watch` found nothing that would have to be watched."""
         drive = self.drive
-        return (
-            self._quiet
-            and drive.zsw == self._zsw
-            and drive.contact == self._contact
-            and not self.moved
-        )
+        is_same = drive.zsw == self._quiet_zsw and drive.contact == self._contact
+        return is_same and not self.moved
 
     def is_starting(self):
         """Whether START has been obeyed: the drive is being asked, or ON is sent."""
@@ -229,21 +225,22 @@ class Control:
         self._watch_stop(now)
         if self.moved and not self._settings.dirty:
             self.moved = False
-        self._zsw = zsw = drive.zsw
-        self._quiet = not (
+        zsw = drive.zsw
+        is_busy = (
             zsw & (pzd.ZSW_RUNNING | pzd.ZSW_FAULT)
             or drive.wanted
             or self.lost_running
             or self.stop_watch.active
             or drive.off != pzd.OFF1
         )
+        self._quiet_zsw = UNKNOWN if is_busy else zsw
 
     def _stop(self, off):
         self.drive.stop(off)
         self.jogging = 0
         self.question = False
         self.checking = False
-        self._quiet = False
+        self._quiet_zsw = UNKNOWN
         self.survey.drop_recheck()
         if not self.stop_watch.active:  # pressing again does not put the alarm off
             self.stop_watch.begin()
@@ -255,7 +252,7 @@ class Control:
         """A key was obeyed: what was said of the drive is over."""
         self.notice = None
         self.question = False
-        self._quiet = False
+        self._quiet_zsw = UNKNOWN
         self._command.give(self._now)
 
     def _finish_check(self, now):

@@ -22,12 +22,47 @@ REPEAT_MS = const(120)
 PACES = ((16, 100), (8, 10), (0, 1))
 
 
+class Acts:
+    """What was pressed and repeated in a step, for those who take it up in the next one.
+
+    keys: the `Keys`. `pressed`, `repeated`, `repeats`: as there, when `note` was called.
+    """
+
+    def __init__(self, keys):
+        self.pressed = 0
+        self.repeated = 0
+        self.repeats = 0
+        self.bit = keys.bit
+        self.forget = keys.forget
+        self._keys = keys
+
+    def note(self):
+        """Keep what has just been found."""
+        keys = self._keys
+        self.pressed = keys.pressed
+        self.repeated = keys.repeated
+        self.repeats = keys.repeats
+
+    def moved(self, bit):
+        """1 when the key of this bit went down or repeated, else 0."""
+        return 1 if (self.pressed | self.repeated) & bit else 0
+
+    def pace(self, highest=10):
+        """Steps for a value that a held key moves: more the longer it is held, up to `highest`."""
+        if self.repeated:
+            for repeats, steps in PACES:
+                if self.repeats > repeats and steps <= highest:
+                    return steps
+        return 1
+
+
 class Keys:
     """names: of the keys, in the order of their bits. mask: the millisecond clock's period - 1.
 
     After each `update`, as bits: `down`, the keys that are down; `pressed`, those that went down
     just now; `repeated`, those held for another REPEAT_MS just now. `repeats`: how often the key
-    that repeats has done so. Only the key pressed last repeats.
+    that repeats has done so. Only the key pressed last repeats. `at_rest`: no key is down or has
+    just been, and each has been seen up; as long as none is down, `update` has nothing to do.
     """
 
     def __init__(self, names, mask):
@@ -44,8 +79,9 @@ class Keys:
         self._released = 0  # keys that were seen up since the start
         self._last = 0  # the key pressed last, while it is down
         self._repeat_at = 0
+        self._wait_ms = 0  # from then to the next repeat
         self._first = True
-        self._at_rest = False  # no key is down or has just been, and each has been seen up
+        self.at_rest = False
 
     def bit(self, key):
         """The bit of a key by name; 0 when this board has no such key."""
@@ -59,26 +95,12 @@ class Keys:
         """What is down repeats nothing any more: it has to be pressed anew."""
         self._last = 0
 
-    def moved(self, bit):
-        """1 when the key of this bit went down or repeated just now, else 0."""
-        return 1 if (self.pressed | self.repeated) & bit else 0
-
-    def pace(self, highest=10):
-        """Steps for a value that a held key moves: more the longer it is held, up to `highest`."""
-        if self.repeated:
-            for repeats, steps in PACES:
-                if self.repeats > repeats and steps <= highest:
-                    return steps
-        return 1
-
     def update(self, raw, now_ms, unclear=0):
         """raw: what the keypad reads now, as bits. unclear: the keys among them of which it cannot
         tell; they are up, and each must be seen up before it counts again.
 
         Answers whether there is anything to be seen: a key is down, or was until now.
         """
-        if self._at_rest and not (raw or unclear):
-            return False  # as it mostly is
         were_down = self.down
         if unclear:
             raw &= ~unclear
@@ -98,10 +120,13 @@ class Keys:
         if unsettled:
             self._debounce(changed, unsettled, now_ms)
         self._released &= ~unclear
-        if self._last:
-            self._repeat(now_ms)
+        if self._last and (now_ms - self._repeat_at) & self._mask >= self._wait_ms:
+            self._repeat_at = now_ms
+            self._wait_ms = REPEAT_MS
+            self.repeats += 1
+            self.repeated = self._last
         seen = self.down | were_down
-        self._at_rest = not (seen or unsettled or unclear)
+        self.at_rest = not (seen or unsettled or unclear)
         return seen != 0
 
     def _debounce(self, changed, unsettled, now_ms):
@@ -131,12 +156,6 @@ class Keys:
             self.pressed |= bit
             self._last = bit
             self._repeat_at = now_ms
+            self._wait_ms = REPEAT_DELAY_MS
             self.repeats = 0
         self.down |= bit
-
-    def _repeat(self, now_ms):
-        wait_ms = REPEAT_MS if self.repeats else REPEAT_DELAY_MS
-        if elapsed(now_ms, self._repeat_at, self._mask) >= wait_ms:
-            self._repeat_at = now_ms
-            self.repeats += 1
-            self.repeated = self._last

@@ -12,7 +12,7 @@ from micropython import const
 
 from panel import texts
 from panel.jog_keys import JogKeys
-from panel.keys import Keys
+from panel.keys import Acts, Keys
 from panel.pages.home import Home
 from panel.pages.parameters import Parameters
 from panel.pages.question import Question
@@ -100,17 +100,23 @@ class Panel:
         # What these do ends when they go up, or goes on; the others act when they are pressed.
         self._held_keys = self._jog_bits | self._stop_bit
         self._were_down = 0  # the keys that were down in the last step, as bits
+        self._acts = Acts(keys)
+        self._acting = False  # they are still to be done
 
     def step(self, raw_keys, now_ms, now_us, unclear_keys=0):
         """raw_keys: the keys down now, as bits; unclear_keys: those that cannot be told.
 
-        Both times are readings of the clock. What an operator does is done in this very step; what
-        comes of it is taken up in the next ones, each of which does one thing of several in turn.
-        Answers whether the rest of the step is for the display.
+        Both times are readings of the clock. STOP and the jog keys act in this very step, the
+        others in the next one; what comes of it is taken up in those that follow, each of which
+        does one thing of several in turn. Answers whether the rest of the step is for the display.
         """
         keys = self._keys
-        if keys.update(raw_keys, now_ms, unclear_keys) and self._take_keys(keys, now_ms):
-            return False  # that was enough for a step
+        if raw_keys or unclear_keys or not keys.at_rest:
+            if keys.update(raw_keys, now_ms, unclear_keys) and self._take_keys(keys, now_ms):
+                return False  # that was enough for a step
+        if self._acting:
+            self._act(now_ms)
+            return False
         if self.stop_key.left:
             self.stop_key.stop_next()
             return False
@@ -215,7 +221,7 @@ class Panel:
     # --- keys -----------------------------------------------------------------------------------
 
     def _take_keys(self, keys, now_ms):
-        """A key is down, or was until now. Answers whether there was much to do."""
+        """A key is down, or was until now. Answers whether that takes the rest of the step."""
         down = keys.down | self._were_down
         self._were_down = keys.down
         acts = keys.pressed | keys.repeated
@@ -228,25 +234,36 @@ class Panel:
         page = self._over or self._page
         if down & self._jog_bits:
             self._jog_keys.step(keys, self.selected, page.obeys and not self.stop_key.is_down)
-        if acts:
-            if acts & self._command_keys and page.obeys:
-                self._take_command(keys, now_ms)
-            page.take_keys(keys, now_ms)
-        if keys.pressed:
+        if not acts:
+            return False
+        if self._acting:  # since the last step
+            self._act(now_ms)
+        self._acts.note()
+        self._acting = True
+        return True
+
+    def _act(self, now_ms):
+        """What was pressed or repeats does what it does on this page."""
+        self._acting = False
+        acts = self._acts
+        page = self._over or self._page
+        if (acts.pressed | acts.repeated) & self._command_keys and page.obeys:
+            self._take_command(acts, now_ms)
+        page.take_keys(acts, now_ms)
+        if acts.pressed:
             if self._over is self._splash:
                 self._end_splash(now_ms)
             self._begin_picture(now_ms)
-        return acts != 0
 
-    def _take_command(self, keys, now_ms):
-        pressed = keys.pressed
+    def _take_command(self, acts, now_ms):
+        pressed = acts.pressed
         if self.stop_key.is_down and pressed & self._motion_keys:
             self.say(texts.REFUSED_STOP, now_ms)
         elif pressed & self._start_key:
             self.selected.start()
         if pressed & self._reverse_key:
             self.selected.reverse()
-        direction = keys.moved(self._up_key) - keys.moved(self._down_key)
+        direction = acts.moved(self._up_key) - acts.moved(self._down_key)
         if direction:
             self._select(direction)
         if pressed & self._parameter_key:
@@ -317,5 +334,5 @@ class Panel:
         self._over = None
         if self._notice:
             self.say(self._notice, now_ms)
-        elif self._keys.pressed & self._start_key:
+        elif self._acts.pressed & self._start_key:
             self.say(texts.REFUSED_EARLY, now_ms)

@@ -1,17 +1,44 @@
 """USS, the serial protocol of Siemens drives: a bus master without clock, machine or I/O.
 
-Time and characters are arguments, so it runs anywhere and is tested to the microsecond:
+Time and characters are arguments, so it runs anywhere and is tested to the microsecond. README.md
+beside this file shows how it is used.
 
-    telegram   frame: build into a buffer, judge what was received
-    timing     character, start interval, residual run time from the baud rate
-    receiver   bursts of a link -> the one telegram awaited
-    pkw        parameter channel: tasks, replies, numbers, values, jobs
-    pzd        process data: control and status words, scaling
-    channel    the parameter channel of one drive: jobs wait, one task is on the line
-    drive      one slave: commands, process image, counters
-    master     the bus: who talks when, supervision
-    profiles   what differs between drive families: data
-    survey     what must be known of a drive before it may be started
+The telegrams:
+    telegram         frame: build into a buffer, judge what was received
+    layout           how the net data are divided between PKW and PZD
+    timing           character, start interval, residual run time from the baud rate
+    pkw              parameter channel: tasks, replies, numbers, values, jobs
+    pzd              process data: control and status words, scaling in integers
+
+The engine, which may run in interrupts:
+    master           the exchange: silence, request, reply; supervision of the loop
+    turns            who talks when: the circulating list, and what goes before it
+    care             drives that back off, and drives that need more turns
+    receiver         bursts of a link -> the one telegram awaited
+    drive            one slave: commands, process image, counters
+    channel          the parameter channel of one drive: jobs wait, one task is on the line
+    single           telegrams outside the list: mirror, broadcast, special
+    fast             the loops over characters, in `fast_viper` as machine code
+
+What the panel knows of a drive:
+    profiles         the parameters of a MICROMASTER 4 that matter to it: data
+    survey           what must be known of a drive before it may be started
+
+For other programs; the panel imports none of these:
+    bus              the master in a few words: floats, calls that wait, plain errors
+    particulars      what a drive tells of itself, for `bus`
+    families         what differs between the drive families: data
+    words            the bits of control and status words by name
+    scaling          PZD2 in percent, Hz and 1/min, floating point
+    pkw_array        jobs for arrays: an element, all of them, their number
+    pkw_description  jobs for descriptions: limits, name, unit
+    pkw_text         jobs for texts
+    pkw_long         what the last three share
+    change_reports   parameters that somebody else has changed
+    scan             who is on the line, and at which baud rate
+    plc              the blocks USS_INIT and USS_CTRL of the S7-200's USS library
+    plc_parameters   its blocks USS_RPM and USS_WPM
+    status           its error codes, and the S7-1200's
 
 Source: Universal Serial Interface, specification E20125-D0001-S302-A1-7600, edition 09.94.
 """

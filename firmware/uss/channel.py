@@ -90,9 +90,9 @@ class Channel:
         self.idle = False
 
     def follow(self, reports):
-        """Hand every reply to `reports` (see `pkw_text`), and its bit to every task; None ends it.
+        """Hand every reply to `reports`, a `change_reports.Reports`, and its bit to every task.
 
-        RuntimeError when the drive has no parameter channel.
+        None ends it. RuntimeError when the drive has no parameter channel.
         """
         if not self._form:
             raise RuntimeError("the drive has no parameter channel")

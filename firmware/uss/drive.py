@@ -185,11 +185,16 @@ class Drive:
         self.steady = False
         self.call()
 
+    def move(self, address):
+        """From now on it answers at another address; the master sees that it is free."""
+        self.address = address
+        self.call()  # what called at the old one
+        self._call_for_turns()
+
     def call(self):
         """Let the engine look how urgent this drive is."""
         attention = self._attention
         attention[self.address] = self.urgency()
-        attention[WANTS + self.address] = 1
         attention[ANY] = 1
 
     def _call_for_turns(self):
@@ -342,21 +347,23 @@ class Drive:
         stw ^= self._toggled
         self.sealed = self.steady = False  # should this fail half way, it is done anew
         self._sent_stw = UNKNOWN
-        self._put_words(stw, hsw, self.further)
+        behind = self._behind
+        if behind >= 3:
+            request = self.request
+            at = self.size - behind
+            request[at] = stw >> 8
+            request[at + 1] = stw & 0xFF
+            if behind >= 5:
+                request[at + 2] = hsw >> 8
+                request[at + 3] = hsw & 0xFF
+                if behind > 5:
+                    self._put_further(at + 4)
         self._sent_stw = stw
         self.steady = not self.insist and self.acknowledgements == self.acknowledged
 
-    def _put_words(self, stw, hsw, further):
-        """The PZD words, as far as the layout has them, to the end of the request."""
-        request = self.request
-        words = self._behind >> 1
-        at = self.size - self._behind
-        if words:
-            put_word(request, at, stw)
-        if words > 1:
-            put_word(request, at + 2, hsw)
-        for index in range(words - 2):
-            put_word(request, at + 4 + 2 * index, further[index])
+    def _put_further(self, at):
+        for index in range(len(self.further) >> 1):
+            put_word(self.request, at + 2 * index, self.further[index])
 
     def take(self, buffer, count, now):
         """Take the words of a valid reply: the first `count` characters of `buffer`."""

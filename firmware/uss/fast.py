@@ -13,6 +13,14 @@ def exclusive_or(buffer, count):
     return check
 
 
+def frame(buffer, size, address):
+    """Put STX, LGE, ADR and BCC around the net data of a telegram of `size` characters."""
+    buffer[0] = 0x02
+    buffer[1] = size - 2
+    buffer[2] = address
+    buffer[size - 1] = exclusive_or(buffer, size - 1)
+
+
 def is_reply(buffer, count, request):
     """Whether the `count` characters are a whole telegram with the ADR of `request`, but not that
     request itself, which a line with two wires may bring back.
@@ -68,11 +76,19 @@ def greatest(values, at, count, start):
 
 
 # For the test that compares them with the others.
-IN_PYTHON = (exclusive_or, is_reply, agreeing, get_words, copy, greatest)
+IN_PYTHON = (exclusive_or, is_reply, agreeing, get_words, copy, greatest, frame)
 
 # What importing it raises: CPython knows no viper; no emitter in a port that compiles the source,
 # or one for another processor in a port that is handed bytecode.
 try:
-    from uss.fast_viper import agreeing, copy, exclusive_or, get_words, greatest, is_reply
+    from uss.fast_viper import (
+        agreeing,
+        copy,
+        exclusive_or,
+        frame,
+        get_words,
+        greatest,
+        is_reply,
+    )
 except (ImportError, AttributeError, NameError, SyntaxError, ValueError):
     pass

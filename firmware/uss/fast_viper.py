@@ -17,6 +17,19 @@ def exclusive_or(buffer: ptr8, count: int) -> int:
 
 
 @micropython.viper
+def frame(buffer: ptr8, size: int, address: int):
+    buffer[0] = 0x02
+    buffer[1] = size - 2
+    buffer[2] = address
+    check = 0
+    index = 0
+    while index < size - 1:
+        check ^= buffer[index]
+        index += 1
+    buffer[index] = check
+
+
+@micropython.viper
 def is_reply(buffer: ptr8, count: int, request: ptr8) -> bool:
     if count < 5 or buffer[0] != 0x02 or buffer[1] != count - 2 or buffer[2] != request[2]:
         return False

@@ -19,6 +19,7 @@ from micropython import const
 
 from uss import telegram
 from uss.drive import ANY, SILENT_MAX
+from uss.fast import frame
 from uss.receiver import COMING, SILENT, WAITING, Receiver
 from uss.timing import elapsed
 from uss.turns import Turns
@@ -75,7 +76,7 @@ class Master(Turns):
         self._link = link
         self._lost_us = lost_us
         self._receiver = Receiver(timing, mask)
-        self._foreseen = getattr(link, "foreseen", False)
+        self._foreseen = link.interrupts and getattr(link, "foreseen", False)
         self._reply_window_us = self._receiver.window_us
         self._character_us = timing.character_us
         self._drive = None  # the one whose turn it is, or a telegram outside the list
@@ -317,17 +318,20 @@ class Master(Turns):
         drive.fill(now)
         size = drive.size
         if not drive.sealed or request[2] != drive.address:
-            telegram.seal(request, drive.address, size - 4)
+            frame(request, size, drive.address)
             drive.sealed = True
         link = self._link
         self.phase = SENDING
         self._sending_since = now
         link.send(request, size)
         self.exchanges = (self.exchanges + 1) & 0xFFFF
-        left_us = link.sending_us(now)
-        if self._foreseen:
-            self._open(drive, link.sent_at)
-        return self._sending_due_us(left_us)
+        if not self._foreseen:
+            return self._sending_due_us(link.sending_us(now))
+        self._quiet_since = sent_at = link.sent_at
+        self._receiver.open(drive, sent_at)
+        self.phase = AWAITING
+        # The link reports the reply: there is nothing to do until that is late.
+        return ((sent_at - now) & self._mask) + self._reply_window_us
 
     def _finish_sending(self, now):
         left_us = self._link.sending_us(now)
@@ -337,14 +341,10 @@ class Master(Turns):
             if sending_us > drive.size * self._character_us + STUCK_US:
                 return self._give_up(now)
             return self._sending_due_us(left_us)
-        self._open(drive, self._link.sent_at)
-        return self._await(now)
-
-    def _open(self, drive, sent_at):
-        """Await the reply to what was sent until, or will have been sent at `sent_at`."""
-        self._quiet_since = sent_at
-        self._receiver.open(drive, sent_at)
+        self._quiet_since = self._link.sent_at
+        self._receiver.open(drive, self._link.sent_at)
         self.phase = AWAITING
+        return self._await(now)
 
     def _sending_due_us(self, left_us):
         """A link with interrupts reports the reply: there is nothing to do until that is late."""

@@ -8,7 +8,7 @@ A request and its reply begin with PKE, IND and the value, whose place depends o
                                                        the word    -           3 words, or variable
 
 A `Job` is one task for one drive and, later, its result. Who carries it there is `channel`; what
-goes beyond one value is in `pkw_array` and `pkw_text`.
+goes beyond one value is in `pkw_array`, `pkw_description` and `pkw_text`.
 
     job = read(2000)                     # or write_word(700, 5), write_float(1082, 40.5)
     drive.ask(job)                       # ... later:
@@ -48,33 +48,45 @@ REFUSED_REPLY = const(7)
 NO_RIGHTS_REPLY = const(8)
 TEXT_REPLY = const(15)
 
-_NO_RIGHTS = const(1 << 8)  # the bit of NO_RIGHTS_REPLY: of all tasks that write
+_NO_RIGHTS = const(1 << NO_RIGHTS_REPLY)  # of all tasks that write
+_REFUSED = const(1 << REFUSED_REPLY)
+_WORD = const(1 << WORD)
+_DOUBLE = const(1 << DOUBLE)
+_DESCRIPTION = const(1 << DESCRIPTION_REPLY)
+_ELEMENT_WORD = const(1 << ELEMENT_WORD)
+_ELEMENT_DOUBLE = const(1 << ELEMENT_DOUBLE)
 
 # By task, one bit for each AK that answers it (specification tables 4.1...4.3 and 4.10...4.11);
 # 0: there is no such task.
 FITTING = (
+    0,  # NO_TASK
+    _WORD | _DOUBLE | _REFUSED,  # READ
+    _WORD | _REFUSED | _NO_RIGHTS,  # WRITE_WORD
+    _DOUBLE | _REFUSED | _NO_RIGHTS,  # WRITE_DOUBLE
+    _DESCRIPTION | _REFUSED,  # READ_DESCRIPTION
+    _DESCRIPTION | _REFUSED | _NO_RIGHTS,  # WRITE_DESCRIPTION
+    _ELEMENT_WORD | _ELEMENT_DOUBLE | _REFUSED,  # READ_ELEMENT
+    _ELEMENT_WORD | _REFUSED | _NO_RIGHTS,  # WRITE_ELEMENT_WORD
+    _ELEMENT_DOUBLE | _REFUSED | _NO_RIGHTS,  # WRITE_ELEMENT_DOUBLE
+    1 << COUNT_REPLY | _REFUSED,  # COUNT_ELEMENTS
     0,
-    1 << WORD | 1 << DOUBLE | 1 << REFUSED_REPLY,
-    1 << WORD | 1 << REFUSED_REPLY | _NO_RIGHTS,
-    1 << DOUBLE | 1 << REFUSED_REPLY | _NO_RIGHTS,
-    1 << DESCRIPTION_REPLY | 1 << REFUSED_REPLY,
-    1 << DESCRIPTION_REPLY | 1 << REFUSED_REPLY | _NO_RIGHTS,
-    1 << ELEMENT_WORD | 1 << ELEMENT_DOUBLE | 1 << REFUSED_REPLY,
-    1 << ELEMENT_WORD | 1 << REFUSED_REPLY | _NO_RIGHTS,
-    1 << ELEMENT_DOUBLE | 1 << REFUSED_REPLY | _NO_RIGHTS,
-    1 << COUNT_REPLY | 1 << REFUSED_REPLY,
-    0,
-    1 << ELEMENT_DOUBLE | 1 << REFUSED_REPLY | _NO_RIGHTS,
-    1 << ELEMENT_WORD | 1 << REFUSED_REPLY | _NO_RIGHTS,
-    1 << DOUBLE | 1 << REFUSED_REPLY | _NO_RIGHTS,
-    1 << WORD | 1 << REFUSED_REPLY | _NO_RIGHTS,
-    1 << TEXT_REPLY | 1 << REFUSED_REPLY | _NO_RIGHTS,
+    _ELEMENT_DOUBLE | _REFUSED | _NO_RIGHTS,  # WRITE_ELEMENT_DOUBLE_EEPROM
+    _ELEMENT_WORD | _REFUSED | _NO_RIGHTS,  # WRITE_ELEMENT_WORD_EEPROM
+    _DOUBLE | _REFUSED | _NO_RIGHTS,  # WRITE_DOUBLE_EEPROM
+    _WORD | _REFUSED | _NO_RIGHTS,  # WRITE_WORD_EEPROM
+    1 << TEXT_REPLY | _REFUSED | _NO_RIGHTS,  # TEXT
 )
 
 # Sets of tasks, one bit for each.
-_DOUBLE_TASKS = const(1 << 3 | 1 << 8 | 1 << 11 | 1 << 13)
-_LONG_TASKS = const(1 << 4 | 1 << 5 | 1 << 15)  # their answer may be longer than a double word
-FIRST_PERMANENT = const(11)  # this task and those behind it write what outlives the power
+_DOUBLE_TASKS = const(
+    1 << WRITE_DOUBLE
+    | 1 << WRITE_ELEMENT_DOUBLE
+    | 1 << WRITE_ELEMENT_DOUBLE_EEPROM
+    | 1 << WRITE_DOUBLE_EEPROM
+)
+# Their answer may be longer than a double word.
+_LONG_TASKS = const(1 << READ_DESCRIPTION | 1 << WRITE_DESCRIPTION | 1 << TEXT)
+FIRST_PERMANENT = const(11)  # this task and those behind it may write what outlives the power
 
 _WIDTHS = (0, 1, 2, 0, 1, 2, 1)  # by reply: words of its value, WORD or DOUBLE
 
@@ -185,7 +197,7 @@ class Job:
 
     task: READ, WRITE_... . number: 0...127999. index: 0...254, counted as the drive does. high,
     low: the value to write, as two words. ValueError when one of them is out of range, or the task
-    is one for `pkw_text`.
+    is one for a `pkw_long.LongJob`.
 
     After it left PENDING: `state`. When DONE `width` (WORD or DOUBLE) and the words `high` and
     `low`, which for a write are what the drive confirmed. When REFUSED `error` (see error_text)
@@ -194,7 +206,7 @@ class Job:
     with the same value, when it is not PENDING.
     """
 
-    data = None  # room for an answer that is longer than a double word: see `pkw_array`
+    data = None  # room for an answer that is longer than a double word: see `pkw_long`
 
     def __init__(self, task, number, index=0, high=0, low=0):
         self.words = bytearray(8)  # PKE, IND, PWE1, PWE2 as four fixed words have them

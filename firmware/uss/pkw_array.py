@@ -6,15 +6,13 @@ counts as the drive does, from 0 or from 1.
 
     job = read_all(304)                         # or write_element_word(304, 2, 230)
     drive.ask(job)                              # ... later:
-    if job.state == pkw.DONE: print(job.values, job.float_values())
+    if job.state == pkw.DONE: print(job.integer_values(), job.float_values())
 """
-
-from array import array
 
 from micropython import const
 
 from uss import pkw
-from uss.fast import get_words
+from uss.pkw_long import LongJob
 
 WORDS_MAX = const(124)  # of an answer, behind PKE and IND
 
@@ -75,52 +73,6 @@ def _write_pairs(number, pairs, eeprom):
     return ArrayJob(task, number, [word for pair in pairs for word in pair])
 
 
-class LongJob(pkw.Job):
-    """A job whose task or answer may be longer than a double word.
-
-    task: AK. index: 0...255. words: those of the value to write. room: the most words of the
-    answer; one that is longer ends the job as REFUSED, error 21.
-
-    When DONE the answer is the first `count` words of `data`, an array, and the first two of them
-    are `high` and `low`, as in a `Job`. Of a drive with four fixed words it is only there, and
-    `count` is 0. Not to be aimed at anything else. What kind of job it is says _is_whole(reply,
-    words): whether an answer with this AK may have so many words.
-    """
-
-    def __init__(self, task, number, index, words, room):
-        self.data = array("H", [0] * room)
-        self.count = 0
-        self._size = 2 * (2 + max(1, len(words)))
-        padded = [0] * (2 - len(words)) + list(words)  # a word stands last, as in a `Job`
-        super().__init__(task, number, index, padded[0], padded[1])
-        head = self.words
-        self.words = bytearray(2 * (2 + len(padded)))
-        self.words[:4] = head[:4]
-        for position, word in enumerate(padded):
-            self.words[4 + 2 * position] = word >> 8
-            self.words[5 + 2 * position] = word & 0xFF
-
-    def size(self):
-        """Characters of the task."""
-        return self._size
-
-    def _keep_value(self, reply, net, at, count, form):
-        """Keep the words that stand from index `at` on; whether their number fits the reply."""
-        words = count >> 1
-        if not self._is_whole(reply, words):
-            return False
-        if words > len(self.data):
-            self.refuse(pkw.TOO_LONG)
-        else:
-            get_words(net, at, self.data, 0, words)
-            self.count = words
-            self.high = self.data[0] if words > 1 else 0
-            self.low = self.data[1] if words > 1 else self.data[0]
-            self.width = pkw.DOUBLE if reply == pkw.ELEMENT_DOUBLE else pkw.WORD
-            self.state = pkw.DONE
-        return True
-
-
 class ArrayJob(LongJob):
     """All elements of an array at once, read or written. Needs variable length.
 
@@ -139,8 +91,7 @@ class ArrayJob(LongJob):
     def _is_whole(self, reply, words):
         return words > 0 and not (reply == pkw.ELEMENT_DOUBLE and words & 1)
 
-    @property
-    def values(self):
+    def integer_values(self):
         """The elements as unsigned numbers."""
         data = self.data
         if self.width == pkw.WORD:
@@ -150,7 +101,7 @@ class ArrayJob(LongJob):
     def signed_values(self):
         """The elements as numbers with a sign."""
         half = 1 << 16 * self.width - 1
-        return [value - 2 * half if value >= half else value for value in self.values]
+        return [value - 2 * half if value >= half else value for value in self.integer_values()]
 
     def float_values(self):
         """The elements of a 32-bit array as IEEE-754 singles."""

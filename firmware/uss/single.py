@@ -201,4 +201,7 @@ def stop_all(bus):
         words = [pzd.OFF1] + [0] * (layouts[0].pzd_words - 1)
         broadcast = Broadcast(words, {1: pzd.STW_RUN})
         broadcast.ahead = True
-        bus.post(broadcast)
+        try:
+            bus.post(broadcast)
+        except RuntimeError:
+            pass  # one like it is about to be sent

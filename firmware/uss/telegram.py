@@ -12,7 +12,7 @@ data mean is the subject of `pkw` and `pzd`. Source: specification A-4 and A-5.2
 
 from micropython import const
 
-from uss.fast import exclusive_or
+from uss.fast import exclusive_or, frame
 
 STX = const(0x02)
 NET = const(3)  # net data begin here
@@ -60,12 +60,9 @@ def seal(buffer, address, net_count):
     """
     if not 0 < net_count <= NET_COUNT_MAX:
         raise ValueError("net data of %d characters" % net_count)
-    buffer[0] = STX
-    buffer[1] = net_count + 2
-    buffer[2] = address
-    end = NET + net_count
-    buffer[end] = exclusive_or(buffer, end)
-    return end + 1
+    size = net_count + 4
+    frame(buffer, size, address)
+    return size
 
 
 def judge(buffer, count, address, net_count):

@@ -22,6 +22,7 @@ from uss.layout import STANDARD
 
 LIST_MAX = const(255)  # entries of the circulating list
 SINGLES_MAX = const(8)  # telegrams outside the list that wait
+FORGOTTEN_MAX = const(4)  # drives in one look that want no turn any more
 
 
 class Turns:
@@ -125,8 +126,7 @@ class Turns:
         if self._at[address] is not None:
             raise ValueError("address %d is taken" % address)
         self._at[address] = drive
-        drive.address = address
-        drive.call()  # what called at the old address
+        drive.move(address)
         self._care.readdressed(old, address)
         self._at[old] = None
 
@@ -149,7 +149,10 @@ class Turns:
         if telegram_outside.state == pkw.PENDING:
             raise RuntimeError("%r is pending already" % (telegram_outside,))
         following = (self._singles_in + 1) % len(self._singles)
-        if following == self._singles_out:
+        if telegram_outside.ahead:
+            if self._ahead is not None:
+                raise RuntimeError("%r is to go ahead of everything already" % (self._ahead,))
+        elif following == self._singles_out:
             raise RuntimeError("%d telegrams wait already" % SINGLES_MAX)
         telegram_outside.state = pkw.PENDING
         telegram_outside.silent = 0
@@ -261,10 +264,11 @@ class Turns:
 
     def _find(self, row, least):
         """Of the drives that have called in this row, the one that is in the greatest hurry, and
-        at least so much; None if none is.
+        at least so much; None if none is. Those that were served meanwhile are forgotten, a few
+        each time: an interrupt must not take long.
         """
         attention = self._attention
-        for _ in range(NODES):
+        for _ in range(NODES if row < WANTS else FORGOTTEN_MAX):
             address = greatest(attention, row, NODES, self._look_from)
             if address < 0:
                 return None
@@ -273,7 +277,7 @@ class Turns:
             if drive is not None and drive.urgency() >= least:
                 self._look_from = address
                 return drive
-            attention[row + address] = 0  # it was served meanwhile, or is gone
+            attention[row + address] = 0
         return None
 
     def _next_single(self):
@@ -287,12 +291,7 @@ class Turns:
         return telegram_outside
 
     def _has_command(self):
-        if self._ahead is not None:
-            return True
-        for drive in self.drives:
-            if drive.urgency() > 1:
-                return True
-        return False
+        return self._ahead is not None or greatest(self._attention, 0, NODES, 0) >= 0
 
     def _all_told(self):
         """Whether every drive has answered its OFF1, or has been sent it often enough."""

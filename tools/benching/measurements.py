@@ -4,7 +4,7 @@ One process, one measurement: it prints its figures as a line of JSON. What they
 is none of its business (rows.py). Runs on the Unix port, started by __main__.py; by hand
 
     python3 tools/emulator/launch.py build/unix64/micropython -X heapsize=64M \\
-        tools/benching/measurements.py quick stop 19200
+        tools/benching/measurements.py quick stop 19200 1
 """
 
 import gc
@@ -21,7 +21,8 @@ CHARACTER_BITS = 11
 TELEGRAM_CHARACTERS = 16
 COLLECT_MS = 100
 REPLY_CHARACTERS = 2
-SETTLE_MS = 3_000  # from power-on of the panel until it knows its drive
+SETTLE_MS = 3_000  # from power-on of the panel until it knows its drive, when there is but one
+SETTLE_MORE_MS = 30_000  # as long as it may take with 31
 READY_MS = 1_200  # until it shows READY
 OLD_SETPOINT = 1_000  # 0.01 Hz
 SAVE_MS = 300  # from one save to the next
@@ -37,22 +38,23 @@ ON_CHIP = "tools/benching/on_chip.py"
 # --- the chip and what is around it -------------------------------------------------------------
 
 
-def world_at(baud, seed=0, **more):
-    """A Pico with the panel's firmware at the line of one drive, which answers at any rate."""
+def world_at(baud, drives=1, seed=0, **more):
+    """A Pico with the panel's firmware at the line of so many drives, which answer at any rate."""
+    kinds = {address % 32: {"parameters": {2014: 2_000}} for address in range(1, drives + 1)}
+    return world_of(kinds, baud, seed, **more)
+
+
+def world_of(kinds, baud, seed=0, **more):
+    """kinds: {address: what a simulated drive is given}."""
     from boards.sim.drive import Drive
     from tools.emulator.world import PicoWorld
 
-    settings = {"drives": [1]}
+    settings = {"drives": sorted(kinds)}
     settings.update(more.pop("settings", {}))
     world = PicoWorld("panel", addresses=(), baud=baud, settings=settings, seed=seed, **more)
-    world.drives[1] = Drive(
-        world.clock,
-        world.wire,
-        1,
-        {2014: 2_000},
-        reply_delay_us=-(-REPLY_CHARACTERS * CHARACTER_BITS * 1_000_000 // baud),
-        any_baud=True,
-    )
+    for address, kind in kinds.items():
+        kind["reply_delay_us"] = -(-REPLY_CHARACTERS * CHARACTER_BITS * 1_000_000 // baud)
+        world.drives[address] = Drive(world.clock, world.wire, address, any_baud=True, **kind)
     return world
 
 
@@ -77,9 +79,16 @@ def result(world, ms):
     return json.loads(printed[:-1].decode())
 
 
+def settle(world):
+    """Until the panel knows the drive that is shown."""
+    world.run(SETTLE_MS)
+    if not world.run_until(lambda: world.reads("READY"), SETTLE_MORE_MS):
+        raise RuntimeError("the drive is not ready: %r" % (world.lcd(),))
+
+
 def start_the_motor(world):
     """START, and the motor turns: the measurement would be of nothing otherwise."""
-    world.run(SETTLE_MS)
+    settle(world)
     world.press("START")
     if not world.run_until(lambda: world.drives[1].hz() > STOP_HZ, 4_000):
         raise RuntimeError("the motor does not turn: %r" % (world.lcd(),))
@@ -123,43 +132,80 @@ def checked(world, figures):
 # --- on the chip --------------------------------------------------------------------------------
 
 
-def line(quick, baud):
+def line(quick, baud, drives):
     """Exchanges, idle time, driver enable; keys and display busy, a collection every 100 ms."""
-    baud = int(baud)
-    telegrams = (100 if quick else 400) if baud < 57600 else 500 if quick else 10_000
-    world = world_at(baud)
+    baud, drives = int(baud), int(drives)
+    most = 10_000 if drives == 1 else 3_000
+    telegrams = (100 if quick else 400) if baud < 57600 else 500 if quick else most
+    world = world_at(baud, drives)
     at_the_prompt(world)
     busy_ms = telegrams * 1000 // rate_limit(baud) * 13 // 10 + 2_000
-    whole_ms = busy_ms + SETTLE_MS + 3_000
+    whole_ms = busy_ms + SETTLE_MS + 3_000 + 400 * drives
     world.repl.begin("steps(%d, 1, %d)" % (whole_ms, COLLECT_MS))
     start_the_motor(world)
-    figures = world.figures
-    first = [len(figures.lead_ns), len(figures.release_ns), len(figures.idle_ns)]
-    began_us = world.clock.now_us
-    while len(figures.release_ns) - first[1] < telegrams and world.clock.now_us < whole_ms * 1000:
+    first = Line(world)
+    while first.telegrams() < telegrams and world.clock.now_us < whole_ms * 1000:
         world.press(("UP", "UP", "DOWN", "UP", "DOWN", "DOWN")[world.random(0, 5)], 60)
-    passed_us = world.clock.now_us - began_us
-    answered = len(figures.idle_ns) - first[2]
-    start_ns = 2 * character_ns(baud)
-    found = {
-        "baud": baud,
-        "limit": rate_limit(baud),
-        "rate": round(answered * 1e6 / passed_us, 1),
-        "lead_ns": spread(figures.lead_ns[first[0] :]),
-        "release_ns": spread(figures.release_ns[first[1] :]),
-        "idle_ns": spread([idle - start_ns for idle in figures.idle_ns[first[2] :]]),
-        "character_ns": character_ns(baud),
-    }
+    found = first.figures()
+    found["limit"] = rate_limit(baud)
     inside = result(world, whole_ms)
     found["steps_us"] = steps_of(inside["steps"][0])
     found["collections_us"] = spread(inside["collections_us"])
     return checked(world, found)
 
 
-def rate_limit(baud):
+class Line:
+    """What is measured on the line from now on."""
+
+    def __init__(self, world):
+        figures = world.figures
+        self._world = world
+        self._first = [len(figures.lead_ns), len(figures.release_ns), len(figures.idle_ns)]
+        self._began_us = world.clock.now_us
+
+    def telegrams(self):
+        return len(self._world.figures.release_ns) - self._first[1]
+
+    def figures(self):
+        figures = self._world.figures
+        passed_us = self._world.clock.now_us - self._began_us
+        one_ns = character_ns(self._world.wire.baud)
+        idle_ns = [idle - 2 * one_ns for idle in figures.idle_ns[self._first[2] :]]
+        return {
+            "baud": self._world.wire.baud,
+            "rate": round(len(idle_ns) * 1e6 / passed_us, 1),
+            "lead_ns": spread(figures.lead_ns[self._first[0] :]),
+            "release_ns": spread(figures.release_ns[self._first[1] :]),
+            "idle_ns": spread(idle_ns),
+            "character_ns": one_ns,
+        }
+
+
+def rate_limit(baud, net_count=TELEGRAM_CHARACTERS - 4):
     """Exchanges a second that the wire allows: silence, two telegrams, the drive's own time."""
-    characters = 2 + 2 * TELEGRAM_CHARACTERS + REPLY_CHARACTERS
+    characters = 2 + 2 * (net_count + 4) + REPLY_CHARACTERS
     return baud // (characters * CHARACTER_BITS)
+
+
+def mixed(quick, baud):
+    """31 drives of all families and layouts, with the master alone, without a task."""
+    from boards.sim.fleet import kinds
+    from uss.layout import Layout
+
+    baud = int(baud)
+    ms = 3_000 if quick else 10_000
+    world = world_of(kinds(31, 0, first=1), baud)
+    at_the_prompt(world)
+    layouts = [(address,) + drive.layout for address, drive in sorted(world.drives.items())]
+    world.repl.begin("mixed(%d, %r, %d)" % (baud, layouts, ms + SETTLE_MS + 1_000))
+    world.run(SETTLE_MS)
+    first = Line(world)
+    world.run(ms)
+    found = first.figures()
+    nets = [Layout(pkw_words, pzd_words).net_count for _, pkw_words, pzd_words in layouts]
+    found["limit"] = rate_limit(baud, sum(nets) / len(nets))
+    found.update(result(world, ms))
+    return checked(world, found)
 
 
 def saving(quick):
@@ -225,25 +271,27 @@ def whose(world, old):
     return "neither"
 
 
-def memory(quick):
+def memory(quick, drives):
     """Heap taken by exchanges."""
+    drives = int(drives)
     exchanges = 500 if quick else 10_000
-    world = world_at(115200)
+    settled_ms = 6_000 + 400 * drives  # by then each drive has told all, and the splash is over
+    world = world_at(115200, drives)
     at_the_prompt(world)
-    world.repl.begin("memory(%d)" % exchanges)
+    world.repl.begin("memory(%d, %d)" % (exchanges, settled_ms))
     start_the_motor(world)
-    return checked(world, result(world, 20_000 + exchanges * 10))
+    return checked(world, result(world, settled_ms + 20_000 + exchanges * 10))
 
 
-def stop(quick, baud):
+def stop(quick, baud, drives):
     """STOP, from the contact to the end of the telegram that carries OFF1."""
-    baud = int(baud)
-    presses = 5 if quick else 50
-    world = world_at(baud, seed=5)
+    baud, drives = int(baud), int(drives)
+    presses = 5 if quick else 50 if drives == 1 else 20
+    world = world_at(baud, drives, seed=5)
     at_the_prompt(world)
     world.repl.begin("collecting(%d, %d)" % (presses * 20_000, COLLECT_MS))
     took_us, lost_starts = [], 0
-    world.run(SETTLE_MS)
+    settle(world)
     for _ in range(presses):
         lost_starts += start_the_motor_again(world)
         world.run(world.random(1, 150))
@@ -270,10 +318,11 @@ def start_the_motor_again(world):
 
 
 def off_after_us(world, since_us, bits):
-    """Microseconds until the end of the first telegram of the panel without these bits of STW."""
+    """Microseconds until the end of the first telegram to drive 1 without these bits of STW."""
     telegram_us = TELEGRAM_CHARACTERS * CHARACTER_BITS * 1_000_000 // world.wire.baud
     for start_us, from_panel, telegram in world.wire.log.last(500):
-        if from_panel and start_us >= since_us and len(telegram) == TELEGRAM_CHARACTERS:
+        ours = from_panel and start_us >= since_us and len(telegram) == TELEGRAM_CHARACTERS
+        if ours and telegram[2] == 1:
             if not (telegram[STW_AT] << 8 | telegram[STW_AT + 1]) & bits:
                 return start_us + telegram_us - since_us
     raise RuntimeError("no OFF on the wire after %d us" % since_us)
@@ -300,10 +349,11 @@ def hang(quick, how, drive):
     return checked(world, found)
 
 
-def steps(quick):
+def steps(quick, baud, drives):
     """A step of the main loop: the home page, a changing display, the parameter page."""
-    phase_ms = 4_000 if quick else 10_000
-    world = world_at(19200)
+    drives = int(drives)
+    phase_ms = (4_000 if quick else 10_000) + 100 * drives
+    world = world_at(int(baud), drives)
     at_the_prompt(world)
     world.repl.begin("steps(%d, 3, %d)" % (phase_ms, COLLECT_MS))
     began_us = world.clock.now_us
@@ -343,7 +393,7 @@ def boot(quick, display):
 def heap(quick, drives):
     """Free heap with so many drives in the settings."""
     addresses = [address % 32 for address in range(1, int(drives) + 1)]
-    world = world_at(19200, settings={"drives": addresses})
+    world = world_at(19200, 0, settings={"drives": addresses})
     at_the_prompt(world)
     world.repl.begin("heap()")
     return checked(world, result(world, 5_000))
@@ -363,10 +413,10 @@ def codec(quick):
     def build():
         telegram.seal(buffer, 1, net)
 
-    receiver, link, request_at = awaiting(buffer)
+    receiver, link, drive, request_at = awaiting(buffer)
 
     def receive():
-        receiver.open(1, net, 100_000, request_at)
+        receiver.open(drive, request_at)
         if receiver.take(link, request_at) != telegram.GOOD:
             raise RuntimeError("the receiver takes no telegram")
 
@@ -394,10 +444,12 @@ class Reply:
 
 
 def awaiting(characters):
+    from uss.drive import Drive
     from uss.receiver import Receiver
     from uss.timing import Timing
 
-    return Receiver(Timing(19200), 0x3FFFFFFF), Reply(characters), 1_000
+    mask = 0x3FFFFFFF
+    return Receiver(Timing(19200), mask), Reply(characters), Drive(1, mask), 1_000
 
 
 def rate_of(function, rounds):
@@ -431,7 +483,9 @@ def checked_host(world, figures):
 
 MEASUREMENTS = {
     function.__name__: function
-    for function in (line, saving, cuts, memory, stop, hang, steps, boot, heap, codec, simulation)
+    for function in (
+        line, mixed, saving, cuts, memory, stop, hang, steps, boot, heap, codec, simulation
+    )
 }
 
 

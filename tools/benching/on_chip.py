@@ -11,10 +11,13 @@ from array import array
 
 import board
 import main
+from hal.pacer import Pacer
+from uss.layout import Layout
+from uss.master import CLOSED, Master
+from uss.timing import Timing
 
 BUCKET_US = 20  # of a table of durations
 BUCKETS = 1000  # the last one holds what is longer, too
-SETTLED_MS = 6_000  # after that the panel knows its drive and the splash is over
 
 idle_at = 0
 
@@ -57,11 +60,11 @@ def steps(phase_ms, phases, collect_ms):
     print(json.dumps({"steps": found, "collections_us": list(collections)}))
 
 
-def memory(exchanges):
+def memory(exchanges, settled_ms):
     """Heap taken while so many exchanges are made, no collection: by all of it, page at rest."""
     app = main.start(board)
     try:
-        step_for(app, SETTLED_MS)
+        step_for(app, settled_ms)
         gc.collect()
         gc.disable()
         first = app.bus.exchanges
@@ -75,6 +78,29 @@ def memory(exchanges):
     finally:
         app.close()
     print(json.dumps({"taken": taken, "exchanges": made, "runs": runs}))
+
+
+def mixed(baud, layouts, ms):
+    """The master alone for so long; layouts: [(address, PKW words, PZD words), ...]."""
+    link = board.make_link(baud)
+    bus = Master(link, Timing(baud), board.clock.ticks_mask)
+    for address, pkw_words, pzd_words in layouts:
+        bus.add(address, Layout(pkw_words, pzd_words))
+    pacer = Pacer(bus, link, board.clock, board.timer)
+    bus.refresh(time.ticks_us())
+    pacer.start()
+    began = time.ticks_ms()
+    try:
+        while bus.phase != CLOSED:
+            bus.refresh(time.ticks_us())
+            pacer.tend()
+            time.sleep_ms(1)
+            if time.ticks_diff(time.ticks_ms(), began) > ms:
+                bus.close()
+    finally:
+        pacer.stop()
+    silent = [drive.address for drive in bus.drives if not drive.contact]
+    print(json.dumps({"silent": silent, "counters": bus.counters()}))
 
 
 def step_for(app, ms):

@@ -37,6 +37,7 @@ S7_1200_MS = {9600: 116.3, 19200: 68.2, 38400: 44.1, 57600: 36.1, 115200: 28.1}
 BAUDS = (9600, 19200, 38400, 115200, 187500)
 FAST_BAUD = 57600
 TELEGRAMS_FAST, TELEGRAMS_SLOW = 10_000, 50  # bar of the driver enable
+TELEGRAMS_FULL = {19200: 400, 115200: 2_000}  # with 31 drives
 
 RATE_BAR = 220  # exchanges a second at 115200
 IDLE_MEDIAN_NS, IDLE_P99_NS = 700_000, 1_000_000  # besides one character
@@ -50,13 +51,21 @@ SIMULATION_TIMES = 100
 HANGS = (("pass", "drive"), ("sleep", "drive"), ("collect", "drive"), ("pass", "silent"))
 HANG_TEXT = {"pass": "`while True: pass`", "sleep": "time.sleep_ms", "collect": "gc.collect"}
 
-LINES = {baud: Task(("line", str(baud))) for baud in BAUDS}
+LINES = {baud: Task(("line", str(baud), "1")) for baud in BAUDS}
+FULL_BAUDS = (19200, 115200)
+FULL_LINES = {baud: Task(("line", str(baud), "31")) for baud in FULL_BAUDS}
+MIXED = {baud: Task(("mixed", str(baud))) for baud in FULL_BAUDS}
 SAVING = Task(("saving",))
 CUTS = Task(("cuts",))
-MEMORY = Task(("memory",))
-STOPS = {baud: Task(("stop", str(baud))) for baud in (19200, 115200)}
+MEMORIES = {drives: Task(("memory", str(drives))) for drives in (1, 31)}
+STOPS = {
+    (baud, drives): Task(("stop", str(baud), str(drives)))
+    for drives in (1, 31)
+    for baud in FULL_BAUDS
+}
 HANGING = {which: Task(("hang", *which)) for which in HANGS}
-STEPS = Task(("steps",))
+STEPS = Task(("steps", "19200", "1"))
+FULL_STEPS = Task(("steps", "115200", "31"))
 BOOTS = {display: Task(("boot", display)) for display in ("wires", "backpack")}
 HEAPS = {drives: Task(("heap", str(drives))) for drives in (1, 31)}
 CODEC = Task(("codec",), on_chip=False)
@@ -64,8 +73,9 @@ SIMULATION = Task(("simulation",), on_chip=False)
 
 # The long ones first, so that the last one does not run alone for long.
 TASKS = (
-    LINES[115200], LINES[187500], MEMORY, *STOPS.values(), STEPS, *HANGING.values(), SAVING, CUTS,
-    LINES[9600], LINES[19200], LINES[38400], *BOOTS.values(), *HEAPS.values(), CODEC, SIMULATION,
+    LINES[115200], LINES[187500], *MEMORIES.values(), *FULL_LINES.values(), *STOPS.values(),
+    FULL_STEPS, STEPS, *HANGING.values(), SAVING, CUTS, *MIXED.values(), LINES[9600], LINES[19200],
+    LINES[38400], *BOOTS.values(), *HEAPS.values(), CODEC, SIMULATION,
 )  # fmt: skip
 
 
@@ -90,6 +100,18 @@ def least_to_most(spread):
     return "%s / %s / %s of %d" % (us(least), us(median), us(most), count)
 
 
+def of_drives(count):
+    return "%d drive%s" % (count, "s"[: count > 1])
+
+
+def baud_of(baud):
+    return "%d baud" % baud
+
+
+def wanted_at(baud):
+    return TELEGRAMS_FAST if baud >= FAST_BAUD else TELEGRAMS_SLOW
+
+
 def within_a_character(spread, character_ns):
     return spread[4] > 0 and 0 <= spread[0] and spread[3] <= character_ns
 
@@ -97,23 +119,24 @@ def within_a_character(spread, character_ns):
 # --- rows ---------------------------------------------------------------------------------------
 
 
-def rate_row(baud):
-    limit = "wire's limit %.1f" % (baud / CHARACTERS / CHARACTER_BITS)
+def rate_row(task, what, baud):
+    bar = RATE_BAR if baud == 115200 else None
+    limit = "wire's limit %.1f" % (baud / (CHARACTERS * CHARACTER_BITS))
     others = [
         "%s %.1f" % (name, 1000 / intervals[baud])
         for name, intervals in (("S7-200", S7_200_MS), ("S7-1200", S7_1200_MS))
         if baud in intervals
     ]
     return Row(
-        LINES[baud],
-        "exchanges per second, %d baud (%s)" % (baud, ", ".join([limit, *others])),
-        ">= %d" % RATE_BAR if baud == 115200 else "",
+        task,
+        "exchanges per second, %s (%s)" % (what, ", ".join([limit, *others])),
+        ">= %d" % bar if bar else "",
         lambda figures: "%.1f" % figures["rate"],
-        (lambda figures: figures["rate"] >= RATE_BAR) if baud == 115200 else None,
+        (lambda figures: figures["rate"] >= bar) if bar else None,
     )
 
 
-def idle_row(baud):
+def idle_row(task, what, baud):
     character_ns = CHARACTER_BITS * 1_000_000_000 // baud
     median_ns, p99_ns = character_ns + IDLE_MEDIAN_NS, character_ns + IDLE_P99_NS
 
@@ -126,34 +149,34 @@ def idle_row(baud):
         return count > 0 and median <= median_ns and p99 <= p99_ns
 
     return Row(
-        LINES[baud],
-        "reply to next start bit beyond the start interval, %d baud: median / p99 / max" % baud,
+        task,
+        "reply to next start bit beyond the start interval, %s: median / p99 / max" % what,
         "<= %s / %s" % (ms(median_ns), ms(p99_ns)),
         show,
         holds,
     )
 
 
-def release_row(baud):
-    wanted = TELEGRAMS_FAST if baud >= FAST_BAUD else TELEGRAMS_SLOW
+def release_row(task, what, baud, wanted):
+    """wanted: so many telegrams at least."""
 
     def holds(figures):
         spread = figures["release_ns"]
         return within_a_character(spread, figures["character_ns"]) and spread[4] >= wanted
 
     return Row(
-        LINES[baud],
-        "driver off after the last stop bit, %d baud: min / median / max" % baud,
+        task,
+        "driver off after the last stop bit, %s: min / median / max" % what,
         "0...%s, all of %d" % (us(CHARACTER_BITS * 1_000_000_000 // baud), wanted),
         lambda figures: least_to_most(figures["release_ns"]),
         holds,
     )
 
 
-def lead_row(baud):
+def lead_row(task, what, baud):
     return Row(
-        LINES[baud],
-        "driver on before the first start bit, %d baud: min / median / max" % baud,
+        task,
+        "driver on before the first start bit, %s: min / median / max" % what,
         "0...%s" % us(CHARACTER_BITS * 1_000_000_000 // baud),
         lambda figures: least_to_most(figures["lead_ns"]),
         lambda figures: within_a_character(figures["lead_ns"], figures["character_ns"]),
@@ -184,17 +207,28 @@ def cuts_row():
     )
 
 
-def memory_row():
+def mixed_rate_row(task, what):
     return Row(
-        MEMORY,
-        "heap taken by exchanges and the home page, motor running, no collection",
+        task,
+        "exchanges per second, %s" % what,
+        "all answer",
+        lambda figures: "%.1f (wire's limit %.1f)" % (figures["rate"], figures["limit"]),
+        lambda figures: figures["rate"] > 0 and not figures["silent"],
+    )
+
+
+def memory_row(drives):
+    return Row(
+        MEMORIES[drives],
+        "heap taken by exchanges and the home page, %s, motor running, no collection"
+        % of_drives(drives),
         "0 bytes in 10000 exchanges",
         lambda figures: "%d bytes in %d exchanges" % (figures["taken"], figures["exchanges"]),
         lambda figures: figures["taken"] == 0 and figures["runs"],
     )
 
 
-def stop_row(baud):
+def stop_row(baud, drives):
     def bound_us(figures):
         return DEBOUNCE_US + 2 * figures["exchange_us"]
 
@@ -206,9 +240,9 @@ def stop_row(baud):
         return "%.1f / %.1f / %.1f ms of %d" % (*shown, len(took)) + lost
 
     return Row(
-        STOPS[baud],
-        "STOP pressed to the end of the OFF1 telegram, 1 drive, %d baud: min / median / max"
-        % baud,
+        STOPS[baud, drives],
+        "STOP pressed to the end of the OFF1 telegram, %s, %d baud: min / median / max"
+        % (of_drives(drives), baud),
         "<= %.1f ms: debounce and 2 exchanges"
         % ((DEBOUNCE_US + 2e6 * CHARACTERS * CHARACTER_BITS / baud) / 1000),
         show,
@@ -277,7 +311,7 @@ def boot_rows(display):
 def heap_row(drives):
     return Row(
         HEAPS[drives],
-        "free heap after boot, frozen, %d drive%s in the settings" % (drives, "s"[: drives > 1]),
+        "free heap after boot, frozen, %s in the settings" % of_drives(drives),
         ">= %d KB" % (FREE_BYTES // 1024) if drives == 31 else "",
         lambda figures: "%.1f KB" % (figures["free"] / 1024),
         (lambda figures: figures["free"] >= FREE_BYTES) if drives == 31 else None,
@@ -295,19 +329,33 @@ def rules_row(task):
     )
 
 
+FULL = "31 drives, %d baud"
+MIXED_TEXT = "31 drives of mixed layouts, %d baud, master alone"
+
 ROWS = (
-    *(rate_row(baud) for baud in BAUDS),
-    *(idle_row(baud) for baud in BAUDS),
-    *(release_row(baud) for baud in BAUDS),
+    *(rate_row(LINES[baud], baud_of(baud), baud) for baud in BAUDS),
+    *(rate_row(FULL_LINES[baud], FULL % baud, baud) for baud in FULL_BAUDS),
+    *(mixed_rate_row(MIXED[baud], MIXED_TEXT % baud) for baud in FULL_BAUDS),
+    *(idle_row(LINES[baud], baud_of(baud), baud) for baud in BAUDS),
+    *(idle_row(FULL_LINES[baud], FULL % baud, baud) for baud in FULL_BAUDS),
+    *(idle_row(MIXED[baud], MIXED_TEXT % baud, baud) for baud in FULL_BAUDS),
+    *(release_row(LINES[baud], baud_of(baud), baud, wanted_at(baud)) for baud in BAUDS),
+    *(release_row(FULL_LINES[b], FULL % b, b, TELEGRAMS_FULL[b]) for b in FULL_BAUDS),
+    *(release_row(MIXED[b], MIXED_TEXT % b, b, TELEGRAMS_SLOW) for b in FULL_BAUDS),
     saving_row(),
-    *(lead_row(baud) for baud in BAUDS),
-    memory_row(),
-    *(stop_row(baud) for baud in STOPS),
+    *(lead_row(LINES[baud], baud_of(baud), baud) for baud in BAUDS),
+    *(lead_row(FULL_LINES[baud], FULL % baud, baud) for baud in FULL_BAUDS),
+    *(memory_row(drives) for drives in MEMORIES),
+    *(stop_row(baud, drives) for baud, drives in STOPS),
     *(hang_row(which) for which in HANGS),
     step_row(STEPS, "home", "home page, 19200 baud"),
     step_row(STEPS, "changing", "changing display, 19200 baud"),
     step_row(STEPS, "parameters", "parameter page, 19200 baud"),
     step_row(LINES[115200], None, "changing display, 115200 baud"),
+    step_row(FULL_STEPS, "home", "home page, " + FULL % 115200),
+    step_row(FULL_STEPS, "changing", "changing display, " + FULL % 115200),
+    step_row(FULL_STEPS, "parameters", "parameter page, " + FULL % 115200),
+    step_row(FULL_LINES[19200], None, "changing display, " + FULL % 19200),
     collection_row(),
     *(row for display in BOOTS for row in boot_rows(display)),
     *(heap_row(drives) for drives in HEAPS),

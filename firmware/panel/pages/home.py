@@ -22,12 +22,12 @@ class Home:
         self._up = keys.bit("UP")
         self._down = keys.bit("DOWN")
 
-    def take_keys(self, keys, now_ms):
+    def take_keys(self, acts, now_ms):
         """UP and DOWN move the setpoint, faster while they are held."""
-        direction = keys.moved(self._up) - keys.moved(self._down)
+        direction = acts.moved(self._up) - acts.moved(self._down)
         if direction:
             panel = self._panel
-            panel.selected.change(direction * panel.setpoint_step * keys.pace())
+            panel.selected.change(direction * panel.setpoint_step * acts.pace())
 
     def draw(self, screen, now_ms):
         control = self._panel.selected

@@ -26,6 +26,8 @@ PARAMETERS = (  # what is shown, number, index, highest value or None: read only
     (b"r2025:", 2025, 0, None),
 )
 
+KEYS = ("UP", "DOWN", "NEXT", "PREVIOUS", "EDIT", "SET")
+
 READ_MS = const(500)  # between an answer and the next question
 EEPROM_MS = const(1_500)  # SET is held so long
 FAST_SPAN = const(100)  # values of a smaller range move by ones, however long the key is held
@@ -45,9 +47,8 @@ class Parameters:
 
     def __init__(self, panel, keys, writer, mask):
         self._panel = panel
-        self._up, self._down = keys.bit("UP"), keys.bit("DOWN")
-        self._next, self._previous = keys.bit("NEXT"), keys.bit("PREVIOUS")
-        self._edit_key, self._set_key = keys.bit("EDIT"), keys.bit("SET")
+        self._bits = tuple(keys.bit(key) for key in KEYS)
+        self._set_key = keys.bit("SET")
         self._writer = writer
         self._mask = mask
         self._row = 0
@@ -57,6 +58,7 @@ class Parameters:
         self._editing = False
         self._edited = 0
         self._job = pkw.read(0)
+        self._other_job = pkw.read(0)
         self._asked = False
         self._due = True  # ask at once
         self._read_at_ms = 0
@@ -72,22 +74,22 @@ class Parameters:
 
     # --- keys -----------------------------------------------------------------------------------
 
-    def take_keys(self, keys, now_ms):
+    def take_keys(self, acts, now_ms):
         self._look_at_selected()
-        set_key = self._set_key
-        if keys.pressed & ~set_key:
+        up, down, following, previous, edit, set_key = self._bits
+        if acts.pressed & ~set_key:
             self._set_at_ms = None
-        step = keys.moved(self._next) - keys.moved(self._previous)
+        step = acts.moved(following) - acts.moved(previous)
         if step:
             self._row = (self._row + step) % len(PARAMETERS)
             self._forget()
-        elif keys.pressed & self._edit_key:
+        elif acts.pressed & edit:
             self._toggle_edit(now_ms)
-        elif keys.pressed == set_key and set_key:  # with another key it is no clear wish
+        elif acts.pressed == set_key and set_key:  # with another key it is no clear wish
             self._set(now_ms)
-        direction = keys.moved(self._up) - keys.moved(self._down)
+        direction = acts.moved(up) - acts.moved(down)
         if direction:
-            self._change(direction, keys, now_ms)
+            self._change(direction, acts, now_ms)
 
     def _toggle_edit(self, now_ms):
         if PARAMETERS[self._row][3] is None:
@@ -98,12 +100,12 @@ class Parameters:
             self._editing = not self._editing
             self._edited = self._value
 
-    def _change(self, direction, keys, now_ms):
+    def _change(self, direction, acts, now_ms):
         highest = PARAMETERS[self._row][3]
         if not self._editing:
             self._panel.say(texts.EDIT_FIRST if highest is not None else texts.READ_ONLY, now_ms)
             return
-        pace = keys.pace(100 if highest > FAST_SPAN else 1)
+        pace = acts.pace(100 if highest > FAST_SPAN else 1)
         self._edited = max(0, min(highest, self._edited + direction * pace))
 
     def _set(self, now_ms):
@@ -212,7 +214,9 @@ class Parameters:
         self._due = True
         if self._asked:  # the drive may take its time with that one
             self._asked = False
-            self._job = pkw.read(0)
+            self._job, self._other_job = self._other_job, self._job
+            if self._job.state == pkw.PENDING:
+                self._job = pkw.read(0)
 
     def draw(self, screen, now_ms):
         value = self._edited if self._editing else self._value

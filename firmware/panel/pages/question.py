@@ -33,17 +33,17 @@ class Question:
         self._answers = answers
         self._shown_at = None
 
-    def take_keys(self, keys, now_ms):
-        if not keys.pressed:
+    def take_keys(self, acts, now_ms):
+        if not acts.pressed:
             return
         chosen = None
         for key in self._answers:
-            if keys.pressed == keys.bit(key):  # two keys at once are no answer
+            if acts.pressed == acts.bit(key):  # two keys at once are no answer
                 chosen = self._answers[key]
         if chosen is not None and self._shown_for(now_ms) < self._deaf_ms:
             return
         self._panel.close_question()
-        keys.forget()  # a key that said no, and is held, does nothing else
+        acts.forget()  # a key that said no, and is held, does nothing else
         if chosen is not None:
             chosen(now_ms)
 

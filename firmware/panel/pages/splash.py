@@ -10,7 +10,7 @@ class Splash:
     tells_state = False
     obeys = False
 
-    def take_keys(self, keys, now_ms):
+    def take_keys(self, acts, now_ms):
         pass
 
     def draw(self, screen, now_ms):

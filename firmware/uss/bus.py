@@ -1,0 +1,564 @@
+"""The bus for a program of one's own: drives that run, stop, are read and written, in a few words.
+
+In front of the engine (`master`, `drive`), all of whose fields and methods are found here as well:
+floats, calls that wait, and exceptions that say in plain words why something was not done. It
+takes heap, so nothing of it belongs into an interrupt. The panel does not import it.
+
+    with Master(link, baud=19200) as bus:       # a link of `hal`; leaving it stops every drive
+        drive = bus.add(3, MM440)               # a family of `families`
+        drive.run(25.0)                         # Hz, or NotStarted and the reason
+        bus.wait(10)                            # seconds, in which the bus goes on
+        print(drive.hertz, drive.read(1082))
+        drive.stop()
+
+Whoever does not wait calls `step` again and again: without it for 300 ms every motor is stopped.
+"""
+
+from uss import families, master, pkw, pzd, single, words
+from uss.particulars import Particulars
+from uss.scaling import run_words, with_direction
+from uss.timing import Timing, elapsed
+
+REST_US = 100  # between two looks at the bus while a call waits
+TRIES = 3  # telegrams in a row without a valid reply: nobody waits for more of them
+LISTEN_US = 1_000_000  # a bus that has just begun, or was put on, sends long before
+START_S = 5.0  # for a drive to run after it was told to
+SETTLE_S = 1.0  # for a drive to lift its inhibit, or a fault to go, before it is started
+CLOSE_S = 1.0  # for the drives to answer their OFF1, and a round of the bus on top
+
+# `Drive.state` of a drive that answers, by the numbers of pzd.state; and of one that does not.
+STATES = ("not ready", "ready", "running", "fault", "inhibited")
+NO_CONTACT = "no contact"
+MAY_RUN = "no contact, may run"
+
+
+class UssError(Exception):
+    """What was wanted of a drive was not done."""
+
+
+class NoContact(UssError):
+    """The drive does not answer, or nothing is sent to it."""
+
+
+class TimedOut(UssError):
+    """The drive answers, but not to this parameter task."""
+
+
+class NotStarted(UssError):
+    """The motor was not started. The text says why."""
+
+
+class Refused(UssError):
+    """The drive refused a parameter task. number: see pkw.ERRORS; -1 when others have the right
+    to change parameters. job: the task, with what the drive offers instead."""
+
+    def __init__(self, text, job):
+        super().__init__(text)
+        self.number = job.error
+        self.job = job
+
+
+class Drive:
+    """One drive, made by `Master.add`. Speeds have a sign: negative turns left.
+
+    What waits lets the bus go on, and raises NoContact when the drive does not answer. Whatever is
+    not found here is that of `engine`, the `drive.Drive` behind it: stop, acknowledge, ask,
+    control, put, word, contact, counters ...
+    """
+
+    def __init__(self, bus, engine, family, scale, unsupervised):
+        self.bus = bus
+        self.engine = engine
+        self.family = family
+        self.unsupervised = unsupervised
+        self.particulars = Particulars(self, scale)
+        self._off_time_ms = 0  # as the bus was told last
+
+    def __getattr__(self, name):
+        return getattr(self.engine, name)
+
+    # --- to run and to stop ---------------------------------------------------------------------
+
+    def run(self, hertz=None, percent=None, rpm=None):
+        """Have the motor turn at one of the three; percent of the reference, 1/min without slip.
+
+        To a motor that stands it waits until the drive has told its settings, a quarter of a
+        second at 19200 baud, and says that it runs. To one that runs the new speed goes with its
+        next telegram. NotStarted; ValueError: a speed beyond the drive's limits, or not one speed.
+        """
+        if (hertz is None) + (percent is None) + (rpm is None) != 2:
+            raise ValueError("run() wants one speed: hertz, percent or rpm")
+        engine = self.engine
+        runs = engine.is_on() and engine.wanted not in self._jogs()
+        if not runs:
+            self._check_start(True)
+        setpoint = self.particulars.setpoint(hertz, percent, rpm)
+        stw, hsw = run_words(self.family, setpoint)
+        if runs:
+            engine.hsw = hsw
+            engine.turn(stw)
+        else:
+            self._start(hsw, stw)
+
+    def jog_right(self):
+        """Turn at the drive's own jog frequency until `stop`. Waits as run() does; NotStarted."""
+        self._jog(self.family.jog_right)
+
+    def jog_left(self):
+        """As jog_right, the other way."""
+        self._jog(self.family.jog_left)
+
+    def off2(self):
+        """Coast to a stop. It is sent at once, as `stop` is, and waits for nothing."""
+        self.engine.stop(pzd.OFF2)
+
+    def off3(self):
+        """Stop as fast as the drive can; likewise."""
+        self.engine.stop(pzd.OFF3)
+
+    def supervise(self, seconds):
+        """Have the drive trip when it hears nothing for so long, 0: never; kept in its RAM.
+
+        ValueError: nobody knows how. Refused, TimedOut.
+        """
+        family = self.family
+        if family.off_time_number is None:
+            raise ValueError("nobody knows the telegram-off time of a %s" % family.name)
+        value = round(seconds * 1000 / family.off_time_unit_ms)
+        self.write(family.off_time_number, value, family.link_index, sure=True)
+        self._supervise(value * family.off_time_unit_ms)
+
+    # --- what it does ---------------------------------------------------------------------------
+
+    @property
+    def state(self):
+        """One of STATES, NO_CONTACT, or MAY_RUN: it ran when contact was lost."""
+        if self.engine.contact:
+            return STATES[pzd.state(self.engine.zsw)]
+        return MAY_RUN if self.engine.was_running else NO_CONTACT
+
+    @property
+    def is_running(self):
+        """Whether it answers, and says that it runs."""
+        return self.engine.contact and self.engine.zsw & pzd.ZSW_RUNNING != 0
+
+    @property
+    def hertz(self):
+        """The actual frequency. Waits for the drive's settings when they are not known yet;
+        ValueError when they do not tell, as for the next two."""
+        return self.particulars.hertz_scale().hertz(self._actual())
+
+    @property
+    def percent(self):
+        """The actual speed in percent of the reference."""
+        return self.particulars.known_scale().percent(self._actual())
+
+    @property
+    def rpm(self):
+        """The actual speed in 1/min, without slip."""
+        return self.particulars.rpm_scale().rpm(self._actual())
+
+    @property
+    def fault(self):
+        """0, or the number of the present fault, for which it waits; -1 when the drive has one and
+        cannot tell which. NoContact, TimedOut."""
+        self._wait_for_contact()
+        if not self.engine.zsw & pzd.ZSW_FAULT:
+            return 0
+        if self.family.fault_number is None or not self.engine.layout.pkw_words:
+            return -1
+        try:
+            return self.read(self.family.fault_number)
+        except Refused:
+            return -1
+
+    # --- parameters -----------------------------------------------------------------------------
+
+    def read(self, number, index=0, kind=None):
+        """The value of a parameter; waits for it. Refused, TimedOut.
+
+        A word comes as an int from 0 on. A double word is a float or an int, as far as the family
+        is known; kind: float or int, where it is not.
+        """
+        return self._value(self.do(pkw.read(number, index)), kind)
+
+    def write(self, number, value, index=0, eeprom=False, kind=None, sure=False):
+        """Write a parameter into RAM, or RAM and EEPROM; answers what the drive has confirmed.
+
+        The drive is asked first whether it is a word or a double word, unless `kind` says which
+        double word it is: float or int. sure: to be said for parameters by which this bus may lose
+        the drive, or a speed mean something else: family.ask_first. ValueError without it, and for
+        a value that does not fit. Waits; Refused, TimedOut.
+        """
+        asked_first = number in self.family.ask_first
+        if asked_first and not sure:
+            raise ValueError(
+                "%s may take drive %d away from this bus, or change what a speed means; "
+                "sure=True writes it all the same" % (pkw.name(number, index), self.engine.address)
+            )
+        if kind is None:
+            kind = self._kind(self.do(pkw.read(number, index)))
+        if kind is float:
+            job = pkw.write_float(number, value, index, eeprom)
+        elif int(value) != value:
+            raise ValueError("%s takes integers, not %r" % (pkw.name(number, index), value))
+        elif kind is int:
+            job = pkw.write_double(number, int(value), index, eeprom)
+        else:
+            job = pkw.write_word(number, int(value), index, eeprom)
+        if asked_first:
+            self.particulars.forget()
+        return self._value(self.do(job), kind)
+
+    def do(self, job):
+        """Carry out any job of `pkw`, wait for its end and answer it; `ask` does not wait.
+
+        Refused, TimedOut; RuntimeError when the drive's telegrams have no PKW words.
+        """
+        self.carry_out(job)
+        self.raise_unless_done(job)
+        return job
+
+    def carry_out(self, job):
+        """Wait for the end of a job, whatever that is. NoContact: it was not begun."""
+        self._wait_for_contact()
+        engine = self.engine
+        engine.ask(job)
+        engine.want_turns(True)
+        try:
+            while job.state == pkw.PENDING:
+                self.bus.rest()
+        finally:
+            engine.want_turns(False)
+
+    def raise_unless_done(self, job):
+        """The exception that a job deserves which has ended otherwise."""
+        if job.state == pkw.DONE:
+            return
+        name = pkw.name(job.number, job.index)
+        if job.state == pkw.REFUSED:
+            text = pkw.error_text(job.error)
+            raise Refused("drive %d refuses %s: %s" % (self.engine.address, name, text), job)
+        if not self.engine.contact:
+            raise NoContact(self._why_no_contact())
+        raise TimedOut("drive %d does not answer about %s" % (self.engine.address, name))
+
+    # --- behind it ------------------------------------------------------------------------------
+
+    def _kind(self, job):
+        """What a finished job has brought: float or int for a double word, None for a word."""
+        if job.width == pkw.WORD:
+            return None
+        return float if families.is_float(self.family, job.number) else int
+
+    def _value(self, job, kind):
+        if job.width != pkw.WORD and (kind or self._kind(job)) is float:
+            return job.float_value()
+        return job.integer_value()
+
+    def _actual(self):
+        """HIW with its sign."""
+        self._wait_for_contact()
+        hiw = self.engine.word(2)
+        return hiw if self.family.hiw_is_signed else with_direction(hiw, self.engine.zsw)
+
+    def _jog(self, stw):
+        if not stw:
+            raise NotStarted("a %s has no jog" % self.family.name)
+        if self.is_running and self.engine.wanted not in self._jogs():
+            self._refuse("is running")
+        self._check_start(False)
+        self._start(0, stw)
+
+    def _jogs(self):
+        return self.family.jog_right, self.family.jog_left
+
+    def _check_start(self, needs_setpoint):
+        """NotStarted unless everything that must be known of the drive lets it be started now."""
+        if self.engine.stopped_by_engine():
+            self._refuse(
+                "was stopped: it was lost, tripped, switched itself off, or step() was not called "
+                "for too long. stop() says that you know of it"
+            )
+        if self.engine.layout.pzd_words < (2 if needs_setpoint else 1):
+            self._refuse("has no room for it in its telegrams: %r" % self.engine.layout)
+        self._wait_for_contact()
+        if self.engine.off != pzd.OFF1:  # OFF2 and OFF3 inhibit it until OFF1 follows
+            if self.is_running:
+                self._refuse("is still stopping")
+            self.engine.stop()
+        stops = self.engine.stops
+        if not self._may_start():
+            self.bus.wait(SETTLE_S, self._may_start)
+        fault = self.fault
+        if fault:
+            name = self.family.fault_format % fault if fault > 0 else "a fault"
+            self._refuse("has tripped with %s: acknowledge() when its cause is gone" % name)
+        if not self._may_start():
+            self._refuse("is inhibited, or stopped by OFF2 or OFF3 from elsewhere")
+        self.particulars.ask()
+        obstacle = self.particulars.obstacle(needs_setpoint, self.unsupervised)
+        if obstacle:
+            self._refuse(obstacle)
+        self._supervise(self.particulars.off_time_ms())
+        if self.engine.stops != stops:
+            self._refuse("was told to stop meanwhile")
+
+    def _start(self, hsw, stw):
+        """Start it and wait until it runs. What does not start soon shall not start later."""
+        engine = self.engine
+        engine.start(hsw, stw)
+        self.bus.wait(START_S, self._has_started_or_failed)
+        if self.is_running:
+            return
+        if engine.stopped_by_engine():
+            self._refuse("did not start: it was lost, or tripped")
+        if not engine.wanted:
+            self._refuse("was told to stop meanwhile")
+        engine.stop()
+        self._refuse("did not start: is it being commissioned (P0010), or held by its terminals?")
+
+    def _has_started_or_failed(self):
+        return self.is_running or not self.engine.wanted or self.engine.stopped_by_engine()
+
+    def _supervise(self, off_time_ms):
+        """The drive's telegram-off time is known, or None: the bus keeps within it from now on."""
+        if off_time_ms is not None and off_time_ms != self._off_time_ms:
+            self._off_time_ms = off_time_ms
+            self.bus.supervise(self, off_time_ms)
+
+    def _may_start(self):
+        return self.engine.contact and words.may_start(self.engine.zsw)
+
+    def _refuse(self, reason):
+        raise NotStarted("drive %d %s" % (self.engine.address, reason))
+
+    def _wait_for_contact(self):
+        """Until it answers, or has failed to a few times in a row."""
+        if not self.engine.contact:
+            patience_us = LISTEN_US + TRIES * self.bus.engine.longest_cycle_us()
+            self.bus.wait(patience_us / 1_000_000, self._has_answered_or_failed)
+            if not self.engine.contact:
+                raise NoContact(self._why_no_contact())
+
+    def _has_answered_or_failed(self):
+        return self.engine.contact or self.engine.silent >= TRIES or self.bus.is_silent()
+
+    def _why_no_contact(self):
+        if self.bus.engine.is_line_in_use():
+            return "another master is on the line"
+        if self.bus.is_silent():
+            return "the bus is off"
+        return "drive %d does not answer" % self.engine.address
+
+
+class Master:
+    """The bus on a link of `hal`, which brings its clock.
+
+    baud: of the line, a rate of USS. reply_timeout_ms: how long a reply may take to begin; 20 by
+    the specification, adapters may need more. lost_ms: without a valid reply for so long a drive
+    counts as lost. idle: called again and again while a call waits, at least once in 2 ms: to feed
+    a watchdog, say. ValueError: no rate of USS.
+
+    drives: each once, in the order added. Whatever is not found here is that of `engine`, the
+    `master.Master` behind it: stop_all, post, off, on, counters, status, foreign ...
+    """
+
+    def __init__(self, link, baud=19200, reply_timeout_ms=20, lost_ms=1000, idle=None):
+        self.clock = clock = link.clock
+        self.drives = []
+        timing = Timing(baud, reply_timeout_ms * 1000)
+        self.engine = master.Master(link, timing, clock.ticks_mask, lost_ms * 1000)
+        self._link = link
+        self._idle = idle
+        self._pacer = None
+
+    def __getattr__(self, name):
+        return getattr(self.engine, name)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+    # --- the list -------------------------------------------------------------------------------
+
+    def add(self, address, family=families.GENERIC, layout=None, scale=None, unsupervised=False):
+        """Put a drive at the end of the circulating list; answer its `Drive`.
+
+        The same address again gives the same drive, unchanged, one more turn. layout: how its
+        telegrams are divided, if not as the family's are. scale: a `scaling.Scale`, for a drive
+        that cannot tell its own. unsupervised: it may run although its telegram-off time is 0 and
+        nobody would stop it if the program died. ValueError: an address beyond 31, a layout that
+        the family cannot be set to, the list is full.
+        """
+        for drive in self.drives:
+            if drive.address == address:
+                self.engine.add(address, drive.layout)
+                return drive
+        layout = layout or family.layout
+        if not families.can_be_set_to(family, layout):
+            raise ValueError("a %s has no %r" % (family.name, layout))
+        engine = self.engine.add(address, layout)
+        drive = Drive(self, engine, family, scale, unsupervised)
+        self.drives.append(drive)
+        return drive
+
+    def remove(self, drive):
+        """Take a drive off the bus. ValueError when it is not on it, or may be running."""
+        self.engine.remove(drive.engine)
+        self.drives = [other for other in self.drives if other is not drive]
+
+    def arrange(self, drives):
+        """Make these the circulating list, each drive of the bus at least once, 255 at the most.
+
+        Who stands in it more often is asked more often. ValueError when one is missing or strange.
+        """
+        self.engine.arrange([drive.engine for drive in drives])
+
+    def readdress(self, drive, address):
+        """From now on the drive answers at another address. ValueError: taken, or beyond 31."""
+        self.engine.readdress(drive.engine, address)
+
+    def supervise(self, drive, off_time_ms):
+        """Tell of a drive that has no parameter channel after which time without telegrams it
+        trips, 0: never. The bus keeps within a third of that while it may run."""
+        self.engine.supervise(drive.engine, off_time_ms)
+
+    @property
+    def cycle_us(self):
+        """A round of the list begins so long after the one before; 0: at once. May be set."""
+        return self.engine.cycle_us
+
+    @cycle_us.setter
+    def cycle_us(self, cycle_us):
+        self.engine.cycle_us = cycle_us
+
+    @property
+    def retries(self):
+        """How often an exchange without a valid reply is repeated at once; 0...255. May be set."""
+        return self.engine.retries
+
+    @retries.setter
+    def retries(self, retries):
+        self.engine.retries = retries
+
+    # --- time -----------------------------------------------------------------------------------
+
+    def pace(self, pacer, timer):
+        """From now on interrupts keep the engine going.
+
+        pacer: the class `hal.pacer.Pacer`. timer: that of the board, or None.
+        """
+        self._pacer = pacer(self.engine, self._link, self.clock, timer)
+        self._pacer.start()
+
+    def step(self):
+        """Say that the program is alive, and do what is due. To be called again and again."""
+        now = self.clock.ticks_us()
+        self.engine.refresh(now)
+        if self._pacer:
+            self._pacer.tend()
+            return
+        try:
+            self.engine.poll(now)
+        except BaseException:  # Ctrl-C as well: it may have struck in the middle
+            self.engine.recover(now)
+            raise
+
+    def rest(self):
+        """A step, and a tenth of a millisecond for everybody else."""
+        self.step()
+        if self._idle:
+            self._idle()
+        self.clock.sleep_us(REST_US)
+
+    def wait(self, seconds, until=None):
+        """Let the bus go on for so long, or until `until()` is true; answer whether it is."""
+        left_us = int(seconds * 1_000_000)
+        before = self.clock.ticks_us()
+        while True:
+            self.rest()
+            if until and until():
+                return True
+            now = self.clock.ticks_us()
+            left_us -= elapsed(now, before, self.clock.ticks_mask)
+            before = now
+            if left_us <= 0:
+                return until is None
+
+    # --- all together ---------------------------------------------------------------------------
+
+    def broadcast_stop(self):
+        """OFF1 to all drives at once, in a single telegram, and then to each by one of its own, as
+        `stop_all` has it.
+
+        ValueError unless every drive's family takes broadcasts, and all have 4 PKW words and as
+        many PZD words; each is sent its own OFF1 even so.
+        """
+        for drive in self.drives:
+            if not drive.family.takes_broadcast:
+                self.engine.stop_all()
+                raise ValueError("a %s takes no broadcast" % drive.family.name)
+        single.stop_all(self.engine)
+
+    def mirror(self, node, net_count=12):
+        """Whether a node sends back a telegram of so many net characters, which it does not obey.
+
+        A drive of fixed length answers none but its own length, which is taken for those of this
+        bus. Waits.
+        """
+        for drive in self.drives:
+            if drive.address == node:
+                net_count = drive.layout.net_count
+        probe = single.Mirror(node, bytes(net_count))
+        self.engine.post(probe)
+        while probe.state == pkw.PENDING:
+            self.rest()
+        return probe.state == pkw.DONE
+
+    def is_silent(self):
+        """Whether nothing is sent any more, after off() or close()."""
+        return self.engine.phase in (master.OFF, master.CLOSED)
+
+    def close(self):
+        """Stop every drive, wait for the answers, and leave the line and the link alone.
+
+        Ctrl-C does not cut this short: it takes a second at the most, and a motor may be turning.
+        """
+        try:
+            self._persist(self._stop_and_wait)
+            self._persist(self._end)
+        finally:
+            self._persist(self._pacer.stop if self._pacer else self._link.close)
+
+    def _stop_and_wait(self):
+        self.engine.resume()
+        self.engine.stop_all()
+        self._wait_to_close(self._all_stopped)
+
+    def _end(self):
+        self.engine.close()
+        self._wait_to_close(self.is_silent)
+
+    def _persist(self, action):
+        while True:
+            try:
+                return action()
+            except KeyboardInterrupt:
+                pass
+
+    def _wait_to_close(self, is_over):
+        if not is_over():
+            self.wait(CLOSE_S + self.engine.longest_cycle_us() / 1_000_000, is_over)
+
+    def _all_stopped(self):
+        """Whether every drive in contact has answered OFF1, and the others were sent it; or
+        nothing is sent anyway."""
+        if self.is_silent() or self.engine.is_line_in_use():
+            return True
+        for drive in self.engine.drives:
+            if drive.urgency() > 1 or (drive.contact and not drive.answered_off()):
+                return False
+        return True

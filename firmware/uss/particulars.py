@@ -1,0 +1,176 @@
+"""What a drive tells of itself: who may command it, what 100 % is, how fast it may turn.
+
+For `bus`: it is asked before a start, and when a speed is wanted in Hz or 1/min. What is asked for
+are the rows of the family's survey, a value each. Nothing of this is kept over a loss of contact,
+for it may be another drive that answers then. The panel has `survey` for it, which never waits.
+
+    particulars = Particulars(drive, None)
+    particulars.ask()                   # waits
+    particulars.obstacle(True, False)   # None, or why it must not be started, in words
+    particulars.setpoint(25.0, None, None)
+"""
+
+from uss import families, pkw, profiles
+from uss.pkw import NO_PARAMETER
+from uss.scaling import Scale, pole_pairs
+
+# Rows of a survey that need not be asked for when the scale was told, and with it the limits.
+SCALE_ROWS = (profiles.REFERENCE, profiles.ABSOLUTE, profiles.LOWEST, profiles.HIGHEST)
+
+TOLERANCE = 1.001  # a limit that was rounded to a word of PZD2 is still within itself
+
+
+class Particulars:
+    """drive: a `bus.Drive`. scale: a `scaling.Scale` that its owner knows, or None.
+
+    values: for each row of the family's survey what was read, None where it is not known.
+    scale: None as long as it is not known.
+    """
+
+    def __init__(self, drive, scale):
+        self.scale = scale
+        self.values = (None,) * len(drive.family.survey)
+        self._told = scale is not None
+        self._is_fine = False  # words that are frequencies count in 0.01 Hz
+        self._drive = drive
+        self._contact = None  # drive.contacts when it was asked
+
+    def ask(self):
+        """Read all that is needed. Waits; NoContact, Refused, TimedOut."""
+        drive = self._drive
+        survey = drive.family.survey
+        jobs = [None] * len(survey)
+        if drive.layout.pkw_words:
+            for row in range(len(survey)):
+                if survey[row] and not (self._told and row in SCALE_ROWS):
+                    jobs[row] = self._read(survey[row])
+        absolute = jobs[profiles.ABSOLUTE]
+        self._is_fine = absolute is not None and absolute.integer_value() != 0
+        self.values = [
+            None if jobs[row] is None else families.value(jobs[row], survey[row][2], self._is_fine)
+            for row in range(len(survey))
+        ]
+        if not self._told:
+            self.scale = self._scale()
+        self._contact = drive.contacts
+
+    def forget(self):
+        """It may have changed: ask anew when it is needed."""
+        self._contact = None
+
+    def off_time_ms(self):
+        """The drive's telegram-off time; None when it is not known."""
+        value = self.values[profiles.SUPERVISION]
+        return None if value is None else round(value * self._drive.family.off_time_unit_ms)
+
+    def obstacle(self, needs_setpoint, unsupervised):
+        """Why the drive must not be started as it is set up, in words; None when it may.
+
+        needs_setpoint: the speed comes from this bus. unsupervised: it may run although it would
+        not notice that nobody is there any more.
+        """
+        family = self._drive.family
+        sources = [(profiles.COMMAND_SOURCE, family.command_value)]
+        if needs_setpoint:
+            sources.append((profiles.SETPOINT_SOURCE, family.setpoint_value))
+        for row, wanted in sources:
+            found = self.values[row]
+            if found is not None and found != wanted:
+                return "is not under USS control: %s = %d, not %d" % (
+                    self._name(row), found, wanted
+                )  # fmt: skip
+        if needs_setpoint and self.scale is None:
+            return "cannot tell what 100 % is: add it to the bus with scale=Scale(...)"
+        if self.off_time_ms() == 0 and not unsupervised:
+            return (
+                "would run on if this program died: %s = 0. supervise(2.0) changes that; or add "
+                "it to the bus with unsupervised=True" % self._name(profiles.SUPERVISION)
+            )
+        return None
+
+    # --- speeds ---------------------------------------------------------------------------------
+
+    def setpoint(self, hertz, percent, rpm):
+        """The setpoint word, 0...FFFFh with its sign, for the one of the three that is no None.
+
+        ValueError: beyond the drive's limits, or the unit is none that the drive tells of.
+        """
+        if hertz is not None:
+            word = self.hertz_scale().from_hertz(hertz)
+        elif rpm is not None:
+            word = self.rpm_scale().from_rpm(rpm)
+        else:
+            word = self.known_scale().from_percent(percent)
+        for row, sign in ((profiles.LOWEST, -1), (profiles.HIGHEST, 1)):
+            self._check_limit(row, sign, word)
+        return word
+
+    def known_scale(self):
+        """The scale, asked for if need be. ValueError when the drive cannot tell it."""
+        if self._contact is None or self._contact != self._drive.contacts:
+            self.ask()
+        if self.scale is None:
+            raise ValueError("drive %d cannot tell what 100 %% is" % self._drive.address)
+        return self.scale
+
+    def hertz_scale(self):
+        """The scale, with its reference in Hz if the drive tells enough for that."""
+        scale = self.known_scale()
+        return self._with_motor(scale) if scale.reference_hertz is None else scale
+
+    def rpm_scale(self):
+        """The scale, with its reference in 1/min if the drive tells enough for that."""
+        scale = self.known_scale()
+        return self._with_motor(scale) if scale.reference_rpm is None else scale
+
+    def _read(self, row):
+        """The job that has read a row of the survey; None when the drive has no such parameter."""
+        number, index, _ = row
+        job = pkw.read(number, index)
+        self._drive.carry_out(job)
+        if job.state == pkw.REFUSED and job.error == NO_PARAMETER:
+            return None
+        self._drive.raise_unless_done(job)
+        return job
+
+    def _scale(self):
+        """What the values say of the scale; None when they lack what could change it."""
+        family = self._drive.family
+        values = self.values
+        if family.survey[profiles.ABSOLUTE] and values[profiles.ABSOLUTE] is None:
+            return None
+        absolute = family.absolute_value is not None
+        absolute = absolute and values[profiles.ABSOLUTE] == family.absolute_value
+        reference = values[profiles.REFERENCE]
+        if reference is not None and family.survey[profiles.REFERENCE][2] == families.RPM:
+            return Scale(reference_rpm=reference, absolute=absolute)
+        return Scale(reference_hertz=reference, absolute=absolute)
+
+    def _with_motor(self, scale):
+        """The scale with both references: the motor's rating leads from one to the other."""
+        drive = self._drive
+        if not drive.family.motor or not drive.layout.pkw_words:
+            return scale
+        frequency, speed = drive.family.motor
+        kind = drive.family.survey[profiles.REFERENCE][2]  # that of its other frequencies
+        rated_hertz = families.value(drive.do(pkw.read(frequency)), kind, self._is_fine)
+        pairs = pole_pairs(rated_hertz, drive.read(speed))
+        self.scale = Scale(scale.reference_hertz, scale.reference_rpm, pairs, scale.absolute)
+        return self.scale
+
+    def _check_limit(self, row, sign, word):
+        limit = self.values[row]
+        if limit is None:
+            return
+        if self._drive.family.survey[row][2] == families.RPM:
+            speed, unit = abs(self.scale.rpm(word)), "1/min"
+        else:
+            speed, unit = abs(self.scale.hertz(word)), "Hz"
+        if sign * speed > sign * limit * (TOLERANCE if sign > 0 else 2 - TOLERANCE):
+            raise ValueError(
+                "%.2f %s is beyond the limit of drive %d: %s = %.2f %s"
+                % (speed, unit, self._drive.address, self._name(row), limit, unit)
+            )
+
+    def _name(self, row):
+        return pkw.name(*self._drive.family.survey[row][:2])

@@ -1,0 +1,808 @@
+"""The bus for a program of one's own: what a maker writes, and what becomes of the motor."""
+
+from boards.sim import g110, g120, mm3, mm440, v20
+from bus_bench import QUICK, Bench, refusal
+from uss import pkw, pzd
+from uss.bus import MAY_RUN, NO_CONTACT, Master, NoContact, NotStarted, Refused, TimedOut
+from uss.families import G110, G120, GENERIC, MM3, MM420, MM440, V20
+from uss.layout import Layout
+from uss.master import CLOSED, OFF
+from uss.profiles import WORD
+from uss.scaling import Scale
+
+
+def near(value, wanted, within=0.02):
+    assert abs(value - wanted) <= within, (value, wanted)
+
+
+# --- to run -------------------------------------------------------------------------------------
+
+
+def test_a_drive_runs_at_a_frequency_and_tells_its_speed():
+    bench = Bench()
+    drive = bench.drive
+    drive.run(25.0)
+    assert bench.bus.wait(3, lambda: drive.hertz > 24.9)
+    near(drive.hertz, 25.0)
+    near(drive.percent, 50.0)
+    assert drive.is_running and drive.state == "running"
+    near(bench.motor().hz(), 25.0)
+    bench.end()
+
+
+def test_percent_is_of_the_reference_frequency():
+    bench = Bench()
+    bench.drive.run(percent=40)
+    bench.bus.wait(2)
+    near(bench.drive.hertz, 20.0)
+    bench.end()
+
+
+def test_a_negative_speed_turns_left():
+    bench = Bench()
+    bench.drive.run(-10.0)
+    bench.bus.wait(2)
+    near(bench.drive.hertz, -10.0)
+    near(bench.motor().hz(), -10.0)
+    bench.end()
+
+
+def test_a_new_speed_of_a_motor_that_runs_is_on_the_line_at_once():
+    bench = Bench()
+    bench.drive.run(10.0)
+    bench.bus.wait(1)
+    before_us = bench.clock.now_us
+    bench.drive.run(20.0)
+    assert bench.clock.now_us == before_us  # it asks for nothing
+    bench.bus.wait(1)
+    near(bench.drive.hertz, 20.0)
+    assert bench.motor().starts == 1
+    bench.end()
+
+
+def test_with_p2009_the_words_are_in_hundredths_of_a_hertz():
+    bench = Bench(parameters={2014: 2_000, 1120: 1.0, 1121: 1.0, 2009: 1})
+    bench.drive.run(12.34)
+    bench.bus.wait(2)
+    near(bench.drive.hertz, 12.34, 0.005)
+    near(bench.drive.percent, 24.68)
+    bench.end()
+
+
+def test_one_speed_is_wanted_and_no_more():
+    bench = Bench()
+    for speeds in ({}, {"hertz": 1.0, "percent": 2.0}, {"percent": 2.0, "rpm": 3.0}):
+        assert "one speed" in refusal(ValueError, bench.drive.run, **speeds)
+    assert not bench.motor().starts
+
+
+def test_a_speed_beyond_the_limits_of_the_drive_is_refused():
+    bench = Bench(parameters={2014: 2_000, 1080: 5.0, 1082: 40.0})
+    text = refusal(ValueError, bench.drive.run, 41.0)
+    assert text == "41.00 Hz is beyond the limit of drive 1: P1082[0] = 40.00 Hz"
+    assert "P1080[0] = 5.00 Hz" in refusal(ValueError, bench.drive.run, 2.0)
+    assert "P1082" in refusal(ValueError, bench.drive.run, percent=-90)
+    bench.drive.run(40.0)
+    refusal(ValueError, bench.drive.run, 45.0)
+    bench.bus.wait(1)
+    assert bench.drive.is_on()  # a wrong speed changes nothing
+    bench.end()
+
+
+def test_jog_turns_until_stop():
+    bench = Bench(parameters={2014: 2_000, 1058: 4.0, 1059: 3.0, 1060: 1.0, 1061: 1.0})
+    drive = bench.drive
+    drive.jog_right()
+    bench.bus.wait(1)
+    near(drive.hertz, 4.0)
+    drive.stop()
+    bench.bus.wait(1)
+    assert drive.state == "ready"
+    drive.jog_left()
+    bench.bus.wait(1)
+    near(drive.hertz, -3.0)
+    bench.end()
+
+
+def test_a_motor_that_runs_does_not_jog():
+    bench = Bench()
+    bench.drive.run(10.0)
+    bench.bus.wait(1)
+    assert "is running" in refusal(NotStarted, bench.drive.jog_left)
+    assert bench.drive.is_on()
+    bench.end()
+
+
+# --- to stop ------------------------------------------------------------------------------------
+
+
+def test_stop_is_in_the_next_telegram():
+    bench = Bench((1, 2, 3))
+    bench.bus.drives[1].run(10.0)
+    bench.bus.wait(1)
+    since_us = bench.clock.now_us
+    bench.bus.drives[1].stop()
+    bench.bus.wait(0.05)
+    sent = [row for row in bench.wire.log.last(20) if row[0] >= since_us and row[1]]
+    assert sent[0][2][2] == 2 and bench.stws(2, since_us)[0] == pzd.OFF1
+    bench.end()
+
+
+def test_off2_lets_the_motor_coast_and_off3_brakes():
+    for stop, word in (("off2", pzd.OFF2), ("off3", pzd.OFF3)):
+        bench = Bench()
+        bench.drive.run(20.0)
+        bench.bus.wait(1)
+        getattr(bench.drive, stop)()
+        bench.bus.wait(0.1)
+        assert bench.stws(1)[-1] == word
+        bench.end()
+
+
+def test_after_off2_or_off3_a_drive_runs_again_once_it_stands():
+    bench = Bench(parameters={2014: 2_000, 1120: 1.0, 1135: 2.0})
+    bench.drive.run(20.0)
+    bench.bus.wait(1)
+    bench.drive.off3()
+    bench.bus.wait(0.2)
+    assert "still stopping" in refusal(NotStarted, bench.drive.run, 20.0)
+    bench.bus.wait(3)
+    assert bench.drive.state == "inhibited"
+    bench.drive.run(20.0)
+    bench.bus.wait(1)
+    assert bench.drive.is_running
+    bench.end()
+
+
+def test_a_broadcast_stops_all_at_once():
+    bench = Bench((1, 2, 3))
+    for drive in bench.bus.drives:
+        drive.run(10.0)
+    bench.bus.wait(1)
+    bench.bus.broadcast_stop()
+    bench.bus.wait(0.03)
+    for address in (1, 2, 3):
+        assert bench.motor(address).report().find("state=stopping") > 0
+    assert bench.bus.wait(3, lambda: not any(drive.is_running for drive in bench.bus.drives))
+    bench.end()
+
+
+def test_where_a_family_takes_no_broadcast_each_is_stopped_by_itself():
+    bench = Bench((1,))
+    other = bench.bus.add(9, GENERIC)
+    bench.drive.run(10.0)
+    bench.bus.wait(1)
+    assert "USS drive" in refusal(ValueError, bench.bus.broadcast_stop)
+    assert bench.drive.wanted == 0 and other.stops == 1
+    bench.end()
+
+
+# --- no surprise start --------------------------------------------------------------------------
+
+
+def test_a_drive_that_is_silent_is_not_started_then_or_later():
+    bench = Bench()
+    bench.motor().unplug()
+    assert refusal(NoContact, bench.drive.run, 10.0) == "drive 1 does not answer"
+    bench.motor().plug()
+    bench.bus.wait(3)
+    assert bench.drive.state == "ready" and not bench.motor().starts
+    bench.end()
+
+
+def test_a_drive_with_a_fault_says_which_and_wants_it_acknowledged():
+    bench = Bench()
+    bench.bus.wait(0.5)
+    bench.motor().fault(1)
+    bench.bus.wait(0.2)
+    assert bench.drive.fault == 1 and bench.drive.state == "fault"
+    text = refusal(NotStarted, bench.drive.run, 10.0)
+    assert text == "drive 1 has tripped with F0001: acknowledge() when its cause is gone"
+    bench.drive.acknowledge()
+    bench.drive.run(10.0)
+    assert bench.drive.fault == 0
+    bench.end()
+
+
+def test_what_stopped_by_itself_or_was_lost_wants_a_stop_before_it_runs_again():
+    """So that a program that sets a speed again and again never starts a motor by that."""
+    bench = Bench()
+    bench.drive.run(10.0)
+    bench.bus.wait(1)
+    bench.motor().unplug()
+    bench.bus.wait(1.5)
+    assert bench.drive.state == MAY_RUN and not bench.drive.is_running
+    assert "does not answer" in refusal(NoContact, getattr, bench.drive, "hertz")
+    bench.motor().plug()
+    bench.bus.wait(1)
+    for _ in range(3):
+        assert "stop() says that you know" in refusal(NotStarted, bench.drive.run, 10.0)
+    bench.drive.stop()
+    bench.drive.run(10.0)
+    bench.bus.wait(1)
+    assert bench.drive.is_running
+    bench.end()
+
+
+def test_a_drive_that_takes_its_commands_from_elsewhere_is_not_started():
+    for number, value in ((700, 2), (1000, 2)):
+        bench = Bench(parameters={2014: 2_000, number: value})
+        text = refusal(NotStarted, bench.drive.run, 10.0)
+        assert text == "drive 1 is not under USS control: P%04d[0] = %d, not 5" % (number, value)
+        bench.end()
+
+
+def test_a_drive_that_is_held_by_off2_from_elsewhere_is_not_started():
+    bench = Bench()
+    bench.bus.wait(0.5)
+    bench.drive._may_start = lambda: False  # what a terminal does to the status word
+    text = refusal(NotStarted, bench.drive.run, 10.0)
+    assert text == "drive 1 is inhibited, or stopped by OFF2 or OFF3 from elsewhere"
+    bench.end()
+
+
+def test_a_jog_needs_no_setpoint_from_the_bus():
+    bench = Bench(parameters={2014: 2_000, 1000: 2})
+    bench.drive.jog_right()
+    bench.bus.wait(1)
+    assert bench.drive.is_running
+    bench.end()
+
+
+def test_a_drive_that_would_run_on_if_the_program_died_is_not_started():
+    bench = Bench(parameters={2014: 0, 1120: 1.0})
+    text = refusal(NotStarted, bench.drive.run, 10.0)
+    assert "would run on if this program died: P2014[0] = 0" in text
+    bench.drive.supervise(1.5)
+    assert bench.motor().read(2014) == 1500
+    bench.drive.run(10.0)
+    bench.clock.advance(2_000_000)  # the program hangs, and the drive helps itself
+    bench.bus.wait(1)
+    assert bench.drive.fault in (70, 72)
+    bench.end()
+
+
+def test_a_drive_that_trips_soon_gets_more_turns_than_the_list_gives_it():
+    """A round of twelve drives takes 560 ms at 9600 baud, and this one trips after 400."""
+    twelve = tuple(range(1, 13))
+    bench = Bench(twelve, baud=9600, kinds={1: {"parameters": {2014: 400, 1120: 1.0}}})
+    bench.bus.wait(1)
+    bench.drive.acknowledge()
+    bench.drive.run(10.0)
+    bench.bus.wait(3)
+    assert bench.drive.is_running and bench.drive.fault == 0
+    bench.end()
+
+
+def test_so_does_one_that_cannot_be_asked_when_its_owner_says_so():
+    mute = {2014: 400, 1120: 1.0, 2013: 0}
+    twelve = tuple(range(1, 13))
+    bench = Bench(twelve, baud=9600, kinds={1: {"parameters": mute}})
+    bench.bus.remove(bench.drive)
+    drive = bench.bus.add(1, G110, Layout(0, 2))
+    bench.bus.supervise(drive, 400)
+    drive.run(percent=20)
+    bench.bus.wait(2)
+    assert drive.is_running
+    bench.end()
+
+
+def test_one_that_would_run_on_is_started_when_its_owner_says_that_it_may():
+    bench = Bench(parameters={2014: 0}, unsupervised=True)
+    bench.drive.run(10.0)
+    bench.bus.wait(0.5)
+    assert bench.drive.is_running
+    bench.end()
+
+
+def test_a_drive_that_does_not_start_is_told_to_stop_so_that_it_does_not_start_later():
+    bench = Bench(parameters={2014: 2_000, 10: 1})
+    assert "is it being commissioned" in refusal(NotStarted, bench.drive.run, 10.0)
+    bench.bus.wait(0.1)
+    assert bench.stws(1)[-1] == pzd.OFF1
+    bench.motor().write(10, 0, 0)
+    bench.bus.wait(1)
+    assert not bench.motor().starts
+    bench.end()
+
+
+def test_a_drive_that_is_lost_or_trips_as_it_starts_says_so():
+    for happens in ("unplug", "fault"):
+        bench = Bench()
+        start, motor = bench.drive.engine.start, bench.motor()
+
+        def start_and_fail(hsw, stw, start=start, motor=motor, happens=happens):
+            start(hsw, stw)
+            if happens == "fault":
+                motor.fault(1)
+            else:
+                motor.unplug()
+
+        bench.drive.engine.start = start_and_fail
+        text = refusal(NotStarted, bench.drive.run, 10.0)
+        assert text == "drive 1 did not start: it was lost, or tripped", text
+        bench.bus.close()
+        bench.check()
+
+
+def test_stop_beats_a_start_that_still_waits():
+    bench = Bench()
+    bench.bus.wait(0.5)
+    for seconds in (0.02, 0.1, 0.15):
+        bench.at(seconds, bench.drive.stop)
+        assert "told to stop meanwhile" in refusal(NotStarted, bench.drive.run, 10.0)
+    bench.bus.wait(1)
+    assert not bench.drive.is_running
+    bench.end()
+
+
+def test_a_start_wants_room_in_the_telegrams():
+    bench = Bench(parameters={2014: 2_000, 2012: 1}, layout=Layout(4, 1))
+    assert "Layout(4, 1)" in refusal(NotStarted, bench.drive.run, 10.0)
+    bench.drive.jog_right()
+    bench.bus.wait(0.5)
+    assert bench.drive.is_running
+    assert "PZD2" in refusal(ValueError, getattr, bench.drive, "percent")
+    bench.end()
+
+
+def test_without_a_step_for_300_ms_every_motor_is_stopped():
+    bench = Bench((1, 2), paced=True)
+    for drive in bench.bus.drives:
+        drive.run(10.0)
+    bench.bus.wait(1)
+    bench.clock.advance(500_000)  # the program is busy elsewhere; interrupts go on
+    for drive in bench.bus.drives:
+        assert drive.stopped_by_engine() and bench.stws(drive.address)[-1] == pzd.OFF1
+    bench.bus.wait(2)
+    assert not any(drive.is_running for drive in bench.bus.drives)
+    bench.end()
+
+
+def test_another_master_on_the_line_is_left_alone():
+    bench = Bench()
+
+    def talk():
+        bench.wire.talk(bench.motor(), b"\x02\x06\x07\x00\x00\x00\x00\x03", 8)
+        bench.at(0.05, talk)
+
+    talk()
+    assert refusal(NoContact, bench.drive.run, 10.0) == "another master is on the line"
+    assert bench.stws(1) == []
+
+
+def test_bus_off_gives_the_line_away_and_on_takes_it_back():
+    bench = Bench()
+    bench.drive.run(10.0)
+    bench.bus.wait(0.5)
+    bench.bus.off()
+    assert bench.bus.wait(1, bench.bus.is_silent) and bench.bus.phase == OFF
+    assert bench.stws(1)[-1] == pzd.OFF1
+    assert refusal(NoContact, bench.drive.read, 700) == "the bus is off"
+    bench.bus.on()
+    assert bench.drive.read(700) == 5
+    bench.end()
+
+
+# --- what it does -------------------------------------------------------------------------------
+
+
+def test_without_contact_there_is_no_speed_to_tell():
+    bench = Bench()
+    assert bench.drive.state == NO_CONTACT
+    bench.motor().unplug()
+    for name in ("hertz", "percent", "rpm", "fault"):
+        assert "does not answer" in refusal(NoContact, getattr, bench.drive, name)
+
+
+def test_the_first_question_waits_for_contact_and_settings():
+    bench = Bench()
+    near(bench.drive.hertz, 0.0)
+    assert bench.drive.contact
+    bench.end()
+
+
+def test_a_drive_that_was_exchanged_is_asked_anew():
+    bench = Bench()
+    bench.drive.run(percent=50)
+    bench.bus.wait(1)
+    near(bench.drive.hertz, 25.0)
+    bench.drive.stop()
+    bench.motor().unplug()
+    bench.bus.wait(1.5)
+    bench.motor().write(2000, 0, 100.0)
+    bench.motor().plug()
+    bench.bus.wait(2.5)
+    bench.drive.acknowledge()
+    bench.drive.run(percent=10)
+    bench.bus.wait(1)
+    near(bench.drive.hertz, 10.0)
+    bench.end()
+
+
+def test_a_drive_without_parameter_channel_is_told_what_its_speeds_mean():
+    mute = {2013: 0, 1120: 1.0}
+    bench = Bench(parameters=mute, layout=Layout(0, 2))
+    assert "scale=Scale" in refusal(NotStarted, bench.drive.run, percent=50)
+    assert "what 100 % is" in refusal(ValueError, getattr, bench.drive, "percent")
+    assert "has no parameter channel" in refusal(RuntimeError, bench.drive.read, 700)
+    scale = Scale(50.0, pole_pairs=2)
+    bench = Bench(parameters=mute, layout=Layout(0, 2), scale=scale)
+    drive = bench.drive
+    drive.run(rpm=300)
+    bench.bus.wait(1)
+    near(drive.hertz, 10.0)
+    near(drive.rpm, 300.0, 1)
+    near(drive.percent, 20.0)
+    bench.motor().fault(1)
+    bench.bus.wait(0.2)
+    assert drive.fault == -1
+    bench.end()
+
+
+def test_a_g110_without_parameters_needs_no_scale_for_percent():
+    bench = of_family(G110, g110, {2013: 0, 1120: 1.0}, layout=Layout(0, 2))
+    bench.drive.run(percent=20)
+    bench.bus.wait(1)
+    near(bench.drive.percent, 20.0)
+    assert "not known" in refusal(ValueError, getattr, bench.drive, "hertz")
+    bench.end()
+
+
+# --- other families -----------------------------------------------------------------------------
+
+
+def of_family(family, simulated, parameters, **options):
+    """A bench whose drive is of another family."""
+    kind = {"family": simulated, "parameters": parameters}
+    return Bench((1,), family, kinds={1: kind}, **options)
+
+
+def test_an_mm440_tells_its_speed_and_is_told_one():
+    bench = of_family(MM440, mm440, QUICK)
+    bench.drive.run(rpm=-600)
+    bench.bus.wait(1)
+    near(bench.drive.rpm, -600, 1)
+    near(bench.drive.hertz, -20.0)
+    bench.end()
+
+
+def test_an_mm3_turns_left_by_a_bit_and_has_no_sign():
+    bench = of_family(MM3, mm3, {93: 2, 2: 10, 3: 10})
+    bench.drive.run(-10.0)
+    bench.bus.wait(1)
+    assert bench.stws(1)[-1] == 0x147F
+    near(bench.drive.hertz, -10.0, 0.05)
+    near(bench.motor().hz(), -10.0, 0.05)
+    bench.drive.run(rpm=300)
+    bench.bus.wait(1)
+    assert bench.stws(1)[-1] == 0x0C7F
+    near(bench.drive.rpm, 300, 2)
+    assert bench.drive.read(91) == 1
+    bench.end()
+
+
+def test_a_g110_and_a_v20_have_variable_telegrams():
+    for family, simulated in ((G110, g110), (V20, v20)):
+        bench = of_family(family, simulated, QUICK)
+        bench.drive.run(-10.0)
+        bench.bus.wait(1)
+        near(bench.drive.hertz, -10.0, 0.05)
+        assert bench.drive.read(700) == 5
+        assert bench.drive.write(1120, 3.0) == 3.0
+        bench.end()
+
+
+def test_a_g120_counts_in_revolutions_and_does_not_jog():
+    bench = of_family(G120, g120, None)
+    drive = bench.drive
+    assert refusal(NotStarted, drive.jog_right) == "a SINAMICS G120 has no jog"
+    drive.run(rpm=150)
+    assert bench.bus.wait(5, lambda: drive.rpm > 145)
+    drive.run(rpm=-150)
+    assert bench.bus.wait(9, lambda: drive.rpm < -145)
+    text = refusal(ValueError, drive.run, rpm=100_000 / 60)
+    assert "1/min is beyond the limit of drive 1: P1082[0]" in text
+    bench.end()
+
+
+def test_a_drive_of_which_nothing_is_known_runs_by_percent():
+    bench = Bench(family=GENERIC)
+    bench.drive.run(percent=20)
+    bench.bus.wait(1)
+    near(bench.drive.percent, 20.0)
+    assert "not known" in refusal(ValueError, bench.drive.run, 10.0)
+    assert bench.drive.read(700) == 5
+    assert bench.drive.read(1082, kind=float) == 50.0
+    assert "nobody knows" in refusal(ValueError, bench.drive.supervise, 1.0)
+    bench.motor().fault(1)
+    bench.bus.wait(0.2)
+    assert bench.drive.fault == -1
+    bench.drive.stop()
+    assert "tripped with a fault" in refusal(NotStarted, bench.drive.run, percent=20)
+    bench.end()
+
+
+# --- parameters ---------------------------------------------------------------------------------
+
+
+def test_read_brings_words_as_integers_and_double_words_as_floats():
+    bench = Bench()
+    assert bench.drive.read(700) == 5
+    near(bench.drive.read(1082), 50.0, 0)
+    assert bench.drive.read(2010, index=1) == bench.motor().read(2010, 1)
+    assert bench.drive.read(1082, kind=int) == 0x42480000
+    bench.end()
+
+
+def test_write_finds_out_what_the_parameter_is():
+    bench = Bench()
+    assert bench.drive.write(1120, 5) == 5.0  # a float in the drive, an integer in the program
+    assert bench.drive.write(971, 1.0) == 1  # and the other way round
+    assert bench.drive.write(1082, 45.5, kind=float) == 45.5
+    assert bench.motor().read(1120) == 5.0 and bench.motor().read(1082) == 45.5
+    assert "takes integers" in refusal(ValueError, bench.drive.write, 971, 0.5)
+    bench.end()
+
+
+def test_a_double_word_may_be_an_integer():
+    bench = Bench()
+    assert bench.drive.read(2019) == 52 << 16
+    assert bench.drive.write(2019, 21 << 16, index=2, sure=True) == 21 << 16
+    assert bench.motor().read(2019, 2) == 21 << 16
+    bench.end()
+
+
+def test_a_family_of_ones_own_is_a_few_lines():
+    class Odd(MM420):
+        name = "ODD"
+        survey = ((1998, 0, WORD),) + MM420.survey[1:]  # neither does it have P1998
+        fault_number = 1999  # nor P1999
+        fault_format = "E%d"
+
+    bench = Bench(family=Odd)
+    bench.drive.run(10.0)
+    assert bench.drive.is_running
+    bench.motor().fault(1)
+    bench.bus.wait(0.2)
+    assert bench.drive.fault == -1
+    bench.bus.close()
+    bench.bus.close()  # a second time changes nothing
+    bench.check()
+
+
+def test_ram_is_lost_with_the_power_and_eeprom_is_not():
+    bench = Bench()
+    bench.drive.write(1120, 5.0)
+    bench.drive.write(1121, 6.0, eeprom=True)
+    bench.motor().power_off()
+    bench.motor().power_on()
+    assert bench.motor().read(1121) == 6.0 and bench.motor().read(1120) != 5.0
+    bench.end()
+
+
+def test_a_refusal_has_a_number_and_words():
+    bench = Bench()
+    try:
+        bench.drive.write(1082, 900.0)
+    except Refused as refused:
+        assert refused.number == 2
+        assert str(refused) == "drive 1 refuses P1082[0]: beyond the limits"
+        assert refused.job.number == 1082
+    assert "no such parameter" in refusal(Refused, bench.drive.read, 1999)
+    bench.end()
+
+
+def test_a_drive_that_answers_but_not_to_the_task_times_out():
+    bench = Bench()
+    bench.drive.read(700)
+    bench.motor().stale_replies = 10_000
+    text = refusal(TimedOut, bench.drive.read, 1082)
+    assert text == "drive 1 does not answer about P1082[0]"
+    bench.end()
+
+
+def test_a_drive_that_is_lost_in_between_does_not_answer():
+    bench = Bench()
+    bench.drive.read(700)
+    bench.motor().unplug()
+    assert refusal(NoContact, bench.drive.read, 1082) == "drive 1 does not answer"
+
+
+def test_what_may_cost_the_bus_its_drive_wants_to_be_sure():
+    bench = Bench()
+    text = refusal(ValueError, bench.drive.write, 700, 2)
+    assert text.startswith("P0700[0] may take drive 1 away from this bus")
+    assert bench.motor().read(700) == 5
+    bench.drive.write(700, 2, sure=True)
+    assert "not under USS control" in refusal(NotStarted, bench.drive.run, 10.0)
+    bench.end()
+
+
+def test_a_speed_means_the_new_thing_after_the_reference_was_written():
+    bench = Bench()
+    bench.drive.run(percent=20)
+    bench.bus.wait(1)
+    bench.drive.stop()
+    bench.bus.wait(1)
+    bench.drive.write(2000, 25.0, sure=True)
+    bench.drive.run(percent=20)
+    bench.bus.wait(1)
+    near(bench.drive.hertz, 5.0)
+    bench.end()
+
+
+def test_whoever_has_no_time_asks_and_looks_later():
+    bench = Bench()
+    job = pkw.read(1082)
+    bench.drive.ask(job)
+    assert job.state == pkw.PENDING
+    assert bench.bus.wait(1, lambda: job.state == pkw.DONE) and job.float_value() == 50.0
+    bench.end()
+
+
+def test_any_job_can_be_waited_for():
+    bench = Bench()
+    assert bench.drive.do(pkw.read(700)).integer_value() == 5
+    bench.end()
+
+
+# --- the bus ------------------------------------------------------------------------------------
+
+
+def test_the_same_calls_work_by_interrupts():
+    bench = Bench((1, 2), paced=True)
+    one, two = bench.bus.drives
+    one.run(10.0)
+    two.run(-5.0)
+    bench.bus.wait(1)
+    near(one.hertz, 10.0)
+    near(two.hertz, -5.0)
+    assert one.write(1120, 2.0) == 2.0
+    bench.end()
+
+
+def test_a_board_without_receive_interrupt_will_do():
+    bench = Bench((1, 2), polled=True)
+    bench.drive.run(10.0)
+    bench.bus.wait(1)
+    near(bench.drive.hertz, 10.0)
+    bench.end()
+
+
+def test_a_drive_that_stands_in_the_list_twice_is_asked_twice_as_often():
+    bench = Bench((1, 2))
+    one = bench.drive
+    assert bench.bus.add(1) is one
+    assert [drive.address for drive in bench.bus.list] == [1, 2, 1]
+    bench.bus.wait(2)
+    near(one.counters[0] / bench.bus.drives[1].counters[0], 2.0, 0.1)
+    bench.end()
+
+
+def test_the_list_is_edited_while_the_bus_runs():
+    bench = Bench((1, 2, 3))
+    one, two, three = bench.bus.drives
+    bench.bus.wait(0.5)
+    bench.bus.arrange((one, two, one, three))
+    before = [drive.counters[0] for drive in (one, two, three)]
+    bench.bus.wait(2)
+    turns = [drive.counters[0] - count for drive, count in zip((one, two, three), before)]
+    near(turns[0] / turns[1], 2.0, 0.1)
+    near(turns[2] / turns[1], 1.0, 0.1)
+    one.run(10.0)
+    assert "may be running" in refusal(ValueError, bench.bus.remove, one)
+    bench.bus.remove(three)
+    assert bench.bus.drives == [one, two]
+    since_us = bench.clock.now_us
+    bench.bus.wait(0.5)
+    assert bench.stws(3, since_us) == []
+    assert "no turn" in refusal(ValueError, bench.bus.arrange, (one,))
+    bench.end()
+
+
+def test_a_drive_moves_to_another_address():
+    bench = Bench((1, 2))
+    one, two = bench.bus.drives
+    one.write(2011, 5, eeprom=True, sure=True)
+    bench.bus.readdress(one, 5)
+    assert one.address == 5 and one.read(2011) == 5
+    assert "taken" in refusal(ValueError, bench.bus.readdress, two, 5)
+    bench.end()
+
+
+def test_a_round_may_have_a_fixed_time_and_an_exchange_be_repeated():
+    bench = Bench((1, 2))
+    bench.bus.cycle_us = 100_000
+    bench.bus.wait(0.5)
+    before = bench.drive.counters[0]
+    bench.bus.wait(2)
+    assert bench.bus.cycle_us == 100_000 and 19 <= bench.drive.counters[0] - before <= 21
+    assert bench.bus.retries == 0
+    bench.bus.retries = 2
+    bench.motor().unplug()
+    since_us = bench.clock.now_us
+    bench.bus.wait(0.5)
+    sent = [row[2][2] for row in bench.wire.log.last(40) if row[0] >= since_us and row[1]]
+    first = sent.index(1)
+    assert bench.bus.retries == 2 and sent[first : first + 4] == [1, 1, 1, 2]
+    bench.end()
+
+
+def test_a_family_has_its_layouts():
+    bench = Bench((), parameters={})
+    assert bench.bus.add(3, G110).layout.variable
+    text = refusal(ValueError, bench.bus.add, 4, MM420, Layout(4, 8))
+    assert text == "a MICROMASTER 420 has no Layout(4, 8)"
+    assert "not 0...31" in refusal(ValueError, bench.bus.add, 32)
+
+
+def test_mirror_tells_who_is_there():
+    bench = Bench((1, 7))
+    bench.bus.remove(bench.bus.drives[1])
+    assert [node for node in (1, 3, 7) if bench.bus.mirror(node)] == [1, 7]
+    bench.end()
+
+
+def test_leaving_the_bus_stops_every_drive():
+    bench = Bench((1, 2))
+    with bench.bus:
+        for drive in bench.bus.drives:
+            drive.run(10.0)
+        bench.bus.wait(1)
+    assert bench.bus.phase == CLOSED
+    for address in (1, 2):
+        assert bench.stws(address)[-1] == pzd.OFF1
+    sent = bench.bus.exchanges
+    bench.clock.advance(1_000_000)
+    assert bench.bus.exchanges == sent
+    bench.check()
+
+
+def test_an_exception_and_ctrl_c_stop_them_too_wherever_they_strike():
+    for paced in (False, True):
+        bench = Bench((1, 2), paced=paced)
+        try:
+            with bench.bus:
+                bench.drive.run(10.0)
+                bench.at(0.7, bench.interrupt)
+                bench.at(0.75, bench.interrupt)  # and again, while it closes
+                bench.bus.wait(60)
+        except KeyboardInterrupt:
+            pass
+        else:
+            raise AssertionError("Ctrl-C was swallowed")
+        assert bench.stws(1)[-1] == pzd.OFF1 and bench.bus.phase == CLOSED
+        assert not bench.wire.violations
+
+
+def test_a_drive_that_does_not_answer_its_off_does_not_keep_the_program():
+    bench = Bench((1, 2))
+    bench.drive.run(10.0)
+    bench.bus.wait(0.5)
+    bench.motor().unplug()
+    before_us = bench.clock.now_us
+    bench.bus.close()
+    assert bench.clock.now_us - before_us < 2_500_000
+    assert bench.stws(1)[-1] == pzd.OFF1
+
+
+def test_a_failure_in_the_engine_is_not_hidden_and_takes_every_on_back():
+    bench = Bench()
+    bench.drive.run(10.0)
+    bench.bus.wait(0.5)
+    bench.bus.engine._choose = bench.bus.engine._rest = None
+    try:
+        bench.bus.wait(1)
+    except TypeError:
+        pass
+    else:
+        raise AssertionError("swallowed")
+    assert bench.bus.failures == 1 and not bench.drive.is_on()
+
+
+def test_the_link_has_a_clock_and_the_rate_is_one_of_uss():
+    bench = Bench(())
+    link = bench.board.make_link(19200)
+    assert Master(link).clock is bench.board.clock
+    assert "12345" in refusal(ValueError, Master, link, baud=12345)

@@ -1,0 +1,121 @@
+"""The examples of tools/examples: each fits a screen, and does what it says."""
+
+from tools.examples import broadcast_stop, one_drive, own_program, parameters, three_drives
+from tools.examples.simulation import Stage, names
+
+NOT_TRACED = """
+test_one_drive_runs_for_ten_seconds_and_stops test_three_drives_follow_each_other
+test_own_program_obeys_its_keys_until_ctrl_c test_own_program_says_why_the_pump_does_not_run
+test_broadcast_stops_all_three_at_once test_whatever_ends_an_example_stops_its_motors
+"""
+
+CODE_LINES_MAX = 25  # that a reader has before the eyes at once
+PRINTED = []
+
+
+def stage(**options):
+    """A board with three drives; what an example prints goes to PRINTED."""
+    del PRINTED[:]
+    for example in (broadcast_stop, one_drive, own_program, parameters, three_drives):
+        example.print = note
+    return Stage(**options)
+
+
+def note(*words):
+    PRINTED.append(" ".join(str(word) for word in words))
+
+
+def code_lines(text):
+    """Lines of code: without the docstring, blank lines, and the part that starts it on a chip."""
+    _, _, code = text.split('"""', 2)
+    code, _, _ = code.partition("\nif __name__")
+    return [line for line in code.split("\n") if line.strip()]
+
+
+def test_each_fits_a_screen():
+    assert len(names()) == 5
+    for name in names():
+        with open("tools/examples/%s.py" % name) as file:
+            lines = code_lines(file.read())
+        assert len(lines) <= CODE_LINES_MAX, (name, len(lines))
+
+
+def test_one_drive_runs_for_ten_seconds_and_stops():
+    world = stage()
+    seen = []
+    world.at(9, lambda: seen.append(world.drives[1].hz()))
+    world.play(one_drive.main)
+    assert 24.9 < seen[0] < 25.1 and world.drives[1].hz() == 0
+    assert PRINTED[9] == " 25.00 Hz  running" and PRINTED[10] == "  0.00 Hz  ready"
+    world.check()
+
+
+def test_three_drives_follow_each_other():
+    world = stage()
+    world.play(three_drives.main)
+    assert [line.partition(",")[0] for line in PRINTED] == [
+        "drive 1: 30.00 Hz",
+        "drive 2: 15.00 Hz",
+        "drive 3: 3.00 Hz",
+    ]
+    answers = [int(line.split(" ")[4]) for line in PRINTED]
+    assert 1.8 < answers[0] / answers[1] < 2.2
+    world.check()
+
+
+def test_parameters_are_read_written_and_refused():
+    world = stage()
+    world.play(parameters.main)
+    assert PRINTED == [
+        "P0700 = 5 and P1082 = 50.00 Hz",
+        "RAM: P1120 = 5.0 s",
+        "EEPROM as well: P1121 = 8.0 s",
+        "drive 1 refuses P1082[0]: beyond the limits (error 2)",
+        "P2010[1] = 6",
+    ]
+    world.drives[1].power_off()
+    world.drives[1].power_on()
+    assert world.drives[1].read(1121) == 8.0 and world.drives[1].read(1120) == 10.0
+    world.check()
+
+
+def test_own_program_obeys_its_keys_until_ctrl_c():
+    world = stage()
+    seen = []
+    world.at(2, world.tap, "START")
+    world.at(12, lambda: seen.append(world.drives[1].hz()))
+    world.at(12.1, world.tap, "STOP")
+    world.at(22, lambda: seen.append(world.drives[1].hz()))
+    world.at(23, world.interrupt)
+    world.play(own_program.main)
+    assert 39.9 < seen[0] < 40.1 and seen[1] == 0 and not world.resets
+    world.check()
+
+
+def test_own_program_says_why_the_pump_does_not_run():
+    world = stage(parameters={2014: 2_000, 700: 2})
+    world.at(2, world.tap, "START")
+    world.at(3, world.interrupt)
+    world.play(own_program.main)
+    assert "drive 1 is not under USS control: P0700[0] = 2, not 5" in PRINTED
+    assert world.drives[1].hz() == 0
+    world.check()
+
+
+def test_broadcast_stops_all_three_at_once():
+    world = stage()
+    world.play(broadcast_stop.main)
+    assert PRINTED == ["['running', 'running', 'running']", "['ready', 'ready', 'ready']"]
+    world.check()
+
+
+def test_whatever_ends_an_example_stops_its_motors():
+    world = stage(parameters={2014: 60_000, 1121: 1.0})
+    world.at(4, world.interrupt)
+    world.play(three_drives.main)
+    for drive in world.drives.values():
+        assert drive.starts == 1
+    world.clock.advance(2_000_000)
+    for drive in world.drives.values():
+        assert drive.hz() == 0
+    world.check()

@@ -1,0 +1,124 @@
+"""Descriptions of parameters: elements, and the whole of it (specification C-6, tasks 4, 5)."""
+
+from test_channel import Line
+from test_pkw import FOUR, THREE, VARIABLE, answered, refused
+from test_pkw_text import text_words
+from uss import pkw
+from uss.layout import VARIABLE as VARIABLE_WORDS
+from uss.pkw_description import (
+    ACCESS,
+    ARRAY,
+    CHANGED,
+    DESCRIPTION,
+    ELEMENTS,
+    EXTENSION,
+    FACTOR,
+    IDENTIFIER,
+    LOWER_LIMIT,
+    NAME,
+    QUANTITY,
+    UPPER_LIMIT,
+    read_description,
+    write_description,
+)
+
+
+def test_the_lower_limit_of_example_4():
+    """Task 4, element 7 of P52, three fixed words: 5FFFh."""
+    job = read_description(52, LOWER_LIMIT)
+    assert Line(3).ask(job).state == pkw.PENDING
+    assert bytes(job.words) == b"\x40\x34\x00\x07\x00\x00\x00\x00"
+    assert answered(job, (0x3034, 7, 0x5FFF), THREE)
+    assert job.state == pkw.DONE and job.description().lower == 0x5FFF
+
+
+def test_the_whole_description_of_example_3_is_refused_with_fixed_length():
+    """The specification's drive says 101; it may be asked, as it says best why not."""
+    line = Line(3)
+    job = line.ask(read_description(52))
+    assert line.send() == (0x4034, 0x00FF, 0)
+    line.answer(0x7034, 0x00FF, 101)
+    assert job.state == pkw.REFUSED and job.error == 101
+
+
+def test_each_element():
+    """A word in PWE1 with variable length, in PWE2 of four fixed words."""
+    for element, variable, four, field, value in (
+        (IDENTIFIER, (0x5008,), (0, 0x5008), "identifier", 0x5008),
+        (ELEMENTS, (3,), (0, 3), "elements", 3),
+        (FACTOR, (0x3F80, 0), (0x3F80, 0), "factor", 1.0),
+        (QUANTITY, (0x04FD,), (0, 0x04FD), "quantity", 0x04FD),
+        (ACCESS, (0x0102, 0x0304), (0x0102, 0x0304), "access", b"\x01\x02\x03\x04"),
+        (LOWER_LIMIT, (7,), (0, 7), "lower", 7),
+        (UPPER_LIMIT, (1, 2), (1, 2), "upper", 0x10002),
+        (EXTENSION, (9,), (0, 9), "extension", 9),
+    ):
+        for form, words in ((VARIABLE, variable), (FOUR, four)):
+            job = read_description(2010, element)
+            assert answered(job, (0x300A, 0x8000 | element) + words, form), element
+            description = job.description()
+            assert getattr(description, field) == value, (element, form)
+            assert [getattr(description, row[2]) for row in DESCRIPTION].count(None) == 9
+
+
+def test_the_name_has_sixteen_characters():
+    job = read_description(1120, NAME)
+    assert not answered(job, [0x3460, NAME] + text_words("Ramp-up time"), VARIABLE)
+    assert answered(job, [0x3460, NAME] + text_words("Ramp-up time    "), VARIABLE)
+    assert job.description().name == "Ramp-up time"
+
+
+def complete(kind, lower, upper):
+    words = [kind, 2, 0x3F00, 0, 0x0400, 0x0003, 0x0001] + text_words("Ramp-up time    ")
+    return [0x3460, 0x00FF] + words + list(lower) + list(upper) + [0]
+
+
+def test_the_whole_description():
+    """36 characters of a 16-bit parameter, 40 of a 32-bit one, in the order of the elements."""
+    for kind, lower, upper, limits in (
+        (0x0003, (0x8000,), (5,), (-32768, 5)),
+        (0x0006, (0xFFFE,), (5,), (0xFFFE, 5)),
+        (0x0004, (0xFFFF, 0xFFFE), (0, 5), (-2, 5)),
+        (0x0007, (0xFFFF, 0xFFFE), (0, 5), (0xFFFFFFFE, 5)),
+        (0x5008, (0, 0), (0x4422, 0x8000), (0.0, 650.0)),
+    ):
+        job = read_description(1120)
+        assert answered(job, complete(kind, lower, upper), VARIABLE)
+        description = job.description()
+        assert (description.lower, description.upper) == limits, kind
+        assert description.data_type() == kind & 0xFF
+        assert (description.elements, description.factor, description.name) == (
+            2,
+            0.5,
+            "Ramp-up time",
+        )
+        assert (description.quantity, description.extension) == (0x0400, 0)
+        assert description.access == b"\x00\x03\x00\x01"
+        assert description.default is None
+    assert description.identifier & CHANGED and description.identifier & ARRAY
+    assert not answered(job, complete(3, (1, 2), (3,)), VARIABLE)
+
+
+def test_a_description_is_written():
+    """Task 5; no MICROMASTER does that: error 106."""
+    for element, characters, words in (
+        (LOWER_LIMIT, b"\x00\x07", (0x5460, LOWER_LIMIT, 7)),
+        (FACTOR, b"\x3f\x80\x00\x00", (0x5460, FACTOR, 0x3F80, 0)),
+        (NAME, b"Ramp-up time    ", (0x5460, NAME) + tuple(text_words("Ramp-up time    "))),
+    ):
+        line = Line(VARIABLE_WORDS)
+        job = line.ask(write_description(1120, element, characters))
+        assert line.send() == words
+        line.answer(*((0x3460,) + words[1:]))
+        assert job.state == pkw.DONE, element
+    line = Line(4)
+    job = line.ask(write_description(1120, LOWER_LIMIT, b"\x00\x07"))
+    assert line.send() == (0x5460, LOWER_LIMIT, 0, 7)
+    line.answer(0x7460, LOWER_LIMIT, 0, 106)
+    assert pkw.error_text(job.error) == "task not implemented"
+    for pkw_words, characters in ((3, bytes(4)), (4, bytes(16))):
+        element = FACTOR if len(characters) == 4 else NAME
+        job = Line(pkw_words).ask(write_description(1120, element, characters))
+        assert job.state == pkw.REFUSED and job.error == 102
+    for element, size in ((IDENTIFIER, 4), (NAME, 15), (LOWER_LIMIT, 3), (FACTOR, 0), (255, 38)):
+        assert refused(ValueError, write_description, 1120, element, bytes(size)), element

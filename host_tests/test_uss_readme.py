@@ -1,0 +1,118 @@
+"""What firmware/uss/README.md shows is run, and what it names is there.
+
+Each block of Python is a program: with a `board`, and, unless it makes its own, a `bus` on which
+`drive` answers at address 1. The blocks for PLC programmers have a test of their own.
+"""
+
+import sys
+
+from boards.sim import g110, mm440
+from tools.examples.simulation import Stage, names
+from uss import families
+from uss.bus import Master
+
+NOT_TRACED = (
+    "test_every_block_runs_and_leaves_no_motor_on test_the_results_that_it_shows_are_those"
+)
+
+README = "firmware/uss/README.md"
+QUICK = {2014: 2_000, 1120: 1.0, 1121: 1.0, 1058: 5.0, 1060: 1.0}
+KINDS = {
+    4: {"family": mm440, "parameters": {2014: 2_000, 2012: 4}},
+    5: {"family": g110, "parameters": {2013: 0}},
+}
+
+
+def text():
+    with open(README) as file:
+        return file.read().partition("\n## For PLC programmers")[0]
+
+
+def blocks():
+    """(heading, code) of each block of Python."""
+    heading = ""
+    code = None
+    for line in text().split("\n"):
+        if line.startswith("## "):
+            heading = line[3:]
+        if line == "```python":
+            code = []
+        elif line == "```":
+            if code is not None:
+                yield heading, "\n".join(code) + "\n"
+            code = None
+        elif code is not None:
+            code.append(line)
+
+
+def play(code):
+    """Run a block on a board of its own; answer what it printed, and the board."""
+    stage = Stage((1, 2, 3, 4, 5), parameters=QUICK, kinds=KINDS)
+    printed = []
+    sys.modules["board"] = stage.board
+    program = {"board": stage.board, "print": lambda *words: printed.append(words)}
+    if "Master(" in code:
+        exec(code, program)
+    else:
+        with Master(stage.board.make_link(19200)) as bus:
+            program["bus"] = bus
+            program["drive"] = bus.add(1, families.MM420)
+            bus.wait(0.5)
+            exec(code, program)
+    del sys.modules["board"]
+    stage.check()
+    return printed, stage
+
+
+def test_every_block_runs_and_leaves_no_motor_on():
+    count = 0
+    for heading, code in blocks():
+        try:
+            _, stage = play(code)
+        except Exception:
+            print("in the block under %r:" % heading)
+            print(code)
+            raise
+        for drive in stage.drives.values():
+            assert "stw=047F" not in drive.report(), heading
+        count += 1
+    assert count >= 14
+
+
+def printed_under(heading, mark):
+    """What the block prints that stands under a heading and has `mark` in it."""
+    for found, code in blocks():
+        if found == heading and mark in code:
+            return play(code)[0]
+    raise AssertionError("no such block")
+
+
+def test_the_results_that_it_shows_are_those():
+    printed = printed_under("Parameters", "refusal.number")
+    assert printed[0] == (5,) and printed[1] == (50.0,)
+    number, refusal = printed[-1]
+    assert "%d %s" % (number, refusal) == "2 drive 1 refuses P1082[0]: beyond the limits"
+    assert printed_under("The bus", "mirror") == [(True, False)]
+    (found,) = printed_under("The bus", "Scan(")[-1]
+    assert found[1] == 12 and sorted(found) == [1, 2, 3, 4, 5]
+    (speed, state, highest) = printed_under("In two minutes", "import board")[0]
+    assert 24.9 < speed < 25.1 and state == "running" and highest == 50.0
+
+
+def test_the_table_of_families_names_each():
+    table = text().partition("\n## Families")[2]
+    for family in families.FAMILIES:
+        assert "`%s`" % family.__name__ in table, family
+
+
+def test_the_table_of_examples_names_each():
+    for name in names():
+        assert "(../../tools/examples/%s.py)" % name in text(), name
+
+
+def test_every_file_that_it_names_is_there():
+    table = text().partition("| if you want to know |")[2]
+    found = [word for word in table.split("`")[1::2] if word.endswith(".py")]
+    assert len(found) > 15
+    for name in found:
+        open("firmware/uss/" + name).close()
