@@ -1,13 +1,13 @@
 """A PLC with the USS blocks, and drives on its line, in virtual time: for the tests of `plc`.
 
-plc = Plc((1, 2))                   # nodes 1 and 2, simulated drives
-plc.motor(1).RUN = True             # the inputs of the USS_CTRL of node 1
-plc.run(500)                        # scans, for so many milliseconds
-plc.outputs(1).RUN_EN
+    plc = Plc((1, 2))                   # nodes 1 and 2, simulated drives
+    plc.motor(1).RUN = True             # the inputs of the USS_CTRL of node 1
+    plc.run(500)                        # scans, for so many milliseconds
+    plc.outputs(1).RUN_EN
 """
 
-from boards.sim.chip import UART, Chip, Pin
 from boards.sim.board import HardTimer
+from boards.sim.chip import UART, Chip, Pin
 from boards.sim.clock import Clock
 from boards.sim.drive import Drive
 from boards.sim.wire import Transceiver, Wire

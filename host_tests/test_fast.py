@@ -3,7 +3,7 @@
 import random
 from array import array
 
-from uss import fast
+from uss import fast, fast_python
 
 ROUNDS = 3000
 NAMES = ("exclusive_or", "is_reply", "agreeing", "get_words", "copy", "greatest", "frame")
@@ -20,7 +20,7 @@ def framed(count):
         buffer[0] = 0x02 if random.randrange(8) else buffer[0]
         buffer[1] = count - 2 if random.randrange(8) else buffer[1]
         buffer[2] = 5 if random.randrange(8) else buffer[2]
-        in_python = fast.IN_PYTHON[0]
+        in_python = fast_python.exclusive_or
         if random.randrange(4):
             buffer[count - 1] = in_python(buffer, count - 1)
     return buffer
@@ -28,7 +28,7 @@ def framed(count):
 
 def test_the_exclusive_or_is_the_same():
     random.seed(11)
-    in_python = fast.IN_PYTHON[0]
+    in_python = fast_python.exclusive_or
     for _ in range(ROUNDS):
         count = random.randrange(257)
         buffer = characters(count)
@@ -38,7 +38,7 @@ def test_the_exclusive_or_is_the_same():
 
 def test_net_data_are_framed():
     random.seed(17)
-    in_python = fast.IN_PYTHON[6]
+    in_python = fast_python.frame
     for _ in range(ROUNDS // 10):
         size, address = random.randrange(5, 257), random.randrange(256)
         framed_by_both, expected = characters(256), bytearray(256)
@@ -52,7 +52,7 @@ def test_net_data_are_framed():
 
 def test_a_telegram_is_recognised_by_both_or_by_none():
     random.seed(12)
-    in_python = fast.IN_PYTHON[1]
+    in_python = fast_python.is_reply
     found = 0
     for _ in range(ROUNDS):
         count = random.randrange(0, 40)
@@ -69,7 +69,7 @@ def test_a_telegram_is_recognised_by_both_or_by_none():
 
 def test_what_was_sent_is_no_reply():
     request = b"\x02\x06\x05\x04\x7e\x00\x00\x7b"
-    for is_reply in (fast.is_reply, fast.IN_PYTHON[1]):
+    for is_reply in (fast.is_reply, fast_python.is_reply):
         assert not is_reply(request, 8, request)
         assert is_reply(b"\x02\x06\x05\xfb\x31\x00\x00\xcb", 8, request)
         assert is_reply(b"\x02\x04\x05\xfb\x31\xc9", 6, request)
@@ -77,7 +77,7 @@ def test_what_was_sent_is_no_reply():
 
 def test_agreeing_characters_are_counted_up_to_the_first_that_differs():
     random.seed(14)
-    in_python = fast.IN_PYTHON[2]
+    in_python = fast_python.agreeing
     lengths = set()
     for _ in range(ROUNDS // 10):
         buffer = bytes(random.getrandbits(1) for _ in range(20))
@@ -92,7 +92,7 @@ def test_agreeing_characters_are_counted_up_to_the_first_that_differs():
 
 def test_words_are_taken_high_byte_first():
     random.seed(15)
-    in_python = fast.IN_PYTHON[3]
+    in_python = fast_python.get_words
     for _ in range(ROUNDS // 10):
         buffer, at, count = characters(40), random.randrange(9), random.randrange(16)
         taken, expected = array("H", bytes(40)), array("H", bytes(40))
@@ -106,7 +106,7 @@ def test_words_are_taken_high_byte_first():
 
 def test_the_greatest_is_found_going_round():
     random.seed(16)
-    in_python = fast.IN_PYTHON[5]
+    in_python = fast_python.greatest
     found = set()
     for _ in range(ROUNDS):
         values = bytes(random.choice((0, 0, 0, 0, 1, 2, 4)) for _ in range(10))
@@ -121,7 +121,7 @@ def test_the_greatest_is_found_going_round():
 
 def test_characters_are_copied_to_the_same_place():
     random.seed(13)
-    in_python = fast.IN_PYTHON[4]
+    in_python = fast_python.copy
     for _ in range(ROUNDS // 10):
         source, before = characters(20), characters(40)
         at, count = random.randrange(20), random.randrange(21)
@@ -140,7 +140,7 @@ def test_micropython_has_the_machine_code():
         import uss.fast_viper
     except AttributeError:
         has_viper = False  # CPython
-    for quick, plain in zip([getattr(fast, name) for name in NAMES], fast.IN_PYTHON):
-        assert (quick is plain) != has_viper
+    for name in NAMES:
+        assert (getattr(fast, name) is getattr(fast_python, name)) != has_viper
     if has_viper:
         assert uss.fast_viper.copy is fast.copy

@@ -1,6 +1,6 @@
 """Keys: debounced, repeated, and deaf to what was down when the panel was switched on."""
 
-from panel.keys import Keys
+from panel.keys import Acts, Keys
 
 NAMES = ("START", "STOP", "UP")
 START, STOP, UP = 1, 2, 4
@@ -161,3 +161,31 @@ def test_a_key_that_cannot_be_told_repeats_nothing():
         hand.keys.update(UP, hand.at_ms, UP)
         assert not hand.keys.repeated and not hand.keys.down
         hand.at_ms += 1
+
+
+def test_keys_at_rest_are_all_up_and_were_all_seen_up():
+    hand = Hand()
+    assert hand.keys.at_rest
+    hand.hold(START, 5)
+    assert not hand.keys.at_rest  # it may bounce
+    hand.hold(START, 100)
+    assert not hand.keys.at_rest
+    hand.hold(0, 19)
+    assert not hand.keys.at_rest
+    hand.hold(0, 10)
+    assert hand.keys.at_rest
+    jammed = Hand(down=UP).hold(UP, 100)
+    assert not jammed.keys.at_rest
+
+
+def test_what_was_pressed_can_be_taken_up_later():
+    hand = Hand().hold(UP, 21)
+    acts = Acts(hand.keys)
+    acts.note()
+    hand.hold(UP, 10)
+    assert hand.keys.pressed == 0 and acts.pressed == UP
+    assert acts.moved(UP) == 1 and acts.moved(START) == 0 and acts.pace() == 1
+    hand.hold(UP, 400 + 8 * 120 - 10)
+    acts.note()
+    assert acts.pressed == 0 and acts.repeated == UP and acts.repeats == 9
+    assert acts.pace() == 10 and acts.pace(1) == 1

@@ -100,7 +100,7 @@ def test_what_cannot_be_asked_is_refused_at_once():
         (pkw.Job, (10, 700)),  # reserved
         (pkw.Job, (16, 700)),
         (pkw.Job, (-1, 700)),
-        (pkw.Job, (4, 700)),  # descriptions and texts: see pkw_text
+        (pkw.Job, (4, 700)),  # descriptions and texts: see pkw_long
         (pkw.Job, (15, 700)),
     ):
         assert refused(ValueError, act, *arguments), (act, arguments)

@@ -35,7 +35,7 @@ WORDS = const(1)  # code of the DMA for transfers of 16 bits
     out_shiftdir=rp2.PIO.SHIFT_RIGHT,
 )
 def transmitter():
-    """First word: characters - 1. Then a word for each character, as `_bit_patterns` has them.
+    """First word: characters - 1. Then a word for each character, as `_transmit` makes them.
 
     A bit takes 8 cycles; characters follow each other without a gap, because fetching the next one
     is part of the stop bit. The DMA writes 16 bits, which the chip puts on both halves of the
@@ -54,25 +54,19 @@ def transmitter():
     nop().side(1)[2]  # to its end, and one cycle more
 
 
-def _bit_patterns():
-    """For each character its 11 bits in the order sent: 0, 8 bits, even parity, 1."""
-    patterns = array("H", bytes(512))
-    for character in range(256):
-        parity = character ^ character >> 4
-        parity ^= parity >> 2
-        parity ^= parity >> 1
-        patterns[character] = character << 1 | (parity & 1) << 9 | 1 << 10
-    return patterns
-
-
 @micropython.viper
-def _transmit(buffer: ptr8, count: int, words: ptr16, patterns: ptr16, channel: ptr32):
-    """Put what the state machine wants into `words`, and start the DMA channel that brings it."""
+def _transmit(buffer: ptr8, count: int, words: ptr16, channel: ptr32):
+    """Put what the state machine wants into `words`, and start the DMA channel that brings it.
+
+    Of each character its 11 bits in the order sent: 0, 8 bits, even parity, 1.
+    """
     words[0] = count - 1
     index = 0
     while index < count:
-        words[index + 1] = patterns[buffer[index]]
+        character = buffer[index]
+        parity = 0x6996 >> ((character ^ character >> 4) & 15) & 1  # of four bits, looked up
         index += 1
+        words[index] = 1 << 10 | parity << 9 | character << 1
     channel[14] = count + 1  # AL3_TRANS_COUNT
     channel[15] = int(words)  # AL3_READ_ADDR_TRIG: begins
 
@@ -124,15 +118,16 @@ class Rp2Link:
         self._ticks_us = clock.ticks_us
         self._mask = clock.ticks_mask
         self._frequency = CYCLES_PER_BIT * baud
-        # A table, because the product does not fit a small integer at every rate.
-        self._durations_us = array("i", [_duration_us(baud, count) for count in range(257)])
+        # Both rounded up. 64 characters, so that the product of `send` is exact to a microsecond or
+        # two and fits a small integer at every rate.
+        self._lead_us = -(-LEAD_CYCLES * 1_000_000 // self._frequency) + 1
+        self._sixty_four_us = -(-64 * BITS_PER_CHARACTER * 1_000_000 // baud)
         self._started_at = 0
         self._duration_us = 0
         self._burst_ended = False
         self._burst_ended_at = 0
         self._scratch = bytearray(SIZE_MAX)
         self._words = array("H", bytes(2 * (SIZE_MAX + 1)))
-        self._patterns = _bit_patterns()
         self._state_machine = rp2.StateMachine(state_machine)
         self._set_up()
         request = (state_machine >> 2) * 8 + (state_machine & 3)  # "its FIFO has room"
@@ -146,9 +141,9 @@ class Rp2Link:
             self._dma.active(0)
             self._set_up()
         self._burst_ended = False
-        duration_us = self._durations_us[count]
+        duration_us = (count * self._sixty_four_us >> 6) + self._lead_us
         self._started_at = started_at = self._ticks_us()
-        _transmit(buffer, count, self._words, self._patterns, self._channel)
+        _transmit(buffer, count, self._words, self._channel)
         self._duration_us = duration_us
         self.sent_at = (started_at + duration_us) & self._mask
 
@@ -207,9 +202,3 @@ class Rp2Link:
         self._burst_ended_at = (self._ticks_us() - self._idle_us) & self._mask
         self._burst_ended = True
         self.on_activity()  # no jump before it: a pending Ctrl-C would end this handler for good
-
-
-def _duration_us(baud, count):
-    """From the start of the DMA to the end of the last stop bit, in microseconds, rounded up."""
-    cycles = CYCLES_PER_BIT * BITS_PER_CHARACTER * count + LEAD_CYCLES
-    return -(-cycles * 1_000_000 // (CYCLES_PER_BIT * baud))

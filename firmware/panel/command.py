@@ -3,7 +3,7 @@
     command = Command(drive, survey, bus, mask)
     command.give(now)                       # the key was obeyed
     command.send(now)                       # ON goes out from now on
-    notice = command.why_in_vain(jogs, now) # each step of the loop while it is sent; or None
+    notice = command.why_in_vain(jogs, now) # again and again while it is sent; or None
     notice = command.why_stopped()          # the engine has taken it back
 """
 

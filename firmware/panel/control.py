@@ -179,9 +179,6 @@ class Control:
         """Whether it may run though it should not: an alarm."""
         return self.lost_running or self.stop_watch.unconfirmed
 
-    def second_stop_active(self):
-        return self.drive.off != pzd.OFF1
-
     def own_jog_ends(self):
         """Whether it turns because a jog of this panel is still ramping down."""
         return self._jogged and self.stop_watch.active

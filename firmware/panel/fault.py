@@ -1,7 +1,7 @@
 """The fault of one drive: its number, and whether it has been seen long enough to acknowledge it.
 
     fault = Fault(drive, mask)
-    fault.step(now)                     # each step of the loop
+    fault.step(now)                     # again and again
     fault.number                        # 1 for F0001; 0 while it is not known
     fault.seen = True                   # it is on the display
     if fault.was_shown: drive.acknowledge()

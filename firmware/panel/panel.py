@@ -73,7 +73,7 @@ class Panel:
         self._message_at = 0
         self._view = View(self, screen)
         self._view.begin(self._splash)
-        self._drawn_at = 0
+        self._drawn_at = None  # when the picture was begun; None: a new one at once
         self._name_keys(keys)
         self._around = 0  # of the controls: the one besides the selected that was looked at last
         self._neighbour = None  # it was asked, and is still to be watched
@@ -163,8 +163,9 @@ class Panel:
 
     def _watch(self, _now_ms, now_us):
         selected = self.selected
+        if not selected.checking:
+            self._view.look(selected)
         selected.watch(now_us)
-        self._view.look(selected)
         return False
 
     def _follow(self, now_ms, now_us):
@@ -178,15 +179,14 @@ class Panel:
 
     def _draw(self, now_ms, _now_us):
         # In a slow loop a picture takes longer than DRAW_MS: it is drawn to its end all the same.
-        view = self._view
-        if view.is_done() and elapsed(now_ms, self._drawn_at, self._mask) >= DRAW_MS:
-            self._begin_picture(now_ms)
+        view, drawn_at = self._view, self._drawn_at
+        if drawn_at is None or (
+            view.is_done() and elapsed(now_ms, drawn_at, self._mask) >= DRAW_MS
+        ):
+            self._drawn_at = now_ms
+            view.begin(self._over or self._page)
         view.step(now_ms)
         return False
-
-    def _begin_picture(self, now_ms):
-        self._drawn_at = now_ms
-        self._view.begin(self._over or self._page)
 
     def _let_show(self, _now_ms, _now_us):
         return True
@@ -197,7 +197,9 @@ class Panel:
         control = self._neighbour
         if control is None:
             control = self._next_neighbour()
-            if not control.ask(now_us) and control.is_quiet():
+            if control.ask(now_us):
+                self._around -= 1  # it has told something: in its next turn it is asked for more
+            elif control.is_quiet():
                 self._at_rest += 1
             else:
                 self._neighbour = control  # that was enough for a step
@@ -253,7 +255,7 @@ class Panel:
         if acts.pressed:
             if self._over is self._splash:
                 self._end_splash(now_ms)
-            self._begin_picture(now_ms)
+            self._drawn_at = None  # a new picture at once
 
     def _take_command(self, acts, now_ms):
         pressed = acts.pressed
@@ -326,7 +328,6 @@ class Panel:
         """It ends by itself."""
         if self._began_at is None:
             self._began_at = now_ms
-            self._begin_picture(now_ms)
         elif elapsed(now_ms, self._began_at, self._mask) >= SPLASH_MS:
             self._end_splash(now_ms)
 

@@ -28,7 +28,7 @@ def why_not_start(control):
     drive, survey = control.drive, control.survey
     if control.jogging:
         return texts.REFUSED_JOG
-    if control.second_stop_active():
+    if drive.off != pzd.OFF1:
         return texts.REFUSED_STOPPING
     state = drive.state()
     reason = _why_no_command(control, state)
@@ -44,7 +44,7 @@ def why_not_start(control):
 def why_not_jog(control):
     """JOG has its speed from the drive (P1058, P1059): the source of the setpoint is no matter."""
     drive, survey = control.drive, control.survey
-    if control.second_stop_active():
+    if drive.off != pzd.OFF1:
         return texts.REFUSED_STOPPING
     state = drive.state()
     reason = _why_no_command(control, state)
@@ -63,13 +63,13 @@ def _why_no_command(control, state):
         return texts.REFUSED_SILENT
     if control.moving:
         return texts.WRITER_BUSY
-    if control.is_unsaved():
+    if control.moved and control.is_unsaved():
         return texts.REFUSED_UNSAVED
     if state == pzd.FAULT:
         return texts.REFUSED_FAULT
     if not survey.complete:
         return texts.REFUSED_SCALING if survey.unreadable else texts.REFUSED_CHECKING
-    if is_local(survey):
+    if is_foreign(survey, profiles.COMMAND_SOURCE):
         return texts.REFUSED_COMMAND
     return None
 

@@ -26,7 +26,7 @@ class View:
     """panel: the `Panel` that is shown on `screen`, a field in a step: drawing takes its time.
 
     view.begin(page)        # a new picture
-    view.step(now_ms)       # each step of the loop
+    view.step(now_ms)       # again and again
     view.look(control)      # a drive that may have to be announced, one at a time
     """
 

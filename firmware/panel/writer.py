@@ -1,7 +1,7 @@
 """Writes parameters for the panel, one at a time, and tells what became of it.
 
     writer.write(control, 1000, 0, 5, False)        # into RAM
-    writer.step(now)                                # each step of the loop
+    writer.step(now)                                # again and again
     writer.take_result(selected)                    # a row to be shown, once, or None
 
 A drive that is to have another address is followed there, after a look whether anybody answers

@@ -9,7 +9,7 @@ Works a little at a time, whenever the loop refreshes the bus; the engine only w
 
 from micropython import const
 
-from uss.drive import NODES
+from uss.drive import NODES, OVERDUE, WANTS
 
 BACK_OFF_US = const(1_600_000)  # a drive that backs off is asked again after so long
 PROBE_SHARE = const(22)  # or after so many times what that costs, so that it takes below 5 %
@@ -27,18 +27,19 @@ class Care:
         self._gaps_us = {}  # drive: how far apart two telegrams to it may be while it may run
         self.pressed = []  # drives whose turns in the list may be further apart than that
         self._press = 0  # which of them was looked after last
+        self.cycle_us = 0  # `cycle_us` of the turns when that was worked out
         self._rests = bytearray(NODES)  # by address: whether it backs off
         self._looked = 0  # which drive was looked after last
         self._looked_at = 0
         self._since_silent = 0  # how many were looked after since one was silent
         self._back_off_us = BACK_OFF_US
-        self._cycle_us = 0  # the longest that a round may take
+        self._longest_us = 0  # that a round may take
 
     def supervise(self, drive, gap_us):
         """Keep two telegrams to a drive that may run at most so far apart; 0: any distance."""
         self._gaps_us[drive] = gap_us
         others = [other for other in self.pressed if other is not drive]
-        self.pressed = others + [drive] if 0 < gap_us < self._cycle_us else others
+        self.pressed = others + [drive] if 0 < gap_us < self._longest_us else others
 
     def forget(self, drive):
         """It is not on the bus any more."""
@@ -51,28 +52,33 @@ class Care:
         self._rests[old] = False
 
     def list_changed(self):
-        """There is another list: what follows from that."""
+        """There is another list, or another cycle time: what follows from that."""
         timing = self._timing
         turns = self._turns
         probe_us = 0
         for drive in turns.drives:
             probe_us = max(probe_us, timing.telegram_us(drive.layout.net_count))
         probe_us += timing.start_interval_us + timing.reply_timeout_us + timing.character_us
-        self._back_off_us = max(BACK_OFF_US, PROBE_SHARE * probe_us)
-        self._cycle_us = cycle_us = max(turns.longest_cycle_us(), turns.cycle_us)
+        self._back_off_us = min(max(BACK_OFF_US, PROBE_SHARE * probe_us), self._mask >> 1)
+        self.cycle_us = turns.cycle_us
+        self._longest_us = longest_us = max(turns.longest_cycle_us(), turns.cycle_us)
         gaps_us = self._gaps_us
-        self.pressed = [drive for drive in turns.drives if 0 < gaps_us.get(drive, 0) < cycle_us]
+        self.pressed = [drive for drive in turns.drives if 0 < gaps_us.get(drive, 0) < longest_us]
         turns.round_count = 0  # nobody has a turn until it is filled
         turns.round = list(turns.list)
         self._fill_round()
 
-    def look_after_pressed(self, now):
-        """One each time: is half of its gap over?"""
+    def look_after_pressed(self, now, passed_us):
+        """A few each time, all of them in SWEEP_US: is half of a gap over? passed_us: since the
+        last look.
+        """
         pressed = self.pressed
-        self._press = self._press + 1 if self._press + 1 < len(pressed) else 0
-        drive = pressed[self._press]
-        if drive.silent_us(now, self._mask) > self._gaps_us[drive] >> 1 and drive.may_run():
-            drive.hurry()
+        count = len(pressed)
+        for _ in range(min(count, 1 + count * min(passed_us, SWEEP_US) // SWEEP_US)):
+            self._press = self._press + 1 if self._press + 1 < count else 0
+            drive = pressed[self._press]
+            if drive.silent_us(now, self._mask) > self._gaps_us[drive] >> 1 and drive.may_run():
+                drive.ask_soon(OVERDUE)
 
     def look_after_silent(self, now):
         """A few each time, all of them in SWEEP_US; False when none has been silent lately."""
@@ -97,7 +103,7 @@ class Care:
             self._rests[drive.address] = backs_off
             self._fill_round()
         if backs_off and drive.silent_us(now, self._mask) >= self._back_off_us:
-            drive.probe()
+            drive.ask_soon(WANTS)
         self._since_silent = 0 if drive.silent else self._since_silent + 1
 
     def _anyone_has_contact(self):

@@ -39,6 +39,7 @@ from uss.timing import elapsed
 TICKET_MASK = const(0xFFFF)
 INSIST_MAX = const(10)  # telegrams out of turn that an OFF1 may take until the drive answers one
 SILENT_MAX = const(3)  # without contact and so often silent, a drive need not have every turn
+AHEAD_US = const(100_000)  # so far an interrupt may have been ahead of who asks for the time
 UNKNOWN = const(-1)  # no control word
 NO_EDGE = const(-1)  # no acknowledgement on its way
 ANSWERED = const(-2)  # one was confirmed: a word without bit 7 must follow
@@ -58,13 +59,15 @@ COUNTERS = (
 )
 STATUS_BITS = (0x00, 0x08, 0x40, 0x10, 0x08, 0x80, 0x20)
 
-# What the drives of a bus let the engine know: by address, the urgency of a command; from WANTS
-# on, by address, whether a drive is to have more than its turn; at ANY, whether there may be
-# anything to see. The engine alone clears them.
+# What the drives of a bus let the engine know, three rows by address: the urgency of a command;
+# that its next turn would be too late; that it is to have more than its turn. At ANY, whether there
+# may be anything to see. The engine alone clears them.
 NODES = const(32)
-WANTS = const(32)
-ANY = const(64)
-ATTENTION = const(65)
+COMMANDS = const(0)
+OVERDUE = const(32)
+WANTS = const(64)
+ANY = const(96)
+ATTENTION = const(97)
 
 # Bits of STW that `control` may change, and those that are 1 in every control word of `pzd`. The
 # others start, stop, acknowledge, turn round or give up control.
@@ -82,6 +85,8 @@ class Drive:
     reply in a row; `counters`, see COUNTERS; `status`, the error status word: what went wrong
     since the last valid reply, 0 after one.
     """
+
+    outside = False  # of the list; what is, has a state (`single`)
 
     def __init__(self, address, mask, attention=None, layout=STANDARD):
         if not 0 <= address <= NODE_MAX:
@@ -194,7 +199,8 @@ class Drive:
     def call(self):
         """Let the engine look how urgent this drive is."""
         attention = self._attention
-        attention[self.address] = self.urgency()
+        urgency = self.urgency()
+        attention[self.address] = urgency if urgency > 1 else 0
         attention[ANY] = 1
 
     def _call_for_turns(self):
@@ -289,12 +295,14 @@ class Drive:
             self.stops_sent = (self.stops - 1) & TICKET_MASK  # one stop is still to be sent
             self.call()
 
-    def probe(self):
-        """From the loop: it backs off, but is to be asked soon."""
+    def ask_soon(self, row):
+        """From the loop: its next turn in the list is too far away. row: OVERDUE or WANTS."""
         if not self.insist:
             self.insist = 1
         self.steady = False
-        self._call_for_turns()
+        attention = self._attention
+        attention[row + self.address] = 1
+        attention[ANY] = 1
 
     def urgency(self):
         """How much this drive is in a hurry.
@@ -429,7 +437,8 @@ class Drive:
 
     def silent_us(self, now, mask):
         """How long ago the last valid reply came; without contact, the last telegram."""
-        return (now - self._tried_at) & mask
+        passed_us = (now - self._tried_at) & mask
+        return passed_us if passed_us < mask - AHEAD_US else 0
 
     def may_reply_alike(self):
         """Whether its reply may be the very request: not where a control word meets a status word,

@@ -32,6 +32,11 @@ from uss.timing import BAUD_RATES
 RPM = const(2)  # a floating-point speed in 1/min
 STEPS = const(3)  # a frequency in 0.1 Hz, or in 0.01 Hz when the row ABSOLUTE is not 0
 
+# The MICROMASTER 4's, of drives without P2009.
+_SURVEY_WITHOUT_ABSOLUTE = (
+    profiles.SURVEY[: profiles.ABSOLUTE] + (None,) + profiles.SURVEY[profiles.ABSOLUTE + 1 :]
+)
+
 
 def _baud_codes(first, last):
     """Code -> bits per second: a code is the rate's place in the list of the specification."""
@@ -76,7 +81,7 @@ class GENERIC:
 
     # What must be known before a start, in the order of profiles.COMMAND_SOURCE...SUPERVISION:
     # (number, index, kind), or None where the family has no such parameter.
-    survey = (None,) * 7
+    survey = (None,) * len(profiles.SURVEY)
     command_value = None  # of COMMAND_SOURCE and of SETPOINT_SOURCE when USS has the drive
     setpoint_value = None
     absolute_value = None  # of ABSOLUTE when PZD2 is in 0.01 Hz instead of 4000h parts
@@ -231,7 +236,7 @@ class G110(MM420):
     name = "SINAMICS G110"
     layout = Layout(VARIABLE, 2)
     has_indices = False
-    survey = profiles.SURVEY[:3] + (None,) + profiles.SURVEY[4:]  # (?) that it has no P2009
+    survey = _SURVEY_WITHOUT_ABSOLUTE  # (?) that it has none
     absolute_value = None
 
 
@@ -244,7 +249,7 @@ class V20(MM440):
     baud = 38400
     fault_format = "F%d"
     protocol = (2023, 1)  # 2 is Modbus; acts after a power cycle
-    survey = profiles.SURVEY[:3] + (None,) + profiles.SURVEY[4:]  # (?) that it has no P2009
+    survey = _SURVEY_WITHOUT_ABSOLUTE  # (?) that it has none
     absolute_value = None
     ask_first = dict(profiles.ASK_FIRST)
     ask_first[717] = CUTS_OFF  # (?) connection macro: rewrites the sources and the link

@@ -1,94 +1,15 @@
 """The loops over characters that the bus engine runs in every exchange, as fast as can be.
 
-In machine code (`fast_viper`) where the interpreter has it, or else, the same in plain Python:
-under CPython, and on ports of MicroPython that compile no machine code.
+In machine code (`fast_viper`) where the interpreter has it, or else, the same in plain Python
+(`fast_python`, which says what each of them means): under CPython, and on ports of MicroPython
+that compile no machine code.
 """
-
-
-def exclusive_or(buffer, count):
-    """Exclusive or of the first `count` characters."""
-    check = 0
-    for index in range(count):
-        check ^= buffer[index]
-    return check
-
-
-def frame(buffer, size, address):
-    """Put STX, LGE, ADR and BCC around the net data of a telegram of `size` characters."""
-    buffer[0] = 0x02
-    buffer[1] = size - 2
-    buffer[2] = address
-    buffer[size - 1] = exclusive_or(buffer, size - 1)
-
-
-def is_reply(buffer, count, request):
-    """Whether the `count` characters are a whole telegram with the ADR of `request`, but not that
-    request itself, which a line with two wires may bring back.
-
-    STX and LGE stand where they should and the BCC is right; `telegram.judge` says what is wrong.
-    """
-    return (
-        count >= 5
-        and buffer[0] == 0x02
-        and buffer[1] == count - 2
-        and buffer[2] == request[2]
-        and exclusive_or(buffer, count) == 0
-        and (buffer[1] != request[1] or agreeing(buffer, 0, request, 0, count) < count)
-    )
-
-
-def agreeing(buffer, at, other, other_at, count):
-    """How many of `count` characters agree, from these indices on, until the first that differs.
-
-    The caller sees to it that both are long enough.
-    """
-    index = 0
-    while index < count and buffer[at + index] == other[other_at + index]:
-        index += 1
-    return index
-
-
-def get_words(buffer, at, words, to, count):
-    """Bring `count` words, high byte first, from buffer[at:] to words[to:], an array("H")."""
-    for index in range(count):
-        words[to + index] = buffer[at + 2 * index] << 8 | buffer[at + 2 * index + 1]
-
-
-def copy(source, target, at, count):
-    """Put the first `count` characters of `source` into `target` from index `at` on."""
-    for index in range(count):
-        target[at + index] = source[index]
-
-
-def greatest(values, at, count, start):
-    """Which of the `count` characters from values[at:] on is the greatest, or -1 if all are 0.
-
-    Of equal ones the first behind number `start`, going round.
-    """
-    found = -1
-    highest = 0
-    for step in range(1, count + 1):
-        number = (start + step) % count
-        if values[at + number] > highest:
-            highest = values[at + number]
-            found = number
-    return found
-
-
-# For the test that compares them with the others.
-IN_PYTHON = (exclusive_or, is_reply, agreeing, get_words, copy, greatest, frame)
 
 # What importing it raises: CPython knows no viper; no emitter in a port that compiles the source,
 # or one for another processor in a port that is handed bytecode.
 try:
-    from uss.fast_viper import (
-        agreeing,
-        copy,
-        exclusive_or,
-        frame,
-        get_words,
-        greatest,
-        is_reply,
-    )
+    from uss.fast_viper import agreeing, copy, exclusive_or, frame, get_words, greatest, is_reply
 except (ImportError, AttributeError, NameError, SyntaxError, ValueError):
-    pass
+    from uss.fast_python import agreeing, copy, exclusive_or, frame, get_words, greatest, is_reply
+
+__all__ = ("agreeing", "copy", "exclusive_or", "frame", "get_words", "greatest", "is_reply")

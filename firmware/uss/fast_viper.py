@@ -1,6 +1,6 @@
 """The machine code behind `fast`: MicroPython's viper, whose types are those of the processor.
 
-Each function has a twin in plain Python in `fast`, and means exactly the same.
+Each function has a twin in plain Python in `fast_python`, and means exactly the same.
 """
 
 import micropython

@@ -17,7 +17,7 @@ Not a clock and not a driver: the time is an argument, and the link is a duck ty
 
 from micropython import const
 
-from uss import telegram
+from uss import pkw, telegram
 from uss.drive import ANY, SILENT_MAX
 from uss.fast import frame
 from uss.receiver import COMING, SILENT, WAITING, Receiver
@@ -96,12 +96,16 @@ class Master(Turns):
 
     def refresh(self, now):
         """The loop says that it is alive. Whatever ran when it was not stays stopped."""
+        passed_us = (now - self._refreshed_at) & self._mask
         self._refreshed_at = now
         self._dead_man = False
+        care = self._care
         if self._uneasy:
-            self._uneasy = self._care.look_after_silent(now)
-        if self._care.pressed:
-            self._care.look_after_pressed(now)
+            self._uneasy = care.look_after_silent(now)
+        if care.pressed:
+            care.look_after_pressed(now, passed_us)
+        if care.cycle_us != self.cycle_us:
+            care.list_changed()
 
     def _set_list(self, entries):
         Turns._set_list(self, entries)
@@ -187,10 +191,13 @@ class Master(Turns):
             if self._failures_in_row >= FAILURES_MAX:
                 drive.lose()
         self._quiet_since = now
-        if self.phase != CLOSED and self.phase != LISTENING:
+        if self.phase in (RESTING, SENDING, AWAITING):
+            drive = self._drive
+            if self.phase != RESTING and drive.outside:
+                drive.miss(SILENT, now, 0, self._mask)  # it comes to an end
             self._begin_rest(now)
-            if self._drive is not None:
-                reply_us = self.timing.reply_timeout_us + 2 * self._drive.size * self._character_us
+            if drive is not None:
+                reply_us = self.timing.reply_timeout_us + 2 * drive.size * self._character_us
                 self._rest_us = reply_us
 
     def _check_dead_man(self, now):
@@ -390,5 +397,9 @@ class Master(Turns):
         if drive.silent > SILENT_MAX:
             self._uneasy = True
         if drive.silent <= self.retries:
+            if drive.outside:
+                drive.state = pkw.PENDING  # it is not over yet
+            elif drive not in self.drives:
+                return  # it was removed meanwhile
             self._again = drive
             self._attention[ANY] = 1

@@ -101,8 +101,9 @@ class Particulars:
             word = self.rpm_scale().from_rpm(rpm)
         else:
             word = self.known_scale().from_percent(percent)
-        for row, sign in ((profiles.LOWEST, -1), (profiles.HIGHEST, 1)):
-            self._check_limit(row, sign, word)
+        for row in (profiles.LOWEST, profiles.HIGHEST):
+            if self.values[row] is not None:
+                self._check_limit(row, self.values[row], word)
         return word
 
     def known_scale(self):
@@ -158,15 +159,16 @@ class Particulars:
         self.scale = Scale(scale.reference_hertz, scale.reference_rpm, pairs, scale.absolute)
         return self.scale
 
-    def _check_limit(self, row, sign, word):
-        limit = self.values[row]
-        if limit is None:
-            return
+    def _check_limit(self, row, limit, word):
         if self._drive.family.survey[row][2] == families.RPM:
             speed, unit = abs(self.scale.rpm(word)), "1/min"
         else:
             speed, unit = abs(self.scale.hertz(word)), "Hz"
-        if sign * speed > sign * limit * (TOLERANCE if sign > 0 else 2 - TOLERANCE):
+        if row == profiles.LOWEST:
+            is_beyond = speed * TOLERANCE < limit
+        else:
+            is_beyond = speed > limit * TOLERANCE
+        if is_beyond:
             raise ValueError(
                 "%.2f %s is beyond the limit of drive %d: %s = %.2f %s"
                 % (speed, unit, self._drive.address, self._name(row), limit, unit)

@@ -9,7 +9,6 @@ the port that they share; one of them at a time is at work there.
 """
 
 from uss import pkw, status
-from uss.families import MM3
 
 
 class Parameter:
@@ -60,8 +59,8 @@ class Parameter:
             self._end(refusal)
             return
         drive = port.drives[address]
-        has_no_eeprom_task = issubclass(port.family(address), MM3)
-        if drive.layout.pkw_words == 0 or (eeprom and has_no_eeprom_task):
+        has_task = port.family(address).has_eeprom_tasks or not eeprom
+        if drive.layout.pkw_words == 0 or not has_task:
             self._end(status.ILLEGAL_COMMAND)
         else:
             self._ask(drive, number, index, value, eeprom)

@@ -130,7 +130,8 @@ class Receiver:
         passed_us = (self.heard_at - self._began_at) & self._mask
         if passed_us > self._limit_us() + link.resolution_us:
             return CUT_OFF
-        return telegram.judge(buffer, count, awaited.address, size - _FRAME)
+        # The ADR of the request: the drive may have been given another address since.
+        return telegram.judge(buffer, count, awaited.request[2], size - _FRAME)
 
     def _is_echo(self, added, pause_us):
         """Whether the first characters are the request come back. pause_us: before them, at least.

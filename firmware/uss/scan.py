@@ -40,7 +40,8 @@ class Scan:
 
     Fields to look at: `found`, a dictionary address -> net characters; `variable`, a set of those
     that take any length; `unclear`, address -> finding of `receiver`, where something came that
-    was no answer: two nodes of one address, or a fault on the line; `asked`, telegrams so far.
+    was no answer: two nodes of one address, or a fault on the line; `asked`, telegrams so far;
+    `over`, all is asked.
 
     Drives of the bus are found without being asked as long as they answer. While one of them does,
     the scan takes a tenth of the line's time.

@@ -38,6 +38,8 @@ class Single:
     bytes, once DONE. The other fields are those that the engine has of a drive.
     """
 
+    outside = True  # of the list
+
     def __init__(self, address, net):
         self.request = bytearray(len(net) + 4)
         self.request[NET : NET + len(net)] = net

@@ -5,8 +5,9 @@ asked twice as often. Before it goes, in this order,
 
     a telegram outside the list that is `ahead`: a broadcast stop
     a command that matters: a stop of a drive that runs, another stop, anything else
+    a drive whose next turn would be too late (every second telegram at the most)
     an exchange that is repeated because no valid reply came
-    every second telegram: one outside the list, or a drive that is to have more than its turn
+    one outside the list, or a drive that is to have more than its turn (every second, too)
 
 A drive that stays silent is counted and shown, and never taken off the list. Which of them back
 off, and whose turns are too far apart, is the subject of `care`. Sends nothing: `master` does.
@@ -16,7 +17,7 @@ from micropython import const
 
 from uss import pkw, telegram
 from uss.care import Care
-from uss.drive import ANY, ATTENTION, COUNTERS, NODES, WANTS, Drive
+from uss.drive import ANY, ATTENTION, COMMANDS, COUNTERS, NODES, OVERDUE, WANTS, Drive
 from uss.fast import greatest
 from uss.layout import STANDARD
 
@@ -128,6 +129,7 @@ class Turns:
         self._at[address] = drive
         drive.move(address)
         self._care.readdressed(old, address)
+        self._attention[old] = 0
         self._at[old] = None
 
     def supervise(self, drive, off_time_ms):
@@ -225,13 +227,14 @@ class Turns:
     def _begin_round(self, now):
         """At the end of the list: whether the cycle time is over and it may begin anew."""
         began_at = self._round_began_at
+        cycle_us = min(self.cycle_us, self._mask >> 1)  # no clock of ours tells longer times
         if began_at is not None:
             passed_us = (now - began_at) & self._mask
-            if passed_us < self.cycle_us:
-                self._round_left_us = self.cycle_us - passed_us
+            if passed_us < cycle_us:
+                self._round_left_us = cycle_us - passed_us
                 return False
-            if passed_us < 2 * self.cycle_us:  # in step with the rounds before
-                now = (began_at + self.cycle_us) & self._mask
+            if passed_us < 2 * cycle_us:  # in step with the rounds before
+                now = (began_at + cycle_us) & self._mask
         self._round_began_at = now
         return True
 
@@ -247,15 +250,17 @@ class Turns:
             drive, self._ahead = self._ahead, None
             attention[ANY] = 1
             return drive
-        drive = self._find(0, 2)
+        drive = self._find(COMMANDS, 2)
+        insisted, self._insisted = self._insisted, False
+        if drive is None and not insisted:
+            drive = self._find(OVERDUE, 1)
+            self._insisted = drive is not None
         if drive is None and self._again is not None:
             drive, self._again = self._again, None
             attention[ANY] = 1
         if drive is not None:
-            self._insisted = False
             return drive
-        if self._insisted:
-            self._insisted = False
+        if insisted:
             attention[ANY] = 1
             return None
         drive = self._next_single() or self._find(WANTS, 1)
@@ -268,7 +273,7 @@ class Turns:
         each time: an interrupt must not take long.
         """
         attention = self._attention
-        for _ in range(NODES if row < WANTS else FORGOTTEN_MAX):
+        for _ in range(NODES if row == COMMANDS else FORGOTTEN_MAX):
             address = greatest(attention, row, NODES, self._look_from)
             if address < 0:
                 return None
@@ -291,7 +296,7 @@ class Turns:
         return telegram_outside
 
     def _has_command(self):
-        return self._ahead is not None or greatest(self._attention, 0, NODES, 0) >= 0
+        return self._ahead is not None or greatest(self._attention, COMMANDS, NODES, 0) >= 0
 
     def _all_told(self):
         """Whether every drive has answered its OFF1, or has been sent it often enough."""

@@ -149,7 +149,7 @@ class Parameters:
     # --- what goes on ---------------------------------------------------------------------------
 
     def step(self, keys, now_ms):
-        """Each step of the loop while it is shown."""
+        """Again and again while it is shown."""
         self._look_at_selected()
         contact = self._control.drive.contact
         if not contact or not keys.down & self._set_key:
