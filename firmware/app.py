@@ -50,6 +50,8 @@ class App:
         self._mask = mask
         self._ticks_us = board.clock.ticks_us
         self._ticks_ms = board.clock.ticks_ms
+        self._refresh = self.bus.refresh
+        self._tend = self.pacer.tend
         self._progress = 0  # of the bus as last seen, and when it moved
         self._progress_at_ms = 0
         self._fed_at_ms = 0
@@ -68,8 +70,8 @@ class App:
         keypad = board.keypad
         now_ms = self._ticks_ms()
         now_us = self._ticks_us()
-        self.bus.refresh(now_us)
-        self.pacer.tend()
+        self._refresh(now_us)
+        self._tend()
         if self.panel.step(keypad.read(), now_ms, now_us, keypad.unclear):
             board.display.show(self.panel.screen.picture)
         if (now_ms - self._fed_at_ms) & self._mask >= FEED_MS:

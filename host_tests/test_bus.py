@@ -571,6 +571,18 @@ def test_a_family_of_ones_own_is_a_few_lines():
     bench.check()
 
 
+def test_a_family_without_tasks_for_the_eeprom_says_what_saves_instead():
+    bench = Bench(family=MM3)
+    try:
+        bench.drive.write(2, 5, eeprom=True)
+    except ValueError as reason:
+        assert str(reason) == (
+            "no task of MICROMASTER 3 writes the EEPROM: write parameter 971 afterwards"
+        ), reason
+    else:
+        raise AssertionError("it was tried")
+
+
 def test_ram_is_lost_with_the_power_and_eeprom_is_not():
     bench = Bench()
     bench.drive.write(1120, 5.0)

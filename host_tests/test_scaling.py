@@ -91,7 +91,7 @@ def test_what_is_not_known_is_refused():
 
 def test_what_no_word_can_carry_is_refused():
     scale = Scale(reference_hertz=50.0)
-    for percent in (200.01, -200.01, 1000, float("inf"), -float("inf"), float("nan")):
+    for percent in (200.004, 200.01, -200.01, 1000, float("inf"), -float("inf"), float("nan")):
         assert refused(scale.from_percent, percent), percent
     assert refused(scale.from_hertz, 100.1)
     assert scale.from_hertz(100) == 0x7FFF and scale.from_hertz(-100) == 0x8000
@@ -138,6 +138,7 @@ def test_an_mm3_has_a_bit_for_each_direction_and_no_sign():
     assert run_words(MM3, 0x2000, reverse=True) == (0x147F, 0x2000)
     assert run_words(MM3, 0xE000, reverse=True) == (0x0C7F, 0x2000)
     assert run_words(MM3, 0x8000) == (0x147F, 0x7FFF)
+    assert run_words(MM3, 0) == (0x0C7F, 0)
 
 
 def test_a_drive_by_the_specification_reverses_by_sign_alone():
@@ -160,6 +161,7 @@ def test_an_actual_value_without_a_sign_gets_it_from_bit_14():
     assert with_direction(0x2000, RIGHT) == 0x2000
     assert with_direction(0x2000, LEFT) == 0xE000
     assert with_direction(0xE000, LEFT) == 0xE000  # it had one
+    assert with_direction(0x2001, LEFT) == 0xDFFF
     assert with_direction(0, LEFT) == 0  # a drive that stands says so too
 
 
@@ -167,6 +169,7 @@ def test_pole_pairs_of_a_motor():
     for hertz, rpm, pairs in (
         (50, 2880, 1), (50, 1395, 2), (50, 1500, 2), (50, 910, 3), (60, 1750, 2), (87, 2525, 2),
         (50.0, 700.0, 4),
+        (33.3, 999, 2), (33.3, 1000, 2), (33.3, 2000, 1),  # synchronous, and rounded
     ):  # fmt: skip
         assert pole_pairs(hertz, rpm) == pairs, (hertz, rpm)
     assert refused(pole_pairs, 50, 0)

@@ -2,7 +2,8 @@
 
 from round_bench import MASK, MIRROR, Bench, Node, framed
 from uss import scan as scanning
-from uss.scan import EVERY_NET_COUNT, NET_COUNTS, RATES, RateScan, Scan
+from uss.master import OFF
+from uss.scan import EVERY_NET_COUNT, NET_COUNTS, RATES, TRIES, RateScan, Scan
 from uss.single import DONE, Mirror
 from uss.timing import BAUD_RATES
 
@@ -83,6 +84,8 @@ def test_two_nodes_of_one_address_are_told_from_none():
     scan = Scan(bench.master, MASK, range(8))
     bench.run_until(lambda: scan.step(bench.now), 60_000_000)
     assert scan.found == {} and set(scan.unclear) == {3}
+    asked = [telegram.address for telegram in bench.sent].count(MIRROR | 3)
+    assert asked == TRIES + len(NET_COUNTS) - 1, asked  # silent but at its own length
 
 
 def test_a_reply_that_was_spoilt_once_is_asked_for_again():
@@ -288,7 +291,7 @@ def test_where_somebody_talks_nothing_is_sent():
     assert scan.line_in_use and scan.baud is None
     for bench in lines.benches:
         bench.run(3_000_000)
-        assert bench.sent == []
+        assert bench.sent == [] and bench.master.phase == OFF
 
 
 def test_a_master_that_is_heard_later_ends_it():
@@ -297,6 +300,8 @@ def test_a_master_that_is_heard_later_ends_it():
     scan = RateScan(lines.open, MASK, nothing_runs=True)
     lines.carry_out(scan, lambda bench: bench.now % 1_000_000 == 600_000)
     assert scan.line_in_use and scan.baud is None and lines.opened == [9600]
+    lines.benches[0].run(1_000_000)
+    assert lines.benches[0].master.phase == OFF, "the line is left to the other one"
 
 
 def test_a_bus_with_drives_is_not_taken():

@@ -123,6 +123,15 @@ def test_every_module_of_the_firmware_says_what_it_is():
             assert ast.get_docstring(ast.parse(source.read())), path
 
 
+def test_the_package_of_the_protocol_lists_its_modules():
+    with open(os.path.join(TOP, "firmware/uss/__init__.py"), encoding="utf-8") as source:
+        told = ast.get_docstring(ast.parse(source.read()))
+    listed = [line.split()[0] for line in told.splitlines() if line.startswith("    ")]
+    there = {os.path.basename(path)[: -len(".py")] for path in python_files("firmware/uss")}
+    twins = {"fast_viper", "fast_python"}  # behind `fast`
+    assert sorted(listed) == sorted(there - twins - {"__init__"})
+
+
 def test_the_top_level_is_as_it_was_ordered():
     ordered = {"firmware", "boards", "host_tests", "tools", "README.md"}
     there = {name for name in os.listdir(TOP) if not name.startswith(".")}

@@ -2,6 +2,7 @@
 
 from uss import words
 from uss.families import FAMILIES
+from uss.scaling import RUNS_RIGHT
 from uss.words import STW2_BITS, STW_BITS, ZSW2_BITS, ZSW_BITS, bit, may_start, names
 
 # ZSW, what is remarkable about it. From captures and manuals (USS.md 4.3).
@@ -84,6 +85,8 @@ def test_a_bit_by_its_name():
     assert bit("FAULT", ZSW_BITS) == 0x0008
     assert bit("REVERSE", STW_BITS) == 0x0800
     assert bit("DATA_SET_BIT_0", words.STW_BITS_G120) == 0x8000
+    for table in (ZSW_BITS, words.ZSW_BITS_MM3, words.ZSW_BITS_G120):
+        assert bit("RUNS_RIGHT", table) == RUNS_RIGHT
     for table in tables():
         for place, name, _ in table:
             assert bit(name, table) == 1 << place

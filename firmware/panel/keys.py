@@ -59,19 +59,22 @@ class Acts:
 class Keys:
     """names: of the keys, in the order of their bits. mask: the millisecond clock's period - 1.
 
+    held: names of keys that matter as long as they are down, not only when they are pressed.
+
     After each `update`, as bits: `down`, the keys that are down; `pressed`, those that went down
     just now; `repeated`, those held for another REPEAT_MS just now. `repeats`: how often the key
     that repeats has done so. Only the key pressed last repeats. `at_rest`: no key is down or has
     just been, and each has been seen up; as long as none is down, `update` has nothing to do.
     """
 
-    def __init__(self, names, mask):
+    def __init__(self, names, mask, held=()):
         self.down = 0
         self.pressed = 0
         self.repeated = 0
         self.repeats = 0
         self._bits = {key: 1 << position for position, key in enumerate(names)}
         self._mask = mask
+        self._held = self.bits(held)
         self._eager = self.bit("STOP")
         self._raw = 0
         self._changed_at = {bit: 0 for bit in self._bits.values()}
@@ -99,7 +102,8 @@ class Keys:
         """raw: what the keypad reads now, as bits. unclear: the keys among them of which it cannot
         tell; they are up, and each must be seen up before it counts again.
 
-        Answers whether there is anything to be seen: a key is down, or was until now.
+        Answers whether there is anything to do: a key was pressed or repeats, or one of those that
+        are held is down or was until now.
         """
         were_down = self.down
         if unclear:
@@ -127,7 +131,7 @@ class Keys:
             self.repeated = self._last
         seen = self.down | were_down
         self.at_rest = not (seen or unsettled or unclear)
-        return seen != 0
+        return (seen & self._held | self.pressed | self.repeated) != 0
 
     def _debounce(self, changed, unsettled, now_ms):
         """unsettled: the keys, as bits, that moved just now or are not yet what they read."""

@@ -36,6 +36,9 @@ COMMAND_KEYS = (
     "START", "REVERSE", "JOG_RIGHT", "JOG_LEFT", "ADDRESS_UP", "ADDRESS_DOWN", "PARAM",
 )  # fmt: skip
 
+# What these do ends when they go up, or goes on; the others act when they are pressed.
+HELD_KEYS = ("STOP", "JOG_RIGHT", "JOG_LEFT")
+
 
 class Panel:
     """controls: a `Control` for each drive, at least one. key_names: as the keypad has its bits.
@@ -56,7 +59,7 @@ class Panel:
         self._bus = bus
         self._mask = mask
         self._settings = settings
-        self._keys = keys = Keys(key_names, mask)
+        self._keys = keys = Keys(key_names, mask, HELD_KEYS)
         self.stop_key = StopKey(
             keys.bit("STOP"), controls, settings.second_stop, mask, self.say
         )
@@ -97,8 +100,6 @@ class Panel:
         self._down_key = keys.bit("ADDRESS_DOWN")
         self._parameter_key = keys.bit("PARAM")
         self._command_keys = keys.bits(COMMAND_KEYS)
-        # What these do ends when they go up, or goes on; the others act when they are pressed.
-        self._held_keys = self._jog_bits | self._stop_bit
         self._were_down = 0  # the keys that were down in the last step, as bits
         self._acts = Acts(keys)
         self._acting = False  # they are still to be done
@@ -223,12 +224,9 @@ class Panel:
     # --- keys -----------------------------------------------------------------------------------
 
     def _take_keys(self, keys, now_ms):
-        """A key is down, or was until now. Answers whether that takes the rest of the step."""
+        """A key was pressed, repeats or is held. Answers whether it takes the rest of the step."""
         down = keys.down | self._were_down
         self._were_down = keys.down
-        acts = keys.pressed | keys.repeated
-        if not (acts or down & self._held_keys):
-            return False
         if keys.pressed:
             self.message = None
         if down & self._stop_bit:
@@ -236,7 +234,7 @@ class Panel:
         page = self._over or self._page
         if down & self._jog_bits:
             self._jog_keys.step(keys, self.selected, page.obeys and not self.stop_key.is_down)
-        if not acts:
+        if not (keys.pressed or keys.repeated):
             return False
         if self._acting:  # since the last step
             self._act(now_ms)

@@ -18,7 +18,7 @@ The engine, which may run in interrupts:
     drive            one slave: commands, process image, counters
     channel          the parameter channel of one drive: jobs wait, one task is on the line
     single           telegrams outside the list: mirror, broadcast, special
-    fast             the loops over characters, in `fast_viper` as machine code
+    fast             the loops over characters: `fast_viper`, or else `fast_python`
 
 What the panel knows of a drive:
     profiles         the parameters of a MICROMASTER 4 that matter to it: data

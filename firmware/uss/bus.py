@@ -190,6 +190,11 @@ class Drive:
         the drive, or a speed mean something else: family.ask_first. ValueError without it, and for
         a value that does not fit. Waits; Refused, TimedOut.
         """
+        if eeprom and not self.family.has_eeprom_tasks:
+            raise ValueError(
+                "no task of %s writes the EEPROM: write parameter %d afterwards"
+                % (self.family.name, self.family.save[0])
+            )
         asked_first = number in self.family.ask_first
         if asked_first and not sure:
             raise ValueError(

@@ -43,7 +43,7 @@ class Care:
 
     def forget(self, drive):
         """It is not on the bus any more."""
-        self._gaps_us[drive] = 0
+        self._gaps_us.pop(drive, None)
         self._rests[drive.address] = False
 
     def readdressed(self, old, new):
@@ -69,16 +69,16 @@ class Care:
         self._fill_round()
 
     def look_after_pressed(self, now, passed_us):
-        """A few each time, all of them in SWEEP_US: is half of a gap over? passed_us: since the
-        last look.
+        """A few each time, all of them in SWEEP_US: is a third of a gap over? Others may be due at
+        the same time. passed_us: since the last look.
         """
         pressed = self.pressed
         count = len(pressed)
         for _ in range(min(count, 1 + count * min(passed_us, SWEEP_US) // SWEEP_US)):
             self._press = self._press + 1 if self._press + 1 < count else 0
             drive = pressed[self._press]
-            if drive.silent_us(now, self._mask) > self._gaps_us[drive] >> 1 and drive.may_run():
-                drive.ask_soon(OVERDUE)
+            if drive.silent_us(now, self._mask) > self._gaps_us[drive] // 3 and drive.may_run():
+                self._ask_soon(drive, OVERDUE)
 
     def look_after_silent(self, now):
         """A few each time, all of them in SWEEP_US; False when none has been silent lately."""
@@ -103,8 +103,12 @@ class Care:
             self._rests[drive.address] = backs_off
             self._fill_round()
         if backs_off and drive.silent_us(now, self._mask) >= self._back_off_us:
-            drive.ask_soon(WANTS)
+            self._ask_soon(drive, WANTS)
         self._since_silent = 0 if drive.silent else self._since_silent + 1
+
+    def _ask_soon(self, drive, row):
+        if not self._turns.is_under_way(drive):
+            drive.ask_soon(row)
 
     def _anyone_has_contact(self):
         for drive in self._turns.drives:

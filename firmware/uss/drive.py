@@ -60,8 +60,8 @@ COUNTERS = (
 STATUS_BITS = (0x00, 0x08, 0x40, 0x10, 0x08, 0x80, 0x20)
 
 # What the drives of a bus let the engine know, three rows by address: the urgency of a command;
-# that its next turn would be too late; that it is to have more than its turn. At ANY, whether there
-# may be anything to see. The engine alone clears them.
+# that its next turn would be too late; that it is to have more than its turn. At ANY, whether
+# there may be anything to see. The engine alone clears them.
 NODES = const(32)
 COMMANDS = const(0)
 OVERDUE = const(32)
@@ -200,8 +200,9 @@ class Drive:
         """Let the engine look how urgent this drive is."""
         attention = self._attention
         urgency = self.urgency()
-        attention[self.address] = urgency if urgency > 1 else 0
-        attention[ANY] = 1
+        if urgency > 1:
+            attention[self.address] = urgency
+            attention[ANY] = 1
 
     def _call_for_turns(self):
         attention = self._attention
@@ -277,9 +278,8 @@ class Drive:
         return pzd.state(self.zsw)
 
     def ask(self, job):
-        """Queue a parameter job. RuntimeError when too many wait already or it is pending.
-
-        ValueError when it does not fit its layout.
+        """Queue a parameter job. RuntimeError when too many wait already, it is pending, or the
+        drive has no parameter channel. One that its layout has no room for is REFUSED at once.
         """
         self.channel.ask(job)
 

@@ -71,6 +71,7 @@ class Master(Turns):
         self.dead_man_trips = 0
         self.failures = 0
         self.foreign = 0
+        self._shared = False  # with another master, lately
         self._foreign_at = 0  # `exchanges` then
         self.paused = False
         self._link = link
@@ -106,10 +107,16 @@ class Master(Turns):
             care.look_after_pressed(now, passed_us)
         if care.cycle_us != self.cycle_us:
             care.list_changed()
+        if self._shared and (self.exchanges - self._foreign_at) & 0xFFFF >= SHARED_EXCHANGES:
+            self._shared = False
 
     def _set_list(self, entries):
         Turns._set_list(self, entries)
         self.patience_us = BABBLE_US + STUCK_US + self.longest_exchange_us()
+
+    def is_under_way(self, drive):
+        """Whether an exchange with this drive has begun and not ended."""
+        return self._drive is drive and self.phase in (SENDING, AWAITING)
 
     def is_line_in_use(self):
         """Whether another master was heard and is listened to instead of talking."""
@@ -119,8 +126,7 @@ class Master(Turns):
         """Whether another master has spoken lately while this one does: its telegrams came in
         between, or instead of a reply. Both will be misunderstood; nothing is done about it.
         """
-        lately = (self.exchanges - self._foreign_at) & 0xFFFF < SHARED_EXCHANGES
-        return self.phase != LISTENING and self.foreign > 0 and lately
+        return self._shared
 
     def has_echo(self):
         """Whether what is sent comes back: two wires, and a receiver that stays on."""
@@ -190,6 +196,7 @@ class Master(Turns):
             drive.revoke()
             if self._failures_in_row >= FAILURES_MAX:
                 drive.lose()
+            drive.call()  # its call may have been taken, and nothing come of it
         self._quiet_since = now
         if self.phase in (RESTING, SENDING, AWAITING):
             drive = self._drive
@@ -318,6 +325,7 @@ class Master(Turns):
     def _count_foreign(self):
         self.foreign = (self.foreign + 1) & 0xFFFF
         self._foreign_at = self.exchanges
+        self._shared = self.phase != LISTENING
 
     def _send(self, drive, now):
         self._drive = drive

@@ -14,6 +14,7 @@ from uss.pzd import FULL_SCALE, HSW_MAX, HSW_MIN, signed
 CENTIHERTZ_PER_HERTZ = 100
 SECONDS_PER_MINUTE = 60
 RUNS_RIGHT = 0x4000  # bit 14 of ZSW
+RATED_ROUNDING = 0.01  # a motor's plate rounds its frequency by at most so much of it
 
 
 class Scale:
@@ -116,9 +117,10 @@ def pole_pairs(frequency_hertz, speed_rpm):
 
     ValueError when they belong to no motor; a rated speed of 0 means that nobody entered it.
     """
-    if not 0 < speed_rpm <= SECONDS_PER_MINUTE * frequency_hertz:
+    one_pair_rpm = SECONDS_PER_MINUTE * frequency_hertz
+    if not 0 < speed_rpm <= one_pair_rpm * (1 + RATED_ROUNDING):
         raise ValueError("a motor of %r Hz and %r 1/min" % (frequency_hertz, speed_rpm))
-    return int(SECONDS_PER_MINUTE * frequency_hertz / speed_rpm)
+    return int(one_pair_rpm / speed_rpm + RATED_ROUNDING)
 
 
 def _limited(count):

@@ -167,7 +167,9 @@ class Special(Single):
         """Whether a reply may have so many net characters."""
         if self._to_all:
             return False
-        return self._awaited_count is None or net_count == self._awaited_count
+        if self._awaited_count is None:
+            return net_count <= telegram.NET_COUNT_MAX
+        return net_count == self._awaited_count
 
     def take(self, buffer, count, now):
         net_count = count - 4

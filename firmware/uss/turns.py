@@ -5,9 +5,9 @@ asked twice as often. Before it goes, in this order,
 
     a telegram outside the list that is `ahead`: a broadcast stop
     a command that matters: a stop of a drive that runs, another stop, anything else
-    a drive whose next turn would be too late (every second telegram at the most)
+    a drive whose next turn would be too late (two telegrams out of three)
     an exchange that is repeated because no valid reply came
-    one outside the list, or a drive that is to have more than its turn (every second, too)
+    one outside the list, or a drive that is to have more than its turn (every second telegram)
 
 A drive that stays silent is counted and shown, and never taken off the list. Which of them back
 off, and whose turns are too far apart, is the subject of `care`. Sends nothing: `master` does.
@@ -23,6 +23,7 @@ from uss.layout import STANDARD
 
 LIST_MAX = const(255)  # entries of the circulating list
 SINGLES_MAX = const(8)  # telegrams outside the list that wait
+OVERDUE_IN_A_ROW = const(2)
 FORGOTTEN_MAX = const(4)  # drives in one look that want no turn any more
 
 
@@ -53,7 +54,8 @@ class Turns:
         self._singles = [None] * (SINGLES_MAX + 1)  # the others: a ring, one writer at each end
         self._singles_in = 0
         self._singles_out = 0
-        self._insisted = False  # the last turn was one more than its turn in the list
+        self._single_last = False  # of both, a telegram outside the list had the last such turn
+        self._extra = 0  # turns in a row that drives had besides those in the list
         self._look_from = 0  # behind which address the search for one with a hurry begins
         self._uneasy = False  # a drive without contact was silent: the loop is to look after it
         self._care = Care(self, timing, mask)
@@ -95,6 +97,8 @@ class Turns:
         self.drives = [other for other in self.drives if other is not drive]
         self._set_list([entry for entry in self.list if entry is not drive])
         self._at[drive.address] = None
+        if self._again is drive:
+            self._again = None
 
     def arrange(self, entries):
         """Make this the circulating list: drives of this bus, each at least once, in any order.
@@ -167,22 +171,24 @@ class Turns:
 
     def longest_exchange_us(self):
         """How long an exchange takes when the reply comes, and ends, at the last moment."""
-        timing = self.timing
         longest_us = 0
         for drive in self.drives:
             layout = drive.layout
             reply_count = telegram.NET_COUNT_MAX if layout.variable else layout.net_max
-            reply_us = timing.reply_timeout_us + timing.residual_us(reply_count)
-            longest_us = max(longest_us, timing.telegram_us(layout.net_max) + reply_us)
+            longest_us = max(longest_us, self._longest_us(layout.net_max, reply_count))
         return longest_us
+
+    def _longest_us(self, request_count, reply_count):
+        timing = self.timing
+        request_us = timing.start_interval_us + timing.telegram_us(request_count)
+        reply_us = timing.character_us + timing.residual_us(reply_count)
+        return request_us + timing.reply_timeout_us + reply_us
 
     def longest_cycle_us(self):
         """How long a round of the list takes when every drive is silent till the last moment."""
         cycle_us = 0
         for drive in self.list:
-            timing = self.timing
-            cycle_us += timing.telegram_us(drive.layout.net_max) + timing.reply_timeout_us
-            cycle_us += timing.residual_us(drive.layout.net_max)
+            cycle_us += self._longest_us(drive.layout.net_max, drive.layout.net_max)
         return cycle_us
 
     def stop_all(self):
@@ -227,7 +233,7 @@ class Turns:
     def _begin_round(self, now):
         """At the end of the list: whether the cycle time is over and it may begin anew."""
         began_at = self._round_began_at
-        cycle_us = min(self.cycle_us, self._mask >> 1)  # no clock of ours tells longer times
+        cycle_us = min(self.cycle_us, self._mask >> 2)  # longer, and misses could not be timed
         if began_at is not None:
             passed_us = (now - began_at) & self._mask
             if passed_us < cycle_us:
@@ -241,8 +247,8 @@ class Turns:
     def _most_urgent(self):
         """Who is in the greatest hurry; None when the list may go on.
 
-        What is only to have more than its turn gets every second telegram at the most, one after
-        the other, so that the list goes on in between.
+        What is only to have more than its turn gets every second telegram at the most, and what
+        is overdue two in a row, so that the list goes on in between.
         """
         attention = self._attention
         attention[ANY] = 0  # before looking: whoever calls for it from now on is not missed
@@ -251,20 +257,30 @@ class Turns:
             attention[ANY] = 1
             return drive
         drive = self._find(COMMANDS, 2)
-        insisted, self._insisted = self._insisted, False
-        if drive is None and not insisted:
-            drive = self._find(OVERDUE, 1)
-            self._insisted = drive is not None
-        if drive is None and self._again is not None:
-            drive, self._again = self._again, None
-            attention[ANY] = 1
         if drive is not None:
             return drive
-        if insisted:
+        extra, self._extra = self._extra, 0
+        if extra < OVERDUE_IN_A_ROW:
+            drive = self._find(OVERDUE, 1)
+            if drive is not None:
+                self._extra = extra + 1
+                return drive
+        if self._again is not None:
+            drive, self._again = self._again, None
+            attention[ANY] = 1
+            return drive
+        if extra:
             attention[ANY] = 1
             return None
-        drive = self._next_single() or self._find(WANTS, 1)
-        self._insisted = drive is not None
+        drive = self._find(WANTS, 1) if self._single_last else None
+        self._single_last = False
+        if drive is None:
+            drive = self._next_single()
+            self._single_last = drive is not None
+        if drive is None:
+            drive = self._find(WANTS, 1)
+        if drive is not None:
+            self._extra = 1
         return drive
 
     def _find(self, row, least):

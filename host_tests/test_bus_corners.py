@@ -1,0 +1,404 @@
+"""Corners of the bus: where two things come together that each are tested elsewhere.
+
+A random hand found most of them, or leaving out lines of the engine and seeing that no test minded.
+"""
+
+from round_bench import Bench, Node, framed
+from uss import pkw, pzd, single
+from uss.layout import Layout
+from uss.master import OFF
+from uss.single import DONE, PENDING, TIMED_OUT, Broadcast, Mirror, Special
+
+
+def bench_of(count, **options):
+    """Drives 1 to `count`, all in contact."""
+    bench = Bench([Node(address) for address in range(1, count + 1)], **options)
+    bench.contact()
+    return bench
+
+
+def gaps(bench, address, since):
+    instants = [telegram.at for telegram in bench.sent[since:] if telegram.address == address]
+    return [after - before for before, after in zip(instants, instants[1:])]
+
+
+def resting(bench, address):
+    """Let this one be unplugged until it backs off."""
+    bench.nodes[address].plugged = False
+    bench.run(4_000_000)
+    assert bench.drives[address] not in bench.master.round[: bench.master.round_count]
+
+
+# --- the gap of a drive that may run ------------------------------------------------------------
+
+
+def test_drives_that_need_more_turns_leave_the_others_theirs():
+    """Ten that run and trip after a second without telegrams, and five that stand: more than the
+    line can carry within a third of that. Nobody trips, and nobody is forgotten.
+    """
+    bench = bench_of(15)
+    for address in range(1, 11):
+        bench.master.supervise(bench.drives[address], 1_000)
+        bench.drives[address].start(0x1000)
+    bench.run(1_000_000)
+    sent = len(bench.sent)
+    bench.run(10_000_000)
+    for address in range(1, 16):
+        longest_us = max(gaps(bench, address, sent))
+        assert longest_us < (500_000 if address < 11 else 1_000_000), (address, longest_us)
+
+
+def test_a_cycle_longer_than_the_off_time_does_not_trip_a_drive():
+    for first in (True, False):
+        bench = bench_of(2)
+        if first:
+            bench.master.cycle_us = 2_000_000
+        bench.master.supervise(bench.drives[1], 1_500)
+        bench.master.cycle_us = 2_000_000
+        bench.drives[1].start(0x1000)
+        bench.run(200_000)
+        sent = len(bench.sent)
+        bench.run(6_000_000)
+        assert max(gaps(bench, 1, sent)) < 500_000
+
+
+def test_a_loop_that_seldom_comes_round_keeps_the_gap_of_all():
+    bench = bench_of(15)
+    bench.refreshing = False
+    bench.loop = seldom(bench)
+    for address in range(1, 6):
+        bench.master.supervise(bench.drives[address], 1_000)
+        bench.drives[address].start(0x1000)
+    bench.run(500_000)
+    sent = len(bench.sent)
+    bench.run(6_000_000)
+    for address in range(1, 6):
+        assert max(gaps(bench, address, sent)) < 500_000
+
+
+def seldom(bench):
+    """A main loop that takes 90 ms."""
+    last = [0]
+
+    def loop():
+        if bench.now - last[0] >= 90_000:
+            last[0] = bench.now
+            bench.master.refresh(bench.now & bench.mask)
+
+    return loop
+
+
+# --- the list -----------------------------------------------------------------------------------
+
+
+def test_a_drive_taken_away_is_not_asked_again_for_want_of_a_reply():
+    for offset_us in range(0, 60_000, 1_500):
+        bench = bench_of(2)
+        bench.master.retries = 3
+        bench.nodes[2].plugged = False
+        bench.run(offset_us)
+        bench.master.remove(bench.drives[2])
+        going_on = bench.sent[-1].address == 2
+        sent = len(bench.sent)
+        bench.run(200_000)
+        assert 2 not in bench.addresses(sent), (offset_us, going_on)
+
+
+def test_the_address_of_one_that_was_taken_away_is_free():
+    """For a new drive, which has its turn at once though the other one had lost its own."""
+    bench = bench_of(3)
+    resting(bench, 3)
+    bench.master.remove(bench.drives[3])
+    bench.nodes[3] = Node(3, pkw_words=3)
+    bench.refreshing = False  # nobody looks after it meanwhile
+    drive = bench.master.add(3, Layout(3, 2))
+    bench.run(200_000)
+    assert drive.contact
+    bench.refreshing = True
+    bench.master.remove(drive)
+    bench.nodes[3] = bench.nodes[2]
+    bench.nodes[3].address = 3
+    bench.master.readdress(bench.drives[2], 3)
+    sent = len(bench.sent)
+    bench.run(200_000)
+    assert set(bench.addresses(sent + 1)) == {1, 3}
+
+
+def test_one_that_backs_off_goes_on_doing_so_at_another_address():
+    bench = bench_of(3)
+    resting(bench, 3)
+    bench.master.readdress(bench.drives[3], 9)
+    bench.refreshing = False
+    bench.nodes[3] = Node(3, pkw_words=3)
+    drive = bench.master.add(3, Layout(3, 2))
+    bench.run(250_000)
+    assert drive.contact  # it does not back off in its place
+    assert bench.drives[3] not in bench.master.round[: bench.master.round_count]
+
+
+def test_two_drives_change_places():
+    bench = bench_of(2)
+    one, two = bench.master.drives
+    for drive, address in ((one, 9), (two, 1), (one, 2)):
+        bench.nodes[address] = bench.nodes.pop(drive.address)
+        bench.nodes[address].address = address
+        bench.master.readdress(drive, address)
+        bench.run(100_000)
+    sent = len(bench.sent)
+    one.stop()
+    bench.run(60_000)
+    assert 2 in bench.addresses(sent)[:2]
+    assert [drive.contact for drive in (one, two)] == [True, True]
+
+
+def test_another_address_in_the_middle_of_an_exchange_is_no_other_master():
+    """On a link that is looked at, the reply comes in pieces, from the address before."""
+    bench = bench_of(2, interrupts=False)
+    drive = bench.master.drives[0]
+    for round_number in range(30):
+        bench.run(1_000 + 777 * round_number)
+        address = 7 if drive.address == 1 else 1
+        bench.nodes[address] = bench.nodes.pop(drive.address)
+        bench.nodes[address].address = address
+        bench.master.readdress(drive, address)
+        bench.run(100_000)
+    assert drive.contact and not bench.master.foreign and drive.counters[4] == 0
+
+
+def test_a_second_drive_that_dies_later_is_looked_after_too():
+    bench = bench_of(3)
+    resting(bench, 3)
+    bench.nodes[3].plugged = True
+    bench.run(2_500_000)
+    resting(bench, 2)
+    bench.nodes[2].plugged = True
+    bench.run(2_000_000)
+    assert bench.drives[2].contact and bench.drives[3].contact
+
+
+def test_looking_for_a_dead_drive_is_cheap_at_300_baud_too():
+    bench = bench_of(2, baud=300)
+    best = bench_of(1, baud=300).rate(1, 200_000_000)
+    bench.nodes[2].plugged = False
+    bench.run(20_000_000)
+    assert bench.rate(1, 200_000_000) > 0.945 * best
+
+
+def test_a_dead_drive_loses_contact_however_long_the_round_takes():
+    """Also where the clock's counter is over sooner than that."""
+    bench = bench_of(1, mask=(1 << 24) - 1)
+    bench.master.cycle_us = 1 << 24
+    bench.run(20_000_000)
+    bench.nodes[1].plugged = False
+    bench.run(60_000_000)
+    assert not bench.drives[1].contact
+
+
+# --- telegrams outside the list -----------------------------------------------------------------
+
+
+def test_a_mirror_telegram_is_pending_until_the_last_repetition_is_over():
+    bench = bench_of(1)
+    bench.master.retries = 2
+    probe = Mirror(9)
+    bench.master.post(probe)
+    states = []
+    bench.loop = lambda: states.append((probe.state, bench.addresses().count(0x49)))
+    bench.run(400_000)
+    assert all([state == PENDING for state, times in states if times < 3])
+    assert probe.state == TIMED_OUT and bench.addresses().count(0x49) == 3
+    bench.master.post(probe)
+    bench.run(400_000)
+    assert probe.state == TIMED_OUT and bench.addresses().count(0x49) == 6
+
+
+def test_one_that_is_on_the_line_when_the_engine_fails_comes_to_an_end():
+    bench = bench_of(1)
+    probe = Mirror(1)
+    bench.master.post(probe)
+    bench.run_until(lambda: bench.sent[-1].address == 0x41)
+    bench.master.recover(bench.now & bench.mask)
+    bench.run(100_000)
+    assert probe.state == TIMED_OUT
+    bench.master.post(probe)
+    bench.run(500_000)
+    assert probe.state == DONE
+
+
+def test_a_special_reply_that_is_too_long_for_a_telegram_is_none():
+    """LGE 255 would be 253 net characters; the longest telegram has 252."""
+    bench = Bench([])
+    special = Special(1, b"\x01\x02")
+    bench.master.post(special)
+    bench.run_until(lambda: bench.sent)
+    begin = bench.now + 15_000
+    bench.talk(framed(0x81, bytes(253)), begin)
+    bench.run(400_000)
+    assert special.state == TIMED_OUT and bench.master.failures == 0
+
+
+def test_behind_a_broadcast_stop_those_that_run_are_first():
+    bench = bench_of(10)
+    for address in (7, 9):
+        bench.drives[address].start(0x1000)
+    bench.run(400_000)
+    single.stop_all(bench.master)
+    bench.run_until(lambda: bench.sent[-1].address == 0x20)
+    sent = len(bench.sent)
+    bench.run(300_000)
+    assert set(bench.addresses(sent)[:2]) == {7, 9}
+
+
+def test_a_broadcast_is_sent_before_the_bus_is_off():
+    bench = Bench([])
+    bench.run(200_000)
+    broadcast = Broadcast((pzd.OFF1, 0), {1: pzd.STW_RUN})
+    broadcast.ahead = True
+    bench.master.post(broadcast)
+    bench.master.off()
+    bench.run(300_000)
+    assert bench.master.phase == OFF and broadcast.state == DONE
+
+
+# --- turns --------------------------------------------------------------------------------------
+
+
+def test_repetitions_keep_nobody_from_having_more_than_its_turn():
+    bench = bench_of(4)
+    bench.master.retries = 1
+    bench.drives[1].want_turns(True)
+    bench.nodes[3].plugged = False
+    bench.run(100_000)
+    sent = len(bench.sent)
+    bench.run(500_000)
+    addresses = bench.addresses(sent)
+    assert addresses.count(1) > addresses.count(2) + 3
+
+
+def test_an_off_that_nobody_confirms_is_repeated_although_mirrors_are_sent():
+    bench = bench_of(6)
+    bench.drives[2].start(0x1000)
+    bench.run(300_000)
+    bench.nodes[2].plugged = False
+    probe = Mirror(3)
+
+    def loop():
+        if probe.state != PENDING:
+            bench.master.post(probe)
+
+    bench.loop = loop
+    sent = len(bench.sent)
+    bench.drives[2].stop()
+    bench.run(900_000)
+    assert bench.addresses(sent).count(2) >= 10
+
+
+def test_a_pause_is_not_broken_by_another_address():
+    bench = bench_of(2)
+    bench.drives[1].want_turns(True)
+    bench.master.pause()
+    bench.run_until(lambda: bench.master.paused)
+    sent = len(bench.sent)
+    bench.nodes[9] = bench.nodes.pop(1)
+    bench.nodes[9].address = 9
+    bench.master.readdress(bench.drives[1], 9)
+    bench.run(100_000)
+    assert len(bench.sent) == sent and bench.master.paused
+
+
+# --- commands -----------------------------------------------------------------------------------
+
+
+def test_bits_of_the_control_word_are_set_one_after_the_other():
+    bench = bench_of(1)
+    drive = bench.drives[1]
+    drive.control(0x2000, True)
+    drive.control(0x0020, False)
+    bench.run(100_000)
+    assert bench.stws(1)[-1] == pzd.OFF1 & ~0x0020 | 0x2000
+    drive.control(0x2000, False)
+    bench.run(100_000)
+    assert bench.stws(1)[-1] == pzd.OFF1 & ~0x0020
+
+
+def test_a_start_takes_an_off3_back():
+    """What is sent when the engine stops it later is OFF1, and inhibits nothing."""
+    bench = bench_of(1)
+    drive = bench.drives[1]
+    drive.stop(pzd.OFF3)
+    bench.run(100_000)
+    assert bench.stws(1)[-1] == pzd.OFF3
+    drive.start(0x1000)
+    bench.run(100_000)
+    bench.refreshing = False
+    bench.run(400_000)
+    assert bench.stws(1)[-1] == pzd.OFF1
+
+
+def test_whoever_may_run_unseen_is_told_to_stop_before_the_bus_is_off():
+    """It was lost while it ran: it does not answer, and OFF1 is sent again and again."""
+    bench = bench_of(2)
+    bench.drives[2].start(0x1000)
+    bench.run(100_000)
+    bench.nodes[2].plugged = False
+    bench.run(3_000_000)
+    assert bench.drives[2].was_running and not bench.drives[2].contact
+    sent = len(bench.sent)
+    bench.master.off()
+    bench.run_until(lambda: bench.master.phase == OFF)
+    assert bench.stws(2, sent).count(pzd.OFF1) >= 10
+
+
+# --- after an exception, and off ----------------------------------------------------------------
+
+
+def test_an_exception_while_the_line_is_given_away_sends_nothing():
+    bench = bench_of(1)
+    bench.master.off()
+    bench.run(300_000)
+    sent = len(bench.sent)
+    bench.drives[1].stop()
+    bench.drives[1].start(0x1000)
+    bench.master.recover(bench.now & bench.mask)
+    bench.run(500_000)
+    assert len(bench.sent) == sent and bench.master.phase == OFF
+
+
+def test_after_an_exception_the_exchange_may_come_to_its_end():
+    """A reply that begins at the last moment is over before the next telegram."""
+    bench = Bench([Node(1, delay_us=19_900)], baud=1200)
+    bench.contact()
+    for offset_us in range(0, 340_000, 20_000):
+        sent = len(bench.sent)
+        bench.run_until(lambda: len(bench.sent) > sent)
+        bench.run(offset_us)
+        bench.master.recover(bench.now & bench.mask)
+        over = max([bench.now] + [end for _, end, _ in bench._bursts])
+        sent = len(bench.sent)
+        bench.run_until(lambda: len(bench.sent) > sent)
+        assert bench.sent[-1].at >= over + bench.timing.start_interval_us
+
+
+def test_what_others_said_while_it_was_off_is_forgotten():
+    bench = bench_of(1)
+    bench.master.off()
+    bench.run(300_000)
+    bench.talk(framed(5, bytes(12)))
+    bench.run(400_000)
+    bench.master.on()
+    bench.run(900_000)
+    assert bench.master.foreign == 0 and bench.drives[1].contact
+
+
+def test_jobs_asked_while_it_was_off_are_carried_out_later():
+    bench = bench_of(1)
+    bench.master.off()
+    bench.run(300_000)
+    job = pkw.read(700)
+    bench.drives[1].ask(job)
+    bench.run(3_000_000)
+    assert job.state == pkw.PENDING
+    bench.master.on()
+    sent = len(bench.sent)
+    bench.run(500_000)
+    assert pkw.READ in [telegram.task() for telegram in bench.sent[sent:]]
