@@ -445,3 +445,18 @@ def test_the_time_that_is_offered_fits_the_bus():
         (60_000_000, 65_000),
     ):
         assert off_time_ms(cycle_us) == offered_ms, off_time_ms(cycle_us)
+
+
+def test_a_drive_with_a_short_off_time_is_asked_more_often_than_the_list_has_it():
+    """A round of 16 drives takes 0.8 s at 9600 baud; this one trips after 1.5 s."""
+    world = panel(addresses=tuple(range(1, 17)), baud=9600, parameters={2014: 1_500, 1120: 1.0})
+    world.run(8_000)
+    world.press("START")
+    world.run(4_000)
+    since_us = world.clock.now_us
+    world.run(4_000)
+    instants = [at_us for at_us, stw in telegrams(world, since_us, 1)]
+    gaps = [after - before for before, after in zip(instants, instants[1:])]
+    assert max(gaps) < 500_000, gaps
+    assert world.drives[1].state == "running"
+    world.check()

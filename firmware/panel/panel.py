@@ -159,8 +159,15 @@ class Panel:
     # --- what takes turns: each answers whether the step has time left for the display ----------
 
     def _ask(self, _now_ms, now_us):
-        self.selected.ask(now_us)
+        if self.selected.ask(now_us):
+            self._heed(self.selected)
         return False
+
+    def _heed(self, control):
+        """A drive has told its settings: its telegram-off time decides how soon it is asked."""
+        survey = control.survey
+        if survey.complete:
+            self._bus.supervise(control.drive, survey.values[profiles.SUPERVISION])
 
     def _watch(self, _now_ms, now_us):
         selected = self.selected
@@ -199,6 +206,7 @@ class Panel:
         if control is None:
             control = self._next_neighbour()
             if control.ask(now_us):
+                self._heed(control)
                 self._around -= 1  # it has told something: in its next turn it is asked for more
             elif control.is_quiet():
                 self._at_rest += 1
