@@ -258,15 +258,16 @@ def test_what_was_only_read_may_be_followed_by_another_task_at_once():
 
 
 def test_a_drive_that_never_says_that_there_is_no_task_is_asked_all_the_same():
-    line = Line()
-    for _ in range(2 * JOBS_MAX):  # wherever in the ring of jobs that happens
-        job = line.ask(pkw.read(700))
-        while line.send() == NO_TASK:
-            line.answer(0x12BC, 0, 0, 5)
-            assert job.state == pkw.PENDING
-        line.answer(0x12BC, 0, 0, 5)
-        assert job.state == pkw.DONE
-    assert tasks(line) == [1] + ([0] * REST_MAX + [1]) * (2 * JOBS_MAX - 1)
+    for number, head in ((700, 0x12BC), (5, 0x1005)):
+        line = Line()
+        for _ in range(2 * JOBS_MAX):  # wherever in the ring of jobs that happens
+            job = line.ask(pkw.read(number))
+            while line.send() == NO_TASK:
+                line.answer(head, 0, 0, 5)
+                assert job.state == pkw.PENDING
+            line.answer(head, 0, 0, 5)
+            assert job.state == pkw.DONE
+        assert tasks(line) == [1] + ([0] * REST_MAX + [1]) * (2 * JOBS_MAX - 1)
 
 
 def test_a_drive_that_falls_silent_over_its_reply_is_asked_all_the_same():

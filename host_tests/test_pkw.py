@@ -53,6 +53,7 @@ def test_the_tasks_of_the_reference_manual():
 def test_numbers_with_a_sign_are_written_in_two_s_complement():
     assert asked(pkw.write_word(1005, -3000))[3] == 0x10000 - 3000
     assert asked(pkw.write_word(1005, 0xFFFF))[3] == 0xFFFF
+    assert asked(pkw.write_word(1005, -0x8000))[3] == 0x8000
     assert asked(pkw.write_double(1005, -2))[2:] == (0xFFFF, 0xFFFE)
     assert asked(pkw.write_double(1005, 0xFFFFFFFF))[2:] == (0xFFFF, 0xFFFF)
     assert asked(pkw.write_float(1005, -10.0))[2:] == (0xC120, 0)

@@ -538,21 +538,31 @@ def test_the_active_drives_may_change_while_others_run():
     assert plc.drive(1).state == "running" and plc.outputs(1).ERROR == 0
     give(plc.init, MODE=1, BAUD=BAUD, ACTIVE=0b0110)
     plc.run(300)
-    assert plc.outputs(2).ERROR == 0 and plc.outputs(2).RESP_R is not None
+    assert plc.outputs(2).ERROR == 0 and plc.port.drives[2].contact
     plc.start(2)
 
 
+def test_no_drive_at_all_may_be_active():
+    plc = Plc((1,))
+    plc.run(300)
+    give(plc.init, MODE=1, BAUD=BAUD, ACTIVE=0)
+    assert (plc.init.DONE, plc.init.ERROR) == (True, 0)
+    plc.run(100)
+    assert plc.outputs(1).ERROR == status.NOT_ACTIVE
+
+
 def test_a_drive_that_runs_cannot_be_dropped():
-    plc = Plc((1, 2))
-    plc.start(1)
-    for inputs in (
-        {"MODE": 1, "BAUD": BAUD, "ACTIVE": 0b0100}, {"MODE": 1, "BAUD": 9600, "ACTIVE": 0b0110},
-        {"MODE": 0},
-    ):  # fmt: skip
-        give(plc.init, **inputs)
-        assert plc.init.DONE and plc.init.ERROR == status.CHANGE_NOT_ALLOWED, inputs
-        plc.run(500)
-        assert plc.drive(1).state == "running" and plc.outputs(1).ERROR == 0
+    for node in (0, 1):
+        plc = Plc((node, 2))
+        plc.start(node)
+        for inputs in (
+            {"MODE": 1, "BAUD": BAUD, "ACTIVE": 0b0100}, {"MODE": 0},
+            {"MODE": 1, "BAUD": 9600, "ACTIVE": 0b0100 | 1 << node},
+        ):  # fmt: skip
+            give(plc.init, **inputs)
+            assert plc.init.DONE and plc.init.ERROR == status.CHANGE_NOT_ALLOWED, inputs
+            plc.run(500)
+            assert plc.drive(node).state == "running" and plc.outputs(node).ERROR == 0
 
 
 def test_mode_0_leaves_the_line_and_mode_1_takes_it_again():

@@ -118,8 +118,8 @@ class Rp2Link:
         self._ticks_us = clock.ticks_us
         self._mask = clock.ticks_mask
         self._frequency = CYCLES_PER_BIT * baud
-        # Both rounded up. 64 characters, so that the product of `send` is exact to a microsecond or
-        # two and fits a small integer at every rate.
+        # Both rounded up. 64 characters, so that the product of `send` is exact to a microsecond
+        # or two and fits a small integer at every rate.
         self._lead_us = -(-LEAD_CYCLES * 1_000_000 // self._frequency) + 1
         self._sixty_four_us = -(-64 * BITS_PER_CHARACTER * 1_000_000 // baud)
         self._started_at = 0

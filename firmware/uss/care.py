@@ -7,52 +7,67 @@ after a short time without telegrams (P2014) gets more turns than the list gives
 Works a little at a time, whenever the loop refreshes the bus; the engine only walks the round.
 """
 
+from array import array
+
 from micropython import const
 
 from uss.drive import NODES, OVERDUE, WANTS
 
 BACK_OFF_US = const(1_600_000)  # a drive that backs off is asked again after so long
 PROBE_SHARE = const(22)  # or after so many times what that costs, so that it takes below 5 %
-LOOK_US = const(8_000)  # how often silent drives are looked after
+LOOK_US = const(8_000)  # how often drives are looked after
 SWEEP_US = const(100_000)  # in which each of them has been
+MEASURE_US = const(250_000)  # how often the duration of a round is measured
+NEAR = const(2)  # a gap of less than so many rounds is looked after
+LONGEST_US = const(100_000_000)  # of a round; small enough to be multiplied
+FAR = const(6)  # until it is so many: the turns it gets besides make a round seem shorter
 
 
 class Care:
-    """turns: the `Turns` that it belongs to. timing: of the line. mask: the clock's period - 1."""
+    """turns: the `Turns` that it belongs to. timing: of the line. mask: the clock's period - 1.
+
+    looked_at: when `look` was called last; it is due after LOOK_US.
+    """
 
     def __init__(self, turns, timing, mask):
+        self.looked_at = 0
         self._turns = turns
         self._timing = timing
         self._mask = mask
-        self._gaps_us = {}  # drive: how far apart two telegrams to it may be while it may run
-        self.pressed = []  # drives whose turns in the list may be further apart than that
-        self._press = 0  # which of them was looked after last
-        self.cycle_us = 0  # `cycle_us` of the turns when that was worked out
-        self._rests = bytearray(NODES)  # by address: whether it backs off
-        self._looked = 0  # which drive was looked after last
-        self._looked_at = 0
-        self._since_silent = 0  # how many were looked after since one was silent
+        # Drives that back off.
+        self._rests = bytearray(NODES)  # by address: whether it does
         self._back_off_us = BACK_OFF_US
-        self._longest_us = 0  # that a round may take
+        self._uneasy = False  # one may have to begin, or to end it
+        self._looked = 0  # which drive was looked after last
+        self._since_silent = 0  # how many were looked after since one was silent
+        # Drives whose turns in the list may be too far apart.
+        self._gaps_us = array("i", bytes(4 * NODES))  # by address: how far they may be; 0: any
+        self._least_us = 0  # of these; 0: there is none
+        self._limit_us = 0  # gaps below this are looked after
+        self._pressed = 0  # which drive was looked after last
+        self._exchanges = 0  # of the bus, when the duration of a round was measured last
+        self._measured_at = 0
 
     def supervise(self, drive, gap_us):
         """Keep two telegrams to a drive that may run at most so far apart; 0: any distance."""
-        self._gaps_us[drive] = gap_us
-        others = [other for other in self.pressed if other is not drive]
-        self.pressed = others + [drive] if 0 < gap_us < self._longest_us else others
+        if self._gaps_us[drive.address] != gap_us:
+            self._gaps_us[drive.address] = gap_us
+            self._find_least()
 
     def forget(self, drive):
         """It is not on the bus any more."""
-        self._gaps_us.pop(drive, None)
         self._rests[drive.address] = False
+        self.supervise(drive, 0)
 
     def readdressed(self, old, new):
         """A drive has another address."""
         self._rests[new] = self._rests[old]
         self._rests[old] = False
+        self._gaps_us[new] = self._gaps_us[old]
+        self._gaps_us[old] = 0
 
     def list_changed(self):
-        """There is another list, or another cycle time: what follows from that."""
+        """There is another list: what follows from that."""
         timing = self._timing
         turns = self._turns
         probe_us = 0
@@ -60,41 +75,37 @@ class Care:
             probe_us = max(probe_us, timing.telegram_us(drive.layout.net_count))
         probe_us += timing.start_interval_us + timing.reply_timeout_us + timing.character_us
         self._back_off_us = min(max(BACK_OFF_US, PROBE_SHARE * probe_us), self._mask >> 1)
-        self.cycle_us = turns.cycle_us
-        self._longest_us = longest_us = max(turns.longest_cycle_us(), turns.cycle_us)
-        gaps_us = self._gaps_us
-        self.pressed = [drive for drive in turns.drives if 0 < gaps_us.get(drive, 0) < longest_us]
         turns.round_count = 0  # nobody has a turn until it is filled
         turns.round = list(turns.list)
         self._fill_round()
 
-    def look_after_pressed(self, now, passed_us):
-        """A few each time, all of them in SWEEP_US: is a third of a gap over? Others may be due at
-        the same time. passed_us: since the last look.
-        """
-        pressed = self.pressed
-        count = len(pressed)
-        for _ in range(min(count, 1 + count * min(passed_us, SWEEP_US) // SWEEP_US)):
-            self._press = self._press + 1 if self._press + 1 < count else 0
-            drive = pressed[self._press]
-            if drive.silent_us(now, self._mask) > self._gaps_us[drive] // 3 and drive.may_run():
-                self._ask_soon(drive, OVERDUE)
+    def look(self, now):
+        """From the loop: a little of what is due."""
+        passed_us = (now - self.looked_at) & self._mask
+        self.looked_at = now
+        turns = self._turns
+        if turns.uneasy:  # of the engine, which does not write the other one
+            turns.uneasy = False
+            self._uneasy = True
+        if self._uneasy:
+            self._look_for_silent(now, passed_us)
+        if self._least_us:
+            if (now - self._measured_at) & self._mask >= MEASURE_US:
+                self._measure(now)
+            if self._limit_us:
+                self._look_for_overdue(now, passed_us)
 
-    def look_after_silent(self, now):
-        """A few each time, all of them in SWEEP_US; False when none has been silent lately."""
-        passed_us = (now - self._looked_at) & self._mask
-        if passed_us < LOOK_US:
-            return True
-        self._looked_at = now
+    # --- drives that back off -------------------------------------------------------------------
+
+    def _look_for_silent(self, now, passed_us):
         drives = self._turns.drives
         count = len(drives)
-        for _ in range(min(count, 1 + count * min(passed_us, SWEEP_US) // SWEEP_US)):
+        for _ in range(_share(count, passed_us, SWEEP_US)):
             self._looked = self._looked + 1 if self._looked + 1 < count else 0
             self._look_after(drives[self._looked], now)
         if self._since_silent > count:
             self._since_silent = 0
-            return False
-        return True
+            self._uneasy = False
 
     def _look_after(self, drive, now):
         """Is it to back off, or to come back, or is it high time to ask it?"""
@@ -105,10 +116,6 @@ class Care:
         if backs_off and drive.silent_us(now, self._mask) >= self._back_off_us:
             self._ask_soon(drive, WANTS)
         self._since_silent = 0 if drive.silent else self._since_silent + 1
-
-    def _ask_soon(self, drive, row):
-        if not self._turns.is_under_way(drive):
-            drive.ask_soon(row)
 
     def _anyone_has_contact(self):
         for drive in self._turns.drives:
@@ -128,3 +135,47 @@ class Care:
                 turns.round[count] = drive
                 count += 1
         turns.round_count = count
+
+    # --- drives whose turns are too far apart ---------------------------------------------------
+
+    def _find_least(self):
+        least_us = LONGEST_US
+        for gap_us in self._gaps_us:
+            if 0 < gap_us < least_us:
+                least_us = gap_us
+        self._least_us = least_us if least_us < LONGEST_US else 0
+
+    def _measure(self, now):
+        """How long a round takes, by the telegrams since last time, and which gaps that presses."""
+        turns = self._turns
+        passed_us = min((now - self._measured_at) & self._mask, LONGEST_US)
+        exchanges = (turns.exchanges - self._exchanges) & 0xFFFF
+        self._measured_at = now
+        self._exchanges = turns.exchanges
+        round_us = LONGEST_US
+        if exchanges:
+            round_us = min(len(turns.list) * (passed_us // exchanges), LONGEST_US)
+        round_us = max(round_us, min(turns.cycle_us, LONGEST_US))
+        limit_us = (FAR if self._limit_us else NEAR) * round_us
+        self._limit_us = limit_us if self._least_us < limit_us else 0
+
+    def _look_for_overdue(self, now, passed_us):
+        """Is a third of a gap over? Others may be due at the same time."""
+        drives = self._turns.drives
+        count = len(drives)
+        for _ in range(_share(count, passed_us, min(SWEEP_US, self._least_us >> 2))):
+            self._pressed = self._pressed + 1 if self._pressed + 1 < count else 0
+            drive = drives[self._pressed]
+            gap_us = self._gaps_us[drive.address]
+            if 0 < gap_us < self._limit_us and drive.silent_us(now, self._mask) > gap_us // 3:
+                if drive.may_run():
+                    self._ask_soon(drive, OVERDUE)
+
+    def _ask_soon(self, drive, row):
+        if not self._turns.is_under_way(drive):
+            drive.ask_soon(row)
+
+
+def _share(count, passed_us, sweep_us):
+    """How many of `count` are to be looked after now, so that all have been after `sweep_us`."""
+    return min(count, 1 + count * min(passed_us, sweep_us) // max(sweep_us, 1))

@@ -69,6 +69,8 @@ WANTS = const(64)
 ANY = const(96)
 ATTENTION = const(97)
 
+OFFS = (pzd.OFF1, pzd.OFF2, pzd.OFF3)
+
 # Bits of STW that `control` may change, and those that are 1 in every control word of `pzd`. The
 # others start, stop, acknowledge, turn round or give up control.
 CONTROL_BITS = const(0xE078)
@@ -170,8 +172,11 @@ class Drive:
     def stop(self, off=pzd.OFF1):
         """OFF, whatever state the drive is in, ahead of the list. It stays OFF until `start`.
 
-        off: pzd.OFF1, OFF2 or OFF3. The latter two inhibit the drive until OFF1 follows.
+        off: pzd.OFF1, OFF2 or OFF3, ValueError else. The latter two inhibit the drive until OFF1
+        follows.
         """
+        if off not in OFFS:
+            raise ValueError("STW %r is no OFF" % (off,))
         self.wanted = 0
         self.off = off
         self.stops = (self.stops + 1) & TICKET_MASK

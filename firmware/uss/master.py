@@ -18,6 +18,7 @@ Not a clock and not a driver: the time is an argument, and the link is a duck ty
 from micropython import const
 
 from uss import pkw, telegram
+from uss.care import LOOK_US
 from uss.drive import ANY, SILENT_MAX
 from uss.fast import frame
 from uss.receiver import COMING, SILENT, WAITING, Receiver
@@ -65,7 +66,6 @@ class Master(Turns):
     def __init__(self, link, timing, mask, lost_us=LOST_US):
         Turns.__init__(self, timing, mask)
         self.phase = LISTENING
-        self.exchanges = 0
         self.progress = 0
         self.patience_us = BABBLE_US + STUCK_US
         self.dead_man_trips = 0
@@ -97,22 +97,12 @@ class Master(Turns):
 
     def refresh(self, now):
         """The loop says that it is alive. Whatever ran when it was not stays stopped."""
-        passed_us = (now - self._refreshed_at) & self._mask
         self._refreshed_at = now
         self._dead_man = False
-        care = self._care
-        if self._uneasy:
-            self._uneasy = care.look_after_silent(now)
-        if care.pressed:
-            care.look_after_pressed(now, passed_us)
-        if care.cycle_us != self.cycle_us:
-            care.list_changed()
-        if self._shared and (self.exchanges - self._foreign_at) & 0xFFFF >= SHARED_EXCHANGES:
-            self._shared = False
-
-    def _set_list(self, entries):
-        Turns._set_list(self, entries)
-        self.patience_us = BABBLE_US + STUCK_US + self.longest_exchange_us()
+        if (now - self._care.looked_at) & self._mask >= LOOK_US:
+            self._care.look(now)
+            if self._shared and (self.exchanges - self._foreign_at) & 0xFFFF >= SHARED_EXCHANGES:
+                self._shared = False
 
     def is_under_way(self, drive):
         """Whether an exchange with this drive has begun and not ended."""
@@ -403,7 +393,7 @@ class Master(Turns):
         if finding == telegram.BAD_ADDRESS:
             self._count_foreign()
         if drive.silent > SILENT_MAX:
-            self._uneasy = True
+            self.uneasy = True
         if drive.silent <= self.retries:
             if drive.outside:
                 drive.state = pkw.PENDING  # it is not over yet

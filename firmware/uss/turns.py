@@ -57,7 +57,8 @@ class Turns:
         self._single_last = False  # of both, a telegram outside the list had the last such turn
         self._extra = 0  # turns in a row that drives had besides those in the list
         self._look_from = 0  # behind which address the search for one with a hurry begins
-        self._uneasy = False  # a drive without contact was silent: the loop is to look after it
+        self.exchanges = 0  # telegrams sent
+        self.uneasy = False  # a drive without contact was silent: the loop is to look after it
         self._care = Care(self, timing, mask)
 
     # --- for the loop ---------------------------------------------------------------------------
