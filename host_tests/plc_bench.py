@@ -56,13 +56,13 @@ class Plc:
         self.chip = Chip(self.clock, self.wire)
         self.paced = paced
         self.pacer = None
-        self.port = Port(self.open_bus, self.clock.ticks_mask, types, polled=not paced)
+        self.port = Port(self.open_bus, self.clock, types, polled=not paced)
         self.init = USS_INIT(self.port)
         self.inputs = {address: Inputs(address) for address in addresses}
         self.controls = {address: USS_CTRL(self.port) for address in addresses}
         self.others = []
         self.active = sum(1 << address for address in addresses)
-        self.port.scan(self.clock.ticks_us())
+        self.port.scan()
         self.init(EN=True, MODE=1, BAUD=BAUD, ACTIVE=self.active)
         assert self.init.DONE and self.init.ERROR == 0, self.init.ERROR
 
@@ -90,7 +90,7 @@ class Plc:
 
     def scan(self):
         """One scan of the program."""
-        self.port.scan(self.clock.ticks_us())
+        self.port.scan()
         for address, control in self.controls.items():
             inputs = self.inputs[address]
             control(

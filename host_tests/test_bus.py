@@ -3,12 +3,14 @@
 from boards.sim import g110, g120, mm3, mm440, v20
 from bus_bench import QUICK, Bench, refusal
 from uss import pkw, pzd
-from uss.bus import MAY_RUN, NO_CONTACT, Master, NoContact, NotStarted, Refused, TimedOut
+from uss.bus import MAY_RUN, NO_CONTACT, Master
+from uss.errors import NoContact, NotStarted, Refused, TimedOut, UssError
 from uss.families import G110, G120, GENERIC, MM3, MM420, MM440, V20
 from uss.layout import Layout
 from uss.master import CLOSED, OFF
 from uss.profiles import WORD
 from uss.scaling import Scale
+from uss.scan import Scan
 
 
 def near(value, wanted, within=0.02):
@@ -83,7 +85,10 @@ def test_a_speed_beyond_the_limits_of_the_drive_is_refused():
     assert "P1080[0] = 5.00 Hz" in refusal(ValueError, bench.drive.run, 2.0)
     assert "P1082" in refusal(ValueError, bench.drive.run, percent=-90)
     bench.drive.run(40.0)
-    refusal(ValueError, bench.drive.run, 45.0)
+    for speed in (45.0, 1e9, float("inf"), float("nan")):
+        refusal(ValueError, bench.drive.run, speed)
+    refusal(ValueError, bench.drive.run, percent=201)
+    refusal(TypeError, bench.drive.run, "fast")
     bench.bus.wait(1)
     assert bench.drive.is_on()  # a wrong speed changes nothing
     bench.end()
@@ -111,6 +116,37 @@ def test_a_motor_that_runs_does_not_jog():
     assert "is running" in refusal(NotStarted, bench.drive.jog_left)
     assert bench.drive.is_on()
     bench.end()
+
+
+def test_set_gives_a_motor_that_runs_another_speed_and_starts_none():
+    bench = Bench()
+    drive = bench.drive
+    assert drive.set(10.0) is False
+    drive.run(10.0)
+    assert drive.set(percent=40) is True
+    bench.bus.wait(1)
+    near(drive.hertz, 20.0)
+    refusal(ValueError, drive.set, 99.0)
+    drive.stop()
+    assert drive.set(10.0) is False
+    bench.bus.wait(1)
+    assert not drive.is_running and bench.motor().starts == 1
+    drive.jog_right()
+    assert drive.set(10.0) is False  # its speed is the drive's own
+    drive.stop()
+    bench.bus.wait(2)
+    drive.run(10.0)
+    drive.particulars.forget()  # so that it has to ask
+    bench.at(0.05, drive.stop)
+    assert drive.set(20.0) is False and not drive.is_on()
+    bench.end()
+
+
+def test_what_checks_nothing_is_found_in_the_engine_alone():
+    drive = Bench().drive
+    for name in ("start", "turn"):
+        assert "say run()" in refusal(AttributeError, getattr, drive, name)
+    assert refusal(ValueError, drive.stop, pzd.ON) and not drive.is_on()
 
 
 # --- to stop ------------------------------------------------------------------------------------
@@ -359,6 +395,67 @@ def test_without_a_step_for_300_ms_every_motor_is_stopped():
     bench.end()
 
 
+def test_a_loop_that_does_not_call_for_300_ms_stops_its_motors_without_interrupts_too():
+    bench = Bench((1, 2))
+    for drive in bench.bus.drives:
+        drive.run(10.0)
+    bench.bus.wait(1)
+    bench.clock.advance(310_000)
+    bench.bus.step()
+    for drive in bench.bus.drives:
+        assert drive.stopped_by_engine() and not drive.is_on()
+    bench.bus.wait(2)
+    assert not any(drive.is_running for drive in bench.bus.drives)
+    assert "step() was not called" in refusal(NotStarted, bench.drive.run, 10.0)
+    bench.drive.stop()
+    bench.drive.run(10.0)
+    bench.end()
+
+
+def test_whatever_idle_raises_stops_every_motor():
+    for paced in (False, True):
+        bench = Bench((1, 2), paced=paced)
+        idle_calls = []
+
+        def fail(idle_calls=idle_calls):
+            idle_calls.append(1)
+            raise OSError("the disk is full")
+
+        try:
+            with bench.bus:
+                for drive in bench.bus.drives:
+                    drive.run(10.0)
+                bench.bus._idle = fail
+                bench.bus.wait(1)
+        except OSError:
+            pass
+        assert len(idle_calls) == 1 and bench.bus.phase == CLOSED
+        for address in (1, 2):
+            assert bench.stws(address)[-1] == pzd.OFF1
+        bench.check()
+
+
+def test_the_telegram_off_time_is_told_in_seconds_and_within_reason():
+    bench = Bench()
+    for seconds in (0.2, -1, 66, 2000, float("nan")):
+        assert "takes seconds, 0.3...65" in refusal(ValueError, bench.drive.supervise, seconds)
+    assert bench.motor().read(2014) == 2_000
+    bench.drive.supervise(0)
+    assert bench.motor().read(2014) == 0
+    bench.bus.cycle_us = 500_000
+    assert "1.5...65" in refusal(ValueError, bench.drive.supervise, 1.0)
+    for off_time_ms in (-1, 2.0, 70_000):
+        assert "in ms" in refusal(ValueError, bench.bus.supervise, bench.drive, off_time_ms)
+    bench.end()
+
+
+def test_a_family_that_counts_in_seconds_is_not_told_never_by_rounding():
+    bench = of_family(MM3, mm3, {93: 2, 2: 10, 3: 10})
+    bench.drive.supervise(0.4)
+    assert bench.drive.read(93) == 1
+    bench.end()
+
+
 def test_another_master_on_the_line_is_left_alone():
     bench = Bench()
 
@@ -368,6 +465,7 @@ def test_another_master_on_the_line_is_left_alone():
 
     talk()
     assert refusal(NoContact, bench.drive.run, 10.0) == "another master is on the line"
+    assert refusal(NoContact, bench.bus.mirror, 1) == "another master is on the line"
     assert bench.stws(1) == []
 
 
@@ -382,6 +480,62 @@ def test_bus_off_gives_the_line_away_and_on_takes_it_back():
     bench.bus.on()
     assert bench.drive.read(700) == 5
     bench.end()
+
+
+def test_nobody_waits_for_a_bus_that_is_off_or_closed_or_a_drive_that_was_removed():
+    for leave, reason in (
+        (lambda bench: bench.bus.off(), "the bus is off"),
+        (lambda bench: bench.bus.close(), "the bus is closed"),
+        (lambda bench: bench.bus.remove(bench.drive), "drive 1 is not on the bus"),
+    ):
+        bench = Bench((1, 2))
+        drive = bench.drive
+        bench.bus.wait(0.5)
+        leave(bench)
+        if reason == "the bus is off":
+            assert bench.bus.wait(1, bench.bus.is_silent)
+        assert drive.state == NO_CONTACT and not drive.contact and not drive.is_running
+        for action in (
+            lambda drive=drive: drive.read(700),
+            lambda drive=drive: drive.run(10.0),
+            drive.jog_right,
+            lambda drive=drive: drive.do(pkw.read(700)),
+            lambda drive=drive: drive.hertz,
+            lambda drive=drive: drive.fault,
+        ):
+            since_us = bench.clock.now_us
+            assert refusal(NoContact, action) == reason
+            assert bench.clock.now_us == since_us
+        if reason.startswith("the bus"):
+            assert refusal(NoContact, bench.bus.mirror, 1) == reason
+            scan = Scan(bench.bus, bench.clock.ticks_mask)
+            assert refusal(NoContact, scan.step, bench.clock.ticks_us()) == reason
+    bench.end()
+
+
+def test_who_waits_while_somebody_puts_the_bus_off_or_takes_the_drive_away_hears_of_it():
+    for paced in (False, True):
+        bench = Bench((1, 2), paced=paced)
+        bench.bus.wait(0.5)
+        bench.motor().stale_replies = 10_000
+        bench.at(0.2, bench.bus.off)
+        assert refusal(NoContact, bench.drive.read, 700) == "the bus is off"
+        bench.bus.on()
+        drive = bench.bus.drives[1]
+        drive.read(700)
+        bench.motor(2).stale_replies = 10_000
+        bench.at(0.2, lambda bench=bench, drive=drive: bench.bus.remove(drive))
+        assert "is not on the bus" in refusal(NoContact, drive.read, 701)
+        bench.bus.close()
+        assert refusal(NoContact, bench.bus.wait, 1) == "the bus is closed"
+
+        bench = Bench(paced=paced)
+        bench.at(0.6, bench.bus.off)
+        bench.motor().write(10, 0, 1)  # it does not start
+        refusal(UssError, bench.drive.run, 10.0)
+        assert not bench.drive.is_on()
+        bench.bus.close()
+        bench.check()
 
 
 # --- what it does -------------------------------------------------------------------------------
@@ -425,10 +579,16 @@ def test_a_drive_without_parameter_channel_is_told_what_its_speeds_mean():
     bench = Bench(parameters=mute, layout=Layout(0, 2))
     assert "scale=Scale" in refusal(NotStarted, bench.drive.run, percent=50)
     assert "what 100 % is" in refusal(ValueError, getattr, bench.drive, "percent")
-    assert "has no parameter channel" in refusal(RuntimeError, bench.drive.read, 700)
+    text = refusal(UssError, bench.drive.read, 700)
+    assert text == "drive 1 has no parameter channel: Layout(0, 2)"
     scale = Scale(50.0, pole_pairs=2)
     bench = Bench(parameters=mute, layout=Layout(0, 2), scale=scale)
     drive = bench.drive
+    text = refusal(NotStarted, drive.run, rpm=300)
+    assert "does not tell its telegram-off time" in text and "unsupervised=True" in text
+    bench.bus.supervise(drive, 0)
+    refusal(NotStarted, drive.run, rpm=300)  # its owner says that it never trips
+    bench.bus.supervise(drive, 2_000)
     drive.run(rpm=300)
     bench.bus.wait(1)
     near(drive.hertz, 10.0)
@@ -441,7 +601,7 @@ def test_a_drive_without_parameter_channel_is_told_what_its_speeds_mean():
 
 
 def test_a_g110_without_parameters_needs_no_scale_for_percent():
-    bench = of_family(G110, g110, {2013: 0, 1120: 1.0}, layout=Layout(0, 2))
+    bench = of_family(G110, g110, {2013: 0, 1120: 1.0}, layout=Layout(0, 2), unsupervised=True)
     bench.drive.run(percent=20)
     bench.bus.wait(1)
     near(bench.drive.percent, 20.0)
@@ -507,7 +667,7 @@ def test_a_g120_counts_in_revolutions_and_does_not_jog():
 
 
 def test_a_drive_of_which_nothing_is_known_runs_by_percent():
-    bench = Bench(family=GENERIC)
+    bench = Bench(family=GENERIC, unsupervised=True)
     bench.drive.run(percent=20)
     bench.bus.wait(1)
     near(bench.drive.percent, 20.0)
@@ -659,6 +819,29 @@ def test_any_job_can_be_waited_for():
     bench.end()
 
 
+def test_a_motor_that_may_run_keeps_its_address():
+    bench = Bench()
+    bench.drive.run(10.0)
+    text = refusal(UssError, bench.drive.write, 2011, 5, sure=True)
+    assert text.startswith("drive 1 may be running") and bench.motor().read(2011) == 1
+    bench.drive.stop()
+    bench.bus.wait(2)
+    assert bench.drive.write(2011, 5, sure=True) == 5
+    bench.bus.readdress(bench.drive, 5)
+    assert bench.drive.read(700) == 5
+    bench.end()
+
+
+def test_a_kind_that_the_family_knows_better_is_refused():
+    bench = Bench()
+    for number, value, kind in ((1120, 5, int), (2019, 0, float), (1120, 5, str)):
+        assert "kind" in refusal(
+            ValueError, bench.drive.write, number, value, 0, False, kind, True
+        )
+    assert bench.motor().read(1120) == 1.0
+    bench.end()
+
+
 # --- the bus ------------------------------------------------------------------------------------
 
 
@@ -747,6 +930,39 @@ def test_a_family_has_its_layouts():
     text = refusal(ValueError, bench.bus.add, 4, MM420, Layout(4, 8))
     assert text == "a MICROMASTER 420 has no Layout(4, 8)"
     assert "not 0...31" in refusal(ValueError, bench.bus.add, 32)
+
+
+def test_what_is_no_drive_is_not_added():
+    bench = Bench()
+    add = bench.bus.add
+    assert "integer" in refusal(TypeError, add, "1")
+    assert "uss.families" in refusal(TypeError, add, 4, "MM420")
+    assert "layout=Layout(4, 2)" in refusal(TypeError, add, 4, MM420, (4, 2))
+    assert "scale=Scale(50.0)" in refusal(TypeError, add, 4, MM420, None, 50.0)
+    assert refusal(ValueError, add, 1, G110) == "drive 1 is a MICROMASTER 420 already"
+    assert "has Layout(4, 2) already" in refusal(ValueError, add, 1, MM420, Layout(4, 4))
+    assert add(1, MM420) is bench.drive and len(bench.bus.drives) == 1
+    bench.end()
+
+
+def test_a_bus_takes_only_what_it_can_keep():
+    bench = Bench()
+    for retries in (-1, 256, 1.5, "2", None):
+        refusal(ValueError, setattr, bench.bus, "retries", retries)
+    for cycle_us in (-1, 0.5, "2", None):
+        refusal(ValueError, setattr, bench.bus, "cycle_us", cycle_us)
+    assert bench.bus.retries == 0 and bench.bus.cycle_us == 0
+    bench.end()
+
+
+def test_a_link_has_one_master_at_a_time():
+    bench = Bench()
+    assert "close() that one first" in refusal(ValueError, Master, bench.link)
+    bench.bus.close()
+    other = Master(bench.link)
+    bench.bus.close()  # that it is closed twice does not take the link from the other
+    assert "close() that one first" in refusal(ValueError, Master, bench.link)
+    other.close()
 
 
 def test_mirror_tells_who_is_there():

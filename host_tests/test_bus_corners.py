@@ -5,9 +5,10 @@ minded.
 """
 
 from round_bench import Bench, Node, framed
-from uss import pkw, pzd, single
+from uss import pkw, pzd, single, telegram
 from uss.layout import Layout
 from uss.master import OFF
+from uss.receiver import SILENT
 from uss.single import DONE, PENDING, TIMED_OUT, Broadcast, Mirror, Special
 
 
@@ -19,7 +20,7 @@ def bench_of(count, **options):
 
 
 def gaps(bench, address, since):
-    instants = [telegram.at for telegram in bench.sent[since:] if telegram.address == address]
+    instants = [each.at for each in bench.sent[since:] if each.address == address]
     return [after - before for before, after in zip(instants, instants[1:])]
 
 
@@ -75,6 +76,27 @@ def test_a_loop_that_seldom_comes_round_keeps_the_gap_of_all():
     bench.run(6_000_000)
     for address in range(1, 6):
         assert max(gaps(bench, address, sent)) < 500_000
+
+
+def test_the_off_time_goes_with_the_drive_and_not_with_its_address():
+    """Also when it is taken away, and another one comes in its place."""
+    bench = bench_of(20)
+    bench.master.supervise(bench.drives[5], 600)
+    bench.nodes[25] = bench.nodes.pop(5)
+    bench.nodes[25].address = 25
+    bench.master.readdress(bench.drives[5], 25)
+    bench.nodes[5] = Node(5)
+    bench.master.supervise(bench.drives[6], 600)
+    bench.master.remove(bench.drives[6])
+    drives = [bench.drives[5], bench.master.add(5), bench.master.add(6)]
+    bench.run(600_000)
+    for drive in drives:
+        drive.start(0x1000)
+    bench.run(1_000_000)
+    sent = len(bench.sent)
+    bench.run(10_000_000)
+    assert max(gaps(bench, 25, sent)) < 200_000
+    assert min(gaps(bench, 5, sent) + gaps(bench, 6, sent)) > 300_000
 
 
 def seldom(bench):
@@ -238,6 +260,26 @@ def test_a_special_reply_that_is_too_long_for_a_telegram_is_none():
     assert special.state == TIMED_OUT and bench.master.failures == 0
 
 
+def test_a_special_reply_as_long_as_the_request_is_none_when_another_length_was_agreed():
+    bench = Bench([])
+    special = Special(1, b"\x01\x02\x03\x04", reply_count=6)
+    bench.master.post(special)
+    bench.run_until(lambda: bench.sent)
+    bench.talk(framed(0x81, bytes(4)), bench.now + bench.timing.telegram_us(4) + 3_000)
+    bench.run(100_000)
+    assert special.state == TIMED_OUT and special.finding == telegram.BAD_LENGTH
+
+
+def test_what_a_mirror_telegram_found_before_is_forgotten():
+    bench = bench_of(1)
+    probe = Mirror(1)
+    for plugged, finding in ((False, SILENT), (True, telegram.GOOD)):
+        bench.nodes[1].plugged = plugged
+        bench.master.post(probe)
+        bench.run(200_000)
+        assert probe.finding == finding
+
+
 def test_behind_a_broadcast_stop_those_that_run_are_first():
     bench = bench_of(10)
     for address in (7, 9):
@@ -358,6 +400,16 @@ def test_a_lost_drive_has_answered_nothing():
     assert bench.drives[2].answered_stw == 0 and not bench.drives[2].answered_off()
 
 
+def test_a_further_word_is_sent_from_the_next_telegram_on():
+    bench = Bench([Node(1, pzd_words=4)])
+    bench.contact()
+    bench.run(300_000)
+    bench.drives[1].put(4, 0x2000)
+    sent = len(bench.sent)
+    bench.run(60_000)
+    assert bench.sent[sent].characters[-3:-1] == b"\x20\x00"
+
+
 def test_the_control_word_moves_with_the_length_of_the_task():
     """With variable length a double word takes more room, and the process data stand behind it."""
     bench = Bench([Node(1, pkw_words=127, pzd_words=4)])
@@ -367,13 +419,13 @@ def test_the_control_word_moves_with_the_length_of_the_task():
     drive.put(4, 0x2000)
     bench.run(300_000)
     sent = len(bench.sent)
+    drive.put(4, 0x2001)
     drive.ask(pkw.write_double(1082, 0x12345678))
     bench.run(3_000_000)
     lengths = set()
-    for telegram in bench.sent[sent:]:
-        lengths.add(len(telegram.characters))
-        process_data = telegram.characters[-9:-1]
-        assert process_data == b"\x04\x7f\x12\x34\x00\x00\x20\x00", telegram
+    for each in bench.sent[sent:]:
+        lengths.add(len(each.characters))
+        assert each.characters[-9:-1] == b"\x04\x7f\x12\x34\x00\x00\x20\x01", each
     assert len(lengths) == 2
 
 
@@ -522,4 +574,4 @@ def test_jobs_asked_while_it_was_off_are_carried_out_later():
     bench.master.on()
     sent = len(bench.sent)
     bench.run(500_000)
-    assert pkw.READ in [telegram.task() for telegram in bench.sent[sent:]]
+    assert pkw.READ in [each.task() for each in bench.sent[sent:]]

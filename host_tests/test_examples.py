@@ -6,6 +6,7 @@ from tools.examples.simulation import Stage, names
 NOT_TRACED = """
 test_one_drive_runs_for_ten_seconds_and_stops test_three_drives_follow_each_other
 test_own_program_obeys_its_keys_until_ctrl_c test_own_program_says_why_the_pump_does_not_run
+test_a_second_time_the_drives_have_tripped_and_run_all_the_same
 test_broadcast_stops_all_three_at_once test_whatever_ends_an_example_stops_its_motors
 """
 
@@ -47,6 +48,17 @@ def test_one_drive_runs_for_ten_seconds_and_stops():
     world.play(one_drive.main)
     assert 24.9 < seen[0] < 25.1 and world.drives[1].hz() == 0
     assert PRINTED[9] == " 25.00 Hz  running" and PRINTED[10] == "  0.00 Hz  ready"
+    world.check()
+
+
+def test_a_second_time_the_drives_have_tripped_and_run_all_the_same():
+    world = stage()
+    for example in (one_drive, three_drives, broadcast_stop):
+        world.play(example.main)
+        world.clock.advance(5_000_000)  # longer than P2014: F0072
+        assert world.drives[1].report().find("fault") > 0
+    world.play(one_drive.main)
+    assert PRINTED[-2] == " 25.00 Hz  running"
     world.check()
 
 

@@ -13,6 +13,14 @@ def test_a_scale_that_was_told_saves_no_look_at_who_commands_and_who_supervises(
     bench.end()
 
 
+def test_what_the_drive_tells_goes_before_the_scale_that_was_told():
+    bench = Bench(scale=Scale(60.0))
+    bench.drive.run(25.0)
+    bench.bus.wait(1)
+    assert 24.9 < bench.motor().hz() < 25.1 and 24.9 < bench.drive.hertz < 25.1
+    bench.end()
+
+
 def test_a_drive_that_does_not_say_what_it_is_asked_is_not_started():
     bench = Bench()
     bench.bus.wait(1)

@@ -1,6 +1,7 @@
 """The blocks of the S7-200's USS library, used as a PLC program uses them, on simulated drives."""
 
 from boards.sim import g120, mm3
+from boards.sim.clock import Clock, Event
 from plc_bench import BAUD, Plc
 from uss import families, pkw, status
 from uss.layout import Layout
@@ -607,8 +608,8 @@ def test_another_rate_opens_the_line_anew():
 
 
 def test_before_init_every_block_says_so():
-    port = Port(None, 0x3FFFFFFF)
-    port.scan(0)
+    port = Port(None, Clock())
+    port.scan()
     for block in (USS_CTRL(port), USS_RPM_W(port), USS_WPM_R(port)):
         if isinstance(block, USS_CTRL):
             block(DRIVE=1, RUN=True)
@@ -619,3 +620,139 @@ def test_before_init_every_block_says_so():
     init = USS_INIT(port)
     init(EN=False, MODE=1, BAUD=19200, ACTIVE=1)
     assert init.DONE is False
+
+
+# --- the end of the program ---------------------------------------------------------------------
+
+
+def close_at(plc, limit_ms):
+    """Close the port, in so many milliseconds at the most."""
+    before_us = plc.clock.now_us
+    plc.port.close()
+    assert plc.clock.now_us - before_us < limit_ms * 1000, plc.clock.now_us - before_us
+
+
+def test_close_stops_every_motor_and_leaves_the_line():
+    for paced in (False, True):
+        plc = Plc((1, 2), paced=paced)
+        plc.start(1)
+        plc.start(2)
+        close_at(plc, 150)
+        assert plc.drive(1).state == plc.drive(2).state == "stopping", paced
+        heard = plc.drive(1).read(2024)
+        plc.motor(1).RUN = plc.motor(2).RUN = True
+        plc.run(2_000)
+        assert plc.drive(1).state == "ready" and plc.drive(1).read(2024) == heard
+        assert plc.outputs(1).ERROR == status.PORT_NOT_USS and plc.outputs(1).RUN_VOID
+        plc.check()
+
+
+def test_the_end_of_with_closes_the_port_whatever_ended_it():
+    for ending in (None, ValueError, KeyboardInterrupt):
+        plc = Plc()
+        try:
+            with plc.port as port:
+                assert port is plc.port
+                plc.start()
+                if ending:
+                    raise ending()
+        except (ValueError, KeyboardInterrupt) as error:
+            assert isinstance(error, ending)
+        assert plc.drive().state == "stopping" and plc.port.bus is None, ending
+
+
+def test_close_waits_until_the_drive_has_answered():
+    plc = Plc()
+    plc.start()
+    plc.drive().unplug()
+    plc.clock.schedule(Event(plc.drive().plug), plc.clock.now_us + 300_000)
+    plc.port.close()
+    assert plc.drive().state == "stopping"
+
+
+def test_close_gives_up_where_nobody_answers():
+    plc = Plc()
+    plc.start()
+    plc.drive().unplug()
+    close_at(plc, 1_500)
+    assert plc.port.bus is None
+
+
+def test_ctrl_c_does_not_cut_close_short():
+    plc = Plc()
+    plc.start()
+
+    def press():
+        raise KeyboardInterrupt
+
+    for after_us in (10, 5_000, 12_000):
+        plc.clock.schedule(Event(press), plc.clock.now_us + after_us)
+    plc.port.close()
+    assert plc.drive().state == "stopping" and plc.port.bus is None
+
+
+def test_ctrl_c_in_the_middle_of_a_polled_scan_stops_the_motor_too():
+    plc = Plc()
+    plc.start()
+    take = plc.port.drives[1].take
+
+    def press(*_):
+        plc.port.drives[1].take = take
+        raise KeyboardInterrupt
+
+    plc.port.drives[1].take = press
+    try:
+        with plc.port:
+            plc.run(1_000)
+            raise AssertionError("nobody pressed")
+    except KeyboardInterrupt:
+        pass
+    assert plc.drive().state == "stopping"
+
+
+def test_a_port_that_is_not_set_up_or_closed_is_closed_at_once():
+    port = Port(None, Clock())
+    port.close()
+    plc = Plc()
+    plc.run(100)
+    for _ in range(2):
+        plc.port.close()
+    plc = Plc()
+    plc.start()
+    plc.motor().RUN = False
+    plc.run(1_500)
+    give(plc.init, MODE=0)
+    plc.port.close()  # it is being left already
+    assert plc.port.bus is None and plc.port.is_set_up()
+
+
+def test_a_closed_port_is_set_up_again_by_uss_init_and_starts_nothing():
+    plc = Plc()
+    plc.start()
+    plc.port.close()
+    give(plc.init, MODE=1, BAUD=BAUD, ACTIVE=0b10)
+    assert plc.init.DONE and plc.init.ERROR == 0
+    plc.run(2_000)
+    assert plc.outputs().ERROR == 0 and plc.outputs().RUN_VOID
+    assert plc.drive().state == "ready" and plc.drive().starts == 1
+
+
+def test_a_parameter_block_that_close_has_overtaken_says_so():
+    plc = Plc()
+    plc.run(300)
+    plc.drive().unplug()
+    read = USS_RPM_W(plc.port)
+    read(EN=True, XMT_REQ=True, DRIVE=1, PARAM=700)
+    plc.port.close()
+    read(EN=True, XMT_REQ=True, DRIVE=1, PARAM=700)
+    assert read.DONE and read.ERROR == status.PORT_NOT_USS
+
+
+def test_close_after_a_hang_stops_the_motors():
+    for hang_ms in (400, 20_000):
+        plc = Plc()
+        plc.start()
+        plc.hang(hang_ms)
+        assert plc.drive().state == "running"
+        close_at(plc, 1_500)
+        assert plc.drive().state == "stopping"

@@ -3,6 +3,7 @@
 A line on which one drive, node 3, answers what the test says, to the character.
 """
 
+from boards.sim.clock import Clock
 from line_bench import MASK, Line, of_words, words_of
 from uss import status
 from uss.layout import VARIABLE, Layout
@@ -38,6 +39,21 @@ class Fan(MM4):
     layout = Layout(VARIABLE, 2)
 
 
+class LineClock:
+    """The time of a line, as a board's clock."""
+
+    ticks_mask = MASK
+
+    def __init__(self, line):
+        self._line = line
+
+    def ticks_us(self):
+        return self._line.now & MASK
+
+    def sleep_us(self, us):
+        self._line.run(us)
+
+
 class Plant:
     """A port with node 3. answer: what it sends; by default it is ready, and runs when told to.
 
@@ -48,12 +64,15 @@ class Plant:
         self.line = Line(answer or self.well)
         self.parameters = {}
         self.zsw = READY
-        self.port = Port(lambda baud: self.line.master, MASK, types, polled=False)
+        self.port = Port(self.open_bus, LineClock(self.line), types, polled=False)
         self.motor = USS_CTRL(self.port)
         self.inputs = {"DRIVE": NODE, "TYPE": 1, "SPEED_SP": 50.0}
         self.init = USS_INIT(self.port)
         self.init(EN=True, MODE=1, BAUD=19200, ACTIVE=active)
         assert self.init.DONE and self.init.ERROR == 0
+
+    def open_bus(self, baud):
+        return self.line.master
 
     def well(self, request):
         """The reply of a drive that works, as characters."""
@@ -75,7 +94,7 @@ class Plant:
         until = self.line.now + ms * 1000
         while self.line.now < until:
             self.line.step()
-            self.port.scan(self.line.now)
+            self.port.scan()
             self.motor(**self.inputs)
             for block in blocks:
                 block()
@@ -194,7 +213,7 @@ def test_code_6_an_address_beyond_31():
 
 
 def test_code_7_the_port_is_not_set_up():
-    port = Port(None, MASK)
+    port = Port(None, Clock())
     motor = USS_CTRL(port)
     motor(RUN=True, DRIVE=NODE)
     assert (motor.ERROR, motor.STATUS_WORD, motor.RUN_VOID) == (7, 0x818E, True)
@@ -312,7 +331,7 @@ def test_code_17_a_change_while_the_motor_runs():
 
 
 def test_code_18_a_rate_that_uss_does_not_have():
-    port = Port(None, MASK)
+    port = Port(None, Clock())
     for baud in (0, 12_345, 14_400, -1):
         init = USS_INIT(port)
         init(EN=True, MODE=1, BAUD=baud, ACTIVE=1)
@@ -389,6 +408,106 @@ def test_every_code_is_provoked_or_cannot_occur():
     for code in range(len(status.CODES)):
         provoked = any(name.startswith("test_code_%d_" % code) for name in names)
         assert provoked != (code in NEVER), code
+
+
+# --- what is no value of its pin ----------------------------------------------------------------
+
+NO_INTEGERS = (None, "1", "x", b"1", 1.0, 2.5, float("nan"), [], {}, (1,), object())
+NO_NUMBERS = (None, "fast", "50", b"50", [], {}, (50,), object())
+ANYTHING = NO_INTEGERS + (-1, 1 << 40, 10**30, True, "")
+
+
+def outcome(block, **inputs):
+    """Its code after one edge of whatever it waits for."""
+    for on in (False, True):
+        if isinstance(block, USS_INIT):
+            block(EN=on, **inputs)
+        else:
+            block(XMT_REQ=on, **inputs)
+    return block.ERROR
+
+
+def test_a_wrong_input_of_uss_init_is_a_code():
+    right = {"MODE": 1, "BAUD": 19200, "ACTIVE": 1 << NODE}
+    for name, code in (("MODE", 16), ("BAUD", 18), ("ACTIVE", 6)):
+        for value in NO_INTEGERS + (-1, 1 << 40):
+            plant = Plant()
+            inputs = dict(right)
+            inputs[name] = value
+            assert outcome(plant.init, **inputs) == code, (name, value)
+            assert plant.init.DONE and plant.port.drives[NODE] is not None
+
+
+def test_a_wrong_input_of_uss_ctrl_is_a_code_and_stops_the_motor():
+    for name, code in (("DRIVE", 6), ("TYPE", 5)):
+        for value in NO_INTEGERS + (-1, 1 << 40):
+            plant = started()
+            plant.inputs[name] = value
+            plant.run(50)
+            assert plant.motor.ERROR == code and plant.motor.RUN_VOID, (name, value)
+            assert words_of(plant.line.requests[-1])[-2] == 0x047E, (name, value)
+
+
+def started():
+    """A plant whose motor runs."""
+    plant = Plant()
+    plant.inputs["RUN"] = False
+    plant.run()
+    plant.inputs["RUN"] = True
+    plant.run()
+    assert plant.motor.RUN_EN and not plant.motor.RUN_VOID
+    return plant
+
+
+def test_a_setpoint_that_is_no_number_is_code_9_and_the_motor_keeps_its_speed():
+    for value in NO_NUMBERS + (float("nan"), float("inf"), 10**30, -(10**30)):
+        plant = started()
+        plant.inputs["SPEED_SP"] = value
+        plant.run(50)
+        assert plant.motor.ERROR == 9, value
+        assert words_of(plant.line.requests[-1])[-2:] == [0x047F, 0x2000], value
+        plant.inputs["RUN"] = False
+        plant.run(50)
+        assert words_of(plant.line.requests[-1])[-2] == 0x047E, value
+
+
+def test_a_wrong_address_or_number_of_a_parameter_is_a_code():
+    plant = Plant()
+    plant.run()
+    for kind in (USS_RPM_W, USS_RPM_D, USS_RPM_R, USS_WPM_W, USS_WPM_D, USS_WPM_R):
+        for name, code in (("DRIVE", 6), ("PARAM", 15), ("INDEX", 15)):
+            for value in NO_INTEGERS + (-1, 1 << 40):
+                inputs = {"DRIVE": NODE, "PARAM": 700, "INDEX": 0}
+                inputs[name] = value
+                block = kind(plant.port)
+                assert outcome(block, **inputs) == code and block.DONE, (kind, name, value)
+
+
+def test_a_value_that_is_none_is_code_5():
+    for kind, values in (
+        (USS_WPM_W, NO_NUMBERS + (2.5, 1 << 16, 10**30)),
+        (USS_WPM_D, NO_NUMBERS + (2.5, 1 << 32, 10**30)),
+        (USS_WPM_R, NO_NUMBERS + (float("nan"), 1e39, 10**400)),
+    ):  # fmt: skip
+        plant = Plant()
+        plant.run()
+        for value in values:
+            block = kind(plant.port)
+            assert outcome(block, DRIVE=NODE, PARAM=700, VALUE=value) == 5, (kind, value)
+            assert block.DONE and block.STATUS_WORD == 0x8181, (kind, value)
+
+
+def test_a_bit_may_be_anything():
+    for value in ANYTHING:
+        plant = Plant()
+        for name in ("EN", "RUN", "OFF2", "OFF3", "F_ACK", "DIR"):
+            plant.inputs[name] = value
+            plant.run(20)
+        for kind in (USS_RPM_W, USS_WPM_W):
+            kind(plant.port)(EN=value, XMT_REQ=value, DRIVE=NODE, PARAM=700)
+        USS_WPM_W(plant.port)(XMT_REQ=True, EEPROM=value, DRIVE=NODE, PARAM=700)
+        plant.init(EN=False)
+        plant.init(EN=value, MODE=1, BAUD=19200, ACTIVE=1 << NODE)
 
 
 # --- what TYPE means on the line ----------------------------------------------------------------

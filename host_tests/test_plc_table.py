@@ -57,7 +57,7 @@ class NoLink:
 def roots():
     """What the first part of a name in the tables stands for."""
     clock = Clock()
-    port = plc.Port(None, clock.ticks_mask)
+    port = plc.Port(None, clock)
     modules = (
         drive, families, layout, master, pkw, plc, pzd, receiver, scaling, single, status,
         telegram, timing, words,
@@ -117,7 +117,7 @@ def test_every_name_in_the_tables_exists():
     for quoted in text.split("`")[1::2]:
         if "\n" not in quoted and "." in quoted and re.match("^[A-Za-z_0-9.]+$", quoted):
             names.add(quoted)
-    names = {name for name in names if name not in ("uss.plc", "hal.pacer")}
+    names = {name for name in names if name not in ("uss.plc", "uss.bus", "hal.pacer")}
     assert len(names) > 60
     for name in names:
         parts = name.split(".")
@@ -173,7 +173,7 @@ def test_every_pin_of_both_siemens_libraries_has_a_row():
 
 
 def test_the_pins_of_the_s7_200_are_those_of_the_blocks():
-    port = plc.Port(None, 0x3FFFFFFF)
+    port = plc.Port(None, Clock())
     plc.USS_INIT(port)(EN=False, MODE=1, BAUD=9600, ACTIVE=0)
     plc.USS_CTRL(port)(
         EN=False, RUN=False, OFF2=False, OFF3=False, F_ACK=False, DIR=False, DRIVE=0, TYPE=1,
@@ -211,16 +211,48 @@ class Board:
         timer = HardTimer(self.chip)
         return Rs485Link(uart, driver_enable, timer, self.clock, baud, interrupts=False)
 
+    def idle(self):
+        self.clock.advance(SCAN_US)
 
-def test_the_example_works():
+
+def play(switch, board):
+    """Run the example until it ends; answer its names."""
+    names = {"board": board, "switch": switch}
+    exec(section().split("```python\n")[1].split("```")[0], names)
+    return names
+
+
+def test_the_example_works_and_its_end_stops_the_motor():
     board = Board()
     simulated = SimulatedDrive(board.clock, board.wire, 1, {1120: 1.0})
-    code = section().split("```python\n")[1].split("```")[0]
-    names = {"board": board}
-    exec(code, names)
-    for run in (False, True):
-        for _ in range(1_000):
-            names["scan"](run, run, True)
-            board.clock.advance(SCAN_US)
-    assert simulated.state == "running" and abs(simulated.hz() - 25.0) < 0.01
+
+    def switch(name):
+        if name == "end":
+            if board.clock.now_us > 4_000_000:
+                assert simulated.state == "running" and abs(simulated.hz() - 25.0) < 0.01
+                return True
+            return False
+        return board.clock.now_us > 2_000_000
+
+    names = play(switch, board)
+    assert simulated.state == "stopping"
     assert names["motor"].RUN_EN and names["frequency"].DONE and names["frequency"].ERROR == 0
+    assert not board.wire.violations
+
+
+def test_an_exception_in_the_example_stops_the_motor():
+    board = Board()
+    simulated = SimulatedDrive(board.clock, board.wire, 1, {1120: 1.0})
+
+    def switch(name):
+        if board.clock.now_us > 4_000_000:
+            assert simulated.state == "running"
+            raise KeyError("a contact is missing")
+        return name == "run" and board.clock.now_us > 2_000_000
+
+    try:
+        play(switch, board)
+        raise AssertionError("it went on")
+    except KeyError:
+        pass
+    assert simulated.state == "stopping"

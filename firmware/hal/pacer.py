@@ -92,8 +92,8 @@ class Pacer:
                     self._arm(early_us)
                 else:
                     try:
-                        due_us = self._engine.poll(self._ticks_us())
-                        self._plan(due_us)
+                        now = self._ticks_us()
+                        self._plan(self._engine.poll(now), now)
                     except Exception as failure:
                         self.failure = failure
                         self._recover()
@@ -103,7 +103,7 @@ class Pacer:
                 if not self._again:
                     return
             self._inside = True
-            self._plan(min(self._due_us, WAKE_US))
+            self._plan(min(self._due_us, WAKE_US), self._ticks_us())
             self._inside = False
         except BaseException as thrown:
             self._thrown = thrown
@@ -118,18 +118,19 @@ class Pacer:
 
     def _recover(self):
         try:
-            self._engine.recover(self._ticks_us())
-            self._plan(RETRY_US)
+            now = self._ticks_us()
+            self._engine.recover(now)
+            self._plan(RETRY_US, now)
         except Exception as failure:  # nothing works: the main loop tries again, or the watchdog
             self.failure = failure
 
-    def _plan(self, after_us):
-        """Have the engine entered in `after_us`.
+    def _plan(self, after_us, now):
+        """Have the engine entered `after_us` behind `now`.
 
         To set the timer takes long. Each exchange moves the instant a little further away: a timer
         that will come earlier is left as it is, and set again when it comes.
         """
-        self._asked_at = now = self._ticks_us()
+        self._asked_at = now
         self._due_us = after_us
         comes_us = self._armed_us - ((now - self._armed_at) & self._mask)
         if comes_us <= 0 or comes_us > after_us:

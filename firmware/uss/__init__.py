@@ -26,6 +26,7 @@ What the panel knows of a drive:
 
 For other programs; the panel imports none of these:
     bus              the master in a few words: floats, calls that wait, plain errors
+    errors           these errors
     particulars      what a drive tells of itself, for `bus`
     families         what differs between the drive families: data
     words            the bits of control and status words by name

@@ -15,8 +15,10 @@ Whoever does not wait calls `step` again and again: without it for 300 ms every 
 """
 
 from uss import families, master, pkw, pzd, single, words
+from uss.errors import NoContact, NotStarted, Refused, TimedOut, UssError
+from uss.layout import Layout
 from uss.particulars import Particulars
-from uss.scaling import run_words, with_direction
+from uss.scaling import Scale, run_words, with_direction
 from uss.timing import Timing, elapsed
 
 REST_US = 100  # between two looks at the bus while a call waits
@@ -25,37 +27,16 @@ LISTEN_US = 1_000_000  # a bus that has just begun, or was put on, sends long be
 START_S = 5.0  # for a drive to run after it was told to
 SETTLE_S = 1.0  # for a drive to lift its inhibit, or a fault to go, before it is started
 CLOSE_S = 1.0  # for the drives to answer their OFF1, and a round of the bus on top
+OFF_TIME_S = (0.3, 65.0)  # telegram-off times that are taken; a word of ms ends at 65.5
+ROUNDS = 3  # of the bus that a telegram-off time must last
+RETRIES_MAX = 255
 
 # `Drive.state` of a drive that answers, by the numbers of pzd.state; and of one that does not.
 STATES = ("not ready", "ready", "running", "fault", "inhibited")
 NO_CONTACT = "no contact"
 MAY_RUN = "no contact, may run"
 
-
-class UssError(Exception):
-    """What was wanted of a drive was not done."""
-
-
-class NoContact(UssError):
-    """The drive does not answer, or nothing is sent to it."""
-
-
-class TimedOut(UssError):
-    """The drive answers, but not to this parameter task."""
-
-
-class NotStarted(UssError):
-    """The motor was not started. The text says why."""
-
-
-class Refused(UssError):
-    """The drive refused a parameter task. number: see pkw.ERRORS; -1 when others have the right
-    to change parameters. job: the task, with what the drive offers instead."""
-
-    def __init__(self, text, job):
-        super().__init__(text)
-        self.number = job.error
-        self.job = job
+LINE_IN_USE = "another master is on the line"
 
 
 class Drive:
@@ -75,6 +56,8 @@ class Drive:
         self._off_time_ms = 0  # as the bus was told last
 
     def __getattr__(self, name):
+        if name in ("start", "turn"):  # they check nothing
+            raise AttributeError("%s: say run(), or drive.engine.%s()" % (name, name))
         return getattr(self.engine, name)
 
     # --- to run and to stop ---------------------------------------------------------------------
@@ -86,19 +69,28 @@ class Drive:
         second at 19200 baud, and says that it runs. To one that runs the new speed goes with its
         next telegram. NotStarted; ValueError: a speed beyond the drive's limits, or not one speed.
         """
-        if (hertz is None) + (percent is None) + (rpm is None) != 2:
-            raise ValueError("run() wants one speed: hertz, percent or rpm")
-        engine = self.engine
-        runs = engine.is_on() and engine.wanted not in self._jogs()
-        if not runs:
-            self._check_start(True)
+        if self.set(hertz, percent, rpm):
+            return
+        self._check_start(True)
         setpoint = self.particulars.setpoint(hertz, percent, rpm)
         stw, hsw = run_words(self.family, setpoint)
-        if runs:
-            engine.hsw = hsw
-            engine.turn(stw)
-        else:
-            self._start(hsw, stw)
+        self._start(hsw, stw)
+
+    def set(self, hertz=None, percent=None, rpm=None):
+        """A new speed, as of run(), for a motor that this bus has told to run; it starts none.
+
+        Answers whether there was such a motor; nothing happens otherwise. ValueError as of run().
+        """
+        _check_speed(hertz, percent, rpm)
+        engine = self.engine
+        if not self._has_speed():
+            return False
+        stw, hsw = run_words(self.family, self.particulars.setpoint(hertz, percent, rpm))
+        if not self._has_speed():  # it was asked for its settings first, and stopped meanwhile
+            return False
+        engine.hsw = hsw
+        engine.turn(stw)
+        return True
 
     def jog_right(self):
         """Turn at the drive's own jog frequency until `stop`. Waits as run() does; NotStarted."""
@@ -119,28 +111,44 @@ class Drive:
     def supervise(self, seconds):
         """Have the drive trip when it hears nothing for so long, 0: never; kept in its RAM.
 
-        ValueError: nobody knows how. Refused, TimedOut.
+        ValueError: nobody knows how, or the time is none of OFF_TIME_S, or shorter than three
+        rounds of the bus. Refused, TimedOut.
         """
         family = self.family
         if family.off_time_number is None:
             raise ValueError("nobody knows the telegram-off time of a %s" % family.name)
+        least, longest = OFF_TIME_S
+        least = max(least, ROUNDS * self.bus.round_us() / 1_000_000)
+        if seconds != 0 and not least <= seconds <= longest:  # nor a NaN
+            raise ValueError(
+                "supervise() takes seconds, %.1f...%.0f on this bus, or 0 for never: not %r"
+                % (least, longest, seconds)
+            )
         value = round(seconds * 1000 / family.off_time_unit_ms)
+        if seconds:
+            value = max(value, 1)  # 0 would be "never"
         self.write(family.off_time_number, value, family.link_index, sure=True)
-        self._supervise(value * family.off_time_unit_ms)
+        self.particulars.told_off_time_ms = value * family.off_time_unit_ms
+        self.keep_within(value * family.off_time_unit_ms)
 
     # --- what it does ---------------------------------------------------------------------------
 
     @property
+    def contact(self):
+        """Whether it answers, and this bus still asks it."""
+        return self.engine.contact and not self._why_not_asked()
+
+    @property
     def state(self):
         """One of STATES, NO_CONTACT, or MAY_RUN: it ran when contact was lost."""
-        if self.engine.contact:
+        if self.contact:
             return STATES[pzd.state(self.engine.zsw)]
-        return MAY_RUN if self.engine.was_running else NO_CONTACT
+        return MAY_RUN if self.engine.may_run() else NO_CONTACT
 
     @property
     def is_running(self):
         """Whether it answers, and says that it runs."""
-        return self.engine.contact and self.engine.zsw & pzd.ZSW_RUNNING != 0
+        return self.contact and self.engine.zsw & pzd.ZSW_RUNNING != 0
 
     @property
     def hertz(self):
@@ -188,8 +196,10 @@ class Drive:
         The drive is asked first whether it is a word or a double word, unless `kind` says which
         double word it is: float or int. sure: to be said for parameters by which this bus may lose
         the drive, or a speed mean something else: family.ask_first. ValueError without it, and for
-        a value that does not fit. Waits; Refused, TimedOut.
+        a value or a kind that does not fit. Waits; Refused, TimedOut; UssError: its address, while
+        the motor may run.
         """
+        self._check_kind(number, index, kind)
         if eeprom and not self.family.has_eeprom_tasks:
             raise ValueError(
                 "no task of %s writes the EEPROM: write parameter %d afterwards"
@@ -200,6 +210,11 @@ class Drive:
             raise ValueError(
                 "%s may take drive %d away from this bus, or change what a speed means; "
                 "sure=True writes it all the same" % (pkw.name(number, index), self.engine.address)
+            )
+        if number == self.family.address_number and self.engine.may_run():
+            raise UssError(
+                "drive %d may be running: stop it before it gets another address, or nobody could"
+                % self.engine.address
             )
         if kind is None:
             kind = self._kind(self.do(pkw.read(number, index)))
@@ -218,20 +233,26 @@ class Drive:
     def do(self, job):
         """Carry out any job of `pkw`, wait for its end and answer it; `ask` does not wait.
 
-        Refused, TimedOut; RuntimeError when the drive's telegrams have no PKW words.
+        Refused, TimedOut; UssError when the drive's telegrams have no PKW words.
         """
         self.carry_out(job)
         self.raise_unless_done(job)
         return job
 
     def carry_out(self, job):
-        """Wait for the end of a job, whatever that is. NoContact: it was not begun."""
-        self._wait_for_contact()
+        """Wait for the end of a job, whatever that is. NoContact: it was not begun, or the bus
+        was put off before it ended."""
         engine = self.engine
+        if not engine.layout.pkw_words:
+            raise UssError(
+                "drive %d has no parameter channel: %r" % (engine.address, engine.layout)
+            )
+        self._wait_for_contact()
         engine.ask(job)
         engine.want_turns(True)
         try:
             while job.state == pkw.PENDING:
+                self._raise_unless_asked()
                 self.bus.rest()
         finally:
             engine.want_turns(False)
@@ -249,6 +270,19 @@ class Drive:
         raise TimedOut("drive %d does not answer about %s" % (self.engine.address, name))
 
     # --- behind it ------------------------------------------------------------------------------
+
+    def _check_kind(self, number, index, kind):
+        """ValueError: the family knows this parameter to be of another kind."""
+        if kind not in (None, int, float):
+            raise ValueError("kind is int or float, not %r" % (kind,))
+        family = self.family
+        if kind is None or family.integer_doubles is None:
+            return
+        if (kind is float) != families.is_float(family, number):
+            raise ValueError(
+                "%s of a %s is not to be written as %s: leave kind= out"
+                % (pkw.name(number, index), family.name, "float" if kind is float else "int")
+            )
 
     def _kind(self, job):
         """What a finished job has brought: float or int for a double word, None for a word."""
@@ -278,8 +312,14 @@ class Drive:
     def _jogs(self):
         return self.family.jog_right, self.family.jog_left
 
+    def _has_speed(self):
+        """Whether it is told to run, and by a setpoint of this bus."""
+        engine = self.engine
+        return not self._why_not_asked() and engine.is_on() and engine.wanted not in self._jogs()
+
     def _check_start(self, needs_setpoint):
         """NotStarted unless everything that must be known of the drive lets it be started now."""
+        self._raise_unless_asked()
         if self.engine.stopped_by_engine():
             self._refuse(
                 "was stopped: it was lost, tripped, switched itself off, or step() was not called "
@@ -305,17 +345,19 @@ class Drive:
         obstacle = self.particulars.obstacle(needs_setpoint, self.unsupervised)
         if obstacle:
             self._refuse(obstacle)
-        self._supervise(self.particulars.off_time_ms())
+        self.keep_within(self.particulars.off_time_ms())
         if self.engine.stops != stops:
             self._refuse("was told to stop meanwhile")
 
     def _start(self, hsw, stw):
         """Start it and wait until it runs. What does not start soon shall not start later."""
         engine = self.engine
+        self._raise_unless_asked()
         engine.start(hsw, stw)
         self.bus.wait(START_S, self._has_started_or_failed)
         if self.is_running:
             return
+        self._raise_unless_asked()
         if engine.stopped_by_engine():
             self._refuse("did not start: it was lost, or tripped")
         if not engine.wanted:
@@ -326,11 +368,11 @@ class Drive:
     def _has_started_or_failed(self):
         return self.is_running or not self.engine.wanted or self.engine.stopped_by_engine()
 
-    def _supervise(self, off_time_ms):
+    def keep_within(self, off_time_ms):
         """The drive's telegram-off time is known, or None: the bus keeps within it from now on."""
         if off_time_ms is not None and off_time_ms != self._off_time_ms:
             self._off_time_ms = off_time_ms
-            self.bus.supervise(self, off_time_ms)
+            self.bus.engine.supervise(self.engine, off_time_ms)
 
     def _may_start(self):
         return self.engine.contact and words.may_start(self.engine.zsw)
@@ -340,21 +382,33 @@ class Drive:
 
     def _wait_for_contact(self):
         """Until it answers, or has failed to a few times in a row."""
+        self._raise_unless_asked()
         if not self.engine.contact:
             patience_us = LISTEN_US + TRIES * self.bus.engine.longest_cycle_us()
             self.bus.wait(patience_us / 1_000_000, self._has_answered_or_failed)
-            if not self.engine.contact:
+            if not self.contact:
                 raise NoContact(self._why_no_contact())
 
     def _has_answered_or_failed(self):
-        return self.engine.contact or self.engine.silent >= TRIES or self.bus.is_silent()
+        engine = self.engine
+        return engine.contact or engine.silent >= TRIES or self._why_not_asked() is not None
 
     def _why_no_contact(self):
         if self.bus.engine.is_line_in_use():
-            return "another master is on the line"
-        if self.bus.is_silent():
-            return "the bus is off"
-        return "drive %d does not answer" % self.engine.address
+            return LINE_IN_USE
+        return self._why_not_asked() or "drive %d does not answer" % self.engine.address
+
+    def _raise_unless_asked(self):
+        reason = self._why_not_asked()
+        if reason:
+            raise NoContact(reason)
+
+    def _why_not_asked(self):
+        """Why no telegram goes to it any more, in words; None: one does."""
+        bus = self.bus
+        if bus.engine.phase != master.CLOSED and self not in bus.drives:
+            return "drive %d is not on the bus" % self.engine.address
+        return bus.why_silent()
 
 
 class Master:
@@ -363,7 +417,8 @@ class Master:
     baud: of the line, a rate of USS. reply_timeout_ms: how long a reply may take to begin; 20 by
     the specification, adapters may need more. lost_ms: without a valid reply for so long a drive
     counts as lost. idle: called again and again while a call waits, at least once in 2 ms: to feed
-    a watchdog, say. ValueError: no rate of USS.
+    a watchdog, say; never while the bus is closed, so that nothing in it keeps a motor turning.
+    ValueError: no rate of USS, or another Master has the link and was not closed.
 
     drives: each once, in the order added. Whatever is not found here is that of `engine`, the
     `master.Master` behind it: stop_all, post, off, on, counters, status, foreign ...
@@ -373,8 +428,11 @@ class Master:
         self.clock = clock = link.clock
         self.drives = []
         timing = Timing(baud, reply_timeout_ms * 1000)
+        if getattr(link, "bus", None):
+            raise ValueError("another Master has this link: close() that one first")
         self.engine = master.Master(link, timing, clock.ticks_mask, lost_ms * 1000)
         self._link = link
+        link.bus = self
         self._idle = idle
         self._pacer = None
 
@@ -389,19 +447,25 @@ class Master:
 
     # --- the list -------------------------------------------------------------------------------
 
-    def add(self, address, family=families.GENERIC, layout=None, scale=None, unsupervised=False):
+    def add(self, address, family=None, layout=None, scale=None, unsupervised=False):
         """Put a drive at the end of the circulating list; answer its `Drive`.
 
-        The same address again gives the same drive, unchanged, one more turn. layout: how its
-        telegrams are divided, if not as the family's are. scale: a `scaling.Scale`, for a drive
-        that cannot tell its own. unsupervised: it may run although its telegram-off time is 0 and
-        nobody would stop it if the program died. ValueError: an address beyond 31, a layout that
-        the family cannot be set to, the list is full.
+        The same address again gives the same drive, unchanged, one more turn. family: of
+        `families`, GENERIC when it is not told. layout: how its telegrams are divided, if not as
+        the family's are. scale: a `scaling.Scale`, for a drive that cannot tell its own: what it
+        tells goes first. unsupervised: it may run although its telegram-off time is 0, or nobody
+        knows it, and nobody would stop it if the program died. ValueError: an address beyond 31, a
+        layout that the family cannot be set to, the list is full, the drive is there already and
+        of another family or layout. TypeError.
         """
+        _check_types(address, family, layout, scale)
         for drive in self.drives:
             if drive.address == address:
-                self.engine.add(address, drive.layout)
+                if family not in (None, drive.family):
+                    raise ValueError("drive %d is a %s already" % (address, drive.family.name))
+                self.engine.add(address, layout or drive.layout)
                 return drive
+        family = family or families.GENERIC
         layout = layout or family.layout
         if not families.can_be_set_to(family, layout):
             raise ValueError("a %s has no %r" % (family.name, layout))
@@ -427,9 +491,22 @@ class Master:
         self.engine.readdress(drive.engine, address)
 
     def supervise(self, drive, off_time_ms):
-        """Tell of a drive that has no parameter channel after which time without telegrams it
-        trips, 0: never. The bus keeps within a third of that while it may run."""
-        self.engine.supervise(drive.engine, off_time_ms)
+        """Tell of a drive that cannot be asked after which time without telegrams it trips, in ms,
+        0: never. The bus keeps within a third of that while it may run.
+
+        Nothing is written to the drive: `Drive.supervise` does that.
+        """
+        if not isinstance(off_time_ms, int) or not 0 <= off_time_ms <= 1000 * OFF_TIME_S[1]:
+            raise ValueError("a telegram-off time is an integer in ms, not %r" % (off_time_ms,))
+        drive.particulars.told_off_time_ms = off_time_ms
+        drive.keep_within(off_time_ms)
+
+    def round_us(self):
+        """How long a round of the list takes when every drive answers as soon as it may."""
+        timing = self.engine.timing
+        delay_us = timing.start_interval_us
+        entries = [(drive.layout.net_count,) * 2 + (delay_us,) for drive in self.engine.list]
+        return max(timing.cycle_us(entries), self.engine.cycle_us)
 
     @property
     def cycle_us(self):
@@ -438,6 +515,10 @@ class Master:
 
     @cycle_us.setter
     def cycle_us(self, cycle_us):
+        if not isinstance(cycle_us, int) or cycle_us < 0:
+            raise ValueError(
+                "cycle_us is a number of microseconds from 0 on, not %r" % (cycle_us,)
+            )
         self.engine.cycle_us = cycle_us
 
     @property
@@ -447,6 +528,8 @@ class Master:
 
     @retries.setter
     def retries(self, retries):
+        if retries not in range(RETRIES_MAX + 1):
+            raise ValueError("retries is 0...%d, not %r" % (RETRIES_MAX, retries))
         self.engine.retries = retries
 
     # --- time -----------------------------------------------------------------------------------
@@ -461,16 +544,18 @@ class Master:
 
     def step(self):
         """Say that the program is alive, and do what is due. To be called again and again."""
+        engine = self.engine
         now = self.clock.ticks_us()
-        self.engine.refresh(now)
+        # The engine before it hears that the loop is alive: it must see how long that took.
         if self._pacer:
             self._pacer.tend()
-            return
-        try:
-            self.engine.poll(now)
-        except BaseException:  # Ctrl-C as well: it may have struck in the middle
-            self.engine.recover(now)
-            raise
+        else:
+            try:
+                engine.poll(now)
+            except BaseException:  # Ctrl-C as well: it may have struck in the middle
+                engine.recover(now)
+                raise
+        engine.refresh(now)
 
     def rest(self):
         """A step, and a tenth of a millisecond for everybody else."""
@@ -480,7 +565,15 @@ class Master:
         self.clock.sleep_us(REST_US)
 
     def wait(self, seconds, until=None):
-        """Let the bus go on for so long, or until `until()` is true; answer whether it is."""
+        """Let the bus go on for so long, or until `until()` is true; answer whether it is.
+
+        NoContact: the bus is closed.
+        """
+        if self.engine.phase == master.CLOSED:
+            raise NoContact(self.why_silent())
+        return self._wait(seconds, until)
+
+    def _wait(self, seconds, until):
         left_us = int(seconds * 1_000_000)
         before = self.clock.ticks_us()
         while True:
@@ -512,16 +605,31 @@ class Master:
         """Whether a node sends back a telegram of so many net characters, which it does not obey.
 
         A drive of fixed length answers none but its own length, which is taken for those of this
-        bus. Waits.
+        bus. Waits; NoContact: nothing is sent on this bus.
         """
         for drive in self.drives:
             if drive.address == node:
                 net_count = drive.layout.net_count
         probe = single.Mirror(node, bytes(net_count))
-        self.engine.post(probe)
+        self.post(probe)
         while probe.state == pkw.PENDING:
+            if self.why_silent() or self.engine.is_line_in_use():
+                raise NoContact(self.why_silent() or LINE_IN_USE)
             self.rest()
         return probe.state == pkw.DONE
+
+    def post(self, telegram_outside):
+        """As of `master.Master`; NoContact: nothing is sent on this bus."""
+        reason = self.why_silent()
+        if reason:
+            raise NoContact(reason)
+        self.engine.post(telegram_outside)
+
+    def why_silent(self):
+        """Why nothing is sent any more, in words; None: something is."""
+        if self.engine.phase == master.CLOSED:
+            return "the bus is closed"
+        return "the bus is off" if self.engine.phase == master.OFF else None
 
     def is_silent(self):
         """Whether nothing is sent any more, after off() or close()."""
@@ -530,13 +638,17 @@ class Master:
     def close(self):
         """Stop every drive, wait for the answers, and leave the line and the link alone.
 
-        Ctrl-C does not cut this short: it takes a second at the most, and a motor may be turning.
+        Ctrl-C does not cut this short: it takes a second and a round of the bus at the most, and a
+        motor may be turning. `idle` is not called any more.
         """
+        self._idle = None
         try:
             self._persist(self._stop_and_wait)
             self._persist(self._end)
         finally:
             self._persist(self._pacer.stop if self._pacer else self._link.close)
+            if self._link.bus is self:
+                self._link.bus = None
 
     def _stop_and_wait(self):
         self.engine.resume()
@@ -556,7 +668,7 @@ class Master:
 
     def _wait_to_close(self, is_over):
         if not is_over():
-            self.wait(CLOSE_S + self.engine.longest_cycle_us() / 1_000_000, is_over)
+            self._wait(CLOSE_S + self.engine.longest_cycle_us() / 1_000_000, is_over)
 
     def _all_stopped(self):
         """Whether every drive in contact has answered OFF1, and the others were sent it; or
@@ -567,3 +679,26 @@ class Master:
             if drive.urgency() > 1 or (drive.contact and not drive.answered_off()):
                 return False
         return True
+
+
+def _check_speed(hertz, percent, rpm):
+    """ValueError, TypeError: not one speed, or none that is a number."""
+    speeds = [speed for speed in (hertz, percent, rpm) if speed is not None]
+    if len(speeds) != 1:
+        raise ValueError("say one speed: hertz, percent or rpm")
+    if not isinstance(speeds[0], (int, float)):
+        raise TypeError("a speed is a number, not %r" % (speeds[0],))
+    if speeds[0] - speeds[0] != 0:  # of a NaN and of what is infinite it is a NaN
+        raise ValueError("a speed of %r" % speeds[0])
+
+
+def _check_types(address, family, layout, scale):
+    """TypeError: an argument of `Master.add` is none."""
+    if not isinstance(address, int):
+        raise TypeError("an address is an integer 0...31, not %r" % (address,))
+    if family is not None and not hasattr(family, "survey"):
+        raise TypeError("a family is a class of uss.families, not %r" % (family,))
+    if layout is not None and not isinstance(layout, Layout):
+        raise TypeError("say layout=Layout(4, 2), not %r" % (layout,))
+    if scale is not None and not isinstance(scale, Scale):
+        raise TypeError("say scale=Scale(50.0), not %r" % (scale,))

@@ -12,6 +12,7 @@ from array import array
 from micropython import const
 
 from uss.drive import NODES, OVERDUE, WANTS
+from uss.pzd import ZSW_RUNNING
 
 BACK_OFF_US = const(1_600_000)  # a drive that backs off is asked again after so long
 PROBE_SHARE = const(22)  # or after so many times what that costs, so that it takes below 5 %
@@ -19,6 +20,7 @@ LOOK_US = const(8_000)  # how often drives are looked after
 SWEEP_US = const(100_000)  # in which each of them has been
 MEASURE_US = const(250_000)  # how often the duration of a round is measured
 NEAR = const(2)  # a gap of less than so many rounds is looked after
+MEASURED_MAX_US = const(4_000_000)  # so that 255 times it fits a small integer
 LONGEST_US = const(100_000_000)  # of a round; small enough to be multiplied
 FAR = const(6)  # until it is so many: the turns it gets besides make a round seem shorter
 
@@ -148,7 +150,7 @@ class Care:
     def _measure(self, now):
         """How long a round takes, by the telegrams since last time, and which gaps that presses."""
         turns = self._turns
-        passed_us = min((now - self._measured_at) & self._mask, LONGEST_US)
+        passed_us = min((now - self._measured_at) & self._mask, MEASURED_MAX_US)
         exchanges = (turns.exchanges - self._exchanges) & 0xFFFF
         self._measured_at = now
         self._exchanges = turns.exchanges
@@ -166,10 +168,12 @@ class Care:
         for _ in range(_share(count, passed_us, min(SWEEP_US, self._least_us >> 2))):
             self._pressed = self._pressed + 1 if self._pressed + 1 < count else 0
             drive = drives[self._pressed]
-            gap_us = self._gaps_us[drive.address]
-            if 0 < gap_us < self._limit_us and drive.silent_us(now, self._mask) > gap_us // 3:
-                if drive.may_run():
-                    self._ask_soon(drive, OVERDUE)
+            # What most drives are is seen without a call: standing.
+            if drive.wanted or drive.was_running or drive.zsw & ZSW_RUNNING:
+                gap_us = self._gaps_us[drive.address]
+                if 0 < gap_us < self._limit_us:
+                    if drive.silent_us(now, self._mask) > gap_us // 3:
+                        self._ask_soon(drive, OVERDUE)
 
     def _ask_soon(self, drive, row):
         if not self._turns.is_under_way(drive):

@@ -163,10 +163,10 @@ class Master(Turns):
         if self._dead_man or (now - self._refreshed_at) & self._mask > DEAD_MAN_US:
             self._check_dead_man(now)
         phase = self.phase  # each step goes over to the next one when that can follow at once
-        if phase == SENDING:
-            return self._finish_sending(now)
         if phase == AWAITING:
             return self._await(now)
+        if phase == SENDING:
+            return self._finish_sending(now)
         if phase == RESTING:
             return self._rest(now)
         if phase == LISTENING:
@@ -326,12 +326,13 @@ class Master(Turns):
             frame(request, size, drive.address)
             drive.sealed = True
         link = self._link
-        self.phase = SENDING
-        self._sending_since = now
-        link.send(request, size)
         self.exchanges = (self.exchanges + 1) & 0xFFFF
         if not self._foreseen:
+            self.phase = SENDING
+            self._sending_since = now
+            link.send(request, size)
             return self._sending_due_us(link.sending_us(now))
+        link.send(request, size)
         self._quiet_since = sent_at = link.sent_at
         self._receiver.open(drive, sent_at)
         self.phase = AWAITING

@@ -14,23 +14,23 @@ from uss import families, pkw, profiles
 from uss.pkw import NO_PARAMETER
 from uss.scaling import Scale, pole_pairs
 
-# Rows of a survey that need not be asked for when the scale was told, and with it the limits.
-SCALE_ROWS = (profiles.REFERENCE, profiles.ABSOLUTE, profiles.LOWEST, profiles.HIGHEST)
-
 TOLERANCE = 1.001  # a limit that was rounded to a word of PZD2 is still within itself
 
 
 class Particulars:
-    """drive: a `bus.Drive`. scale: a `scaling.Scale` that its owner knows, or None.
+    """drive: a `bus.Drive`. scale: a `scaling.Scale` that its owner knows, or None; what the drive
+    tells goes before it.
 
     values: for each row of the family's survey what was read, None where it is not known.
-    scale: None as long as it is not known.
+    scale: None as long as it is not known. told_off_time_ms: what the owner says of a drive that
+    does not tell it, None as long as nothing was said.
     """
 
     def __init__(self, drive, scale):
         self.scale = scale
         self.values = (None,) * len(drive.family.survey)
-        self._told = scale is not None
+        self.told_off_time_ms = None
+        self._told_scale = scale
         self._is_fine = False  # words that are frequencies count in 0.01 Hz
         self._drive = drive
         self._contact = None  # drive.contacts when it was asked
@@ -42,7 +42,7 @@ class Particulars:
         jobs = [None] * len(survey)
         if drive.layout.pkw_words:
             for row in range(len(survey)):
-                if survey[row] and not (self._told and row in SCALE_ROWS):
+                if survey[row]:
                     jobs[row] = self._read(survey[row])
         absolute = jobs[profiles.ABSOLUTE]
         self._is_fine = absolute is not None and absolute.integer_value() != 0
@@ -50,8 +50,7 @@ class Particulars:
             None if jobs[row] is None else families.value(jobs[row], survey[row][2], self._is_fine)
             for row in range(len(survey))
         ]
-        if not self._told:
-            self.scale = self._scale()
+        self.scale = self._scale()
         self._contact = drive.contacts
 
     def forget(self):
@@ -59,9 +58,11 @@ class Particulars:
         self._contact = None
 
     def off_time_ms(self):
-        """The drive's telegram-off time; None when it is not known."""
+        """The drive's telegram-off time; None when it is not known, nor was told."""
         value = self.values[profiles.SUPERVISION]
-        return None if value is None else round(value * self._drive.family.off_time_unit_ms)
+        if value is None:
+            return self.told_off_time_ms
+        return round(value * self._drive.family.off_time_unit_ms)
 
     def obstacle(self, needs_setpoint, unsupervised):
         """Why the drive must not be started as it is set up, in words; None when it may.
@@ -81,12 +82,19 @@ class Particulars:
                 )  # fmt: skip
         if needs_setpoint and self.scale is None:
             return "cannot tell what 100 % is: add it to the bus with scale=Scale(...)"
-        if self.off_time_ms() == 0 and not unsupervised:
+        return None if unsupervised or self.off_time_ms() else self._supervision_obstacle()
+
+    def _supervision_obstacle(self):
+        if self.values[profiles.SUPERVISION] is None:
             return (
-                "would run on if this program died: %s = 0. supervise(2.0) changes that; or add "
-                "it to the bus with unsupervised=True" % self._name(profiles.SUPERVISION)
+                "may run on if this program died: it does not tell its telegram-off time. "
+                "bus.supervise(drive, 2000) says that it has one of 2000 ms; or add it to the bus "
+                "with unsupervised=True"
             )
-        return None
+        return (
+            "would run on if this program died: %s = 0. supervise(2.0) changes that; or add "
+            "it to the bus with unsupervised=True" % self._name(profiles.SUPERVISION)
+        )
 
     # --- speeds ---------------------------------------------------------------------------------
 
@@ -135,6 +143,16 @@ class Particulars:
         return job
 
     def _scale(self):
+        """The scale that the drive tells, else the one that was told, else None."""
+        scale = self._own_scale()
+        told = self._told_scale
+        if told is None:
+            return scale
+        if scale is None or scale.reference_hertz is None and scale.reference_rpm is None:
+            return told
+        return scale
+
+    def _own_scale(self):
         """What the values say of the scale; None when they lack what could change it."""
         family = self._drive.family
         values = self.values

@@ -4,18 +4,19 @@ For people who know them: each block is an object that is called once a scan, wi
 name; its outputs are its attributes. On top of the engine, which goes on by itself between the
 calls. Never imported by the panel. README.md says where each pin and code went.
 
-    port = Port(open_bus, clock.ticks_mask)         # open_bus(baud) answers a `master.Master`
-    init, motor, frequency = USS_INIT(port), USS_CTRL(port), USS_RPM_R(port)
-    while True:                                     # the scan
-        port.scan(clock.ticks_us())
-        init(EN=True, MODE=1, BAUD=19200, ACTIVE=0b10)
-        motor(EN=True, RUN=switch(), DRIVE=1, TYPE=1, SPEED_SP=50.0)
-        frequency(EN=True, XMT_REQ=button(), DRIVE=1, PARAM=21)
-        if motor.ERROR: print(status.text(motor.ERROR))
+    with Port(open_bus, board.clock) as port:   # open_bus(baud) answers a `master.Master`
+        init, motor, frequency = USS_INIT(port), USS_CTRL(port), USS_RPM_R(port)
+        while True:                             # the scan; however it ends, the motors stop
+            port.scan()
+            init(EN=True, MODE=1, BAUD=19200, ACTIVE=0b10)
+            motor(EN=True, RUN=switch(), DRIVE=1, TYPE=1, SPEED_SP=50.0)
+            frequency(EN=True, XMT_REQ=button(), DRIVE=1, PARAM=21)
+            if motor.ERROR: print(status.text(motor.ERROR))
 
 RUN makes a motor run by its rising edge only, and only a drive that could run at that moment.
 Power that comes back, a drive that answers again, a fault that is acknowledged or a scan that goes
-on start nothing: RUN has to go off and on. Source: S7-200 system manual, USS library.
+on start nothing: RUN has to go off and on. No input raises an exception: what it cannot be is a
+code in ERROR. Source: S7-200 system manual, USS library.
 """
 
 from micropython import const
@@ -42,6 +43,9 @@ PPI = const(0)  # the port is for something else
 TYPES = (MM3, MM4)  # what TYPE of USS_CTRL means: 0 and 1
 DEFAULT_TYPE = const(1)  # of an active drive that no USS_CTRL has named yet
 
+CLOSE_US = const(1_000_000)  # for the drives to answer their OFF1, and a round of the bus on top
+REST_US = const(100)  # between two looks at the bus meanwhile
+
 SPEED_LIMIT = const(200)  # percent
 PERCENT = Scale()  # of full speed, 4000h
 
@@ -50,22 +54,22 @@ class Port:
     """The serial port that all blocks share.
 
     open_bus: function, baud -> a `Master` without drives on a link of that rate; it lets go of the
-        one before, whose phase is OFF then. mask: the clock's period - 1.
+        one before, whose phase is OFF then. clock: of the board, see `hal`.
     types: the family for each value of TYPE; one that differs is a class more, see `families`.
     polled: `scan` makes the engine go on. False: something else does, such as `hal.pacer`, which
         also goes on, and stops the motors, when the scan does not.
 
-    Fields to look at: `bus` (None while the port is not set up for USS), `drives` (by address),
-    `now` (the instant of this scan).
+    Leaving `with` stops the motors, see `close`. Fields to look at: `bus` (None while the port is
+    not set up for USS), `drives` (by address), `now` (the instant of this scan).
     """
 
-    def __init__(self, open_bus, mask, types=TYPES, polled=True):
+    def __init__(self, open_bus, clock, types=TYPES, polled=True):
         self.bus = None
         self.now = 0
         self.drives = [None] * (NODE_MAX + 1)
         self.job = None  # the parameter job of the block that was served last
         self._open_bus = open_bus
-        self._mask = mask
+        self._clock = clock
         self._types = types
         self._type_of = [min(DEFAULT_TYPE, len(types) - 1)] * (NODE_MAX + 1)
         self._polled = polled
@@ -74,34 +78,51 @@ class Port:
         self._leaving = None  # the bus that is being left
         self._following = None  # (baud, active) of the one after it
 
-    def scan(self, now):
-        """Once at the beginning of every scan. now: the clock in microseconds.
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.close()
+
+    def scan(self):
+        """Once at the beginning of every scan.
 
         Motors are stopped when it is not called for 300 ms, and so is the one whose USS_CTRL is
         not; where `polled`, not before it is called again.
         """
-        self.now = now
+        self.now = self._clock.ticks_us()
         bus = self._leaving or self.bus
         if bus is None:
             return
-        if self._polled:
-            bus.poll(now)  # before `refresh`, or a scan that hung would go unnoticed
-        bus.refresh(now)
+        self._go_on(bus, self.now)
         for control in self._controls:
             if control is not None and control.is_overdue():
                 control.leave()
+
+    def close(self):
+        """Stop every motor, wait for the drives' answers, and send nothing any more.
+
+        It takes a second and a round of the bus at the most; Ctrl-C does not cut it short. The
+        blocks say PORT_NOT_USS then, and USS_INIT may begin anew. Where not `polled` the engine
+        has to go on meanwhile: a pacer has a timer and is stopped afterwards. The link stays open.
+        """
+        while True:
+            try:
+                return self._close()
+            except KeyboardInterrupt:  # a motor may be turning
+                pass
 
     # --- for the blocks -------------------------------------------------------------------------
 
     def passed_us(self, since):
         """Microseconds from the scan of the instant `since` to this one."""
-        return elapsed(self.now, since, self._mask)
+        return elapsed(self.now, since, self._clock.ticks_mask)
 
     def refusal(self, address):
         """Why no block may use the drive at this address: a status code, or NO_ERROR."""
         if self.bus is None:
             return status.PORT_NOT_USS
-        if address not in range(NODE_MAX + 1):
+        if not isinstance(address, int) or not 0 <= address <= NODE_MAX:
             return status.ILLEGAL_ADDRESS
         if self.drives[address] is None:
             return status.NOT_ACTIVE
@@ -166,8 +187,36 @@ class Port:
                 self._open(baud, active)
         return self._leaving is None
 
+    def _go_on(self, bus, now):
+        if self._polled:
+            try:
+                bus.poll(now)  # before `refresh`, or a scan that hung would go unnoticed
+            except BaseException:  # Ctrl-C as well: it may have struck in the middle
+                bus.recover(now)
+                raise
+        bus.refresh(now)
+
+    def _close(self):
+        bus = self._leaving or self.bus
+        if bus is None:
+            return
+        bus.off()
+        clock = self._clock
+        left_us = CLOSE_US + bus.longest_cycle_us()
+        before = clock.ticks_us()
+        while bus.phase != OFF and left_us > 0:
+            self._go_on(bus, before)
+            clock.sleep_us(REST_US)
+            now = clock.ticks_us()
+            left_us -= elapsed(now, before, clock.ticks_mask)
+            before = now
+        for address in range(NODE_MAX + 1):
+            self.drives[address] = self._controls[address] = None
+        self._baud = 0
+        self._leaving = self.bus = self.job = None
+
     def _set_type(self, address, type_number):
-        if type_number not in range(len(self._types)):
+        if not isinstance(type_number, int) or not 0 <= type_number < len(self._types):
             return status.ILLEGAL_COMMAND
         if not self._types[type_number].layout.pzd_words:
             return status.ILLEGAL_COMMAND
@@ -183,11 +232,11 @@ class Port:
         return status.NO_ERROR
 
     def _refuses(self, mode, baud, active):
-        if mode not in (PPI, USS):
+        if not isinstance(mode, int) or mode not in (PPI, USS):
             return status.PROTOCOL
-        if mode == USS and baud not in BAUD_RATES:
+        if mode == USS and (not isinstance(baud, int) or baud not in BAUD_RATES):
             return status.BAUD_RATE
-        if mode == USS and (active < 0 or active >> (NODE_MAX + 1)):
+        if mode == USS and (not isinstance(active, int) or active < 0 or active >> NODE_MAX + 1):
             return status.ILLEGAL_ADDRESS
         if self._leaving is not None or (self.is_busy() and not self.bus.is_line_in_use()):
             return status.PORT_BUSY
@@ -342,7 +391,8 @@ class USS_CTRL:
         drive = self._drive
         rises = run and not self._run
         self._run = bool(run)
-        in_range = -SPEED_LIMIT <= speed <= SPEED_LIMIT  # a NaN is not
+        is_number = isinstance(speed, (int, float))
+        in_range = is_number and -SPEED_LIMIT <= speed <= SPEED_LIMIT  # a NaN is not
         run_allowed = run and off == pzd.OFF1
         if off != drive.off or (drive.wanted and not run_allowed):
             drive.stop(off)

@@ -10,6 +10,8 @@ the port that they share; one of them at a time is at work there.
 
 from uss import pkw, status
 
+FLOAT_MAX = 3.4028235e38  # the largest number of a REAL
+
 
 class Parameter:
     """What the blocks for parameters share; one of them at a time on a port.
@@ -112,7 +114,9 @@ class Parameter:
 
 
 def _is_parameter(number, index):
-    return number in range(pkw.NUMBER_MAX + 1) and index in range(pkw.INDEX_MAX + 1)
+    if not isinstance(number, int) or not isinstance(index, int):
+        return False
+    return 0 <= number <= pkw.NUMBER_MAX and 0 <= index <= pkw.INDEX_MAX
 
 
 class USS_RPM_W(Parameter):
@@ -172,6 +176,6 @@ class USS_WPM_R(USS_WPM_W):
     width = pkw.DOUBLE
 
     def _make_job(self, number, index, value, eeprom):
-        if value - value != 0:
+        if not -FLOAT_MAX <= value <= FLOAT_MAX:  # nor is a NaN
             raise ValueError("%r for a parameter" % (value,))
         return pkw.write_float(number, value, index, eeprom)

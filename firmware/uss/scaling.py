@@ -84,7 +84,9 @@ class Scale:
 
     def _needed(self, reference):
         if reference is None:
-            raise ValueError("reference or pole pairs of the drive are not known")
+            raise ValueError(
+                "reference or pole pairs of the drive are not known: add it with scale=Scale(...)"
+            )
         return reference
 
 
@@ -125,5 +127,5 @@ def pole_pairs(frequency_hertz, speed_rpm):
 
 def _limited(count):
     if not HSW_MIN <= count <= HSW_MAX + 1:  # also true of a NaN, which compares with nothing
-        raise ValueError("a setpoint of %r steps does not fit a word" % count)
+        raise ValueError("more than a telegram can carry: 200 % of the reference, or 327.67 Hz")
     return min(round(count), HSW_MAX) & 0xFFFF

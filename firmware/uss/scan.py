@@ -15,7 +15,8 @@ address. Whoever is silent costs a reply time-out each time; `longest_ms` says i
 
 from micropython import const
 
-from uss.master import LISTENING, PAUSE_LOOK_US
+from uss.errors import NoContact
+from uss.master import CLOSED, LISTENING, OFF, PAUSE_LOOK_US
 from uss.receiver import SILENT
 from uss.single import DONE, PENDING, Mirror
 from uss.timing import BAUD_RATES, FRAME_CHARACTERS, Timing, elapsed
@@ -76,7 +77,10 @@ class Scan:
         """Do what is next, which never takes long; True when all is asked.
 
         now: reading of the clock in microseconds. Nothing is asked as long as the bus listens.
+        NoContact: the bus is off, or closed.
         """
+        if self._bus.phase in (OFF, CLOSED) and not self.over:
+            raise NoContact("the bus is %s" % ("off" if self._bus.phase == OFF else "closed"))
         mirror = self._mirror
         if mirror is not None:
             if mirror.state == PENDING:

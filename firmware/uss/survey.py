@@ -80,12 +80,11 @@ class Survey:
                     self._take()
                 self._stale = False
         elif drive.contact:
-            if self._is_in_a_hurry() or elapsed(now, self._read_at, self._mask) >= REREAD_US:
-                self._ask()
-        drive.want_turns(self.unchecked > 0)
-
-    def _is_in_a_hurry(self):
-        return self.unchecked > 0 or not self.complete
+            in_a_hurry = self.unchecked or not self.complete
+            if in_a_hurry or elapsed(now, self._read_at, self._mask) >= REREAD_US:
+                self._ask(drive.channel)
+        if self.unchecked or drive.asking:
+            drive.want_turns(self.unchecked > 0)
 
     def _forget(self):
         self.unchecked = 0
@@ -100,12 +99,12 @@ class Survey:
             self.values[row] = UNKNOWN
             self._words[2 * row] = UNKNOWN
 
-    def _ask(self):
-        if self.drive.channel.is_full():
+    def _ask(self, channel):
+        if channel.is_full():
             return  # others ask as well: later
         number, index, _ = profiles.SURVEY[self._row]
         self._job.aim(pkw.READ, number, index)
-        self.drive.ask(self._job)
+        channel.ask(self._job)
         self._asked = True
 
     def _take(self):

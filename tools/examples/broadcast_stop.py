@@ -11,6 +11,8 @@ def main(board):
     with Master(board.make_link(19200), baud=19200) as bus:
         drives = [bus.add(address, MM420) for address in (1, 2, 3)]
         for drive in drives:
+            if drive.fault:
+                drive.acknowledge()
             drive.run(20.0)
         bus.wait(10)
         print([drive.state for drive in drives])

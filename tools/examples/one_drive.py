@@ -10,6 +10,8 @@ from uss.families import MM420
 def main(board):
     with Master(board.make_link(19200), baud=19200) as bus:
         drive = bus.add(1, MM420)
+        if drive.fault:  # F0072: it had no telegrams since the last program ended
+            drive.acknowledge()
         drive.run(25.0)
         for _ in range(10):
             bus.wait(1)

@@ -21,6 +21,8 @@ def main(board):
                 pump.stop()
             elif keys & start and not pump.is_on():
                 try:
+                    if pump.fault:
+                        pump.acknowledge()
                     pump.run(40.0)
                 except UssError as reason:
                     print(reason)

@@ -1,22 +1,29 @@
-"""Runs an example on the virtual board, in virtual time: ./tools/example one_drive
+"""Runs a program on the virtual board, in virtual time: ./tools/example one_drive
 
     stage = Stage()                         # drives 1, 2 and 3 on a line at 19200 baud
     stage.at(2.0, stage.tap, "START")
     stage.play(one_drive.main)
     stage.check()
 
-Exit status: 0; 1 when a rule of the line was broken, or with the exception that ended the example;
+A file of one's own finds a module `board`, as on a chip: ./tools/example mine.py --drives 1,2=g110
+
+Exit status: 0; 1 when a rule of the line was broken, or with the exception that ended the program;
 2 when there is no such example.
 """
 
 import os
 import sys
 
+from boards.sim import g110, g120, generic, mm3, mm420, mm440, v20
 from boards.sim.clock import Event
 from boards.sim.world import World
 
 FOLDER = "tools/examples"
 TAP_S = 0.1
+FAMILIES = {
+    "g110": g110, "g120": g120, "generic": generic, "mm3": mm3, "mm420": mm420, "mm440": mm440,
+    "v20": v20,
+}  # fmt: skip
 
 # What a person does meanwhile: seconds, key.
 TAPS = ((2.0, "START"), (12.0, "STOP"))
@@ -64,16 +71,29 @@ def names():
     return sorted(name[:-3] for name in files if name != "simulation.py")
 
 
-def run(name):
-    """Play an example as somebody would who tries it out; answer the exit status."""
-    if name not in names():
-        print("usage: ./tools/example " + "|".join(names()))
+def kinds(text):
+    """What drives "1,2=g110" are: address -> kind, as of World. ValueError: none like that."""
+    found = {}
+    for entry in text.split(","):
+        address, _, family = entry.partition("=")
+        family = family.lower() or "mm420"
+        if family not in FAMILIES:
+            raise ValueError("no drive %r: %s" % (family, " ".join(sorted(FAMILIES))))
+        found[int(address)] = {"family": FAMILIES[family]}
+    return found
+
+
+def run(name, drives="1,2,3"):
+    """Play an example, or a file, as somebody would who tries it out; answer the exit status."""
+    if name not in names() and not name.endswith(".py"):
+        print("usage: ./tools/example %s|FILE.py [--drives 1,2=g110]" % "|".join(names()))
         return 2
-    stage = Stage()
+    found = kinds(drives)
+    stage = Stage(tuple(sorted(found)), kinds=found)
     for seconds, key in TAPS:
         stage.at(seconds, stage.tap, key)
     stage.at(CTRL_C_S, stage.interrupt)
-    stage.play(__import__(name).main)
+    stage.play(_own(name) if name.endswith(".py") else __import__(name).main)
     seconds = stage.clock.now_us / 1_000_000
     print("\nThe simulated drives %.1f s after power-on:" % seconds)
     for address in sorted(stage.drives):
@@ -84,5 +104,17 @@ def run(name):
     return 1 if complaints else 0
 
 
+def _own(path):
+    """main(board) of a file of one's own."""
+
+    def main(board):
+        sys.modules["board"] = board
+        with open(path) as file:
+            exec(compile(file.read(), path, "exec"), {"__name__": "__main__"})
+
+    return main
+
+
 if __name__ == "__main__":
-    sys.exit(run(sys.argv[1] if len(sys.argv) > 1 else ""))
+    words = [word for word in sys.argv[1:] if word != "--drives"]
+    sys.exit(run(*(words or [""])))

@@ -12,12 +12,14 @@ def main(board):
         winder, feed, fan = bus.add(1, MM420), bus.add(2, MM420), bus.add(3, MM420)
         bus.arrange((winder, feed, winder, fan))
         for drive in bus.drives:
+            if drive.fault:
+                drive.acknowledge()
             drive.run(0.0)
         winder.run(30.0)
         for _ in range(100):
             bus.wait(0.1)
-            feed.run(winder.hertz / 2)
-            fan.run(winder.hertz / 10)
+            feed.set(winder.hertz / 2)
+            fan.set(winder.hertz / 10)
         for drive in bus.drives:
             answers = drive.counters[0]
             print("drive %d: %.2f Hz, %d answers" % (drive.address, drive.hertz, answers))
