@@ -16,8 +16,8 @@ from uss.pzd import ZSW_RUNNING
 
 BACK_OFF_US = const(1_600_000)  # a drive that backs off is asked again after so long
 PROBE_SHARE = const(22)  # or after so many times what that costs, so that it takes below 5 %
-LOOK_US = const(8_000)  # how often drives are looked after
-SWEEP_US = const(100_000)  # in which each of them has been
+LOOK_US = const(4_000)  # how often drives are looked after
+SWEEP_US = const(130_000)  # in which each of them has been
 MEASURE_US = const(250_000)  # how often the duration of a round is measured
 NEAR = const(2)  # a gap of less than so many rounds is looked after
 MEASURED_MAX_US = const(4_000_000)  # so that 255 times it fits a small integer
@@ -148,7 +148,7 @@ class Care:
         self._least_us = least_us if least_us < LONGEST_US else 0
 
     def _measure(self, now):
-        """How long a round takes, by the telegrams since last time, and which gaps that presses."""
+        """How long a round takes, by the telegrams since last time; which gaps that presses."""
         turns = self._turns
         passed_us = min((now - self._measured_at) & self._mask, MEASURED_MAX_US)
         exchanges = (turns.exchanges - self._exchanges) & 0xFFFF
@@ -182,4 +182,4 @@ class Care:
 
 def _share(count, passed_us, sweep_us):
     """How many of `count` are to be looked after now, so that all have been after `sweep_us`."""
-    return min(count, 1 + count * min(passed_us, sweep_us) // max(sweep_us, 1))
+    return min(count, -(-count * min(passed_us, sweep_us) // max(sweep_us, 1)))
