@@ -17,9 +17,10 @@ Not a clock and not a driver: the time is an argument, and the link is a duck ty
 
 from micropython import const
 
+# From the bottom of the house up: an import inside an import inside an import takes stack.
 from uss import pkw, telegram
-from uss.care import LOOK_US
 from uss.drive import ANY, SILENT_MAX
+from uss.care import LOOK_US
 from uss.fast import frame
 from uss.receiver import COMING, SILENT, WAITING, Receiver
 from uss.timing import elapsed

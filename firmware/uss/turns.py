@@ -16,8 +16,8 @@ off, and whose turns are too far apart, is the subject of `care`. Sends nothing:
 from micropython import const
 
 from uss import pkw, telegram
-from uss.care import Care
 from uss.drive import ANY, ATTENTION, COMMANDS, COUNTERS, NODES, OVERDUE, WANTS, Drive
+from uss.care import Care
 from uss.fast import greatest
 from uss.layout import STANDARD
 
