@@ -52,6 +52,8 @@ class App:
         self._ticks_ms = board.clock.ticks_ms
         self._refresh = self.bus.refresh
         self._tend = self.pacer.tend
+        self._polled = board.timer is None  # then each step drives the bus
+        self._tends = False  # the last step looked after the pacer; else it refreshed the bus
         self._progress = 0  # of the bus as last seen, and when it moved
         self._progress_at_ms = 0
         self._fed_at_ms = 0
@@ -70,8 +72,11 @@ class App:
         keypad = board.keypad
         now_ms = self._ticks_ms()
         now_us = self._ticks_us()
-        self._refresh(now_us)
-        self._tend()
+        self._tends = tends = not self._tends
+        if tends or self._polled:
+            self._tend()
+        if not tends:
+            self._refresh(now_us)
         if self.panel.step(keypad.read(), now_ms, now_us, keypad.unclear):
             board.display.show(self.panel.screen.picture)
         if (now_ms - self._fed_at_ms) & self._mask >= FEED_MS:
