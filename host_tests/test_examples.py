@@ -114,6 +114,23 @@ def test_own_program_says_why_the_pump_does_not_run():
     world.check()
 
 
+def test_own_program_hears_stop_while_a_start_waits_for_the_drive():
+    world = stage(parameters={2014: 2_000, 10: 1})  # commissioning: the motor does not run
+    began_us = world.clock.now_us
+    world.at(2, world.tap, "START")
+    world.at(4, world.tap, "STOP")
+    world.at(4.5, world.interrupt)
+    world.play(own_program.main)
+    sent = [
+        (at_us - began_us, characters[12])
+        for at_us, from_panel, characters in world.wire.log.last(1000)
+        if from_panel and characters[2] == 1
+    ]
+    assert {low for at_us, low in sent if 3_000_000 < at_us < 4_000_000} == {0x7F}
+    assert {low for at_us, low in sent if at_us > 4_050_000} == {0x7E}
+    world.check()
+
+
 def test_broadcast_stops_all_three_at_once():
     world = stage()
     world.play(broadcast_stop.main)

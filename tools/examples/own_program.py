@@ -11,22 +11,25 @@ from uss.families import MM420
 
 def main(board):
     start, stop = (1 << board.keypad.names.index(name) for name in ("START", "STOP"))
-    with Master(board.make_link(19200), idle=board.watchdog.feed) as bus:
+
+    def attend():  # also while START waits for the drive
+        board.watchdog.feed()
+        if board.keypad.read() & stop:
+            bus.stop_all()
+
+    with Master(board.make_link(19200), idle=attend) as bus:
         bus.pace(Pacer, board.timer)
         pump = bus.add(1, MM420)
         while True:
             bus.step()
-            keys = board.keypad.read()
-            if keys & stop:
-                pump.stop()
-            elif keys & start and not pump.is_on():
+            attend()
+            if board.keypad.read() & (start | stop) == start and not pump.is_on():
                 try:
                     if pump.fault:
                         pump.acknowledge()
                     pump.run(40.0)
                 except UssError as reason:
                     print(reason)
-            board.watchdog.feed()
             board.idle()
 
 
