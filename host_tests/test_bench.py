@@ -5,6 +5,7 @@ What it measures is measured on the emulated chip, by tools/bench itself: no tes
 
 import ast
 import importlib.util
+import json
 import subprocess
 import sys
 from pathlib import Path
@@ -88,6 +89,16 @@ def test_every_task_is_a_measurement_that_exists_and_has_a_row():
         assert arguments[task.name] == len(task.command), task  # quick stands for the name
         assert [row for row in rows.ROWS if row.task == task], task
     assert {row.task for row in rows.ROWS} == set(rows.TASKS)
+
+
+def test_what_is_measured_on_the_host_alone_can_be_measured():
+    """A quick look: the figures are there. How large they are is none of a test's business."""
+    interpreter = TOP / "build" / "unix64" / "micropython"
+    measure = [interpreter, "-X", "heapsize=32M", BENCH / "measurements.py", "quick", "codec"]
+    done = subprocess.run(measure, cwd=TOP, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stderr
+    figures = json.loads(done.stdout)
+    assert figures["receiver"] > 0 and figures["builder"] > 0
 
 
 def line_figures(**changed):

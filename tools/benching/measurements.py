@@ -444,12 +444,16 @@ class Reply:
 
 
 def awaiting(characters):
+    from uss import telegram
     from uss.drive import Drive
     from uss.receiver import Receiver
     from uss.timing import Timing
 
     mask = 0x3FFFFFFF
-    return Receiver(Timing(19200), mask), Reply(characters), Drive(1, mask), 1_000
+    drive = Drive(1, mask)
+    drive.fill(0)  # its request, which a reply is held against
+    telegram.seal(drive.request, 1, drive.size - 4)
+    return Receiver(Timing(19200), mask), Reply(characters), drive, 1_000
 
 
 def rate_of(function, rounds):
