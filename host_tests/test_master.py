@@ -3,7 +3,9 @@
 from master_bench import MASK, REPLY_DELAY_US, TIMING, Bus, parameters
 from uss import pkw, pzd
 from uss.drive import Drive
-from uss.master import CLOSED, DEAD_MAN_US, LISTENING, LOST_US
+from uss.layout import VARIABLE, Layout
+from uss.master import CLOSED, DEAD_MAN_US, LISTENING, LOST_US, Master
+from uss.timing import BAUD_RATES, Timing
 
 
 # --- who talks when -----------------------------------------------------------------------------
@@ -739,3 +741,18 @@ def test_a_list_that_is_emptied_ends_the_telegrams_and_nothing_else():
     bus.master.add(1)
     bus.run(500_000)
     assert len(bus.sent) > sent + 5
+
+
+def test_the_patience_with_a_bus_that_works_outlasts_its_longest_exchange():
+    """Or, at 300 baud, the watchdog would not be fed while a drive is silent."""
+    for baud in BAUD_RATES:
+        line = Timing(baud)
+        for layout, reply_count in ((Layout(4, 2), 12), (Layout(VARIABLE, 2), 252)):
+            master = Master(Bus(), line, MASK)
+            master.add(1, layout)
+            longest_us = line.telegram_us(layout.net_max) + line.reply_timeout_us
+            longest_us += line.residual_us(reply_count)
+            assert master.patience_us > longest_us, (baud, layout)
+            least_us = master.patience_us
+            master.add(2)
+            assert master.patience_us >= least_us

@@ -109,6 +109,10 @@ class Master(Turns):
         """Whether an exchange with this drive has begun and not ended."""
         return self._drive is drive and self.phase in (SENDING, AWAITING)
 
+    def _set_list(self, entries):
+        Turns._set_list(self, entries)
+        self.patience_us = BABBLE_US + STUCK_US + self.longest_exchange_us()
+
     def is_line_in_use(self):
         """Whether another master was heard and is listened to instead of talking."""
         return self.phase == LISTENING and self.foreign > 0
