@@ -23,10 +23,10 @@ from panel.panel import Panel
 from panel.screen import GLYPHS
 from settings import load, save
 
-CLOSE_MS = const(1_000)  # for the drives to answer their OFF1, and a round of the bus on top
-FAREWELL_STEPS = const(100)  # for the display to show that nothing is controlled any more
-SAVE_AGAIN_MS = const(10_000)  # after the store failed
-FEED_MS = const(100)  # of the watchdog, which bites after 2 s
+_CLOSE_MS = const(1_000)  # for the drives to answer their OFF1, and a round of the bus on top
+_FAREWELL_STEPS = const(100)  # for the display to show that nothing is controlled any more
+_SAVE_AGAIN_MS = const(10_000)  # after the store failed
+_FEED_MS = const(100)  # of the watchdog, which bites after 2 s
 
 
 class App:
@@ -62,7 +62,7 @@ class App:
 
     def start(self):
         self._progress_at_ms = now_ms = self._ticks_ms()
-        self._fed_at_ms = (now_ms - FEED_MS) & self._mask
+        self._fed_at_ms = (now_ms - _FEED_MS) & self._mask
         self.bus.refresh(self._ticks_us())
         self.pacer.start()
 
@@ -79,7 +79,7 @@ class App:
             self._refresh(now_us)
         if self.panel.step(keypad.read(), now_ms, now_us, keypad.unclear):
             board.display.show(self.panel.screen.picture)
-        if (now_ms - self._fed_at_ms) & self._mask >= FEED_MS:
+        if (now_ms - self._fed_at_ms) & self._mask >= _FEED_MS:
             self._feed(now_ms)
         if self.settings.dirty:
             self._save_if_quiet(now_ms)
@@ -99,7 +99,7 @@ class App:
     def _just_failed_to_save(self, now_ms):
         if not self._save_failed:
             return False
-        return elapsed(now_ms, self._saved_at_ms, self._mask) < SAVE_AGAIN_MS
+        return elapsed(now_ms, self._saved_at_ms, self._mask) < _SAVE_AGAIN_MS
 
     def _save(self, now_ms):
         self._saved_at_ms = now_ms
@@ -139,7 +139,7 @@ class App:
         for row in range(len(texts.FAREWELL)):
             screen.put(row, 0, texts.ROW_WIDTH, texts.FAREWELL[row])
         try:
-            for _ in range(FAREWELL_STEPS):
+            for _ in range(_FAREWELL_STEPS):
                 if self.board.display.show(screen.picture):
                     return
                 self.board.idle()
@@ -150,7 +150,7 @@ class App:
         """Let the engine work until `condition()` is true, or as long as may be expected."""
         clock = self.board.clock
         began_ms = clock.ticks_ms()
-        patience_ms = CLOSE_MS + self.bus.longest_cycle_us() // 1000
+        patience_ms = _CLOSE_MS + self.bus.longest_cycle_us() // 1000
         while True:
             try:
                 waited_ms = elapsed(clock.ticks_ms(), began_ms, self._mask)

@@ -21,7 +21,7 @@ CHOICES = (  # name, default, what it may be, meaning
     ("second_stop", "OFF3", ("OFF3", "OFF2", "none"), "what holding STOP for 1.5 s sends"),
 )
 NUMBERS = (  # name, default, lowest, highest, meaning
-    ("reply_timeout_ms", 20, 20, 60, "wait for a reply to begin; it delays a STOP as well"),
+    ("reply_timeout_ms", 20, 20, 500, "wait for a reply to begin; it delays a STOP as well"),
     ("lost_ms", 1000, 100, 5000, "without a valid reply for so long a drive counts as lost"),
     ("setpoint_centihertz", 1000, 0, 65000, "setpoint after power-up, 0.01 Hz"),
     ("setpoint_step_centihertz", 10, 1, 1000, "step of UP and DOWN, 0.01 Hz"),

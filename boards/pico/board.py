@@ -18,8 +18,6 @@ from machine import I2C, UART, WDT, Pin, Timer
 
 from hal.backpack import Backpack, answers
 from hal.keypad import Keypad
-from hal.rp2_i2c import PostedI2C
-from hal.rp2_lcd import PioHd44780
 from hal.rp2_link import Rp2Link
 from hal.store import FileStore
 
@@ -156,15 +154,20 @@ def make_i2c():
 
 
 def make_posted_i2c():
+    from hal.rp2_i2c import PostedI2C
+
     return PostedI2C(make_i2c(), BACKPACK_REGISTERS, machine.mem32, clock)
 
 
 def make_display():
-    """The backpack that answers; the display on four data lines when none does."""
+    """The backpack that answers; the display on four data lines when none does. The driver that is
+    not needed takes no memory."""
     i2c = make_i2c()
     for address in BACKPACK_ADDRESSES:
         if answers(i2c, address):
             return Backpack(make_posted_i2c, address, clock)
+    from hal.rp2_lcd import PioHd44780
+
     return PioHd44780(LCD_STATE_MACHINE, Pin(LCD_REGISTER_SELECT), Pin(LCD_ENABLE), clock)
 
 

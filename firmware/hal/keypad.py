@@ -14,11 +14,11 @@ Nothing is debounced here: that is `panel.keys`.
 
 from micropython import const
 
-KEYS_MAX = const(30)  # bits of a small integer that is not negative, on 32-bit ports
+_KEYS_MAX = const(30)  # bits of a small integer that is not negative, on 32-bit ports
 
 # A column rises through the chip's pull-up against its cable: 8 us with 80 kohm (RP2040 data
 # sheet, pads) and 100 pF, to 2.0 of 3.3 V. Twice that, and a little.
-SETTLE_US = const(20)
+_SETTLE_US = const(20)
 
 
 class Keypad:
@@ -80,8 +80,8 @@ def check_names(names, own, closed):
         raise ValueError("STOP has a pin of its own")
     if len(set(names)) < len(names):
         raise ValueError("a key stands there twice: %s" % " ".join(names))
-    if len(names) > KEYS_MAX:
-        raise ValueError("%d keys: %d at the most" % (len(names), KEYS_MAX))
+    if len(names) > _KEYS_MAX:
+        raise ValueError("%d keys: %d at the most" % (len(names), _KEYS_MAX))
     for name in closed:
         if name not in own:
             raise ValueError("%s is normally closed and has no pin of its own" % name)
@@ -132,7 +132,7 @@ class Matrix:
         """Whether no key is down, as it mostly is: one look at all rows together tells."""
         for put in self._rows:
             put(0)
-        self._sleep_us(SETTLE_US)
+        self._sleep_us(_SETTLE_US)
         low = self._low_columns()
         for put in self._rows:
             put(1)
@@ -140,12 +140,12 @@ class Matrix:
 
     def _scan(self):
         """Look at every row; answer the columns that are shorted."""
-        self._sleep_us(SETTLE_US)
+        self._sleep_us(_SETTLE_US)
         shorted = self._low_columns()
         row = 0
         for put in self._rows:
             put(0)
-            self._sleep_us(SETTLE_US)
+            self._sleep_us(_SETTLE_US)
             self._seen[row] = self._low_columns() & ~shorted
             put(1)
             row += 1

@@ -14,9 +14,9 @@ anew.
 
 from micropython import const
 
-RETRY_US = const(1_000)  # after an exception in the engine
+_RETRY_US = const(1_000)  # after an exception in the engine
 WAKE_US = const(1_000)
-PERIOD_MIN_US = const(20)  # or the timer would fire before it is armed
+_PERIOD_MIN_US = const(20)  # or the timer would fire before it is armed
 OVERDUE_US = const(50_000)  # a timer that is so late is not waited for any more
 ROUNDS_MAX = const(4)  # entries in a row for events that came meanwhile; the timer takes the rest
 
@@ -120,7 +120,7 @@ class Pacer:
         try:
             now = self._ticks_us()
             self._engine.recover(now)
-            self._plan(RETRY_US, now)
+            self._plan(_RETRY_US, now)
         except Exception as failure:  # nothing works: the main loop tries again, or the watchdog
             self.failure = failure
 
@@ -144,7 +144,7 @@ class Pacer:
         self._armed_at = self._ticks_us()
         timer.init(
             mode=timer.ONE_SHOT,
-            period=max(after_us, PERIOD_MIN_US),
+            period=max(after_us, _PERIOD_MIN_US),
             tick_hz=1_000_000,
             callback=self._on_timer,
         )

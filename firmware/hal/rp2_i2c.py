@@ -12,17 +12,17 @@ machine.I2C is to be made anew, and this with it. Runs on the chip alone.
 
 from micropython import const
 
-EIO = const(5)
-ETIMEDOUT = const(110)
-FIFO_LENGTH = const(16)
-WAIT_MAX_US = const(2_000)  # for room in the FIFO: it empties within 1.5 ms
+_EIO = const(5)
+_ETIMEDOUT = const(110)
+_FIFO_LENGTH = const(16)
+_WAIT_MAX_US = const(2_000)  # for room in the FIFO: it empties within 1.5 ms
 
 # Registers of the DW_apb_i2c (RP2040 data sheet, 4.3.17), and what is used of them.
-DATA_CMD = const(0x10)
-STOP = const(0x200)
-RAW_INTR_STAT = const(0x34)
-TX_ABRT = const(0x40)
-TXFLR = const(0x74)  # how many bytes the FIFO holds
+_DATA_CMD = const(0x10)
+_STOP = const(0x200)
+_RAW_INTR_STAT = const(0x34)
+_TX_ABRT = const(0x40)
+_TXFLR = const(0x74)  # how many bytes the FIFO holds
 
 
 class PostedI2C:
@@ -31,31 +31,31 @@ class PostedI2C:
     def __init__(self, i2c, base, memory, clock):
         self._i2c = i2c
         self._memory = memory
-        self._data_command = base + DATA_CMD
-        self._status = base + RAW_INTR_STAT
-        self._level = base + TXFLR
+        self._data_command = base + _DATA_CMD
+        self._status = base + _RAW_INTR_STAT
+        self._level = base + _TXFLR
         self._ticks_us = clock.ticks_us
         self._mask = clock.ticks_mask
         self._is_first = True
 
     def writeto(self, address, buffer):
-        """Send at most FIFO_LENGTH bytes. OSError: nobody acknowledges, or the bus is stuck."""
+        """Send at most _FIFO_LENGTH bytes. OSError: nobody acknowledges, or the bus is stuck."""
         if self._is_first:
             self._i2c.writeto(address, buffer)
             self._is_first = False
             return
         memory, register = self._memory, self._data_command
-        if memory[self._status] & TX_ABRT:
-            raise OSError(EIO)
+        if memory[self._status] & _TX_ABRT:
+            raise OSError(_EIO)
         last = len(buffer) - 1
-        if memory[self._level] + last >= FIFO_LENGTH:
+        if memory[self._level] + last >= _FIFO_LENGTH:
             self._wait_for(last)
         for index in range(last):
             memory[register] = buffer[index]
-        memory[register] = buffer[last] | STOP
+        memory[register] = buffer[last] | _STOP
 
     def _wait_for(self, last):
         began_at = self._ticks_us()
-        while self._memory[self._level] + last >= FIFO_LENGTH:
-            if (self._ticks_us() - began_at) & self._mask > WAIT_MAX_US:
-                raise OSError(ETIMEDOUT)
+        while self._memory[self._level] + last >= _FIFO_LENGTH:
+            if (self._ticks_us() - began_at) & self._mask > _WAIT_MAX_US:
+                raise OSError(_ETIMEDOUT)

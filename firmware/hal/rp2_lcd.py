@@ -14,12 +14,12 @@ from micropython import const
 
 from hal.hd44780 import CharacterDisplay
 
-CYCLES_HZ = const(1_000_000)  # of the state machine: its waits are microseconds
+_CYCLES_HZ = const(1_000_000)  # of the state machine: its waits are microseconds
 
 # The wait behind a byte, and behind a nibble while the controller is set up: `hal.hd44780`.
-BYTE_US = const(61)
-NIBBLE_US = const(100)
-BACKLOG_US = const(700)  # what a full FIFO takes: a wait for a command may begin so late
+_BYTE_US = const(61)
+_NIBBLE_US = const(100)
+_BACKLOG_US = const(700)  # what a full FIFO takes: a wait for a command may begin so late
 
 
 @rp2.asm_pio(
@@ -54,7 +54,7 @@ class PioHd44780(CharacterDisplay):
         state_machine = rp2.StateMachine(
             state_machine_number,
             nibbles,
-            freq=CYCLES_HZ,
+            freq=_CYCLES_HZ,
             out_base=register_select,
             sideset_base=enable,
         )
@@ -65,16 +65,16 @@ class PioHd44780(CharacterDisplay):
     def _byte(self, register, code):
         high = register | code >> 2 & 0x3C
         low = register | code << 2 & 0x3C
-        self._put(1 | high << 1 | low << 7 | BYTE_US << 13)
+        self._put(1 | high << 1 | low << 7 | _BYTE_US << 13)
 
     def _nibble(self, register, code):
-        self._put((register | code >> 2 & 0x3C) << 1 | NIBBLE_US << 7)
+        self._put((register | code >> 2 & 0x3C) << 1 | _NIBBLE_US << 7)
 
     def _pause(self, us):
         """The state machine has done it by then."""
 
     def _come_back_after(self, wait_us):
-        CharacterDisplay._come_back_after(self, wait_us + BACKLOG_US)
+        CharacterDisplay._come_back_after(self, wait_us + _BACKLOG_US)
 
     def _end_piece(self):
         return True

@@ -19,14 +19,14 @@ import micropython
 import rp2
 from micropython import const
 
-IDLE_BITS = const(32)  # silence after which the UART reports the end of a burst (PL011)
-CYCLES_PER_BIT = const(8)  # of the state machine; its divider allows 239 baud ... 15 Mbaud
-LEAD_CYCLES = const(4)  # from the DMA's first word to the first start bit, at the most
-BITS_PER_CHARACTER = const(11)
-BITS_BEFORE_STOP = const(10)
-SIZE_MAX = const(256)
-COMING = const(-1)  # what `receive` says of characters whose end will be announced
-WORDS = const(1)  # code of the DMA for transfers of 16 bits
+_IDLE_BITS = const(32)  # silence after which the UART reports the end of a burst (PL011)
+_CYCLES_PER_BIT = const(8)  # of the state machine; its divider allows 239 baud ... 15 Mbaud
+_LEAD_CYCLES = const(4)  # from the DMA's first word to the first start bit, at the most
+_BITS_PER_CHARACTER = const(11)
+_BITS_BEFORE_STOP = const(10)
+_SIZE_MAX = const(256)
+_COMING = const(-1)  # what `receive` says of characters whose end will be announced
+_WORDS = const(1)  # code of the DMA for transfers of 16 bits
 
 
 @rp2.asm_pio(
@@ -45,7 +45,7 @@ def transmitter():
     out(y, 16).side(1)
     label("character")
     pull(block).side(1)
-    set(x, BITS_BEFORE_STOP - 1).side(1)
+    set(x, _BITS_BEFORE_STOP - 1).side(1)
     label("bit")
     out(pins, 1).side(1)[6]
     jmp(x_dec, "bit").side(1)
@@ -108,7 +108,7 @@ class Rp2Link:
         self.clock = clock
         self.received_at = 0
         self.sent_at = 0
-        self._idle_us = IDLE_BITS * 1_000_000 // baud
+        self._idle_us = _IDLE_BITS * 1_000_000 // baud
         self.resolution_us = self._idle_us
         self._uart = uart
         self._dma = dma
@@ -117,21 +117,21 @@ class Rp2Link:
         self._is_driving = driver_enable.value
         self._ticks_us = clock.ticks_us
         self._mask = clock.ticks_mask
-        self._frequency = CYCLES_PER_BIT * baud
+        self._frequency = _CYCLES_PER_BIT * baud
         # Both rounded up. 64 characters, so that the product of `send` is exact to a microsecond
         # or two and fits a small integer at every rate.
-        self._lead_us = -(-LEAD_CYCLES * 1_000_000 // self._frequency) + 1
-        self._sixty_four_us = -(-64 * BITS_PER_CHARACTER * 1_000_000 // baud)
+        self._lead_us = -(-_LEAD_CYCLES * 1_000_000 // self._frequency) + 1
+        self._sixty_four_us = -(-64 * _BITS_PER_CHARACTER * 1_000_000 // baud)
         self._started_at = 0
         self._duration_us = 0
         self._burst_ended = False
         self._burst_ended_at = 0
-        self._scratch = bytearray(SIZE_MAX)
-        self._words = array("H", bytes(2 * (SIZE_MAX + 1)))
+        self._scratch = bytearray(_SIZE_MAX)
+        self._words = array("H", bytes(2 * (_SIZE_MAX + 1)))
         self._state_machine = rp2.StateMachine(state_machine)
         self._set_up()
         request = (state_machine >> 2) * 8 + (state_machine & 3)  # "its FIFO has room"
-        control = dma.pack_ctrl(size=WORDS, inc_read=True, inc_write=False, treq_sel=request)
+        control = dma.pack_ctrl(size=_WORDS, inc_read=True, inc_write=False, treq_sel=request)
         dma.config(read=self._words, write=self._state_machine, count=1, ctrl=control)
         self._channel = dma.registers
         uart.irq(handler=self._on_idle, trigger=uart.IRQ_RXIDLE, hard=True)
@@ -159,13 +159,13 @@ class Rp2Link:
     def receive(self, buffer, at):
         uart = self._uart
         if not self._burst_ended and _holds_characters():
-            return COMING  # to take them now would use up the interrupt that announces their end
+            return _COMING  # to take them now would use up the interrupt that announces their end
         count = uart.any()
         if not count:
             self._burst_ended = False
             return 0
         if at:
-            count = min(count, len(buffer) - at, SIZE_MAX)
+            count = min(count, len(buffer) - at, _SIZE_MAX)
             if count:
                 uart.readinto(self._scratch, count)
                 _copy(self._scratch, buffer, at, count)

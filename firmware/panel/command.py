@@ -13,7 +13,7 @@ from panel import permits, texts
 from uss import profiles, pzd
 from uss.timing import elapsed
 
-START_US = const(5_000_000)  # a drive that does not run by then is told to stop again
+_START_US = const(5_000_000)  # a drive that does not run by then is told to stop again
 
 
 class Command:
@@ -80,6 +80,6 @@ class Command:
         if not self._ran:
             if self._drive.state() == pzd.RUNNING:
                 self._ran = True
-            elif elapsed(now, self._since, self._mask) >= START_US:
+            elif elapsed(now, self._since, self._mask) >= _START_US:
                 return texts.DID_NOT_START
         return None

@@ -20,9 +20,10 @@ from panel.fault import Fault
 from panel.setpoint import Setpoint
 from panel.stop_watch import StopWatch
 from uss import pzd
+from uss.survey import REREAD_US
 
-UNKNOWN = const(-1)  # no status word
-SILENT_MAX = const(3)  # telegrams without an answer after which the speed is not known any more
+_UNKNOWN = const(-1)  # no status word
+_SILENT_MAX = const(3)  # telegrams without an answer after which the speed is not known any more
 
 # settings.second_stop: what a held STOP sends.
 SECOND_STOPS = {"OFF3": pzd.OFF3, "OFF2": pzd.OFF2, "none": 0}
@@ -61,7 +62,7 @@ class Control:
         self._settings = settings
         self._now = 0
         self._contact = False  # as last seen
-        self._quiet_zsw = UNKNOWN  # drive.zsw when there was nothing to watch
+        self._quiet_zsw = _UNKNOWN  # drive.zsw when there was nothing to watch
         self._jogged = False  # what turns, or ramps down, is a jog of this panel
 
     # --- what an operator does ------------------------------------------------------------------
@@ -149,7 +150,7 @@ class Control:
     def actual_centihertz(self):
         """The actual frequency with its sign, or None while it cannot be told."""
         drive = self.drive
-        if not drive.contact or drive.silent >= SILENT_MAX or self.survey.scaling is None:
+        if not drive.contact or drive.silent >= _SILENT_MAX or self.survey.scaling is None:
             return None
         return self.survey.scaling.centihertz(drive.hiw)
 
@@ -192,16 +193,16 @@ class Control:
 
     # --- what goes on ---------------------------------------------------------------------------
 
-    def ask(self, now):
+    def ask(self, now, reread_us=REREAD_US):
         """Learn the settings of the drive, and keep the setpoint within them.
 
         Answers whether there was news: then it took long, and the step is for nothing else.
         """
-        self.survey.step(now)
+        self.survey.step(now, reread_us)
         if self.setpoint.step():
             return True
         if self.checking:
-            self.survey.step(now)  # somebody waits: what was just answered is not all
+            self.survey.step(now, reread_us)  # somebody waits: what was just answered is not all
         return False
 
     def watch(self, now):
@@ -230,14 +231,14 @@ class Control:
             or self.stop_watch.active
             or drive.off != pzd.OFF1
         )
-        self._quiet_zsw = UNKNOWN if is_busy else zsw
+        self._quiet_zsw = _UNKNOWN if is_busy else zsw
 
     def _stop(self, off):
         self.drive.stop(off)
         self.jogging = 0
         self.question = False
         self.checking = False
-        self._quiet_zsw = UNKNOWN
+        self._quiet_zsw = _UNKNOWN
         self.survey.drop_recheck()
         if not self.stop_watch.active:  # pressing again does not put the alarm off
             self.stop_watch.begin()
@@ -249,7 +250,7 @@ class Control:
         """A key was obeyed: what was said of the drive is over."""
         self.notice = None
         self.question = False
-        self._quiet_zsw = UNKNOWN
+        self._quiet_zsw = _UNKNOWN
         self._command.give(self._now)
 
     def _finish_check(self, now):

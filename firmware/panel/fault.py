@@ -12,8 +12,8 @@ from micropython import const
 from uss import pkw, profiles, pzd
 from uss.timing import elapsed
 
-SHOWN_US = const(1_000_000)  # a STOP in the moment of the trip must not wipe its number away
-AGAIN_US = const(500_000)  # between two questions
+_SHOWN_US = const(1_000_000)  # a STOP in the moment of the trip must not wipe its number away
+_AGAIN_US = const(500_000)  # between two questions
 
 
 class Fault:
@@ -29,7 +29,7 @@ class Fault:
         self.was_shown = False
         self._drive = drive
         self._mask = mask
-        self._job = pkw.read(profiles.FAULT_NUMBER)
+        self._job = None  # made with the first trip: most drives never have one
         self._asked = False
         self._asked_at = 0
         self._wait_us = 0  # between the last question and the next
@@ -50,7 +50,7 @@ class Fault:
             self._stale = self._asked
         if not self.seen:
             self._since = now
-        elif active and elapsed(now, self._since, self._mask) >= SHOWN_US:
+        elif active and elapsed(now, self._since, self._mask) >= _SHOWN_US:
             self.was_shown = True  # for good: the clock forgets how long ago that was
         if self._asked:
             self._take()
@@ -61,11 +61,12 @@ class Fault:
         waited_us = elapsed(now, self._asked_at, self._mask)
         if waited_us < self._wait_us or self._drive.channel.is_full():
             return
-        self._job.aim(pkw.READ, profiles.FAULT_NUMBER)
+        if self._job is None:
+            self._job = pkw.read(profiles.FAULT_NUMBER)
         self._drive.ask(self._job)
         self._asked = True
         self._asked_at = now
-        self._wait_us = AGAIN_US
+        self._wait_us = _AGAIN_US
 
     def _take(self):
         if self._job.state == pkw.PENDING:

@@ -4,7 +4,7 @@
     keys.update(keypad.read(), clock.ticks_ms())
     if keys.pressed & keys.bit("START"): ...
 
-A key counts once it has been the same for DEBOUNCE_MS; STOP goes down with the second reading, so
+A key counts once it has been the same for _DEBOUNCE_MS; STOP goes down with the second reading, so
 that neither a slow loop nor a chattering contact loses it. A key that is down when the panel
 starts is `down`, but not `pressed` before it was seen up: a START that is jammed or leant on
 starts nothing, while a STOP that is down, or whose wire is broken, is down from the beginning.
@@ -12,11 +12,9 @@ starts nothing, while a STOP that is down, or whose wire is broken, is down from
 
 from micropython import const
 
-from uss.timing import elapsed
-
-DEBOUNCE_MS = const(20)
-REPEAT_DELAY_MS = const(400)
-REPEAT_MS = const(120)
+_DEBOUNCE_MS = const(20)
+_REPEAT_DELAY_MS = const(400)
+_REPEAT_MS = const(120)
 
 # How a value moves while its key is held: repeats, then steps for each of them.
 PACES = ((16, 100), (8, 10), (0, 1))
@@ -62,9 +60,10 @@ class Keys:
     held: names of keys that matter as long as they are down, not only when they are pressed.
 
     After each `update`, as bits: `down`, the keys that are down; `pressed`, those that went down
-    just now; `repeated`, those held for another REPEAT_MS just now. `repeats`: how often the key
+    just now; `repeated`, those held for another _REPEAT_MS just now. `repeats`: how often the key
     that repeats has done so. Only the key pressed last repeats. `at_rest`: no key is down or has
     just been, and each has been seen up; as long as none is down, `update` has nothing to do.
+    `unsettled`: keys that moved lately or have not been seen up yet, as bits: then it takes long.
     """
 
     def __init__(self, names, mask, held=()):
@@ -85,6 +84,7 @@ class Keys:
         self._wait_ms = 0  # from then to the next repeat
         self._first = True
         self.at_rest = False
+        self.unsettled = self._all
 
     def bit(self, key):
         """The bit of a key by name; 0 when this board has no such key."""
@@ -118,36 +118,33 @@ class Keys:
                 self._changed_at[bit] = now_ms
         self.pressed = 0
         self.repeated = 0
-        changed = raw ^ self._raw
-        self._raw = raw
-        unsettled = changed | raw ^ self.down | self._all & ~self._released
-        if unsettled:
-            self._debounce(changed, unsettled, now_ms)
-        self._released &= ~unclear
+        if raw != self._raw or raw != were_down or self.unsettled or unclear:
+            changed = raw ^ self._raw
+            self._raw = raw
+            self.unsettled = unsettled = changed | raw ^ self.down | self._all & ~self._released
+            if unsettled:
+                self._debounce(changed, unsettled, now_ms)
+            self._released &= ~unclear
         if self._last and (now_ms - self._repeat_at) & self._mask >= self._wait_ms:
             self._repeat_at = now_ms
-            self._wait_ms = REPEAT_MS
+            self._wait_ms = _REPEAT_MS
             self.repeats += 1
             self.repeated = self._last
         seen = self.down | were_down
-        self.at_rest = not (seen or unsettled or unclear)
+        self.at_rest = not (seen or self.unsettled or unclear)
         return (seen & self._held | self.pressed | self.repeated) != 0
 
     def _debounce(self, changed, unsettled, now_ms):
         """unsettled: the keys, as bits, that moved just now or are not yet what they read."""
+        changed_at, raw = self._changed_at, self._raw
+        at_once = raw & self._eager  # what did not move just now is believed
         while unsettled:
             bit = unsettled & -unsettled  # the lowest of them
             unsettled ^= bit
             if changed & bit:
-                self._changed_at[bit] = now_ms
-            elif self._is_steady(bit, now_ms):
-                self._settle(bit, self._raw & bit, now_ms)
-
-    def _is_steady(self, bit, now_ms):
-        """Whether a key that did not move just now has been the same for long enough."""
-        if self._raw & bit & self._eager:
-            return True
-        return elapsed(now_ms, self._changed_at[bit], self._mask) >= DEBOUNCE_MS
+                changed_at[bit] = now_ms
+            elif at_once & bit or (now_ms - changed_at[bit]) & self._mask >= _DEBOUNCE_MS:
+                self._settle(bit, raw & bit, now_ms)
 
     def _settle(self, bit, is_down, now_ms):
         if not is_down:
@@ -160,6 +157,6 @@ class Keys:
             self.pressed |= bit
             self._last = bit
             self._repeat_at = now_ms
-            self._wait_ms = REPEAT_DELAY_MS
+            self._wait_ms = _REPEAT_DELAY_MS
             self.repeats = 0
         self.down |= bit

@@ -25,11 +25,12 @@ from panel.writer import Writer
 from uss import profiles
 from uss.timing import elapsed
 
-SPLASH_MS = const(800)
-DRAW_MS = const(50)
-MESSAGE_MS = const(3_000)
-READING_MS = const(1_000)  # so long a START does not answer a question: it may be a double tap
-LAST_TURN = const(7)
+_SPLASH_MS = const(800)
+_DRAW_MS = const(50)
+_MESSAGE_MS = const(3_000)
+_READING_MS = const(1_000)  # so long a START does not answer a question: it may be a double tap
+_LAST_TURN = const(7)
+_UNSEEN_US = const(5_000_000)  # of a drive that is not shown, a setting is read again so often
 
 # They act on every page that shows the drive they act on. STOP acts on every page.
 COMMAND_KEYS = (
@@ -80,6 +81,7 @@ class Panel:
         self._name_keys(keys)
         self._around = 0  # of the controls: the one besides the selected that was looked at last
         self._neighbour = None  # it was asked, and is still to be watched
+        self._put_off = 0  # looking at it
         self._at_rest = 0  # so many of them in a row were found at rest
         # What is not done at once takes turns, so that each step of the loop stays short.
         around = self._look_around if len(controls) > 1 else self._ask
@@ -122,13 +124,13 @@ class Panel:
             self.stop_key.stop_next()
             return False
         turn = self._turn
-        self._turn = turn + 1 & LAST_TURN
+        self._turn = turn + 1 & _LAST_TURN
         return self._turns[turn](now_ms, now_us)
 
     # --- for the pages --------------------------------------------------------------------------
 
     def say(self, text, now_ms):
-        """Show a row for MESSAGE_MS, unless something else is said or a key is pressed."""
+        """Show a row for _MESSAGE_MS, unless something else is said or a key is pressed."""
         self.message = text
         self._message_at = now_ms
 
@@ -186,10 +188,10 @@ class Panel:
         return False
 
     def _draw(self, now_ms, _now_us):
-        # In a slow loop a picture takes longer than DRAW_MS: it is drawn to its end all the same.
+        # In a slow loop a picture takes longer than _DRAW_MS: it is drawn to its end all the same.
         view, drawn_at = self._view, self._drawn_at
         if drawn_at is None or (
-            view.is_done() and elapsed(now_ms, drawn_at, self._mask) >= DRAW_MS
+            view.is_done() and elapsed(now_ms, drawn_at, self._mask) >= _DRAW_MS
         ):
             self._drawn_at = now_ms
             view.begin(self._over or self._page)
@@ -202,10 +204,13 @@ class Panel:
     def _look_around(self, _now_ms, now_us):
         """The next of the drives that are not shown. It has nothing to say and nothing to ask:
         START has to be pressed anew, with that drive in sight."""
+        self._put_off = self._keys.unsettled and not self._put_off
+        if self._put_off:  # once, for the keys take long already
+            return False
         control = self._neighbour
         if control is None:
             control = self._next_neighbour()
-            if control.ask(now_us):
+            if control.ask(now_us, _UNSEEN_US):
                 self._heed(control)
                 self._around -= 1  # it has told something: in its next turn it is asked for more
             elif control.is_quiet():
@@ -310,12 +315,12 @@ class Panel:
         if self._over is not None and self._over is not self._splash:
             if selected.needs_attention() or self._over.is_stale(now_ms):
                 self.close_question()  # an alarm is not to be hidden
-        if self.message and elapsed(now_ms, self._message_at, self._mask) >= MESSAGE_MS:
+        if self.message and elapsed(now_ms, self._message_at, self._mask) >= _MESSAGE_MS:
             self.message = None
 
     def _ask_unsupervised(self):
         answers = {"SET": self._supervise, "START": self._accept_unsupervised}
-        self.ask(Question(self, texts.ASK_UNSUPERVISED, answers, self._mask, READING_MS))
+        self.ask(Question(self, texts.ASK_UNSUPERVISED, answers, self._mask, _READING_MS))
 
     def _supervise(self, now_ms):
         """Have the drive stop by itself when this panel falls silent."""
@@ -334,7 +339,7 @@ class Panel:
         """It ends by itself."""
         if self._began_at is None:
             self._began_at = now_ms
-        elif elapsed(now_ms, self._began_at, self._mask) >= SPLASH_MS:
+        elif elapsed(now_ms, self._began_at, self._mask) >= _SPLASH_MS:
             self._end_splash(now_ms)
 
     def _end_splash(self, now_ms):

@@ -13,9 +13,9 @@ from micropython import const
 from panel import texts
 from uss.timing import elapsed
 
-TELL_MS = const(300)  # held so long, what comes next is said
-SECOND_MS = const(1_500)
-ALL_MS = const(4_000)
+_TELL_MS = const(300)  # held so long, what comes next is said
+_SECOND_MS = const(1_500)
+_ALL_MS = const(4_000)
 
 RELEASED, PRESSED, SECOND_SENT, ALL_SENT = range(4)
 
@@ -77,10 +77,10 @@ class StopKey:
 
     def _hold(self, now_ms):
         held_ms = elapsed(now_ms, self._pressed_at, self._mask)
-        if self._stage == PRESSED and held_ms >= SECOND_MS:
+        if self._stage == PRESSED and held_ms >= _SECOND_MS:
             self._stage = SECOND_SENT
             self._control.second_stop()
-        if self._stage == SECOND_SENT and held_ms >= ALL_MS:
+        if self._stage == SECOND_SENT and held_ms >= _ALL_MS:
             self._stage = ALL_SENT
             self.left = 2 * len(self._controls)
             self._say(texts.ALL_STOPPED, now_ms)
@@ -88,5 +88,5 @@ class StopKey:
             self.text = texts.ALL_STOPPED
         elif self._stage == SECOND_SENT:
             self.text = self._said[1]
-        elif held_ms >= TELL_MS:
+        elif held_ms >= _TELL_MS:
             self.text = self._said[0]

@@ -14,10 +14,10 @@ from micropython import const
 from uss import pzd
 from uss.timing import elapsed
 
-CONFIRM_US = const(1_000_000)  # a STOP that is not confirmed by then is an alarm
-SLOWING_US = const(3_000_000)  # from then on the drive slows down once in this time at the least,
-SLOWER = const(4)  # by so many steps of HIW: 0.012 Hz of 50 Hz, more than the word trembles
-ANSWERS_MIN = const(3)  # so many answers must have come to judge by: long lists take their time
+_CONFIRM_US = const(1_000_000)  # a STOP that is not confirmed by then is an alarm
+_SLOWING_US = const(3_000_000)  # from then on the drive slows down once in this time at the least,
+_SLOWER = const(4)  # by so many steps of HIW: 0.012 Hz of 50 Hz, more than the word trembles
+_ANSWERS_MIN = const(3)  # so many answers must have come to judge by: long lists take their time
 
 
 class StopWatch:
@@ -67,14 +67,14 @@ class StopWatch:
                     self.end()
                     return
                 self._look_at(abs(pzd.signed(drive.hiw)), now)
-            if (answers or self._slowed) and answers < ANSWERS_MIN:
+            if (answers or self._slowed) and answers < _ANSWERS_MIN:
                 return
-        patience_us = SLOWING_US if self._slowed or self._seems_slower else CONFIRM_US
+        patience_us = _SLOWING_US if self._slowed or self._seems_slower else _CONFIRM_US
         if elapsed(now, self._slowed_at, self._mask) >= patience_us:
             self.unconfirmed = True
 
     def _look_at(self, speed, now):
-        if speed <= self._speed - SLOWER:
+        if speed <= self._speed - _SLOWER:
             self._slowed = True
             self._slowed_at = now
             self._off_answers = self._drive.off_answers

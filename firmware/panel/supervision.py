@@ -8,13 +8,13 @@ bus: long enough for bad luck, short enough to matter.
 
 from micropython import const
 
-CYCLES = const(3)  # rounds of the bus in which every drive answers late
-SHORTEST_MS = const(1_000)
-LONGEST_MS = const(65_000)  # P2014 goes to 65535
-STEP_MS = const(100)
+_CYCLES = const(3)  # rounds of the bus in which every drive answers late
+_SHORTEST_MS = const(1_000)
+_LONGEST_MS = const(65_000)  # P2014 goes to 65535
+_STEP_MS = const(100)
 
 
 def off_time_ms(longest_cycle_us):
     """A telegram off time for a drive, in ms, rounded up to tenths of a second."""
-    needed_ms = -(-CYCLES * (longest_cycle_us // 1000 + 1) // STEP_MS) * STEP_MS
-    return min(max(needed_ms, SHORTEST_MS), LONGEST_MS)
+    needed_ms = -(-_CYCLES * (longest_cycle_us // 1000 + 1) // _STEP_MS) * _STEP_MS
+    return min(max(needed_ms, _SHORTEST_MS), _LONGEST_MS)

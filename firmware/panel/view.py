@@ -14,8 +14,8 @@ from micropython import const
 from panel import texts
 from panel.announcer import LOST, RUNS, Announcer
 
-ADDRESS_COLUMN = const(13)
-ANNOUNCE_MS = const(1_500)  # another drive is announced so long, then the page is as long
+_ADDRESS_COLUMN = const(13)
+_ANNOUNCE_MS = const(1_500)  # another drive is announced so long, then the page is as long
 
 # The fields of a picture, in the order in which they are drawn. The last one may take the place of
 # PAGE and ADDRESS; a page that is WHOLE is the only one.
@@ -97,7 +97,7 @@ class View:
             self._screen.put(1, 0, texts.ROW_WIDTH, text)
             return DONE  # no room for an address
         if self._panel.selected.lost_running:
-            self._screen.put(1, 0, ADDRESS_COLUMN, texts.MAY_RUN)
+            self._screen.put(1, 0, _ADDRESS_COLUMN, texts.MAY_RUN)
             return ADDRESS
         return ANNOUNCEMENT if self._announcer.rank >= RUNS else PAGE
 
@@ -119,7 +119,7 @@ class View:
         it at least so much; False otherwise.
         """
         announcer = self._announcer
-        if now_ms // ANNOUNCE_MS & 1 or announcer.rank < least:
+        if now_ms // _ANNOUNCE_MS & 1 or announcer.rank < least:
             return False
         self.look(announcer.control)  # it may have been a while ago
         if announcer.rank < least:
@@ -131,8 +131,8 @@ class View:
 def _draw_address(screen, control):
     """A and the address of a drive, left-aligned at the end of row 2."""
     address = control.drive.address
-    screen.put(1, ADDRESS_COLUMN, 3, b"A")
-    screen.number(1, ADDRESS_COLUMN + 1, 1 if address < 10 else 2, address * 100, 0)
+    screen.put(1, _ADDRESS_COLUMN, 3, b"A")
+    screen.number(1, _ADDRESS_COLUMN + 1, 1 if address < 10 else 2, address * 100, 0)
 
 
 def _draw_setpoint(screen, control):

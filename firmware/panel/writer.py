@@ -15,13 +15,13 @@ from panel import texts
 from uss import pkw, profiles
 from uss.timing import elapsed
 
-LOOK_US = const(2_000_000)  # a drive that may have moved is looked for so long, or
-LOOK_CYCLES = const(3)  # so many rounds of the bus
-PROBES = const(3)  # telegrams after which nobody is at an address; the first was under way already
+_LOOK_US = const(2_000_000)  # a drive that may have moved is looked for so long, or
+_LOOK_CYCLES = const(3)  # so many rounds of the bus
+_PROBES = const(3)  # telegrams after which nobody is there; the first was under way already
 
-SILENT_MAX = const(3)  # telegrams without an answer, then the other address is tried
+_SILENT_MAX = const(3)  # telegrams without an answer, then the other address is tried
 
-TRIES_MAX = const(3)
+_TRIES_MAX = const(3)
 
 IDLE, PROBING, WAITING, WRITING, LOOKING = range(5)
 
@@ -39,7 +39,7 @@ class Writer:
         self._settings = settings
         self._mask = mask
         # A clock of a short period cannot tell more than half of it.
-        patience_us = max(LOOK_US, LOOK_CYCLES * bus.longest_cycle_us())
+        patience_us = max(_LOOK_US, _LOOK_CYCLES * bus.longest_cycle_us())
         self._patience_us = min(patience_us, mask >> 2)
         self._phase = IDLE
         self._job = pkw.read(0)
@@ -128,7 +128,7 @@ class Writer:
         elif job.state == pkw.DONE:
             if job.low == self._value:
                 self._confirm()
-            elif self._tries < TRIES_MAX:  # that was an old answer to a reading
+            elif self._tries < _TRIES_MAX:  # that was an old answer to a reading
                 self._tries += 1
                 self._ask()
             else:
@@ -176,7 +176,7 @@ class Writer:
             self._give_up_probe(texts.NOT_WRITTEN)
         elif not drive.silent and drive.answered_address == self._value:
             self._give_up_probe(texts.ADDRESS_TAKEN)
-        elif telegrams >= PROBES:
+        elif telegrams >= _PROBES:
             self._bus.readdress(drive, self._old_address)
             self._ask()
         elif drive.urgent == drive.served:
@@ -194,7 +194,7 @@ class Writer:
         drive = self._control.drive
         if not drive.silent:
             self._silent = 0
-        elif drive.silent >= self._silent + SILENT_MAX:
+        elif drive.silent >= self._silent + _SILENT_MAX:
             self._silent = drive.silent
             at_new = drive.address == self._value
             self._bus.readdress(drive, self._old_address if at_new else self._value)

@@ -11,18 +11,18 @@ from array import array
 
 from micropython import const
 
-from uss.drive import NODES, OVERDUE, WANTS
+from uss.drive import NODES
 from uss.pzd import ZSW_RUNNING
 
-BACK_OFF_US = const(1_600_000)  # a drive that backs off is asked again after so long
-PROBE_SHARE = const(22)  # or after so many times what that costs, so that it takes below 5 %
+_BACK_OFF_US = const(1_600_000)  # a drive that backs off is asked again after so long
+_PROBE_SHARE = const(22)  # or after so many times what that costs, so that it takes below 5 %
 LOOK_US = const(4_000)  # how often drives are looked after
-SWEEP_US = const(130_000)  # in which each of them has been
-MEASURE_US = const(250_000)  # how often the duration of a round is measured
-NEAR = const(2)  # a gap of less than so many rounds is looked after
-MEASURED_MAX_US = const(4_000_000)  # so that 255 times it fits a small integer
-LONGEST_US = const(100_000_000)  # of a round; small enough to be multiplied
-FAR = const(6)  # until it is so many: the turns it gets besides make a round seem shorter
+_SWEEP_US = const(130_000)  # in which each of them has been
+_MEASURE_US = const(250_000)  # how often the duration of a round is measured
+_NEAR = const(2)  # a gap of less than so many rounds is looked after
+_MEASURED_MAX_US = const(1_000_000)  # what took longer tells nothing; 255 times it is small
+_LONGEST_US = const(100_000_000)  # of a round; small enough to be multiplied
+_FAR = const(6)  # until it is so many: the turns it gets besides make a round seem shorter
 
 
 class Care:
@@ -38,7 +38,7 @@ class Care:
         self._mask = mask
         # Drives that back off.
         self._rests = bytearray(NODES)  # by address: whether it does
-        self._back_off_us = BACK_OFF_US
+        self._back_off_us = _BACK_OFF_US
         self._uneasy = False  # one may have to begin, or to end it
         self._looked = 0  # which drive was looked after last
         self._since_silent = 0  # how many were looked after since one was silent
@@ -52,8 +52,13 @@ class Care:
 
     def supervise(self, drive, gap_us):
         """Keep two telegrams to a drive that may run at most so far apart; 0: any distance."""
-        if self._gaps_us[drive.address] != gap_us:
-            self._gaps_us[drive.address] = gap_us
+        before_us = self._gaps_us[drive.address]
+        if gap_us == before_us:
+            return
+        self._gaps_us[drive.address] = gap_us
+        if 0 < gap_us < (self._least_us or _LONGEST_US):
+            self._least_us = gap_us
+        elif before_us == self._least_us:
             self._find_least()
 
     def forget(self, drive):
@@ -76,7 +81,7 @@ class Care:
         for drive in turns.drives:
             probe_us = max(probe_us, timing.telegram_us(drive.layout.net_count))
         probe_us += timing.start_interval_us + timing.reply_timeout_us + timing.character_us
-        self._back_off_us = min(max(BACK_OFF_US, PROBE_SHARE * probe_us), self._mask >> 1)
+        self._back_off_us = min(max(_BACK_OFF_US, _PROBE_SHARE * probe_us), self._mask >> 1)
         turns.round_count = 0  # nobody has a turn until it is filled
         turns.round = list(turns.list)
         self._fill_round()
@@ -92,7 +97,7 @@ class Care:
         if self._uneasy:
             self._look_for_silent(now, passed_us)
         if self._least_us:
-            if (now - self._measured_at) & self._mask >= MEASURE_US:
+            if (now - self._measured_at) & self._mask >= _MEASURE_US:
                 self._measure(now)
             if self._limit_us:
                 self._look_for_overdue(now, passed_us)
@@ -102,7 +107,7 @@ class Care:
     def _look_for_silent(self, now, passed_us):
         drives = self._turns.drives
         count = len(drives)
-        for _ in range(_share(count, passed_us, SWEEP_US)):
+        for _ in range(_share(count, passed_us, _SWEEP_US)):
             self._looked = self._looked + 1 if self._looked + 1 < count else 0
             self._look_after(drives[self._looked], now)
         if self._since_silent > count:
@@ -116,7 +121,8 @@ class Care:
             self._rests[drive.address] = backs_off
             self._fill_round()
         if backs_off and drive.silent_us(now, self._mask) >= self._back_off_us:
-            self._ask_soon(drive, WANTS)
+            if not self._turns.is_under_way(drive):
+                drive.ask_soon()
         self._since_silent = 0 if drive.silent else self._since_silent + 1
 
     def _anyone_has_contact(self):
@@ -141,31 +147,33 @@ class Care:
     # --- drives whose turns are too far apart ---------------------------------------------------
 
     def _find_least(self):
-        least_us = LONGEST_US
+        least_us = _LONGEST_US
         for gap_us in self._gaps_us:
             if 0 < gap_us < least_us:
                 least_us = gap_us
-        self._least_us = least_us if least_us < LONGEST_US else 0
+        self._least_us = least_us if least_us < _LONGEST_US else 0
 
     def _measure(self, now):
         """How long a round takes, by the telegrams since last time; which gaps that presses."""
         turns = self._turns
-        passed_us = min((now - self._measured_at) & self._mask, MEASURED_MAX_US)
+        passed_us = (now - self._measured_at) & self._mask
         exchanges = (turns.exchanges - self._exchanges) & 0xFFFF
         self._measured_at = now
         self._exchanges = turns.exchanges
-        round_us = LONGEST_US
+        if passed_us >= _MEASURED_MAX_US:
+            return  # nobody measured meanwhile: this is where it begins
+        round_us = _LONGEST_US
         if exchanges:
-            round_us = min(len(turns.list) * (passed_us // exchanges), LONGEST_US)
-        round_us = max(round_us, min(turns.cycle_us, LONGEST_US))
-        limit_us = (FAR if self._limit_us else NEAR) * round_us
+            round_us = min(len(turns.list) * (passed_us // exchanges), _LONGEST_US)
+        round_us = max(round_us, min(turns.cycle_us, _LONGEST_US))
+        limit_us = (_FAR if self._limit_us else _NEAR) * round_us
         self._limit_us = limit_us if self._least_us < limit_us else 0
 
     def _look_for_overdue(self, now, passed_us):
         """Is a third of a gap over? Others may be due at the same time."""
         drives = self._turns.drives
         count = len(drives)
-        for _ in range(_share(count, passed_us, min(SWEEP_US, self._least_us >> 2))):
+        for _ in range(_share(count, passed_us, min(_SWEEP_US, self._least_us >> 2))):
             self._pressed = self._pressed + 1 if self._pressed + 1 < count else 0
             drive = drives[self._pressed]
             # What most drives are is seen without a call: standing.
@@ -173,11 +181,8 @@ class Care:
                 gap_us = self._gaps_us[drive.address]
                 if 0 < gap_us < self._limit_us:
                     if drive.silent_us(now, self._mask) > gap_us // 3:
-                        self._ask_soon(drive, OVERDUE)
-
-    def _ask_soon(self, drive, row):
-        if not self._turns.is_under_way(drive):
-            drive.ask_soon(row)
+                        if not self._turns.is_under_way(drive):
+                            drive.press()
 
 
 def _share(count, passed_us, sweep_us):

@@ -19,12 +19,12 @@ from uss.timing import elapsed
 NO_TASK = bytes(8)
 JOBS_MAX = const(8)  # of a drive, with the one on the line; a power of two
 REST_MAX = const(20)  # telegrams without a task that are tried before the next one is sent anyway
-TRIES_MIN = const(3)  # a task was sent at least so often before it times out
-WORK_TIMEOUT_US = const(2_000_000)  # a reply may lag some cycles
-EEPROM_TIMEOUT_US = const(5_000_000)
+_TRIES_MIN = const(3)  # a task was sent at least so often before it times out
+_WORK_TIMEOUT_US = const(2_000_000)  # a reply may lag some cycles
+_EEPROM_TIMEOUT_US = const(5_000_000)
 
 NO_QUEUE = (None,)  # of a drive without PKW words
-ANY = const(-1)
+_ANY = const(-1)
 
 _VARIABLE = const(127)  # of `layout`, which would be an import too deep for the 32-bit port
 
@@ -62,7 +62,7 @@ class Channel:
         self._queue = [None] * JOBS_MAX if pkw_words else NO_QUEUE
         self._in = 0
         self._turn = 0  # see _POSITION and _REST
-        self._ended = ANY  # the key of the job that must be told apart from the next, or ANY
+        self._ended = _ANY  # the key of the job that must be told apart from the next, or _ANY
 
     def is_full(self):
         """Whether `ask` would be refused, for want of room or of PKW words."""
@@ -80,7 +80,8 @@ class Channel:
             raise RuntimeError("%d jobs wait already" % JOBS_MAX)
         if job.state == _PENDING:
             raise RuntimeError("%r is pending already" % (job,))
-        if not job.fits(form):
+        # A plain job fits four words, which is what most drives have.
+        if (form != _FOUR_WORDS or job.data is not None) and not job.fits(form):
             job.refuse(pkw.TOO_SMALL)
             return
         job.tries = _WAITING
@@ -106,24 +107,35 @@ class Channel:
     # --- for the engine: allocates nothing ------------------------------------------------------
 
     def fill(self, net, at, now):
-        """Write the PKW words of the next request into `net` from index `at` on."""
+        """Write the PKW words of the next request into `net` from index `at` on; whether `size`
+        may be another now.
+        """
         turn = self._turn
         job = self._queue[turn & _POSITION]
+        words = NO_TASK
         if job is None:
             self.idle = turn < _REST and self._form < _FOLLOWED
-        elif job.tries == _WAITING:
-            self._begin(job, now)
-        elif job.tries >= TRIES_MIN:
-            self._watch(job, now)
-        words = NO_TASK
-        if job is not None and self._turn < _REST:
-            words = job.words
-            if job.tries < TRIES_MIN:
-                job.tries += 1
+        else:
+            tries = job.tries
+            if tries == _WAITING:
+                tries = 0
+                job.since = now
+                # Mostly only to the same question could an old reply be taken for the answer.
+                if self._ended != _ANY and self._ended != job.key:
+                    self._turn = turn = turn & _POSITION
+            elif tries >= _TRIES_MIN:
+                self._watch(job, now)
+                turn = self._turn
+            if turn < _REST:
+                words = job.words
+                if tries < _TRIES_MIN:
+                    tries += 1
+            job.tries = tries
         if self._form == _FOUR_WORDS:
             copy(words, net, at, _FOUR_WORDS)
-        else:
-            self._place(job, words, net, at)
+            return False
+        self._place(job, words, net, at)
+        return True
 
     def _place(self, job, words, net, at):
         """Write words where other than four fixed ones have their place, and the report bit."""
@@ -153,7 +165,10 @@ class Channel:
             if job is None and turn < _REST and self._form < _FOLLOWED:
                 self.idle = True
         elif job is not None and job.tries > 0 and job.answer(net, at, count, form):
-            self._end(job, job.task >= _FIRST_PERMANENT)
+            # As in `_end`, without the call: this is the common case.
+            self._ended = _ANY if job.task >= _FIRST_PERMANENT else job.key
+            self._queue[turn] = None
+            self._turn = REST_MAX * _REST | turn + 1 & _POSITION
 
     def miss(self, now):
         """There was no valid reply."""
@@ -161,19 +176,12 @@ class Channel:
         if turn >= _REST:
             self._turn = turn - _REST
         job = self._queue[turn & _POSITION]
-        if job is not None and job.tries >= TRIES_MIN:
+        if job is not None and job.tries >= _TRIES_MIN:
             self._watch(job, now)
-
-    def _begin(self, job, now):
-        job.since = now
-        job.tries = 0
-        # Mostly only to the same question could an old reply be taken for the answer.
-        if self._ended != ANY and self._ended != job.key:
-            self._turn &= _POSITION
 
     def _watch(self, job, now):
         """Time out a job that takes long."""
-        timeout_us = WORK_TIMEOUT_US if job.task < _FIRST_PERMANENT else EEPROM_TIMEOUT_US
+        timeout_us = _WORK_TIMEOUT_US if job.task < _FIRST_PERMANENT else _EEPROM_TIMEOUT_US
         if elapsed(now, job.since, self._mask) >= timeout_us:
             job.state = pkw.TIMED_OUT
             self._end(job, job.writes())
@@ -182,7 +190,7 @@ class Channel:
         # A task is never left standing. Two of the same parameter must be told apart
         # (specification C-4.2.1.1): "no task" stands between them until the drive has answered it.
         # strictly: it stands before any other, for what wears out or may still be carried out.
-        self._ended = ANY if strictly else job.key
+        self._ended = _ANY if strictly else job.key
         position = self._turn & _POSITION
         self._queue[position] = None
         self._turn = REST_MAX * _REST | position + 1 & _POSITION

@@ -36,14 +36,14 @@ from uss.pzd import STW_ON, STW_RUN, ZSW_FAULT, ZSW_INHIBIT, ZSW_RUNNING
 from uss.telegram import NET, NODE_MAX, put_word
 from uss.timing import elapsed
 
-TICKET_MASK = const(0xFFFF)
-INSIST_MAX = const(10)  # telegrams out of turn that an OFF1 may take until the drive answers one
+_TICKET_MASK = const(0xFFFF)
+_INSIST_MAX = const(10)  # telegrams out of turn that an OFF1 may take until the drive answers one
 SILENT_MAX = const(3)  # without contact and so often silent, a drive need not have every turn
-AHEAD_US = const(100_000)  # so far an interrupt may have been ahead of who asks for the time
-UNKNOWN = const(-1)  # no control word
-NO_EDGE = const(-1)  # no acknowledgement on its way
-ANSWERED = const(-2)  # one was confirmed: a word without bit 7 must follow
-COUNTER_MASK = const(0xFFFF)  # counters wrap like the drive's own (specification A-5.2.3)
+_AHEAD_US = const(100_000)  # so far an interrupt may have been ahead of who asks for the time
+_UNKNOWN = const(-1)  # no control word
+_NO_EDGE = const(-1)  # no acknowledgement on its way
+_ANSWERED = const(-2)  # one was confirmed: a word without bit 7 must follow
+_COUNTER_MASK = const(0xFFFF)  # counters wrap like the drive's own (specification A-5.2.3)
 
 # What each receiver finding is counted as, and its bit of the error status word. Both named as in
 # specification A-5.2.3. Characters with a wrong parity or stop bit, and lost ones, have no place:
@@ -73,8 +73,8 @@ OFFS = (pzd.OFF1, pzd.OFF2, pzd.OFF3)
 
 # Bits of STW that `control` may change, and those that are 1 in every control word of `pzd`. The
 # others start, stop, acknowledge, turn round or give up control.
-CONTROL_BITS = const(0xE078)
-CONTROL_ON = const(0x0078)
+_CONTROL_BITS = const(0xE078)
+_CONTROL_ON = const(0x0078)
 
 
 class Drive:
@@ -134,7 +134,7 @@ class Drive:
         self._behind = layout.pzd_count + 1  # characters of a telegram from its PZD on
         self._sent_stw = 0
         self._hsw = 0  # `hsw` when the telegram was built
-        self._edge = NO_EDGE  # of bit 7: `acknowledgements` when it was sent
+        self._edge = _NO_EDGE  # of bit 7: `acknowledgements` when it was sent
         self._may_run = False  # sent ON or seen running, and not seen standing after OFF1
         if layout.pzd_words > 2:
             self.further = array("H", bytes(4 * (layout.pzd_words - 2)))
@@ -153,9 +153,9 @@ class Drive:
             raise ValueError("the telegrams to drive %d have no control word" % self.address)
         self.hsw = hsw
         self.off = pzd.OFF1
-        ticket = (self.ticket + 1) & TICKET_MASK
+        ticket = (self.ticket + 1) & _TICKET_MASK
         if ticket == self.void:  # after 65536 starts the old void one comes round
-            ticket = (ticket + 1) & TICKET_MASK
+            ticket = (ticket + 1) & _TICKET_MASK
         # The engine may come in between any two of these: the word stands before its ticket does,
         # and the ticket is written once, so that what the engine voids stays void.
         self.wanted = 0
@@ -179,19 +179,19 @@ class Drive:
             raise ValueError("STW %r is no OFF" % (off,))
         self.wanted = 0
         self.off = off
-        self.stops = (self.stops + 1) & TICKET_MASK
+        self.stops = (self.stops + 1) & _TICKET_MASK
         self.hurry()
 
     def acknowledge(self):
         """Acknowledge a fault: one edge of bit 7, confirmed by a reply. Not while it runs."""
-        self.acknowledgements = (self.acknowledgements + 1) & TICKET_MASK
+        self.acknowledgements = (self.acknowledgements + 1) & _TICKET_MASK
         self.hurry()
 
     def hurry(self):
         """Let the next telegram on the line be one to this drive."""
         # Behind what has changed, because the engine may come in between: it would find nothing to
         # change, or not be called for it.
-        self.urgent = (self.served + 1) & TICKET_MASK
+        self.urgent = (self.served + 1) & _TICKET_MASK
         self.steady = False
         self.call()
 
@@ -225,9 +225,9 @@ class Drive:
 
         bits: any of 3...6, which are 1 otherwise, and 13...15, which are 0. ValueError: others.
         """
-        if bits & CONTROL_BITS != bits:
-            raise ValueError("STW bits %04Xh are no matter of control()" % (bits & ~CONTROL_BITS))
-        usual = CONTROL_ON if on else CONTROL_BITS & ~CONTROL_ON
+        if bits & _CONTROL_BITS != bits:
+            raise ValueError("STW bits %04Xh are no matter of control()" % (bits & ~_CONTROL_BITS))
+        usual = _CONTROL_ON if on else _CONTROL_BITS & ~_CONTROL_ON
         self._toggled = self._toggled & ~bits | bits & ~usual
         self.steady = False
 
@@ -297,16 +297,20 @@ class Drive:
         self.ran = False
         self.steady = False
         if was_on:
-            self.stops_sent = (self.stops - 1) & TICKET_MASK  # one stop is still to be sent
+            self.stops_sent = (self.stops - 1) & _TICKET_MASK  # one stop is still to be sent
             self.call()
 
-    def ask_soon(self, row):
-        """From the loop: its next turn in the list is too far away. row: OVERDUE or WANTS."""
+    def ask_soon(self):
+        """From the loop: it is to be asked once besides its turns in the list."""
         if not self.insist:
             self.insist = 1
         self.steady = False
+        self._call_for_turns()
+
+    def press(self):
+        """From the loop: its next turn in the list would be too late."""
         attention = self._attention
-        attention[row + self.address] = 1
+        attention[OVERDUE + self.address] = 1
         attention[ANY] = 1
 
     def urgency(self):
@@ -327,11 +331,11 @@ class Drive:
         channel = self.channel
         if not channel.idle:
             self.sealed = False
-            channel.fill(self.request, NET, now)
-            size = NET + channel.size + self._behind
-            if size != self.size:  # variable length: the PZD have moved
-                self.size = size
-                self.steady = False
+            if channel.fill(self.request, NET, now):
+                size = NET + channel.size + self._behind
+                if size != self.size:  # variable length: the PZD have moved
+                    self.size = size
+                    self.steady = False
         hsw = self.hsw
         if self.steady and hsw == self._hsw:
             return
@@ -341,7 +345,7 @@ class Drive:
         on = self.wanted and self.is_on()
         if self.stops != self.stops_sent:
             self.stops_sent = self.stops
-            self.insist = INSIST_MAX
+            self.insist = _INSIST_MAX
             self._call_for_turns()
         elif self.insist:
             self.insist -= 1
@@ -353,13 +357,13 @@ class Drive:
         else:
             self.ran = False
             stw = self.off
-            if self.acknowledgements != self.acknowledged or self._edge == ANSWERED:
+            if self.acknowledgements != self.acknowledged or self._edge == _ANSWERED:
                 stw |= self._acknowledge_bit()
         if not stw & STW_ON:
             hsw = 0
         stw ^= self._toggled
         self.sealed = self.steady = False  # should this fail half way, it is done anew
-        self._sent_stw = UNKNOWN
+        self._sent_stw = _UNKNOWN
         behind = self._behind
         if behind >= 3:
             request = self.request
@@ -386,11 +390,11 @@ class Drive:
             self.silent = 0
             self.status = 0
         counters = self.counters
-        counters[0] = (counters[0] + 1) & COUNTER_MASK
+        counters[0] = (counters[0] + 1) & _COUNTER_MASK
         if not self.contact:
             # Contact is made before anything is sent on it, and what was wanted before is void.
             self.revoke()
-            self.contacts = (self.contacts + 1) & COUNTER_MASK
+            self.contacts = (self.contacts + 1) & _COUNTER_MASK
             self.was_running = False
             self.contact = True
         behind = self._behind
@@ -408,8 +412,8 @@ class Drive:
         else:
             if not self.steady and stw & pzd.STW_ACKNOWLEDGE:
                 self.acknowledged = self._edge
-                self._edge = ANSWERED
-            self.off_answers = (self.off_answers + 1) & COUNTER_MASK
+                self._edge = _ANSWERED
+            self.off_answers = (self.off_answers + 1) & _COUNTER_MASK
             self.insist = 0
             self._may_run = zsw & ZSW_RUNNING != 0
         if not self.channel.idle:
@@ -420,9 +424,9 @@ class Drive:
 
         finding: one of the receiver's, not GOOD.
         """
-        self.counters[finding] = (self.counters[finding] + 1) & COUNTER_MASK
+        self.counters[finding] = (self.counters[finding] + 1) & _COUNTER_MASK
         self.status |= STATUS_BITS[finding]
-        if self.silent < COUNTER_MASK:
+        if self.silent < _COUNTER_MASK:
             self.silent += 1
         if not self.contact:
             self._tried_at = now
@@ -443,7 +447,7 @@ class Drive:
     def silent_us(self, now, mask):
         """How long ago the last valid reply came; without contact, the last telegram."""
         passed_us = (now - self._tried_at) & mask
-        return passed_us if passed_us < mask - AHEAD_US else 0
+        return passed_us if passed_us < mask - _AHEAD_US else 0
 
     def may_reply_alike(self):
         """Whether its reply may be the very request: not where a control word meets a status word,
@@ -465,8 +469,8 @@ class Drive:
 
         It acts by its rising edge: after one that was confirmed a word goes without.
         """
-        if self._edge == ANSWERED:
-            self._edge = NO_EDGE
+        if self._edge == _ANSWERED:
+            self._edge = _NO_EDGE
             return 0
         self._edge = self.acknowledgements
         return pzd.STW_ACKNOWLEDGE

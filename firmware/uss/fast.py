@@ -8,8 +8,15 @@ that compile no machine code.
 # What importing it raises: CPython knows no viper; no emitter in a port that compiles the source,
 # or one for another processor in a port that is handed bytecode.
 try:
-    from uss.fast_viper import agreeing, copy, exclusive_or, frame, get_words, greatest, is_reply
+    from uss.fast_viper import (
+        agreeing, calling, copy, exclusive_or, frame, get_words, greatest, is_reply, reply_about,
+    )  # fmt: skip
 except (ImportError, AttributeError, NameError, SyntaxError, ValueError):
-    from uss.fast_python import agreeing, copy, exclusive_or, frame, get_words, greatest, is_reply
+    from uss.fast_python import (
+        agreeing, calling, copy, exclusive_or, frame, get_words, greatest, is_reply, reply_about,
+    )  # fmt: skip
 
-__all__ = ("agreeing", "copy", "exclusive_or", "frame", "get_words", "greatest", "is_reply")
+__all__ = (
+    "agreeing", "calling", "copy", "exclusive_or", "frame", "get_words", "greatest", "is_reply",
+    "reply_about",
+)  # fmt: skip

@@ -72,3 +72,24 @@ def greatest(values, at, count, start):
             highest = values[at + number]
             found = number
     return found
+
+
+def calling(values, size, count):
+    """In which rows of `size` there is anything but 0 among the first `count` values: bit 0 is for
+    the first row."""
+    rows = 0
+    for row in range(count // size):
+        for index in range(size):
+            if values[row * size + index]:
+                rows |= 1 << row
+    return rows
+
+
+def reply_about(net, at, words):
+    """AK of the parameter reply that stands in `net` from index `at` on, when PNU and IND are
+    those of the task `words`; 0 when it is about something else. Bit 11 of PKE belongs to neither.
+    """
+    same = not (net[at] ^ words[0]) & 0x07
+    for index in range(1, 4):
+        same = same and net[at + index] == words[index]
+    return net[at] >> 4 if same else 0

@@ -91,3 +91,29 @@ def greatest(values: ptr8, at: int, count: int, start: int) -> int:
             found = number
         step += 1
     return found
+
+
+@micropython.viper
+def calling(values: ptr8, size: int, count: int) -> int:
+    rows = 0
+    row = 1
+    at = 0
+    while at < count:
+        end = at + size
+        while at < end:
+            if values[at]:
+                rows |= row
+                at = end
+            else:
+                at += 1
+        row <<= 1
+    return rows
+
+
+@micropython.viper
+def reply_about(net: ptr8, at: int, words: ptr8) -> int:
+    if net[at + 1] != words[1] or net[at + 3] != words[3] or net[at + 2] != words[2]:
+        return 0
+    if (net[at] ^ words[0]) & 0x07:
+        return 0
+    return net[at] >> 4

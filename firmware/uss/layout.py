@@ -17,8 +17,8 @@ VARIABLE = const(127)
 PKW_WORDS = (0, 3, 4, VARIABLE)
 PZD_WORDS_MAX = const(16)
 WORDS_MAX = const(126)
-LEAST_PKW_WORDS = const(3)  # PKE, IND and one word of PWE: every task and every reply has them
-TEXT_PKW_WORDS = const(10)  # PKE, IND and a text of 16 characters
+_LEAST_PKW_WORDS = const(3)  # PKE, IND and one word of PWE: every task and every reply has them
+_TEXT_PKW_WORDS = const(10)  # PKE, IND and a text of 16 characters
 ENABLE_WORDS = const(4)  # the PKW area of a broadcast holds the enable array (appendix)
 
 
@@ -34,7 +34,7 @@ class Layout:
     net_max: net characters of the longest request.
     """
 
-    def __init__(self, pkw_words=4, pzd_words=2, longest=TEXT_PKW_WORDS):
+    def __init__(self, pkw_words=4, pzd_words=2, longest=_TEXT_PKW_WORDS):
         if pkw_words not in PKW_WORDS:
             raise ValueError("PKW of %r words is none of %s" % (pkw_words, PKW_WORDS))
         if pzd_words not in range(PZD_WORDS_MAX + 1):
@@ -44,9 +44,9 @@ class Layout:
         self.pkw_words = pkw_words
         self.pzd_words = pzd_words
         self.variable = pkw_words == VARIABLE
-        idle_words = LEAST_PKW_WORDS if self.variable else pkw_words
+        idle_words = _LEAST_PKW_WORDS if self.variable else pkw_words
         self.longest = longest if self.variable else pkw_words
-        if self.variable and not LEAST_PKW_WORDS <= longest <= WORDS_MAX - pzd_words:
+        if self.variable and not _LEAST_PKW_WORDS <= longest <= WORDS_MAX - pzd_words:
             raise ValueError("%r PKW words and %d PZD words" % (longest, pzd_words))
         self.pzd_count = 2 * pzd_words
         self.net_count = 2 * (idle_words + pzd_words)

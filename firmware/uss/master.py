@@ -29,12 +29,12 @@ from uss.turns import Turns
 LOST_US = const(1_000_000)  # without a valid reply for so long, contact with a drive is lost
 DEAD_MAN_US = const(300_000)  # without `refresh` for so long, the loop is taken for dead
 LISTEN_US = const(100_000)  # silence that must be heard before the first telegram
-BABBLE_US = const(500_000)  # a line that never falls silent is sent on all the same after this
-STUCK_US = const(50_000)  # a transmission that takes so much longer than it should has failed
-PAUSE_US = const(1_000_000)  # a pause ends after so long, whether or not anybody ends it
+_BABBLE_US = const(500_000)  # a line that never falls silent is sent on all the same after this
+_STUCK_US = const(50_000)  # a transmission that takes so much longer than it should has failed
+_PAUSE_US = const(1_000_000)  # a pause ends after so long, whether or not anybody ends it
 PAUSE_LOOK_US = const(5_000)  # how soon its end, or a command, is noticed
-SHARED_EXCHANGES = const(1_000)  # so many after its last telegram another master counts as gone
-FAILURES_MAX = const(3)  # exceptions in a row after which nothing is known of the drives any more
+_SHARED_EXCHANGES = const(1_000)  # so many after its last telegram another master counts as gone
+_FAILURES_MAX = const(3)  # exceptions in a row after which nothing is known of the drives any more
 
 _GOOD = const(0)  # of `telegram`, for the compiler: needed in every exchange
 
@@ -46,9 +46,9 @@ AWAITING = const(3)
 CLOSED = const(4)
 OFF = const(5)
 
-HELD_BY_PAUSE = const(1)
-HELD_BY_OFF = const(2)
-HELD_BY_CLOSE = const(4)
+_HELD_BY_PAUSE = const(1)
+_HELD_BY_OFF = const(2)
+_HELD_BY_CLOSE = const(4)
 
 
 class Master(Turns):
@@ -68,7 +68,7 @@ class Master(Turns):
         Turns.__init__(self, timing, mask)
         self.phase = LISTENING
         self.progress = 0
-        self.patience_us = BABBLE_US + STUCK_US
+        self.patience_us = _BABBLE_US + _STUCK_US
         self.dead_man_trips = 0
         self.failures = 0
         self.foreign = 0
@@ -102,7 +102,7 @@ class Master(Turns):
         self._dead_man = False
         if (now - self._care.looked_at) & self._mask >= LOOK_US:
             self._care.look(now)
-            if self._shared and (self.exchanges - self._foreign_at) & 0xFFFF >= SHARED_EXCHANGES:
+            if self._shared and (self.exchanges - self._foreign_at) & 0xFFFF >= _SHARED_EXCHANGES:
                 self._shared = False
 
     def is_under_way(self, drive):
@@ -111,7 +111,7 @@ class Master(Turns):
 
     def _set_list(self, entries):
         Turns._set_list(self, entries)
-        self.patience_us = BABBLE_US + STUCK_US + self.longest_exchange_us()
+        self.patience_us = _BABBLE_US + _STUCK_US + self.longest_exchange_us()
 
     def is_line_in_use(self):
         """Whether another master was heard and is listened to instead of talking."""
@@ -133,11 +133,11 @@ class Master(Turns):
         `phase` is OFF once it has come so far. Contact with every drive is lost then.
         """
         self.stop_all()
-        self._held |= HELD_BY_OFF
+        self._held |= _HELD_BY_OFF
 
     def on(self):
         """Take the line again: listen first, as at the beginning. What ran needs a new `start`."""
-        self._held &= ~HELD_BY_OFF
+        self._held &= ~_HELD_BY_OFF
         if self.phase == OFF:
             self._first = True
             self.foreign = 0
@@ -148,17 +148,17 @@ class Master(Turns):
 
         Stop the drives first.
         """
-        self._held |= HELD_BY_CLOSE
+        self._held |= _HELD_BY_CLOSE
 
     def pause(self):
         """Begin no exchange until `resume`, 1 s at the most; `paused` tells when it has come so
         far. Commands go first, also later ones: whoever must not hear them late asks them first.
         """
-        self._held |= HELD_BY_PAUSE
+        self._held |= _HELD_BY_PAUSE
 
     def resume(self):
         """Go on; when nothing was paused that is no change."""
-        self._held &= ~HELD_BY_PAUSE
+        self._held &= ~_HELD_BY_PAUSE
         self.paused = False
 
     # --- the engine -----------------------------------------------------------------------------
@@ -189,7 +189,7 @@ class Master(Turns):
         self._failures_in_row += 1
         for drive in self.drives:
             drive.revoke()
-            if self._failures_in_row >= FAILURES_MAX:
+            if self._failures_in_row >= _FAILURES_MAX:
                 drive.lose()
             drive.call()  # its call may have been taken, and nothing come of it
         self._quiet_since = now
@@ -223,13 +223,13 @@ class Master(Turns):
             self._quiet_since = now
         if self._swallow(now):
             self._count_foreign()
-        if self._held & (HELD_BY_OFF | HELD_BY_CLOSE):  # nobody was told anything yet
-            self.phase = CLOSED if self._held & HELD_BY_CLOSE else OFF
+        if self._held & (_HELD_BY_OFF | _HELD_BY_CLOSE):  # nobody was told anything yet
+            self.phase = CLOSED if self._held & _HELD_BY_CLOSE else OFF
             return DEAD_MAN_US
         left_us = LISTEN_US - elapsed(now, self._quiet_since, self._mask)
         if left_us > 0:
             # Nothing is sent anyway, however long that takes.
-            self.paused = self._held & HELD_BY_PAUSE != 0
+            self.paused = self._held & _HELD_BY_PAUSE != 0
             self._paused_since = now
             return left_us
         self._begin_rest(now)
@@ -247,7 +247,7 @@ class Master(Turns):
             if heard and self._is_foreign(heard):
                 self._count_foreign()
         left_us = self._rest_us - elapsed(now, self._quiet_since, self._mask)
-        if left_us > 0 and elapsed(now, self._resting_since, self._mask) < BABBLE_US:
+        if left_us > 0 and elapsed(now, self._resting_since, self._mask) < _BABBLE_US:
             return left_us
         if self._held:
             held_us = self._hold(now)
@@ -268,10 +268,10 @@ class Master(Turns):
 
     def _hold(self, now):
         """By order of close, off or pause: how long nothing is sent, 0 when something is."""
-        if self._held & HELD_BY_CLOSE:
+        if self._held & _HELD_BY_CLOSE:
             self.phase = CLOSED
             return DEAD_MAN_US
-        if self._held & HELD_BY_OFF:
+        if self._held & _HELD_BY_OFF:
             for drive in self.drives:
                 if drive.wanted:
                     drive.revoke()  # started since `off`
@@ -287,7 +287,7 @@ class Master(Turns):
         """Whether `pause` is in force: no command is waiting, and it has not taken too long."""
         if not self.paused:
             self._paused_since = now
-        elif elapsed(now, self._paused_since, self._mask) >= PAUSE_US:
+        elif elapsed(now, self._paused_since, self._mask) >= _PAUSE_US:
             self.resume()
             return False
         self.paused = not self._has_command()
@@ -349,7 +349,7 @@ class Master(Turns):
         drive = self._drive
         if left_us:
             sending_us = elapsed(now, self._sending_since, self._mask)
-            if sending_us > drive.size * self._character_us + STUCK_US:
+            if sending_us > drive.size * self._character_us + _STUCK_US:
                 return self._give_up(now)
             return self._sending_due_us(left_us)
         self._quiet_since = self._link.sent_at
@@ -368,7 +368,7 @@ class Master(Turns):
         self._drive.miss(SILENT, now, self._lost_us, self._mask)
         self._begin_rest(now)
         self._quiet_since = now
-        self._resting_since = (now - BABBLE_US) & self._mask
+        self._resting_since = (now - _BABBLE_US) & self._mask
         return self._rest(now)
 
     def _await(self, now):
@@ -384,7 +384,7 @@ class Master(Turns):
         self.progress = (self.progress + 1) & 0xFFFF
         self._quiet_since = quiet_since = receiver.heard_at
         silent_us = (now - quiet_since) & self._mask
-        if self._start_interval_us <= silent_us < BABBLE_US and not self._held:
+        if self._start_interval_us <= silent_us < _BABBLE_US and not self._held:
             # The link took longer to report the reply than the rest lasts.
             drive = self._choose(now)
             if drive is not None:

@@ -19,6 +19,8 @@ import struct
 
 from micropython import const
 
+from uss.fast import reply_about
+
 # --- task and reply identifiers AK --------------------------------------------------------------
 
 NO_TASK = const(0)
@@ -284,21 +286,18 @@ class Job:
         C-4.2.1.1): it is ignored, and so is one whose length does not fit its AK. Bit 11 of PKE
         (change report) is no part of PNU.
         """
-        reply = net[at] >> 4
+        reply = reply_about(net, at, self.words)
         if not FITTING[self.task] >> reply & 1:
             return False
-        key = (net[at] & 0x07) << 24 | net[at + 1] << 16 | net[at + 2] << 8 | net[at + 3]
-        if key != self.key:
-            return False
-        if reply == REFUSED_REPLY:
-            self._keep_error(net, at + _HEAD, count - _HEAD, form)
-        elif reply == NO_RIGHTS_REPLY:
-            self.refuse(NO_CHANGE_RIGHTS)
-        elif form == FOUR_WORDS:
+        if form == FOUR_WORDS and reply < REFUSED_REPLY:
             self.high = net[at + 4] << 8 | net[at + 5]
             self.low = net[at + 6] << 8 | net[at + 7]
             self.width = _WIDTHS[reply]
             self.state = DONE
+        elif reply == REFUSED_REPLY:
+            self._keep_error(net, at + _HEAD, count - _HEAD, form)
+        elif reply == NO_RIGHTS_REPLY:
+            self.refuse(NO_CHANGE_RIGHTS)
         else:
             return self._keep_value(reply, net, at + _HEAD, count - _HEAD, form)
         return True

@@ -25,13 +25,13 @@ FINDINGS = telegram.FINDINGS + ("no reply", "residual time expired")
 
 COMING = const(-1)  # what a link says of characters that it will announce when they are over
 
-POLL_US = const(1_000)  # how often a link without interrupts is looked at
+_POLL_US = const(1_000)  # how often a link without interrupts is looked at
 # Of `telegram`, for the compiler: these are needed in every exchange.
 _STX = const(0x02)
 _GOOD = const(0)
 _FRAME = const(4)  # characters of a telegram that are not net data
 
-ROUNDING_US = const(2)  # two instants, each rounded to a microsecond
+_ROUNDING_US = const(2)  # two instants, each rounded to a microsecond
 
 
 class Receiver:
@@ -54,7 +54,7 @@ class Receiver:
         self._start_interval_us = timing.start_interval_us
         # The first bit of STX may come at the very end of the response delay; it is seen a
         # character later.
-        self.window_us = timing.reply_timeout_us + timing.character_us + ROUNDING_US
+        self.window_us = timing.reply_timeout_us + timing.character_us + _ROUNDING_US
         # Rounded down: no pause is taken for shorter than it was.
         self._sixteen_us = 16 * BITS_PER_CHARACTER * 1_000_000 // timing.baud
         self._mask = mask
@@ -95,7 +95,7 @@ class Receiver:
             mask = self._mask
             since_us = (received_at - self.heard_at) & mask
             length_us = added * self._sixteen_us >> 4
-            pause_us = since_us - length_us + ROUNDING_US
+            pause_us = since_us - length_us + _ROUNDING_US
             # A link that sees late says so by its resolution: only a pause that was certainly too
             # short is held against the telegram. Behind stray characters it must be a certain one:
             # a look may have fallen between them and what follows without a pause.
@@ -177,7 +177,7 @@ class Receiver:
         for index in range(added):
             buffer[index] = buffer[count + index]
         began_at = (link.received_at - (added * self._sixteen_us >> 4)) & self._mask
-        pause_us = elapsed(began_at, self._sent_at, self._mask) + ROUNDING_US
+        pause_us = elapsed(began_at, self._sent_at, self._mask) + _ROUNDING_US
         self.heard_at = link.received_at
         if pause_us + link.resolution_us < self._start_interval_us or buffer[0] != _STX:
             self.stray = True
@@ -204,7 +204,7 @@ class Receiver:
         """Microseconds until `take` has something to say, at least 1.
 
         A link with interrupts announces what it hears, so that only the time-outs are due. Another
-        one is looked at when the telegram can be complete at the earliest, then every POLL_US.
+        one is looked at when the telegram can be complete at the earliest, then every _POLL_US.
         """
         passed_us = elapsed(now, self._sent_at, self._mask)
         if self.count:
@@ -217,7 +217,7 @@ class Receiver:
         if not link.interrupts:
             earliest_us = self._start_interval_us
             earliest_us += self._awaited.size * self._sixteen_us >> 4
-            left = min(left, max(earliest_us - passed_us, POLL_US))
+            left = min(left, max(earliest_us - passed_us, _POLL_US))
         return max(left, 1)
 
     def _judge_silence(self, link, now, added):

@@ -17,13 +17,13 @@ from uss import pkw, profiles, pzd
 from uss.timing import elapsed
 
 REREAD_US = const(200_000)
-UNKNOWN = const(-1)
+_UNKNOWN = const(-1)
 
 
 class Survey:
     """drive: a `Drive`. mask: the clock's period - 1.
 
-    values: for each row of profiles.SURVEY the number read, or UNKNOWN.
+    values: for each row of profiles.SURVEY the number read, or _UNKNOWN.
     complete: all rows are known. scaling: a `pzd.Scaling`, or None while it is not known.
     unreadable: the drive refused one of them. version: counts the changes of all this.
     unchecked: how many rows `recheck` has still to read.
@@ -31,7 +31,7 @@ class Survey:
 
     def __init__(self, drive, mask):
         self.drive = drive
-        self.values = [UNKNOWN] * len(profiles.SURVEY)
+        self.values = [_UNKNOWN] * len(profiles.SURVEY)
         self.complete = False
         self.scaling = None
         self.unreadable = False
@@ -39,10 +39,11 @@ class Survey:
         self.unchecked = 0
         self._mask = mask
         self._job = pkw.read(0)
-        self._words = [UNKNOWN] * (2 * len(profiles.SURVEY))  # as last read: high, low, high ...
+        self._words = [_UNKNOWN] * (2 * len(profiles.SURVEY))  # as last read: high, low, high ...
         self._row = 0
         self._asked = False
         self._stale = False  # what was asked was asked too early to count
+        self._changed = False  # what was read is new, and still to be judged
         self._read_at = 0
         self._contact = 0  # drive.contacts to which the values belong
 
@@ -57,6 +58,9 @@ class Survey:
     def recheck(self):
         """Have every row read again soon: the drive gets more than its turn meanwhile."""
         self.unchecked = len(self.values)
+        if self._changed:
+            self._changed = False
+            self._judge()
         self._row = 0
         self._stale = self._asked
 
@@ -65,14 +69,21 @@ class Survey:
         self.unchecked = 0
         self.drive.want_turns(False)
 
-    def step(self, now):
-        """Take an answer that has come, ask for the next; allocates only when a value is new."""
+    def step(self, now, reread_us=REREAD_US):
+        """Take an answer that has come, ask for the next; allocates only when a value is new.
+
+        reread_us: once all is known, a row is read again so long after the one before.
+        """
         drive = self.drive
         if not drive.contact or drive.contacts != self._contact:
             self._forget()
             self._contact = drive.contacts
             self._stale = self._asked
-        if self._asked:
+        if self._changed:  # a step of its own: it takes long
+            self._changed = False
+            self._judge()
+            self._go_on()
+        elif self._asked:
             if self._job.state != pkw.PENDING:
                 self._asked = False
                 self._read_at = now
@@ -81,14 +92,15 @@ class Survey:
                 self._stale = False
         elif drive.contact:
             in_a_hurry = self.unchecked or not self.complete
-            if in_a_hurry or elapsed(now, self._read_at, self._mask) >= REREAD_US:
+            if in_a_hurry or elapsed(now, self._read_at, self._mask) >= reread_us:
                 self._ask(drive.channel)
         if self.unchecked or drive.asking:
             drive.want_turns(self.unchecked > 0)
 
     def _forget(self):
         self.unchecked = 0
-        if not self.complete and self._row == 0 and not self.unreadable:
+        changed, self._changed = self._changed, False
+        if not (self.complete or self._row or self.unreadable or changed):
             return
         self.complete = False
         self.scaling = None
@@ -96,8 +108,8 @@ class Survey:
         self.version += 1
         self._row = 0
         for row in range(len(self.values)):
-            self.values[row] = UNKNOWN
-            self._words[2 * row] = UNKNOWN
+            self.values[row] = _UNKNOWN
+            self._words[2 * row] = _UNKNOWN
 
     def _ask(self, channel):
         if channel.is_full():
@@ -112,10 +124,10 @@ class Survey:
         row = self._row
         kind = profiles.SURVEY[row][2]
         if job.state != pkw.DONE:
-            self.values[row] = UNKNOWN
-            self._words[2 * row] = UNKNOWN
+            self.values[row] = _UNKNOWN
+            self._words[2 * row] = _UNKNOWN
             self.unreadable = job.state == pkw.REFUSED
-            self._judge()
+            self._changed = True
         elif job.high != self._words[2 * row] or job.low != self._words[2 * row + 1]:
             self._words[2 * row] = job.high
             self._words[2 * row + 1] = job.low
@@ -123,18 +135,23 @@ class Survey:
                 self.values[row] = _centihertz(job.float_value())
             else:
                 self.values[row] = job.low
-            self._judge()
+            self._changed = True
+        else:
+            self._go_on()
+
+    def _go_on(self):
+        """This row is done with."""
         if self.unchecked:
             self.unchecked -= 1
-        self._row = row + 1 if row + 1 < len(profiles.SURVEY) else 0
+        self._row = self._row + 1 if self._row + 1 < len(profiles.SURVEY) else 0
 
     def _judge(self):
         """What the values amount to, after one of them changed."""
         values = self.values
         self.version += 1
-        self.complete = UNKNOWN not in values
+        self.complete = _UNKNOWN not in values
         reference, absolute = values[profiles.REFERENCE], values[profiles.ABSOLUTE]
-        if reference < pzd.REFERENCE_MIN or absolute == UNKNOWN:
+        if reference < pzd.REFERENCE_MIN or absolute == _UNKNOWN:
             self.complete = False
             self.scaling = None
         elif (
@@ -148,7 +165,7 @@ class Survey:
 
 
 def _centihertz(hertz):
-    """A frequency as an integer in 0.01 Hz; UNKNOWN when it is none that a drive can have."""
+    """A frequency as an integer in 0.01 Hz; _UNKNOWN when it is none that a drive can have."""
     if not 0 <= hertz <= 650:  # also true of a NaN, which compares with nothing
-        return UNKNOWN
+        return _UNKNOWN
     return int(hertz * 100 + 0.5)

@@ -18,13 +18,17 @@ from micropython import const
 from uss import pkw, telegram
 from uss.drive import ANY, ATTENTION, COMMANDS, COUNTERS, NODES, OVERDUE, WANTS, Drive
 from uss.care import Care
-from uss.fast import greatest
+from uss.fast import calling, greatest
 from uss.layout import STANDARD
 
-LIST_MAX = const(255)  # entries of the circulating list
-SINGLES_MAX = const(8)  # telegrams outside the list that wait
-OVERDUE_IN_A_ROW = const(2)
-FORGOTTEN_MAX = const(4)  # drives in one look that want no turn any more
+_LIST_MAX = const(255)  # entries of the circulating list
+_SINGLES_MAX = const(8)  # telegrams outside the list that wait
+_OVERDUE_IN_A_ROW = const(2)
+# Rows of the drives' attention, as bits of `calling`.
+_COMMANDS = const(1)
+_OVERDUE = const(2)
+_WANTS = const(4)
+_FORGOTTEN_MAX = const(4)  # drives in one look that want no turn any more
 
 
 class Turns:
@@ -46,12 +50,12 @@ class Turns:
         self._at = [None] * NODES  # drives by address
         self.round = []  # the list without those that back off, which the engine walks:
         self.round_count = 0  # so many of these
-        self._next = LIST_MAX  # place in it; behind its end a round begins
+        self._next = _LIST_MAX  # place in it; behind its end a round begins
         self._round_began_at = None
         self._round_left_us = 0  # of the cycle time, when the round was over before it
         self._again = None  # whose exchange is to be repeated
         self._ahead = None  # a telegram outside the list that goes before everything
-        self._singles = [None] * (SINGLES_MAX + 1)  # the others: a ring, one writer at each end
+        self._singles = [None] * (_SINGLES_MAX + 1)  # the others: a ring, one writer at each end
         self._singles_in = 0
         self._singles_out = 0
         self._single_last = False  # of both, a telegram outside the list had the last such turn
@@ -70,8 +74,8 @@ class Turns:
         the same drive one more turn. ValueError when the address is not 0...31, the list is full,
         or the drive has another layout already.
         """
-        if len(self.list) >= LIST_MAX:
-            raise ValueError("the circulating list holds %d entries" % LIST_MAX)
+        if len(self.list) >= _LIST_MAX:
+            raise ValueError("the circulating list holds %d entries" % _LIST_MAX)
         for drive in self.drives:
             if drive.address == address:
                 if layout and not layout.is_like(drive.layout):
@@ -108,8 +112,8 @@ class Turns:
         when there are more than 255, or one is missing, or one is of another bus.
         """
         entries = list(entries)
-        if len(entries) > LIST_MAX:
-            raise ValueError("the circulating list holds %d entries" % LIST_MAX)
+        if len(entries) > _LIST_MAX:
+            raise ValueError("the circulating list holds %d entries" % _LIST_MAX)
         for drive in entries:
             if drive not in self.drives:
                 raise ValueError("drive %d is not on this bus" % drive.address)
@@ -117,7 +121,7 @@ class Turns:
             if drive not in entries:
                 raise ValueError("drive %d would have no turn" % drive.address)
         self._set_list(entries)
-        self._next = LIST_MAX
+        self._next = _LIST_MAX
 
     def readdress(self, drive, address):
         """From the next telegram on, `drive` answers at another address.
@@ -151,7 +155,7 @@ class Turns:
 
     def post(self, telegram_outside):
         """Send a telegram outside the list once (see `single`): at the next but one telegram at
-        the latest when nothing else is in a hurry. RuntimeError when SINGLES_MAX wait, or it does.
+        the latest when nothing else is in a hurry. RuntimeError when 8 wait, or it does.
         """
         if telegram_outside.state == pkw.PENDING:
             raise RuntimeError("%r is pending already" % (telegram_outside,))
@@ -160,7 +164,7 @@ class Turns:
             if self._ahead is not None:
                 raise RuntimeError("%r is to go ahead of everything already" % (self._ahead,))
         elif following == self._singles_out:
-            raise RuntimeError("%d telegrams wait already" % SINGLES_MAX)
+            raise RuntimeError("%d telegrams wait already" % _SINGLES_MAX)
         telegram_outside.state = pkw.PENDING
         telegram_outside.silent = 0
         if telegram_outside.ahead:
@@ -257,12 +261,14 @@ class Turns:
             drive, self._ahead = self._ahead, None
             attention[ANY] = 1
             return drive
-        drive = self._find(COMMANDS, 2)
-        if drive is not None:
-            return drive
+        rows = calling(attention, NODES, ANY)
+        if rows & _COMMANDS:
+            drive = self._find(COMMANDS, 2)
+            if drive is not None:
+                return drive
         extra, self._extra = self._extra, 0
-        if extra < OVERDUE_IN_A_ROW:
-            drive = self._find(OVERDUE, 1)
+        if rows & _OVERDUE and extra < _OVERDUE_IN_A_ROW:
+            drive = self._next_overdue()
             if drive is not None:
                 self._extra = extra + 1
                 return drive
@@ -271,18 +277,35 @@ class Turns:
             attention[ANY] = 1
             return drive
         if extra:
-            attention[ANY] = 1
+            if rows or self._singles_out != self._singles_in:
+                attention[ANY] = 1
+            if rows & _OVERDUE:
+                self._spare_next()
             return None
-        drive = self._find(WANTS, 1) if self._single_last else None
+        drive = self._find(WANTS, 1) if rows & _WANTS and self._single_last else None
         self._single_last = False
         if drive is None:
             drive = self._next_single()
             self._single_last = drive is not None
-        if drive is None:
+        if drive is None and rows & _WANTS:
             drive = self._find(WANTS, 1)
         if drive is not None:
             self._extra = 1
         return drive
+
+    def _next_overdue(self):
+        attention = self._attention
+        address = greatest(attention, OVERDUE, NODES, self._look_from)
+        attention[OVERDUE + address] = 0  # it is asked now
+        attention[ANY] = 1
+        self._look_from = address
+        return self._at[address]
+
+    def _spare_next(self):
+        """Whoever has its turn in the list now is not overdue any more."""
+        position = self._next if self._next < self.round_count else 0
+        if position < self.round_count:
+            self._attention[OVERDUE + self.round[position].address] = 0
 
     def _find(self, row, least):
         """Of the drives that have called in this row, the one that is in the greatest hurry, and
@@ -290,7 +313,7 @@ class Turns:
         each time: an interrupt must not take long.
         """
         attention = self._attention
-        for _ in range(NODES if row == COMMANDS else FORGOTTEN_MAX):
+        for _ in range(NODES if row == COMMANDS else _FORGOTTEN_MAX):
             address = greatest(attention, row, NODES, self._look_from)
             if address < 0:
                 return None

@@ -33,6 +33,7 @@ STW_AT = 11  # in a telegram with a PKW area of 4 words
 
 BOOT_MS = 600
 ON_CHIP = "tools/benching/on_chip.py"
+MASTER_ON_CHIP = "tools/benching/master_on_chip.py"
 
 
 # --- the chip and what is around it -------------------------------------------------------------
@@ -58,13 +59,13 @@ def world_of(kinds, baud, seed=0, **more):
     return world
 
 
-def at_the_prompt(world):
-    """DOWN held at power-on leaves the chip at its prompt; then what is in on_chip.py is there."""
+def at_the_prompt(world, program=ON_CHIP):
+    """DOWN held at power-on leaves the chip at its prompt; then what is in `program` is there."""
     world.down("DOWN")
     world.run(BOOT_MS)
     world.repl.open()
     world.up("DOWN")
-    with open(ON_CHIP) as file:
+    with open(program) as file:
         printed, error = world.repl.execute(file.read())
     if error:
         raise RuntimeError(error)
@@ -195,7 +196,7 @@ def mixed(quick, baud):
     baud = int(baud)
     ms = 3_000 if quick else 10_000
     world = world_of(kinds(31, 0, first=1), baud)
-    at_the_prompt(world)
+    at_the_prompt(world, MASTER_ON_CHIP)
     layouts = [(address,) + drive.layout for address, drive in sorted(world.drives.items())]
     world.repl.begin("mixed(%d, %r, %d)" % (baud, layouts, ms + SETTLE_MS + 1_000))
     world.run(SETTLE_MS)

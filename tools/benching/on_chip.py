@@ -11,10 +11,6 @@ from array import array
 
 import board
 import main
-from hal.pacer import Pacer
-from uss.layout import Layout
-from uss.master import CLOSED, Master
-from uss.timing import Timing
 
 BUCKET_US = 20  # of a table of durations
 BUCKETS = 1000  # the last one holds what is longer, too
@@ -78,29 +74,6 @@ def memory(exchanges, settled_ms):
     finally:
         app.close()
     print(json.dumps({"taken": taken, "exchanges": made, "runs": runs}))
-
-
-def mixed(baud, layouts, ms):
-    """The master alone for so long; layouts: [(address, PKW words, PZD words), ...]."""
-    link = board.make_link(baud)
-    bus = Master(link, Timing(baud), board.clock.ticks_mask)
-    for address, pkw_words, pzd_words in layouts:
-        bus.add(address, Layout(pkw_words, pzd_words))
-    pacer = Pacer(bus, link, board.clock, board.timer)
-    bus.refresh(time.ticks_us())
-    pacer.start()
-    began = time.ticks_ms()
-    try:
-        while bus.phase != CLOSED:
-            bus.refresh(time.ticks_us())
-            pacer.tend()
-            time.sleep_ms(1)
-            if time.ticks_diff(time.ticks_ms(), began) > ms:
-                bus.close()
-    finally:
-        pacer.stop()
-    silent = [drive.address for drive in bus.drives if not drive.contact]
-    print(json.dumps({"silent": silent, "counters": bus.counters()}))
 
 
 def step_for(app, ms):

@@ -28,11 +28,11 @@ PARAMETERS = (  # what is shown, number, index, highest value or None: read only
 
 KEYS = ("UP", "DOWN", "NEXT", "PREVIOUS", "EDIT", "SET")
 
-READ_MS = const(500)  # between an answer and the next question
-EEPROM_MS = const(1_500)  # SET is held so long
-FAST_SPAN = const(100)  # values of a smaller range move by ones, however long the key is held
+_READ_MS = const(500)  # between an answer and the next question
+_EEPROM_MS = const(1_500)  # SET is held so long
+_FAST_SPAN = const(100)  # values of a smaller range move by ones, however long the key is held
 
-MARK_COLUMN = const(12)
+_MARK_COLUMN = const(12)
 GLYPHS = (bytes((BUSY,)), bytes((EDITS,)))
 
 ASK = {profiles.CUTS_OFF: texts.ASK_CUTS_OFF, profiles.RESCALES: texts.ASK_RESCALES}
@@ -105,7 +105,7 @@ class Parameters:
         if not self._editing:
             self._panel.say(texts.EDIT_FIRST if highest is not None else texts.READ_ONLY, now_ms)
             return
-        pace = acts.pace(100 if highest > FAST_SPAN else 1)
+        pace = acts.pace(100 if highest > _FAST_SPAN else 1)
         self._edited = max(0, min(highest, self._edited + direction * pace))
 
     def _set(self, now_ms):
@@ -177,13 +177,13 @@ class Parameters:
             else:
                 self._set_at_ms = None
         elif self._set_at_ms is not None:
-            if elapsed(now_ms, self._set_at_ms, self._mask) >= EEPROM_MS:
+            if elapsed(now_ms, self._set_at_ms, self._mask) >= _EEPROM_MS:
                 self._write(now_ms, True)
 
     def _ask(self, now_ms):
         waited_ms = elapsed(now_ms, self._read_at_ms, self._mask)
         drive = self._control.drive
-        if (self._due or waited_ms >= READ_MS) and not drive.channel.is_full():
+        if (self._due or waited_ms >= _READ_MS) and not drive.channel.is_full():
             _, number, index, _ = PARAMETERS[self._row]
             self._job.aim(pkw.READ, number, index)
             drive.ask(self._job)
@@ -227,4 +227,4 @@ class Parameters:
             unknown = texts.REFUSED_VALUE if self._refused else texts.UNREAD_VALUE
             screen.put(1, texts.PARAMETER_WIDTH, texts.VALUE_WIDTH, unknown)
         mark = GLYPHS[BUSY] if self._writing else GLYPHS[EDITS] if self._editing else b""
-        screen.put(1, MARK_COLUMN, 1, mark)
+        screen.put(1, _MARK_COLUMN, 1, mark)

@@ -10,8 +10,8 @@ from micropython import const
 from panel import texts
 from uss.timing import elapsed
 
-TURN_MS = const(1_500)
-STALE_MS = const(30_000)
+_TURN_MS = const(1_500)
+_STALE_MS = const(30_000)
 
 
 class Question:
@@ -49,13 +49,13 @@ class Question:
 
     def draw(self, screen, now_ms):
         turns, choice = self._text
-        turn = self._shown_for(now_ms) // TURN_MS
+        turn = self._shown_for(now_ms) // _TURN_MS
         screen.put(0, 0, texts.ROW_WIDTH, turns[turn % len(turns)])
         screen.put(1, 0, texts.ROW_WIDTH, choice)
 
     def is_stale(self, now_ms):
         """Whether it has been there so long that whoever caused it is gone."""
-        return self._shown_for(now_ms) >= STALE_MS
+        return self._shown_for(now_ms) >= _STALE_MS
 
     def _shown_for(self, now_ms):
         if self._shown_at is None:

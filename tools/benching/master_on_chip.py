@@ -1,0 +1,33 @@
+"""What the bench runs inside the emulated chip besides on_chip.py: the master without a panel."""
+
+import json
+import time
+
+import board
+from hal.pacer import Pacer
+from uss.layout import Layout
+from uss.master import CLOSED, Master
+from uss.timing import Timing
+
+
+def mixed(baud, layouts, ms):
+    """The master alone for so long; layouts: [(address, PKW words, PZD words), ...]."""
+    link = board.make_link(baud)
+    bus = Master(link, Timing(baud), board.clock.ticks_mask)
+    for address, pkw_words, pzd_words in layouts:
+        bus.add(address, Layout(pkw_words, pzd_words))
+    pacer = Pacer(bus, link, board.clock, board.timer)
+    bus.refresh(time.ticks_us())
+    pacer.start()
+    began = time.ticks_ms()
+    try:
+        while bus.phase != CLOSED:
+            bus.refresh(time.ticks_us())
+            pacer.tend()
+            time.sleep_ms(1)
+            if time.ticks_diff(time.ticks_ms(), began) > ms:
+                bus.close()
+    finally:
+        pacer.stop()
+    silent = [drive.address for drive in bus.drives if not drive.contact]
+    print(json.dumps({"silent": silent, "counters": bus.counters()}))
