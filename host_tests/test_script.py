@@ -109,6 +109,64 @@ def test_hang_and_reset():
     assert session.world.resets == 1
 
 
+def test_a_lasting_fault_and_a_warning():
+    session = Session()
+    session.do("wait 1000", "fault 1 F0001 lasting", "wait 1500", "press STOP", "wait 500")
+    session.do("expect FAULT F0001", "wait 1500", "clear 1", "press STOP", "wait 800")
+    session.do("expect READY")
+    session.do("warn 1 A0501")
+    assert session.world.drives[1].read(2110, 0) == 501
+    session.do("warn 1 A0501 off", "load 1 80 constant", "supply 1 300", "supply 1 400")
+    assert session.world.drives[1].read(2110, 0) == 0
+
+
+def test_the_line_gets_its_faults():
+    session = Session()
+    session.do("wait 1000", "line flip 0.01", "line noise 2", "wait 5000")
+    kind, rest = session.do("line flip")[0].split(": ")
+    rate, times = rest.split(", ")
+    assert (kind, rate) == ("flip", "0.01") and int(times.split()[0]) > 20
+    session.do("line calm", "wait 1000")
+    good = session.world.drives[1].read(2025)
+    session.do("wait 2000", "expect READY")
+    assert session.world.drives[1].read(2025) == good
+    session.world.check()
+
+
+def test_one_fault_at_a_time():
+    session = Session(addresses=(1, 2))
+    session.do("wait 1000", "strike flip 3", "strike lost", "strike cut 5", "strike foreign 9")
+    session.do("strike noise 4", "late 2 30", "wait 300")
+    count = session.world.wire.faults.count
+    struck = {kind: times for kind, times in count.items() if times}
+    assert struck == {"flip": 3, "lost": 1, "cut": 1, "foreign": 1, "noise": 1, "late": 1}
+    session.do("babble 800", "wait 900")
+    assert count["babble"] == 1
+    session.do("wait 1000", "expect READY")
+    session.world.check()
+
+
+def test_a_cut_wire_and_a_dip_of_the_mains():
+    session = Session()
+    session.do("wait 1000", "cut 1", "wait 1500", "expect NO CONTACT", "mend", "wait 1000")
+    session.do("expect READY", "cut panel hears", "wait 1500", "expect NO CONTACT", "mend")
+    session.do("wait 1000", "expect READY", "press START", "wait 2000", "expect RUNNING")
+    session.do("dip 200 drives", "wait 1000")
+    assert session.world.resets == 0 and session.world.drives[1].state != "running"
+    session.do("dip 200")
+    assert session.world.resets == 1
+    session.do("wait 3000", "expect READY")
+    session.world.check()
+
+
+def test_a_twin_and_an_echo_are_switched():
+    session = Session()
+    session.do("wait 1000", "line twin 1", "line echo on", "wait 1000")
+    assert session.world.wire.echo and session.world.wire.faults.count["twin"] > 5
+    session.do("line twin off", "line echo off", "wait 2000", "expect READY")
+    session.world.check()
+
+
 def test_power_that_is_cut_is_back_at_once_and_the_display_begins_anew():
     session = Session()
     session.do("wait 1000", "press START", "wait 1000", "power cut")
@@ -169,6 +227,26 @@ def test_what_cannot_be_understood_names_script_and_line_and_does_nothing():
         ("fault 1 Fx", "Fx is no fault"),
         ("fault 1 F0000", "F0000 is no fault"),
         ("fault 1 F10000", "F10000 is no fault"),
+        ("fault 1 F0001 long", "long is none of lasting"),
+        ("warn 1 F0501", "F0501 is no warning like A0501"),
+        ("warn 1 A0501 perhaps", "perhaps is neither on nor off"),
+        ("load 1 much", "much is no number"),
+        ("load 1 50 pump", "pump is none of constant fan linear"),
+        ("line", "use: line KIND|calm [RATE]"),
+        ("line flop 1", "no fault of the line is called flop: there are babble cut dip"),
+        ("line flip often", "often is no rate: a number, on or off"),
+        ("line flip 2", "flip has a rate from 0 to 1 of the characters"),
+        ("line wire-cut -1", "wire cut has a rate from 0 on an hour"),
+        ("line twin 40", "a twin has an address from 0 to 31"),
+        ("strike", "use: strike KIND [N]"),
+        ("strike echo", "echo is on or off"),
+        ("late 9 30", "no drive at address 9: there are 1"),
+        ("late 1", "use: late A MS"),
+        ("babble", "use: babble MS"),
+        ("cut 9", "no drive at address 9"),
+        ("cut panel sideways", "sideways is none of both hears talks"),
+        ("dip", "use: dip MS"),
+        ("dip 200 lights", "lights is none of all drives panel"),
         ("expect", "use: expect TEXT"),
         ("bus", "use: bus N"),
         ("bus all", "all is no number"),
@@ -202,7 +280,7 @@ def test_what_the_firmware_raises_is_no_mistake_of_the_script():
 def test_a_drive_that_is_off_cannot_trip():
     session = Session()
     session.world.drives[1].power_off()
-    assert "drive 1 is off (use: fault A F0001)" in session.refused("fault 1 F0001")
+    assert "drive 1 is off (use: fault A F0001 [lasting])" in session.refused("fault 1 F0001")
 
 
 def test_the_line_number_is_that_of_the_script():

@@ -160,6 +160,47 @@ def test_two_talkers_at_once_meet_silence():
     assert bench.ask(request)
 
 
+def test_at_another_baud_rate_everything_is_a_frame_error():
+    # One for each time that the line was idle, by the drive's own rate.
+    bench = Bench({2010: 6})  # 9600 on a line of 19200
+    for count in range(1, 6):
+        bench.wait(0.01)
+        assert bench.ask(telegram(1, 0, 0, 0, 0, OFF1, 0)) is None
+        assert bench.counters() == [0, count, count, 0, 0, 0, 0, 0]
+    bench.send(telegram(1, 0, 0, 0, 0, OFF1, 0))
+    bench.send(telegram(1, 0, 0, 0, 0, OFF1, 0))  # no pause for a drive at half the rate
+    assert bench.drive.read(2026) == 6
+    bench.drive.write(2010, 0, 7)
+    assert bench.ask(telegram(1, 0, 0, 0, 0, OFF1, 0))
+
+
+def test_the_error_status_word_tells_what_went_wrong_since_the_last_good_telegram():
+    # SPEC, item 4.
+    good = telegram(1, 0, 0, 0, 0, OFF1, 0)
+    bench = Bench({2014: 200})
+    for bad, status in (
+        (b"\x03", 0x08), (good[:-1] + b"\x00", 0x10), (b"\x02\x03\x01\x00", 0x40),
+        (good[:9], 0x20),
+    ):  # fmt: skip
+        bench.ask(good)
+        assert bench.drive.error_status == 0
+        bench.send(bad)
+        bench.wait(0.05)
+        assert bench.drive.error_status == status, bad
+    bench.wait(1)
+    assert bench.drive.error_status == 0xA0, "the telegram failure time as well"
+    assert bench.drive.watchdog_errors == 1 and bench.drive.residual_time_errors == 1
+
+
+def test_a_telegram_that_never_ends_is_counted_when_its_time_is_over():
+    bench = Bench()
+    bench.send(telegram(1, 0, 0, 0, 0, OFF1, 0)[:9])  # 12,891 us from the STX on
+    bench.clock.advance(8_300)
+    assert bench.drive.residual_time_errors == 0
+    bench.clock.advance(200)
+    assert bench.drive.residual_time_errors == 1
+
+
 def test_the_reply_comes_after_three_characters():
     # Measured on a MICROMASTER 420: 13.8 ms at 2400 bit/s (S4). SPEC allows 2 characters to 20 ms.
     for baud in (2400, 9600, 19200, 115200):

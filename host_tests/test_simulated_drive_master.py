@@ -154,7 +154,7 @@ def test_browsing_by_what_comes_with_an_error():
     job = pkw.write_word(2011, 40)
     assert line.refused(job) == 2 and (job.next, job.previous) == (31, 31)
     line = Line(**kind_of(mm440, VARIABLE))
-    numbers, number = [], 1
+    numbers, number = [], 0
     while True:
         job = line.do(pkw.read(number))
         if job.state == pkw.DONE:

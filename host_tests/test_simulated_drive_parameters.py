@@ -5,6 +5,7 @@ the MICROMASTER 420 Reference Manual, OI440 the MICROMASTER 440 Operating Instru
 """
 
 from drive_bench import HALF, OFF1, RUN, Bench, float_words, from_hex, telegram
+
 # What, PKE, IND, PWE1, PWE2, reply PKE, PWE2
 REFUSALS = (
     ("unknown number", 0x1001, 0, 0, 0, 0x7001, 0),
@@ -24,7 +25,7 @@ REFUSALS = (
     ("P0700 cannot be 3", 0x22BC, 0, 0, 3, 0x72BC, 104),
     ("P2013 cannot be 5", 0x200D, 0x8000, 0, 5, 0x700D, 104),
     ("all elements do not fit", 0x600A, 0x80FF, 0, 0, 0x700A, 102),
-    ("description", 0x4034, 0x0007, 0, 0, 0x7034, 106),
+    ("description, of an element that none has", 0x4034, 0x000B, 0, 0, 0x7034, 9),
     ("description, writing", 0x5034, 0x0007, 0, 0, 0x7034, 106),
     ("reserved task", 0xA2BC, 0, 0, 0, 0x72BC, 106),
     ("text", 0xF2BC, 0, 0, 0, 0x72BC, 106),
@@ -211,12 +212,13 @@ def test_variable_length():
         ((0x23E8, 0, 1, OFF1, 0), (0x13E8, 0, 1, 0xFA31, 0)),
         ((0x23E8, 0, 0, 5, OFF1, 0), (0x13E8, 0, 5, 0xFB31, 0)),
         ((0x23E8, 0, 2, 0, OFF1, 0), (0x13E8, 0, 2, 0xFB31, 0)),
-        ((0x23E8, 0, 5, 1, OFF1, 0), (0x13E8, 0, 5, 0xFB31, 0)),
+        ((0x23E8, 0, 2, 1, OFF1, 0), (0x13E8, 0, 1, 0xFA31, 0)),  # PWE2 unless it is 0
+        ((0x23E8, 0, 5, 0, OFF1, 0), (0x13E8, 0, 5, 0xFB31, 0)),
         ((0, 0, 0, OFF1, 0), (0, 0, 0, 0xFB31, 0)),
         ((OFF1, 0), (0xFB31, 0)),
         # error 0 comes with the next number that exists
-        ((0x1001, 0, 0, OFF1, 0), (0x7001, 0, 0, 3, 0xFB31, 0)),
-        ((0x176C, 0x8000, 0, OFF1, 0), (0x776C, 0x8000, 0, 0, 0xFB31, 0)),  # P3900: none above
+        ((0x1001, 0, 0, OFF1, 0), (0x7001, 0, 0, 2, 0xFB31, 0)),  # V60
+        ((0x17CF, 0x8000, 0, OFF1, 0), (0x77CF, 0x8000, 0, 0, 0xFB31, 0)),  # P3999: none above
         ((0x343A, 0, 0x4220, OFF1, 0), (0x743A, 0, 102, 0xFB31, 0)),
     ):
         assert bench.ask(telegram(1, *request)) == telegram(1, *reply), request

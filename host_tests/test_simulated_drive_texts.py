@@ -4,7 +4,7 @@ Only the drive of the specification has them all. Section numbers are those of t
 specification ("SPEC"); the vectors SP7 and SP8 are its own examples.
 """
 
-from boards.sim import generic, mm420, mm440
+from boards.sim import g110, generic, mm3, mm420, mm440, v20
 from drive_bench import OFF1, Bench, float_words, from_hex, telegram
 
 VARIABLE = 127
@@ -67,7 +67,21 @@ def test_descriptions_that_there_are_not():
     assert bench.exchange(0x4460, 8, 0, 0, OFF1, 0)[:4] == [0x3460, 8] + list(float_words(650.0))
     assert bench.exchange(0x4460, 6, 0, 0, OFF1, 0)[:4] == [0x7460, 6, 0, 9]
     assert bench.exchange(0x4460, 255, 0, 0, OFF1, 0)[:4] == [0x7460, 255, 0, 9]
-    assert Bench(family=mm420).exchange(0x4460, 8, 0, 0, OFF1, 0)[3] == 106
+    assert Bench(family=mm3).exchange(0x4002, 8, 0, OFF1, 0)[2] == 106
+
+
+def test_a_micromaster_4_tells_more_in_variable_length():
+    # Elements 1, 2, 7, 8 and 9 always, 3, 4, 6 and 255 in variable length: a choice.
+    for pkw_words, there in ((4, (1, 2, 7, 8, 9)), (VARIABLE, (1, 2, 3, 4, 6, 7, 8, 9, 255))):
+        for family in (mm420, mm440, g110, v20):
+            bench = Bench({2013: pkw_words, 2014: 0}, family=family)
+            for which in tuple(range(12)) + (255,):
+                words = [0x4460, which] + [0] * (2 if pkw_words == 4 else 1) + [OFF1, 0]
+                reply = bench.exchange(*words)[:-2]
+                assert (reply[0] == 0x3460) == (which in there), (family.NAME, which)
+                assert which in there or reply[-1] == 9
+                if which == 6 and which in there:
+                    assert text_of(reply[2:]) == "ramp-up time    "
 
 
 def test_an_element_that_does_not_fit():

@@ -72,8 +72,9 @@ class Picture:
         end: a command being typed, or what came of it. broken: a rule of the line that was
         broken. speed: how fast the world's time passes.
         """
-        lines = [self._title(speed)] + self._panel() + [HELP, "", DRIVES_HEAD]
-        lines += self._drives() + ["", TELEGRAMS_HEAD]
+        lines = [self._title(speed)] + self._panel() + [HELP, ""]
+        lines += [DRIVES_HEAD] + self._drives() + [""] if self._world.drives else []
+        lines.append(TELEGRAMS_HEAD)
         room = ROWS - SAID_ROWS - 1 - len(lines)
         lines += [telegram_line(*telegram) for telegram in telegrams[-room:]]
         lines += [""] * (ROWS - SAID_ROWS - 1 - len(lines))

@@ -32,10 +32,10 @@ ENTERS = ("\r", "\n")
 COMMAND_MAX = 70
 KEY_COMMANDS = ("down", "up")
 QUITS = ("quit", "q")
-HELP = (
-    " ".join(ORDER[:-2]),
-    " ".join(ORDER[-2:]) + " help quit; a command that misses something says how it is used",
-)
+HELP_WORDS = ORDER + ("help", "quit;", "half of one says its use")
+HELP = (" ".join(HELP_WORDS[:15]), " ".join(HELP_WORDS[15:]))
+LEFT = "every drive was sent OFF1."
+LINE_CUT = "the line is cut, and no drive could be sent OFF1."
 WAITING = "waiting, %d s left (space: STOP, Esc: no further): %s"
 
 KEYS = {letter: key for letter, key in LETTERS}
@@ -52,7 +52,10 @@ def live(world, speed, said=()):
     there = True
     try:
         terminal.open()
-        run(session, terminal, Pace(world.clock, session, speed, time))
+        if world.port is None:
+            run(session, terminal, Pace(world.clock, session, speed, time))
+        else:
+            run(session, terminal, RealPace(world.clock, session))
     except EOFError:
         there = False
     finally:
@@ -142,6 +145,27 @@ class Pace:
             self._measured_us = world_us
 
 
+class RealPace:
+    """As `Pace`, where the world's time is the real one: to let it pass is to wait."""
+
+    late = True  # nobody else has to wait
+    speed = 1.0
+
+    def __init__(self, clock, session):
+        self._clock = clock
+        self._run = session.run
+        self._hand = session.hand
+
+    @property
+    def now_ms(self):
+        return self._clock.now_us // 1000
+
+    def follow(self):
+        for _ in range(FRAME_MS // SLICE_MS):
+            self._hand.step(self.now_ms)
+            self._run(SLICE_MS)
+
+
 class Session:
     """What a person does to the world, and sees of it, whatever the terminal: strokes and lines.
 
@@ -197,6 +221,10 @@ class Session:
 
     def lines(self, now_ms, speed):
         """The picture now; now_ms is real time, speed the true one."""
+        if self._world.notices:
+            for line in self._world.notices:
+                self._print(line)
+            self._world.notices = []
         world_us = self._world.clock.now_us
         self._picture.turn(world_us - self._drawn_us)
         self._drawn_us = world_us
@@ -290,7 +318,9 @@ class Session:
             self._print("done: " + command)
 
     def _print(self, line):
-        """Say a line, on in the next one where it is too long; the last two are kept."""
+        """Say a line, on in the next one where it is too long. The last two are kept; of one that
+        is longer than that, the beginning."""
+        line = line[: SAID_ROWS * COLUMNS]
         for start in range(0, len(line), COLUMNS):
             self.said.append(line[start : start + COLUMNS])
         self.said = self.said[-SAID_ROWS:]
@@ -324,6 +354,8 @@ def turning(world):
 def farewell(world, ran):
     """What the panel says when it has gone; ran: what `turning` answered before."""
     seconds = world.clock.now_us // 1_000_000
+    if world.port is not None:
+        return "USS panel: ended; " + (LINE_CUT if world.port.is_cut else LEFT)
     text = "USS panel: ended after %d:%02d:%02d of the world's time; " % (
         seconds // 3600, seconds // 60 % 60, seconds % 60,
     )  # fmt: skip

@@ -1,14 +1,17 @@
 """What ./tools/panel runs: the panel's firmware on the virtual board, live or driven by a script.
 
 With --board pico it is the firmware file for the Raspberry Pi Pico on an emulated one: then this
-runs under emulator/launch.py. Runs on MicroPython. Exit status: 0, 1 when an expectation failed or
+runs under emulator/launch.py. With --port it talks on a real line, in real time, and runs under
+port_launch.py. Runs on MicroPython. Exit status: 0, 1 when an expectation failed or
 a rule of the line was broken, 2 when the command line or a script cannot be understood, 4 with a
 traceback when the firmware or the simulation failed, 130 after Ctrl-C.
 """
 
 import gc
 import os
+import select
 import sys
+import time
 
 import main
 from boards.sim import mm420
@@ -48,11 +51,15 @@ SPEED_MAX = 100
 # Bytes between two collections. Left alone, MicroPython fills the heap first, and takes ten times
 # as long for everything while it looks for the last holes in it.
 COLLECT_AFTER = 1_000_000
+SLICE_MS = 10  # of real time, between two looks at standard input
+REPLY_TIMEOUT_MS = 20, 500
+PORT_REPLY_TIMEOUT_MS = 60  # 20 ms, and what an adapter keeps back on the way there and back
 
 USAGE = """\
 usage: ./tools/panel [--speed N] [--drives 1,2,5] [--baud 19200] [--settings FILE] ...
        ./tools/panel --script FILE|- ...
        ./tools/panel --board pico [--flash FILE] ...
+       ./tools/panel --port PATH [--reply-timeout MS] [--script FILE|-] ...
 
   --speed N       in a terminal: time passes N times as fast, 1...100 (1)
   --script FILE   do the commands in FILE, or from standard input (-), in virtual time
@@ -67,6 +74,12 @@ usage: ./tools/panel [--speed N] [--drives 1,2,5] [--baud 19200] [--settings FIL
                   emulated one (sim). Not with --settings, --polled and --keys matrix
   --flash FILE    pico: keep the chip's flash in FILE, and with it the settings of the panel
   --display KIND  pico: wires, four data lines, or backpack, on I2C (wires)
+  --port PATH     talk to real drives on this serial port, which is set to 8E1 at --baud, or on a
+                  pty, in real time; wait and hold in a script take theirs. --drives are those that
+                  the panel looks for. Not with --speed, --seed, --polled, --board
+  --reply-timeout MS
+                  port: how long a drive may take to answer, 20...500, the adapter's own delay
+                  included (60, or that of the settings). It delays a STOP as well
   -h, --help      this text
 The simulated drive knows the rates from 1200 to 115200.
 An emulated Pico tells the path of its USB serial port, for mpremote and tools/deploy.
@@ -75,6 +88,10 @@ Without --script, in a terminal: the live panel. It shows its keys; q ends it.""
 
 class UsageError(Exception):
     """The command line asks for something that cannot be."""
+
+
+class PortFailed(Exception):
+    """The serial port cannot be had; the text says why."""
 
 
 class StreamError(Exception):
@@ -98,7 +115,7 @@ def baud_rate(word):
     if not word.isdigit() or int(word) not in BAUD_RATES:
         rates = " ".join(str(rate) for rate in BAUD_RATES)
         raise UsageError("--baud %s: USS knows %s" % (word, rates))
-    return known_to_drives(int(word))
+    return int(word)
 
 
 def known_to_drives(baud):
@@ -116,6 +133,13 @@ def number(word):
 def speed_factor(word):
     if not word.isdigit() or not 1 <= int(word) <= SPEED_MAX:
         raise UsageError("--speed %s: time passes 1...%d times as fast" % (word, SPEED_MAX))
+    return int(word)
+
+
+def milliseconds(word):
+    lowest, highest = REPLY_TIMEOUT_MS
+    if not word.isdigit() or not lowest <= int(word) <= highest:
+        raise UsageError("--reply-timeout %s: %d...%d ms" % (word, lowest, highest))
     return int(word)
 
 
@@ -149,6 +173,8 @@ OPTIONS = {
     "--board": ("board", "sim", one_of("--board", "sim", "pico")),
     "--flash": ("flash", None, str),
     "--display": ("display", None, one_of("--display", "wires", "backpack")),
+    "--port": ("port", None, str),
+    "--reply-timeout": ("reply_timeout", None, milliseconds),
     "--help": ("help", False, None),
     "-h": ("help", False, None),
 }
@@ -157,6 +183,9 @@ OPTIONS = {
 # Options that one board alone knows.
 ONLY_SIM = ("--settings", "--polled", "--keys")
 ONLY_PICO = ("--flash", "--display")
+# Options that mean nothing on a real line, and the one that means something only there.
+NOT_PORT = ("--speed", "--seed", "--polled", "--board") + ONLY_PICO
+ONLY_PORT = ("--reply-timeout",)
 
 
 def options(words):
@@ -180,12 +209,23 @@ def options(words):
 
 
 def fit_for_board(chosen):
-    """UsageError: an option that the board does not know."""
+    """UsageError: an option that the board, or the real line, does not know."""
     board = chosen["board"]
-    for option in ONLY_SIM if board == "pico" else ONLY_PICO:
+    if chosen["port"] is not None:
+        refuse(chosen, NOT_PORT, "%s is not for --port: the line is a real one, in real time")
+        return
+    if chosen["baud"] is not None:
+        known_to_drives(chosen["baud"])
+    refuse(chosen, ONLY_PORT, "%s is for --port")
+    refuse(chosen, ONLY_SIM if board == "pico" else ONLY_PICO, "%s is not for --board " + board)
+
+
+def refuse(chosen, names, why):
+    """UsageError: one of these options was given."""
+    for option in names:
         name, default, _ = OPTIONS[option]
         if chosen[name] != default:
-            raise UsageError("%s is not for --board %s" % (option, board))
+            raise UsageError(why % option)
 
 
 def world_of(chosen):
@@ -196,12 +236,9 @@ def world_of(chosen):
     fit_for_board(chosen)
     if chosen["board"] == "pico":
         return pico_world(chosen)
-    store, kept = None, None
-    if chosen["settings"] is not None:
-        try:
-            store, kept = store_of(chosen["settings"], chosen["drives"], chosen["baud"])
-        except OSError as error:
-            raise UsageError("--settings %s: cannot be kept (%s)" % (chosen["settings"], error))
+    store, kept = kept_settings(chosen)
+    if chosen["port"] is not None:
+        return port_world(chosen, store, kept)
     drives, baud, said = fitting(chosen, kept, chosen["settings"])
     world = World(
         main.start,
@@ -213,6 +250,61 @@ def world_of(chosen):
         store=store,
     )
     return world, said
+
+
+def kept_settings(chosen):
+    """The store of --settings and what it holds; None and None without it."""
+    path = chosen["settings"]
+    if path is None:
+        return None, None
+    try:
+        return store_of(path, chosen)
+    except OSError as error:
+        raise UsageError("--settings %s: cannot be kept (%s)" % (path, error))
+
+
+def port_world(chosen, store, kept):
+    """As `world_of`: a real line."""
+    from boards.sim.port_world import PortWorld
+    from boards.sim.real_clock import RealClock
+    from tools.port_client import Port, PortError
+
+    if kept:
+        for option, given, named in (
+            ("--drives", chosen["drives"], kept.drives),
+            ("--baud", chosen["baud"], kept.baud),
+            ("--reply-timeout", chosen["reply_timeout"], kept.reply_timeout_ms),
+        ):
+            if given not in (None, named):
+                said = (chosen["settings"], str(named).strip("(,)").replace(" ", ""))
+                raise UsageError("%s: %s says %s" % ((option,) + said))
+    drives = kept.drives if kept else chosen["drives"] or (1,)
+    baud = kept.baud if kept else chosen["baud"] or 19200
+    timeout_ms = chosen["reply_timeout"] or PORT_REPLY_TIMEOUT_MS
+    try:
+        port = Port()
+        port.open(chosen["port"], baud)
+    except PortError as error:
+        raise PortFailed(error)
+    world = PortWorld(
+        main.start, port, drives, baud, RealClock(Stopwatch().read_us),
+        {"reply_timeout_ms": timeout_ms}, keys=chosen["keys"], store=store,
+    )  # fmt: skip
+    return world, []
+
+
+class Stopwatch:
+    """True microseconds since it was made."""
+
+    def __init__(self):
+        self._seen = time.ticks_us()
+        self._passed_us = 0
+
+    def read_us(self):
+        now = time.ticks_us()
+        self._passed_us += time.ticks_diff(now, self._seen)
+        self._seen = now
+        return self._passed_us
 
 
 def pico_world(chosen):
@@ -307,8 +399,8 @@ def keep_flash(world, path):
         complain("--flash %s: was not kept (%s)" % (path, error))
 
 
-def store_of(path, drives, baud):
-    """The store in this file, and the settings in it. A new file gets these drives and this rate.
+def store_of(path, chosen):
+    """The store in this file, and the settings in it. A new file gets what was chosen.
 
     OSError: it cannot be read or written. UsageError: it is a folder, a pipe or the like, which
     could keep the panel waiting for ever.
@@ -321,7 +413,9 @@ def store_of(path, drives, baud):
         if error.args[0] != ENOENT:
             raise
         new = load(store)
-        new.drives, new.baud = drives or new.drives, baud or new.baud
+        new.drives, new.baud = chosen["drives"] or new.drives, chosen["baud"] or new.baud
+        if chosen["port"] is not None:
+            new.reply_timeout_ms = chosen["reply_timeout"] or PORT_REPLY_TIMEOUT_MS
         save(store, new)
     store.read()  # what `load` would make the best of is an error here
     return store, load(store)
@@ -335,10 +429,10 @@ def difference(path, kept, drives):
     return ["by %s the panel looks for drives %s; there are %s" % (path, kept, drives)]
 
 
-def lines_of(name):
+def lines_of(name, world):
     """The lines of a script. Those of standard input are done as they come."""
     if name == "-":
-        return standard_input()
+        return standard_input() if world.port is None else typed_meanwhile(world)
     try:
         with open(name) as script:
             return script.read().lstrip(BYTE_ORDER_MARK).split("\n")
@@ -361,6 +455,39 @@ def standard_input():
         yield line
 
 
+def typed_meanwhile(world):
+    """The lines of standard input; real time goes on while nobody types."""
+    poller = select.poll()
+    poller.register(sys.stdin, select.POLLIN)
+    line = b""
+    while True:
+        while not poller.poll(0):
+            world.run(SLICE_MS)
+            tell_notices(world)
+        try:
+            character = sys.stdin.buffer.read(1)
+        except OSError as error:
+            raise StreamError(error)
+        if character and character != b"\n":
+            line += character
+            continue
+        try:
+            yield line.decode()
+        except UnicodeError:
+            raise UsageError("standard input is no text")
+        if not character:
+            return
+        line = b""
+
+
+def tell_notices(world):
+    """What has happened to the line."""
+    if world.notices:
+        for line in world.notices:
+            complain(line)
+        world.notices = []
+
+
 def show(line):
     try:
         print(line)
@@ -369,7 +496,8 @@ def show(line):
 
 
 def run_script(world, name):
-    Script(world, "standard input" if name == "-" else name, show).run(lines_of(name))
+    script = Script(world, "standard input" if name == "-" else name, show)
+    script.run(lines_of(name, world))
 
 
 def panel(words):
@@ -390,8 +518,12 @@ def panel(words):
             else:
                 run_script(world, chosen["script"])
         finally:
+            if chosen["port"] is not None:
+                leave_line(world)
             if chosen["flash"] is not None:
                 keep_flash(world, chosen["flash"])
+    except PortFailed as error:
+        return complain(error, FAILED)
     except UsageError as error:
         return complain("%s\n%s" % (error, USAGE), NOT_UNDERSTOOD)
     except ScriptError as error:
@@ -408,6 +540,14 @@ def panel(words):
         sys.print_exception(error, sys.stderr)
         return complain("the firmware or the simulation failed", CRASHED)
     return judged(world)
+
+
+def leave_line(world):
+    """Every drive is stopped first; the live panel has done that already."""
+    world.close()
+    tell_notices(world)
+    if world.unconfirmed():
+        complain("OFF1 not confirmed by drive %s" % ", ".join(map(str, world.unconfirmed())))
 
 
 def judged(world):

@@ -2,41 +2,38 @@
 
 It behaves as the manuals and the USS specification say a drive of its family does, a MICROMASTER
 420 unless told otherwise, written from those documents alone: it shares no code with the panel's
-protocol. It models no currents, no voltages and no torque. Everything happens at the instant it
-would, in virtual time.
+protocol. Currents, voltages and torque are plausible, no more. Everything happens at the instant
+it would, in virtual time.
 
     drive = Drive(clock, wire, 1)           # set up for USS on its RS-485 terminals, address 1
     drive.read(1082)                        # 50.0
     drive.write(1120, 0, 5.0)               # as from its keypad: RAM and EEPROM
     drive.fault(1)                          # trips with F0001
+    drive.load(80)                          # percent; r0027 and the like go by it
+    drive.plant.coast_s = 20.0              # a flywheel: pulses off, 50...0 Hz
     drive.report()                          # "address=1 state=fault hz=0.00 stw=047E ..."
     Drive(clock, wire, 2, family=g110)      # another family: a module such as mm420
 """
 
 from boards.sim import mm420
 from boards.sim.clock import Event
-from boards.sim.drive_parameters import DEFAULT, TYPE, Parameters
+from boards.sim.drive_operations import Operations
+from boards.sim.drive_parameters import Parameters
+from boards.sim.drive_readings import Readings
+from boards.sim.drive_switches import Switches
+from boards.sim.drive_words import RUNNING, STOPPING
 from boards.sim.parameter_channel import ALL_ELEMENTS, ParameterChannel
-from boards.sim.process import (
-    ACTUAL,
-    CONTROL_1,
-    CONTROL_2,
-    COUNTERS,
-    FAULTS,
-    RECEIVED,
-    RUNNING,
-    STATUS_1,
-    STATUS_2,
-    STOPPING,
-    WANTED,
-    Process,
-)
-from boards.sim.slave import BROADCAST, MIRROR, STANDARD, Slave
+from boards.sim.plant import FAN, INERTIA_S
+from boards.sim.inverter import Inverter  # noqa: F401  else `process` does, too deep for unix32
+from boards.sim.process import Process
+from boards.sim.slave import BROADCAST, MIRROR, RESIDUAL_TIME, STANDARD, WATCHDOG, Slave
 
 REPLY_DELAY_CHARACTERS = 3  # measured on a MICROMASTER 420 at 2400 baud
 
+USS = 1  # the protocol, where a family has the choice
+
 # Settings of the link that take effect when the reply to the write is out.
-LATE = ("baud", "address", "pzd words", "pkw words", "save", "acknowledge")
+LATE = ("baud", "address", "pzd words", "pkw words")
 
 
 class Drive:
@@ -50,11 +47,13 @@ class Drive:
                     be set, illegal ones too
     any_baud        True: it talks at the line's rate whatever its P2010 says, for lines that this
                     family does not know
-    stale_replies   telegrams for which a new parameter task still gets the old reply
-    reexecute       a parameter task that stands is carried out with every telegram
+    switches        {name: value} of what the documents leave open, see drive_switches.py; then
+                    an object with an attribute for each
     eeprom_writes   how often something was written into its EEPROM, P0971 counts once
     plugged         whether the RS-485 connector is in
     powered         whether it has mains
+    silent          whether it is busy with P0970 or the like, and deaf
+    plant           what hangs on it, mains, motor and load: plant.py
     """
 
     def __init__(
@@ -67,8 +66,10 @@ class Drive:
         any_baud=False,
         family=mm420,
         reports=False,
+        switches=None,
     ):
         self.family = family
+        self.switches = Switches(switches)
         self._clock = clock
         self._wire = wire
         self.name = "drive %d" % address
@@ -80,23 +81,26 @@ class Drive:
         self.powered = False
         self._connected = False
         link = family.LINK
-        self._parameters = Parameters(
-            family.ROWS, family.PERMITTED, self._reading, link["retained"]
-        )
-        self._process = Process(clock, self._parameters, family)
-        self._slave = Slave(wire)
+        self._parameters = Parameters(family, self._reading)
+        self._process = Process(clock, self._parameters, family, self.switches)
+        self._slave = Slave(wire, self.switches)
         self._slave.takes_broadcast = link["broadcast"]
         self._channel = ParameterChannel(
-            self._parameters, family, self._change_state, self._changed, reports
+            self._parameters, family, self._change_state, self._changed, self.switches, reports
         )
+        self._readings = Readings(family, self._parameters, self._process, self._slave)
+        self._operations = Operations(family, self._parameters, self._process, self.switches)
         self._off_time = self._parameters.ram[link["off time"]]
         self._off_time_unit_us = link["unit us"]
         self._needs_process_data = link["from process data"]
         self._reply = Event(self._send_reply)
         self._failure = Event(self._telegram_failure)
+        self._end_of_silence = Event(self._speak_again)
         self._heard_us = None  # the last telegram, None before the first one
         self._mirrored = None  # what to send back unchanged
         self._with_pkw = True  # variable length: whether the request had PKW words
+        self._speaks_uss = True  # what the connector does is chosen at power-up
+        self._silent = False  # busy with something that a parameter started
         self._unsettled = False  # writes wait for the end of the exchange to take effect
         self._buffer = bytearray(256)
         self._commission(address, parameters or {})
@@ -121,20 +125,28 @@ class Drive:
         return self._process.starts
 
     @property
+    def plant(self):
+        return self._process.plant
+
+    @property
+    def silent(self):
+        return self._silent
+
+    @property
     def stale_replies(self):
-        return self._channel.stale_replies
+        return self.switches.stale_replies
 
     @stale_replies.setter
     def stale_replies(self, count):
-        self._channel.stale_replies = count
+        self.switches.stale_replies = count
 
     @property
     def reexecute(self):
-        return self._channel.reexecute
+        return self.switches.reexecute
 
     @reexecute.setter
     def reexecute(self, on):
-        self._channel.reexecute = on
+        self.switches.reexecute = on
 
     @property
     def eeprom_writes(self):
@@ -144,6 +156,21 @@ class Drive:
     def layout(self):
         """PKW words (0, 3, 4 or 127, variable) and PZD words, as it is set up now."""
         return self._slave.pkw_words, self._slave.pzd_words
+
+    @property
+    def error_status(self):
+        """The error status word of the specification, A-5.2.3: since the last good telegram."""
+        return self._slave.error_status
+
+    @property
+    def residual_time_errors(self):
+        """Telegrams that were not over in time; no parameter shows it, nor the next."""
+        return self._slave.counters[RESIDUAL_TIME]
+
+    @property
+    def watchdog_errors(self):
+        """How often the telegram failure time has expired."""
+        return self._slave.counters[WATCHDOG]
 
     def hz(self):
         """The frequency of the motor, negative to the left."""
@@ -185,11 +212,36 @@ class Drive:
         self._changed(number)
         self._settle()
 
-    def fault(self, number):
-        """Trip with this fault number; its cause is gone at once. ValueError: the drive is off."""
+    def fault(self, number, value=0, lasting=False):
+        """Trip with this fault number. ValueError: the drive is off.
+
+        value: r0949. lasting: its cause stays until `clear_cause`, and so does the fault: neither
+        an acknowledgement nor the power helps. Otherwise it is gone at once.
+        """
         if not self.powered:
             raise ValueError(self.name + " is off")
-        self._process.trip(number)
+        self._process.trip(number, value, lasting)
+
+    def clear_cause(self, number=None):
+        """The cause of a lasting fault is gone, of all of them without a number."""
+        self._process.clear_cause(number)
+
+    def warn(self, number, on=True):
+        """A warning with this number comes, or goes."""
+        self._process.memory.warn(number, on)
+
+    def load(self, percent, kind=FAN, inertia_s=INERTIA_S):
+        """What the motor has to do from now on, in percent of its rated torque.
+
+        kind: CONSTANT, LINEAR or FAN (plant.py): how it depends on the frequency; `percent` is
+        that at the rated one. inertia_s: how long rated torque takes to the rated frequency.
+        More than the drive can give makes it warn, and trip in the end.
+        """
+        self._process.load(percent, kind, inertia_s)
+
+    def supply(self, volts):
+        """The mains have so many volts from now on; 400 before. Below 248 it cannot run."""
+        self._process.supply(volts)
 
     def plug(self):
         """Put the RS-485 connector in."""
@@ -207,6 +259,8 @@ class Drive:
             self.powered = False
             self._clock.cancel(self._reply)
             self._clock.cancel(self._failure)
+            self._clock.cancel(self._end_of_silence)
+            self._silent = False
             self._process.power_off()
             self._connect()
 
@@ -215,9 +269,13 @@ class Drive:
         if not self.powered:
             self.powered = True
             self._parameters.load()
+            self._operations.forget()
+            self._unsettled = False
             self._slave.reset()
             self._channel.reset()
             self._heard_us = None
+            protocol = self.family.LINK["protocol"]
+            self._speaks_uss = protocol is None or self._parameters.ram[protocol][0] == USS
             self._process.power_on()
             self._configure_link()
             self._connect()
@@ -226,10 +284,12 @@ class Drive:
 
     def hear(self, burst):
         """The end of a burst on the line: called by the wire."""
+        if self._silent:
+            return
         form = self._slave.hear(burst)
         if form is None:
             return
-        if not self._needs_process_data or self._has_process_data(form):
+        if self._retriggers(form):
             self._heard_us = self._clock.now_us
             self._supervise()
         if form == BROADCAST:
@@ -240,10 +300,15 @@ class Drive:
             self._mirrored = self._slave.telegram[: self._slave.length]
         else:
             self._take_request()
+            if self._silent:
+                return
         self._clock.schedule(self._reply, burst.end_us + self.reply_delay_us)
 
-    def _has_process_data(self, form):
-        return form == STANDARD and self._slave.pzd_words > 0
+    def _retriggers(self, form):
+        """Whether the telegram failure time starts anew with this telegram."""
+        if form == BROADCAST and not self.switches.broadcast_retriggers:
+            return False
+        return not self._needs_process_data or form == STANDARD and self._slave.pzd_words > 0
 
     def _net_words(self):
         """The PKW and the PZD words of the telegram received."""
@@ -272,14 +337,14 @@ class Drive:
         else:
             slave = self._slave
             words = self._process.words(slave.pzd_words)
-            if self._with_pkw:
+            if self._with_pkw and slave.pkw_words:  # somebody may have changed it meanwhile
                 words = self._channel.reply(slave.pkw_words, slave.pzd_words) + words
             self._wire.talk(self, self._buffer, self._slave.frame(self._buffer, words))
         self._settle()
 
     def _connect(self):
         """Be on the line while plugged and powered. What it is sending when it leaves is cut."""
-        connected = self.plugged and self.powered
+        connected = self.plugged and self.powered and self._speaks_uss
         if connected and not self._connected:
             self._wire.attach(self)
         elif self._connected and not connected:
@@ -296,6 +361,7 @@ class Drive:
             self._clock.cancel(self._failure)
 
     def _telegram_failure(self):
+        self._slave.watchdog_expired()
         self._process.trip(self.family.LINK["fault"])
 
     # Parameters
@@ -320,29 +386,7 @@ class Drive:
         self._parameters.eeprom_writes = 0
 
     def _reading(self, number, index):
-        """The value of a read-only parameter: shown as a frequency, a word or a list."""
-        what, detail = self.family.READINGS.get(number, (None, 0))
-        process = self._process
-        if what in (ACTUAL, WANTED):
-            hz = process.hz() if what == ACTUAL else process.setpoint_hz()
-            if self._parameters.rows[number][TYPE] == "F":
-                return hz * detail
-            return round(abs(hz) * process.steps_per_hz())
-        if what == STATUS_1:
-            return process.zsw()
-        if what == STATUS_2:
-            return process.zsw2()
-        if what == CONTROL_1:
-            return process.command_word()
-        if what == CONTROL_2:
-            return process.image[3]
-        if what == RECEIVED:
-            return process.image[detail + index]
-        if what == FAULTS:
-            return process.faults[detail + index]
-        if what == COUNTERS:
-            return 0 if index else self._slave.counters[detail]  # [1] is the BOP link
-        return self._parameters.rows[number][DEFAULT]
+        return self._readings.value(number, index)
 
     def _change_state(self):
         """C, U or T: what the parameter lists call commissioning, running and ready."""
@@ -355,24 +399,49 @@ class Drive:
         link = self.family.LINK
         if number in [link[name] for name in LATE]:
             self._unsettled = True
+            if self.switches.layout_at_once:
+                self._configure_layout()
         elif number == link["off time"]:
             self._supervise()
+        elif self._operations.note(number):
+            self._unsettled = True
+            if self.switches.silent_at_once and self._operations.seconds():
+                self._settle()
         self._process.refresh()
 
     def _settle(self):
-        """What had to wait for the end of the exchange: the settings of the link, P0971."""
-        if not self._unsettled:
-            return
-        self._unsettled = False
-        parameters = self._parameters
-        save, acknowledge = self.family.LINK["save"], self.family.LINK["acknowledge"]
-        if save is not None and parameters.ram[save][0]:
-            parameters.store(save, 0, 0, False)
-            parameters.save()
-        if acknowledge is not None and parameters.ram[acknowledge][0]:
-            parameters.store(acknowledge, 0, 0, False)
-            self._process.acknowledge()
+        """What had to wait for the end of the exchange: settings of the link, operations."""
+        if self._unsettled:
+            self._unsettled = False
+            self._configure_link()
+            self._operate()
+
+    def _operate(self):
+        """Carry out what parameters have started. What takes its time makes the drive silent."""
+        operations = self._operations
+        while not self._silent and operations.seconds() is not None:
+            seconds = operations.seconds()
+            if seconds:
+                self._silent = True
+                self._clock.cancel(self._reply)
+                self._clock.cancel(self._failure)  # it waits as well: a choice
+                end_us = self._clock.now_us + round(seconds * 1_000_000)
+                self._clock.schedule(self._end_of_silence, end_us)
+            else:
+                self._complete()
+
+    def _speak_again(self):
+        self._silent = False
+        if self._heard_us is not None:
+            self._heard_us = self._clock.now_us
+        self._complete()
+        self._operate()
+
+    def _complete(self):
+        self._operations.carry_out()
+        self._process.refresh()
         self._configure_link()
+        self._supervise()
 
     def _configure_link(self):
         slave = self._slave
@@ -381,6 +450,12 @@ class Drive:
         codes = self.family.BAUD_CODES
         slave.baud = self._wire.baud if self._any_baud else codes[ram[link["baud"]][0]]
         slave.address = ram[link["address"]][0]
+        self._configure_layout()
+
+    def _configure_layout(self):
+        slave = self._slave
+        link = self.family.LINK
+        ram = self._parameters.ram
         if link["layout"] is None:
             slave.pkw_words = ram[link["pkw words"]][0]
             slave.pzd_words = ram[link["pzd words"]][0]

@@ -3,7 +3,7 @@
 It knows numbers, indices, types and ranges from the rows of a family (mm420.py). It knows no bus:
 who may write, and when, is the business of parameter_channel.py.
 
-    store = Parameters(mm420.ROWS, mm420.PERMITTED, reading)
+    store = Parameters(mm420, reading)
     store.set(1120, 0, 5.0)         # as from the drive's own keypad: RAM and EEPROM
     store.get(1120, 0)              # 5.0
     words_of("F", 5.0)              # (0x40A0, 0)
@@ -19,7 +19,11 @@ NUMBER, NAME, TYPE, UNIT, INDICES, MINIMUM, MAXIMUM, DEFAULT, CHANGE, LEVEL, NOT
 
 # Objections to a value, numbered as in a reply with AK 7.
 OUT_OF_LIMITS = 2
+ONLY_ZERO = 6
 NOT_PERMITTED = 104
+
+# Bits of an identifier (general knowledge, unverified): not as delivered, may only be set to 0.
+CHANGED, ONLY_TO_ZERO = 0x1000, 0x2000
 
 
 def single(value):
@@ -54,8 +58,35 @@ def rows_like(rows, changes, without=()):
     changes: whole rows. without: numbers that this family does not have.
     """
     by_number = {row[NUMBER]: row for row in rows}
-    by_number.update({row[NUMBER]: row for row in changes})
+    by_number.update({row[NUMBER]: row for row in in_single_precision(changes)})
     return tuple(by_number[number] for number in sorted(by_number) if number not in without)
+
+
+def in_single_precision(rows):
+    """The rows with the limits and defaults of floats as a drive keeps them, a list.
+
+    Without this 0.1 off the line would be below a minimum of 0.1.
+    """
+    return [row if row[TYPE] != "F" else _single_row(row) for row in rows]
+
+
+def _single_row(row):
+    default = row[DEFAULT]
+    if isinstance(default, tuple):
+        default = tuple(single(value) for value in default)
+    else:
+        default = single(default)
+    limits = row[MINIMUM], row[MAXIMUM]
+    if row[CHANGE]:
+        limits = single(row[MINIMUM]), single(row[MAXIMUM])
+    exact = row[:MINIMUM] + limits + (default,) + row[CHANGE:]
+    return row if exact == row else exact  # most are: no second table in memory
+
+
+def only(table, rows):
+    """The part of a table {number: ...} that is about numbers of these rows."""
+    numbers = [row[NUMBER] for row in rows]
+    return {number: table[number] for number in table if number in numbers}
 
 
 def default_values(row):
@@ -65,28 +96,28 @@ def default_values(row):
 
 
 class Parameters:
-    """rows, permitted: a family's tables. reading(number, index): the value of a read-only number.
-    retained: a number that, other than 0, has every change kept in the EEPROM as well.
+    """family: a module such as mm420. reading(number, index): the value of a read-only number.
 
     ram[number] is the list of the values in force, by index; look, and change it through store().
-    It stays the same list.
-    eeprom_writes   how often a value, or all at once, was put into the EEPROM since delivery
+    It stays the same list. Numbers that only show something are not in it, nor are those which
+    show something and can be set to 0 (P0952).
+    eeprom_writes   how often something was put into the EEPROM since delivery, all at once is once
     """
 
-    def __init__(self, rows, permitted, reading, retained=None):
-        self.rows = {row[NUMBER]: row for row in rows}
+    def __init__(self, family, reading):
+        self.rows = {row[NUMBER]: row for row in family.ROWS}
         self.numbers = sorted(self.rows)
         self.ram = {}
         self.eeprom_writes = 0
         self._eeprom = {}
-        self._permitted = permitted
+        self._permitted = family.PERMITTED
         self._reading = reading
-        self._retained = retained
-        for row in rows:
-            if row[CHANGE]:
-                self.ram[row[NUMBER]] = default_values(row)
-        self.save()
-        self.eeprom_writes = 0
+        self._retained = family.LINK["retained"]  # other than 0: every change is kept
+        self._volatile = family.OPERATIONS  # commands, which no EEPROM keeps
+        self._only_zero = family.ONLY_ZERO
+        for number in self.numbers:
+            if self.rows[number][CHANGE] and number not in family.READINGS:
+                self.ram[number] = default_values(self.rows[number])
 
     def value(self, number, index):
         """The present value of a number and index that exist."""
@@ -94,10 +125,12 @@ class Parameters:
             return self.ram[number][index]
         return self._reading(number, index)
 
-    def is_changed(self, number):
-        """Whether it has another value than it was delivered with."""
+    def flags(self, number):
+        """Bits of the identifier of a description that tell how it is with this number now."""
+        if number in self._only_zero:
+            return ONLY_TO_ZERO
         values = self.ram.get(number)
-        return values is not None and values != default_values(self.rows[number])
+        return CHANGED if values and values != default_values(self.rows[number]) else 0
 
     def objection(self, number, index, value):
         """The error number that forbids `value` here, or None."""
@@ -106,40 +139,55 @@ class Parameters:
             return OUT_OF_LIMITS
         if value not in self._permitted.get(number, (value,)):
             return NOT_PERMITTED
-        return None
+        return ONLY_ZERO if value and number in self._only_zero else None
 
     def store(self, number, index, value, permanently):
         """Keep a value that was checked, in RAM and, if `permanently`, in the EEPROM."""
+        if number not in self.ram:
+            return
         self.ram[number][index] = value
         if permanently or self._retained is not None and self.ram[self._retained][0]:
-            self._eeprom[number][index] = value
             self.eeprom_writes += 1
+            if number not in self._volatile:
+                self._kept(number)[index] = value
+
+    def fit(self, number, index, value):
+        """Put what the drive has calculated into RAM, a float, within the limits of the number."""
+        row = self.rows[number]
+        value = single(min(max(value, row[MINIMUM]), row[MAXIMUM]))
+        self.store(number, index, value, False)
 
     def save(self):
         """RAM to EEPROM, as P0971 does."""
         self.eeprom_writes += 1
-        self._eeprom = {number: list(values) for number, values in self.ram.items()}
+        for number, values in self.ram.items():
+            if number in self._eeprom or values != default_values(self.rows[number]):
+                if number not in self._volatile:
+                    self._eeprom[number] = list(values)
 
     def load(self):
         """EEPROM to RAM, as at power-up."""
-        for number, values in self._eeprom.items():
-            self.ram[number][:] = values
+        for number, values in self.ram.items():
+            values[:] = self._eeprom.get(number) or default_values(self.rows[number])
 
-    def next_number(self, number):
-        """The next number above one that does not exist; 0 above the last."""
-        for candidate in self.numbers:
-            if candidate > number:
-                return candidate
-        return 0
+    def restore_defaults(self, kept):
+        """In RAM: everything as delivered, but the numbers kept."""
+        for number, values in self.ram.items():
+            if number not in kept:
+                values[:] = default_values(self.rows[number])
 
-    def number_before(self, number):
-        """The next number below one that does not exist; 0 below the first."""
-        before = 0
-        for candidate in self.numbers:
-            if candidate >= number:
-                break
-            before = candidate
-        return before
+    def deliver(self, kept):
+        """RAM and EEPROM as delivered, but the numbers kept."""
+        self.restore_defaults(kept)
+        self.eeprom_writes += 1
+        self._eeprom = {n: values for n, values in self._eeprom.items() if n in kept}
+
+    def _kept(self, number):
+        """The values of a number in the EEPROM, which holds what was ever changed there."""
+        values = self._eeprom.get(number)
+        if values is None:
+            values = self._eeprom[number] = default_values(self.rows[number])
+        return values
 
     def nearest(self, number, value):
         """The limit that a value out of limits is beyond."""
@@ -172,6 +220,8 @@ class Parameters:
             raise ValueError("%s goes from %s to %s %s: %s does not" % limits)
         if objection == NOT_PERMITTED:
             raise ValueError("%s cannot be %s" % (label, value))
+        if objection == ONLY_ZERO:
+            raise ValueError("%s can only be set to 0" % label)
         self.store(number, index, single(value) if row[TYPE] == "F" else value, True)
 
     def label(self, number, index):

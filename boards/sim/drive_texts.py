@@ -3,7 +3,7 @@
 Made from the rows of the family and from its table of texts (USS specification C-6 and C-4.2.2).
 It is not the channel: it knows no tasks and refuses nothing.
 
-    element(row, 6, False, False)   # the words of "ramp-up time    "
+    element(row, 6, 0)              # the words of "ramp-up time    "
     texts = Texts({(7, 1, 3): "300 BAUD"})
     texts.words(7, 0x0003)          # the same, of the first text field, element 3
 """
@@ -31,7 +31,7 @@ IDENTIFIER, COUNT, FACTOR, QUANTITY, RIGHTS, TITLE, LOWEST, HIGHEST, FACTORY, EX
 
 # Low byte of the identifier (general knowledge, unverified), and its bits.
 DATA_TYPES = {"I16": 3, "U16": 6, "U32": 7, "F": 8}
-PROTECTED, HAS_TEXTS, CHANGED, ARRAY = 0x0200, 0x0400, 0x1000, 0x4000
+PROTECTED, HAS_TEXTS, ARRAY = 0x0200, 0x0400, 0x4000
 
 # Quantity and conversion index by unit (general knowledge, unverified).
 QUANTITIES = {"s": 0x0400, "ms": 0x04FD, "Hz": 0x1C00, "%": 0x1800, "V": 0x1500, "A": 0x1600}
@@ -40,18 +40,18 @@ QUANTITIES = {"s": 0x0400, "ms": 0x04FD, "Hz": 0x1C00, "%": 0x1800, "V": 0x1500,
 WRITES, SECOND_FIELD = 0x0100, 0x0200
 
 
-def element(row, which, changed, has_texts):
+def element(row, which, flags):
     """The words of an element of a description, 1...10, or of the complete one, 255.
 
-    changed: the parameter has another value than it was delivered with.
+    flags: bits of the identifier that do not follow from the row.
     """
     if which == 255:
         words = ()
         for one in COMPLETE:
-            words += element(row, one, changed, has_texts)
+            words += element(row, one, flags)
         return words
     if which == IDENTIFIER:
-        return (identifier(row, changed, has_texts),)
+        return (identifier(row) | flags,)
     if which == COUNT:
         return (row[INDICES],)
     if which == FACTOR:
@@ -70,12 +70,10 @@ def element(row, which, changed, has_texts):
     return words_of(row[TYPE], value or 0)
 
 
-def identifier(row, changed, has_texts):
+def identifier(row):
     """Data type and bits of a parameter: element 1."""
     word = DATA_TYPES[row[TYPE]]
     word |= 0 if row[CHANGE] else PROTECTED
-    word |= HAS_TEXTS if has_texts else 0
-    word |= CHANGED if changed else 0
     return word | (ARRAY if row[INDICES] > 1 else 0)
 
 

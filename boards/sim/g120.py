@@ -8,38 +8,77 @@ numbers, their ranges and defaults are general knowledge.
     Drive(clock, wire, 4, family=g120)      # p0015 = 21: USS has the drive
 """
 
-from boards.sim.process import (
+from boards.sim.drive_operations import CLEAR_FAULTS, RESET, SAVE
+from boards.sim.drive_parameters import in_single_precision
+from boards.sim.drive_words import (
     ACTUAL,
     CONTROL_1,
+    CURRENT,
+    DC_LINK,
+    EXTERNAL,
     FAULT,
+    FAULT_COUNT,
+    FAULT_TIMES,
+    FAULT_VALUES,
     FAULTS,
+    HELD_DOWN,
+    HOT,
     INHIBITED,
+    MOTOR_TEMPERATURE,
     NO_COMMAND,
+    OVERCURRENT,
+    OVERHEAT,
+    OVERVOLTAGE,
+    POWER,
     READY,
     READY_TO_RUN,
     RECEIVED,
     RUNNING,
     STATUS_1,
     STOPPING,
+    STRAINED,
+    TORQUE,
+    UNDERVOLTAGE,
+    VOLTAGE,
     WANTED,
+    WARNINGS,
 )
 
 NAME = "SINAMICS G120"
 
 RPM_PER_HZ = 30
 
-ROWS = (
+ROWS = in_single_precision((
     # number, name, type, unit, indices, minimum, maximum, default, change, level, note
     (3, "access level", "U16", "", 1, 0, 4, 3, "CUT", 1, ""),
     (10, "commissioning", "U16", "", 1, 0, 49, 0, "CT", 1, "the motor runs only at 0"),
     (15, "macro drive unit", "U16", "", 1, 0, 21, 12, "CT", 1, "21: USS"),
+    (18, "firmware version", "U32", "", 1, None, None, 4700000, "", 3, ""),
     (20, "speed setpoint", "F", "1/min", 1, None, None, 0.0, "", 2, ""),
     (21, "actual speed", "F", "1/min", 1, None, None, 0.0, "", 2, ""),
+    (22, "actual speed, 1/min", "F", "1/min", 1, None, None, 0.0, "", 3, ""),
+    (24, "output frequency", "F", "Hz", 1, None, None, 0.0, "", 3, ""),
+    (25, "output voltage", "F", "V", 1, None, None, 0.0, "", 2, ""),
+    (26, "DC link voltage", "F", "V", 1, None, None, 0.0, "", 2, ""),
+    (27, "output current", "F", "A", 1, None, None, 0.0, "", 2, ""),
+    (31, "torque", "F", "Nm", 1, None, None, 0.0, "", 2, ""),
+    (32, "power", "F", "kW", 1, None, None, 0.0, "", 2, ""),
+    (35, "motor temperature", "F", "C", 1, None, None, 20.0, "", 2, ""),
     (52, "status word 1", "U16", "", 1, None, None, 0, "", 2, ""),
     (54, "control word 1", "U16", "", 1, None, None, 0, "", 2, ""),
     (63, "actual speed, smoothed", "F", "1/min", 1, None, None, 0.0, "", 3, "p2051[1]"),
+    (304, "rated motor voltage", "U16", "V", 1, 1, 20000, 400, "C", 1, ""),
+    (305, "rated motor current", "F", "A", 1, 0.01, 10000.0, 2.0, "C", 1, ""),
+    (307, "rated motor power", "F", "kW", 1, 0.01, 100000.0, 0.75, "C", 1, ""),
+    (310, "rated motor frequency", "F", "Hz", 1, 1.0, 650.0, 50.0, "C", 1, ""),
+    (311, "rated motor speed", "F", "1/min", 1, 1.0, 210000.0, 1395.0, "C", 1, ""),
+    (722, "digital inputs", "U32", "", 1, None, None, 0, "", 2, ""),
     (945, "fault code", "U16", "", 8, None, None, 0, "", 3, ""),
     (947, "fault number", "U16", "", 8, None, None, 0, "", 3, ""),
+    (948, "fault times", "U32", "ms", 8, None, None, 0, "", 3, ""),
+    (949, "fault values", "U32", "", 8, None, None, 0, "", 3, ""),
+    (952, "number of faults", "U16", "", 1, 0, 8, 0, "CT", 3, "0 clears"),
+    (970, "reset drive parameters", "U16", "", 1, 0, 1, 0, "C", 1, "1 resets and returns to 0"),
     (971, "save parameters", "U16", "", 1, 0, 1, 0, "CUT", 3, "1 saves and returns to 0"),
     (1080, "minimum speed", "F", "1/min", 1, 0.0, 210000.0, 0.0, "CT", 1, ""),
     (1082, "maximum speed", "F", "1/min", 1, 0.0, 210000.0, 1500.0, "CT", 1, ""),
@@ -51,14 +90,15 @@ ROWS = (
     (2021, "address", "U16", "", 1, 0, 31, 0, "CUT", 2, ""),
     (2022, "USS PZD length", "U16", "words", 1, 0, 8, 2, "CUT", 2, ""),
     (2023, "USS PKW length", "U16", "words", 1, 0, 127, 127, "CUT", 2, "127: variable"),
-    (2030, "fieldbus protocol", "U16", "", 1, 0, 10, 1, "T", 1, "1 USS; no effect here"),
+    (2030, "fieldbus protocol", "U16", "", 1, 0, 10, 1, "T", 1, "1 USS; from power-up on"),
     (2040, "fieldbus monitoring time", "U16", "ms", 1, 0, 65535, 100, "CUT", 3, "0: none"),
     (2050, "PZD received", "U16", "", 8, None, None, 0, "", 3, ""),
     (2051, "PZD sent", "U32", "", 8, 0, 0x7FFFFFFF, (0x08290000, 0x003F0000, 0, 0, 0, 0, 0, 0),
      "CT", 3, "number in the high word, index in the low one"),
     (2089, "status word 1 to be sent", "U16", "", 1, None, None, 0, "", 3, "p2051[0]"),
+    (2122, "warning codes", "U16", "", 8, None, None, 0, "", 3, ""),
     (2141, "speed threshold 1", "F", "1/min", 1, 0.0, 210000.0, 5.0, "CUT", 3, "ZSW bit 10"),
-)  # fmt: skip
+))  # fmt: skip
 
 PERMITTED = {
     15: (12, 17, 18, 19, 20, 21),
@@ -85,9 +125,8 @@ LINK = {
     "from process data": False,
     "fault": 1910,
     "sent": 2051,
-    "save": 971,
     "retained": None,
-    "acknowledge": None,
+    "protocol": 2030,
     "broadcast": False,
 }
 
@@ -111,14 +150,32 @@ SETPOINT_SOURCES = {12: 0, 17: 0, 18: 0, 19: 0, 20: 0, 21: 5}
 READINGS = {
     20: (WANTED, RPM_PER_HZ),
     21: (ACTUAL, RPM_PER_HZ),
+    22: (ACTUAL, RPM_PER_HZ),
+    24: (ACTUAL, 1),
+    25: (VOLTAGE, 0),
+    26: (DC_LINK, 0),
+    27: (CURRENT, 0),
+    31: (TORQUE, 0),
+    32: (POWER, 0),
+    35: (MOTOR_TEMPERATURE, 0),
     52: (STATUS_1, 0),
     54: (CONTROL_1, 0),
     63: (ACTUAL, RPM_PER_HZ),
     945: (FAULTS, 0),
     947: (FAULTS, 0),
+    948: (FAULT_TIMES, 0),
+    949: (FAULT_VALUES, 0),
+    952: (FAULT_COUNT, 0),
     2050: (RECEIVED, 0),
     2089: (STATUS_1, 0),
+    2122: (WARNINGS, 0),
 }
+
+OPERATIONS = {952: (CLEAR_FAULTS, 0), 970: (RESET, 10), 971: (SAVE, 0)}
+ONLY_ZERO = (952,)
+KEPT = (2020, 2021, 2030)
+QUICK_COMMISSIONING = ()
+TERMINALS = None
 
 STYLE = {
     # The states add up; bits 9, 11, 13 and 15 never change here.
@@ -136,6 +193,14 @@ STYLE = {
     "absolute": None,
     "obeyed bits": 0xFCFF,  # 8 and 9 are reserved
     "control fault": 7220,
+    "faults": {
+        OVERCURRENT: 30001,
+        OVERVOLTAGE: 30002,
+        UNDERVOLTAGE: 30003,
+        OVERHEAT: 7011,
+        EXTERNAL: 7860,
+    },
+    "warnings": ((STRAINED, 7805), (HOT, 7012), (HELD_DOWN, 7400)),
 }
 
 CHANNEL = {
@@ -143,9 +208,14 @@ CHANNEL = {
     "pages": True,
     "first index": 0,
     "scalar as array": True,
-    "elements": (1, 2, 7, 8),
+    "elements": (1, 2, 7, 8, 9),
+    "variable elements": (3, 4, 6, 255),
     "neighbours": 1,
     "texts": None,
     "level": 3,
+    "user list": None,
     "rights": None,
+    "steps": (10, {970: 30}),
+    "active": {},
+    "tightened": None,
 }

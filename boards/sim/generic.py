@@ -40,13 +40,19 @@ SETTINGS = mm420.SETTINGS
 OTHER_COMMANDS = mm420.OTHER_COMMANDS
 SETPOINT_SOURCES = mm420.SETPOINT_SOURCES
 READINGS = mm420.READINGS
+OPERATIONS = mm420.OPERATIONS
+ONLY_ZERO = mm420.ONLY_ZERO
+KEPT = mm420.KEPT
+QUICK_COMMISSIONING = mm420.QUICK_COMMISSIONING
+TERMINALS = mm420.TERMINALS
 STYLE = mm420.STYLE
 CHANNEL = {
     "tasks": (1, 2, 3, 4, 5, 6, 7, 8, 9, 11, 12, 13, 14, 15),
     "pages": True,
     "first index": 1,
     "scalar as array": False,
-    "elements": (1, 2, 3, 4, 5, 6, 7, 8, 9, 10),
+    "elements": (1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 255),
+    "variable elements": (),
     "neighbours": 2,
     "texts": {
         (7, 1, 3): "300 BAUD",
@@ -56,5 +62,9 @@ CHANNEL = {
         (9, 2, 4): "1200 BAUD",
     },
     "level": 3,
+    "user list": None,
     "rights": (927, 0x0008),
+    "steps": mm420.CHANNEL["steps"],
+    "active": mm420.CHANNEL["active"],
+    "tightened": mm420.CHANNEL["tightened"],
 }

@@ -1,106 +1,75 @@
 """The MICROMASTER 420 as data: which parameters it has and how they leave the factory.
 
-It is not a store: drive_parameters.py keeps the values, drive.py gives the readings theirs.
-Numbers, names and ranges follow the manufacturer's parameter lists as far as those were at hand.
-What a simulated bus cannot exercise (motor data, terminals, boosts) is left out, and so unknown to
-the drive: it answers error 0 there. The other families (mm3.py, mm440.py, g110.py, v20.py,
-g120.py, generic.py) have the same tables; each stands here with what its columns mean.
+It is not a store: drive_parameters.py keeps the values, drive_readings.py gives the readings
+theirs. The rows are those of mm4_parameters.py that an MM420 has. The other families (mm3.py,
+mm440.py, g110.py, v20.py, g120.py, generic.py) have the same tables; each stands here with what
+its columns mean.
 
     Drive(clock, wire, 3, family=mm440)
 """
 
-from boards.sim.process import (
-    ACTUAL,
-    CONTROL_1,
-    CONTROL_2,
-    COUNTERS,
+from boards.sim import mm4_parameters, mm4_readings
+from boards.sim.drive_operations import (
+    ACKNOWLEDGE,
+    CALCULATE,
+    CLEAR_ENERGY,
+    CLEAR_FAULTS,
+    CLEAR_WARNINGS,
+    END_COMMISSIONING,
+    RESET,
+    SAVE,
+)
+from boards.sim.drive_parameters import only, rows_like
+from boards.sim.drive_words import (
+    BOTH_JOGS,
+    EXTERNAL,
     FAULT,
-    FAULTS,
+    HELD_DOWN,
+    HOT,
     INHIBITED,
+    LIMITED,
+    LOW_SUPPLY,
     NO_COMMAND,
+    OVERCURRENT,
+    OVERHEAT,
+    OVERVOLTAGE,
     READY,
     READY_TO_RUN,
-    RECEIVED,
     RUNNING,
-    STATUS_1,
-    STATUS_2,
     STOPPING,
-    WANTED,
+    STRAINED,
+    UNDERVOLTAGE,
 )
+from boards.sim.mm4_parameters import MM420, rows_of
 
 NAME = "MICROMASTER 420"
 
-# A row has the columns that drive_parameters.py names. CHANGE tells in which states the number may
-# be changed, C commissioning, U running, T ready; a row without any is a reading. LEVEL is the
-# least P0003 for changing it. A default that is a tuple has one value for each index.
-
-ROWS = (
-    # number, name, type, unit, indices, minimum, maximum, default, change, level, note
-    (3, "user access level", "U16", "", 1, 0, 4, 1, "CUT", 1, "0 user list ... 3 expert"),
-    (10, "commissioning parameter", "U16", "", 1, 0, 30, 0, "CT", 1, "the motor runs only at 0"),
-    (20, "frequency setpoint before the ramp", "F", "Hz", 1, None, None, 0.0, "", 3, ""),
-    (21, "actual frequency", "F", "Hz", 1, None, None, 0.0, "", 2, "as delivered: PZD2"),
-    (24, "actual output frequency", "F", "Hz", 1, None, None, 0.0, "", 3, ""),
-    (52, "status word 1", "U16", "", 1, None, None, 0, "", 2, "as delivered: PZD1"),
-    (53, "status word 2", "U16", "", 1, None, None, 0, "", 2, "as delivered: PZD4"),
-    (54, "control word 1", "U16", "", 1, None, None, 0, "", 3, "the one that is obeyed"),
-    (55, "control word 2", "U16", "", 1, None, None, 0, "", 3, "PZD4"),
-    (700, "command source", "U16", "", 1, 0, 6, 2, "CT", 1,
-     "0 as delivered, 1 keypad, 2 terminals, 4 USS on BOP link, 5 USS on COM link, 6 CB"),
-    (927, "parameters changeable via", "U16", "", 1, 0, 15, 15, "CUT", 2,
-     "bit 0 CB, 1 keypad, 2 USS on BOP link, 3 USS on COM link"),
-    (947, "last fault codes", "U16", "", 8, None, None, 0, "", 2,
-     "[0] and [1] the present trip, [2] and [3] the one before, and so on"),
-    (971, "transfer data from RAM to EEPROM", "U16", "", 1, 0, 1, 0, "CUT", 3,
-     "1 saves and returns to 0"),
-    (1000, "frequency setpoint source", "U16", "", 1, 0, 66, 2, "CT", 1,
-     "units main, tens additional: 0 none, 1 motor potentiometer, 2 analog input, 3 fixed "
-     "frequency, 4 USS on BOP link, 5 USS on COM link, 6 CB"),
-    (1040, "setpoint of the motor potentiometer", "F", "Hz", 1, -650.0, 650.0, 5.0, "CUT", 2, ""),
-    (1058, "JOG frequency right", "F", "Hz", 1, 0.0, 650.0, 5.0, "CUT", 2, ""),
-    (1059, "JOG frequency left", "F", "Hz", 1, 0.0, 650.0, 5.0, "CUT", 2, ""),
-    (1060, "JOG ramp-up time", "F", "s", 1, 0.0, 650.0, 10.0, "CUT", 2, "for 0...P1082"),
-    (1061, "JOG ramp-down time", "F", "s", 1, 0.0, 650.0, 10.0, "CUT", 2, "for P1082...0"),
-    (1080, "minimum frequency", "F", "Hz", 1, 0.0, 650.0, 0.0, "CUT", 1, ""),
-    (1082, "maximum frequency", "F", "Hz", 1, 0.0, 650.0, 50.0, "CT", 1, ""),
-    (1120, "ramp-up time", "F", "s", 1, 0.0, 650.0, 10.0, "CUT", 1, "for 0...P1082"),
-    (1121, "ramp-down time", "F", "s", 1, 0.0, 650.0, 10.0, "CUT", 1, "for P1082...0, OFF1 too"),
-    (1135, "OFF3 ramp-down time", "F", "s", 1, 0.0, 650.0, 5.0, "CUT", 2, "for P1082...0"),
-    (2000, "reference frequency", "F", "Hz", 1, 1.0, 650.0, 50.0, "CT", 2, "4000h in PZD"),
-    (2009, "USS denormalisation", "U16", "", 2, 0, 1, 0, "CT", 3, "1: PZD2 is 0.01 Hz"),
-    (2010, "USS baud rate", "U16", "", 2, 3, 12, 6, "CUT", 2,
-     "a code, see BAUD_CODES; lists say 3...9, the operating instructions time rates to 115200"),
-    (2011, "USS address", "U16", "", 2, 0, 31, 0, "CUT", 2, ""),
-    (2012, "USS PZD length", "U16", "words", 2, 0, 4, 2, "CUT", 3, ""),
-    (2013, "USS PKW length", "U16", "words", 2, 0, 127, 127, "CUT", 3, "127: variable"),
-    (2014, "USS telegram off time", "U16", "ms", 2, 0, 65535, 0, "CT", 3, "0: not supervised"),
-    (2018, "PZD from COM link", "U16", "", 4, None, None, 0, "", 3, ""),
-    (2019, "PZD to COM link", "U32", "", 4, 0, 0x0FA00000, (0x00340000, 0x00150000, 0, 0x00350000),
-     "CT", 3, "number in the high word, index in the low one"),
-    (2024, "USS error-free telegrams", "U16", "", 2, None, None, 0, "", 3, ""),
-    (2025, "USS rejected telegrams", "U16", "", 2, None, None, 0, "", 3, "r2026 ... r2031"),
-    (2026, "USS character frame errors", "U16", "", 2, None, None, 0, "", 3, ""),
-    (2027, "USS overrun errors", "U16", "", 2, None, None, 0, "", 3, ""),
-    (2028, "USS parity errors", "U16", "", 2, None, None, 0, "", 3, ""),
-    (2029, "USS start not identified", "U16", "", 2, None, None, 0, "", 3, ""),
-    (2030, "USS BCC errors", "U16", "", 2, None, None, 0, "", 3, ""),
-    (2031, "USS length errors", "U16", "", 2, None, None, 0, "", 3, ""),
-    (2036, "control word 1 from COM link", "U16", "", 1, None, None, 0, "", 3, ""),
-    (2037, "control word 2 from COM link", "U16", "", 1, None, None, 0, "", 3, ""),
-    (2155, "threshold frequency f_1", "F", "Hz", 1, 0.0, 650.0, 30.0, "CUT", 3, "r0053 bits 4, 5"),
-    (2164, "hysteresis of the deviation", "F", "Hz", 1, 0.0, 10.0, 3.0, "CUT", 3, "r0052 bit 8"),
-    (2167, "switch-off frequency f_off", "F", "Hz", 1, 0.0, 10.0, 1.0, "CUT", 3, "r0053 bit 1"),
+# A row has the columns that drive_parameters.py names; mm4_parameters.py tells what they mean.
+ROWS = rows_like(
+    rows_of(MM420),
+    (
+        # number, name, type, unit, indices, minimum, maximum, default, change, level, note
+        (335, "motor cooling", "U16", "", 1, 0, 1, 0, "CT", 2, ""),
+        (340, "calculate motor data", "U16", "", 1, 0, 1, 0, "CT", 2, "returns to 0"),
+        (704, "function of digital input 4", "U16", "", 1, 0, 99, 0, "CT", 2, ""),
+        (720, "number of digital inputs", "U16", "", 1, None, None, 3, "", 3, ""),
+        (750, "number of analog inputs", "U16", "", 1, None, None, 1, "", 3, ""),
+        (1000, "frequency setpoint source", "U16", "", 1, 0, 66, 2, "CT", 1,
+         "units main, tens additional: 0 none, 1 motor potentiometer, 2 analog input, 3 fixed "
+         "frequency, 4 USS on BOP link, 5 USS on COM link, 6 CB"),
+        (1300, "control mode", "U16", "", 1, 0, 3, 0, "CT", 2, ""),
+        (2010, "USS baud rate", "U16", "", 2, 3, 12, 6, "CUT", 2,
+         "lists say 3...9, the operating instructions time rates to 115200"),
+        (2012, "USS PZD length", "U16", "words", 2, 0, 4, 2, "CUT", 3, ""),
+    ),
 )  # fmt: skip
 
 # Discrete settings: anything else between the limits is refused with error 104.
-PERMITTED = {
-    10: (0, 1, 2, 29, 30),
-    700: (0, 1, 2, 4, 5, 6),
-    1000: tuple(10 * additional + main for additional in range(7) for main in range(7)),
-    2013: (0, 3, 4, 127),
-    # What the simulated drive can send: nothing, or one of these readings.
-    2019: tuple(number << 16 for number in (0, 20, 21, 24, 52, 53, 54, 55)),
-}
+PERMITTED = only(mm4_parameters.PERMITTED, ROWS)
+PERMITTED[1000] = tuple(10 * additional + main for additional in range(7) for main in range(7))
+# What the simulated drive can send: nothing, or one of these readings.
+SENT = (0, 20, 21, 22, 24, 25, 26, 27, 36, 52, 53, 54, 55, 67)
+PERMITTED[2019] = tuple(number << 16 for number in SENT)
 
 # A code of the baud rate to bits a second.
 BAUD_CODES = {
@@ -114,10 +83,11 @@ COMMISSIONED = {3: 3, 700: 5, 1000: 5, 2012: 2, 2013: 4}
 
 # The numbers of the link's own settings; None: the family has none, and `layout` holds, the PKW
 # and the PZD words. `sent`: what the PZD words carry, None: ZSW and the actual value. `retained`:
-# a number that, other than 0, has every change kept in the EEPROM. `off time` is in microseconds
+# a number that, other than 0, has every change kept in the EEPROM. `protocol`: a number that is 1
+# where the connector speaks USS, from the next power-up on. `off time` is in microseconds
 # times `unit us`; it runs from the first telegram on, or from the first one with process data;
-# `fault` is what it trips with. `save`: 1 saves all, `acknowledge`: 1 acknowledges a fault; both
-# return to 0. `broadcast`: whether the family takes one (optional: USS specification A-3).
+# `fault` is what it trips with. `broadcast`: whether the family takes one (optional: USS
+# specification A-3).
 LINK = {
     "baud": 2010,
     "address": 2011,
@@ -129,9 +99,8 @@ LINK = {
     "from process data": False,
     "fault": 72,
     "sent": 2019,
-    "save": 971,
     "retained": None,
-    "acknowledge": None,
+    "protocol": None,
     "broadcast": True,
 }
 
@@ -156,6 +125,35 @@ SETTINGS = (
     ("threshold_hz", 2155, 1),
     ("tolerance_hz", 2164, 1),
     ("slow_hz", 2167, 1),
+    ("rated_v", 304, 1),
+    ("rated_a", 305, 1),
+    ("rated_kw", 307, 1),
+    ("rated_hz", 310, 1),
+    ("rated_rpm", 311, 1),
+    ("magnetising_percent", 320, 1),
+    ("heat_s", 611, 1),
+    ("overload_percent", 640, 1),
+    ("fixed_1_hz", 1001, 1),
+    ("fixed_2_hz", 1002, 1),
+    ("fixed_3_hz", 1003, 1),
+    ("fixed_4_hz", 1004, 1),
+    ("potentiometer_kept", 1031, 1),
+    ("potentiometer_right", 1032, 1),
+    ("skip_1_hz", 1091, 1),
+    ("skip_2_hz", 1092, 1),
+    ("skip_3_hz", 1093, 1),
+    ("skip_4_hz", 1094, 1),
+    ("skip_band_hz", 1101, 1),
+    ("no_reverse", 1110, 1),
+    ("flying_start", 1200, 1),
+    ("brake", 1215, 1),
+    ("vdc_controller", 1240, 1),
+    ("reference_v", 2001, 1),
+    ("reference_a", 2002, 1),
+    ("reference_nm", 2003, 1),
+    ("external_fault", 2106, 1),
+    ("threshold_percent", 2170, 1),
+    ("threshold_v", 2172, 1),
 )
 
 # Values of the command source with which the drive does not obey this bus, and the control word
@@ -165,28 +163,30 @@ OTHER_COMMANDS = {0: NO_COMMAND, 1: NO_COMMAND, 2: NO_COMMAND, 4: 0, 6: 0}
 # Values of the setpoint source that do not mean what its digits say: units main, tens additional.
 SETPOINT_SOURCES = {}
 
-# A reading: what it shows, and by what a frequency is multiplied, or where a list begins.
-READINGS = {
-    20: (WANTED, 1),
-    21: (ACTUAL, 1),
-    24: (ACTUAL, 1),
-    52: (STATUS_1, 0),
-    53: (STATUS_2, 0),
-    54: (CONTROL_1, 0),
-    55: (CONTROL_2, 0),
-    947: (FAULTS, 0),
-    2018: (RECEIVED, 0),
-    2024: (COUNTERS, 0),
-    2025: (COUNTERS, 1),
-    2026: (COUNTERS, 2),
-    2027: (COUNTERS, 3),
-    2028: (COUNTERS, 4),
-    2029: (COUNTERS, 5),
-    2030: (COUNTERS, 6),
-    2031: (COUNTERS, 7),
-    2036: (RECEIVED, 0),
-    2037: (RECEIVED, 3),
+READINGS = only(mm4_readings.READINGS, ROWS)
+
+# A number that makes the drive do something: what, and for how many seconds it is silent then (a
+# guess, see drive_operations.py; for P0971 0, because most masters do not expect any).
+OPERATIONS = {
+    40: (CLEAR_ENERGY, 0),
+    340: (CALCULATE, 5),
+    952: (CLEAR_FAULTS, 0),
+    970: (RESET, 10),
+    971: (SAVE, 0),
+    1910: (CALCULATE, 30),
+    2111: (CLEAR_WARNINGS, 0),
+    3900: (END_COMMISSIONING, 10),
+    3981: (ACKNOWLEDGE, 0),
 }
+
+# Of these the numbers that can be set to 0 alone (error 6); all others begin with another value.
+ONLY_ZERO = (952, 2111)
+
+# What a factory reset leaves alone (general knowledge), what quick commissioning has asked for,
+# the first and the last number of the terminals: P3900 resets one or the other, or neither.
+KEPT = (100, 918, 2010, 2011)
+QUICK_COMMISSIONING = mm4_parameters.QUICK_COMMISSIONING
+TERMINALS = mm4_parameters.TERMINALS
 
 # What the process data look like. `states`: bits of ZSW, here 0 to 3 and 6, which exclude each
 # other on a MICROMASTER 4, and those that never change: 9 control requested, 11 no current limit,
@@ -195,6 +195,7 @@ READINGS = {
 # 14. `two directions`: a bit of STW for each, 11 and 12, in the place of one that reverses.
 # `absolute`: the value of `scaling` with which setpoint and actual value are in 0.01 Hz, None:
 # there is none. `obeyed bits`: of STW. `control fault`: trips when STW bit 10 drops while it runs.
+# `faults` and `warnings`: its numbers for what it trips with and warns of by itself.
 STYLE = {
     "states": {
         INHIBITED: 0xBA41,
@@ -210,23 +211,48 @@ STYLE = {
     "absolute": 1,
     "obeyed bits": 0xFFFF,
     "control fault": 0,
+    "faults": {
+        OVERCURRENT: 1,
+        OVERVOLTAGE: 2,
+        UNDERVOLTAGE: 3,
+        OVERHEAT: 11,
+        EXTERNAL: 85,
+    },
+    "warnings": (
+        (LIMITED, 501),
+        (LOW_SUPPLY, 503),
+        (STRAINED, 505),
+        (HOT, 511),
+        (HELD_DOWN, 911),
+        (BOTH_JOGS, 923),
+    ),
 }
 
 # The parameter channel. `tasks`: AKs that it knows, the others are refused with error 106.
 # `pages`: IND names numbers from 2000 on. `first index` of an array, as in IND. `scalar as array`:
 # array tasks reach the only element of a number, with index 0 or 1 (RM420). `elements`: those of
-# a description (task 4). `neighbours`: numbers told with error 0 in variable length, the next
-# existing one, and the one before. `texts`: (number, field, element): text, None: no texts.
-# `level`: the number of the access level. `rights`: a number and the bit of it that lets this bus
-# change parameters, None: nothing forbids it.
+# a description (task 4), and those that it has in variable length besides; which ones is a choice.
+# `neighbours`: numbers told with error 0 in variable length, the next existing one, and the one
+# before. `texts`: (number, field, element): text, None: no texts. `level`: the number of the
+# access level. `user list`: the numbers of the list that level 0 opens, of its lock and of its
+# key. `rights`: a number and the bit of it that lets this bus change parameters, None: nothing
+# forbids it. `steps`: the number of the commissioning step, and for numbers that can be changed in
+# C alone the step that they need, where it is not 1. `active`: a number, another one that puts it
+# out of use, and the values of that with which it counts. `tightened`: two numbers, a lower and an
+# upper limit of something, which keep their order while it runs.
 CHANNEL = {
-    "tasks": (1, 2, 3, 6, 7, 8, 9, 11, 12, 13, 14),
+    "tasks": (1, 2, 3, 4, 6, 7, 8, 9, 11, 12, 13, 14),
     "pages": True,
     "first index": 0,
     "scalar as array": True,
-    "elements": (),
+    "elements": (1, 2, 7, 8, 9),
+    "variable elements": (3, 4, 6, 255),
     "neighbours": 1,
     "texts": None,
     "level": 3,
+    "user list": (13, 11, 12),
     "rights": (927, 0x0008),
+    "steps": (10, mm4_parameters.COMMISSIONING_STEPS),
+    "active": mm4_parameters.ACTIVE,
+    "tightened": (1080, 1082),
 }

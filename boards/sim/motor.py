@@ -10,25 +10,40 @@ at an instant is the same however often, or seldom, somebody asks for it.
 Frequencies are signed, negative turns left. Times are microseconds of virtual time.
 """
 
-COAST_HZ_PER_S = 10.0  # friction alone, as of a small fan; a choice, no source
-
 
 class Motor:
-    """end_us   when the path ends: from then on the frequency stays"""
+    """changing(now_us) is called before the path changes.
 
-    def __init__(self):
+    end_us   when the path ends: from then on the frequency stays
+    """
+
+    def __init__(self, changing):
         self.end_us = 0
+        self._changing = changing
         self._corners = [(0, 0.0)]  # (instant, frequency), the first is where the path began
         self._order = None
 
     def hz(self, now_us):
         """Frequency at `now_us`, which is not before the last command."""
+        if now_us >= self.end_us:
+            return self._corners[-1][1]
         from_us, from_hz = self._corners[0]
         for to_us, to_hz in self._corners:
             if now_us < to_us:
                 return from_hz + (to_hz - from_hz) * (now_us - from_us) / (to_us - from_us)
             from_us, from_hz = to_us, to_hz
         return from_hz
+
+    def slope(self, now_us):
+        """How fast it changes at `now_us`, in Hz/s."""
+        if now_us >= self.end_us:
+            return 0.0
+        from_us, from_hz = self._corners[0]
+        for to_us, to_hz in self._corners:
+            if now_us < to_us:
+                return (to_hz - from_hz) * 1e6 / (to_us - from_us)
+            from_us, from_hz = to_us, to_hz
+        return 0.0
 
     def ramp(self, now_us, target_hz, full_hz, up_s, down_s):
         """Go to `target_hz`, through standstill if the direction changes.
@@ -38,6 +53,7 @@ class Motor:
         order = (target_hz, full_hz, up_s, down_s)
         if order == self._order:
             return  # on its way: laying the path anew would only add rounding errors
+        self._changing(now_us)
         hz = self.hz(now_us)
         self._order = order
         self._corners = [(now_us, hz)]
@@ -56,9 +72,9 @@ class Motor:
         """Be at `target_hz` at once."""
         self.ramp(now_us, target_hz, 1.0, 0.0, 0.0)
 
-    def coast(self, now_us):
-        """Pulses off: friction brings it to standstill."""
-        self.ramp(now_us, 0.0, COAST_HZ_PER_S, 1.0, 1.0)
+    def coast(self, now_us, coast_s):
+        """Pulses off: friction alone brings it to standstill, from 50 Hz in `coast_s`."""
+        self.ramp(now_us, 0.0, 50.0, coast_s, coast_s)
 
     def _go(self, target_hz, change_hz, full_hz, full_s):
         if full_hz:

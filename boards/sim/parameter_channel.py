@@ -9,8 +9,9 @@ change_reports.py.
     channel.reply(4)                        # [0x2460, 0, 0x4120, 0]: a double word, 10.0
 
 A task is carried out once, when it changes; a reply that carries a value always carries the
-present one. For the first `stale_replies` telegrams of a new task the reply is still that of the
-task before, which the specification allows (C-4.2.1.1) and real drives do.
+present one. In which order a drive looks for what is wrong no document says; here it is: task
+known, change rights, number, access level for reading (a switch), index, room, read-only, type,
+state, commissioning step, access level, in use, key, number of values, limits, discrete values.
 """
 
 from boards.sim.change_reports import BIT, Reports
@@ -24,7 +25,7 @@ from boards.sim.drive_parameters import (
     value_of,
     words_of,
 )
-from boards.sim.drive_texts import Texts, element
+from boards.sim.drive_texts import HAS_TEXTS, Texts, element
 from boards.sim.slave import VARIABLE
 
 READ, WRITE, COUNT = range(3)
@@ -60,13 +61,18 @@ NO_ARRAY = 4
 WRONG_TYPE = 5
 DESCRIPTION_FIXED = 7
 NO_DESCRIPTION = 9
+WRONG_KEY = 12
 NO_TEXT_ARRAY = 15
 WRONG_STATE = 17
+NOT_ACTIVE = 101
 CHANNEL_TOO_SMALL = 102
 NOT_IMPLEMENTED = 106
 TEXT_FIXED = 107
 WRONG_VALUE_COUNT = 108
+BELOW_TIGHTENED, ABOVE_TIGHTENED = 200, 201
 ACCESS_LEVEL = 204
+
+DOWNLOAD = 29  # of the commissioning parameter: opens every step
 
 ALL_ELEMENTS = 255
 NET_WORDS = 126  # of a telegram, at most
@@ -80,10 +86,13 @@ PAGE_BITS = (
 )  # fmt: skip
 
 
-def number_of(pke, ind):
-    """The parameter number that PKE and IND name, or None: PNU goes to 1999 on a MICROMASTER."""
+def number_of(pke, ind, raw):
+    """The parameter number that PKE and IND name, or None: PNU goes to 1999 on a MICROMASTER.
+
+    raw: without a page it may go on to 2047.
+    """
     pnu = pke & 0x07FF
-    if pnu > 1999:
+    if pnu > 1999 and (not raw or ind >> 8):
         return None
     return pnu + 2000 * sum([weight for bit, weight in PAGE_BITS if ind & bit])
 
@@ -95,16 +104,12 @@ def page_of(number):
 
 class ParameterChannel:
     """family: a module such as mm420. state() is "C", "U" or "T": commissioning, running, ready.
-    changed(number) hears of writes. reports: it tells of changes that others make.
-
-    stale_replies   telegrams that a new task waits for its own reply
-    reexecute       a write that stands is carried out again with every telegram, which the
-                    specification does not forbid
+    changed(number) hears of writes. switches: see drive_switches.py. reports: it tells of changes
+    that others make.
     """
 
-    def __init__(self, parameters, family, state, changed, reports=False):
-        self.stale_replies = 0
-        self.reexecute = False
+    def __init__(self, parameters, family, state, changed, switches, reports=False):
+        self._switches = switches
         self._parameters = parameters
         self._family = family.CHANNEL
         self._texts = Texts(family.CHANNEL["texts"])
@@ -132,10 +137,10 @@ class ParameterChannel:
             self._reports.hear(pke & BIT)
         if task != self._task:
             self._task = task
-            self._waiting = self.stale_replies
+            self._waiting = self._switches.stale_replies
         elif self._waiting:
             self._waiting -= 1
-        if not self._waiting and (self._answered is not self._task or self.reexecute):
+        if not self._waiting and (self._answered is not self._task or self._switches.reexecute):
             self._answered = self._task
             self._refusal = self._carry_out(self._task, layout) if task is not NO_TASK else None
 
@@ -215,7 +220,8 @@ class ParameterChannel:
     def _description(self, number, which):
         parameters = self._parameters
         row = parameters.rows[number]
-        return element(row, which, parameters.is_changed(number), self._texts.has(number))
+        flags = parameters.flags(number) | (HAS_TEXTS if self._texts.has(number) else 0)
+        return element(row, which, flags)
 
     def _position(self, row, array, ind):
         """The place of the element that IND names; None: all of them."""
@@ -238,11 +244,14 @@ class ParameterChannel:
             return REFUSED, NOT_IMPLEMENTED, ()
         writes = ak in (WRITE_DESCRIPTION,) or ak in TASKS and TASKS[ak][0] == WRITE
         if (writes or ak == TEXT_TASK and Texts.writes(ind)) and not self._has_rights():
-            return NO_RIGHTS, 0, ()
+            error = self._switches.no_rights_error
+            return REFUSED if error else NO_RIGHTS, error, ()
         if number not in self._parameters.rows:
             return REFUSED, UNKNOWN_NUMBER, self._neighbours(number)
+        if self._switches.level_for_reading and not self._is_accessible(number):
+            return REFUSED, ACCESS_LEVEL, ()
         if ak in (READ_DESCRIPTION, WRITE_DESCRIPTION):
-            error = self._describe(ak, ind & 0xFF)
+            error = self._describe(ak, ind & 0xFF, layout)
         elif ak == TEXT_TASK:
             error = self._text(ind, values, layout)
         else:
@@ -255,7 +264,7 @@ class ParameterChannel:
 
     def _number_of(self, pke, ind):
         if self._family["pages"]:
-            return number_of(pke, ind)
+            return number_of(pke, ind, self._switches.raw_numbers)
         return None if ind >> 8 else pke & 0x07FF
 
     def _has_rights(self):
@@ -266,8 +275,12 @@ class ParameterChannel:
         """To browse by (RM420, G110D): the next number that exists, and the one before."""
         if number is None:
             return ()
-        parameters = self._parameters
-        found = (parameters.next_number(number) & 0xFFFF, parameters.number_before(number))
+        numbers = self._parameters.numbers
+        if self._switches.level_for_reading:
+            numbers = [one for one in numbers if self._is_accessible(one)]
+        above = [one for one in numbers if one > number]
+        below = [one for one in numbers if one < number]
+        found = (above[0] & 0xFFFF if above else 0, below[-1] & 0xFFFF if below else 0)
         return found[: self._family["neighbours"]]
 
     def _misaddressed(self, task, index, layout):
@@ -281,9 +294,11 @@ class ParameterChannel:
                 return None if layout == VARIABLE else CHANNEL_TOO_SMALL
         return None if 0 <= self._position(row, task[2], index) < row[INDICES] else WRONG_SUBINDEX
 
-    def _describe(self, ak, which):
+    def _describe(self, ak, which, layout):
         elements = self._family["elements"]
-        if which not in elements and not (which == ALL_ELEMENTS and 10 in elements):
+        if layout == VARIABLE:
+            elements += self._family["variable elements"]
+        if which not in elements:
             return NO_DESCRIPTION
         return DESCRIPTION_FIXED if ak == WRITE_DESCRIPTION else None
 
@@ -304,18 +319,20 @@ class ParameterChannel:
         number = self._number
         row = parameters.rows[number]
         width = task[1]
-        error = self._unwritable(row, width)
+        error = self._unwritable(row, width) or self._closed(row)
         if error is not None:
             return REFUSED, error, ()
         position = self._position(row, task[2], ind)
         places = range(row[INDICES]) if position is None else (position,)
-        raw = values if position is None else sent_value(values, width, layout)
+        raw = values
+        if position is not None:
+            raw = sent_value(values, width, layout, self._switches.second_word)
         if len(raw) != width * len(places):
             return REFUSED, WRONG_VALUE_COUNT, ()
         starts = range(0, len(raw), width)
         wanted = [value_of(row[TYPE], raw[start : start + width]) for start in starts]
         for place, value in zip(places, wanted):
-            error = parameters.objection(number, place, value)
+            error = parameters.objection(number, place, value) or self._beyond(place, value)
             if error is not None:
                 return REFUSED, error, self._legal(row, error, value)
         for place, value in zip(places, wanted):
@@ -324,15 +341,53 @@ class ParameterChannel:
         return None
 
     def _unwritable(self, row, width):
+        """The error number that forbids a write of so many words to this number now, or None."""
         if not row[CHANGE]:
             return READ_ONLY
         if is_word(row[TYPE]) != (width == 1):
             return WRONG_TYPE
         if self._state() not in row[CHANGE]:
             return WRONG_STATE
+        steps = self._family["steps"]
+        if row[CHANGE] == "C" and steps is not None:
+            step = self._parameters.ram[steps[0]][0]
+            if step not in (steps[1].get(self._number, 1), DOWNLOAD):
+                return WRONG_STATE
+        return None if self._is_accessible(self._number) else ACCESS_LEVEL
+
+    def _closed(self, row):
+        """The error number that another parameter forbids a write with, or None."""
+        ram = self._parameters.ram
+        active = self._family["active"].get(self._number)
+        if active and self._switches.inactive_refused and ram[active[0]][0] not in active[1]:
+            return NOT_ACTIVE
+        lists = self._family["user list"]
+        if lists is not None and self._number == lists[0] and ram[lists[1]] != ram[lists[2]]:
+            return WRONG_KEY
+        return None
+
+    def _is_accessible(self, number):
+        """Whether the access level opens a number; at level 0 the user list does."""
         level = self._family["level"]
-        if self._number != level and row[LEVEL] > self._parameters.ram[level][0]:
-            return ACCESS_LEVEL
+        if number == level:
+            return True
+        ram = self._parameters.ram
+        lists = self._family["user list"]
+        if lists is not None and not ram[level][0]:
+            return number in ram[lists[0]]
+        return self._parameters.rows[number][LEVEL] <= ram[level][0]
+
+    def _beyond(self, place, value):
+        """The error number of a limit that is narrower while it runs, or None."""
+        limits = self._family["tightened"]
+        if limits is None or not self._switches.tightened_limits or self._state() != "U":
+            return None
+        lower, upper = limits
+        ram = self._parameters.ram
+        if self._number == lower and value > ram[upper][place]:
+            return ABOVE_TIGHTENED
+        if self._number == upper and value < ram[lower][place]:
+            return BELOW_TIGHTENED
         return None
 
     def _legal(self, row, error, value):
@@ -345,12 +400,15 @@ class ParameterChannel:
         return 2 * words_of(row[TYPE], self._parameters.nearest(self._number, value))
 
 
-def sent_value(values, width, layout):
-    """The words of one value among those behind PKE and IND."""
+def sent_value(values, width, layout, second_word):
+    """The words of one value among those behind PKE and IND.
+
+    second_word: in variable length a master may always send four words, and means the last one.
+    """
     if width == 2:
         return values[:2]
-    if layout == 4 or layout == VARIABLE and len(values) > 1 and values[1] and not values[0]:
-        return values[1:2]  # in variable length: a master that always sends four words
+    if layout == 4 or layout == VARIABLE and second_word and len(values) > 1 and values[1]:
+        return values[1:2]
     return values[:1]
 
 

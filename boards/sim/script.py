@@ -3,13 +3,20 @@
     press START          # a tap; everything after # is a comment
     wait 5000
     expect RUNNING
+    line flip 0.001      # from now on a bit of every thousandth character is wrong
 
 The commands are the table COMMANDS. A line that cannot be understood is a ScriptError that names
 script and line; an expectation that fails is an ExpectationFailed that shows the display. What the
 firmware raises while a command lets time pass goes through as it is.
 """
 
+from boards.sim.dice import Dice
+from boards.sim.line_faults import KINDS, SUPPLIES, WAYS, LineFaults
+from boards.sim.mains import Mains
+from boards.sim.plant import EXPONENTS, FAN
+
 FAULT_MAX = 9999
+DICE = 2  # those of the line: the drives' delays, drawn from others, stay as they are
 
 
 class ScriptError(Exception):
@@ -93,11 +100,61 @@ class Script:
             raise Refused(error.args[0])
         self.show("%s=%s" % (parameter_name(number, index), now))
 
-    def fault(self, drive, number):
+    def fault(self, drive, number, lasting=None):
         try:
-            drive.fault(number)
+            drive.fault(number, 0, lasting is not None)
         except ValueError as error:
             raise Refused(error.args[0])
+
+    def warn(self, drive, number, on=True):
+        drive.warn(number, on)
+
+    def load(self, drive, percent, kind=FAN):
+        drive.load(percent, kind)
+
+    # --- the line -------------------------------------------------------------------------------
+
+    def faults(self):
+        """Those of the line, from the first command on that needs them."""
+        world = self.world
+        if world.wire.faults is None:
+            dice = Dice(getattr(world, "seed", 0), DICE)
+            LineFaults(world.wire, dice.random, on_dip=getattr(world, "dip", None))
+        return world.wire.faults
+
+    def line(self, kind, rate=None):
+        faults = self.faults()
+        if kind == "calm":
+            faults.calm()
+        elif rate is None:
+            self.show("%s: %s, %d times" % (kind, faults.rates[kind], faults.count[kind]))
+        else:
+            try:
+                faults.set(kind, rate)
+            except ValueError as error:
+                raise Refused(error.args[0])
+
+    def strike(self, kind, how_much=None):
+        try:
+            self.faults().strike(kind, how_much)
+        except ValueError as error:
+            raise Refused(error.args[0])
+
+    def late(self, drive, ms):
+        self.faults().strike("late", ms, drive)
+
+    def cut(self, name, way="both"):
+        self.faults().cut(name, way)
+
+    def dip(self, ms, whose="all"):
+        world = self.world
+        if whose != "panel":
+            mains = getattr(world, "mains", None)
+            if mains is None:
+                mains = world.mains = Mains(world.clock, list(world.drives.values()))
+            mains.dip(ms)
+        if whose != "drives" and hasattr(world, "cut_power"):
+            world.cut_power()
 
     def expect(self, wanted):
         if not self.world.reads(wanted):
@@ -166,10 +223,59 @@ def fault(world, word):
     return int(word[1:])
 
 
-def cut(world, word):
+def warning(world, word):
+    if word[:1] != "A" or not word[1:].isdigit() or not 0 < int(word[1:]) <= FAULT_MAX:
+        raise ValueError("%s is no warning like A0501" % word)
+    return int(word[1:])
+
+
+def power(world, word):
     if word != "cut":
         raise ValueError("%s is nothing that power does here" % word)
     return word
+
+
+def kind(world, word):
+    """A kind of fault of the line: blanks of its name are hyphens here."""
+    word = word.replace("-", " ")
+    if word not in KINDS:
+        there = " ".join(sorted(KINDS)).replace("wire cut", "wire-cut")
+        raise ValueError("no fault of the line is called %s: there are %s" % (word, there))
+    return word
+
+
+def kind_or_calm(world, word):
+    return word if word == "calm" else kind(world, word)
+
+
+def switch(world, word):
+    if word not in ("on", "off"):
+        raise ValueError("%s is neither on nor off" % word)
+    return word == "on"
+
+
+def rate(world, word):
+    """A number, on or off."""
+    if word in ("on", "off"):
+        return word == "on"
+    try:
+        return float(word) if "." in word else int(word)
+    except ValueError:
+        raise ValueError("%s is no rate: a number, on or off" % word)
+
+
+def station(world, word):
+    """panel or the address of a drive: the name of its place on the wire."""
+    return word if word == "panel" else drive(world, word).name
+
+
+def one_of(words):
+    def reader(world, word):
+        if word not in words:
+            raise ValueError("%s is none of %s" % (word, " ".join(sorted(words))))
+        return word
+
+    return reader
 
 
 def text(world, words):
@@ -191,16 +297,30 @@ COMMANDS = {
     "bus": ("bus N", (count,), 0, Script.bus),
     "drive": ("drive A", (drive,), 0, lambda do, drive: do.show(drive.report())),
     "param": ("param A P0700[0] [VALUE]", (drive, parameter, value), 1, Script.param),
-    "fault": ("fault A F0001", (drive, fault), 0, Script.fault),
+    "fault": ("fault A F0001 [lasting]", (drive, fault, one_of(("lasting",))), 1, Script.fault),
+    "clear": ("clear A", (drive,), 0, lambda do, drive: drive.clear_cause()),
+    "warn": ("warn A A0501 [on|off]", (drive, warning, switch), 1, Script.warn),
+    "load": ("load A PERCENT [fan|linear|constant]", (drive, count, one_of(EXPONENTS)), 1,
+        Script.load),
+    "supply": ("supply A VOLTS", (drive, count), 0, lambda do, drive, volts: drive.supply(volts)),
     "unplug": ("unplug A", (drive,), 0, lambda do, drive: drive.unplug()),
     "plug": ("plug A", (drive,), 0, lambda do, drive: drive.plug()),
     "hang": ("hang MS", (milliseconds,), 0, lambda do, ms: do.world.hang(ms)),
     "reset": ("reset", (), 0, lambda do: do.world.reset()),
-    "power": ("power cut", (cut,), 0, lambda do, _: do.world.cut_power()),
+    "power": ("power cut", (power,), 0, lambda do, _: do.world.cut_power()),
+    "line": ("line KIND|calm [RATE]", (kind_or_calm, rate), 1, Script.line),
+    "strike": ("strike KIND [N]", (kind, count), 1, Script.strike),
+    "late": ("late A MS", (drive, milliseconds), 0, Script.late),
+    "babble": ("babble MS", (milliseconds,), 0, lambda do, ms: do.strike("babble", ms)),
+    "cut": ("cut A|panel [both|hears|talks]", (station, one_of(WAYS)), 1, Script.cut),
+    "mend": ("mend", (), 0, lambda do: do.faults().mend()),
+    "dip": ("dip MS [all|drives|panel]", (milliseconds, one_of(SUPPLIES)), 1, Script.dip),
     "expect": ("expect TEXT", (text,), 0, Script.expect),
 }  # fmt: skip
 
 ORDER = (
     "press", "hold", "down", "up", "wait", "lcd", "expect", "bus", "drive", "param", "fault",
-    "unplug", "plug", "hang", "reset", "power",
+    "clear", "warn", "load", "supply", "unplug", "plug", "hang", "reset", "power",
+    "line", "strike", "late", "babble", "cut", "mend", "dip",
 )  # fmt: skip
+OF_THE_LINE = ORDER[-7:]  # nobody can do them where the line is a real one

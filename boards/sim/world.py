@@ -19,6 +19,7 @@ from boards.sim.clock import Clock
 from boards.sim.drive import Drive
 from boards.sim.flash import Flash, PowerCut
 from boards.sim.lcd import Lcd
+from boards.sim.mains import Mains
 from boards.sim.switches import Switches
 from boards.sim.wire import Wire
 from hal.store import FileStore
@@ -47,10 +48,14 @@ class Surroundings:
     resets    how often the chip has restarted
     place     where the panel runs, for people
     refused   commands of the script language that cannot be done here: name -> why
+    notices   lines for people that nobody has shown yet
+    port      None: the line is simulated; or the port of the computer that is the line
     """
 
     place = "the virtual board"
     refused = {}
+    notices = ()
+    port = None
 
     def __init__(
         self,
@@ -78,6 +83,7 @@ class Surroundings:
             if kind["parameters"] is None:
                 kind["parameters"] = supervision(kind.get("family", mm420), supervised_ms)
             self.drives[address] = Drive(clock, self.wire, address, **kind)
+        self.mains = Mains(clock, list(self.drives.values()))
         self.stored = dict(settings or {})
         self.stored.setdefault("baud", baud)
         self.stored.setdefault("drives", list(addresses))
@@ -144,9 +150,9 @@ class Surroundings:
 
 class World(Surroundings):
     """start: makes the firmware. polled: no receive interrupt. ticks_start, ticks_mask: of the
-    chip's clock. store: keeps the panel's settings in place of the flash; what it has already is
-    not touched. The others are those of `Surroundings`; in the plain world every step of the loop
-    takes 2 ms, with a seed each its own time.
+    chip's clock, which `clock` replaces. store: keeps the panel's settings in place of the flash;
+    what it has already is not touched. The others are those of `Surroundings`; in the plain world
+    every step of the loop takes 2 ms, with a seed each its own time.
     """
 
     def __init__(
@@ -163,8 +169,9 @@ class World(Surroundings):
         parameters=None,
         store=None,
         kinds=None,
+        clock=None,
     ):
-        clock = Clock(ticks_start, ticks_mask)
+        clock = clock or Clock(ticks_start, ticks_mask)
         Surroundings.__init__(
             self, clock, addresses, baud, settings, seed, keys, parameters, kinds
         )
@@ -179,6 +186,7 @@ class World(Surroundings):
         self._start = start
         self._polled = polled
         self._bitten = False
+        self._dipped = False
         self.chips = []  # each life of the chip, the last one is `chip`
         self._boot()
 
@@ -195,13 +203,15 @@ class World(Surroundings):
                 self.reset()
             if self._bitten:
                 self.reset()
+            elif self._dipped:
+                self.cut_power()
 
     def hang(self, ms):
         """Let so many milliseconds pass in which the main loop does not run. Interrupts do."""
         until_us = self.clock.now_us + ms * 1000
         while self.clock.now_us < until_us:
             self.clock.advance(min(HANG_SLICE_US, until_us - self.clock.now_us))
-            if self._bitten:
+            if self._bitten or self._dipped:
                 self.reset()
                 self.run(max(0, until_us - self.clock.now_us) // 1000)
 
@@ -217,6 +227,17 @@ class World(Surroundings):
         self.lcd_chip.let_go()
         self.lcd_chip.power_on()
         self.reset()
+
+    def dip(self, whose, ms):
+        """The supply of "drives", "panel" or "all" fails. The drives are without for `ms`, the
+        panel restarts when the world has the floor again. Also in an event: `LineFaults.on_dip`.
+        """
+        if whose != "panel":
+            self.mains.dip(ms)
+        if whose != "drives":
+            self._dipped = True
+            self.lcd_chip.let_go()
+            self.chip.reset()
 
     def close(self):
         """Stop the drives, and the panel with them."""
@@ -235,16 +256,19 @@ class World(Surroundings):
 
     def _boot(self):
         cause = "WATCHDOG" if self._bitten else ""
-        self._bitten = False
+        self._bitten = self._dipped = False
         self.chip = Chip(self.clock, self.wire)
         self.chip.on_bite = self._bite
         self.chips.append(self.chip)
         self.clock.advance(BOOT_US)
         loop_us = self._uneven_loop_us if self.seed else None
-        board = Board(
+        self.app = self._start(self.make_board(loop_us, cause))
+
+    def make_board(self, loop_us, cause):
+        """The board around the chip that has just booted. As `Board`."""
+        return Board(
             self.chip, self.lcd_chip, self.keypad, self.store, self._polled, loop_us, cause
         )
-        self.app = self._start(board)
 
     def _flash_is_busy(self, us):
         # The firmware runs from the same flash: nothing of it does meanwhile.

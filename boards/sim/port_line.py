@@ -1,0 +1,172 @@
+"""A simulated line that somebody real talks on, through a port: the master of simulated drives.
+
+Two kinds of port. A pty has no line: whatever is written into it arrives at once, so the
+simulated wire takes the time that the characters need, and the reply goes out when its last
+character is over. A real serial port has one: what comes from it has taken its time already, and
+the reply is handed over at its beginning.
+
+    wire = Wire(clock, 19200)
+    master = PtyMaster(wire, write)     # or PortMaster(wire, write)
+    master.received(data)               # what has come, when it comes; clock.follow() before it
+
+Judged is what a computer can tell: characters that came together are one burst, a master that is
+too fast behind a reply is taken for one that has kept the start interval, and behind a real port,
+whose adapter may hand over late, a telegram may come in pieces.
+"""
+
+from boards.sim.clock import Event
+from boards.sim.wire import BURST_LIMIT, Burst
+
+STX = 0x02
+QUEUE_FULL = 1024  # characters that wait for the line; more are left in the port
+LATE_US = 20_000  # adapters keep characters back for up to 16 ms
+TOGETHER_US = 3_000  # characters that begin no telegram belong together when they are closer
+ECHO_US = 100_000  # what is sent comes back within so long, or never
+
+
+class Master:
+    """What both have. write(data): to the port, at once. note(at_us, from_master, data): called
+    for every telegram, or what else was said, when it is over.
+    """
+
+    name = "panel"  # as the script language calls whoever asks
+    is_panel = True
+
+    def __init__(self, wire, write, note=None):
+        self._wire = wire
+        self._clock = wire.clock
+        self._write = write
+        self._note = note
+        self._pending = bytearray()
+        wire.attach(self)
+
+    def full(self):
+        """Whether so much waits that the port is better left alone."""
+        return len(self._pending) >= QUEUE_FULL
+
+    def _noted(self, burst, from_master):
+        if self._note is not None:
+            self._note(burst.start_us, from_master, bytes(burst.data[: burst.count]))
+
+
+class PtyMaster(Master):
+    """Its characters take their time on the wire, one behind the other."""
+
+    def __init__(self, wire, write, note=None):
+        Master.__init__(self, wire, write, note)
+        self._burst = None  # what it is saying
+        self._go_on = Event(self._over)
+        self._answered_us = None  # the end of a reply, until it talks
+
+    def received(self, data, flaws=None):
+        self._pending += data
+        if self._burst is not None:
+            self._say_more()
+        elif not self._go_on.armed:
+            self._begin()
+
+    def hear(self, burst):
+        """A drive has talked."""
+        self._answered_us = burst.end_us
+        self._noted(burst, False)
+        self._write(bytes(burst.data[: burst.count]))
+
+    def hear_itself(self, burst):
+        self._write(bytes(burst.data[: burst.count]))
+
+    def _begin(self):
+        """Talk, or first let the start interval pass behind a reply."""
+        if self._answered_us is not None:
+            from_us = self._answered_us + self._wire.start_interval_us
+            self._answered_us = None
+            if from_us > self._clock.now_us:
+                self._clock.schedule(self._go_on, from_us)
+                return
+        self._say(BURST_LIMIT)
+
+    def _say_more(self):
+        """Behind what it is saying, without a gap; what has no room waits for the end of that."""
+        room = BURST_LIMIT - self._burst.sent_count
+        if room:
+            self._say(room)
+
+    def _say(self, room):
+        count = min(len(self._pending), room)
+        self._burst = self._wire.talk(self, self._pending, count)
+        self._pending = self._pending[count:]
+        self._clock.schedule(self._go_on, self._burst.end_us)
+
+    def _over(self):
+        burst, self._burst = self._burst, None
+        if burst is not None:
+            self._noted(burst, True)
+        if self._pending:
+            self._begin()
+
+
+class PortMaster(Master):
+    """Its characters have been on a line already when they come; replies go there themselves."""
+
+    def __init__(self, wire, write, note=None):
+        Master.__init__(self, wire, write, note)
+        self._flaws = bytearray()  # of the pending characters, as in Burst.errors
+        self._echo = b""
+        self._echo_until_us = 0
+        self._silence = Event(self._silent)
+
+    def received(self, data, flaws=None):
+        """flaws: a flag for every character, as in Burst.errors, or None."""
+        data, flaws = self._without_echo(data, flaws or bytes(len(data)))
+        if not data:
+            return
+        self._pending += data
+        self._flaws += flaws
+        pending = self._pending
+        if pending[0] == STX and len(pending) > 1 and len(pending) >= pending[1] + 2:
+            self._hand_over()
+        else:
+            self._clock.schedule(self._silence, self._clock.now_us + self._patience_us())
+
+    def watch(self, burst):
+        """A drive begins to talk. The port takes as long for it as the simulated line."""
+        reply = bytes(burst.data[: burst.count])
+        self._echo = reply
+        self._echo_until_us = burst.end_us + ECHO_US
+        self._write(reply)
+
+    def hear(self, burst):
+        self._noted(burst, False)
+
+    def _without_echo(self, data, flaws):
+        """Some adapters hear themselves; a drive would take its own reply for a request."""
+        count = min(len(data), len(self._echo))
+        if data[:count] != self._echo[:count] or self._clock.now_us > self._echo_until_us:
+            count = 0
+            self._echo = b""
+        self._echo = self._echo[count:]
+        return data[count:], flaws[count:]
+
+    def _patience_us(self):
+        """How long more characters may still belong to what has come."""
+        if self._pending[0] != STX:
+            return max(self._wire.start_interval_us, TOGETHER_US)
+        length = self._pending[1] + 2 if len(self._pending) > 1 else BURST_LIMIT
+        return LATE_US + 3 * length * self._wire.character_us // 2
+
+    def _silent(self):
+        if self._pending:
+            self._hand_over()
+
+    def _hand_over(self):
+        """All that is pending was one burst, which is over now."""
+        self._clock.cancel(self._silence)
+        count = min(len(self._pending), BURST_LIMIT)
+        wire = self._wire
+        burst = Burst(wire.ends, wire.character_us)
+        burst.begin(self._clock.now_us - wire.ends[count - 1], wire.start_interval_us)
+        burst.append(self._pending, count)
+        burst.errors = self._flaws[:count] if any(self._flaws[:count]) else None
+        self._pending = bytearray()
+        self._flaws = bytearray()
+        wire.took_place(self, burst)
+        self._noted(burst, True)

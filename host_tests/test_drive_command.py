@@ -1,0 +1,286 @@
+"""./tools/drive as somebody uses it who has a USS master of his own.
+
+The master here is a file descriptor: it writes a telegram and reads what comes.
+"""
+
+import os
+import select
+import signal
+import struct
+import sys
+import time
+import tty
+from types import SimpleNamespace
+
+import pytest
+from test_port_panel import DRIVE, PATIENCE_S, Drives, Talking, program  # noqa: F401
+
+TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+sys.path.insert(0, TOP)
+
+from tools.driving import decoding  # noqa: E402
+from tools.serial_port import FRAME, PARITY, LineCut, Pty, SerialPort  # noqa: E402
+
+INTERPRETERS = "host"
+
+STOP, RUN = 0x047E, 0x047F
+READ_P0700 = (0x12BC, 0, 0, 0)
+NOTHING = (0, 0, 0, 0)
+
+
+def telegram(adr, words):
+    net = b"".join(struct.pack(">H", word) for word in words)
+    characters = bytes((0x02, len(net) + 2, adr)) + net
+    bcc = 0
+    for character in characters:
+        bcc ^= character
+    return characters + bytes((bcc,))
+
+
+class Master:
+    """A master that knows nothing but the path of its port."""
+
+    def __init__(self, path):
+        self.port = os.open(path, os.O_RDWR | os.O_NOCTTY)
+
+    def asks(self, characters, size=16):
+        """The reply, of so many characters."""
+        os.write(self.port, characters)
+        return self.hears(size)
+
+    def hears(self, size=16, patience_s=PATIENCE_S):
+        deadline = time.monotonic() + patience_s
+        heard = b""
+        while len(heard) < size and time.monotonic() < deadline:
+            if select.select([self.port], [], [], deadline - time.monotonic())[0]:
+                heard += os.read(self.port, 300)
+        return heard
+
+    def is_not_answered(self, characters, silence_s=0.1):
+        os.write(self.port, characters)
+        return self.hears(1, silence_s) == b""
+
+
+def test_a_master_reads_starts_and_stops(program):  # noqa: F811
+    drives = program(Drives, "--address", "5", "--family", "mm440")
+    master = Master(drives.path)
+    reply = master.asks(telegram(5, READ_P0700 + (STOP, 0)))
+    assert reply[:11] == b"\x02\x0e\x05\x12\xbc\x00\x00\x00\x00\x00\x05"
+    master.asks(telegram(5, NOTHING + (STOP, 0)))
+    master.asks(telegram(5, NOTHING + (RUN, 0x1000)))
+    drives.waits(5, state="running", hz="12.50")
+    master.asks(telegram(5, NOTHING + (STOP, 0)))
+    drives.waits(5, state="ready")
+
+
+def test_several_drives_of_several_families_share_the_line(program):  # noqa: F811
+    drives = program(Drives, "--address", "1,2=g110,3=mm3", "--set", "2:P2013=0")
+    master = Master(drives.path)
+    assert len(master.asks(telegram(1, NOTHING + (STOP, 0)))) == 16
+    assert len(master.asks(telegram(2, (STOP, 0)), 8)) == 8
+    assert len(master.asks(telegram(3, NOTHING[:3] + (STOP, 0)), 14)) == 14
+    assert master.is_not_answered(telegram(4, NOTHING + (STOP, 0)))
+
+
+def test_it_is_told_what_happens_to_the_drive(program):  # noqa: F811
+    drives = program(Drives)
+    master = Master(drives.path)
+    request = telegram(1, NOTHING + (STOP, 0))
+    drives.does("fault 1 F0001")
+    assert drives.report()["fault"] == "F0001"
+    assert master.asks(request)[12] & 0x08
+    drives.does("unplug 1")
+    assert drives.report()["state"] == "fault"
+    assert master.is_not_answered(request)
+    drives.does("plug 1")
+    drives.report()
+    assert len(master.asks(request)) == 16
+
+
+def test_mains_off_and_on_lose_the_ram_and_keep_the_eeprom(program):  # noqa: F811
+    drives = program(Drives, "--set", "P1082=40.0")
+    master = Master(drives.path)
+    write = (0x24C7, 0x0000, 0, 0)  # P1223: there is none
+    assert master.asks(telegram(1, write + (STOP, 0)))[3] >> 4 == 7
+    write_p2011 = (0x200B, 0x8000, 0, 7)  # into the RAM
+    assert master.asks(telegram(1, write_p2011 + (STOP, 0)))[3] >> 4 == 1
+    assert len(master.asks(telegram(7, NOTHING + (STOP, 0)))) == 16
+    drives.does("off 1")
+    assert drives.report()["state"] == "off"
+    assert master.is_not_answered(telegram(7, NOTHING + (STOP, 0)))
+    drives.does("on 1")
+    assert drives.report()["address"] == "1"
+    assert drives.asked("param 1 P1082") == "P1082[0]=40.0"
+    assert len(master.asks(telegram(1, NOTHING + (STOP, 0)))) == 16
+
+
+def test_the_log_says_every_telegram_in_words(program):  # noqa: F811
+    drives = program(Drives, "--log")
+    master = Master(drives.path)
+    master.asks(telegram(1, READ_P0700 + (STOP, 0x1000)))
+    said = "> A1  read P0700[0]                STW 047E HSW   25.00 %  OFF1"
+    assert drives.line().endswith(said)
+    assert "< A1  is P0700[0] = 5" in drives.line()
+    os.write(master.port, telegram(1, READ_P0700 + (STOP, 0))[:-1] + b"\x00")
+    assert drives.line().endswith("(BCC 00 should be D9)")
+
+
+def test_a_reply_delay_is_kept(program):  # noqa: F811
+    drives = program(Drives, "--reply-delay", "150")
+    master = Master(drives.path)
+    began = time.monotonic()
+    master.asks(telegram(1, NOTHING + (STOP, 0)))
+    assert time.monotonic() - began > 0.15
+
+
+def test_commands_that_make_no_sense_are_told_and_change_nothing(program):  # noqa: F811
+    drives = program(Drives)
+    assert "no panel here" in drives.asked("press START")
+    assert "unknown command jump" in drives.asked("jump")
+    assert drives.asked("off 9") == "use: off A"
+    assert "quit" in drives.asked("help")
+    drives.does("quit")
+    assert drives.ends() == 0
+
+
+@pytest.mark.parametrize("ending", [signal.SIGINT, signal.SIGTERM, None])
+def test_it_ends_quietly(program, tmp_path, ending):  # noqa: F811
+    link = tmp_path / "line"
+    drives = program(Drives, "--link", str(link))
+    assert link.is_symlink() and drives.path == str(link)
+    drives.report()
+    if ending is None:
+        drives.process.stdin.close()  # that is no reason to end
+        assert len(Master(drives.path).asks(telegram(1, NOTHING + (STOP, 0)))) == 16
+        ending = signal.SIGINT
+    drives.process.send_signal(ending)
+    assert drives.ends() == 0 and drives.rest == ""
+    assert not link.is_symlink()
+
+
+@pytest.mark.parametrize(
+    "words, status, why",
+    [
+        ((), 2, "one of the arguments --pty --port is required"),
+        (("--pty", "--address", "32"), 2, "--address: 32 is no address 0...31"),
+        (("--pty", "--address", "1,1"), 2, "--address: 1 stands there twice"),
+        (("--pty", "--address", "1=mm9"), 2, "--address: no family mm9"),
+        (("--pty", "--set", "3:P2014=0"), 2, "--set 3:P2014=0: use A:P2014=0"),
+        (("--pty", "--set", "P2014=much"), 2, "--set P2014=much: much is no number"),
+        (("--pty", "--baud", "12345"), 2, "invalid choice: 12345"),
+        (("--pty", "--baud", "300"), 2, "has no code for 300 baud"),
+        (("--port", "/dev/no_such"), 1, "there is no port /dev/no_such"),
+        (("--port", "/dev/null"), 1, "/dev/null is no serial port"),
+    ],
+)
+def test_what_cannot_be_is_refused(program, words, status, why):  # noqa: F811
+    drives = program(Talking, DRIVE, *words)
+    assert drives.ends() == status and why in drives.rest
+
+
+def test_idle_it_takes_next_to_no_time(program):  # noqa: F811
+    drives = program(Drives, "--address", ",".join(map(str, range(31))))
+    drives.report()
+    before = processor_s(drives.process.pid)
+    began = time.monotonic()
+    while time.monotonic() - began < 1:
+        assert Master(drives.path).hears(1, 1) == b""
+    assert processor_s(drives.process.pid) - before < 0.05
+
+
+def processor_s(process):
+    with open("/proc/%d/stat" % process) as file:
+        times = file.read().rsplit(")", 1)[1].split()[11:13]
+    return sum(map(int, times)) / os.sysconf("SC_CLK_TCK")
+
+
+# ---- the port itself ---------------------------------------------------------------------------
+
+
+def test_what_parmrk_marks_becomes_flags():
+    port = SerialPort("/dev/none", 19200)
+    data, flags = port._unmarked(b"\x02\xff\xff\xff\x00\x41\x10\xff")
+    assert data == b"\x02\xff\x41\x10" and flags == bytes((0, 0, PARITY, 0))
+    data, flags = port._unmarked(b"\x00\x00\x03")  # a break, whose mark came in two pieces
+    assert data == b"\x00\x03" and flags == bytes((FRAME, 0))
+
+
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="as Linux does it")
+def test_a_rate_without_a_name_can_be_set():
+    master, slave = os.openpty()
+    port = SerialPort(os.ttyname(slave), 187500)
+    port._descriptor = slave
+    tty.setraw(slave)
+    port._set_other_rate()  # reads back what it has set
+    os.close(slave)
+    os.close(master)
+
+
+def test_a_pty_that_is_closed_is_a_line_that_is_cut():
+    ours = Pty()
+    ours.open()
+    port = SerialPort(ours.path, 19200)
+    port.open()
+    assert port.is_pty
+    ours.write(b"\x02\xff\n\r")
+    assert select.select([port], [], [], PATIENCE_S)[0]
+    assert port.read()[0] == b"\x02\xff\n\r"
+    assert port.read()[0] == b""
+    ours.close()
+    with pytest.raises(LineCut):
+        for _ in range(2):
+            port.read()
+    port.close()
+
+
+# ---- the log in words ---------------------------------------------------------------------------
+
+DRIVES = {
+    1: SimpleNamespace(address=1, layout=(4, 2)),
+    2: SimpleNamespace(address=2, layout=(127, 2)),
+    3: SimpleNamespace(address=3, layout=(0, 2)),
+}
+
+
+@pytest.mark.parametrize(
+    "adr, words, said",
+    [
+        (1, (0x3000, 0x8000, 0x4248, 0x0000, 0x047F, 0xE000),
+         "write long P2000[0] = 50 (42480000) STW 047F HSW  -50.00 %  ON"),
+        (1, NOTHING + (0x04FE, 0), "-                            "
+         "STW 04FE HSW    0.00 %  OFF1, ACKNOWLEDGE"),
+        (2, (0x200B, 0x8000, 0x0007, 0x047E, 0), "write P2011[0] = 7"),
+        (3, (0x0C7F, 0x2000), "STW 0C7F HSW   50.00 %  ON, REVERSE"),
+        (3, (0x0000, 0x2000), "NOT BY PLC"),
+        (0x41, NOTHING + (0x047E, 0), "A1  mirror"),
+        (0x20, (0x8002, 0, 0, 0, 0x047E, 0), "all broadcast, enable 8002 0000 0000 0000 047E"),
+        (0x81, NOTHING + (0x047E, 0), "(special telegram)"),
+        (9, NOTHING + (0x047E, 0), "(nobody has address 9)"),
+        (1, (0x047E, 0), "(LGE 6 should be 14: 4 + 2 words)"),
+    ],
+)  # fmt: skip
+def test_a_request_in_words(adr, words, said):
+    assert said in decoding.line(0, True, telegram(adr, words), DRIVES)
+
+
+@pytest.mark.parametrize(
+    "adr, words, said",
+    [
+        (1, (0x73E8, 0, 0, 2, 0xFB31, 0), "error P1000[0] = 2"),
+        (1, (0x83E8, 0, 0, 0, 0xFB31, 0), "no change rights P1000[0]"),
+        (1, NOTHING + (0xFB34, 0x1000), "ZSW FB34 HIW   25.00 %  running, at setpoint"),
+        (9, NOTHING + (0xFB34, 0x1000), "(another drive's)"),
+    ],
+)
+def test_a_reply_in_words(adr, words, said):
+    assert said in decoding.line(1_500_000, False, telegram(adr, words), DRIVES)
+
+
+def test_what_is_no_telegram_is_shown_as_it_is():
+    for characters, why in (
+        (b"\x55", "55  (no STX)"),
+        (b"\x02", "02  (cut off: 1 characters)"),
+        (b"\x02\x0e\x01", "02 0E 01  (cut off: 3 of 16 characters)"),
+        (2 * telegram(3, (0x047E, 0)), "(8 characters behind the telegram, without a pause)"),
+    ):
+        assert decoding.line(0, True, characters, DRIVES).endswith(why)

@@ -1,0 +1,309 @@
+"""./tools/panel on a real line: at the other end of a pty are drives served by ./tools/drive.
+
+Real programs in real time. A test waits for what it expects, and gives up after a while.
+"""
+
+import json
+import os
+import select
+import signal
+import subprocess
+import time
+
+import pytest
+from test_terminal import Terminal
+
+INTERPRETERS = "host"
+
+TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+PANEL = os.path.join(TOP, "tools", "panel")
+DRIVE = os.path.join(TOP, "tools", "drive")
+PATIENCE_S = 30  # for a machine that does other things as well
+
+SUPERVISED = ("--set", "P2014=2000")
+
+
+class Talking:
+    """A program that takes commands line by line, and answers."""
+
+    def __init__(self, *command):
+        self.process = subprocess.Popen(
+            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT
+        )
+        self._said = b""
+
+    def line(self):
+        """The next line that it says."""
+        deadline = time.monotonic() + PATIENCE_S
+        while b"\n" not in self._said:
+            left = deadline - time.monotonic()
+            assert left > 0, "it says nothing; the last was %r" % self._said
+            if select.select([self.process.stdout], [], [], left)[0]:
+                said = os.read(self.process.stdout.fileno(), 65536)
+                assert said, "it has ended"
+                self._said += said
+        line, self._said = self._said.split(b"\n", 1)
+        return line.decode()
+
+    def does(self, *commands):
+        self.process.stdin.write(("\n".join(commands) + "\n").encode())
+        self.process.stdin.flush()
+
+    def asked(self, command):
+        """The line that a command answers."""
+        self.does(command)
+        return self.line()
+
+    def ends(self, patience_s=PATIENCE_S):
+        status = self.process.wait(patience_s)
+        self.rest = (self._said + self.process.stdout.read()).decode()
+        return status
+
+    def kill(self):
+        self.process.kill()
+        self.process.wait()
+
+
+class Drives(Talking):
+    """./tools/drive on a pty, whose path is `path`."""
+
+    def __init__(self, *options):
+        Talking.__init__(self, DRIVE, "--pty", *options)
+        self.path = self.line()
+
+    def report(self, address=1):
+        """{"state": "running", ...}"""
+        words = self.asked("drive %d" % address).split()
+        return dict(word.split("=") for word in words if "=" in word)
+
+    def waits(self, address=1, **wanted):
+        """Until the report of a drive says so."""
+        deadline = time.monotonic() + PATIENCE_S
+        while True:
+            report = self.report(address)
+            if all(report[name] == wanted[name] for name in wanted):
+                return
+            assert time.monotonic() < deadline, (wanted, report)
+
+
+class Panel(Talking):
+    """./tools/panel on a port, which takes its commands from here."""
+
+    def __init__(self, path, *options):
+        Talking.__init__(self, PANEL, "--port", path, "--script", "-", *options)
+
+    def shows(self, *texts):
+        """Wait until the display shows one of these; answer that."""
+        deadline = time.monotonic() + PATIENCE_S
+        while True:
+            self.does("wait 50", "lcd")
+            rows = [self.line(), self.line()]
+            for text in texts:
+                if text in " ".join(rows):
+                    return text
+            assert time.monotonic() < deadline, (texts, rows)
+
+    def runs(self):
+        """START, until it runs: a machine that stalls for 300 ms stops it again."""
+        while self.shows("READY", "NOT STARTED", "PANEL HUNG", "RUNNING") != "RUNNING":
+            self.does("press START")
+            self.shows("RUNNING", "PANEL HUNG")
+
+
+@pytest.fixture
+def program():
+    """Makes one of the programs above, and sees that it does not run on."""
+    made = []
+
+    def make(kind, *words):
+        made.append(kind(*words))
+        return made[-1]
+
+    yield make
+    for one in made:
+        if one.process.poll() is None:
+            one.kill()
+
+
+@pytest.fixture
+def terminal():
+    made = []
+
+    def make(*options):
+        made.append(Terminal(*options))
+        return made[-1]
+
+    yield make
+    for one in made:
+        if one.process.poll() is None:
+            os.killpg(one.process.pid, signal.SIGKILL)
+            one.process.wait()
+        os.close(one.master)
+        os.close(one.slave)
+
+
+def test_a_drive_is_parameterised_started_and_stopped(program):
+    drives = program(Drives, "--address", "1,2=mm440")
+    panel = program(Panel, drives.path, "--drives", "1,2")
+    panel.shows("READY")
+    assert drives.asked("param 1 P2014[0]") == "P2014[0]=0"
+    panel.does("press START")
+    panel.shows("SET=FIX START=GO")
+    panel.does("wait 1200", "press SET")  # a question has to be readable before it is answered
+    panel.shows("WRITTEN (RAM)")
+    assert int(drives.asked("param 1 P2014[0]").split("=")[1]) > 100
+    panel.shows("NOT STARTED")
+    panel.runs()
+    drives.waits(state="running", hz="10.00")
+    panel.does("press UP")
+    drives.waits(hz="10.10")
+    panel.does("press STOP")
+    drives.waits(state="ready", stw="047E")
+    panel.shows("READY")
+    panel.does("press PARAM")
+    panel.shows("P0700:     5 A1")
+    panel.does("press ADDRESS_UP")
+    panel.shows("P0700:     5 A2")
+    panel.process.stdin.close()
+    assert panel.ends() == 0 and panel.rest == ""
+
+
+@pytest.mark.parametrize("ending", ["end", "expect SOMETHING ELSE", "SIGINT", "SIGTERM", "SIGHUP"])
+def test_whatever_ends_the_panel_the_drives_are_stopped_first(program, ending):
+    drives = program(Drives, *SUPERVISED)
+    panel = program(Panel, drives.path)
+    panel.runs()
+    if ending == "end":
+        panel.process.stdin.close()
+    elif ending.startswith("SIG"):
+        panel.process.send_signal(getattr(signal, ending))
+    else:
+        panel.does(ending)
+    assert panel.ends() == {"end": 0, "expect SOMETHING ELSE": 1}.get(ending, 130)
+    report = drives.report()
+    assert report["stw"] == "047E" and report["state"] in ("stopping", "ready"), report
+    assert "Traceback" not in panel.rest and "not confirmed" not in panel.rest
+
+
+def test_the_program_inside_cannot_be_ended_without_that(program):
+    drives = program(Drives, *SUPERVISED)
+    panel = program(Panel, drives.path)
+    panel.runs()
+    os.kill(child_of(panel.process.pid), signal.SIGTERM)
+    os.kill(panel.process.pid, signal.SIGTERM)
+    assert panel.ends() == 130
+    assert drives.report()["stw"] == "047E"
+
+
+def child_of(process):
+    with open("/proc/%d/task/%d/children" % (process, process)) as file:
+        return int(file.read().split()[0])
+
+
+def test_drives_that_do_not_answer_are_named_at_the_end(program):
+    drives = program(Drives)
+    panel = program(Panel, drives.path, "--drives", "1,9")
+    panel.shows("READY")
+    panel.process.stdin.close()
+    assert panel.ends() == 0
+    assert panel.rest == "panel: OFF1 not confirmed by drive 9\n"
+
+
+def test_a_port_that_goes_is_a_cut_line_and_taken_again(program, tmp_path):
+    link = str(tmp_path / "line")
+    drives = program(Drives, "--link", link)
+    panel = program(Panel, link)
+    panel.shows("READY")
+    drives.process.terminate()
+    assert drives.ends() == 0
+    assert "has gone" in told(panel)
+    panel.shows("NO CONTACT")
+    drives = program(Drives, "--link", link)
+    assert told(panel) == "panel: %s is back" % link
+    panel.shows("READY")
+
+
+def told(panel):
+    """The next thing that the panel says of its own accord."""
+    deadline = time.monotonic() + PATIENCE_S
+    while time.monotonic() < deadline:
+        panel.does("wait 20", "lcd")
+        line = panel.line()
+        if line.startswith("panel: "):
+            panel.line(), panel.line()
+            return line
+        line = panel.line()
+        assert line.startswith("|")
+    raise AssertionError("it says nothing")
+
+
+@pytest.mark.parametrize("ending", ["q", "\x03", "SIGTERM"])
+def test_the_live_panel_works_and_leaves_the_same_way(program, terminal, ending):
+    drives = program(Drives, *SUPERVISED)
+    panel = terminal("--port", drives.path)
+    panel.shows("READY        A1")
+    assert drives.path in panel.screen.text()
+    panel.type("s")
+    panel.shows("RUNNING      A1")
+    drives.waits(state="running")
+    if ending == "SIGTERM":
+        panel.process.terminate()
+    else:
+        panel.type(ending)
+    assert panel.ends() == (0 if ending == "q" else 130)
+    assert panel.is_as_before()
+    assert drives.report()["stw"] == "047E"
+    assert "every drive was sent OFF1" in panel.screen.text() or ending != "q"
+
+
+def test_somebody_else_may_not_use_the_port(program):
+    drives = program(Drives)
+    panel = program(Panel, drives.path)
+    panel.shows("READY")
+    other = program(Panel, drives.path)
+    assert other.ends() == 1
+    assert other.rest == "panel: %s is in use by another program\n" % drives.path
+
+
+def test_what_is_no_port_is_said(program, tmp_path):
+    file = tmp_path / "file"
+    file.write_text("")
+    for path, why in (
+        ("/dev/no_such", "panel: there is no port /dev/no_such\n"),
+        (str(file), "panel: %s is no serial port\n" % file),
+    ):
+        panel = program(Panel, path)
+        assert panel.ends() == 1 and panel.rest == why
+
+
+@pytest.mark.parametrize(
+    "options, why",
+    [
+        (("--speed", "3"), "--speed is not for --port"),
+        (("--seed", "3"), "--seed is not for --port"),
+        (("--polled",), "--polled is not for --port"),
+        (("--board", "pico"), "--board is not for --port"),
+        (("--reply-timeout", "5"), "--reply-timeout 5: 20...500 ms"),
+    ],
+)
+def test_options_that_make_no_sense_on_a_real_line_are_refused(program, options, why):
+    panel = program(Panel, "/dev/no_such", *options)
+    assert panel.ends() == 2 and panel.rest.startswith("panel: " + why)
+
+
+def test_what_the_settings_say_is_not_overruled(program, tmp_path):
+    kept = tmp_path / "kept.json"
+    for options in (("--drives", "1,2"), ("--baud", "9600"), ("--reply-timeout", "100")):
+        kept.write_text('{"drives": [1, 3], "baud": 19200, "reply_timeout_ms": 40}')
+        panel = program(Panel, "/dev/no_such", "--settings", str(kept), *options)
+        assert panel.ends() == 2
+        assert panel.rest.startswith("panel: %s: %s says " % (options[0], kept))
+
+
+def test_new_settings_have_time_for_an_adapter(program, tmp_path):
+    drives = program(Drives, "--address", "4")
+    new = tmp_path / "new.json"
+    panel = program(Panel, drives.path, "--settings", str(new), "--drives", "4")
+    panel.shows("READY        A4")
+    stored = json.loads(new.read_text())
+    assert stored["drives"] == [4] and stored["reply_timeout_ms"] == 60

@@ -1,0 +1,229 @@
+"""Simulated drives for any USS master, on a pty or a serial port, in real time: tools/drive.
+
+Exit status: 0 after Ctrl-C or `quit`, 1 when the port cannot be had, 2 when the command line
+cannot be understood.
+"""
+
+import argparse
+import os
+import signal
+import sys
+import textwrap
+
+from boards.sim.drive_switches import SWITCHES
+from boards.sim.script import ORDER, ExpectationFailed, Script, ScriptError, parameter, value
+from tools.driving.line import OF_THE_PANEL, DriveLine
+from tools.serial_port import PortError, Pty, SerialPort
+
+FAMILIES = ("mm420", "mm440", "mm3", "g110", "v20", "g120", "generic")
+USUAL = "mm420"
+BAUD_RATES = (
+    300, 600, 1200, 2400, 4800, 9600, 19200, 38400, 57600, 76800, 93750, 115200, 187500,
+)  # fmt: skip
+NODE_MAX = 31
+READ_MAX = 4096
+INDENTED = {"initial_indent": "    ", "subsequent_indent": "    "}
+
+COMMANDS = [name for name in ORDER if name not in OF_THE_PANEL] + ["off", "on", "help", "quit"]
+
+DESCRIPTION = """\
+Serves simulated drives to a USS master of your own: a PLC, an Arduino, a program. They are those
+of the panel's simulation, in real time."""
+
+EPILOG = """\
+With --pty the path of the pty is the first line printed. A pty takes no parity and no rate: open
+it with parity NONE (pyserial: parity="N"). The simulated line has the rate of --baud all the
+same, and characters take their time. A serial port is set to 8E1.
+
+While it runs it takes commands, one a line:
+  drive 1            the state of drive 1        param 1 P2014[0] 0   read or set a parameter
+  fault 1 F0001      it trips                    unplug 1, plug 1     its RS-485 connector
+  off 1, on 1        its mains                   bus 10               the last telegrams
+  help               lists all                   quit                 or Ctrl-C ends it
+
+examples:
+  ./tools/drive --pty --address 1 --family mm440 --log
+  ./tools/drive --pty --address 1,2=g110,3=v20 --set 2:P2013=0 --set P2014=500
+  ./tools/drive --port /dev/ttyUSB0 --baud 38400 --address 4
+"""
+
+
+def arguments(words):
+    parser = argparse.ArgumentParser(
+        prog="tools/drive",
+        description=DESCRIPTION,
+        epilog=EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    add = parser.add_argument
+    where = parser.add_mutually_exclusive_group(required=True)
+    where.add_argument("--pty", action="store_true", help="on a new pty, whose path is printed")
+    where.add_argument("--port", metavar="PATH", help="on a serial port, such as /dev/ttyUSB0")
+    add("--link", metavar="PATH", help="with --pty: a symbolic link to it, always the same")
+    add("--address", "--drives", default="1", metavar="LIST", help="such as 1,2=g110,3=v20 (1)")
+    add("--family", default=USUAL, choices=FAMILIES, help="of those without one (%(default)s)")
+    add("--baud", type=int, default=19200, choices=BAUD_RATES, metavar="RATE", help="(19200)")
+    add("--set", action="append", default=[], metavar="A:P2014=0",
+        help="a parameter of drive A, of all without A:")  # fmt: skip
+    add("--switch", action="append", default=[], metavar="A:NAME=VALUE",
+        help="how A behaves where the documents leave it open; --switch help")  # fmt: skip
+    add("--reply-delay", type=float, metavar="MS", help="to every reply (three characters)")
+    add("--log", action="store_true", help="print every telegram, decoded")
+    if "--switch=help" in words or ("--switch", "help") in zip(words, words[1:]):
+        parser.exit(message=switches() + "\n")
+    chosen = parser.parse_args(words)
+    if chosen.link and not chosen.pty:
+        parser.error("--link is for --pty")
+    try:
+        return chosen, kinds(chosen)
+    except ValueError as error:
+        parser.error(str(error))
+
+
+def kinds(chosen):
+    """{address: keyword arguments of `Drive`}. ValueError: there is no such drive."""
+    found = {}
+    for entry in chosen.address.split(","):
+        address, _, family = entry.partition("=")
+        family = family.lower() or chosen.family
+        if not address.isdigit() or int(address) > NODE_MAX:
+            raise ValueError("--address: %s is no address 0...31" % (address or "nothing"))
+        if int(address) in found:
+            raise ValueError("--address: %s stands there twice" % address)
+        if family not in FAMILIES:
+            raise ValueError("--address: no family %s: %s" % (family, " ".join(FAMILIES)))
+        found[int(address)] = {"family": family_of(family), "parameters": {}, "switches": {}}
+        if chosen.reply_delay is not None:
+            found[int(address)]["reply_delay_us"] = int(chosen.reply_delay * 1000)
+    for entry in chosen.set:
+        addresses, name, new = assignment("--set", "P2014=0", entry, found)
+        for one in addresses:
+            found[one]["parameters"][parameter(None, name)] = new
+    for entry in chosen.switch:
+        addresses, name, new = assignment("--switch", "stale_replies=2", entry, found)
+        for one in addresses:
+            found[one]["switches"][name] = new
+    return found
+
+
+def family_of(name):
+    return getattr(__import__("boards.sim." + name).sim, name)
+
+
+def assignment(option, example, entry, found):
+    """What "1:NAME=VALUE" means: addresses, name, value. ValueError: nothing."""
+    left, equals, right = entry.partition("=")
+    address, colon, name = left.rpartition(":")
+    if not equals or colon and (not address.isdigit() or int(address) not in found):
+        use = "use A:%s, A one of the addresses" % example
+        raise ValueError("%s %s: %s" % (option, entry, use))
+    try:
+        if option == "--set":
+            parameter(None, name)
+        return [int(address)] if colon else list(found), name, value(None, right)
+    except ValueError as error:
+        raise ValueError("%s %s: %s" % (option, entry, error)) from None
+
+
+def switches():
+    """What --switch help prints: a paragraph for each."""
+    lines = []
+    for name, default, what, where in SWITCHES:
+        if default is None:
+            continue  # a table, which no command line has room for
+        lines.append("%s (%s)" % (name, int(default) if isinstance(default, bool) else default))
+        lines += textwrap.wrap("%s. %s" % (what, where), 95, **INDENTED)
+    return "\n".join(lines)
+
+
+class Keyboard:
+    """The commands on standard input, which may end before the drives do."""
+
+    def __init__(self, line):
+        self._line = line
+        self._script = Script(line, "standard input", say)
+        self._typed = b""
+        self.open = True
+        self.left = False
+
+    def fileno(self):
+        return 0
+
+    def read(self):
+        typed = os.read(0, READ_MAX)
+        self.open = bool(typed)
+        self._typed += typed
+        while b"\n" in self._typed and not self.left:
+            command, self._typed = self._typed.split(b"\n", 1)
+            self._do(command.decode("utf-8", "replace"))
+
+    def _do(self, command):
+        words = command.split("#")[0].split()
+        if words[:1] in (["quit"], ["q"]):
+            self.left = True
+        elif words[:1] == ["help"]:
+            say(" ".join(COMMANDS))
+        elif words[:1] in (["off"], ["on"]):
+            self._switch(words)
+        else:
+            self._obey(command)
+
+    def _switch(self, words):
+        """The mains of a drive."""
+        if len(words) != 2 or not words[1].isdigit() or int(words[1]) not in self._line.drives:
+            say("use: %s A" % words[0])
+            return
+        drive = self._line.drives[int(words[1])]
+        if words[0] == "on":
+            drive.power_on()
+        else:
+            drive.power_off()
+
+    def _obey(self, command):
+        try:
+            name, values = self._script.understood(command)
+            if name:
+                self._script.do(name, values)
+        except (ScriptError, ExpectationFailed) as error:
+            say(str(error))
+
+
+def say(line):
+    print(line, flush=True)
+
+
+def complain(line):
+    print("tools/drive: %s" % line, file=sys.stderr, flush=True)
+
+
+def serve(chosen, found):
+    port = Pty(chosen.link) if chosen.pty else SerialPort(chosen.port, chosen.baud)
+    port.open()
+    try:
+        line = DriveLine(port, found, chosen.baud, say if chosen.log else None, complain)
+        say(chosen.link or port.path)
+        keyboard = Keyboard(line)
+        while not keyboard.left:
+            if line.serve(keyboard if keyboard.open else None):
+                keyboard.read()
+    finally:
+        port.close()
+
+
+def main(words):
+    chosen, found = arguments(words)
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    try:
+        serve(chosen, found)
+    except KeyboardInterrupt:
+        return 0
+    except BrokenPipeError:
+        return 0  # whoever read the log has gone
+    except (PortError, ValueError, KeyError) as error:
+        complain(error.args[0])
+        return 1 if isinstance(error, PortError) else 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,105 @@
+"""Simulated drives at a port, in real time: what tools/drive serves.
+
+    line = DriveLine(port, {1: {"family": mm440}}, 19200, log=print)
+    while True:
+        if line.serve(keyboard):
+            keyboard.read()
+
+It has the face that the script language asks of a world (`drives`, `wire`, `run` ...), so that
+the same commands work on it, those of the panel apart.
+"""
+
+import select
+import time
+
+from boards.sim.drive import Drive
+from boards.sim.port_line import PortMaster, PtyMaster
+from boards.sim.real_clock import RealClock
+from boards.sim.wire import Wire
+from tools.driving import decoding
+from tools.serial_port import LineCut, PortError
+
+AGAIN_S = 1.0  # a port that has gone is looked for so often
+LONGEST_WAIT_S = 1.0
+
+NO_PANEL = "there is no panel here, only drives"
+OF_THE_PANEL = ("press", "hold", "down", "up", "lcd", "expect", "hang", "reset", "power")
+
+
+class DriveLine:
+    """port: a `SerialPort` or `Pty` that is open. kinds: {address: keyword arguments of `Drive`}.
+
+    log: a function that is given a line for every telegram, or None. say: one for what happens to
+    the port.
+    """
+
+    refused = {command: NO_PANEL for command in OF_THE_PANEL}
+
+    def __init__(self, port, kinds, baud, log=None, say=print):
+        self.clock = RealClock(lambda: time.monotonic_ns() // 1000)
+        self.wire = Wire(self.clock, baud)
+        self.drives = {}
+        self._port = port
+        self._log = log
+        self._say = say
+        self._gone_at = None
+        for address, kind in kinds.items():
+            self.drives[address] = Drive(self.clock, self.wire, address, **kind)
+        station = PtyMaster if port.is_pty else PortMaster
+        self._master = station(self.wire, self._write, self._note if log else None)
+
+    def run(self, ms):
+        """Serve for so long, whatever is typed."""
+        until_us = self.clock.true_us() + 1000 * ms
+        while self.clock.true_us() < until_us:
+            self.serve(None, (until_us - self.clock.true_us()) / 1e6)
+
+    def serve(self, keyboard=None, longest_s=LONGEST_WAIT_S):
+        """Wait for something to happen, and let it. Answers whether `keyboard` can be read."""
+        wait_s = max(0, min(self.clock.next_us() / 1e6, longest_s))
+        awaited = [keyboard] if keyboard is not None else []
+        if self._gone_at is not None:
+            self._look_again()
+        elif not self._master.full():
+            awaited.append(self._port)
+        ready, _, _ = select.select(awaited, (), (), wait_s)
+        self.clock.follow()
+        if self._gone_at is None and self._port in ready:
+            self._read()
+        return keyboard in ready
+
+    def _read(self):
+        try:
+            data, flaws = self._port.read()
+        except LineCut as cut:
+            self._lost(cut)
+            return
+        if data:
+            self._master.received(data, flaws)
+
+    def _write(self, data):
+        if self._gone_at is not None:
+            return
+        try:
+            self._port.write(data)
+        except LineCut as cut:
+            self._lost(cut)
+
+    def _lost(self, cut):
+        self._port.close()
+        self._gone_at = time.monotonic()
+        self._say("%s has gone (%s): the drives hear nothing" % (self._port.path, cut))
+
+    def _look_again(self):
+        if time.monotonic() - self._gone_at < AGAIN_S:
+            return
+        self._gone_at = time.monotonic()
+        try:
+            self._port.open()
+        except PortError:
+            return
+        self._gone_at = None
+        self._say("%s is back" % self._port.path)
+
+    def _note(self, at_us, from_master, characters):
+        self._log(decoding.line(at_us, from_master, characters, self.drives))

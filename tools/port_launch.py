@@ -1,0 +1,191 @@
+#!/usr/bin/env python3
+"""Holds a serial port, or a pty, for a program on MicroPython, which cannot set one up itself.
+
+    python3 tools/port_launch.py PROGRAM ARGUMENTS...
+
+PROGRAM finds in its environment USS_PORT_DATA and USS_PORT_CONTROL, the numbers of two sockets:
+the characters of the port, and lines. It says "open BAUD PATH" and is told "opened" or "error
+TEXT"; later "cut TEXT" when the port has gone, "back" when it is there again, and "leave" when
+somebody wants it to end: Ctrl-C, kill, a closed terminal. Those do not reach it themselves, so
+that it can stop its drives first. Exit status: that of PROGRAM.
+"""
+
+import os
+import select
+import signal
+import socket
+import subprocess
+import sys
+import time
+
+sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+
+from tools.serial_port import LineCut, PortError, SerialPort  # noqa: E402
+
+LEAVE = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+NOT_FOUND = 127  # the exit status of a shell whose command is not there
+READ_MAX = 4096
+AGAIN_S = 1.0  # a port that has gone is looked for so often
+HURRY = -10  # niceness, where the user may have that: the panel stops what it cannot look after
+DRAIN_S = 2.0  # for the last telegrams to leave the machine
+
+
+class Relay:
+    """data, control: our ends of the program's two sockets."""
+
+    def __init__(self, data, control):
+        self._data = data
+        self._control = control
+        self._port = None
+        self._is_open = False
+        self._looked_at = 0.0
+        self._typed = b""
+        self._over = False
+
+    def leave(self, *_):
+        self._tell("leave")
+
+    def run(self):
+        """Until the program has ended; what it has said by then is on the line."""
+        while not self._over:
+            awaited = [self._data, self._control] + ([self._port] if self._is_open else [])
+            ready, _, _ = select.select(awaited, (), (), AGAIN_S)
+            if self._control in ready:
+                self._listen()
+            if self._data in ready:
+                self._send()
+            if self._is_open and self._port in ready:
+                self._receive()
+            if self._port is not None and not self._is_open:
+                self._look_again()
+        self._drain()
+
+    def _listen(self):
+        try:
+            said = self._control.recv(READ_MAX)
+        except ConnectionError:
+            said = b""
+        self._over = not said
+        *lines, self._typed = (self._typed + said).split(b"\n")
+        for line in lines:
+            _, baud, path = line.decode().split(" ", 2)
+            self._open(path, int(baud))
+
+    def _open(self, path, baud):
+        port = SerialPort(path, baud)
+        try:
+            port.open()
+        except PortError as error:
+            self._tell("error %s" % error)
+            return
+        self._port = port
+        self._is_open = True
+        self._tell("opened")
+
+    def _send(self):
+        try:
+            data = self._data.recv(READ_MAX)
+        except ConnectionError:
+            data = b""
+        self._over = self._over or not data
+        if not self._is_open:
+            return  # a line that is cut
+        try:
+            self._port.write(data)
+        except LineCut as cut:
+            self._lost(cut)
+
+    def _receive(self):
+        try:
+            data, flaws = self._port.read()
+        except LineCut as cut:
+            self._lost(cut)
+            return
+        # A character that came with an error is none: its telegram must not be complete.
+        data = bytes(data[i] for i in range(len(data)) if not flaws[i])
+        try:
+            self._data.send(data)
+        except OSError:
+            pass  # the program does not read, or has ended
+
+    def _lost(self, cut):
+        self._port.close()
+        self._is_open = False
+        self._looked_at = time.monotonic()
+        self._tell("cut %s" % cut)
+
+    def _look_again(self):
+        if time.monotonic() - self._looked_at < AGAIN_S:
+            return
+        self._looked_at = time.monotonic()
+        try:
+            self._port.open()
+        except PortError:
+            return
+        self._is_open = True
+        self._tell("back")
+
+    def _drain(self):
+        if not self._is_open:
+            return
+        until = time.monotonic() + DRAIN_S
+        try:
+            while self._port.unsent() and time.monotonic() < until:
+                time.sleep(0.005)
+        except OSError:
+            pass
+        self._port.close()
+
+    def _tell(self, line):
+        try:
+            self._control.send(line.encode() + b"\n")
+        except OSError:
+            pass  # it has ended
+
+
+def start(command, data, control):
+    """The program, which gets Ctrl-C of the terminal, and none of the other signals."""
+
+    def prepare():
+        for number in LEAVE:
+            signal.signal(number, signal.SIG_IGN)  # MicroPython takes SIGINT all the same
+
+    names = {"USS_PORT_DATA": str(data.fileno()), "USS_PORT_CONTROL": str(control.fileno())}
+    data.setblocking(False)
+    control.setblocking(False)
+    return subprocess.Popen(
+        command,
+        pass_fds=(data.fileno(), control.fileno()),
+        env={**os.environ, **names},
+        preexec_fn=prepare,
+    )
+
+
+def main(command):
+    if not command:
+        print("port_launch.py: what is to be started?", file=sys.stderr)
+        return 2
+    data, their_data = socket.socketpair()
+    control, their_control = socket.socketpair()
+    data.setblocking(False)
+    try:
+        os.nice(HURRY)
+    except OSError:
+        pass
+    relay = Relay(data, control)
+    for number in LEAVE:
+        signal.signal(number, relay.leave)
+    try:
+        program = start(command, their_data, their_control)
+    except OSError as error:
+        print("port_launch.py: %s: %s" % (command[0], error.strerror), file=sys.stderr)
+        return NOT_FOUND
+    their_data.close()
+    their_control.close()
+    relay.run()
+    status = program.wait()
+    return status if status >= 0 else 128 - status
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,220 @@
+"""A serial port, or a pty, for programs on CPython: 8E1, at the rates of USS, nobody else on it.
+
+    port = SerialPort("/dev/ttyUSB0", 19200)
+    port.open()                     # PortError: says in words what is wrong, and what helps
+    data, flaws = port.read()       # what has come, without waiting; LineCut: it has gone
+    port.write(data)
+    port = Pty(link="/tmp/drive")   # one of our own: port.path is for the other side
+
+`fileno()` is for select. Nothing here waits. A pty has no parity and no rate; what is set there
+is that nothing is changed on the way.
+"""
+
+import array
+import errno
+import fcntl
+import os
+import struct
+import sys
+import termios
+import tty
+
+PARITY, FRAME = 1, 2  # of a character, as in boards.sim.wire
+PTY_MAJORS = range(136, 144)  # of the device number of a pty's slave, on Linux
+READ_MAX = 4096
+MARK = 0xFF  # with PARMRK: before 00 and a character with a wrong parity, or before itself
+
+# Linux: rates that have no name are set with these (asm-generic/termbits.h, ioctls.h).
+TCGETS2, TCSETS2 = 0x802C542A, 0x402C542B
+BOTHER, CBAUD = 0o010000, 0o010017
+OF_FLAGS, OF_SPEEDS = 8, 36  # places in struct termios2: c_cflag; c_ispeed, c_ospeed
+
+NO_PORT = "there is no port %s"
+NOT_ALLOWED = "%s: not allowed; on Debian:  sudo adduser $USER dialout, then log in anew"
+IN_USE = "%s is in use by another program"
+NO_TERMINAL = "%s is no serial port"
+NO_RATE = "%s does not know %d baud"
+
+
+class PortError(Exception):
+    """The port cannot be had; the text says why."""
+
+
+class LineCut(Exception):
+    """The port has gone: its adapter was unplugged, or the other end of a pty closed."""
+
+
+class SerialPort:
+    """path: of the device. baud: bits a second; a pty ignores it. is_pty: known when open."""
+
+    def __init__(self, path, baud):
+        self.path = path
+        self.baud = baud
+        self.is_pty = False
+        self._descriptor = None
+        self._marking = False
+        self._rest = b""  # the beginning of a mark whose end has not come
+
+    def fileno(self):
+        return self._descriptor
+
+    def open(self):
+        """PortError."""
+        try:
+            # Without NONBLOCK it would wait for a modem to find a carrier.
+            self._descriptor = os.open(self.path, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
+        except OSError as error:
+            raise PortError(self._why(error)) from None
+        try:
+            self._take()
+        except PortError:
+            self.close()
+            raise
+        except (OSError, termios.error) as error:
+            self.close()
+            raise PortError(f"{self.path}: {error.args[-1]}") from None
+        self._rest = b""
+
+    def close(self):
+        descriptor, self._descriptor = self._descriptor, None
+        if descriptor is not None:
+            try:
+                os.close(descriptor)
+            except OSError:
+                pass
+
+    def read(self):
+        """The characters that have come, and a flag for each: 0, PARITY or FRAME. LineCut."""
+        try:
+            data = os.read(self._descriptor, READ_MAX)
+        except BlockingIOError:
+            return b"", b""
+        except OSError as error:
+            raise LineCut(error.strerror) from None
+        if not data:
+            raise LineCut("end of file")
+        return self._unmarked(data) if self._marking else (data, bytes(len(data)))
+
+    def write(self, data):
+        """What has no room is lost, as on a line that nobody reads. LineCut."""
+        try:
+            os.write(self._descriptor, data)
+        except BlockingIOError:
+            pass
+        except OSError as error:
+            raise LineCut(error.strerror) from None
+
+    def unsent(self):
+        """How many characters the machine has still to send."""
+        waiting = array.array("i", [0])
+        fcntl.ioctl(self._descriptor, termios.TIOCOUTQ, waiting)
+        return waiting[0]
+
+    def _take(self):
+        if not os.isatty(self._descriptor):
+            raise PortError(NO_TERMINAL % self.path)
+        self.is_pty = os.major(os.fstat(self._descriptor).st_rdev) in PTY_MAJORS
+        try:
+            fcntl.flock(self._descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)  # as pyserial does
+            fcntl.ioctl(self._descriptor, termios.TIOCEXCL)
+        except OSError:
+            raise PortError(IN_USE % self.path) from None
+        tty.setraw(self._descriptor)
+        if not self.is_pty:
+            self._set_up()
+        termios.tcflush(self._descriptor, termios.TCIOFLUSH)
+
+    def _set_up(self):
+        """8E1, no handshake, and characters that are wrong are marked."""
+        settings = termios.tcgetattr(self._descriptor)
+        settings[0] = termios.INPCK | termios.PARMRK
+        settings[2] = termios.CS8 | termios.PARENB | termios.CREAD | termios.CLOCAL
+        rate = getattr(termios, f"B{self.baud}", None)
+        if rate is not None:
+            settings[4] = settings[5] = rate
+        termios.tcsetattr(self._descriptor, termios.TCSANOW, settings)
+        self._marking = True
+        if rate is None:
+            self._set_other_rate()
+        if termios.tcgetattr(self._descriptor)[2] & termios.PARENB == 0:
+            raise PortError(f"{self.path} has no even parity")
+
+    def _set_other_rate(self):
+        if not sys.platform.startswith("linux"):
+            raise PortError(NO_RATE % (self.path, self.baud))
+        try:
+            block = bytearray(64)
+            fcntl.ioctl(self._descriptor, TCGETS2, block)
+            flags = struct.unpack_from("I", block, OF_FLAGS)[0] & ~CBAUD | BOTHER
+            struct.pack_into("I", block, OF_FLAGS, flags)
+            struct.pack_into("2I", block, OF_SPEEDS, self.baud, self.baud)
+            fcntl.ioctl(self._descriptor, TCSETS2, block)
+            fcntl.ioctl(self._descriptor, TCGETS2, block)
+            if abs(struct.unpack_from("I", block, OF_SPEEDS)[0] - self.baud) > self.baud // 50:
+                raise OSError
+        except OSError:
+            raise PortError(NO_RATE % (self.path, self.baud)) from None
+
+    def _unmarked(self, marked):
+        """What PARMRK has marked: FF FF is FF, FF 00 xx is xx with a wrong parity or stop bit."""
+        marked = self._rest + marked
+        data, flags = bytearray(), bytearray()
+        at = 0
+        while at < len(marked):
+            size = 1
+            if marked[at] == MARK:
+                size = 2 if marked[at + 1 : at + 2] != b"\0" else 3
+            if at + size > len(marked):
+                break
+            wrong = size == 3
+            data.append(marked[at + size - 1])
+            flags.append((PARITY if data[-1] else FRAME) if wrong else 0)
+            at += size
+        self._rest = marked[at:]
+        return bytes(data), bytes(flags)
+
+    def _why(self, error):
+        if error.errno in (errno.ENOENT, errno.ENODEV, errno.ENXIO):
+            return NO_PORT % self.path
+        if error.errno in (errno.EACCES, errno.EPERM):
+            return NOT_ALLOWED % self.path
+        if error.errno == errno.EBUSY:
+            return IN_USE % self.path
+        return f"{self.path}: {error.strerror}"
+
+
+class Pty(SerialPort):
+    """A pty of our own; `path` is where the others find it. link: a name that stays the same.
+
+    We keep the others' end open as well: they may come and go.
+    """
+
+    def __init__(self, link=None):
+        SerialPort.__init__(self, None, None)
+        self.is_pty = True
+        self._link = link
+        self._theirs = None
+
+    def open(self):
+        self._descriptor, self._theirs = os.openpty()
+        os.set_blocking(self._descriptor, False)
+        tty.setraw(self._theirs)
+        self.path = os.ttyname(self._theirs)
+        if self._link:
+            self._make_link()
+
+    def close(self):
+        SerialPort.close(self)
+        if self._theirs is not None:
+            os.close(self._theirs)
+            self._theirs = None
+        if self._link and os.path.islink(self._link) and os.readlink(self._link) == self.path:
+            os.remove(self._link)
+
+    def _make_link(self):
+        try:
+            if os.path.islink(self._link):
+                os.remove(self._link)  # left by one that was killed
+            os.symlink(self.path, self._link)
+        except OSError as error:
+            raise PortError(f"{self._link}: {error.strerror}") from None

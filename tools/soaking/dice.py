@@ -1,0 +1,29 @@
+"""Numbers that look random, of a sequence that one seed decides, the same on every interpreter.
+
+    dice = Dice(7)
+    dice.below(6)           # 0...5
+"""
+
+MASK = 0x3FFFFFFF  # a small integer on 32-bit builds
+
+
+class Dice:
+    def __init__(self, seed):
+        self._state = (seed * 0x1E3779B + 0x2545F49) & MASK or 1
+        for _ in range(8):
+            self.below(2)
+
+    def below(self, limit):
+        """0...limit - 1 (xorshift)."""
+        state = self._state
+        state ^= (state << 7) & MASK
+        state ^= state >> 9
+        state ^= (state << 8) & MASK
+        self._state = state
+        return (state >> 3) % limit
+
+    def between(self, low, high):
+        return low + self.below(high - low + 1)
+
+    def one_of(self, choices):
+        return choices[self.below(len(choices))]

@@ -1,0 +1,293 @@
+"""Planted bugs: what a soak must find, or it proves nothing.
+
+Each row of MUTATIONS is a firmware with one thing wrong. host_tests/test_soak_mutations.py makes
+them in copies of firmware/, and soaks each with the seed beside it.
+"""
+
+
+class Mutation:
+    """name; why it matters; changes, (file below firmware/, old text, new text) each; rules, one of
+    which must be named; the seed that finds it, and the minutes that takes.
+    """
+
+    def __init__(self, name, why, rules, seed, minutes, *changes):
+        self.name = name
+        self.why = why
+        self.rules = rules
+        self.seed = seed
+        self.minutes = minutes
+        self.changes = changes
+
+    def apply(self, folder):
+        """Change the copy of firmware/ in `folder`, a pathlib.Path. LookupError: a text is gone."""
+        for name, old, new in self.changes:
+            path = folder / name
+            text = path.read_text(encoding="utf-8")
+            if text.count(old) != 1:
+                raise LookupError(
+                    f"mutation {self.name}: firmware/{name} has {text.count(old)} times\n{old}"
+                )
+            path.write_text(text.replace(old, new), encoding="utf-8")
+
+
+MUTATIONS = (
+    Mutation(
+        "jog bit kept",
+        "a jog goes on when its key is let go",
+        ("JOG",), 1, 2,
+        (
+            "panel/jog_keys.py",
+            "if down != self._key or control is not",
+            "if down & ~self._key or control is not",
+        ),
+    ),
+    Mutation(
+        "both jog keys",
+        "two jog keys at once are one",
+        ("JOG",), 1, 2,
+        (
+            "panel/jog_keys.py",
+            "if down != self._key or control is not",
+            "if not down & self._key or control is not",
+        ),
+    ),
+    Mutation(
+        "BCC unchecked",
+        "a spoilt reply counts",
+        ("WITHOUT REASON", "SHOWN", "LOST", "START"), 1, 3,
+        (
+            "uss/telegram.py",
+            "    if exclusive_or(buffer, count):\n        return BAD_BCC\n",
+            "",
+        ),
+        ("uss/fast_viper.py", "    if check != 0:\n        return False\n", ""),
+    ),
+    Mutation(
+        "ON kept over a loss",
+        "a drive that comes back into contact starts by itself",
+        ("START", "LOST"), 1, 2,
+        (
+            "uss/drive.py",
+            "            self.was_running = self._may_run\n            self.revoke()\n",
+            "            self.was_running = self._may_run\n",
+        ),
+        (
+            "uss/drive.py",
+            "            self.revoke()\n            self.contacts",
+            "            self.contacts",
+        ),
+    ),
+    Mutation(
+        "ON while lost",
+        "ON is sent to a drive that does not answer",
+        ("LOST",), 1, 2,
+        ("uss/master.py", "drive.miss(finding, now, self._lost_us, self._mask)\n        if", "drive.miss(finding, now, 8 * self._lost_us, self._mask)\n        if"),
+    ),
+    Mutation(
+        "stale PKW accepted",
+        "an old answer is taken for that of another parameter",
+        ("SETPOINT", "SHOWN", "RECOVERS"), 1, 2,
+        (
+            "uss/pkw.py",
+            "reply = reply_about(net, at, self.words)",
+            "reply = net[at] >> 4",
+        ),
+    ),
+    Mutation(
+        "driver enable late",
+        "the panel holds the line when the drive answers",
+        ("LINE",), 1, 1,
+        (
+            "hal/rs485.py",
+            "        self._arm(self._duration_us)\n",
+            "        self._arm(self._duration_us + self._durations_us[2])\n",
+        ),
+    ),
+    Mutation(
+        "dead man removed",
+        "ON goes on while the panel hangs",
+        ("DEAD MAN",), 1, 3,
+        ("uss/master.py", "DEAD_MAN_US = const(300_000)", "DEAD_MAN_US = const(3_000_000)"),
+    ),
+    Mutation(
+        "wrong drive stopped",
+        "STOP stops the first drive, whichever is shown",
+        ("STOP",), 1, 2,
+        ("panel/stop_key.py", "            control.stop()\n", "            self._controls[0].stop()\n"),
+    ),
+    Mutation(
+        "STOP waits its turn",
+        "STOP does not go before the list",
+        ("STOP",), 1, 2,
+        (
+            "uss/drive.py",
+            "        self.stops = (self.stops + 1) & _TICKET_MASK\n        self.hurry()\n",
+            "        self.stops = (self.stops + 1) & _TICKET_MASK\n        self.steady = False\n",
+        ),
+    ),
+    Mutation(
+        "STOP beaten by START",
+        "START is obeyed while STOP is down",
+        ("STOP", "START"), 1, 2,
+        (
+            "panel/panel.py",
+            "if self.stop_key.is_down and pressed & self._motion_keys:",
+            "if self.stop_key.is_down and pressed & self._jog_bits:",
+        ),
+    ),
+    Mutation(
+        "started after a reset",
+        "a motor that turns when the panel has restarted is sent ON",
+        ("START",), 1, 3,
+        (
+            "panel/control.py",
+            "            self._contact = drive.contact\n            self.lost_running",
+            "            self._contact = drive.contact\n            if self.runs():\n"
+            "                self.drive.start(self.drive.hsw, self._on())\n            self.lost_running",
+        ),
+    ),
+    Mutation(
+        "START without release",
+        "a START that was down at power-on counts, sooner or later",
+        ("START",), 1, 3,
+        ("panel/keys.py", "self._released = 0  #", "self._released = (1 << len(names)) - 1  #"),
+        (
+            "panel/panel.py",
+            "elif pressed & self._start_key:",
+            "elif (pressed | acts.repeated) & self._start_key:",
+        ),
+    ),
+    Mutation(
+        "EEPROM without asking",
+        "every write wears the EEPROM",
+        ("EEPROM",), 1, 2,
+        (
+            "panel/writer.py",
+            "pkw.WRITE_WORD_EEPROM if eeprom else pkw.WRITE_WORD",
+            "pkw.WRITE_WORD_EEPROM",
+        ),
+    ),
+    Mutation(
+        "no question",
+        "a parameter that cuts the panel off is written at once",
+        ("WRITE",), 1, 2,
+        ("panel/pages/parameters.py", "elif number in profiles.ASK_FIRST:", "elif number < 0:"),
+    ),
+    Mutation(
+        "setpoint limit dropped",
+        "the limits of the drive are not kept",
+        ("SETPOINT",), 1, 2,
+        (
+            "panel/setpoint.py",
+            "            highest = min(highest, survey.highest())\n",
+            "            highest = min(highest, 2 * survey.highest())\n",
+        ),
+    ),
+    Mutation(
+        "bit 10 dropped",
+        "the drive ignores the telegram and goes on as before",
+        ("CONTROL",), 1, 2,
+        ("uss/pzd.py", "OFF3 = const(0x047A)", "OFF3 = const(0x007A)"),
+    ),
+    Mutation(
+        "second stop at once",
+        "OFF3 is sent before STOP was held",
+        ("SECOND STOP",), 1, 2,
+        ("panel/stop_key.py", "SECOND_MS = const(1_500)", "SECOND_MS = const(500)"),
+    ),
+    Mutation(
+        "STOP ALL forgets drives",
+        "STOP held for 4 s stops only what is shown",
+        ("STOP ALL",), 1, 2,
+        ("panel/stop_key.py", "            self.left = 2 * len(self._controls)\n", "            self.left = 0\n"),
+    ),
+    Mutation(
+        "selecting stops",
+        "another drive is shown, and the one before is stopped",
+        ("WITHOUT REASON", "ANNOUNCED"), 1, 2,
+        (
+            "panel/panel.py",
+            "        self.selected.keep_quiet()\n        position",
+            "        self.selected.stop_unseen()\n        position",
+        ),
+    ),
+    Mutation(
+        "watchdog fed always",
+        "a bus that stands is not restarted",
+        ("WATCHDOG",), 1, 2,
+        ("app.py", "if stands_ms * 1000 < self.bus.patience_us:", "if stands_ms >= 0:"),
+    ),
+    Mutation(
+        "watchdog too eager",
+        "a bus that works is taken for one that stands",
+        ("WATCHDOG",), 1, 2,
+        ("app.py", "if stands_ms * 1000 < self.bus.patience_us:", "if stands_ms < 3:"),
+    ),
+    Mutation(
+        "flash written under way",
+        "the settings are written, and all stands still, while a motor runs",
+        ("FLASH",), 1, 3,
+        (
+            "app.py",
+            "if self.panel.any_runs() or self._just_failed_to_save(now_ms):",
+            "if self._just_failed_to_save(now_ms):",
+        ),
+    ),
+    Mutation(
+        "lost drive looks alive",
+        "the last frequency stays on the display",
+        ("MAY RUN",), 1, 2,
+        (
+            "panel/control.py",
+            "if not drive.contact or drive.silent >= _SILENT_MAX or self.survey.scaling is None:",
+            "if self.survey.scaling is None:",
+        ),
+    ),
+    Mutation(
+        "lost drive forgotten",
+        "a drive that ran and is lost is just NO CONTACT",
+        ("MAY RUN",), 1, 2,
+        (
+            "panel/control.py",
+            "self.lost_running = drive.was_running and not drive.contact",
+            "self.lost_running = False",
+        ),
+    ),
+    Mutation(
+        "unconfirmed STOP unsaid",
+        "nobody is told that a STOP has no effect",
+        ("UNCONFIRMED",), 1, 2,
+        ("panel/stop_watch.py", "            self.unconfirmed = True\n", "            pass\n"),
+    ),
+    Mutation(
+        "faults acknowledged by themselves",
+        "a tripped drive is reset though nobody has seen it",
+        ("ACKNOWLEDGE",), 1, 2,
+        ("panel/fault.py", "            self.was_shown = True  #", "            drive.acknowledge()  #"),
+    ),
+    Mutation(
+        "wrong sign shown",
+        "a motor that turns left reads as one that turns right",
+        ("SHOWN",), 1, 3,
+        ("panel/view.py", "-setpoint if control.reversed else setpoint", "setpoint"),
+    ),
+    Mutation(
+        "listens to nobody",
+        "the panel talks into another master's telegrams after power-on",
+        ("LISTEN",), 1, 1,
+        ("uss/master.py", "LISTEN_US = const(100_000)", "LISTEN_US = const(10_000)"),
+    ),
+    Mutation(
+        "start interval halved",
+        "the drives miss telegrams that come too soon",
+        ("LINE",), 1, 1,
+        ("uss/timing.py", "START_INTERVAL_CHARACTERS = 2", "START_INTERVAL_CHARACTERS = 1"),
+    ),
+    Mutation(
+        "an exception",
+        "a page that fails takes the panel with it",
+        ("EXCEPTION",), 1, 2,
+        ("panel/view.py", "        screen.put(0, 10, 6, texts.BEYOND_VALUE)\n", "        screen.put(0, 10, 6, None)\n"),
+        ("panel/control.py", "return self.drive.hiw in pzd.BEYOND", "return self.drive.hiw > 0x7000"),
+    ),
+)  # fmt: skip

@@ -1,0 +1,168 @@
+"""An eye on the display: what it must say, and what it must not, held against the drives.
+
+    reader = Reader(world, plan, judge)
+    reader.look()                   # after every slice: raises Broken
+    reader.screens                  # the last pictures, (instant, row 1, row 2)
+"""
+
+from tools.soaking.judge import MS, ON, ON_REVERSE, QUESTIONS, S, ZSW_RUNNING, limits_of
+from tools.soaking.rules import Broken
+
+SCREENS = 12
+CONTROLLED = ("MICROMASTER 420", "MICROMASTER 440")
+VALUES = ("P0700:", "P1000:", "P2011:")
+STATES = (  # what row 2 begins with, the state of the drive
+    ("READY", "ready"), ("RUNNING", "running"), ("STOPPING", "stopping"), ("FAULT", "fault"),
+    ("INHIBITED", "inhibited"),
+)  # fmt: skip
+MAY_RUN = ("NO CONTACT,", "UNCONFIRMED", "PANEL STOPPED", "USS PANEL")
+
+
+class Reader:
+    """screens: the last pictures, oldest first. rows: the present one."""
+
+    def __init__(self, world, plan, judge):
+        self.world = world
+        self.plan = plan
+        self.judge = judge
+        self.screens = []
+        self.rows = ("", "")
+        self.steady = False  # the picture was the same at the last look: it is drawn to its end
+        self._written = -1
+        self._calm_us = 3 * S + 12 * judge.cycle_us
+        self._judged_us = 0
+        self._hz = 0.0  # of the drive shown, then
+
+    def look(self):
+        lcd = self.world.lcd_chip
+        now = self.world.clock.now_us
+        written = lcd.characters + lcd.instructions
+        self.steady = written == self._written
+        if not self.steady:
+            self._written = written
+            self._read(lcd.text(), now)
+            return
+        address = address_in(self.rows[1])
+        if address is not None and now > self.judge.unsure_us:
+            self.judge.shown = address
+        if self.rows[1] in QUESTIONS:
+            self.judge.asked_us = now
+        judge = self.judge
+        if judge.shown is None or now < judge.unsure_us or judge.hung_us is not None:
+            return
+        case = judge.cases[judge.shown]
+        self._judge_lost(case, now)
+        self._judge_unconfirmed(case, now)
+        if now - judge.stirred_us > self._calm_us and now - self._judged_us > S:
+            if not judge.down and now - judge.late_us > self._calm_us:
+                self._judged_us = now
+                self._judge_shown(now)
+
+    def _read(self, rows, now):
+        if rows != self.rows:
+            self.rows = rows
+            if len(self.screens) >= SCREENS:
+                del self.screens[0]
+            self.screens.append((now, rows[0], rows[1]))
+
+    def reads(self, text):
+        row_1, row_2 = self.rows
+        return text in row_1 or text in row_2
+
+    def _judge_lost(self, case, now):
+        judge = self.judge
+        address = judge.shown
+        silent_us = now - max(case.answered_us, judge.boot_us)
+        if silent_us < judge.lost_us + 700 * MS + 2 * judge.cycle_us:
+            return
+        if now - judge.stalled_us < S or now - judge.unsure_us < S:
+            return
+        row_1, row_2 = self.rows
+        if row_1[7:10] == " F:" and row_1[15:].isdigit() and address_in(row_2) == address:
+            raise Broken("MAY RUN", "drive %d is silent for %d ms" % (address, silent_us // MS))
+        if not self._may_run(case) or case.answered_us < judge.boot_us:
+            return
+        if case.stop_us > case.answered_us or "STOP" in judge.down:
+            return
+        for text in MAY_RUN:
+            if self.reads(text):
+                return
+        raise Broken("MAY RUN", "drive %d, silent for %d ms" % (address, silent_us // MS))
+
+    def _may_run(self, case):
+        """Whether it ran by its last reply, or had been told to before."""
+        return case.zsw & ZSW_RUNNING and case.ran_us == case.answered_us
+
+    def _judge_unconfirmed(self, case, now):
+        judge = self.judge
+        address = judge.shown
+        stop_us = case.stop_us
+        if case.answered_us >= stop_us - 100 * MS or stop_us < judge.boot_us:
+            return
+        patience_us = 3_800 * MS if case.brakes else 1_800 * MS
+        if now - stop_us < patience_us + judge.exchange_us or judge.stuck_us is not None or now - judge.stalled_us < S:
+            return
+        if max(judge.up.values()) > stop_us + 400 * MS and judge.up["STOP"] != max(
+            judge.up.values()
+        ):
+            return  # another key was pressed since
+        if judge.down and list(judge.down) != ["STOP"]:
+            return
+        if case.start_us > stop_us:
+            return
+        if not self.reads("STOP UNCONFIRMED"):
+            raise Broken("UNCONFIRMED", "STOP of drive %d, %d ms ago" % (
+                address, (now - stop_us) // MS))
+
+    def _judge_shown(self, now):
+        """Nothing was done for a while: is the display right?"""
+        address = self.judge.shown
+        drive = self.drive_at(address)
+        if drive is None or not self.is_able(address):
+            return
+        row_1, row_2 = self.rows
+        hz, before_hz = drive.hz(), self._hz
+        self._hz = hz
+        if address_in(row_2) != address:
+            return
+        if row_2[:6] in VALUES and row_2[6:12].strip().isdigit():
+            number = int(row_2[1:5])
+            if number != 2024 and int(row_2[6:12]) != drive.read(number) and row_2[12] == " ":
+                raise Broken("SHOWN", "%s and it is %s" % (row_2, drive.read(number)))
+        for text, state in STATES:
+            if row_2.startswith(text):
+                if drive.state != state:
+                    raise Broken("SHOWN", "drive %d is %s" % (address, drive.state))
+                break
+        case = self.judge.cases[address]
+        if row_1[:2] == "S:" and case.stw in (ON, ON_REVERSE):
+            hz_sent = limits_of(drive).hz(case.hsw)
+            if case.stw == ON_REVERSE:
+                hz_sent = -hz_sent
+            shown = row_1[2:7].strip()
+            if shown[-1:].isdigit() and not shown.startswith("- "):
+                if abs(float(shown) - hz_sent) > 0.06 + abs(hz_sent) / 0x2000:
+                    raise Broken("SHOWN", "%s, %.2f Hz are sent" % (row_1, hz_sent))
+        shown = row_1[10:].strip()
+        if row_1[7:10] == " F:" and shown[-1:].isdigit() and abs(hz - before_hz) < 0.01:
+            if abs(float(shown) - hz) > 0.06:
+                raise Broken("SHOWN", "%s, drive %d turns at %.2f Hz" % (row_1, address, hz))
+
+    def drive_at(self, address):
+        for drive in self.world.drives.values():
+            if drive.address == address and drive.plugged and drive.powered:
+                return drive
+
+    def is_able(self, address):
+        """Whether the drive there is one that this panel can control."""
+        drive = self.drive_at(address)
+        return drive is not None and drive.layout == (4, 2) and drive.family.NAME in CONTROLLED
+
+
+def address_in(row_2):
+    """The address that row 2 shows, None when something else stands there."""
+    if len(row_2) < 16 or row_2[13] != "A" or not row_2[14].isdigit():
+        return None
+    if row_2[15] != " " and not row_2[15].isdigit():
+        return None
+    return int(row_2[14:].strip())

@@ -1,0 +1,106 @@
+"""A tape of the line: every request of the panel as sent, every reply as it arrived whole.
+
+It runs in the panel's interrupt handlers, where nothing may take heap, so it only notes; the judge
+plays it back later. A request is noted when it begins, before the line can spoil it, a reply at
+its end, when no character of it was spoilt.
+
+    tape = Tape(world.wire)
+    for index in tape.news(): tape.kind[index], tape.at_us[index], ...
+"""
+
+from array import array
+
+LENGTH = 512
+ROUNDING_US = 3
+STX, LGE, COUNT = 0x02, 0x0E, 16  # of telegrams with 4 PKW and 2 PZD words, all that this panel has
+
+REQUEST, REPLY, MALFORMED = range(3)
+
+
+class Tape:
+    """Rows of a ring, one for each telegram: `kind`, `at_us` (when it began), `end_us`, `address`,
+    and its words. Of a reply also `delay_us`: how long after the request it began, and `flawless`:
+    nothing was heard in between, and no character came with an error.
+
+    count         telegrams ever
+    sent          requests ever
+    sent_us       when the last request began
+    """
+
+    name = "the tape"
+    is_weather = True  # no station whose wires could break
+
+    def __init__(self, wire):
+        self.kind = bytearray(LENGTH)
+        self.address = bytearray(LENGTH)
+        self.at_us = [0] * LENGTH  # a list: to read an array of "q" takes heap
+        self.end_us = [0] * LENGTH
+        self.delay_us = [0] * LENGTH
+        self.flawless = bytearray(LENGTH)
+        self.words = array("H", bytes(2 * 6 * LENGTH))
+        self.silence_us = [0] * LENGTH
+        self.count = 0
+        self.sent = 0
+        self.sent_us = -1
+        self._ended_us = 0
+        self._played = 0
+        self._talk = wire.talk
+        wire.talk = self._tapped
+        wire.attach(self)
+
+    def news(self):
+        """The rows since the last time, oldest first."""
+        first, self._played = max(self._played, self.count - LENGTH), self.count
+        for number in range(first, self.count):
+            yield number % LENGTH
+
+    def _tapped(self, station, data, count):
+        burst = self._talk(station, data, count)
+        if burst is not None and getattr(station, "is_panel", False):
+            self.sent += 1
+            self.sent_us = burst.start_us
+            self._ended_us = burst.end_us
+            self._note(REQUEST, data, count, burst)
+        return burst
+
+    def hear(self, burst):
+        """Of the wire: a burst has ended."""
+        if burst.start_us == self.sent_us:
+            return
+        data = burst.data
+        if burst.garbled or burst.count != COUNT or data[0] != STX or data[1] != LGE:
+            return
+        check = 0
+        for index in range(COUNT):
+            check ^= data[index]
+        if check or data[2] > 31:
+            return
+        self._note(REPLY, data, COUNT, burst)
+
+    def _note(self, kind, data, count, burst):
+        index = self.count % LENGTH
+        self.count += 1
+        self.at_us[index] = burst.start_us
+        self.end_us[index] = burst.end_us
+        self.silence_us[index] = burst.silence_us
+        delay_us = burst.start_us - self._ended_us
+        self.delay_us[index] = delay_us
+        self.flawless[index] = burst.errors is None and burst.silence_us + ROUNDING_US >= delay_us
+        self.kind[index] = kind
+        if count != COUNT or data[0] != STX or data[1] != LGE or data[2] > 31:
+            self.kind[index] = MALFORMED
+            return
+        check = 0
+        for at in range(COUNT):
+            check ^= data[at]
+        if check:
+            self.kind[index] = MALFORMED
+        self.address[index] = data[2]
+        words = self.words
+        at = 6 * index
+        words[at] = data[3] << 8 | data[4]
+        words[at + 1] = data[5] << 8 | data[6]
+        words[at + 2] = data[7] << 8 | data[8]
+        words[at + 3] = data[9] << 8 | data[10]
+        words[at + 4] = data[11] << 8 | data[12]
+        words[at + 5] = data[13] << 8 | data[14]
