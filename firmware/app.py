@@ -53,7 +53,6 @@ class App:
         self._refresh = self.bus.refresh
         self._tend = self.pacer.tend
         self._polled = board.timer is None  # then each step drives the bus
-        self._tends = False  # the last step looked after the pacer; else it refreshed the bus
         self._progress = 0  # of the bus as last seen, and when it moved
         self._progress_at_ms = 0
         self._fed_at_ms = 0
@@ -72,10 +71,10 @@ class App:
         keypad = board.keypad
         now_ms = self._ticks_ms()
         now_us = self._ticks_us()
-        self._tends = tends = not self._tends
-        if tends or self._polled:
+        # One of both, in the longer ones of the panel's turns the shorter one.
+        if self.panel.turn & 1 or self._polled:
             self._tend()
-        if not tends:
+        if not self.panel.turn & 1:
             self._refresh(now_us)
         if self.panel.step(keypad.read(), now_ms, now_us, keypad.unclear):
             board.display.show(self.panel.screen.picture)

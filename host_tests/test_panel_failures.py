@@ -153,7 +153,8 @@ def test_a_main_loop_that_hangs_stops_the_motor_within_400_ms():
         hung_us = world.clock.now_us
         world.hang(2000)
         offs = [at_us for at_us, stw in telegrams(world, hung_us, 1) if stw == OFF1]
-        assert offs and 298_000 < offs[0] - hung_us <= 350_000, offs[:1]  # 400 ms is the promise
+        # 400 ms is the promise; the loop says that it is alive in every second step, of 2 ms.
+        assert offs and 296_000 <= offs[0] - hung_us <= 350_000, offs[0] - hung_us
         after = [stw for at_us, stw in telegrams(world, offs[0], 1)]
         assert ON not in after
         world.run(12000)

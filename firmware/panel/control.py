@@ -198,11 +198,14 @@ class Control:
 
         Answers whether there was news: then it took long, and the step is for nothing else.
         """
-        self.survey.step(now, reread_us)
+        survey = self.survey
+        survey.step(now, reread_us)
+        if reread_us == REREAD_US:  # it is shown, or waited for
+            survey.settle()
         if self.setpoint.step():
             return True
         if self.checking:
-            self.survey.step(now, reread_us)  # somebody waits: what was just answered is not all
+            survey.step(now, reread_us)  # somebody waits: what was just answered is not all
         return False
 
     def watch(self, now):

@@ -48,7 +48,8 @@ class Panel:
     splash, or None.
 
     For pages and view: `selected`, the control that is shown; `message`, a row that is shown for a
-    while, or None; `stop_key`; `setpoint_step` in centihertz.
+    while, or None; `stop_key`; `setpoint_step` in centihertz. `turn`: of what takes turns; the odd
+    ones take longer.
     """
 
     def __init__(self, controls, bus, key_names, settings, mask, notice=None):
@@ -89,7 +90,7 @@ class Panel:
             self._draw, self._ask, self._let_show, self._watch,
             self._draw, self._follow, self._let_show, around,
         )  # fmt: skip
-        self._turn = 0
+        self.turn = 0
 
     def _name_keys(self, keys):
         """The bits of keys, because names take long to look up."""
@@ -123,9 +124,8 @@ class Panel:
         if self.stop_key.left:
             self.stop_key.stop_next()
             return False
-        turn = self._turn
-        self._turn = turn + 1 & _LAST_TURN
-        return self._turns[turn](now_ms, now_us)
+        self.turn = self.turn + 1 & _LAST_TURN
+        return self._turns[self.turn - 1](now_ms, now_us)
 
     # --- for the pages --------------------------------------------------------------------------
 

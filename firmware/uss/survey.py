@@ -79,10 +79,8 @@ class Survey:
             self._forget()
             self._contact = drive.contacts
             self._stale = self._asked
-        if self._changed:  # a step of its own: it takes long
-            self._changed = False
-            self._judge()
-            self._go_on()
+        if self._changed:
+            self.settle()
         elif self._asked:
             if self._job.state != pkw.PENDING:
                 self._asked = False
@@ -96,6 +94,15 @@ class Survey:
                 self._ask(drive.channel)
         if self.unchecked or drive.asking:
             drive.want_turns(self.unchecked > 0)
+
+    def settle(self):
+        """Find out what a value that is new amounts to; else the next step begins with it, because
+        it takes long.
+        """
+        if self._changed:
+            self._changed = False
+            self._judge()
+            self._go_on()
 
     def _forget(self):
         self.unchecked = 0
