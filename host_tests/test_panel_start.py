@@ -462,3 +462,24 @@ def test_a_lowest_frequency_above_the_highest_is_no_matter():
     world.run(4000)
     assert starts(world) == 1 and row_1(world).startswith("S: 15.0"), world.lcd()
     world.check()
+
+
+def test_what_was_set_at_a_drive_out_of_sight_is_known_when_it_is_shown():
+    world = World(main.start, addresses=(1, 2), parameters={1000: 2, 2014: 2000})
+    world.run(5000)
+    world.drives[2].write(1000, 0, 5)
+    world.press("ADDRESS_UP")
+    world.run(500)
+    world.press("START")
+    world.run(1000)
+    assert row_2(world) == "RUNNING      A2"
+    world.press("STOP")
+    world.run(12000)
+    world.press("ADDRESS_DOWN")
+    world.run(2000)
+    world.drives[2].write(2014, 0, 0)  # it would run on if the panel died
+    world.press("ADDRESS_UP")
+    world.run(500)
+    world.press("JOG_RIGHT", 500)
+    assert starts(world, 2) == 1
+    world.check()

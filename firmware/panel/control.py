@@ -144,6 +144,12 @@ class Control:
         """Forget what would be said and asked: another drive is shown."""
         self.refusal = None
         self.question = False
+        if not self.checking:
+            self.survey.drop_recheck()
+
+    def learn_anew(self):
+        """Have all settings of the drive read again soon: it is shown from now on."""
+        self.survey.recheck()
 
     # --- what is known --------------------------------------------------------------------------
 

@@ -290,10 +290,14 @@ class Panel:
             self._parameters.open()
 
     def _select(self, direction):
-        """Show another drive. It starts and stops nothing."""
+        """Show another drive. It starts and stops nothing.
+
+        What is known of it may be old: all of that is asked for at once.
+        """
         self.selected.keep_quiet()
         position = self.controls.index(self.selected)
         self.selected = self.controls[(position + direction) % len(self.controls)]
+        self.selected.learn_anew()
         # The one that is shown no longer is looked at next, and all are counted anew.
         self._around = position - 1
         self._neighbour = None
