@@ -593,6 +593,31 @@ def test_a_reset_lets_go_of_open_drain_outputs():
     assert edges == [0, 1] and pin() == 1
 
 
+def test_the_chip_shows_the_levels_of_its_first_thirty_pins_as_bits():
+    chip = Chip(Clock(), None)
+    output = Pin(chip)
+    pins = [Pin(chip, Pin.IN, Pin.PULL_UP) for _ in range(31)]
+    assert (output.mask, pins[0].mask, pins[28].mask) == (1, 2, 1 << 29)
+    assert pins[29].mask == pins[30].mask == 0  # an RP2040 has no more
+    assert chip.levels == (1 << 30) - 2
+    output.on()
+    pins[0].apply(0)
+    pins[30].apply(0)
+    assert chip.levels == (1 << 30) - 3
+    pins[0].apply(None)
+    assert chip.levels == (1 << 30) - 1
+
+
+def test_a_pin_from_before_a_reset_is_in_no_ones_levels():
+    chip = Chip(Clock(), None)
+    old = Pin(chip, Pin.IN, Pin.PULL_UP)
+    chip.reset()
+    assert chip.levels == 0
+    new = Pin(chip, Pin.IN, Pin.PULL_UP)
+    old.apply(0)
+    assert chip.levels == new.mask == 1
+
+
 def test_a_pin_of_no_mode_is_refused():
     assert refused(ValueError, Pin, Chip(Clock(), None), 3)
 

@@ -3,6 +3,7 @@
 The master here is a file descriptor: it writes a telegram and reads what comes.
 """
 
+import fcntl
 import os
 import select
 import signal
@@ -22,6 +23,8 @@ from tools.driving import decoding  # noqa: E402
 from tools.serial_port import FRAME, PARITY, LineCut, Pty, SerialPort  # noqa: E402
 
 INTERPRETERS = "host"
+
+SET_PIPE_SIZE = 1031  # F_SETPIPE_SZ, Linux
 
 STOP, RUN = 0x047E, 0x047F
 READ_P0700 = (0x12BC, 0, 0, 0)
@@ -125,6 +128,22 @@ def test_the_log_says_every_telegram_in_words(program):  # noqa: F811
     assert drives.line().endswith("(BCC 00 should be D9)")
 
 
+def test_the_drives_do_not_wait_for_whoever_reads_the_log(program):  # noqa: F811
+    drives = program(Drives, "--log", "--baud", "115200")
+    fcntl.fcntl(drives.process.stdout, SET_PIPE_SIZE, 4096)
+    master = Master(drives.path)
+    for _ in range(100):
+        assert len(master.asks(telegram(1, NOTHING + (STOP, 0)))) == 16
+    while "lines left out: nobody read them" not in drives.line():
+        os.write(master.port, telegram(1, NOTHING + (STOP, 0)))
+
+
+def test_a_closed_standard_input_gives_no_commands(program):  # noqa: F811
+    drives = program(Talking, "bash", "-c", 'exec "$1" --pty <&-', "-", DRIVE)
+    master = Master(drives.line())
+    assert len(master.asks(telegram(1, NOTHING + (STOP, 0)))) == 16
+
+
 def test_a_reply_delay_is_kept(program):  # noqa: F811
     drives = program(Drives, "--reply-delay", "150")
     master = Master(drives.path)
@@ -143,7 +162,7 @@ def test_commands_that_make_no_sense_are_told_and_change_nothing(program):  # no
     assert drives.ends() == 0
 
 
-@pytest.mark.parametrize("ending", [signal.SIGINT, signal.SIGTERM, None])
+@pytest.mark.parametrize("ending", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, None])
 def test_it_ends_quietly(program, tmp_path, ending):  # noqa: F811
     link = tmp_path / "line"
     drives = program(Drives, "--link", str(link))
@@ -167,6 +186,11 @@ def test_it_ends_quietly(program, tmp_path, ending):  # noqa: F811
         (("--pty", "--address", "1=mm9"), 2, "--address: no family mm9"),
         (("--pty", "--set", "3:P2014=0"), 2, "--set 3:P2014=0: use A:P2014=0"),
         (("--pty", "--set", "P2014=much"), 2, "--set P2014=much: much is no number"),
+        (("--pty", "--address", "\u00b2"), 2, "is no address 0...31"),
+        (("--pty", "--reply-delay", "nan"), 2, "nan is not 0...60000 ms"),
+        (("--pty", "--reply-delay", "-1"), 2, "-1 is not 0...60000 ms"),
+        (("--pty", "--switch", "1:no_such=1"), 2, "there is no such switch; --switch help"),
+        (("--pty", "--switch", "silence_s=5"), 2, "there is no such switch; --switch help"),
         (("--pty", "--baud", "12345"), 2, "invalid choice: 12345"),
         (("--pty", "--baud", "300"), 2, "has no code for 300 baud"),
         (("--port", "/dev/no_such"), 1, "there is no port /dev/no_such"),

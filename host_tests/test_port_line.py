@@ -19,9 +19,9 @@ GOOD, REJECTED, PARITY, START = 2024, 2025, 2028, 2029
 class Line:
     """A drive, and a master at a port of this kind; `said` is what has been written to it."""
 
-    def __init__(self, kind, addresses=(1,)):
+    def __init__(self, kind, addresses=(1,), baud=19200):
         self.clock = Clock()
-        self.wire = Wire(self.clock, 19200)
+        self.wire = Wire(self.clock, baud)
         self.drives = [Drive(self.clock, self.wire, address) for address in addresses]
         self.said = []
         self.notes = []
@@ -56,6 +56,20 @@ def test_on_a_pty_a_telegram_takes_its_time_on_the_simulated_line():
     assert reply[:2] == b"\x02\x0e" and len(reply) == 16
     expected_us = began_us + 2 * TELEGRAM_US + REPLY_US
     assert expected_us <= at_us <= expected_us + 10
+
+
+def test_at_a_low_rate_the_reply_begins_to_come_before_it_is_over():
+    line = Line(PtyMaster, baud=1200)
+    line.gets(READ_P0700)
+    line.clock.advance(1_000_000)
+    came_us = [at_us for at_us, _ in line.said]
+    reply = b"".join(data for _, data in line.said)
+    assert reply[:2] == b"\x02\x0e" and len(reply) == 16
+    assert max(b - a for a, b in zip(came_us, came_us[1:])) < 30_000
+    assert came_us[-1] - came_us[0] > 100_000  # 147 ms on the line
+    line.gets(READ_P0700)
+    line.clock.advance(1_000_000)
+    assert b"".join(data for _, data in line.said) == 2 * reply
 
 
 def test_behind_a_port_the_line_has_taken_the_time_already():

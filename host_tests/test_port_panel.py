@@ -7,18 +7,28 @@ import json
 import os
 import select
 import signal
+import socket
 import subprocess
+import sys
 import time
 
 import pytest
 from test_terminal import Terminal
 
+TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+sys.path.insert(0, TOP)
+
+from tools.port_launch import Relay  # noqa: E402
+from tools.serial_port import Pty  # noqa: E402
+
 INTERPRETERS = "host"
 
-TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 PANEL = os.path.join(TOP, "tools", "panel")
 DRIVE = os.path.join(TOP, "tools", "drive")
 PATIENCE_S = 30  # for a machine that does other things as well
+
+RUN = bytes.fromhex("020E010000000000000000047F0CCDB7")
+STOP = bytes.fromhex("020E010000000000000000047E000077")
 
 SUPERVISED = ("--set", "P2014=2000")
 
@@ -200,6 +210,73 @@ def child_of(process):
         return int(file.read().split()[0])
 
 
+def test_a_panel_that_hangs_has_its_drives_stopped_from_outside(program):
+    drives = program(Drives)  # without P2014
+    panel = program(Panel, drives.path)
+    runs_unsupervised(panel)
+    firmware = child_of(panel.process.pid)
+    os.kill(firmware, signal.SIGSTOP)
+    drives.waits(state="ready", stw="047E")
+    os.kill(firmware, signal.SIGCONT)
+    panel.shows("READY", "WATCHDOG RESTART", "PANEL HUNG")
+    assert drives.report()["starts"] == "1"
+    panel.process.stdin.close()
+    assert panel.ends() == 0
+    assert panel.rest.endswith("drive 1 was sent OFF1 in its place\n")
+
+
+def test_a_panel_that_was_killed_too(program):
+    drives = program(Drives)
+    panel = program(Panel, drives.path)
+    runs_unsupervised(panel)
+    os.kill(child_of(panel.process.pid), signal.SIGKILL)
+    assert panel.ends() == 128 + signal.SIGKILL
+    assert panel.rest == "panel: it hung or died, and drive 1 was sent OFF1 in its place\n"
+    assert drives.report()["stw"] == "047E"
+
+
+def runs_unsupervised(panel):
+    """START, with the risk of P2014 = 0 taken."""
+    panel.shows("READY")
+    panel.does("press START")
+    panel.shows("SET=FIX START=GO")
+    panel.does("wait 1200", "press START")
+    panel.shows("RUNNING")
+
+
+def test_a_panel_is_not_suspended(program):
+    drives = program(Drives, *SUPERVISED)
+    panel = program(Panel, drives.path)
+    panel.runs()
+    for process in (panel.process.pid, child_of(panel.process.pid)):
+        os.kill(process, signal.SIGTSTP)  # Ctrl-Z
+    panel.does("press UP")
+    drives.waits(state="running", hz="10.10")
+
+
+def test_what_could_not_be_sent_in_its_time_is_not_sent_at_all():
+    ours, data = socket.socketpair()
+    control, _ = socket.socketpair()
+    data.setblocking(False)
+    relay = Relay(data, control)
+    port = Pty()
+    port.open()
+    relay._open(port.path, 19200)
+    for written, sent in ((2 * [RUN], b""), ([RUN], RUN), (100 * [RUN] + [STOP], b"")):
+        for telegram in written:
+            ours.send(telegram)
+        relay._send()
+        assert port.read()[0] == sent
+    port.close()
+
+
+def test_a_closed_standard_input_is_an_empty_script(program):
+    drives = program(Drives)
+    command = 'exec "$1" --port "$2" --script - <&-'
+    panel = program(Talking, "bash", "-c", command, "-", PANEL, drives.path)
+    assert panel.ends() == 0 and "failed" not in panel.rest
+
+
 def test_drives_that_do_not_answer_are_named_at_the_end(program):
     drives = program(Drives)
     panel = program(Panel, drives.path, "--drives", "1,9")
@@ -270,6 +347,7 @@ def test_what_is_no_port_is_said(program, tmp_path):
     file.write_text("")
     for path, why in (
         ("/dev/no_such", "panel: there is no port /dev/no_such\n"),
+        ("/dev/no\nsuch", "panel: there is no port '/dev/no\\nsuch'\n"),
         (str(file), "panel: %s is no serial port\n" % file),
     ):
         panel = program(Panel, path)

@@ -138,6 +138,7 @@ def test_a_panel_that_was_held_up_restarts_and_starts_nothing():
 
 def test_the_drives_of_a_real_line_cannot_be_commanded():
     world = panel(Adapter())
-    for command in ("drive", "param", "fault", "plug", "line", "dip"):
-        assert command in world.refused
+    for command in ("drive", "param", "fault", "clear", "warn", "load", "supply", "plug", "line"):
+        assert "no drive is simulated here" in world.refused[command], command
+    assert "dip" in world.refused and "press" not in world.refused
     assert world.drives == {}

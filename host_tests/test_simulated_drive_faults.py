@@ -6,6 +6,9 @@ P and r numbers are those of the MICROMASTER 4 lists; "SPEC" is the USS specific
 from boards.sim import g120, mm3, mm440, v20
 from drive_bench import ACKNOWLEDGE, HALF, JOG_LEFT, JOG_RIGHT, OFF1, RUN, Bench, telegram
 
+READ, WRITE, WORD = 0x1000, 0x2000, 0x1000
+SECOND_PAGE = 0x8000  # IND of numbers from 2000 on
+
 
 def faults(bench, count=8):
     """r0947."""
@@ -146,6 +149,25 @@ def test_p0952_forgets_all_but_the_present_trip():
     assert faults(bench) == [72] + [0] * 7 and bench.drive.read(952) == 1
     assert [bench.drive.read(949, i) for i in range(8)] == [9] + [0] * 7
     assert bench.drive.state == "fault"  # forgetting is not acknowledging
+
+
+def test_the_reply_to_what_clears_tells_what_is_left():
+    """A write is answered with the present value: P0952 = 0 leaves the present trip, P2111 = 0 the
+    warnings that are there, P0040 = 1 is 0 again.
+    """
+    bench = Bench({3: 3})
+    bench.drive.fault(1)
+    acknowledge(bench)
+    bench.drive.fault(72)
+    assert bench.task(READ | 952) == (WORD | 952, 0, 0, 2)
+    assert bench.task(WRITE | 952) == (WORD | 952, 0, 0, 1)
+    assert bench.task(READ | 952) == (WORD | 952, 0, 0, 1)
+    for number in (504, 505):
+        bench.drive.warn(number)
+    bench.drive.warn(505, False)
+    assert bench.task(READ | 111, SECOND_PAGE) == (WORD | 111, SECOND_PAGE, 0, 2)
+    assert bench.task(WRITE | 111, SECOND_PAGE) == (WORD | 111, SECOND_PAGE, 0, 1)
+    assert bench.task(WRITE | 40, 0, 0, 1) == (WORD | 40, 0, 0, 0)
 
 
 def test_the_run_time_counts_while_there_are_mains():

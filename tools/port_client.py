@@ -42,6 +42,8 @@ class Port:
     def open(self, path, baud):
         """PortError."""
         self.name = path
+        if "\n" in path:  # which would end the line that says it
+            raise PortError("there is no port %r" % path)
         self._control.write(b"open %d %s\n" % (baud, path.encode()))
         while True:
             if not self._poller.poll(OPENING_MS):

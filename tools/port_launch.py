@@ -7,7 +7,8 @@ PROGRAM finds in its environment USS_PORT_DATA and USS_PORT_CONTROL, the numbers
 the characters of the port, and lines. It says "open BAUD PATH" and is told "opened" or "error
 TEXT"; later "cut TEXT" when the port has gone, "back" when it is there again, and "leave" when
 somebody wants it to end: Ctrl-C, kill, a closed terminal. Those do not reach it themselves, so
-that it can stop its drives first. Exit status: that of PROGRAM.
+that it can stop its drives first; nor does Ctrl-Z: a panel that stands still stops nothing. When
+it hangs or dies all the same, its drives are sent OFF1 from here. Exit status: that of PROGRAM.
 """
 
 import os
@@ -20,14 +21,19 @@ import time
 
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 
+from tools.port_dead_man import DeadMan, telegrams  # noqa: E402
 from tools.serial_port import LineCut, PortError, SerialPort  # noqa: E402
+from tools.standard_streams import open_missing  # noqa: E402
 
-LEAVE = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+LEAVE = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT)
+SUSPEND = (signal.SIGTSTP, signal.SIGTTIN, signal.SIGTTOU)
+STALE_S = 0.3  # what the program said before we stood still for so long is not meant any more
 NOT_FOUND = 127  # the exit status of a shell whose command is not there
 READ_MAX = 4096
 AGAIN_S = 1.0  # a port that has gone is looked for so often
 HURRY = -10  # niceness, where the user may have that: the panel stops what it cannot look after
 DRAIN_S = 2.0  # for the last telegrams to leave the machine
+STOPPED = "panel: it hung or died, and drive %s was sent OFF1 in its place"
 
 
 class Relay:
@@ -41,6 +47,8 @@ class Relay:
         self._looked_at = 0.0
         self._typed = b""
         self._over = False
+        self._dead_man = None  # until a port is open
+        self._awake_s = time.monotonic()  # when it was last seen that we run
 
     def leave(self, *_):
         self._tell("leave")
@@ -49,7 +57,7 @@ class Relay:
         """Until the program has ended; what it has said by then is on the line."""
         while not self._over:
             awaited = [self._data, self._control] + ([self._port] if self._is_open else [])
-            ready, _, _ = select.select(awaited, (), (), AGAIN_S)
+            ready, _, _ = select.select(awaited, (), (), self._wait_s())
             if self._control in ready:
                 self._listen()
             if self._data in ready:
@@ -58,7 +66,15 @@ class Relay:
                 self._receive()
             if self._port is not None and not self._is_open:
                 self._look_again()
+            if not select.select([self._data], (), (), 0)[0]:  # or it was us who hung
+                self._stop_due()
+            self._awake_s = time.monotonic()
+        self._stop_all()
         self._drain()
+
+    def stopped(self):
+        """The addresses of the drives that were stopped because the program did not."""
+        return sorted(self._dead_man.stopped) if self._dead_man else []
 
     def _listen(self):
         try:
@@ -68,7 +84,7 @@ class Relay:
         self._over = not said
         *lines, self._typed = (self._typed + said).split(b"\n")
         for line in lines:
-            _, baud, path = line.decode().split(" ", 2)
+            _, baud, path = os.fsdecode(line).split(" ", 2)
             self._open(path, int(baud))
 
     def _open(self, path, baud):
@@ -80,20 +96,56 @@ class Relay:
             return
         self._port = port
         self._is_open = True
+        self._dead_man = DeadMan(baud)
         self._tell("opened")
 
+    def _wait_s(self):
+        return self._dead_man.wait_s(time.monotonic(), AGAIN_S) if self._dead_man else AGAIN_S
+
     def _send(self):
-        try:
-            data = self._data.recv(READ_MAX)
-        except ConnectionError:
-            data = b""
-        self._over = self._over or not data
+        """Hand on the telegram that the program has said. Where there are more, we have been too
+        slow: how old they are nobody knows, and the program will repeat what matters.
+        """
+        now_s = time.monotonic()
+        is_stale = now_s - self._awake_s > AGAIN_S + STALE_S
+        said = b""
+        while True:
+            try:
+                data = self._data.recv(READ_MAX)
+            except BlockingIOError:
+                break
+            except ConnectionError:
+                data = b""
+            self._over = self._over or not data
+            if not data:
+                break
+            said += data
+        if said:
+            self._dead_man.heard(said, self._awake_s if is_stale else now_s)
+            if not is_stale and len(telegrams(said)) == 1:
+                self._write(said)
+
+    def _write(self, telegram):
         if not self._is_open:
             return  # a line that is cut
         try:
-            self._port.write(data)
+            self._port.write(telegram)
         except LineCut as cut:
             self._lost(cut)
+
+    def _stop_due(self):
+        telegram = self._dead_man.due(time.monotonic()) if self._dead_man else None
+        if telegram:
+            self._write(telegram)
+
+    def _stop_all(self):
+        """The program has ended: what it has left running is stopped."""
+        if self._dead_man is None:
+            return
+        self._dead_man.over(time.monotonic())
+        while not self._dead_man.is_done():
+            self._stop_due()
+            time.sleep(self._dead_man.wait_s(time.monotonic(), AGAIN_S))
 
     def _receive(self):
         try:
@@ -138,17 +190,18 @@ class Relay:
 
     def _tell(self, line):
         try:
-            self._control.send(line.encode() + b"\n")
+            self._control.send(os.fsencode(line) + b"\n")
         except OSError:
             pass  # it has ended
 
 
 def start(command, data, control):
-    """The program, which gets Ctrl-C of the terminal, and none of the other signals."""
+    """The program, which gets none of the signals that we do: the second Ctrl-C would end it."""
 
     def prepare():
-        for number in LEAVE:
-            signal.signal(number, signal.SIG_IGN)  # MicroPython takes SIGINT all the same
+        for number in LEAVE + SUSPEND:
+            signal.signal(number, signal.SIG_IGN)
+        signal.pthread_sigmask(signal.SIG_BLOCK, LEAVE)  # MicroPython takes SIGINT all the same
 
     names = {"USS_PORT_DATA": str(data.fileno()), "USS_PORT_CONTROL": str(control.fileno())}
     data.setblocking(False)
@@ -165,6 +218,7 @@ def main(command):
     if not command:
         print("port_launch.py: what is to be started?", file=sys.stderr)
         return 2
+    open_missing()
     data, their_data = socket.socketpair()
     control, their_control = socket.socketpair()
     data.setblocking(False)
@@ -175,6 +229,8 @@ def main(command):
     relay = Relay(data, control)
     for number in LEAVE:
         signal.signal(number, relay.leave)
+    for number in SUSPEND:
+        signal.signal(number, signal.SIG_IGN)
     try:
         program = start(command, their_data, their_control)
     except OSError as error:
@@ -183,6 +239,8 @@ def main(command):
     their_data.close()
     their_control.close()
     relay.run()
+    if relay.stopped():
+        print(STOPPED % ", ".join(map(str, relay.stopped())), file=sys.stderr)
     status = program.wait()
     return status if status >= 0 else 128 - status
 

@@ -125,8 +125,19 @@ def make_keypad(chip, switches):
     if rows:
         columns = tuple(Pin(chip, Pin.IN, Pin.PULL_UP) for _ in switches.matrix[0])
         matrix = Matrix(rows, columns, switches.matrix, chip.clock)
-    switches.connect(tuple(pin for _, pin in direct), rows, columns)
-    return Keypad(direct, matrix, switches.closed)
+    pins = tuple(pin for _, pin in direct)
+    switches.connect(pins, rows, columns)
+    masks = tuple(pin.mask for pin in pins)
+    return Keypad(direct, matrix, switches.closed, reader(chip, sum(masks)), masks)
+
+
+def reader(chip, mask):
+    """A function that answers the levels of these pins as bits."""
+
+    def levels():
+        return chip.levels & mask
+
+    return levels
 
 
 def _usual_loop_us():

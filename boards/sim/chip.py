@@ -36,12 +36,15 @@ _HEAP_LOCK_UNTIL_US = (sys.maxsize >> 1) - 25_000_000
 
 _ERROR_LIMIT = 16
 
+PINS = 30
+
 RX_LIMIT = 256 + 32  # characters a UART holds: the driver's buffer and the FIFO
 
 
 class Chip:
     """The chip as a whole: its interrupts and its reset.
 
+    levels           those of its pins as bits, which a read of its register answers
     handler_errors   exceptions that interrupt handlers ended with, the first 16
     on_bite          called when the watchdog bites: a reset, unless somebody puts another function
     """
@@ -49,6 +52,7 @@ class Chip:
     def __init__(self, clock, wire):
         self.clock = clock
         self.wire = wire
+        self.levels = 0
         self.handler_errors = []
         self.on_bite = self.reset
         self.peripherals = []
@@ -69,6 +73,7 @@ class Chip:
             peripheral.die()
         for pin in pins:
             pin.die()
+        self.levels = 0
         self._masked = False
         self._first_waiting = None
         self._last_waiting = None
@@ -112,17 +117,14 @@ class Chip:
                 self._in_handler = False
 
     def _run(self, interrupt):
-        locked = interrupt.hard and self.clock.now_us < _HEAP_LOCK_UNTIL_US
-        if locked:
+        if interrupt.hard and self.clock.now_us < _HEAP_LOCK_UNTIL_US:
             heap_lock()
-        try:
-            interrupt.handler(interrupt.source)
-            error = None
-        except Exception as exception:
-            error = exception
-        finally:
-            if locked:
+            try:
+                error = interrupt.failure()
+            finally:
                 heap_unlock()
+        else:
+            error = interrupt.failure()
         if error is not None:
             interrupt.handler = None
             if len(self.handler_errors) < _ERROR_LIMIT:
@@ -142,6 +144,13 @@ class Interrupt:
         self.hard = False
         self.waiting = False
         self.next = None
+
+    def failure(self):
+        """Run the handler: what it raised, or None."""
+        try:
+            self.handler(self.source)
+        except Exception as error:
+            return error
 
 
 class UART:
@@ -193,17 +202,19 @@ class UART:
             count = n
         if not count:
             return None
+        self._hand_over(buffer, count)
+        return count
+
+    def _hand_over(self, buffer, count):
         data = self._buffer
-        end = len(data)
         at = self._head
         for i in range(count):
             buffer[i] = data[at]
             at += 1
-            if at == end:
+            if at == RX_LIMIT:
                 at = 0
         self._head = at
         self._count -= count
-        return count
 
     def write(self, data, n=None):
         """Send `data`, or `n` characters of it, at once or behind what is still being sent.
@@ -245,18 +256,16 @@ class UART:
     def receive(self, data, first, stop):
         """Characters first...stop - 1 of `data` come in."""
         buffer = self._buffer
-        end = len(buffer)
-        at = self._head + self._count
-        if at >= end:
-            at -= end
-        count = min(stop - first, end - self._count)
-        for i in range(first, first + count):
-            buffer[at] = data[i]
+        stop = min(stop, first + RX_LIMIT - self._count)
+        at = (self._head + self._count) % RX_LIMIT
+        self._count += stop - first
+        self._undrained += stop - first
+        while first < stop:
+            buffer[at] = data[first]
+            first += 1
             at += 1
-            if at == end:
+            if at == RX_LIMIT:
                 at = 0
-        self._count += count
-        self._undrained += count
 
     def quiet_since(self, at_us):
         """The last character ended at `at_us`."""
@@ -286,6 +295,8 @@ class Pin:
 
     An input, and an open-drain output that has let go, read what is applied, else the pull; a wire
     that nothing holds is 0.
+    mask               its bit in `Chip.levels`; 0 for those behind the thirtieth
+
     A reset leaves the wire to the board: an output is low, as by a resistor to ground.
     """
 
@@ -301,7 +312,9 @@ class Pin:
         self.mode = mode
         self.pull = pull
         self.on_change = on_change
+        self.mask = 1 << len(chip.pins) if len(chip.pins) < PINS else 0
         self.output = 1 if mode == self.OPEN_DRAIN else 0
+        self._chip = chip
         self._applied = None
         self._level = 0  # what value() answers, kept up to date: it is asked far more often
         self._alive = True
@@ -331,6 +344,7 @@ class Pin:
     def die(self):
         self._put(1 if self.mode == self.OPEN_DRAIN else 0)
         self._alive = False
+        self.mask = 0
 
     def _put(self, output):
         if output != self.output:
@@ -341,11 +355,14 @@ class Pin:
 
     def _settle(self):
         if self.mode == self.OUT or (self.mode == self.OPEN_DRAIN and not self.output):
-            self._level = self.output
+            level = self.output
         elif self._applied is not None:
-            self._level = self._applied
+            level = self._applied
         else:
-            self._level = 1 if self.pull == self.PULL_UP else 0
+            level = 1 if self.pull == self.PULL_UP else 0
+        if level != self._level:
+            self._level = level
+            self._chip.levels ^= self.mask
 
 
 class Timer:

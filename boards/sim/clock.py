@@ -123,15 +123,14 @@ class Clock:
         if at_us < self.now_us:
             raise ValueError("the clock does not run backwards")
         self._advancing = True
-        head = self._head
         try:
-            event = head.next
+            event = self._head.next
             while event is not None and event.at_us <= at_us:
-                head.next = event.next
+                self._head.next = event.next
                 event.armed = False
                 self.now_us = event.at_us
                 event.callback()
-                event = head.next
+                event = self._head.next
             self.now_us = at_us
         finally:
             self._advancing = False

@@ -26,7 +26,15 @@ from boards.sim.parameter_channel import ALL_ELEMENTS, ParameterChannel
 from boards.sim.plant import FAN, INERTIA_S
 from boards.sim.inverter import Inverter  # noqa: F401  else `process` does, too deep for unix32
 from boards.sim.process import Process
-from boards.sim.slave import BROADCAST, MIRROR, RESIDUAL_TIME, STANDARD, WATCHDOG, Slave
+from boards.sim.slave import (
+    BROADCAST,
+    MIRROR,
+    RESIDUAL_TIME,
+    STANDARD,
+    WATCHDOG,
+    Slave,
+    words_of,
+)
 
 REPLY_DELAY_CHARACTERS = 3  # measured on a MICROMASTER 420 at 2400 baud
 
@@ -314,9 +322,8 @@ class Drive:
         """The PKW and the PZD words of the telegram received."""
         telegram = self._slave.telegram
         end = self._slave.length - 1
-        words = [telegram[i] << 8 | telegram[i + 1] for i in range(3, end, 2)]
-        pkw_count = len(words) - self._slave.pzd_words
-        return words[:pkw_count], words[pkw_count:]
+        pzd_at = end - 2 * self._slave.pzd_words
+        return words_of(telegram, 3, pzd_at), words_of(telegram, pzd_at, end)
 
     def _take_request(self):
         pkw, pzd = self._net_words()

@@ -18,6 +18,7 @@ CALCULATE = "motor data"
 END_COMMISSIONING = "end of quick commissioning"
 ACKNOWLEDGE = "acknowledge"
 CLEAR_FAULTS, CLEAR_WARNINGS, CLEAR_ENERGY = "clear faults", "clear warnings", "clear energy"
+CLEARS = (CLEAR_FAULTS, CLEAR_WARNINGS, CLEAR_ENERGY)
 
 # Values of P3900.
 RESET_OTHERS, RESET_TERMINALS = 1, 2
@@ -44,12 +45,18 @@ class Operations:
         del self._waiting[:]
 
     def note(self, number):
-        """A number was written: whether that starts something, which waits then."""
+        """A number was written: whether that starts something, which waits then.
+
+        What only clears is done at once, so that the reply to the write tells of it.
+        """
         if number not in self._table:
             return False
         if number not in self._only_zero and not any(self._parameters.ram[number]):
             return False
         self._waiting.append(number)
+        if len(self._waiting) == 1 and self._table[number][0] in CLEARS and not self.seconds():
+            self.carry_out()
+            return False
         return True
 
     def seconds(self):

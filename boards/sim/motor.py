@@ -27,23 +27,26 @@ class Motor:
         """Frequency at `now_us`, which is not before the last command."""
         if now_us >= self.end_us:
             return self._corners[-1][1]
-        from_us, from_hz = self._corners[0]
-        for to_us, to_hz in self._corners:
-            if now_us < to_us:
-                return from_hz + (to_hz - from_hz) * (now_us - from_us) / (to_us - from_us)
-            from_us, from_hz = to_us, to_hz
-        return from_hz
+        at = self._next_corner(now_us)
+        from_us, from_hz = self._corners[at - 1]
+        to_us, to_hz = self._corners[at]
+        return from_hz + (to_hz - from_hz) * (now_us - from_us) / (to_us - from_us)
 
     def slope(self, now_us):
         """How fast it changes at `now_us`, in Hz/s."""
         if now_us >= self.end_us:
             return 0.0
-        from_us, from_hz = self._corners[0]
-        for to_us, to_hz in self._corners:
-            if now_us < to_us:
-                return (to_hz - from_hz) * 1e6 / (to_us - from_us)
-            from_us, from_hz = to_us, to_hz
-        return 0.0
+        at = self._next_corner(now_us)
+        from_us, from_hz = self._corners[at - 1]
+        to_us, to_hz = self._corners[at]
+        return (to_hz - from_hz) * 1e6 / (to_us - from_us)
+
+    def _next_corner(self, now_us):
+        """Which one comes next, of a path that has not ended."""
+        at = 1
+        while self._corners[at][0] <= now_us:
+            at += 1
+        return at
 
     def ramp(self, now_us, target_hz, full_hz, up_s, down_s):
         """Go to `target_hz`, through standstill if the direction changes.

@@ -112,12 +112,12 @@ class Plant:
             self._cool(to_us)
             return None
         while self._at_us < to_us:
-            at_us = self._at_us
             until_us = to_us
-            if at_us < motor.end_us:
-                until_us = min(to_us, motor.end_us, at_us + STEP_US)
-            middle_us = at_us + (until_us - at_us) // 2
-            kind = self._step(motor.hz(middle_us), motor.slope(middle_us), until_us)
+            if self._at_us < motor.end_us:
+                until_us = min(to_us, motor.end_us, self._at_us + STEP_US)
+            middle_us = self._at_us + (until_us - self._at_us) // 2
+            hz = motor.hz(middle_us)
+            kind = self._step(hz, motor.slope(middle_us), until_us)
             if kind is not None:
                 return kind, self._at_us
         return None

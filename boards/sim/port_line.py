@@ -1,9 +1,9 @@
 """A simulated line that somebody real talks on, through a port: the master of simulated drives.
 
 Two kinds of port. A pty has no line: whatever is written into it arrives at once, so the
-simulated wire takes the time that the characters need, and the reply goes out when its last
-character is over. A real serial port has one: what comes from it has taken its time already, and
-the reply is handed over at its beginning.
+simulated wire takes the time that the characters need, and the reply goes out as its characters
+are over, every 10 ms, as from an adapter. A real serial port has one: what comes from it has taken
+its time already, and the reply is handed over at its beginning.
 
     wire = Wire(clock, 19200)
     master = PtyMaster(wire, write)     # or PortMaster(wire, write)
@@ -21,6 +21,7 @@ STX = 0x02
 QUEUE_FULL = 1024  # characters that wait for the line; more are left in the port
 LATE_US = 20_000  # adapters keep characters back for up to 16 ms
 TOGETHER_US = 3_000  # characters that begin no telegram belong together when they are closer
+PIECE_US = 10_000  # what is heard in so long is handed over together
 ECHO_US = 100_000  # what is sent comes back within so long, or never
 
 
@@ -57,6 +58,9 @@ class PtyMaster(Master):
         self._burst = None  # what it is saying
         self._go_on = Event(self._over)
         self._answered_us = None  # the end of a reply, until it talks
+        self._heard = None  # the burst that is being heard
+        self._handed_over = 0  # so many of its characters
+        self._hand_over = Event(self._hand_over_piece)
 
     def received(self, data, flaws=None):
         self._pending += data
@@ -65,11 +69,32 @@ class PtyMaster(Master):
         elif not self._go_on.armed:
             self._begin()
 
+    def watch(self, burst):
+        """A drive begins to talk. Of two at once the second one is handed over at its end."""
+        now_us = self._clock.now_us
+        if self._heard is None or self._heard.end_us <= now_us:
+            self._heard = burst
+            self._handed_over = 0
+            self._clock.schedule(self._hand_over, now_us + PIECE_US)
+
     def hear(self, burst):
         """A drive has talked."""
         self._answered_us = burst.end_us
         self._noted(burst, False)
-        self._write(bytes(burst.data[: burst.count]))
+        first = 0
+        if burst is self._heard:
+            first, self._heard = self._handed_over, None
+            self._clock.cancel(self._hand_over)
+        self._write(bytes(burst.data[first : burst.count]))
+
+    def _hand_over_piece(self):
+        burst = self._heard
+        arrived = burst.arrived(self._clock.now_us)
+        if arrived > self._handed_over:
+            self._write(bytes(burst.data[self._handed_over : arrived]))
+            self._handed_over = arrived
+        if self._clock.now_us < burst.end_us:
+            self._clock.schedule(self._hand_over, self._clock.now_us + PIECE_US)
 
     def hear_itself(self, burst):
         self._write(bytes(burst.data[: burst.count]))

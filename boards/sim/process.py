@@ -342,9 +342,12 @@ class Process(Inverter):
             alarms |= BOTH_JOGS
         if alarms != self._alarms:
             self._alarms = alarms
-            for alarm, number in self._warning_numbers:
-                self.memory.warn(number, bool(alarms & alarm))
+            self._warn()
         return alarms
+
+    def _warn(self):
+        for alarm, number in self._warning_numbers:
+            self.memory.warn(number, bool(self._alarms & alarm))
 
     # Readings
 

@@ -44,6 +44,24 @@ def xor_of(data, count):
     return bcc
 
 
+def put_words(buffer, at, words):
+    """`words` into `buffer`, two characters each, from place `at` on."""
+    for word in words:
+        buffer[at] = word >> 8
+        at += 1
+        buffer[at] = word & 0xFF
+        at += 1
+
+
+def words_of(telegram, at, end):
+    """The words in telegram[at:end]."""
+    words = []
+    while at < end:
+        words.append(telegram[at] << 8 | telegram[at + 1])
+        at += 2
+    return words
+
+
 def kind_of(errors):
     """Which counter a character with these errors belongs to; it is one of them only."""
     if errors & FRAME_ERROR:
@@ -122,13 +140,10 @@ class Slave:
         buffer[0] = STX
         buffer[1] = 2 * len(words) + 2
         buffer[2] = self.address
-        at = 3
-        for word in words:
-            buffer[at] = word >> 8
-            buffer[at + 1] = word & 0xFF
-            at += 2
-        buffer[at] = xor_of(buffer, at)
-        return at + 1
+        put_words(buffer, 3, words)
+        count = buffer[1] + 1
+        buffer[count] = xor_of(buffer, count)
+        return count + 1
 
     # A telegram
 

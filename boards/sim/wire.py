@@ -2,7 +2,9 @@
 
 It carries characters of 11 bits (8E1) between stations and judges their timing; what they mean is
 none of its business. A telegram costs one event, at its end: a station that wants to see single
-characters come in asks the burst how many have arrived by now.
+characters come in asks the burst how many have arrived by now. What every telegram goes through
+is cut into small functions: MicroPython takes a frame of more than 11 words from the heap, and
+looks for a hole in all of it.
 
     wire = Wire(clock, 19200)
     wire.attach(drive)
@@ -66,6 +68,13 @@ DRIVER_IDLE = "{name} has its driver enabled for {us} us without sending"
 
 SILENCE_RULES = (SHORT_SILENCE, COLLISION, DRIVER_ON_INTO)
 DRIVER_RULES = (DRIVER_MISSING, DRIVER_CUTS, DRIVER_EARLY, DRIVER_LATE, DRIVER_IDLE)
+
+
+def copy(data, count, into, at):
+    """data[:count], to into[at] and what follows it."""
+    for i in range(count):
+        into[at] = data[i]
+        at += 1
 
 
 class Burst:
@@ -133,19 +142,14 @@ class Burst:
     def append(self, data, count):
         """Take `count` characters behind those that are there."""
         if self.sent is not None:
-            for i in range(count):
-                self.carry(data[i])
-                self.put(data[i], self.sent_end_us(), 0)
+            self._append_unchanged(data, count)
             return
-        mine = self.data
         at = self.count
-        flip = 0xFF if self.garbled else 0
-        for i in range(count):
-            mine[at + i] = data[i] ^ flip
+        copy(data, count, self.data, at)
         self.count = self.sent_count = count = at + count
         self.end_us = self.start_us + self._even_ends[count - 1]
-        if flip:
-            self._blame_rest(at)
+        if self.garbled:
+            self._garble_from(at)
 
     def cut(self, now_us):
         """Only what is complete by now was sent."""
@@ -157,13 +161,9 @@ class Burst:
 
     def garble(self, now_us):
         """Invert what has not arrived yet."""
-        if self.garbled:
-            return
-        arrived = self.arrived(now_us)
-        for i in range(arrived, self.count):
-            self.data[i] ^= 0xFF
-        self._blame_rest(arrived)
-        self.garbled = True
+        if not self.garbled:
+            self._garble_from(self.arrived(now_us))
+            self.garbled = True
 
     def exclusive_or(self):
         """Of all characters: they are looked at once, however many hear them."""
@@ -218,6 +218,11 @@ class Burst:
         if flags:
             self.blame(at, flags)
 
+    def _append_unchanged(self, data, count):
+        for i in range(count):
+            self.carry(data[i])
+            self.put(data[i], self.sent_end_us(), 0)
+
     def blame(self, at, flags):
         """Character `at` has these errors."""
         if self.errors is None:
@@ -226,8 +231,9 @@ class Burst:
                 self._flags[i] = 0
         self._flags[at] |= flags
 
-    def _blame_rest(self, first):
+    def _garble_from(self, first):
         for i in range(first, self.count):
+            self.data[i] ^= 0xFF
             self.blame(i, FRAME)
 
 
@@ -383,20 +389,22 @@ class Wire:
         tap = self._taps.get(station)
         if tap is None:
             return None
-        burst = tap.burst
-        now = self.clock.now_us
-        if burst.end_us > now:
-            return self._prolong(tap, data, count)
+        if tap.burst.end_us > self.clock.now_us:
+            self._prolong(tap, data, count)
+        else:
+            self._begin(tap, data, count)
+        return tap.burst
+
+    def _begin(self, tap, data, count):
         if not 0 < count <= BURST_LIMIT:
             raise ValueError("a burst has 1...260 characters")
-        if tap.talking:  # it ends at this very instant
-            self._ended(tap)
-        burst.begin(now, 0 if self._talkers else now - self._idle_since_us)
+        burst = self._emptied(tap)
+        now = burst.start_us
         if tap.has_driver_enable and not tap.driving:
             burst.append(data, count)
-            self._violate(DRIVER_MISSING, tap, burst.end_us - now)
-            return burst
-        if tap.is_weather and now - self._babble_until_us >= self._babble_pause_us:
+            self._miss_driver(tap)
+            return
+        if tap.is_weather and now - self._babbled_until_us(now) >= self._babble_pause_us:
             self._babble_since_us = now
         tap.alone = tap.mute
         if not tap.mute:
@@ -409,13 +417,27 @@ class Wire:
         tap.driver_judged = False
         tap.talking = True
         self.clock.schedule(tap.end, burst.end_us)
-        if tap.mute:
-            return burst
-        self._talkers += 1
+        if not tap.mute:
+            self._talkers += 1
+            self._announce(tap)
+
+    def _emptied(self, tap):
+        """Its burst, which begins now."""
+        if tap.talking:  # the one before ends at this very instant
+            self._ended(tap)
+        now = self.clock.now_us
+        silence_us = 0 if self._talkers else now - self._idle_since_us
+        tap.burst.begin(now, silence_us)
+        return tap.burst
+
+    def _miss_driver(self, tap):
+        self._violate(DRIVER_MISSING, tap, tap.burst.end_us - self.clock.now_us)
+
+    def _announce(self, tap):
+        burst = tap.burst
         for other in self._hearing:
             if other.watch is not None and other is not tap:
                 other.watch(burst)
-        return burst
 
     def _append(self, tap, data, count):
         if self.faults is None or tap.is_weather:
@@ -431,7 +453,6 @@ class Wire:
         if tap.talking:
             tap.driver_needed_us = burst.end_us
             self.clock.schedule(tap.end, burst.end_us)
-        return burst
 
     def _judge_start(self, tap, now):
         burst = tap.burst
@@ -597,18 +618,23 @@ class Wire:
         heard_us = self._idle_since_us
         if self._last_began_us < plugged_us:
             heard_us = LONG_AGO_US
-        babbles = self._babble_until_us
         for other in self._attached:
             if other.talking and not other.alone and other is not tap:
                 burst = other.burst
                 arrived = burst.arrived(now)
                 if arrived and burst.start_us >= plugged_us:
                     heard_us = max(heard_us, burst.start_us + burst.ends[arrived - 1])
-                if other.is_weather:
-                    babbles = now
         if now - heard_us >= self.start_interval_us - ROUNDING_US:
             return True
-        return now - babbles < self._babble_pause_us and now - self._babble_since_us >= BABBLE_US
+        quiet_us = now - self._babbled_until_us(now)
+        return quiet_us < self._babble_pause_us and now - self._babble_since_us >= BABBLE_US
+
+    def _babbled_until_us(self, now):
+        """When the weather was heard last."""
+        for other in self._attached:
+            if other.talking and other.is_weather and not other.alone:
+                return now
+        return self._babble_until_us
 
     def forgive(self):
         """Forget what was noted so far."""
@@ -686,23 +712,26 @@ class Log:
     def add(self, burst, from_panel):
         row = self._next
         self._start_us[row] = burst.start_us
-        data = burst.data
-        count = burst.count
-        if burst.sent is not None:
-            data = burst.sent
-            count = burst.sent_count
-        self._length[row] = count
         self._from_panel[row] = from_panel
         self._next = row + 1 if row + 1 < LOG_TELEGRAMS else 0
         self.count += 1
-        ring = self._ring
-        at = self._head
+        if burst.sent is None:
+            self._length[row] = burst.count
+            self._keep(burst.data, burst.count)
+        else:
+            self._length[row] = burst.sent_count
+            self._keep(burst.sent, burst.sent_count)
+
+    def _keep(self, data, count):
+        head = self._head
+        if head + count < LOG_CHARACTERS:
+            copy(data, count, self._ring, head)
+            self._head = head + count
+            return
         for i in range(count):
-            ring[at] = data[i]
-            at += 1
-            if at == LOG_CHARACTERS:
-                at = 0
-        self._head = at
+            self._ring[head] = data[i]
+            head = head + 1 if head + 1 < LOG_CHARACTERS else 0
+        self._head = head
 
     def last(self, n):
         """The last `n` telegrams, oldest first, as tuples (start_us, from_panel, bytes)."""

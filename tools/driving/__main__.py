@@ -14,6 +14,7 @@ from boards.sim.drive_switches import SWITCHES
 from boards.sim.script import ORDER, ExpectationFailed, Script, ScriptError, parameter, value
 from tools.driving.line import OF_THE_PANEL, DriveLine
 from tools.serial_port import PortError, Pty, SerialPort
+from tools.standard_streams import has_room, is_ours, open_missing
 
 FAMILIES = ("mm420", "mm440", "mm3", "g110", "v20", "g120", "generic")
 USUAL = "mm420"
@@ -21,6 +22,7 @@ BAUD_RATES = (
     300, 600, 1200, 2400, 4800, 9600, 19200, 38400, 57600, 76800, 93750, 115200, 187500,
 )  # fmt: skip
 NODE_MAX = 31
+REPLY_DELAY_MAX_MS = 60_000
 READ_MAX = 4096
 INDENTED = {"initial_indent": "    ", "subsequent_indent": "    "}
 
@@ -67,7 +69,7 @@ def arguments(words):
         help="a parameter of drive A, of all without A:")  # fmt: skip
     add("--switch", action="append", default=[], metavar="A:NAME=VALUE",
         help="how A behaves where the documents leave it open; --switch help")  # fmt: skip
-    add("--reply-delay", type=float, metavar="MS", help="to every reply (three characters)")
+    add("--reply-delay", type=milliseconds, metavar="MS", help="to every reply (three characters)")
     add("--log", action="store_true", help="print every telegram, decoded")
     if "--switch=help" in words or ("--switch", "help") in zip(words, words[1:]):
         parser.exit(message=switches() + "\n")
@@ -80,13 +82,25 @@ def arguments(words):
         parser.error(str(error))
 
 
+def milliseconds(word):
+    """ValueError: no delay of a reply."""
+    ms = float(word)
+    if not 0 <= ms <= REPLY_DELAY_MAX_MS:
+        raise argparse.ArgumentTypeError("%s is not 0...%d ms" % (word, REPLY_DELAY_MAX_MS))
+    return ms
+
+
+def is_node(word):
+    return word.isascii() and word.isdigit() and int(word) <= NODE_MAX
+
+
 def kinds(chosen):
     """{address: keyword arguments of `Drive`}. ValueError: there is no such drive."""
     found = {}
     for entry in chosen.address.split(","):
         address, _, family = entry.partition("=")
         family = family.lower() or chosen.family
-        if not address.isdigit() or int(address) > NODE_MAX:
+        if not is_node(address):
             raise ValueError("--address: %s is no address 0...31" % (address or "nothing"))
         if int(address) in found:
             raise ValueError("--address: %s stands there twice" % address)
@@ -101,6 +115,8 @@ def kinds(chosen):
             found[one]["parameters"][parameter(None, name)] = new
     for entry in chosen.switch:
         addresses, name, new = assignment("--switch", "stale_replies=2", entry, found)
+        if name not in [row[0] for row in SWITCHES if row[1] is not None]:
+            raise ValueError("--switch %s: there is no such switch; --switch help" % entry)
         for one in addresses:
             found[one]["switches"][name] = new
     return found
@@ -114,7 +130,7 @@ def assignment(option, example, entry, found):
     """What "1:NAME=VALUE" means: addresses, name, value. ValueError: nothing."""
     left, equals, right = entry.partition("=")
     address, colon, name = left.rpartition(":")
-    if not equals or colon and (not address.isdigit() or int(address) not in found):
+    if not equals or colon and not (is_node(address) and int(address) in found):
         use = "use A:%s, A one of the addresses" % example
         raise ValueError("%s %s: %s" % (option, entry, use))
     try:
@@ -149,8 +165,17 @@ class Keyboard:
     def fileno(self):
         return 0
 
+    def listens(self):
+        """Whether something that is typed is for us."""
+        return self.open and is_ours(0)
+
     def read(self):
-        typed = os.read(0, READ_MAX)
+        try:
+            typed = os.read(0, READ_MAX)
+        except OSError:
+            if not is_ours(0):
+                return  # since a moment ago
+            typed = b""  # the terminal has gone
         self.open = bool(typed)
         self._typed += typed
         while b"\n" in self._typed and not self.left:
@@ -170,7 +195,7 @@ class Keyboard:
 
     def _switch(self, words):
         """The mains of a drive."""
-        if len(words) != 2 or not words[1].isdigit() or int(words[1]) not in self._line.drives:
+        if len(words) != 2 or not is_node(words[1]) or int(words[1]) not in self._line.drives:
             say("use: %s A" % words[0])
             return
         drive = self._line.drives[int(words[1])]
@@ -192,6 +217,24 @@ def say(line):
     print(line, flush=True)
 
 
+class Log:
+    """The log on standard output. Where nobody reads it, the drives do not wait: lines are left
+    out, and counted.
+    """
+
+    def __init__(self):
+        self._left_out = 0
+
+    def __call__(self, line):
+        if not has_room(1):
+            self._left_out += 1
+            return
+        if self._left_out:
+            line = "(%d lines left out: nobody read them)\n%s" % (self._left_out, line)
+            self._left_out = 0
+        say(line)
+
+
 def complain(line):
     print("tools/drive: %s" % line, file=sys.stderr, flush=True)
 
@@ -200,11 +243,11 @@ def serve(chosen, found):
     port = Pty(chosen.link) if chosen.pty else SerialPort(chosen.port, chosen.baud)
     port.open()
     try:
-        line = DriveLine(port, found, chosen.baud, say if chosen.log else None, complain)
+        line = DriveLine(port, found, chosen.baud, Log() if chosen.log else None, complain)
         say(chosen.link or port.path)
         keyboard = Keyboard(line)
         while not keyboard.left:
-            if line.serve(keyboard if keyboard.open else None):
+            if line.serve(keyboard if keyboard.listens() else None):
                 keyboard.read()
     finally:
         port.close()
@@ -213,6 +256,11 @@ def serve(chosen, found):
 def main(words):
     chosen, found = arguments(words)
     signal.signal(signal.SIGTERM, signal.default_int_handler)
+    if signal.getsignal(signal.SIGHUP) != signal.SIG_IGN:  # nohup
+        signal.signal(signal.SIGHUP, signal.default_int_handler)
+    signal.signal(signal.SIGTTIN, signal.SIG_IGN)  # in the background it is not typed to
+    signal.signal(signal.SIGTTOU, signal.SIG_IGN)
+    open_missing()
     try:
         serve(chosen, found)
     except KeyboardInterrupt:

@@ -29,10 +29,10 @@ BROKEN, NOT_UNDERSTOOD, CRASHED = 1, 2, 4
 def parser():
     arguments = argparse.ArgumentParser(
         prog="tools/soak",
-        description="The whole panel in virtual time: an operator who presses random keys, drives, "
-        "seeded faults, and the rules that must hold at every step.",
-        epilog="Exit status: 0 every rule held, 1 one was broken, 2 wrong arguments, 3 there is no "
-        "MicroPython, 4 a process failed.",
+        description="The whole panel in virtual time: an operator who presses random keys, "
+        "drives, seeded faults, and the rules that must hold at every step.",
+        epilog="Exit status: 0 every rule held, 1 one was broken, 2 wrong arguments, 3 there is "
+        "no MicroPython, 4 a process failed.",
     )
     arguments.add_argument("--seeds", type=at_least_one, default=20, metavar="N", help="(20)")
     arguments.add_argument(
@@ -215,8 +215,10 @@ def fuzz(wanted):
         show_line("%d of %d bytes" % (fed["bytes"], wanted.fuzz))
     show_line("")
     took_s = time.monotonic() - began
-    print("%d bytes in %d exchanges, of whose replies %d were good" % (
-        fed["bytes"], fed["exchanges"], fed["good"]))
+    print(
+        "%d bytes in %d exchanges, of whose replies %d were good"
+        % (fed["bytes"], fed["exchanges"], fed["good"])
+    )
     print("took %d s, %d bytes a second" % (took_s, fed["bytes"] / took_s))
     return CRASHED if crashed else broken
 

@@ -1,8 +1,8 @@
 """Bytes that may be anything, through the firmware's bus engine and its receiver: nothing breaks.
 
-Noise, telegrams with a few wrong bits, bits of telegrams, good replies, in bursts of any size, with
-pauses of any length. What must hold: no exception; every good reply behind a start gap is taken,
-unless something that begins like a telegram is still coming in; nothing else is taken for one.
+Noise, telegrams with a few wrong bits, pieces of telegrams, good replies, in bursts of any size,
+with pauses of any length. What must hold: no exception; every good reply behind a start gap is
+taken, unless something that begins like a telegram is still coming in; nothing else is.
 
     fuzz(1_000_000, 7)          # {"bytes": ..., "good": ..., "broken": None or a text}
 """

@@ -53,11 +53,11 @@ class Hand:
         self.common = weights((
             (12, self.tap), (4, self.hold), (6, self.start), (5, self.stop), (9, self.jog),
             (4, self.chord), (4, self.long_stop), (5, self.edit), (4, self.rest), (3, self.select),
-            (4, self.start_others), (3, self.start_under_stop),
+            (4, self.start_others), (3, self.start_under_stop), (5, self.run_long),
         ))  # fmt: skip
         self.failures = weights((
             (4, self.unplug), (3, self.plug), (3, self.trip), (2, self.mains), (3, self.meddle),
-            (3, self.hang), (1, self.restart), (1, self.cut_power), (1, self.cut_flash),
+            (3, self.hang), (3, self.restart), (1, self.cut_power), (1, self.cut_flash),
             (2, self.old_replies), (1, self.stick),
         ))  # fmt: skip
 
@@ -156,6 +156,13 @@ class Hand:
             self.run(self.dice.between(100, 1_000))
             if self.dice.below(2):  # else it stays down for a while
                 self.release_jogs()
+
+    def run_long(self):
+        """A motor turns for a while, and nobody does anything."""
+        self.press("STOP")
+        self.run(self.dice.between(500, 1_500))
+        self.press("START")
+        self.run(self.dice.between(2_000, 9_000))
 
     def release_jogs(self):
         for key in JOGS:
@@ -335,13 +342,13 @@ class Hand:
 
     def restart(self):
         """The chip restarts, now and then while somebody leans on a key."""
-        key = self.dice.one_of(("START", "STOP") + JOGS)
-        if self.dice.below(2):
+        key = self.dice.one_of(("START", "START", "STOP") + JOGS)
+        if self.dice.below(4):
             self.down(key)
         self.note("reset")
         self.count("reset")
         self.world.reset()
-        self.run(self.dice.between(100, 4_000))
+        self.run(self.dice.between(100, 5_000))
         self.up(key)
 
     def cut_power(self):
@@ -365,7 +372,7 @@ class Hand:
         self.world.flash.cut_at = None
         self.run(2_500 + 8 * self.judge.cycle_us // MS)  # what was asked for is written by then
         for drive in self.drives:
-            self.judge.excuse(drive.address, 10)
+            self.judge.excuse(drive.address, 3)
             if not drive.plugged:
                 drive.plug()
             if not drive.powered:
@@ -400,6 +407,10 @@ class Hand:
         self.wait_for("drive %d to be ready" % address, lambda: drive.state == "ready", 20)
         self.wait_for("READY on the display", lambda: reader.rows[1].startswith("READY"), 8)
         self.press("START")
+        self.run(200)
+        if self.reader.reads("NO:"):  # a drive that was not shown is not always known by now
+            self.run(3_000 + 20 * self.judge.cycle_us // MS)
+            self.press("START")
         self.wait_for("a START to be answered", lambda: self._is_answered(drive), 8)
         if reader.reads(QUESTIONS[1]):
             self.run(1_200)
@@ -420,6 +431,7 @@ class Hand:
             if not self.reader.rows[1].startswith("STOP UNCONFIRMED"):
                 return
             self.press("ADDRESS_UP")
+            self.run(2_000)
 
     def prove_announced(self, drive):
         """Another drive is shown: this one runs on, and the display says so."""

@@ -83,7 +83,8 @@ class Case:
         self.owed_us = NEVER  # STOP pressed, and no OFF sent since
         self.owed_requests = 0  # to whomever, since that must have had its effect
         self.brakes = False  # it was to stop already when STOP was pressed
-        self.jog_over = False  # the jog of this key press has ended
+        self.jog_us = NEVER  # when the key was pressed whose jog is in force
+        self.jog_void_us = NEVER  # jog keys pressed up to here do not count any more
         self.excused_us = NEVER  # until when an OFF needs no other reason
         self.acknowledge_us = NEVER  # STOP that may acknowledge
         self.second_us = NEVER  # OFF2 or OFF3 sent last
@@ -107,6 +108,7 @@ class Judge:
         self.second_stop = SECOND_STOPS[plan.settings.get("second_stop", "OFF3")]
         self.down = {}  # key -> since when
         self.up = {key: NEVER for key in KEYS}  # key -> when it was let go
+        self.pressed_us = dict(self.up)  # key -> when it last went down
         self.spoilt = {}  # keys that must go up before they count -> True
         self.boot_us = 0
         self.first_sent = self.tape.sent
@@ -118,6 +120,7 @@ class Judge:
         self.stop_key_cut = False
         self.wishes = {}  # "write" and "eeprom" -> until when
         self.set_us = NEVER
+        self.unsettled = []  # replies that may still be spoilt: row, case, whether it has stopped
         self.owed = []  # cases that wait for their OFF
         self.all_until_us = NEVER  # until when every drive is being stopped, one after the other
         self.second_owed = None  # the drive that a STOP, if it is held, stops by OFF2 or OFF3
@@ -147,7 +150,7 @@ class Judge:
                 moving = [name for name in self.down if name.startswith("ADDRESS")]
                 self.unsure_us = ALWAYS if moving else now + 250 * MS
             return
-        self.down[key] = now
+        self.down[key] = self.pressed_us[key] = now
         if key == "STOP":
             self._stop_pressed(now)
         elif key == "START":
@@ -156,9 +159,6 @@ class Judge:
             self._selects(now)
         elif key == "SET":
             self._set_pressed(now)
-        elif key.startswith("JOG"):
-            for case in self.cases:
-                case.jog_over = False
 
     def candidates(self):
         """Cases of the drives that may be the one shown."""
@@ -187,7 +187,7 @@ class Judge:
     def _stop_pressed(self, now):
         for case in self.candidates():
             case.acknowledge_us = now
-            case.excused_us = max(case.excused_us, now + 3 * S)
+            case.excused_us = max(case.excused_us, now + 600 * MS + 4 * self.exchange_us)
         self.second_owed = None
         if self.is_sure():
             case = self.cases[self.shown]
@@ -254,7 +254,7 @@ class Judge:
             case.owed_us = NEVER
             case.excused_us = now + 3 * S
             case.stw = OFF1
-            case.jog_over = True
+            case.jog_void_us = now
         for key in self.down:
             self.spoilt[key] = True
         self.wishes.clear()
@@ -286,7 +286,7 @@ class Judge:
             for case in self.cases:
                 if case.start_us < self.hung_us - 60 * MS:
                     case.void_us = self.hung_us
-                case.jog_over = True
+                case.jog_void_us = max(case.jog_void_us, self.hung_us - 60 * MS)
         if now - self.hung_us > WATCHDOG_US + 300 * MS:
             raise Broken("WATCHDOG", "the loop stood still for %d ms" % (_ms(now - self.hung_us)))
         self.hung_us = None
@@ -321,6 +321,8 @@ class Judge:
         now = self.clock.now_us
         if self.weather is not None and self.weather.is_bad():
             self.late_us = self.stirred_us = now
+        if self.unsettled:
+            self._settle_replies(now)
         self._play()
         world = self.world
         chip = world.chip
@@ -391,16 +393,28 @@ class Judge:
         case.zsw = zsw
         if zsw & ZSW_RUNNING:
             case.ran_us = now
-        is_sure = self._is_sure(row, tape)
-        if is_sure:
-            case.heard_us = now
+        stops = False
         if case.stw & RUN:
             if zsw & ZSW_RUNNING:
                 case.ran = True
-            if zsw & (ZSW_FAULT | ZSW_INHIBIT) or case.ran and not zsw & ZSW_RUNNING:
+            stops = zsw & (ZSW_FAULT | ZSW_INHIBIT) or case.ran and not zsw & ZSW_RUNNING
+            if stops:
                 case.excused_us = now + 2 * S + self.cycle_us
-                if is_sure:
-                    case.void_us = now
+        self.unsettled.append((row, case, stops))
+
+    def _settle_replies(self, now):
+        """Those by now that the panel must have taken."""
+        tape = self.tape
+        waiting = []
+        for one in self.unsettled:
+            row, case, stops = one
+            if not tape.is_settled(row, now):
+                waiting.append(one)
+            elif self._is_sure(row, tape):
+                case.heard_us = max(case.heard_us, tape.end_us[row])
+                if stops:
+                    case.void_us = max(case.void_us, tape.end_us[row])
+        self.unsettled = waiting
 
     def _is_sure(self, row, tape):
         """Whether the panel must have taken this reply."""
@@ -510,8 +524,10 @@ class Judge:
 
     def _judge_jog(self, case, address, key, where, now):
         other = "JOG_LEFT" if key == "JOG_RIGHT" else "JOG_RIGHT"
-        if case.jog_over:
-            raise Broken("JOG", "%s, for a second time" % where)
+        pressed_us = self.pressed_us[key]
+        if pressed_us <= case.jog_void_us and now > self._grace(case.jog_void_us):
+            raise Broken("JOG", "%s, by a key that had done its work" % where)
+        case.jog_us = pressed_us
         if self.is_sure() and self.cases[self.shown] is not case:
             raise Broken("JOG", "%s, drive %d is shown" % (where, self.shown))
         if self.hung_us is not None:
@@ -543,7 +559,7 @@ class Judge:
             return
         jogged = not case.stw & 1
         if jogged:
-            case.jog_over = True
+            case.jog_void_us = max(case.jog_void_us, case.jog_us)
         if case.used_us <= case.void_us or case.start_us <= case.used_us:
             case.void_us = max(case.void_us, case.used_us)
         if now > case.excused_us and not self._has_reason(case, now, jogged):

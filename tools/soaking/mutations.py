@@ -6,8 +6,8 @@ them in copies of firmware/, and soaks each with the seed beside it.
 
 
 class Mutation:
-    """name; why it matters; changes, (file below firmware/, old text, new text) each; rules, one of
-    which must be named; the seed that finds it, and the minutes that takes.
+    """name; why it matters; rules, one of which must be named; the seed that finds it; changes,
+    (file below firmware/, old text, new text) each.
     """
 
     def __init__(self, name, why, rules, seed, minutes, *changes):
@@ -19,7 +19,7 @@ class Mutation:
         self.changes = changes
 
     def apply(self, folder):
-        """Change the copy of firmware/ in `folder`, a pathlib.Path. LookupError: a text is gone."""
+        """Change the copy of firmware/ in `folder`, a Path. LookupError: a text is gone."""
         for name, old, new in self.changes:
             path = folder / name
             text = path.read_text(encoding="utf-8")
@@ -80,8 +80,12 @@ MUTATIONS = (
     Mutation(
         "ON while lost",
         "ON is sent to a drive that does not answer",
-        ("LOST",), 1, 2,
-        ("uss/master.py", "drive.miss(finding, now, self._lost_us, self._mask)\n        if", "drive.miss(finding, now, 8 * self._lost_us, self._mask)\n        if"),
+        ("LOST", "MAY RUN"), 1, 2,
+        (
+            "uss/master.py",
+            "drive.miss(finding, now, self._lost_us, self._mask)\n        if",
+            "drive.miss(finding, now, 8 * self._lost_us, self._mask)\n        if",
+        ),
     ),
     Mutation(
         "stale PKW accepted",
@@ -112,8 +116,12 @@ MUTATIONS = (
     Mutation(
         "wrong drive stopped",
         "STOP stops the first drive, whichever is shown",
-        ("STOP",), 1, 2,
-        ("panel/stop_key.py", "            control.stop()\n", "            self._controls[0].stop()\n"),
+        ("STOP", "START"), 1, 2,
+        (
+            "panel/stop_key.py",
+            "            control.stop()\n",
+            "            self._controls[0].stop()\n",
+        ),
     ),
     Mutation(
         "STOP waits its turn",
@@ -143,7 +151,8 @@ MUTATIONS = (
             "panel/control.py",
             "            self._contact = drive.contact\n            self.lost_running",
             "            self._contact = drive.contact\n            if self.runs():\n"
-            "                self.drive.start(self.drive.hsw, self._on())\n            self.lost_running",
+            "                self.drive.start(self.drive.hsw, self._on())\n"
+            "            self.lost_running",
         ),
     ),
     Mutation(
@@ -199,7 +208,11 @@ MUTATIONS = (
         "STOP ALL forgets drives",
         "STOP held for 4 s stops only what is shown",
         ("STOP ALL",), 1, 2,
-        ("panel/stop_key.py", "            self.left = 2 * len(self._controls)\n", "            self.left = 0\n"),
+        (
+            "panel/stop_key.py",
+            "            self.left = 2 * len(self._controls)\n",
+            "            self.left = 0\n",
+        ),
     ),
     Mutation(
         "selecting stops",
@@ -218,10 +231,10 @@ MUTATIONS = (
         ("app.py", "if stands_ms * 1000 < self.bus.patience_us:", "if stands_ms >= 0:"),
     ),
     Mutation(
-        "watchdog too eager",
-        "a bus that works is taken for one that stands",
-        ("WATCHDOG",), 1, 2,
-        ("app.py", "if stands_ms * 1000 < self.bus.patience_us:", "if stands_ms < 3:"),
+        "watchdog starved",
+        "a panel that works is restarted",
+        ("WATCHDOG",), 1, 1,
+        ("app.py", "_FEED_MS = const(100)", "_FEED_MS = const(2_500)"),
     ),
     Mutation(
         "flash written under way",
@@ -235,12 +248,12 @@ MUTATIONS = (
     ),
     Mutation(
         "lost drive looks alive",
-        "the last frequency stays on the display",
+        "a drive that is lost is shown as it was last",
         ("MAY RUN",), 1, 2,
         (
-            "panel/control.py",
-            "if not drive.contact or drive.silent >= _SILENT_MAX or self.survey.scaling is None:",
-            "if self.survey.scaling is None:",
+            "panel/state.py",
+            "    if not drive.contact:\n        return texts.NO_CONTACT\n",
+            "",
         ),
     ),
     Mutation(
@@ -263,7 +276,11 @@ MUTATIONS = (
         "faults acknowledged by themselves",
         "a tripped drive is reset though nobody has seen it",
         ("ACKNOWLEDGE",), 1, 2,
-        ("panel/fault.py", "            self.was_shown = True  #", "            drive.acknowledge()  #"),
+        (
+            "panel/fault.py",
+            "            self.was_shown = True  #",
+            "            drive.acknowledge()  #",
+        ),
     ),
     Mutation(
         "wrong sign shown",
@@ -287,7 +304,15 @@ MUTATIONS = (
         "an exception",
         "a page that fails takes the panel with it",
         ("EXCEPTION",), 1, 2,
-        ("panel/view.py", "        screen.put(0, 10, 6, texts.BEYOND_VALUE)\n", "        screen.put(0, 10, 6, None)\n"),
-        ("panel/control.py", "return self.drive.hiw in pzd.BEYOND", "return self.drive.hiw > 0x7000"),
+        (
+            "panel/view.py",
+            "        screen.put(0, 10, 6, texts.BEYOND_VALUE)\n",
+            "        screen.put(0, 10, 6, None)\n",
+        ),
+        (
+            "panel/control.py",
+            "return self.drive.hiw in pzd.BEYOND",
+            "return self.drive.hiw > 0x2000",
+        ),
     ),
 )  # fmt: skip

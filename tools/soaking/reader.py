@@ -15,6 +15,7 @@ STATES = (  # what row 2 begins with, the state of the drive
     ("READY", "ready"), ("RUNNING", "running"), ("STOPPING", "stopping"), ("FAULT", "fault"),
     ("INHIBITED", "inhibited"),
 )  # fmt: skip
+DOINGS = (("STARTING",), ("JOG",), ("LOCAL",), ("RUNS",))  # what only a drive in contact reads
 MAY_RUN = ("NO CONTACT,", "UNCONFIRMED", "PANEL STOPPED", "USS PANEL")
 
 
@@ -80,9 +81,12 @@ class Reader:
         row_1, row_2 = self.rows
         if row_1[7:10] == " F:" and row_1[15:].isdigit() and address_in(row_2) == address:
             raise Broken("MAY RUN", "drive %d is silent for %d ms" % (address, silent_us // MS))
+        for text in STATES + DOINGS:
+            if row_2.startswith(text[0]) and address_in(row_2) == address:
+                raise Broken("MAY RUN", "%s, silent for %d ms" % (row_2, silent_us // MS))
         if not self._may_run(case) or case.answered_us < judge.boot_us:
             return
-        if case.stop_us > case.answered_us or "STOP" in judge.down:
+        if case.acknowledge_us > case.answered_us or "STOP" in judge.down:
             return
         for text in MAY_RUN:
             if self.reads(text):
@@ -100,7 +104,9 @@ class Reader:
         if case.answered_us >= stop_us - 100 * MS or stop_us < judge.boot_us:
             return
         patience_us = 3_800 * MS if case.brakes else 1_800 * MS
-        if now - stop_us < patience_us + judge.exchange_us or judge.stuck_us is not None or now - judge.stalled_us < S:
+        if now - stop_us < patience_us + judge.exchange_us or now - judge.stalled_us < S:
+            return
+        if judge.stuck_us is not None:
             return
         if max(judge.up.values()) > stop_us + 400 * MS and judge.up["STOP"] != max(
             judge.up.values()
@@ -111,8 +117,8 @@ class Reader:
         if case.start_us > stop_us:
             return
         if not self.reads("STOP UNCONFIRMED"):
-            raise Broken("UNCONFIRMED", "STOP of drive %d, %d ms ago" % (
-                address, (now - stop_us) // MS))
+            since_ms = (now - stop_us) // MS
+            raise Broken("UNCONFIRMED", "STOP of drive %d, %d ms ago" % (address, since_ms))
 
     def _judge_shown(self, now):
         """Nothing was done for a while: is the display right?"""

@@ -8,7 +8,7 @@ the display. The judge and the reader say when one is broken; a rule is named by
 
 RULES = {
     # what makes a motor turn
-    "START": "ON goes only to a drive for which START was pressed since power-on, loss, trip or STOP",
+    "START": "ON goes only to a drive started by START since power-on, loss, trip or STOP",
     "JOG": "JOG goes only to the drive shown, while its one jog key is held, by a fresh press",
     "LOST": "no ON and no JOG goes to a drive that has not answered for the lost time",
     "DEAD MAN": "no ON and no JOG is sent once the main loop has stood still for 300 ms",
@@ -35,7 +35,7 @@ RULES = {
     "FLASH": "settings are written only while no drive is told to run",
     # the display
     "DISPLAY": "the display's controller has nothing to complain about",
-    "MAY RUN": "a drive that ran and is lost reads NO CONTACT, MAY RUN, and not its last frequency",
+    "MAY RUN": "a drive that ran and is lost reads NO CONTACT, MAY RUN, never its last state",
     "UNCONFIRMED": "a STOP that no answer confirms is an alarm after a second",
     "SHOWN": "what the display says of the drive shown is so",
     "ANNOUNCED": "a drive that runs and is not shown is announced",

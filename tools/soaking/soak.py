@@ -1,9 +1,17 @@
-"""One seed of the soak: its world, a hand, a judge and an eye, for so many minutes.
+"""One seed of the soak: its world, a hand, a judge and an eye.
 
-    result = soak(7, 3)             # raises nothing; result.broken is None when all went well
+    soak = Soak(7)
+    soak.run(180)                   # seconds of virtual time; raises nothing
+    soak.broken                     # None, or what ended it
 """
 
 import main
+
+# From the bottom of the house up, or the 32-bit build runs out of stack.
+import boards.sim.drive_parameters
+import boards.sim.mm420
+import boards.sim.parameter_channel
+import boards.sim.world  # noqa: F401
 from tools.soaking.hand import Hand
 from tools.soaking.judge import Judge
 from tools.soaking.reader import Reader
@@ -13,47 +21,40 @@ from tools.soaking.worlds import Plan, SoakWorld
 TOLD_S = 30  # of virtual time between two calls of `progress`
 
 
-class Result:
-    """seed, plan; broken: the exception that ended it, or None; and who took part."""
+class Soak:
+    """seed, plan, world, and who takes part: judge, reader, weather, hand.
 
-    def __init__(self, seed):
+    drives: how many, None: as the seed has it. broken: the exception that ended it, or None.
+    """
+
+    def __init__(self, seed, drives=None):
         self.seed = seed
-        self.plan = None
         self.broken = None
-        self.world = self.judge = self.reader = self.weather = self.hand = None
+        self.plan = plan = Plan(seed, drives)
+        self.world = world = SoakWorld(main.start, plan)
+        self.judge = judge = Judge(world, plan)
+        self.reader = reader = Reader(world, plan, judge)
+        self.weather = judge.weather = weather = Weather(world, plan)
+        self.hand = Hand(world, plan, judge, reader, weather)
+
+    def run(self, seconds, progress=None):
+        """Until `seconds` are over in its world. progress: called with the seconds so far."""
+        try:
+            for until_s in range(TOLD_S, seconds, TOLD_S):
+                self.hand.live(until_s)
+                if progress is not None:
+                    progress(until_s)
+            self.hand.live(seconds)
+        except Exception as broken:
+            self.broken = broken
 
     def seconds(self):
-        return self.world.clock.now_us // 1_000_000 if self.world else 0
-
-    def exchanges(self):
-        return self.judge.exchanges if self.judge else 0
+        return self.world.clock.now_us // 1_000_000
 
     def faults(self):
         """How many of each kind: what failed beside the line, and on it."""
-        found = dict(self.hand.faults) if self.hand else {}
-        if self.hand:
-            for kind, count in self.weather.count().items():
-                if count:
-                    found[kind] = count
+        found = dict(self.hand.faults)
+        for kind, count in self.weather.count().items():
+            if count:
+                found[kind] = count
         return found
-
-
-def soak(seed, minutes, drives=None, progress=None):
-    """drives: how many, None: as the seed has it. progress: called with the seconds so far."""
-    result = Result(seed)
-    try:
-        result.plan = plan = Plan(seed, drives)
-        result.world = world = SoakWorld(main.start, plan)
-        result.judge = judge = Judge(world, plan)
-        result.reader = reader = Reader(world, plan, judge)
-        result.weather = judge.weather = weather = Weather(world, plan)
-        result.hand = hand = Hand(world, plan, judge, reader, weather)
-        seconds = int(minutes * 60)
-        for until_s in range(TOLD_S, seconds, TOLD_S):
-            hand.live(until_s)
-            if progress is not None:
-                progress(until_s)
-        hand.live(seconds)
-    except Exception as broken:
-        result.broken = broken
-    return result

@@ -5,14 +5,17 @@ plays it back later. A request is noted when it begins, before the line can spoi
 its end, when no character of it was spoilt.
 
     tape = Tape(world.wire)
-    for index in tape.news(): tape.kind[index], tape.at_us[index], ...
+    for row in tape.news(): tape.kind[row], tape.at_us[row], ...
 """
 
 from array import array
 
 LENGTH = 512
 ROUNDING_US = 3
-STX, LGE, COUNT = 0x02, 0x0E, 16  # of telegrams with 4 PKW and 2 PZD words, all that this panel has
+BEHIND_BITS = 40
+LOOK_US = 8_000  # of a link without interrupts: how often it is looked at
+# Of telegrams with 4 PKW and 2 PZD words: this panel speaks no other layout.
+STX, LGE, COUNT = 0x02, 0x0E, 16
 
 REQUEST, REPLY, MALFORMED = range(3)
 
@@ -42,26 +45,47 @@ class Tape:
         self.count = 0
         self.sent = 0
         self.sent_us = -1
+        self._asked = -1  # the address in the last request, and when that was over
         self._ended_us = 0
         self._played = 0
+        # What comes so soon behind a reply spoils it: a UART takes both for one.
+        self._behind_us = BEHIND_BITS * 1_000_000 // wire.baud + LOOK_US
+        self._last_reply = 0
+        self._panel_talks = False
         self._talk = wire.talk
         wire.talk = self._tapped
         wire.attach(self)
 
     def news(self):
         """The rows since the last time, oldest first."""
-        first, self._played = max(self._played, self.count - LENGTH), self.count
-        for number in range(first, self.count):
-            yield number % LENGTH
+        while self._played < self.count:
+            row = self._played % LENGTH
+            self._played += 1
+            yield row
+
+    def is_settled(self, row, now_us):
+        """Whether nothing can come behind this reply any more that would spoil it."""
+        return now_us - self.end_us[row] > self._behind_us
 
     def _tapped(self, station, data, count):
+        is_panel = getattr(station, "is_panel", False)
+        self._panel_talks = is_panel
         burst = self._talk(station, data, count)
-        if burst is not None and getattr(station, "is_panel", False):
+        self._panel_talks = False
+        if is_panel and burst is not None:
             self.sent += 1
             self.sent_us = burst.start_us
+            self._asked = data[2]
             self._ended_us = burst.end_us
             self._note(REQUEST, data, count, burst)
         return burst
+
+    def watch(self, burst):
+        """Of the wire: a burst begins."""
+        if not self._panel_talks:
+            row = self._last_reply
+            if burst.start_us - self.end_us[row] < self._behind_us:
+                self.flawless[row] = False
 
     def hear(self, burst):
         """Of the wire: a burst has ended."""
@@ -73,8 +97,9 @@ class Tape:
         check = 0
         for index in range(COUNT):
             check ^= data[index]
-        if check or data[2] > 31:
+        if check or data[2] != self._asked:  # or somebody else's
             return
+        self._last_reply = self.count % LENGTH
         self._note(REPLY, data, COUNT, burst)
 
     def _note(self, kind, data, count, burst):

@@ -1,4 +1,4 @@
-"""One process of a soak, on MicroPython: takes seeds from standard input, tells what became of them.
+"""One process of a soak, on MicroPython: takes seeds from standard input, tells how they ended.
 
     micropython tools/soaking/worker.py soak MINUTES [DRIVES]       # then a seed a line
     micropython tools/soaking/worker.py fuzz BYTES
@@ -12,7 +12,7 @@ import sys
 
 from tools.soaking.fuzz import fuzz
 from tools.soaking.rules import Broken
-from tools.soaking.soak import soak
+from tools.soaking.soak import Soak
 from tools.soaking.story import story
 
 # Left alone, MicroPython fills the heap first, and takes long to look for its last holes.
@@ -28,22 +28,19 @@ def progress(seconds):
 
 
 def soak_seed(seed, minutes, drives=None):
-    result = soak(seed, float(minutes), int(drives) if drives else None, progress)
-    broken = result.broken
-    lines = []
-    rule = None
+    soak = Soak(seed, int(drives) if drives else None)
+    soak.run(int(float(minutes) * 60), progress)
+    broken, rule, told = soak.broken, None, []
     if broken is not None:
         rule = broken.args[0] if isinstance(broken, Broken) else "EXCEPTION"
-        lines = list(story(result))
-        if not isinstance(broken, Broken):
-            sys.print_exception(broken, sys.stderr)
+        told = list(story(soak))
     tell(
         seed=seed,
-        seconds=result.seconds(),
-        exchanges=result.exchanges(),
-        faults=result.faults(),
+        seconds=soak.seconds(),
+        exchanges=soak.judge.exchanges,
+        faults=soak.faults(),
         rule=rule,
-        story=lines,
+        story=told,
     )
 
 

@@ -21,8 +21,8 @@ NAMES = ("clean", "rough", "wild")
 
 
 class Plan:
-    """seed, dice, addresses, baud, settings, keys, polled, echo, level (CLEAN, ROUGH, WILD), and the
-    rest of what `World` is given: `ticks_start`, `ticks_mask`, `kinds`.
+    """seed, dice, addresses, baud, settings, keys, polled, echo, level (CLEAN, ROUGH, WILD), and
+    what else a `World` is given: `ticks_start`, `ticks_mask`, `kinds`.
     """
 
     def __init__(self, seed, drives=None):
@@ -34,6 +34,9 @@ class Plan:
         self.polled = not dice.below(5)
         self.keys = "matrix" if not dice.below(3) else "direct"
         self.ticks_mask = (1 << (24, 27, 30, 30)[dice.below(4)]) - 1
+        if len(self.addresses) > 3 or self.baud < 9600:  # a round takes long beside 16 s
+            self.ticks_mask |= (1 << 27) - 1
+        self.supervised = dice.below(4)  # else no drive watches its line
         self.ticks_start = dice.below(self.ticks_mask)
         if dice.below(2):  # the counter wraps within the first minute
             self.ticks_start = self.ticks_mask - dice.below(60_000_000) & self.ticks_mask
@@ -129,7 +132,7 @@ def _kind(plan, address):
     family, parameters = table[dice.below(len(table))]
     if plan.baud not in family.BAUD_CODES.values():
         family, parameters = mm420, {}
-    if dice.below(6):
+    if plan.supervised:
         parameters = dict(parameters)
         parameters.update(
             supervision(family, supervision_ms(plan.baud, len(plan.addresses)))

@@ -1,0 +1,104 @@
+"""Stops the drives of a panel that says nothing any more: it hangs, was killed, or is suspended.
+
+It knows what the panel has sent, and nothing else: a drive whose last control word turns it is
+owed an OFF1, which is that telegram without its commands. Pure: the time is an argument.
+
+    dead_man = DeadMan(19200)
+    dead_man.heard(data, now_s)         # whatever the panel sends
+    telegram = dead_man.due(now_s)      # to be sent in its place, or None
+    dead_man.over(now_s)                # it has ended, and sends nothing any more
+
+Telegrams are those of the panel, with two words of process data behind four of a parameter.
+"""
+
+STX = 0x02
+NODE_MAX = 31
+SIZE = 16
+PKW = slice(3, 11)
+STW = 11  # place of the control word, high byte first
+COMMANDS_HIGH, COMMANDS_LOW = 0x03, 0x01  # JOG_LEFT, JOG_RIGHT; ON
+CHARACTER_BITS = 11
+
+PATIENCE_S = 1.0  # and an exchange: a panel that works is never silent for so long
+REPLY_S = 0.1  # for the drive to answer, before the next telegram
+ROUNDS = 3  # of OFF1 to each, for nobody looks whether it has come
+
+
+def telegrams(data):
+    """`data` divided into what claims to be a telegram; what is left over counts as one."""
+    found = []
+    while data:
+        size = data[1] + 2 if len(data) > 1 and data[0] == STX else len(data)
+        found.append(data[:size])
+        data = data[size:]
+    return found
+
+
+def turns(telegram):
+    """Whether it is one to a single drive that has the motor turn."""
+    if len(telegram) != SIZE or telegram[0] != STX or telegram[2] > NODE_MAX:
+        return False
+    return bool(telegram[STW] & COMMANDS_HIGH or telegram[STW + 1] & COMMANDS_LOW)
+
+
+def off1(telegram):
+    """The same telegram as OFF1, without a parameter task."""
+    changed = bytearray(telegram)
+    changed[PKW] = bytes(PKW.stop - PKW.start)
+    changed[STW] &= ~COMMANDS_HIGH
+    changed[STW + 1] &= ~COMMANDS_LOW
+    changed[-1] = 0
+    for character in changed[:-1]:
+        changed[-1] ^= character
+    return bytes(changed)
+
+
+class DeadMan:
+    """stopped: the addresses that were sent OFF1 in the panel's place, ever."""
+
+    def __init__(self, baud):
+        self.stopped = set()
+        self._turning = {}  # address: the last telegram to it, one that turns it
+        self._owed = []
+        exchange_s = 2 * SIZE * CHARACTER_BITS / baud
+        self._pace_s = exchange_s + REPLY_S
+        self._patience_s = exchange_s + PATIENCE_S
+        self._next_s = None  # when it is to be taken for dead, or the next OFF1 is due
+
+    def heard(self, data, now_s):
+        """The panel is alive, and looks after its drives itself."""
+        for telegram in telegrams(data):
+            if len(telegram) == SIZE and telegram[2] <= NODE_MAX:
+                self._turning.pop(telegram[2], None)
+            if turns(telegram):
+                self._turning[telegram[2]] = telegram
+        self._owed = []
+        self._next_s = now_s + self._patience_s
+
+    def over(self, now_s):
+        """It sends nothing any more; a drive may still be answering."""
+        self._next_s = now_s + self._pace_s
+
+    def due(self, now_s):
+        """The OFF1 that is to be sent now, or None."""
+        if self._next_s is None or now_s < self._next_s:
+            return None
+        if self._turning:
+            self._owed = ROUNDS * [off1(telegram) for telegram in self._turning.values()]
+            self._turning = {}
+        if not self._owed:
+            return None
+        self._next_s = now_s + self._pace_s
+        telegram = self._owed.pop(0)
+        self.stopped.add(telegram[2])
+        return telegram
+
+    def wait_s(self, now_s, longest_s):
+        """How long `due` has nothing to say, `longest_s` at the most."""
+        if self._next_s is None or not (self._turning or self._owed):
+            return longest_s
+        return max(0, min(self._next_s - now_s, longest_s))
+
+    def is_done(self):
+        """Whether nobody is owed an OFF1."""
+        return not (self._turning or self._owed)
