@@ -3,6 +3,8 @@
     open_missing()              # before anything else is opened
     is_ours(0)                  # whether we may read, and are not stopped for it
     has_room(1)                 # whether a line can be written without waiting
+
+Streams are named by their numbers. On CPython, where there are terminals and jobs.
 """
 
 import os

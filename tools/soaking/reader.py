@@ -32,7 +32,7 @@ class Reader:
         self._written = -1
         self._calm_us = 3 * S + 12 * judge.cycle_us
         self._judged_us = 0
-        self._hz = 0.0  # of the drive shown, then
+        self._hz = None  # of the drive shown, then; None: that was too long ago
 
     def look(self):
         lcd = self.world.lcd_chip
@@ -56,8 +56,10 @@ class Reader:
         self._judge_unconfirmed(case, now)
         if now - judge.stirred_us > self._calm_us and now - self._judged_us > S:
             if not judge.down and now - judge.late_us > self._calm_us:
+                if now - self._judged_us > 2 * S:
+                    self._hz = None
                 self._judged_us = now
-                self._judge_shown(now)
+                self._judge_shown()
 
     def _read(self, rows, now):
         if rows != self.rows:
@@ -120,7 +122,7 @@ class Reader:
             since_ms = (now - stop_us) // MS
             raise Broken("UNCONFIRMED", "STOP of drive %d, %d ms ago" % (address, since_ms))
 
-    def _judge_shown(self, now):
+    def _judge_shown(self):
         """Nothing was done for a while: is the display right?"""
         address = self.judge.shown
         drive = self.drive_at(address)
@@ -150,7 +152,7 @@ class Reader:
                 if abs(float(shown) - hz_sent) > 0.06 + abs(hz_sent) / 0x2000:
                     raise Broken("SHOWN", "%s, %.2f Hz are sent" % (row_1, hz_sent))
         shown = row_1[10:].strip()
-        if row_1[7:10] == " F:" and shown[-1:].isdigit() and abs(hz - before_hz) < 0.01:
+        if row_1[7:10] == " F:" and shown[-1:].isdigit() and before_hz == hz:
             if abs(float(shown) - hz) > 0.06:
                 raise Broken("SHOWN", "%s, drive %d turns at %.2f Hz" % (row_1, address, hz))
 
