@@ -270,6 +270,18 @@ def test_the_gap_is_kept_for_several_drives_at_once():
         assert max(gaps(bench, address, sent)) < off_time_ms * 1000 // 3, address
 
 
+def test_where_every_drive_is_in_a_hurry_the_list_alone_keeps_the_gap():
+    bench = Bench(nodes(20))
+    bench.contact()
+    for address in range(1, 21):
+        running(bench, address, 1_350)  # a round takes 0.42 s, a third of this is 0.45 s
+    bench.run(2_000_000)
+    sent = len(bench.sent)
+    bench.run(10_000_000)
+    for address in range(1, 21):
+        assert max(gaps(bench, address, sent)) < 450_000, address
+
+
 def test_a_drive_that_stands_has_its_turn_in_the_list_and_no_more():
     bench = Bench(nodes(31))
     bench.contact()
@@ -283,6 +295,17 @@ def test_a_drive_without_an_off_time_needs_no_more_than_its_turn():
     bench = Bench(nodes(31))
     bench.contact()
     running(bench, 17, 0)
+    sent = len(bench.sent)
+    bench.run(10_000_000)
+    assert min(gaps(bench, 17, sent)) > 600_000
+
+
+def test_a_gap_of_three_rounds_needs_no_extra_turns_however_late_the_bus_began():
+    # The first measurement of a round counted the time before the first telegram.
+    bench = Bench(nodes(31))
+    bench.now = 10_000_000
+    bench.contact()
+    running(bench, 17, 5_400)  # a third of it is nearly three rounds
     sent = len(bench.sent)
     bench.run(10_000_000)
     assert min(gaps(bench, 17, sent)) > 600_000

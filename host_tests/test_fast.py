@@ -6,7 +6,10 @@ from array import array
 from uss import fast, fast_python
 
 ROUNDS = 3000
-NAMES = ("exclusive_or", "is_reply", "agreeing", "get_words", "copy", "greatest", "frame")
+NAMES = (
+    "exclusive_or", "is_reply", "agreeing", "get_words", "copy", "greatest", "frame", "calling",
+    "reply_about",
+)  # fmt: skip
 
 
 def characters(count):
@@ -34,6 +37,39 @@ def test_the_exclusive_or_is_the_same():
         buffer = characters(count)
         assert fast.exclusive_or(buffer, count) == in_python(buffer, count), buffer
     assert fast.exclusive_or(b"", 0) == 0 and fast.exclusive_or(b"\x02\xd6", 2) == 0xD4
+
+
+def test_the_rows_are_found_in_which_somebody_calls():
+    random.seed(18)
+    in_python = fast_python.calling
+    for _ in range(ROUNDS):
+        size = random.randrange(1, 9)
+        rows = random.randrange(4)
+        values = bytearray(rows * size + random.randrange(size))
+        for _ in range(random.randrange(4)):
+            if values:
+                values[random.randrange(len(values))] = random.randrange(256)
+        whole = rows * size
+        found = fast.calling(values, size, whole)
+        assert found == in_python(values, size, whole), (values, size)
+        for row in range(rows):
+            assert bool(found >> row & 1) == any(values[row * size : row * size + size])
+
+
+def test_a_reply_is_about_the_parameter_and_index_that_were_asked_for():
+    random.seed(19)
+    in_python = fast_python.reply_about
+    asked = bytes((0x12, 0xBC, 0x80, 0x01, 0, 0, 0, 0))  # AK 1, P2700[1]
+    assert fast.reply_about(b"\x22\xbc\x80\x01", 0, asked) == 2
+    assert fast.reply_about(b"\x2a\xbc\x80\x01", 0, asked) == 2  # bit 11 is no part of PNU
+    for _ in range(ROUNDS):
+        net = bytearray(3) + bytearray(asked[:4])
+        for _ in range(random.randrange(3)):
+            net[3 + random.randrange(4)] ^= 1 << random.randrange(8)
+        found = fast.reply_about(net, 3, asked)
+        assert found == in_python(net, 3, asked), net
+        same = (net[3] ^ asked[0]) & 7 == 0 and net[4:7] == asked[1:4]
+        assert found == (net[3] >> 4 if same else 0), net
 
 
 def test_net_data_are_framed():

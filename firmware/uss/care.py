@@ -26,15 +26,14 @@ _FAR = const(6)  # until it is so many: the turns it gets besides make a round s
 
 
 class Care:
-    """turns: the `Turns` that it belongs to. timing: of the line. mask: the clock's period - 1.
+    """turns: the `Turns` that it belongs to. mask: the clock's period - 1.
 
     looked_at: when `look` was called last; it is due after LOOK_US.
     """
 
-    def __init__(self, turns, timing, mask):
+    def __init__(self, turns, mask):
         self.looked_at = 0
         self._turns = turns
-        self._timing = timing
         self._mask = mask
         # Drives that back off.
         self._rests = bytearray(NODES)  # by address: whether it does
@@ -47,6 +46,8 @@ class Care:
         self._least_us = 0  # of these; 0: there is none
         self._limit_us = 0  # gaps below this are looked after
         self._pressed = 0  # which drive was looked after last
+        self._near = 0  # how many of these may have to be pressed
+        self._crowded = False  # so many that the list alone does better
         self._exchanges = 0  # of the bus, when the duration of a round was measured last
         self._measured_at = 0
 
@@ -75,8 +76,8 @@ class Care:
 
     def list_changed(self):
         """There is another list: what follows from that."""
-        timing = self._timing
         turns = self._turns
+        timing = turns.timing
         probe_us = 0
         for drive in turns.drives:
             probe_us = max(probe_us, timing.telegram_us(drive.layout.net_count))
@@ -170,17 +171,25 @@ class Care:
         self._limit_us = limit_us if self._least_us < limit_us else 0
 
     def _look_for_overdue(self, now, passed_us):
-        """Is a third of a gap over? Others may be due at the same time."""
+        """Is a third of a gap over? Others may be due at the same time.
+
+        Two telegrams of three are for these drives. When they are two thirds of the list, or more,
+        each has its turn soonest if there are no others than those in the list.
+        """
         drives = self._turns.drives
         count = len(drives)
         for _ in range(_share(count, passed_us, min(_SWEEP_US, self._least_us >> 2))):
             self._pressed = self._pressed + 1 if self._pressed + 1 < count else 0
+            if not self._pressed:
+                self._crowded = 3 * self._near >= 2 * len(self._turns.list)
+                self._near = 0
             drive = drives[self._pressed]
             # What most drives are is seen without a call: standing.
             if drive.wanted or drive.was_running or drive.zsw & ZSW_RUNNING:
                 gap_us = self._gaps_us[drive.address]
                 if 0 < gap_us < self._limit_us:
-                    if drive.silent_us(now, self._mask) > gap_us // 3:
+                    self._near += 1
+                    if not self._crowded and drive.silent_us(now, self._mask) > gap_us // 3:
                         if not self._turns.is_under_way(drive):
                             drive.press()
 

@@ -63,7 +63,7 @@ class Turns:
         self._look_from = 0  # behind which address the search for one with a hurry begins
         self.exchanges = 0  # telegrams sent
         self.uneasy = False  # a drive without contact was silent: the loop is to look after it
-        self._care = Care(self, timing, mask)
+        self._care = Care(self, mask)
 
     # --- for the loop ---------------------------------------------------------------------------
 
@@ -279,8 +279,6 @@ class Turns:
         if extra:
             if rows or self._singles_out != self._singles_in:
                 attention[ANY] = 1
-            if rows & _OVERDUE:
-                self._spare_next()
             return None
         drive = self._find(WANTS, 1) if rows & _WANTS and self._single_last else None
         self._single_last = False
@@ -300,12 +298,6 @@ class Turns:
         attention[ANY] = 1
         self._look_from = address
         return self._at[address]
-
-    def _spare_next(self):
-        """Whoever has its turn in the list now is not overdue any more."""
-        position = self._next if self._next < self.round_count else 0
-        if position < self.round_count:
-            self._attention[OVERDUE + self.round[position].address] = 0
 
     def _find(self, row, least):
         """Of the drives that have called in this row, the one that is in the greatest hurry, and
