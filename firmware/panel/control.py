@@ -208,11 +208,12 @@ class Control:
         survey.step(now, reread_us)
         if reread_us == REREAD_US:  # it is shown, or waited for
             survey.settle()
-        if self.setpoint.step():
-            return True
+        return self.setpoint.step()
+
+    def ask_on(self, now):
+        """In between, for somebody waits: what was just answered is not all."""
         if self.checking:
-            survey.step(now, reread_us)  # somebody waits: what was just answered is not all
-        return False
+            self.survey.step(now)
 
     def watch(self, now):
         """Look what became of the commands, and whether the drive does as it is told."""

@@ -182,6 +182,7 @@ class Panel:
         if self._over is self._splash:
             self._wait_for_splash(now_ms)
         self._writer.step(now_us)
+        self.selected.ask_on(now_us)
         self._collect(now_ms)
         if self._page is self._parameters:
             self._parameters.step(self._keys, now_ms)
