@@ -60,8 +60,8 @@ class App:
         self._saved_at_ms = 0
 
     def start(self):
-        self._progress_at_ms = now_ms = self._ticks_ms()
-        self._fed_at_ms = (now_ms - _FEED_MS) & self._mask
+        self._progress_at_ms = self._fed_at_ms = self._ticks_ms()
+        self.board.watchdog.feed()  # it bites from now on, also if the loop is never reached
         self.bus.refresh(self._ticks_us())
         self.pacer.start()
 

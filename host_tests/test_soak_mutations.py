@@ -1,10 +1,13 @@
 """The soak finds planted bugs: a copy of the firmware with one thing wrong breaks the right rule.
 
-Each row of tools/soaking/mutations.py is soaked with the seed that is known to find it. A change
-of the firmware that takes the text of a row away fails here: give the row its new text.
-`PYTHONPATH=. python3 host_tests/test_soak_mutations.py [NAME ...]` looks for other seeds.
+Each row of tools/soaking/mutations.py is soaked with the seed that is known to find it, then with
+others: a change of firmware or simulation may have made another life of that one. Where it takes
+the text of a row away this fails: give the row its new text. Better seeds are looked for by
+
+    build/pytest/bin/python host_tests/test_soak_mutations.py [NAME ...]
 """
 
+import importlib.util
 import json
 import os
 import shutil
@@ -14,14 +17,26 @@ import tempfile
 from pathlib import Path
 
 import pytest
-from tools.soaking.mutations import MUTATIONS
 
 INTERPRETERS = "host"
 
 TOP = Path(__file__).resolve().parent.parent
+SOAKING = TOP / "tools" / "soaking"
 MICROPYTHON = TOP / "build" / "unix64" / "micropython"
 MINUTES = 2
 SEEDS = range(1, 61)
+OTHERS = range(1, 25)  # that a test tries
+
+
+def module(name):
+    """A file of tools/soaking, under a name that no other test uses."""
+    found = importlib.util.spec_from_file_location("soaking_" + name, SOAKING / (name + ".py"))
+    loaded = importlib.util.module_from_spec(found)
+    found.loader.exec_module(loaded)
+    return loaded
+
+
+MUTATIONS = module("mutations").MUTATIONS
 
 
 def soaked(folder, seeds, minutes):
@@ -35,13 +50,16 @@ def soaked(folder, seeds, minutes):
         stdout=subprocess.PIPE,
         text=True,
     )
-    with done:
+    try:
         for seed in seeds:
             print(seed, file=done.stdin, flush=True)
             said = {"at": 0}
             while "at" in said:
                 said = json.loads(done.stdout.readline())
             yield said
+    finally:
+        done.kill()
+        done.communicate()
 
 
 def mutated(mutation, folder):
@@ -53,8 +71,12 @@ def mutated(mutation, folder):
 @pytest.mark.skipif(not MICROPYTHON.exists(), reason="there is no MicroPython: tools/test")
 @pytest.mark.parametrize("mutation", MUTATIONS, ids=lambda mutation: mutation.name)
 def test_a_planted_bug_is_found(mutation, tmp_path):
-    (said,) = soaked(mutated(mutation, tmp_path), [mutation.seed], MINUTES)
-    assert said["rule"] in mutation.rules, "\n".join(said["story"]) or "every rule held"
+    told = []
+    for said in soaked(mutated(mutation, tmp_path), [mutation.seed, *OTHERS], MINUTES):
+        if said["rule"] in mutation.rules:
+            return
+        told += said["story"][:2]
+    raise AssertionError("\n".join(told) or "every rule held")
 
 
 @pytest.mark.skipif(not MICROPYTHON.exists(), reason="there is no MicroPython: tools/test")

@@ -1,7 +1,7 @@
 """tools/soak: many seeds, two processes, one line of progress, and what came of them.
 
-    python3 tools/soaking --seeds N --minutes M [--first SEED] [--drives N] [--jobs 2]
-    python3 tools/soaking --fuzz BYTES [--first SEED] [--jobs 2]
+    python3 tools/soaking --seeds N --minutes M [--first SEED] [--drives N] [--jobs N]
+    python3 tools/soaking --fuzz BYTES [--first SEED] [--jobs N]
 
 The work is done by worker.py on MicroPython, a process for each job. Standard library only,
 CPython 3.11 or newer.
@@ -48,6 +48,9 @@ def parser():
     arguments.add_argument(
         "--fuzz", type=at_least_one, metavar="BYTES", help="feed the receiver instead"
     )
+    arguments.add_argument(
+        "--firmware", metavar="FOLDER", default=TOP / "firmware", help="another copy of firmware/"
+    )
     arguments.add_argument("--check", action="store_true", help=argparse.SUPPRESS)
     return arguments
 
@@ -62,15 +65,15 @@ def at_least_one(word):
 class Worker:
     """A process with its own thread, which gives it seeds and hands on what it says."""
 
-    def __init__(self, arguments, seeds, said):
+    def __init__(self, wanted, arguments, seeds, said):
         self.seeds = seeds
         self.said = said
         command = [INTERPRETER, "-X", HEAP, WORKER, *map(str, arguments)]
-        paths = (os.environ.get("SOAK_FIRMWARE") or f"{TOP}:{TOP}/firmware", str(TOP), ".frozen")
+        paths = (wanted.firmware, TOP, ".frozen")
         self.process = subprocess.Popen(
             command,
             cwd=TOP,
-            env={**os.environ, "MICROPYPATH": ":".join(paths)},
+            env={**os.environ, "MICROPYPATH": ":".join(map(str, paths))},
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             text=True,
@@ -151,7 +154,8 @@ def start(wanted, seeds, arguments):
     for seed in seeds:
         waiting.put(seed)
     said = queue.SimpleQueue()
-    return {Worker(arguments, waiting, said) for _ in range(min(wanted.jobs, len(seeds)))}, said
+    jobs = min(wanted.jobs, len(seeds))
+    return {Worker(wanted, arguments, waiting, said) for _ in range(jobs)}, said
 
 
 def sayings(workers, said):

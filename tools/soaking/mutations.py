@@ -10,12 +10,11 @@ class Mutation:
     (file below firmware/, old text, new text) each.
     """
 
-    def __init__(self, name, why, rules, seed, minutes, *changes):
+    def __init__(self, name, why, rules, seed, *changes):
         self.name = name
         self.why = why
         self.rules = rules
         self.seed = seed
-        self.minutes = minutes
         self.changes = changes
 
     def apply(self, folder):
@@ -34,7 +33,7 @@ MUTATIONS = (
     Mutation(
         "jog bit kept",
         "a jog goes on when its key is let go",
-        ("JOG",), 1, 2,
+        ("JOG",), 5,
         (
             "panel/jog_keys.py",
             "if down != self._key or control is not",
@@ -44,7 +43,7 @@ MUTATIONS = (
     Mutation(
         "both jog keys",
         "two jog keys at once are one",
-        ("JOG",), 1, 2,
+        ("JOG",), 13,
         (
             "panel/jog_keys.py",
             "if down != self._key or control is not",
@@ -54,7 +53,7 @@ MUTATIONS = (
     Mutation(
         "BCC unchecked",
         "a spoilt reply counts",
-        ("WITHOUT REASON", "SHOWN", "LOST", "START"), 1, 3,
+        ("WITHOUT REASON", "SHOWN", "LOST", "START"), 7,
         (
             "uss/telegram.py",
             "    if exclusive_or(buffer, count):\n        return BAD_BCC\n",
@@ -65,7 +64,7 @@ MUTATIONS = (
     Mutation(
         "ON kept over a loss",
         "a drive that comes back into contact starts by itself",
-        ("START", "LOST"), 1, 2,
+        ("START", "LOST"), 10,
         (
             "uss/drive.py",
             "            self.was_running = self._may_run\n            self.revoke()\n",
@@ -80,7 +79,7 @@ MUTATIONS = (
     Mutation(
         "ON while lost",
         "ON is sent to a drive that does not answer",
-        ("LOST", "MAY RUN"), 1, 2,
+        ("LOST", "MAY RUN"), 10,
         (
             "uss/master.py",
             "drive.miss(finding, now, self._lost_us, self._mask)\n        if",
@@ -90,7 +89,7 @@ MUTATIONS = (
     Mutation(
         "stale PKW accepted",
         "an old answer is taken for that of another parameter",
-        ("SETPOINT", "SHOWN", "RECOVERS"), 1, 2,
+        ("SETPOINT", "SHOWN", "RECOVERS"), 1,
         (
             "uss/pkw.py",
             "reply = reply_about(net, at, self.words)",
@@ -100,7 +99,7 @@ MUTATIONS = (
     Mutation(
         "driver enable late",
         "the panel holds the line when the drive answers",
-        ("LINE",), 1, 1,
+        ("LINE",), 1,
         (
             "hal/rs485.py",
             "        self._arm(self._duration_us)\n",
@@ -110,13 +109,13 @@ MUTATIONS = (
     Mutation(
         "dead man removed",
         "ON goes on while the panel hangs",
-        ("DEAD MAN",), 1, 3,
+        ("DEAD MAN",), 6,
         ("uss/master.py", "DEAD_MAN_US = const(300_000)", "DEAD_MAN_US = const(3_000_000)"),
     ),
     Mutation(
         "wrong drive stopped",
         "STOP stops the first drive, whichever is shown",
-        ("STOP", "START"), 1, 2,
+        ("STOP", "START"), 3,
         (
             "panel/stop_key.py",
             "            control.stop()\n",
@@ -126,7 +125,7 @@ MUTATIONS = (
     Mutation(
         "STOP waits its turn",
         "STOP does not go before the list",
-        ("STOP",), 1, 2,
+        ("STOP",), 2,
         (
             "uss/drive.py",
             "        self.stops = (self.stops + 1) & _TICKET_MASK\n        self.hurry()\n",
@@ -136,7 +135,7 @@ MUTATIONS = (
     Mutation(
         "STOP beaten by START",
         "START is obeyed while STOP is down",
-        ("STOP", "START"), 1, 2,
+        ("STOP", "START"), 8,
         (
             "panel/panel.py",
             "if self.stop_key.is_down and pressed & self._motion_keys:",
@@ -146,7 +145,7 @@ MUTATIONS = (
     Mutation(
         "started after a reset",
         "a motor that turns when the panel has restarted is sent ON",
-        ("START",), 1, 3,
+        ("START",), 5,
         (
             "panel/control.py",
             "            self._contact = drive.contact\n            self.lost_running",
@@ -158,7 +157,7 @@ MUTATIONS = (
     Mutation(
         "START without release",
         "a START that was down at power-on counts, sooner or later",
-        ("START",), 1, 3,
+        ("START",), 1,
         ("panel/keys.py", "self._released = 0  #", "self._released = (1 << len(names)) - 1  #"),
         (
             "panel/panel.py",
@@ -169,7 +168,7 @@ MUTATIONS = (
     Mutation(
         "EEPROM without asking",
         "every write wears the EEPROM",
-        ("EEPROM",), 1, 2,
+        ("EEPROM",), 1,
         (
             "panel/writer.py",
             "pkw.WRITE_WORD_EEPROM if eeprom else pkw.WRITE_WORD",
@@ -179,13 +178,13 @@ MUTATIONS = (
     Mutation(
         "no question",
         "a parameter that cuts the panel off is written at once",
-        ("WRITE",), 1, 2,
+        ("WRITE",), 1,
         ("panel/pages/parameters.py", "elif number in profiles.ASK_FIRST:", "elif number < 0:"),
     ),
     Mutation(
         "setpoint limit dropped",
         "the limits of the drive are not kept",
-        ("SETPOINT",), 1, 2,
+        ("SETPOINT",), 5,
         (
             "panel/setpoint.py",
             "            highest = min(highest, survey.highest())\n",
@@ -195,19 +194,19 @@ MUTATIONS = (
     Mutation(
         "bit 10 dropped",
         "the drive ignores the telegram and goes on as before",
-        ("CONTROL",), 1, 2,
+        ("CONTROL",), 2,
         ("uss/pzd.py", "OFF3 = const(0x047A)", "OFF3 = const(0x007A)"),
     ),
     Mutation(
         "second stop at once",
         "OFF3 is sent before STOP was held",
-        ("SECOND STOP",), 1, 2,
+        ("SECOND STOP",), 2,
         ("panel/stop_key.py", "SECOND_MS = const(1_500)", "SECOND_MS = const(500)"),
     ),
     Mutation(
         "STOP ALL forgets drives",
         "STOP held for 4 s stops only what is shown",
-        ("STOP ALL",), 1, 2,
+        ("STOP ALL",), 1,
         (
             "panel/stop_key.py",
             "            self.left = 2 * len(self._controls)\n",
@@ -217,7 +216,7 @@ MUTATIONS = (
     Mutation(
         "selecting stops",
         "another drive is shown, and the one before is stopped",
-        ("WITHOUT REASON", "ANNOUNCED"), 1, 2,
+        ("WITHOUT REASON", "ANNOUNCED"), 1,
         (
             "panel/panel.py",
             "        self.selected.keep_quiet()\n        position",
@@ -227,29 +226,19 @@ MUTATIONS = (
     Mutation(
         "watchdog fed always",
         "a bus that stands is not restarted",
-        ("WATCHDOG",), 1, 2,
+        ("WATCHDOG",), 1,
         ("app.py", "if stands_ms * 1000 < self.bus.patience_us:", "if stands_ms >= 0:"),
     ),
     Mutation(
         "watchdog starved",
         "a panel that works is restarted",
-        ("WATCHDOG",), 1, 1,
+        ("WATCHDOG",), 1,
         ("app.py", "_FEED_MS = const(100)", "_FEED_MS = const(2_500)"),
-    ),
-    Mutation(
-        "flash written under way",
-        "the settings are written, and all stands still, while a motor runs",
-        ("FLASH",), 1, 3,
-        (
-            "app.py",
-            "if self.panel.any_runs() or self._just_failed_to_save(now_ms):",
-            "if self._just_failed_to_save(now_ms):",
-        ),
     ),
     Mutation(
         "lost drive looks alive",
         "a drive that is lost is shown as it was last",
-        ("MAY RUN",), 1, 2,
+        ("MAY RUN",), 1,
         (
             "panel/state.py",
             "    if not drive.contact:\n        return texts.NO_CONTACT\n",
@@ -259,7 +248,7 @@ MUTATIONS = (
     Mutation(
         "lost drive forgotten",
         "a drive that ran and is lost is just NO CONTACT",
-        ("MAY RUN",), 1, 2,
+        ("MAY RUN",), 1,
         (
             "panel/control.py",
             "self.lost_running = drive.was_running and not drive.contact",
@@ -269,13 +258,13 @@ MUTATIONS = (
     Mutation(
         "unconfirmed STOP unsaid",
         "nobody is told that a STOP has no effect",
-        ("UNCONFIRMED",), 1, 2,
+        ("UNCONFIRMED",), 1,
         ("panel/stop_watch.py", "            self.unconfirmed = True\n", "            pass\n"),
     ),
     Mutation(
         "faults acknowledged by themselves",
         "a tripped drive is reset though nobody has seen it",
-        ("ACKNOWLEDGE",), 1, 2,
+        ("ACKNOWLEDGE",), 1,
         (
             "panel/fault.py",
             "            self.was_shown = True  #",
@@ -285,25 +274,25 @@ MUTATIONS = (
     Mutation(
         "wrong sign shown",
         "a motor that turns left reads as one that turns right",
-        ("SHOWN",), 1, 3,
+        ("SHOWN",), 1,
         ("panel/view.py", "-setpoint if control.reversed else setpoint", "setpoint"),
     ),
     Mutation(
         "listens to nobody",
         "the panel talks into another master's telegrams after power-on",
-        ("LISTEN",), 1, 1,
+        ("LISTEN",), 1,
         ("uss/master.py", "LISTEN_US = const(100_000)", "LISTEN_US = const(10_000)"),
     ),
     Mutation(
         "start interval halved",
         "the drives miss telegrams that come too soon",
-        ("LINE",), 1, 1,
+        ("LINE",), 1,
         ("uss/timing.py", "START_INTERVAL_CHARACTERS = 2", "START_INTERVAL_CHARACTERS = 1"),
     ),
     Mutation(
         "an exception",
         "a page that fails takes the panel with it",
-        ("EXCEPTION",), 1, 2,
+        ("EXCEPTION",), 1,
         (
             "panel/view.py",
             "        screen.put(0, 10, 6, texts.BEYOND_VALUE)\n",

@@ -5,10 +5,12 @@
     reader.screens                  # the last pictures, (instant, row 1, row 2)
 """
 
-from tools.soaking.judge import MS, ON, ON_REVERSE, QUESTIONS, S, ZSW_RUNNING, limits_of
+from tools.soaking.case import limits_of
+from tools.soaking.facts import MS, ON, ON_REVERSE, QUESTIONS, ZSW_RUNNING, S
 from tools.soaking.rules import Broken
 
 SCREENS = 12
+DRAWN_US = 100 * MS  # a row that is the same for so long is drawn to its end
 CONTROLLED = ("MICROMASTER 420", "MICROMASTER 440")
 VALUES = ("P0700:", "P1000:", "P2011:")
 STATES = (  # what row 2 begins with, the state of the drive
@@ -28,7 +30,9 @@ class Reader:
         self.judge = judge
         self.screens = []
         self.rows = ("", "")
-        self.steady = False  # the picture was the same at the last look: it is drawn to its end
+        self.steady = False  # row 2 is drawn to its end
+        self._changed_us = 0  # row 2 was another one until then
+        self._written_us = 0  # when the controller was last seen to have been written to
         self._written = -1
         self._calm_us = 3 * S + 12 * judge.cycle_us
         self._judged_us = 0
@@ -38,18 +42,21 @@ class Reader:
         lcd = self.world.lcd_chip
         now = self.world.clock.now_us
         written = lcd.characters + lcd.instructions
-        self.steady = written == self._written
-        if not self.steady:
+        if written != self._written:
             self._written = written
             self._read(lcd.text(), now)
-            return
-        address = address_in(self.rows[1])
-        if address is not None and now > self.judge.unsure_us:
-            self.judge.shown = address
+            self._written_us = now
+        self.steady = now - self._changed_us > DRAWN_US
+        if self.steady and now > self.judge.unsure_us:
+            address = address_in(self.rows[1])
+            if address is not None:
+                self.judge.shown = address
         if self.rows[1] in QUESTIONS:
             self.judge.asked_us = now
         judge = self.judge
         if judge.shown is None or now < judge.unsure_us or judge.hung_us is not None:
+            return
+        if not self.steady or now == self._written_us:
             return
         case = judge.cases[judge.shown]
         self._judge_lost(case, now)
@@ -62,6 +69,8 @@ class Reader:
                 self._judge_shown()
 
     def _read(self, rows, now):
+        if rows[1] != self.rows[1]:
+            self._changed_us = now
         if rows != self.rows:
             self.rows = rows
             if len(self.screens) >= SCREENS:

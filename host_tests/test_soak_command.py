@@ -1,0 +1,71 @@
+"""tools/soak: its command line, what it prints, its exit status. A few seconds of virtual time."""
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+INTERPRETERS = "host"
+
+TOP = Path(__file__).resolve().parent.parent
+MICROPYTHON = TOP / "build" / "unix64" / "micropython"
+needs_micropython = pytest.mark.skipif(
+    not MICROPYTHON.exists(), reason="there is no MicroPython: tools/test"
+)
+
+
+def soak(*arguments):
+    done = subprocess.run(
+        [sys.executable, "-I", "-B", TOP / "tools" / "soaking", *map(str, arguments)],
+        capture_output=True,
+        text=True,
+    )
+    return done.returncode, done.stdout, done.stderr
+
+
+def test_what_is_no_number_of_seeds_drives_or_bytes_is_refused():
+    for wrong in (["--seeds", "0"], ["--drives", "32"], ["--fuzz", "many"], ["--sneeze"]):
+        status, _, told = soak(*wrong)
+        assert status == 2 and wrong[0] in told, told
+
+
+def test_help_says_what_the_exit_status_means():
+    status, told, _ = soak("--help")
+    assert status == 0
+    assert "--minutes" in told and "every rule held" in told
+
+
+@needs_micropython
+def test_rules_that_hold_are_told_with_hours_exchanges_and_faults():
+    status, told, trouble = soak("--seeds", 3, "--minutes", 0.2, "--first", 2)
+    assert status == 0, told + trouble
+    assert "3 seeds" in told and "exchanges" in told and "faults:" in told and "real time" in told
+
+
+@needs_micropython
+def test_a_rule_that_is_broken_is_told_with_the_command_that_repeats_it(tmp_path):
+    firmware = tmp_path / "firmware"
+    shutil.copytree(TOP / "firmware", firmware)
+    link = firmware / "hal" / "rs485.py"
+    text = link.read_text()
+    link.write_text(text.replace("_arm(self._duration_us)", "_arm(2 * self._duration_us)"))
+    status, told, _ = soak("--seeds", 1, "--minutes", 0.2, "--firmware", firmware)
+    assert status == 1, told
+    assert "breaks the rule LINE: start interval" in told
+    assert "again: ./tools/soak --seeds 1 --first 1 --minutes 0.2" in told
+    assert "> 02 0E" in told and "OFF1" in told  # the last telegrams, in words as well
+
+
+@needs_micropython
+def test_a_firmware_that_cannot_be_started_is_no_pass(tmp_path):
+    status, _, _ = soak("--seeds", 1, "--minutes", 0.2, "--firmware", tmp_path)
+    assert status == 4
+
+
+@needs_micropython
+def test_the_receiver_is_fed():
+    status, told, trouble = soak("--fuzz", 30_000)
+    assert status == 0, told + trouble
+    assert "bytes in" in told and "bytes a second" in told

@@ -1,0 +1,55 @@
+"""What the judge goes by: words of the specification, the panel's promises as times.
+
+Written from the documents, not from the firmware: a mistake must not stand in both.
+"""
+
+MS = 1000
+S = 1_000_000
+
+# Control words (specification C-5.2.1) of a panel that never gives control away.
+OFF1, OFF2, OFF3 = 0x047E, 0x047C, 0x047A
+ON, ON_REVERSE, JOG_RIGHT, JOG_LEFT = 0x047F, 0x0C7F, 0x057E, 0x067E
+ACKNOWLEDGE = 0x0080
+RUN = 0x0301  # bits of which each turns the motor
+OFFS = (OFF1, OFF2, OFF3)
+KNOWN = OFFS + (ON, ON_REVERSE, JOG_RIGHT, JOG_LEFT)
+SECOND_STOPS = {"OFF3": OFF3, "OFF2": OFF2, "none": OFF1}
+
+ZSW_RUNNING, ZSW_FAULT, ZSW_INHIBIT = 0x0004, 0x0008, 0x0040
+
+# Task ids (specification C-4.2.1, table 4.1).
+READS = (0, 1, 4, 6, 9)
+RAM_WRITES = (2, 3, 7, 8)
+EEPROM_WRITES = (11, 12, 13, 14)
+
+# DESIGN, rule 7, and those among them that must not be forgotten by the drive.
+DANGEROUS = (
+    3, 10, 700, 719, 840, 918, 927, 970, 1000, 1070, 2000, 2009, 2010, 2011, 2012, 2013, 2014,
+    2016, 2019, 2023, 3900,
+)  # fmt: skip
+PERMANENT = (2010, 2011, 2012, 2013)
+QUESTIONS = ("SET=DO  PARAM=NO", "SET=FIX START=GO")
+
+# How long the panel may take: a key settles in 20 ms and bounces for up to 5; two steps of the
+# loop, 4 ms each at the most, and those of a drawing that is under way.
+DEBOUNCE_US = 45 * MS
+SHORT_CHORD_US = 120 * MS  # within which nobody can tell which of two keys came first
+DEAD_MAN_US = 300 * MS
+SECOND_STOP_US = 1_500 * MS
+ALL_STOP_US = 4_000 * MS
+START_S = 10  # a START that has not led to ON by then is forgotten, and 14 exchanges each
+HELD_SET_US = 1_400 * MS
+WISH_US = 40 * S  # a write that SET has asked for is over by then
+SETTINGS_US = 60 * S  # so long settings that the drive has had may still count
+STUCK_US = 5_000 * MS  # a bus that stands for so long makes the watchdog bite
+WATCHDOG_US = 2_000 * MS
+
+NEVER = -1_000_000_000_000  # an instant long ago
+ALWAYS = 1 << 60
+
+
+def exchange_us(plan):
+    """The longest exchange on this line: the reply comes, and ends, at the last moment."""
+    character_us = -(-11_000_000 // plan.baud)
+    timeout_us = max(plan.settings.get("reply_timeout_ms", 20) * MS, 4 * character_us)
+    return 2 * character_us + 16 * character_us + timeout_us + 25 * character_us

@@ -1,0 +1,198 @@
+"""An operator's fingers: what somebody does with the keys of a panel, well or badly, at random.
+
+Time passes in slices, and after each of them judge and reader look.
+"""
+
+SLICE_MS = 40
+DEEDS = 60
+CONTACT_MS = 40  # no hand is quicker
+
+TAPPED = (
+    "START", "START", "START", "STOP", "STOP", "REVERSE", "UP", "DOWN", "ADDRESS_UP",
+    "ADDRESS_DOWN", "PARAM", "NEXT", "PREVIOUS", "EDIT", "SET",
+)  # fmt: skip
+JOGS = ("JOG_RIGHT", "JOG_LEFT")
+
+
+class Fingers:
+    """deeds: the last things done, texts with their instants. dips: supplies that have failed."""
+
+    def __init__(self, world, plan, judge, reader, weather):
+        self.world = world
+        self.plan = plan
+        self.judge = judge
+        self.reader = reader
+        self.weather = weather
+        self.dice = plan.dice
+        self.deeds = []
+        self.drives = [world.drives[address] for address in plan.addresses]
+        self.common = weights((
+            (12, self.tap), (4, self.hold), (6, self.start), (5, self.stop), (9, self.jog),
+            (4, self.chord), (4, self.long_stop), (5, self.edit), (4, self.rest), (3, self.select),
+            (4, self.start_others), (3, self.start_under_stop), (5, self.run_long),
+        ))  # fmt: skip
+
+    # --- time -----------------------------------------------------------------------------------
+
+    def run(self, ms):
+        """Let time pass, and look what happens."""
+        world = self.world
+        while ms > 0:
+            world.run(min(ms, SLICE_MS))
+            ms -= SLICE_MS
+            self.judge.look()
+            self.reader.look()
+            if self.weather.dips:
+                self.dip(*self.weather.dips.pop())
+
+    def note(self, text):
+        if len(self.deeds) >= DEEDS:
+            del self.deeds[0]
+        self.deeds.append((self.world.clock.now_us, text))
+
+    # --- keys -----------------------------------------------------------------------------------
+
+    def down(self, key):
+        if key not in self.judge.down:
+            self.judge.key(key, True)
+            self.note("%s down" % key)
+            self.world.down(key)
+
+    def up(self, key):
+        if key in self.judge.down:
+            self.judge.key(key, False)
+            self.note("%s up" % key)
+            self.world.up(key)
+
+    def press(self, key, ms=100):
+        self.up(key)
+        self.down(key)
+        self.run(ms)
+        self.up(key)
+        self.run(60)
+
+    def let_go(self):
+        for key in list(self.judge.down):
+            self.up(key)
+        self.run(100)
+
+    def tap(self):
+        self.press(self.dice.one_of(TAPPED), self.dice.one_of((35, 60, 100, 200)))
+
+    def hold(self):
+        self.press(self.dice.one_of(TAPPED), self.dice.one_of((500, 700, 1700, 2500)))
+
+    def start(self):
+        self.press("START")
+        self.run(self.dice.between(50, 3_000))
+
+    def stop(self):
+        self.press("STOP")
+
+    def run_or_jog(self):
+        """The drive shown is to turn, so that what comes next matters."""
+        self.press("STOP")
+        self.run(self.dice.between(100, 1_500))
+        if self.dice.below(3):
+            self.press("START", self.dice.one_of((60, 100, 800)))
+            self.run(self.dice.between(300, 2_000))
+        else:
+            self.down(self.dice.one_of(JOGS))
+            self.run(self.dice.between(100, 1_000))
+            if self.dice.below(2):  # else it stays down for a while
+                self.release_jogs()
+
+    def run_long(self):
+        """A motor turns for a while, and nobody does anything."""
+        self.press("STOP")
+        self.run(self.dice.between(500, 1_500))
+        self.press("START")
+        self.run(self.dice.between(2_000, 9_000))
+
+    def release_jogs(self):
+        for key in JOGS:
+            self.up(key)
+
+    def start_under_stop(self):
+        """STOP is down, and somebody presses what makes a motor turn."""
+        self.press("STOP")
+        self.run(self.dice.between(300, 1_500))
+        self.down("STOP")
+        self.run(self.dice.between(20, 400))
+        self.press(self.dice.one_of(("START", "START") + JOGS), self.dice.one_of((60, 300)))
+        self.run(self.dice.between(20, 1_000))
+        self.up("STOP")
+        self.run(60)
+
+    def start_others(self):
+        """Several drives, one after the other."""
+        for _ in range(self.dice.between(1, 3)):
+            self.press("START")
+            self.run(self.dice.between(200, 1_500))
+            self.press("ADDRESS_UP")
+            self.run(self.dice.between(50, 500))
+
+    def long_stop(self):
+        self.press("STOP", self.dice.one_of((1_300, 1_700, 3_800, 4_300, 6_000)))
+
+    def jog(self):
+        first, second = JOGS if self.dice.below(2) else (JOGS[1], JOGS[0])
+        self.release_jogs()
+        if self.dice.below(2):
+            self.press("STOP")
+            self.run(self.dice.between(100, 1_500))
+        self.down(first)
+        self.run(self.dice.between(50, 2_000))
+        if not self.dice.below(4):
+            self.down(second)
+            self.run(self.dice.between(20, 600))
+        if not self.dice.below(4):
+            self.press(self.dice.one_of(TAPPED))
+        if self.dice.below(2):
+            self.up(second)
+            self.run(self.dice.between(20, 400))
+        self.up(first)
+        self.up(second)
+        self.run(60)
+
+    def chord(self):
+        keys = self.world.keypad.names
+        chosen = [self.dice.one_of(keys) for _ in range(2 + self.dice.below(2))]
+        for key in chosen:
+            self.down(key)
+            self.run(self.dice.one_of((1, 5, 30, 300)))
+        self.run(CONTACT_MS)
+        for key in chosen:
+            self.up(key)
+            self.run(self.dice.one_of((1, 5, 30, 300)))
+
+    def select(self):
+        self.press(self.dice.one_of(("ADDRESS_UP", "ADDRESS_DOWN")), self.dice.one_of((60, 900)))
+
+    def rest(self):
+        self.run(self.dice.between(500, 6_000))
+
+    def edit(self):
+        """Parameter mode, as somebody who knows it uses it, up to where he changes his mind."""
+        self.press("PARAM")
+        for _ in range(self.dice.below(3)):
+            self.press("NEXT")
+        self.run(self.dice.between(100, 1_500))
+        self.press("EDIT")
+        for _ in range(self.dice.below(4)):
+            self.press(self.dice.one_of(("UP", "DOWN")))
+        self.press("SET", self.dice.one_of((60, 100, 1_700)))
+        self.run(self.dice.between(50, 1_500))
+        if self.dice.below(4):
+            self.press("SET", self.dice.one_of((60, 100, 1_700, 2_500)))
+        self.run(self.dice.between(50, 3_000))
+        if self.dice.below(3):
+            self.press("PARAM")
+
+
+def weights(table):
+    """A list in which each deed stands as often as its weight says."""
+    found = []
+    for weight, deed in table:
+        found += [deed] * weight
+    return found

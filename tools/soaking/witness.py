@@ -1,0 +1,242 @@
+"""What the judge is told: which keys move, when the chip restarts, hangs, writes its flash.
+
+From that follows what may be sent and what has to be, noted in the `Case` of each address. Where a
+person could not tell either (which of two keys came first, which drive is shown while the address
+keys move) either way is allowed.
+"""
+
+from boards.sim.board import KEYS
+from tools.soaking.case import Case, limits_of
+from tools.soaking.facts import (
+    ALL_STOP_US,
+    ALWAYS,
+    DEAD_MAN_US,
+    MS,
+    NEVER,
+    OFF1,
+    RUN,
+    SECOND_STOPS,
+    SETTINGS_US,
+    SHORT_CHORD_US,
+    WATCHDOG_US,
+    WISH_US,
+    S,
+    exchange_us,
+)
+from tools.soaking.rules import Broken
+from tools.soaking.tape import Tape
+
+
+class Witness:
+    """world: a `SoakWorld`. plan: its `Plan`. `look` and `play` are those of the `Judge`."""
+
+    def __init__(self, world, plan):
+        self.world = world
+        self.plan = plan
+        self.tape = Tape(world.wire)
+        self.cases = [Case() for _ in range(32)]
+        self.clock = world.clock
+        self.drives = list(world.drives.values())
+        self.starts = [0] * len(self.drives)  # of their motors, as counted last
+        self.exchange_us = exchange_us(plan)
+        self.cycle_us = self.exchange_us * len(plan.addresses)
+        self.timeout_us = plan.settings.get("reply_timeout_ms", 20) * MS
+        self.lost_us = plan.settings.get("lost_ms", 1000) * MS
+        self.second_stop = SECOND_STOPS[plan.settings.get("second_stop", "OFF3")]
+        self.down = {}  # key -> since when
+        self.up = {key: NEVER for key in KEYS}  # key -> when it was let go
+        self.pressed_us = dict(self.up)  # key -> when it last went down
+        self.spoilt = {}  # keys that must go up before they count -> True
+        self.boot_us = 0
+        self.first_sent = self.tape.sent
+        self.hung_us = None  # since when the loop stands still
+        self.stalled_us = NEVER  # the end of the last standstill of any kind
+        self.weather = None  # a `Weather`: what befalls the line
+        self.late_us = NEVER  # the line was not its best lately
+        self.wishes = {}  # "write" and "eeprom" -> until when
+        self.set_us = NEVER
+        self.asked_us = NEVER  # the display has asked whether to write: the reader notes it
+        self.unsettled = []  # replies that may still be spoilt: row, case, whether it has stopped
+        self.owed = []  # cases that wait for their OFF
+        self.all_until_us = NEVER  # until when every drive is being stopped, one after the other
+        self.second_owed = None  # the drive that a STOP, if it is held, stops by OFF2 or OFF3
+        self.shown = None  # the address shown, None while it cannot be told
+        self.unsure_us = 0  # until when it cannot
+        self.limits = {a: [(ALWAYS, limits_of(d))] for a, d in world.drives.items()}
+        self.spoken_us = 0  # the panel's last telegram
+        self.stirred_us = 0  # when something was last done to keys, drives, line or loop
+        self.pulled_us = NEVER  # something was last done that may cut what a drive sends
+        self.stuck_us = None  # since when the chip's timers are dead
+        world.witness = self
+
+    # --- what the hand tells --------------------------------------------------------------------
+
+    def key(self, key, down):
+        """A key is about to move."""
+        self.look()
+        self.stirred_us = now = self.clock.now_us
+        if not down:
+            held_us = now - self.down.pop(key, now)
+            self.up[key] = now
+            self.spoilt.pop(key, None)
+            if key == "STOP":
+                self._stop_is_up(now, held_us)
+            elif key.startswith("ADDRESS"):
+                moving = [name for name in self.down if name.startswith("ADDRESS")]
+                self.unsure_us = ALWAYS if moving else now + 250 * MS
+            return
+        self.down[key] = self.pressed_us[key] = now
+        if key == "STOP":
+            self._stop_pressed(now)
+        elif key == "START":
+            self._start_pressed(now)
+        elif key.startswith("ADDRESS"):
+            self._selects(now)
+        elif key == "SET":
+            self._set_pressed(now)
+
+    def candidates(self):
+        """Cases of the drives that may be the one shown."""
+        return (self.cases[self.shown],) if self.is_sure() else self.cases
+
+    def is_sure(self):
+        """Whether anybody can tell which drive is shown."""
+        return self.shown is not None and self.clock.now_us > self.unsure_us
+
+    def _selects(self, now):
+        recently = now - SHORT_CHORD_US
+        if self.down.get("START", NEVER) > recently:
+            for case in self.cases:
+                case.start_us = now
+        self.shown = None
+        self.unsure_us = ALWAYS
+
+    def _start_pressed(self, now):
+        stop_us = self.down.get("STOP")
+        if stop_us is not None and now - stop_us > SHORT_CHORD_US:
+            return
+        for case in self.candidates():
+            case.start_us = now
+
+    def _stop_pressed(self, now):
+        for case in self.candidates():
+            case.acknowledge_us = now
+            case.excused_us = max(case.excused_us, now + 600 * MS + 4 * self.exchange_us)
+        self.second_owed = None
+        if self.is_sure():
+            case = self.cases[self.shown]
+            if self.second_stop != OFF1:
+                self.second_owed = case
+            case.brakes = not case.stw & RUN
+            case.stop_us = now
+            case.void_us = now
+            case.owed_us = now
+            case.owed_requests = 0
+            if case not in self.owed:
+                self.owed.append(case)
+
+    def _stop_is_up(self, now, held_us):
+        if held_us > ALL_STOP_US - 100 * MS:
+            drives = len(self.plan.addresses)
+            self.all_until_us = now + drives * (2 * self.exchange_us + 10 * MS)
+
+    def _set_pressed(self, now):
+        self.set_us = now
+        if self.asked_us > now - 500 * MS:
+            self.wishes["write"] = now + WISH_US
+            self.shown = None
+            self.unsure_us = now + 2 * S + 3 * self.cycle_us
+
+    # --- what the world tells -------------------------------------------------------------------
+
+    def reset(self, bitten):
+        """The chip is about to restart."""
+        now = self.clock.now_us
+        self.play()
+        if bitten:
+            stood_us = 0 if self.hung_us is None else now - self.hung_us
+            if stood_us < WATCHDOG_US - 200 * MS and self.stuck_us is None:
+                raise Broken("WATCHDOG", "it bit at %d, the loop was alive" % now)
+
+    def sticks(self):
+        """The chip's timers die: nothing ends a transmission any more."""
+        self.look()
+        self.stuck_us = self.stirred_us = self.clock.now_us
+        for case in self.cases:
+            case.excused_us = ALWAYS
+
+    def booted(self):
+        """The chip has restarted; the firmware is about to begin."""
+        now = self.clock.now_us
+        self.boot_us = now
+        self.stirred_us = now
+        self.stalled_us = now
+        self.stuck_us = None
+        self.spoken_us = now
+        self.first_sent = self.tape.sent
+        self.hung_us = None
+        for case in self.cases:
+            case.void_us = now
+            case.owed_us = NEVER
+            case.excused_us = now + 3 * S
+            case.stw = OFF1
+            case.jog_void_us = now
+        for key in self.down:
+            self.spoilt[key] = True
+        self.wishes.clear()
+        del self.owed[:]
+        self.shown = None
+        self.unsure_us = now + 1_500 * MS
+
+    def flash_written(self):
+        """The chip stands still: a step of writing its flash."""
+        now = self.clock.now_us
+        self.stalled_us = now
+        for address, case in enumerate(self.cases):
+            if case.stw & RUN and now - case.sent_us < S:
+                raise Broken("FLASH", "written at %d while drive %d is on" % (now, address))
+
+    def hangs(self, on):
+        """The main loop stops, or goes on."""
+        self.look()
+        self.stirred_us = now = self.clock.now_us
+        if on:
+            self.hung_us = now
+            return
+        if self.hung_us is None:
+            return  # the watchdog has bitten
+        stood_us = now - self.hung_us
+        if stood_us > DEAD_MAN_US - 20 * MS:
+            for case in self.cases:
+                case.excused_us = now + 3 * S
+        if stood_us > DEAD_MAN_US + 20 * MS:
+            for case in self.cases:
+                if case.start_us < self.hung_us - 60 * MS:
+                    case.void_us = self.hung_us
+                case.jog_void_us = max(case.jog_void_us, self.hung_us - 60 * MS)
+        if stood_us > WATCHDOG_US + 300 * MS:
+            raise Broken("WATCHDOG", "the loop stood still for %d ms" % (stood_us // MS))
+        self.hung_us = None
+        self.stalled_us = now
+
+    def meddled(self, drive):
+        """Somebody has changed parameters at the drive itself."""
+        self.look()
+        self.stirred_us = now = self.clock.now_us
+        for address, other in self.world.drives.items():
+            if other is drive:
+                self._note_limits(address, drive, now)
+        self.cases[drive.address].excused_us = now + 30 * S
+
+    def _note_limits(self, address, drive, now):
+        history = self.limits[address]
+        history[-1] = (now + SETTINGS_US, history[-1][1])
+        history.append((ALWAYS, limits_of(drive)))
+        while history[0][0] < now:
+            del history[0]
+
+    def excuse(self, address, s=5):
+        """Something is being done to this drive that may stop it."""
+        self.look()
+        self.stirred_us = self.pulled_us = now = self.clock.now_us
+        self.cases[address].excused_us = now + s * S
