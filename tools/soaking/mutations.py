@@ -206,7 +206,7 @@ MUTATIONS = (
     Mutation(
         "STOP ALL forgets drives",
         "STOP held for 4 s stops only what is shown",
-        ("STOP ALL",), 1,
+        ("STOP ALL",), 3,
         (
             "panel/stop_key.py",
             "            self.left = 2 * len(self._controls)\n",
@@ -216,7 +216,7 @@ MUTATIONS = (
     Mutation(
         "selecting stops",
         "another drive is shown, and the one before is stopped",
-        ("WITHOUT REASON", "ANNOUNCED"), 1,
+        ("WITHOUT REASON", "ANNOUNCED"), 3,
         (
             "panel/panel.py",
             "        self.selected.keep_quiet()\n        position",
@@ -238,7 +238,7 @@ MUTATIONS = (
     Mutation(
         "lost drive looks alive",
         "a drive that is lost is shown as it was last",
-        ("MAY RUN",), 1,
+        ("MAY RUN",), 10,
         (
             "panel/state.py",
             "    if not drive.contact:\n        return texts.NO_CONTACT\n",
@@ -264,7 +264,7 @@ MUTATIONS = (
     Mutation(
         "faults acknowledged by themselves",
         "a tripped drive is reset though nobody has seen it",
-        ("ACKNOWLEDGE",), 1,
+        ("ACKNOWLEDGE",), 4,
         (
             "panel/fault.py",
             "            self.was_shown = True  #",
@@ -274,13 +274,13 @@ MUTATIONS = (
     Mutation(
         "wrong sign shown",
         "a motor that turns left reads as one that turns right",
-        ("SHOWN",), 1,
+        ("SHOWN",), 6,
         ("panel/view.py", "-setpoint if control.reversed else setpoint", "setpoint"),
     ),
     Mutation(
         "listens to nobody",
         "the panel talks into another master's telegrams after power-on",
-        ("LISTEN",), 1,
+        ("LISTEN",), 5,
         ("uss/master.py", "LISTEN_US = const(100_000)", "LISTEN_US = const(10_000)"),
     ),
     Mutation(
@@ -292,7 +292,7 @@ MUTATIONS = (
     Mutation(
         "an exception",
         "a page that fails takes the panel with it",
-        ("EXCEPTION",), 1,
+        ("EXCEPTION",), 5,
         (
             "panel/view.py",
             "        screen.put(0, 10, 6, texts.BEYOND_VALUE)\n",

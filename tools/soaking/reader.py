@@ -6,7 +6,7 @@
 """
 
 from tools.soaking.case import limits_of
-from tools.soaking.facts import MS, ON, ON_REVERSE, QUESTIONS, ZSW_RUNNING, S
+from tools.soaking.facts import MS, NEVER, ON, ON_REVERSE, QUESTIONS, ZSW_RUNNING, S
 from tools.soaking.rules import Broken
 
 SCREENS = 12
@@ -89,6 +89,8 @@ class Reader:
             return
         if now - judge.stalled_us < S or now - judge.unsure_us < S:
             return
+        if now < judge.wishes.get("write", NEVER):
+            return  # it may be on its way to another address
         row_1, row_2 = self.rows
         if row_1[7:10] == " F:" and row_1[15:].isdigit() and address_in(row_2) == address:
             raise Broken("MAY RUN", "drive %d is silent for %d ms" % (address, silent_us // MS))
