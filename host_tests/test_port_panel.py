@@ -33,12 +33,22 @@ STOP = bytes.fromhex("020E010000000000000000047E000077")
 SUPERVISED = ("--set", "P2014=2000")
 
 
+def as_in_a_terminal():
+    """Tests that run in the background or under nohup hand down signals that are ignored."""
+    for number in (signal.SIGINT, signal.SIGHUP, signal.SIGQUIT, signal.SIGTSTP):
+        signal.signal(number, signal.SIG_DFL)
+
+
 class Talking:
     """A program that takes commands line by line, and answers."""
 
     def __init__(self, *command):
         self.process = subprocess.Popen(
-            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.STDOUT
+            command,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            preexec_fn=as_in_a_terminal,
         )
         self._said = b""
 
@@ -251,6 +261,7 @@ def test_a_panel_is_not_suspended(program):
     for process in (panel.process.pid, child_of(panel.process.pid)):
         os.kill(process, signal.SIGTSTP)  # Ctrl-Z
     panel.does("press UP")
+    panel.runs()
     drives.waits(state="running", hz="10.10")
 
 
