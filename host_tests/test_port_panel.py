@@ -172,10 +172,12 @@ def test_a_drive_is_parameterised_started_and_stopped(program):
     panel.does("wait 1200", "press SET")  # a question has to be readable before it is answered
     panel.shows("WRITTEN (RAM)")
     assert int(drives.asked("param 1 P2014[0]").split("=")[1]) > 100
+    drives.asked("param 1 P2014[0] 30000")  # a machine that stalls for a second is no subject here
     panel.shows("NOT STARTED")
     panel.runs()
     drives.waits(state="running", hz="10.00")
     panel.does("press UP")
+    panel.runs()
     drives.waits(hz="10.10")
     panel.does("press STOP")
     drives.waits(state="ready", stw="047E")
