@@ -147,6 +147,15 @@ def test_a_gap_of_half_a_second_is_no_loss():
 # --- a panel that fails --------------------------------------------------------------------------
 
 
+def test_a_panel_that_hangs_before_its_first_step_is_restarted():
+    world = World(main.start)
+    world.hang(2_600)
+    assert world.resets == 1
+    world.run(2_000)
+    assert world.reads("WATCHDOG RESTART")
+    world.check()
+
+
 def test_a_main_loop_that_hangs_stops_the_motor_within_400_ms():
     for polled in (False, True):
         world = running(polled=polled)
