@@ -242,6 +242,13 @@ def test_a_cut_wire_to_one_drive():
         assert bench.ask(REQUEST)
 
 
+def test_where_nobody_has_a_supply_no_wire_breaks():
+    clock = Clock()
+    faults = LineFaults(Wire(clock, 19200), Dice(1).random, {"wire cut": 3600})
+    clock.advance(30_000_000)
+    assert faults.count["wire cut"] == 0
+
+
 def test_a_wire_that_breaks_cuts_what_is_being_said():
     line = Line()
     line.wire.talk(line.drive, SIXTEEN, 16)

@@ -4,15 +4,27 @@ The whole panel with an operator who presses random keys, drives, faults of line
 a judge who sees keys, line and display, and asks the firmware nothing (tools/soaking/rules.py).
 """
 
+from boards.sim.clock import Clock
+from boards.sim.wire import Wire
 from tools.soaking.fuzz import fuzz
 from tools.soaking.rules import RULES, Broken
 from tools.soaking.soak import Soak
 from tools.soaking.story import story
+from tools.soaking.tape import REPLY, Tape
 
 NOT_TRACED = "test_every_rule_holds test_the_receiver_stands_anything"
 
 SEEDS = (1, 2, 3, 6, 9, 11)  # clean, rough, wild; one drive and several; direct and matrix; polled
 SECONDS = 25
+
+
+class Talker:
+    def __init__(self, name, is_panel=False):
+        self.name = name
+        self.is_panel = is_panel
+
+    def hear(self, burst):
+        pass
 
 
 def test_every_rule_holds():
@@ -35,6 +47,29 @@ def test_a_start_that_nobody_pressed_is_noticed():
     told = list(story(soak))
     assert RULES["START"] in told[0], told
     assert [line for line in told if "A%d ON" % soak.plan.addresses[0] in line], told
+
+
+def test_a_reply_that_somebody_talked_into_may_have_been_taken_or_not():
+    clock = Clock()
+    wire = Wire(clock, 19200)
+    tape = Tape(wire)
+    panel, drive, twin = Talker("panel", True), Talker("drive 1"), Talker("drive 1's twin")
+    for station in (panel, drive, twin):
+        wire.attach(station)
+    telegram = bytes((0x02, 0x0E, 0x01) + 12 * (0,) + (0x0D,))
+    replies = []
+    for twin_after_us in (None, 4_000):
+        wire.talk(panel, telegram, 16)
+        clock.advance(15_000)
+        wire.talk(drive, telegram, 16)
+        if twin_after_us:
+            clock.advance(twin_after_us)
+            wire.talk(twin, telegram, 16)
+        clock.advance(30_000)
+        replies.append([row for row in tape.news() if tape.kind[row] == REPLY])
+        blurred_ms = (clock.now_us - tape.blurred_us) // 1000
+    assert len(replies[0]) == 1 and len(replies[1]) == 0
+    assert 20 <= blurred_ms < 30, blurred_ms
 
 
 def test_a_seed_repeats_to_the_telegram():

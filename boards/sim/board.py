@@ -67,8 +67,9 @@ class Watchdog:
 class HardTimer(Timer):
     """A timer whose callbacks are hard interrupts, as the chip has them from 1.26 on."""
 
-    def init(self, *, mode, period, tick_hz, callback):
-        Timer.init(self, mode=mode, period=period, tick_hz=tick_hz, callback=callback, hard=True)
+    def __init__(self, chip):
+        Timer.__init__(self, chip)
+        self._is_hard = True
 
 
 class Board:

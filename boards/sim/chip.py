@@ -16,6 +16,8 @@ as on the chip. No method that firmware calls takes heap; constructors, deinit()
 
 import sys
 
+from micropython import const
+
 from boards.sim.clock import Event
 from boards.sim.wire import BURST_LIMIT
 
@@ -197,9 +199,12 @@ class UART:
 
     def readinto(self, buffer, n=None):
         """Take what waits, at most len(buffer) or `n`. Returns how many, or None for nothing."""
-        count = min(self.any(), len(buffer))
-        if n is not None and n < count:
-            count = n
+        count = self.any()
+        limit = len(buffer)
+        if n is not None and n < limit:
+            limit = n
+        if count > limit:
+            count = limit
         if not count:
             return None
         self._hand_over(buffer, count)
@@ -256,7 +261,9 @@ class UART:
     def receive(self, data, first, stop):
         """Characters first...stop - 1 of `data` come in."""
         buffer = self._buffer
-        stop = min(stop, first + RX_LIMIT - self._count)
+        room = RX_LIMIT - self._count
+        if stop - first > room:
+            stop = first + room
         at = (self._head + self._count) % RX_LIMIT
         self._count += stop - first
         self._undrained += stop - first
@@ -285,6 +292,10 @@ class UART:
         return due
 
 
+_IN = const(0)
+_OUT = const(1)
+
+
 class Pin:
     """machine.Pin: an output, an open-drain output, or an input with or without a pull.
 
@@ -300,8 +311,8 @@ class Pin:
     A reset leaves the wire to the board: an output is low, as by a resistor to ground.
     """
 
-    IN = 0
-    OUT = 1
+    IN = _IN
+    OUT = _OUT
     OPEN_DRAIN = 2
     PULL_UP = 1
     PULL_DOWN = 2
@@ -315,9 +326,10 @@ class Pin:
         self.mask = 1 << len(chip.pins) if len(chip.pins) < PINS else 0
         self.output = 1 if mode == self.OPEN_DRAIN else 0
         self._chip = chip
-        self._applied = None
-        self._level = 0  # what value() answers, kept up to date: it is asked far more often
-        self._alive = True
+        # A pin is asked and set thousands of times a second, so both are worked out before.
+        self._settable = mode != self.IN
+        self._let_go = 1 if pull == self.PULL_UP else 0  # the level, where the pin does not drive
+        self._level = 0  # what value() answers
         chip.pins.append(self)
         self.value(value)
         self._settle()
@@ -326,8 +338,9 @@ class Pin:
         """The level, or set it; to set that of an input changes nothing."""
         if level is None:
             return self._level
-        if self._alive and self.mode != self.IN:
-            self._put(1 if level else 0)
+        level = 1 if level else 0
+        if level != self.output and self._settable:
+            self._put(level)
 
     __call__ = value
 
@@ -338,28 +351,26 @@ class Pin:
         self.value(0)
 
     def apply(self, level):
-        self._applied = level
+        if level is None:
+            level = 1 if self.pull == self.PULL_UP else 0
+        self._let_go = level
         self._settle()
 
     def die(self):
-        self._put(1 if self.mode == self.OPEN_DRAIN else 0)
-        self._alive = False
+        self.value(1 if self.mode == self.OPEN_DRAIN else 0)
+        self._settable = False
         self.mask = 0
 
     def _put(self, output):
-        if output != self.output:
-            self.output = output
-            self._settle()
-            if self.on_change is not None:
-                self.on_change(output)
+        self.output = output
+        self._settle()
+        if self.on_change is not None:
+            self.on_change(output)
 
     def _settle(self):
-        if self.mode == self.OUT or (self.mode == self.OPEN_DRAIN and not self.output):
-            level = self.output
-        elif self._applied is not None:
-            level = self._applied
-        else:
-            level = 1 if self.pull == self.PULL_UP else 0
+        level = self.output
+        if self.mode != _OUT and (level or self.mode == _IN):
+            level = self._let_go
         if level != self._level:
             self._level = level
             self._chip.levels ^= self.mask
@@ -376,6 +387,7 @@ class Timer:
         self._clock = chip.clock
         self._mode = self.PERIODIC
         self._period_us = 0
+        self._is_hard = False  # whatever `init` is told
         self._interrupt = Interrupt(self, self._is_due)
         self._alarm = Event(self._elapsed)
         self._due = False
@@ -389,9 +401,7 @@ class Timer:
         since MicroPython 1.26; 1.25 refuses the argument). TypeError: no integers. ValueError: a
         negative period, with which the chip's timer would not fire in a lifetime.
         """
-        if not (isinstance(mode, int) and isinstance(period, int) and isinstance(tick_hz, int)):
-            raise TypeError("can't convert to int")
-        if period < 0:
+        if mode | period | tick_hz < 0:  # only integers can be put together like this
             raise ValueError("negative period")
         self._mode = mode
         if 1_000_000 % tick_hz == 0:  # without this, 32-bit integers would take heap
@@ -400,7 +410,7 @@ class Timer:
             period_us = period * 1_000_000 // tick_hz
         self._period_us = max(period_us, 1)
         self._interrupt.handler = callback
-        self._interrupt.hard = bool(hard)
+        self._interrupt.hard = hard or self._is_hard
         self._due = False
         if self._alive:
             self._clock.schedule(self._alarm, self._clock.now_us + self._period_us)

@@ -395,6 +395,8 @@ class LineFaults:
 
     def _break_wires(self, lasting_ms):
         names = self._wire.names()
+        if not names:
+            return  # all are without supply
         if lasting_ms is None:
             lasting_ms = self._random(*WIRE_CUT_MS)
         ways = sorted(WAYS)

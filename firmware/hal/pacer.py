@@ -144,7 +144,7 @@ class Pacer:
         self._armed_at = self._ticks_us()
         timer.init(
             mode=timer.ONE_SHOT,
-            period=max(after_us, _PERIOD_MIN_US),
+            period=after_us if after_us > _PERIOD_MIN_US else _PERIOD_MIN_US,
             tick_hz=1_000_000,
             callback=self._on_timer,
         )

@@ -76,17 +76,19 @@ class Rs485Link:
         return max(self._duration_us - passed_us, 1)
 
     def receive(self, buffer, at):
+        uart = self._uart
         count = 0
-        scratch = self._scratch
-        while True:
-            came = min(self._uart.any(), len(scratch), len(buffer) - at)
-            came = self._uart.readinto(scratch, came) or 0 if came else 0
-            if not came:
-                break
+        came = uart.any()
+        while came:
+            scratch = self._scratch
+            came = min(came, len(scratch), len(buffer) - at)
+            came = uart.readinto(scratch, came) or 0 if came else 0
             for index in range(came):
                 buffer[at + index] = scratch[index]
             at += came
             count += came
+            if came:
+                came = uart.any()
         if not count:
             self._burst_ended = False
             return 0

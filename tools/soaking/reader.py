@@ -84,7 +84,7 @@ class Reader:
     def _judge_lost(self, case, now):
         judge = self.judge
         address = judge.shown
-        silent_us = now - max(case.answered_us, judge.boot_us)
+        silent_us = now - max(case.answered_us, judge.boot_us, judge.tape.blurred_us)
         if silent_us < judge.lost_us + 700 * MS + 2 * judge.cycle_us:
             return
         if now - judge.stalled_us < S or now - judge.unsure_us < S:

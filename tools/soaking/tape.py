@@ -28,6 +28,7 @@ class Tape:
     count         telegrams ever
     sent          requests ever
     sent_us       when the last request began
+    blurred_us    the end of the last telegram that somebody talked into: its BCC may fit by chance
     """
 
     name = "the tape"
@@ -45,6 +46,7 @@ class Tape:
         self.count = 0
         self.sent = 0
         self.sent_us = -1
+        self.blurred_us = 0
         self._asked = -1  # the address in the last request, and when that was over
         self._ended_us = 0
         self._played = 0
@@ -92,6 +94,8 @@ class Tape:
         if burst.start_us == self.sent_us:
             return
         data = burst.data
+        if burst.garbled and data[0] == STX:
+            self.blurred_us = burst.end_us
         if burst.garbled or burst.count != COUNT or data[0] != STX or data[1] != LGE:
             return
         check = 0
