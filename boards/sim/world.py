@@ -16,6 +16,7 @@ from boards.sim import mm420
 from boards.sim.board import KEYS, LOOP_US, NORMALLY_CLOSED, WIRINGS, Board
 from boards.sim.chip import Chip
 from boards.sim.clock import Clock
+from boards.sim.dice import Dice
 from boards.sim.drive import Drive
 from boards.sim.flash import Flash, PowerCut
 from boards.sim.lcd import Lcd
@@ -44,6 +45,7 @@ class Surroundings:
     commissioned drives are. kinds: {address: what else `Drive` is given there}, such as
     {3: {"family": g110, "parameters": {2013: 0}, "reply_delay_us": 4_000}}; fleet.py has some.
 
+    random    a function of (low, high): the numbers of the seed
     stored    what the panel's settings file is to say
     resets    how often the chip has restarted
     place     where the panel runs, for people
@@ -71,7 +73,7 @@ class Surroundings:
         self.clock = clock
         self.wire = Wire(clock, baud)
         self.seed = seed
-        self._random = (seed * 0x2545F + 0x1234567) & 0x3FFFFFFF or 1  # never 0
+        self.random = Dice(seed).random
         supervised_ms = supervision_ms(baud, len(addresses))
         self.drives = {}
         for address in addresses:
@@ -137,15 +139,6 @@ class Surroundings:
         for complaint in self.lcd_chip.complaints:
             complaints.append("display: " + complaint)
         return complaints
-
-    def random(self, low, high):
-        """A number from low to high, of a sequence that the seed decides (xorshift)."""
-        state = self._random
-        state ^= (state << 7) & 0x3FFFFFFF
-        state ^= state >> 9
-        state ^= (state << 8) & 0x3FFFFFFF
-        self._random = state
-        return low + state % (high - low + 1)
 
 
 class World(Surroundings):
