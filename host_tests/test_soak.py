@@ -72,6 +72,13 @@ def test_a_reply_that_somebody_talked_into_may_have_been_taken_or_not():
     assert 20 <= blurred_ms < 30, blurred_ms
 
 
+def test_where_the_panel_can_control_no_drive_it_has_nothing_to_prove():
+    soak = Soak(721)  # two drives, both with telegrams that this panel does not speak
+    assert not any(soak.reader.is_able(address) for address in soak.plan.addresses)
+    soak.hand.put_in_order()
+    soak.hand.prove_control()
+
+
 def test_a_seed_repeats_to_the_telegram():
     one, other = Soak(7), Soak(7)
     one.run(6)

@@ -77,7 +77,8 @@ class Hand(Mischief):
 
     def prove_control(self):
         """START runs the drive shown, and STOP stops it."""
-        self.find_one_that_answers()
+        if not self.find_one_that_answers():
+            return
         self.wait_for("an address on the display", self._is_home, 8)
         reader = self.reader
         address = self.judge.shown
@@ -106,14 +107,16 @@ class Hand(Mischief):
             self.prove_announced(drive)
 
     def find_one_that_answers(self):
-        """A drive that the panel cannot control never confirms its STOP: another one is shown."""
+        """A drive that the panel cannot control never confirms its STOP: another one is shown.
+        Answers whether there is one that it can control."""
         able = [drive for drive in self.drives if self.reader.is_able(drive.address)]
         for _ in range(len(self.drives) - len(able)):
             self.run(2_000)
             if not self.reader.rows[1].startswith("STOP UNCONFIRMED"):
-                return
+                break
             self.press("ADDRESS_UP")
             self.run(2_000)
+        return bool(able)
 
     def prove_announced(self, drive):
         """Another drive is shown: this one runs on, and the display says so."""
