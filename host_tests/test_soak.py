@@ -72,6 +72,50 @@ def test_a_reply_that_somebody_talked_into_may_have_been_taken_or_not():
     assert 20 <= blurred_ms < 30, blurred_ms
 
 
+def test_a_spoilt_reply_whose_check_fits_by_chance_is_noted():
+    clock = Clock()
+    wire = Wire(clock, 19200)
+    tape = Tape(wire)
+    panel, drive = Talker("panel", True), Talker("drive 1")
+    for station in (panel, drive):
+        wire.attach(station)
+    telegram = bytes((0x02, 0x0E, 0x01) + 12 * (0,) + (0x0D,))
+    for stray, fits in ((0x0D, True), (0x0C, False)):
+        reply = telegram[:3] + bytes((stray,)) + telegram[3:]  # its BCC comes as the 17th
+        tape.chance_us = None
+        wire.talk(panel, telegram, 16)
+        clock.advance(15_000)
+        wire.talk(drive, reply, 17)
+        clock.advance(30_000)
+        assert [row for row in tape.news() if tape.kind[row] == REPLY] == []
+        assert (tape.chance_us is not None) == fits, stray
+
+
+class Motor:
+    """A drive that has just started."""
+
+    starts = 1
+
+    def __init__(self, address, stw):
+        self.address = address
+        self.stw = stw
+
+
+def test_a_motor_is_the_panels_unless_garbage_started_it():
+    soak = Soak(1)
+    judge = soak.judge
+    for faults, stw, is_blamed in ((None, 0x0E1F, True), ((), 0x0E1F, False), ((), 0x047F, True)):
+        soak.weather.faults = faults
+        judge.drives = [Motor(soak.plan.addresses[0], stw)]
+        judge.starts = [0]
+        try:
+            judge._judge_motors(20_000_000)
+            blamed = False
+        except Broken as broken:
+            blamed = broken.args[0] == "TURNS"
+        assert blamed == is_blamed, (faults, stw)
+
+
 def test_where_the_panel_can_control_no_drive_it_has_nothing_to_prove():
     soak = Soak(721)  # two drives, both with telegrams that this panel does not speak
     assert not any(soak.reader.is_able(address) for address in soak.plan.addresses)

@@ -128,6 +128,11 @@ class Drive:
         return self._process.state
 
     @property
+    def stw(self):
+        """The control word that came last."""
+        return self._process.image[0]
+
+    @property
     def starts(self):
         """How often the motor went from not being driven to being driven."""
         return self._process.starts
@@ -194,7 +199,7 @@ class Drive:
             "address=%d state=%s hz=%.2f stw=%04X zsw=%04X hsw=%04X hiw=%04X good=%d rejected=%d "
             "fault=%s starts=%d"
         ) % (
-            self.address, self.state, round(self.hz(), 2) + 0.0, process.image[0], process.zsw(),
+            self.address, self.state, round(self.hz(), 2) + 0.0, self.stw, process.zsw(),
             process.image[1], hiw, counters[0], counters[1], "F%04d" % fault if fault else "-",
             self.starts,
         )  # fmt: skip

@@ -19,7 +19,7 @@ from uss.timing import elapsed
 NO_TASK = bytes(8)
 JOBS_MAX = const(8)  # of a drive, with the one on the line; a power of two
 REST_MAX = const(20)  # telegrams without a task that are tried before the next one is sent anyway
-_TRIES_MIN = const(3)  # a task was sent at least so often before it times out
+_TRIES_MIN = const(5)  # a task is sent at least so often: a drive may lag three, one may be lost
 _WORK_TIMEOUT_US = const(2_000_000)  # a reply may lag some cycles
 _EEPROM_TIMEOUT_US = const(5_000_000)
 

@@ -34,7 +34,6 @@ from tools.soaking.facts import (
     SHORT_CHORD_US,
     START_S,
     STUCK_US,
-    WISH_US,
     ZSW_FAULT,
     ZSW_INHIBIT,
     ZSW_RUNNING,
@@ -88,7 +87,7 @@ class Judge(Witness):
             if "STOP" in down and "STOP" not in self.spoilt:
                 self._judge_held_stop(now, now - down["STOP"])
             if "SET" in down and now - down["SET"] > HELD_SET_US:
-                self.wishes["eeprom"] = now + WISH_US
+                self.wishes["eeprom"] = now + self.wish_us
 
     def _judge_held_stop(self, now, held_us):
         """What a STOP that is held must have led to by now."""
@@ -314,6 +313,8 @@ class Judge(Witness):
             return True
         if not case.ran and now - case.on_us > 4 * S:
             return True
+        if now - self.tape.chance_us < 2 * S + self.cycle_us:
+            return True
         return self.hung_us is not None
 
     def _judge_second_stop(self, case, address, off, now):
@@ -346,7 +347,7 @@ class Judge(Witness):
             raise Broken("TELEGRAM", where)
         if number in DANGEROUS and now > self.wishes.get("write", NEVER):
             raise Broken("WRITE", where)
-        if number not in DANGEROUS and now - self.set_us > WISH_US:
+        if number not in DANGEROUS and now - self.set_us > self.wish_us:
             raise Broken("WRITE", where)
         if task in EEPROM_WRITES and number not in PERMANENT:
             if now > self.wishes.get("eeprom", NEVER):
@@ -358,8 +359,13 @@ class Judge(Witness):
             if starts != self.starts[index]:
                 self.starts[index] = starts
                 case = self.cases[drive.address]
-                if now - case.turned_us > S + self.exchange_us:
+                if now - case.turned_us > S + self.exchange_us and not self._is_garbage(drive.stw):
                     raise Broken("TURNS", "the motor of drive %d starts" % drive.address)
+
+    def _is_garbage(self, stw):
+        """Whether a drive was told what no panel says: what faults have left of telegrams."""
+        weather = self.weather
+        return weather.faults is not None and stw & ~ACKNOWLEDGE not in KNOWN
 
     def _judge_line(self):
         wire = self.world.wire

@@ -28,7 +28,8 @@ class Tape:
     count         telegrams ever
     sent          requests ever
     sent_us       when the last request began
-    blurred_us    the end of the last telegram that somebody talked into: its BCC may fit by chance
+    blurred_us    the end of the last telegram that somebody talked into
+    chance_us     the end of the last one that was spoilt, and whose BCC fits by chance
     """
 
     name = "the tape"
@@ -47,6 +48,7 @@ class Tape:
         self.sent = 0
         self.sent_us = -1
         self.blurred_us = 0
+        self.chance_us = -1
         self._asked = -1  # the address in the last request, and when that was over
         self._ended_us = 0
         self._played = 0
@@ -96,12 +98,15 @@ class Tape:
         data = burst.data
         if burst.garbled and data[0] == STX:
             self.blurred_us = burst.end_us
-        if burst.garbled or burst.count != COUNT or data[0] != STX or data[1] != LGE:
+        if burst.count < COUNT or data[0] != STX or data[1] != LGE:
             return
         check = 0
         for index in range(COUNT):
             check ^= data[index]
         if check or data[2] != self._asked:  # or somebody else's
+            return
+        if burst.garbled or burst.count != COUNT:
+            self.chance_us = burst.end_us
             return
         self._last_reply = self.count % LENGTH
         self._note(REPLY, data, COUNT, burst)

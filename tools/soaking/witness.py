@@ -40,6 +40,7 @@ class Witness:
         self.starts = [0] * len(self.drives)  # of their motors, as counted last
         self.exchange_us = exchange_us(plan)
         self.cycle_us = self.exchange_us * len(plan.addresses)
+        self.wish_us = WISH_US + 20 * self.cycle_us
         self.timeout_us = plan.settings.get("reply_timeout_ms", 20) * MS
         self.lost_us = plan.settings.get("lost_ms", 1000) * MS
         self.second_stop = SECOND_STOPS[plan.settings.get("second_stop", "OFF3")]
@@ -143,7 +144,7 @@ class Witness:
     def _set_pressed(self, now):
         self.set_us = now
         if self.asked_us > now - 500 * MS:
-            self.wishes["write"] = now + WISH_US
+            self.wishes["write"] = now + self.wish_us
             self.shown = None
             self.unsure_us = now + 2 * S + 3 * self.cycle_us
 
