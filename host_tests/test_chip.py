@@ -2,7 +2,7 @@
 
 from boards.sim.chip import UART, WDT, Chip, Pin, Timer, heap_lock, heap_unlock
 from boards.sim.clock import Clock, Event
-from boards.sim.wire import Transceiver, Wire
+from boards.sim.wire import GARBLE, Transceiver, Wire
 
 TELEGRAM = bytes(range(0x20, 0x30))  # 16 characters
 TELEGRAM_US = 9166  # at 19200 baud
@@ -379,7 +379,7 @@ def test_the_receiver_is_off_while_the_driver_is_on():
         board.clock.advance_to(start_us + off_us)
         board.enable(0)
         board.clock.advance(20_000)
-        garbled = bytes(character ^ 0xFF for character in TELEGRAM)
+        garbled = bytes(one ^ GARBLE[at] for at, one in enumerate(TELEGRAM))
         assert board.waiting() == TELEGRAM[:4] + garbled[first_heard:]
         ends_us = (start_us + ends[3], start_us + TELEGRAM_US)
         assert board.interrupts == [end_us + RXIDLE_US for end_us in ends_us]

@@ -2,7 +2,7 @@
 
 from boards.sim.chip import heap_lock, heap_unlock
 from boards.sim.clock import Clock, Event
-from boards.sim.wire import LOG_CHARACTERS, LOG_TELEGRAMS, VIOLATION_LIMIT, Wire
+from boards.sim.wire import GARBLE, LOG_CHARACTERS, LOG_TELEGRAMS, VIOLATION_LIMIT, Wire
 
 TELEGRAM = bytes(range(0x10, 0x20))  # 16 characters
 BAUD_RATES = (1200, 2400, 4800, 9600, 19200, 38400, 57600, 76800, 93750, 115200, 187500)
@@ -55,8 +55,9 @@ def at(clock, at_us, function, *arguments):
     clock.schedule(Event(lambda: function(*arguments)), at_us)
 
 
-def inverted(characters):
-    return bytes(character ^ 0xFF for character in characters)
+def spoilt(characters, first=0):
+    """What a collision makes of them, behind `first` others of the telegram."""
+    return bytes(one ^ GARBLE[first + at] for at, one in enumerate(characters))
 
 
 def refused(error, function, *arguments):
@@ -268,8 +269,8 @@ def test_two_talkers_garble_each_other():
     assert first.garbled and second.garbled
     clock.advance(20_000)
     # What had arrived before the collision was good.
-    one_heard = TELEGRAM[:10] + inverted(TELEGRAM[10:])
-    two_heard = inverted(TELEGRAM[:4])
+    one_heard = TELEGRAM[:10] + spoilt(TELEGRAM[10:], 10)
+    two_heard = spoilt(TELEGRAM[:4])
     assert three.heard == [(5729 + 2291, two_heard), (9166, one_heard)]
     assert one.heard == three.heard[:1] and two.heard == three.heard[1:]
     assert wire.violations == [
@@ -277,7 +278,7 @@ def test_two_talkers_garble_each_other():
     ]
 
 
-def test_a_third_talker_inverts_nothing_back():
+def test_a_third_talker_mends_nothing():
     clock, wire, one, two = line()
     three = Station(wire, "three")
     wire.talk(one, TELEGRAM, 16)
@@ -288,10 +289,18 @@ def test_a_third_talker_inverts_nothing_back():
     wire.talk(three, TELEGRAM, 1)
     clock.advance(20_000)
     assert one.heard == [
-        (100 + 9166, inverted(TELEGRAM)),
-        (200 + 9739, inverted(TELEGRAM + TELEGRAM[:1])),
+        (100 + 9166, spoilt(TELEGRAM)),
+        (200 + 9739, spoilt(TELEGRAM + TELEGRAM[:1])),
     ]
     assert wire.violation_count == 2
+
+
+def test_no_piece_of_a_collision_cancels_out_in_the_bcc():
+    for first in range(255):
+        check = 0
+        for at in range(first, 255):
+            check ^= GARBLE[at]
+            assert check, (first, at)
 
 
 def test_a_burst_after_a_collision_is_clean():
@@ -446,7 +455,7 @@ def test_a_driver_that_is_on_garbles_what_others_send():
     clock.advance(1000)
     wire.drive(panel, False)
     clock.advance(20_000)
-    assert panel.heard == [(15366 + 9166, inverted(TELEGRAM))]
+    assert panel.heard == [(15366 + 9166, spoilt(TELEGRAM))]
     assert wire.violations == [
         "at 15366: two talks while one holds its driver enabled, since 10366 us",
         "at 16366: one has its driver enabled 2200 us after its last stop bit, allowed are 573 us",
@@ -461,7 +470,7 @@ def test_a_driver_that_comes_on_while_another_talks_garbles_the_rest():
     clock.advance(100)
     wire.drive(panel, False)
     clock.advance(20_000)
-    assert panel.heard == [(9166, TELEGRAM[:12] + inverted(TELEGRAM[12:]))]
+    assert panel.heard == [(9166, TELEGRAM[:12] + spoilt(TELEGRAM[12:], 12))]
     assert wire.violations == [
         "at 6875: one enables its driver while two talks, 2291 us before its end"
     ]

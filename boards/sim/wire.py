@@ -41,6 +41,10 @@ ROUNDING_US = 1
 
 LONG_AGO_US = -1_000_000  # before the world began the line was quiet for a second
 
+# What a collision changes in each character. No piece of it adds up to nothing in the BCC, as an
+# even number of inverted characters would; every one of them comes with a framing error.
+GARBLE = bytes((181 * i ^ 181 * (i + 1)) & 0xFF for i in range(BURST_LIMIT))
+
 # What a receiver says of a character, bits of `Burst.errors`.
 PARITY, FRAME, OVERRUN = 1, 2, 4
 
@@ -80,7 +84,7 @@ def copy(data, count, into, at):
 class Burst:
     """Characters back to back from one talker. It belongs to the wire, which will use it again.
 
-    data        as received: what a collision garbled has been inverted already
+    data        as received: what a collision has garbled is so already
     count       how many characters; a cut burst keeps those that were complete
     errors      None, or bits for each character: PARITY, FRAME, OVERRUN
     start_us    first start bit; end_us: end of the last stop bit, or the cut
@@ -160,7 +164,7 @@ class Burst:
         self.end_us = now_us
 
     def garble(self, now_us):
-        """Invert what has not arrived yet."""
+        """Spoil what has not arrived yet."""
         if not self.garbled:
             self._garble_from(self.arrived(now_us))
             self.garbled = True
@@ -209,7 +213,7 @@ class Burst:
         if at == BURST_LIMIT:
             return
         if self.garbled:
-            character ^= 0xFF
+            character ^= GARBLE[at]
             flags |= FRAME
         self.data[at] = character
         self._own_ends[at] = end_us
@@ -233,7 +237,7 @@ class Burst:
 
     def _garble_from(self, first):
         for i in range(first, self.count):
-            self.data[i] ^= 0xFF
+            self.data[i] ^= GARBLE[i]
             self.blame(i, FRAME)
 
 
