@@ -236,8 +236,11 @@ def test_mm440_acknowledges_by_p3981():
     assert bench.control(OFF1)[0] & 0xFF == 0x31 and bench.drive.read(947) == 0
 
 
-def test_mm440_has_a_signed_reading():
-    assert Bench(family=mm440).task(0x12F3, 1) == (0x12F3, 1, 0, 0xFFFF)  # r0755[1] is -1
+def test_mm440_has_two_analog_inputs_without_a_signal():
+    bench = Bench(family=mm440)
+    for index in (0, 1):  # r0755, r0754, r0752
+        assert bench.task(0x12F3, index) == (0x12F3, index, 0, 0)
+        assert bench.drive.read(754, index) == bench.drive.read(752, index) == 0
 
 
 # --- G110 -------------------------------------------------------------------------------------
@@ -265,16 +268,21 @@ def test_g110_has_no_indices():
 # --- V20 --------------------------------------------------------------------------------------
 
 
-def test_v20_supervises_as_delivered_from_the_first_process_data_on():
+def test_v20_supervises_from_the_first_process_data_on():
+    # Macro Cn010: P2014 = 500 ms; another drive on the line has to be asked in between.
     bench = Bench(family=v20)
+    assert bench.drive.read(2014) == 500
     mirror = telegram(0x41, 0, 0, 0, OFF1, 0)
     assert bench.ask(mirror) == mirror
     bench.wait(5)
     assert bench.drive.read(947) == 0
     bench.exchange(0, 0, 0, OFF1, 0)
-    bench.wait(1)
+    bench.wait(0.4)
+    bench.exchange(0, 0, 0, OFF1, 0)
+    bench.wait(0.4)
+    assert bench.drive.state == "ready"
     bench.ask(mirror)  # which are not process data
-    bench.wait(1.1)
+    bench.wait(0.1)
     assert bench.drive.state == "fault" and bench.drive.read(947) == 72
 
 

@@ -3,7 +3,7 @@
 P and r numbers are those of the MICROMASTER 4 lists; "SPEC" is the USS specification.
 """
 
-from boards.sim import g120, mm3, mm440, v20
+from boards.sim import g120, mm3, mm420, mm440, v20
 from drive_bench import ACKNOWLEDGE, HALF, JOG_LEFT, JOG_RIGHT, OFF1, RUN, Bench, telegram
 
 READ, WRITE, WORD = 0x1000, 0x2000, 0x1000
@@ -73,6 +73,17 @@ def test_acknowledging_with_on_ends_in_the_inhibit():
     assert bench.drive.starts == 1
 
 
+def test_the_word_that_acknowledges_lifts_the_inhibit_when_it_comes_again():
+    # OFF1 with OFF2 and OFF3 inactive ends the inhibit, and no edge is asked for: 04FE says that
+    # too. Whether the setpoint beside it changes has no part in it.
+    for setpoints in ((0, 0, 0, 0), (0, 1, 2, 3)):
+        bench = Bench()
+        bench.control(OFF1)
+        bench.drive.fault(1)
+        words = [bench.control(ACKNOWLEDGE, hsw)[0] for hsw in setpoints]
+        assert words == [0xFB71, 0xFB31, 0xFB31, 0xFB31], setpoints
+
+
 def test_off_and_on_acknowledges_but_not_what_lasts():
     bench = Bench()
     bench.drive.fault(1)
@@ -136,6 +147,27 @@ def test_four_trips_are_kept():
         acknowledge(bench)
     assert faults(bench) == [0, 0, 6, 0, 5, 0, 4, 0]
     assert bench.drive.read(952) == 3
+
+
+def test_a_v20_keeps_32_trips():
+    # r0947, r0948 and r0949 have 64 places: two faults of each trip, and two words of its time.
+    bench = Bench({2014: 0}, family=v20)
+    for number in range(1, 36):
+        bench.wait(100)
+        bench.drive.fault(number, value=100 + number)
+        if number == 10:
+            bench.drive.fault(80)
+        for stw in (ACKNOWLEDGE, OFF1):
+            bench.exchange(0, 0, 0, stw, 0)
+    kept = [0, 0]
+    for number in range(35, 4, -1):
+        kept += [number, 80 if number == 10 else 0]
+    assert faults(bench, 64) == kept
+    assert [bench.drive.read(949, place) for place in (2, 3, 62, 63)] == [135, 0, 105, 0]
+    times = [bench.drive.read(948, place) for place in range(64)]
+    assert times[::2] == [0] * 32 and times[1] == 0
+    assert all([0 <= times[2 * i + 1] - 3600 + 100 * i < 100 for i in range(1, 32)]), times
+    assert bench.drive.read(952) == 32
 
 
 def test_p0952_forgets_all_but_the_present_trip():
@@ -288,10 +320,15 @@ def test_the_telegram_failure_time_is_armed_by_the_first_good_telegram():
 
 
 def test_a_broadcast_may_or_may_not_be_such_a_telegram():
-    for retriggers in (True, False):
-        bench = Bench({2014: 500}, switches={"broadcast_retriggers": retriggers})
-        bench.control(OFF1)
-        for _ in range(3):
-            bench.wait(0.3)
-            bench.send(telegram(0x20, 0x0005, 0, 0, 0, OFF1, 0x1111))
-        assert (bench.drive.state == "ready") == retriggers
+    # Of a V20 too, which waits for process data: a broadcast carries some.
+    for family in (mm420, v20):
+        for retriggers in (True, False):
+            switches = {"broadcast_retriggers": retriggers}
+            bench = Bench({2013: 4, 2014: 1000}, family=family, switches=switches)
+            bench.control(OFF1)
+            for _ in range(4):
+                bench.wait(0.6)
+                bench.send(telegram(0x20, 0x0005, 0, 0, 0, OFF1, 0x1111))
+            assert (bench.drive.state == "ready") == retriggers, family.NAME
+            bench.wait(1.1)
+            assert bench.drive.state == "fault", family.NAME

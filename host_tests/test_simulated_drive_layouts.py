@@ -56,6 +56,15 @@ def test_a_telegram_of_another_length_is_not_answered():
             assert answered == (words == pkw_words + count), (pkw_words, count, words)
 
 
+def test_set_to_no_words_at_all_it_hears_nothing():
+    # LGE is 3 at least (SPEC ): a telegram without net data is not one.
+    for pkw_words in (0, VARIABLE):
+        bench = drive_of(pkw_words, 0)
+        for address in (1, 0x41):
+            assert bench.ask(telegram(address)) is None
+        assert bench.drive.read(2031) == bench.drive.read(2025) == 2 and not bench.drive.read(2024)
+
+
 def test_without_process_data_only_parameters():
     # C-8 example 6: AK 2 writes P18 = 7000h; C-8 example 5: AK 8 writes P4, second element.
     bench = drive_of(4, 0)

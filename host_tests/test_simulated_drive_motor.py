@@ -120,6 +120,36 @@ def test_the_ramp_generator_obeys_its_three_bits():
     assert bench.drive.state == "running" and bench.drive.starts == 1
 
 
+def test_without_bit_6_the_ramp_generator_is_given_0():
+    # r0020 and r1119 are what it is given, and ZSW bit 8 compares with that.
+    bench = Bench()
+    bench.run()
+    held = RUN & ~0x40
+
+    def given(stw):
+        return [bench.task(0x1000 | number, 0, 0, 0, stw, HALF)[2] for number in (20, 1119)]
+
+    assert given(RUN) == [0x41C8, 0x41C8]  # 25.0
+    assert bench.control(held, HALF)[0] == 0xFA34  # the motor is yet to come down
+    assert given(held) == [0, 0]
+    bench.wait(6)
+    assert bench.control(held, HALF) == (0xFB34, 0)
+    assert bench.drive.read(1078) == 25  # the setpoint is there, and is not used
+    assert bench.control(RUN, HALF)[0] == 0xFA34
+    bench.wait(6)
+    bench.control(OFF1, HALF)
+    bench.wait(6)
+    assert bench.control(OFF1, HALF)[0] == 0xFA31
+    assert bench.control(OFF1 & ~0x40, HALF)[0] == 0xFB31
+    # A jog is no other than a setpoint; nor does P1080 hold the ramp's input up.
+    bench.drive.write(1080, 0, 10.0)
+    bench.control(OFF1)
+    bench.control(JOG_RIGHT)
+    assert bench.drive.read(1119) == 10
+    bench.control(JOG_RIGHT & ~0x40)
+    assert bench.drive.read(1119) == 0
+
+
 def test_invalid_process_data_change_nothing():
     # SPEC C-5.2.1: bit 10 = 0, the old process data stay in force.
     bench = Bench()

@@ -4,6 +4,7 @@ Section numbers are those of the USS specification (E20125-D0001-S302-A1-7600, "
 the MICROMASTER 420 Reference Manual, OI440 the MICROMASTER 440 Operating Instructions.
 """
 
+from boards.sim import generic
 from drive_bench import HALF, OFF1, RUN, Bench, float_words, from_hex, telegram
 
 # What, PKE, IND, PWE1, PWE2, reply PKE, PWE2
@@ -82,6 +83,19 @@ def test_array_tasks():
     assert bench.task(0x8013, 0x8002, 0x0015, 0) == (0x5013, 0x8002, 0x0015, 0)
     assert bench.task(0x643A, 0x0001) == (0x543A, 0x0001, 0x4248, 0)  # a scalar has index 0 and 1
     assert bench.drive.read(2019, 2) == 0x00150000 and bench.drive.read(2010, 1) == 7
+
+
+def test_the_number_of_elements_is_that_of_the_array_not_of_an_element():
+    # Task 9 asks for no element, so no index is wrong, and a number that is no array has one:
+    # errors 3 and 4 belong to the tasks that read and write elements (G110D, SPEC C-4.2.1).
+    bench = Bench()
+    assert bench.task(0x900A, 0x8000) == (0x600A, 0x8000, 0, 2)
+    assert bench.task(0x900A, 0x8005) == (0x600A, 0x8005, 0, 2)
+    assert bench.task(0x9438, 5) == (0x6438, 5, 0, 1)  # P1080
+    assert bench.task(0x6438, 5) == (0x7438, 5, 0, 4)
+    assert bench.task(0x97CF, 0) == (0x77CF, 0, 0, 0)  # but there has to be such a number
+    bench = Bench(family=generic)
+    assert bench.task(0x9012, 1) == (0x6012, 1, 0, 1)  # P18
 
 
 def test_bit_11_of_pke_means_nothing():

@@ -188,6 +188,23 @@ def test_numbers_without_a_page():
         assert bench.task(0x17DD, 0x8000)[3] == 0  # 4013, with a page
 
 
+def test_bits_of_ind_that_select_a_text_where_there_is_none():
+    # A master sends 0 there (SPEC C-4.2.2). What a drive makes of a 1 is not told: a switch.
+    for error in (0, 3):
+        bench = Bench(switches={"text_bits_error": error})
+        for bits in (0x0100, 0x0200, 0x0300):
+            refused = (0x72BC, bits, 0, 3)
+            assert bench.task(0x12BC, bits) == (refused if error else (0x12BC, bits, 0, 5))
+            assert bench.task(0x22BC, bits, 0, 2) == (refused if error else (0x12BC, bits, 0, 2))
+            assert bench.drive.read(700) == (5 if error else 2)
+            bench.drive.write(700, 0, 5)
+        page = bench.task(0x100A, 0x8101)  # and nothing of the page or of the index is lost
+        assert page == ((0x700A, 0x8101, 0, 3) if error else (0x100A, 0x8101, 0, 6))
+        assert bench.task(0x42BC, 0x0102)[3] == (3 if error else 1)  # of a description
+        bench = Bench({2013: VARIABLE}, family=generic, switches={"text_bits_error": error})
+        assert bench.exchange(0xF009, 0x0204, 0, OFF1, 0)[:3] == [0xF009, 0x0204, 0x3132]
+
+
 def test_four_words_in_variable_length():
     for second, places in ((True, ((2, 0, 2), (0, 2, 2), (2, 1, 1))),
                            (False, ((2, 0, 2), (0, 2, 0), (2, 1, 2)))):  # fmt: skip

@@ -30,7 +30,6 @@ from boards.sim.slave import (
     BROADCAST,
     MIRROR,
     RESIDUAL_TIME,
-    STANDARD,
     WATCHDOG,
     Slave,
     words_of,
@@ -321,7 +320,8 @@ class Drive:
         """Whether the telegram failure time starts anew with this telegram."""
         if form == BROADCAST and not self.switches.broadcast_retriggers:
             return False
-        return not self._needs_process_data or form == STANDARD and self._slave.pzd_words > 0
+        # A telegram that is mirrored carries process data for nobody.
+        return not self._needs_process_data or form != MIRROR and self._slave.pzd_words > 0
 
     def _net_words(self):
         """The PKW and the PZD words of the telegram received."""

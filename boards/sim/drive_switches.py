@@ -17,6 +17,9 @@ SWITCHES = (
      "USS specification C-4.2.1.1 does not forbid it"),
     ("raw_numbers", False, "PNU 2000...2047 without a page are those numbers",
      "a master for the G110 sends them; the manuals know the page alone"),
+    ("text_bits_error", 0, "what a task gets that is about no text, with bit 8 or 9 of IND, which "
+     "select one: 0 they mean nothing and come back, else this error number, such as 3",
+     "USS specification C-4.2.2: a master sends 0; what a drive makes of a 1 is not told"),
     ("second_word", True, "variable length: of two value words the word in PWE2 is taken, PWE1 "
      "only where PWE2 is 0; False: always PWE1",
      "the MM420 reference manual lists both forms"),

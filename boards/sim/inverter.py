@@ -37,7 +37,7 @@ from boards.sim.drive_words import (
     UNDERVOLTAGE,
     UP,
 )
-from boards.sim.fault_memory import FaultMemory
+from boards.sim.fault_memory import memory_of
 from boards.sim.motor import Motor
 from boards.sim.plant import Plant
 from boards.sim.potentiometer import Potentiometer
@@ -91,7 +91,7 @@ class Inverter:
         self._family = family
         self._switches = switches
         self.image = [0] * WORDS
-        self.memory = FaultMemory()
+        self.memory = memory_of(family, parameters.rows)
         self.faults = self.memory.numbers
         self.plant = Plant(self, switches)
         self._motor = Motor(self._settle)
@@ -169,15 +169,20 @@ class Inverter:
         return self._motor.hz(self._clock.now_us)
 
     def setpoint_hz(self):
-        """The frequency that the ramp generator is given, within P1080 and P1082: r0020."""
+        """The frequency that the ramp generator is given: r0020, r1119.
+
+        It is within P1080 and P1082, or 0 without STW bit 6.
+        """
         if self._given_hz is None:
             stw = self._stw
-            if not self._jogging or self.state != RUNNING:
-                self._given_hz = self._setpoint.hz(stw)
-            elif stw & JOG == JOG:
+            jogs = self._jogging and self.state == RUNNING
+            if jogs and stw & JOG == JOG:
                 return self._motor.hz(self._clock.now_us)
+            if not stw & SETPOINT:
+                self._given_hz = 0.0
             else:
-                self._given_hz = self._setpoint.jog_hz(stw)
+                channel = self._setpoint
+                self._given_hz = channel.jog_hz(stw) if jogs else channel.hz(stw)
         return self._given_hz
 
     def run_s(self, at_us):
@@ -336,8 +341,7 @@ class Inverter:
         elif not stw & RAMP_RUN or self._jogging and stw & JOG == JOG:
             self._motor.hold(at_us)
         else:
-            target_hz = self.setpoint_hz() if stw & SETPOINT else 0.0
-            self._motor.ramp(at_us, target_hz, full_hz, up_s, down_s)
+            self._motor.ramp(at_us, self.setpoint_hz(), full_hz, up_s, down_s)
 
     def _turn_potentiometer(self, stw):
         direction = 0

@@ -125,7 +125,7 @@ ROWS = (
     (752, "analog input", "F", "V", INPUTS, None, None, 0.0, "", 2, ""),
     (753, "smoothing of the analog input", "U16", "ms", INPUTS, 0, 10000, 3, "CUT", 3, ""),
     (754, "analog input after scaling", "F", "%", INPUTS, None, None, 0.0, "", 2, ""),
-    (755, "analog input after scaling", "I16", "", INPUTS, None, None, (0, -1), "", 2,
+    (755, "analog input after scaling", "I16", "", INPUTS, None, None, 0, "", 2,
      "4000h is 100 %"),
     (756, "type of the analog input", "U16", "", INPUTS, 0, 4, 0, "CT", 2, ""),
     (757, "analog input, x1", "F", "V", INPUTS, -20.0, 20.0, 0.0, "CUT", 2, ""),

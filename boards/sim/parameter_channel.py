@@ -10,8 +10,9 @@ change_reports.py.
 
 A task is carried out once, when it changes; a reply that carries a value always carries the
 present one. In which order a drive looks for what is wrong no document says; here it is: task
-known, change rights, number, access level for reading (a switch), index, room, read-only, type,
-state, commissioning step, access level, in use, key, number of values, limits, discrete values.
+known, change rights, number, access level for reading (a switch), bits for texts (a switch),
+index, room, read-only, type, state, commissioning step, access level, in use, key, number of
+values, limits, discrete values.
 """
 
 from boards.sim.change_reports import BIT, Reports
@@ -74,7 +75,8 @@ ACCESS_LEVEL = 204
 
 DOWNLOAD = 29  # of the commissioning parameter: opens every step
 
-ALL_ELEMENTS = 255
+ALL_ELEMENTS = 255  # of an array, and of a description
+TEXT_BITS = 0x0300  # of IND
 NET_WORDS = 126  # of a telegram, at most
 
 NO_TASK = (0, 0, ())
@@ -250,10 +252,12 @@ class ParameterChannel:
             return REFUSED, UNKNOWN_NUMBER, self._neighbours(number)
         if self._switches.level_for_reading and not self._is_accessible(number):
             return REFUSED, ACCESS_LEVEL, ()
-        if ak in (READ_DESCRIPTION, WRITE_DESCRIPTION):
-            error = self._describe(ak, ind & 0xFF, layout)
-        elif ak == TEXT_TASK:
+        if ak == TEXT_TASK:
             error = self._text(ind, values, layout)
+        elif ind & TEXT_BITS and self._switches.text_bits_error:
+            error = self._switches.text_bits_error
+        elif ak in (READ_DESCRIPTION, WRITE_DESCRIPTION):
+            error = self._describe(ak, ind & 0xFF, layout)
         else:
             error = self._misaddressed(TASKS[ak], ind & 0xFF, layout)
             if error is None and TASKS[ak][1] == 2 and len(values) < 2:
@@ -285,7 +289,7 @@ class ParameterChannel:
 
     def _misaddressed(self, task, index, layout):
         row = self._parameters.rows[self._number]
-        if task[0] == COUNT:
+        if task[0] == COUNT:  # of no element: errors 3 and 4 are not among its own; a scalar has 1
             return None
         if task[2]:
             if row[INDICES] == 1:
@@ -299,7 +303,10 @@ class ParameterChannel:
         if layout == VARIABLE:
             elements += self._family["variable elements"]
         if which not in elements:
-            return NO_DESCRIPTION
+            # The whole description has no room in fixed length (SPEC C-4.2.2, OI440); a single
+            # element that there is in variable length alone does not exist.
+            whole = which == ALL_ELEMENTS and which in self._family["variable elements"]
+            return CHANNEL_TOO_SMALL if whole else NO_DESCRIPTION
         return DESCRIPTION_FIXED if ak == WRITE_DESCRIPTION else None
 
     def _text(self, ind, values, layout):

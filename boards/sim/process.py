@@ -31,6 +31,7 @@ from boards.sim.drive_words import (
     FAULT_VALUES,
     FAULTS,
     FIXED,
+    INHIBITED,
     INVERTER_LOAD,
     INVERTER_TEMPERATURE,
     JOG,
@@ -105,7 +106,9 @@ class Process(Inverter):
 
     def __init__(self, clock, parameters, family, switches):
         self._previous = 0
-        self._taken = None  # the words taken over last, and the state they have led to
+        # The words taken over last, and the state that they have led to, out of which they lead no
+        # more. The inhibit is none: what has acknowledged a fault lifts it when it comes again.
+        self._taken = None
         self._led_to = OFF
         style = family.STYLE
         self._state_bits = style["states"]
@@ -188,6 +191,7 @@ class Process(Inverter):
         self._pass_time()
         self._settle(self._clock.now_us)
         self._take_settings()
+        self._taken = None  # the same words may mean something else now
         self._previous = self.command_word()
         self.command(self._previous, 0)
 
@@ -211,7 +215,7 @@ class Process(Inverter):
         self._previous = stw
         self._watch_external_fault()
         self.command(stw, rising)
-        self._led_to = self.state
+        self._led_to = self.state if self.state != INHIBITED else None
 
     def _watch_external_fault(self):
         place = BINARY_SOURCES.get(self.external_fault >> 16)

@@ -177,7 +177,8 @@ class Slave:
     def _fits(self, lge):
         if self.pkw_words == VARIABLE:
             return 4 <= lge <= 254 and not lge & 1 and lge >= 2 * self.pzd_words + 2
-        return lge == 2 * (self.pkw_words + self.pzd_words) + 2
+        # LGE 2, of a telegram without net data, is none: set to no words at all it hears nothing.
+        return lge > 2 and lge == 2 * (self.pkw_words + self.pzd_words) + 2
 
     def _deadline_us(self):
         # 1.5 times the compressed time of LGE, ADR, n characters and BCC; n is 252 as long as a

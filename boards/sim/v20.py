@@ -1,7 +1,8 @@
 """The SINAMICS V20 as data: an MM440 with other defaults, as its macro Cn010 sets it up for USS.
 
-Tables and columns are those of mm420.py. It supervises the line as delivered, P2014, but only once
-it has had process data. That it has no P2009 is general knowledge, and so is the default of P2014.
+Tables and columns are those of mm420.py. It supervises the line, P2014, 500 ms after the macro and
+2000 ms as delivered, but only once it has had process data. That it has no P2009 is general
+knowledge, and so is the default of P2014.
 
     Drive(clock, wire, 1, family=v20)
 """
@@ -30,6 +31,7 @@ ROWS = rows_like(
         (947, "last fault codes", "U16", "", 64, None, None, 0, "", 2, ""),
         (948, "fault times", "U16", "", 64, None, None, 0, "", 3, ""),
         (949, "fault values", "U32", "", 64, None, None, 0, "", 3, ""),
+        (952, "number of faults", "U16", "", 1, 0, 64, 0, "CT", 3, "0 clears"),
         (970, "factory reset", "U16", "", 1, 0, 21, 0, "C", 1, "1, 21 reset and return to 0"),
         (1000, "frequency setpoint source", "U16", "", 3, 0, 77, 1, "CT", 1, "see PERMITTED"),
         (2000, "reference frequency", "F", "Hz", 3, 1.0, 599.0, 50.0, "CT", 2, "4000h in PZD"),
@@ -49,7 +51,7 @@ SOURCES = (0, 1, 2, 3, 5, 7)
 PERMITTED[1000] = tuple(10 * additional + main for additional in SOURCES for main in SOURCES)
 
 BAUD_CODES = {code: baud for code, baud in mm440.BAUD_CODES.items() if code >= 6}
-COMMISSIONED = {3: 3, 700: 5, 1000: 5, 2012: 2, 2013: 127}
+COMMISSIONED = {3: 3, 700: 5, 1000: 5, 2012: 2, 2013: 127, 2014: 500}
 LINK = dict(mm440.LINK)
 LINK["from process data"] = True
 LINK["protocol"] = 2023
