@@ -230,6 +230,13 @@ def test_a_babbling_node_leaves_no_pause():
     assert len(line.listener.heard) == heard > 10
 
 
+def test_a_node_that_begins_to_babble_a_thousand_times_a_second_just_babbles():
+    line = Line({"babble": 3_600_000})
+    line.clock.advance(2_000_000)
+    assert line.faults.count["babble"] > 500
+    assert len(line.listener.heard) > 20
+
+
 def test_a_cut_wire_to_one_drive():
     bench = Asker()
     faults = LineFaults(bench.wire, Dice(1).random)
@@ -408,6 +415,7 @@ def test_what_is_no_fault_is_refused():
     assert "address" in refused(ValueError, faults.set, "twin", 32)
     assert refused(KeyError, faults.strike, "flop")
     assert "on or off" in refused(ValueError, faults.strike, "echo")
+    assert "260 characters" in refused(ValueError, faults.strike, "noise", 261)
     assert refused(KeyError, faults.cut, "drive 1", "sideways")
 
 

@@ -7,6 +7,7 @@ a judge who sees keys, line and display, and asks the firmware nothing (tools/so
 from boards.sim.clock import Clock
 from boards.sim.wire import Wire
 from tools.soaking.fuzz import fuzz
+from tools.soaking.reader import subject_in
 from tools.soaking.rules import RULES, Broken
 from tools.soaking.soak import Soak
 from tools.soaking.story import story
@@ -114,6 +115,13 @@ def test_a_motor_is_the_panels_unless_garbage_started_it():
         except Broken as broken:
             blamed = broken.args[0] == "TURNS"
         assert blamed == is_blamed, (faults, stw)
+
+
+def test_what_a_question_is_about_is_read_from_the_display():
+    assert subject_in("A1: P0700=6     ") == (1, 700, 6)
+    assert subject_in("A31: P2011=17   ") == (31, 2011, 17)
+    for other in ("A1: P07 F:  0.00", "A1: P0700=      ", "PANEL MAY LOSE  ", "S:-10.0 F: -0.29"):
+        assert subject_in(other) is None, other
 
 
 def test_where_the_panel_can_control_no_drive_it_has_nothing_to_prove():

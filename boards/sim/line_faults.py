@@ -174,10 +174,12 @@ class LineFaults:
         "cut": the reply keeps so many; "noise"), milliseconds ("late", "babble", "wire cut",
         "dip"), or the address ("foreign"); None: as it falls.
         station: whose reply; None: anybody's.
-        KeyError: no such kind. ValueError: it is a switch.
+        KeyError: no such kind. ValueError: it is a switch; more characters than a burst holds.
         """
         if KINDS[kind][1] == SWITCH:
             raise ValueError("%s is on or off" % kind)
+        if kind == "noise" and how_much is not None and how_much > BURST_LIMIT:
+            raise ValueError("noise of %d characters at the most" % BURST_LIMIT)
         if kind in self._happen:
             self._happen[kind](how_much)
             return
@@ -386,9 +388,11 @@ class LineFaults:
         self._clock.schedule(self._babble, self._clock.now_us)
 
     def _talk_babble(self):
-        ends_us = self._talk_rubbish(
-            self._talker("a babbling node"), self._random(*BABBLE_CHARACTERS)
-        )
+        talker = self._talker("a babbling node")
+        if self._wire.is_talking(talker):  # it is at it, and was told to begin once more
+            self._clock.schedule(self._babble, self._clock.now_us + self._wire.character_us)
+            return
+        ends_us = self._talk_rubbish(talker, self._random(*BABBLE_CHARACTERS))
         if ends_us < self._babble_until_us:
             pause_us = self._random(0, 3 * self._wire.character_us // 2)
             self._clock.schedule(self._babble, ends_us + pause_us)

@@ -31,6 +31,18 @@ class Case:
         self.excused_us = NEVER  # until when an OFF needs no other reason
         self.acknowledge_us = NEVER  # STOP that may acknowledge
         self.second_us = NEVER  # OFF2 or OFF3 sent last
+        self.second_since_us = NEVER  # sent first, of those without another word between
+        self.bad_us = NEVER  # a status word that forbids a START, and that the panel has taken
+        self.good_us = NEVER  # one that does not
+        self.settings_us = NEVER  # parameters of the drive may have changed last
+        self.accepted = False  # somebody said that it may run though nothing watches its line
+
+
+def drive_at(world, address):
+    """The drive that would answer there now, or None."""
+    for drive in world.drives.values():
+        if drive.address == address and drive.plugged and drive.powered:
+            return drive
 
 
 class Limits:

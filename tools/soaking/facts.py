@@ -22,6 +22,8 @@ READS = (0, 1, 4, 6, 9)
 RAM_WRITES = (2, 3, 7, 8)
 EEPROM_WRITES = (11, 12, 13, 14)
 
+CONTROLLED = ("MICROMASTER 420", "MICROMASTER 440")  # by this panel
+
 # DESIGN, rule 7, and those among them that must not be forgotten by the drive.
 DANGEROUS = (
     3, 10, 700, 719, 840, 918, 927, 970, 1000, 1070, 2000, 2009, 2010, 2011, 2012, 2013, 2014,

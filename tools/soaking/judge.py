@@ -39,10 +39,12 @@ from tools.soaking.facts import (
     ZSW_RUNNING,
     S,
 )
+from tools.soaking.refusals import READ_US, reason_against, runs_on_unasked
 from tools.soaking.rules import Broken
 from tools.soaking.tape import MALFORMED, REQUEST
 from tools.soaking.witness import Witness
 
+BACK_OFF_US = 3 * S  # a drive that is silent is asked every 1.6 s, many of them within 2 s
 LISTEN_US = 95 * MS  # 100 ms, and what the panel's clocks may be short of
 SILENT_US = 3_500 * MS  # a panel that listens, and then one exchange
 
@@ -54,6 +56,7 @@ class Judge(Witness):
         Witness.__init__(self, world, plan)
         self.exchanges = 0
         self.patience_us = SILENT_US + self.exchange_us
+        self._counted_us = 0
 
     def look(self):
         """Judge what has happened since the last look."""
@@ -82,12 +85,40 @@ class Judge(Witness):
         elif self.hung_us is None and now - max(self.spoken_us, self.late_us) > self.patience_us:
             raise Broken("SILENT PANEL", "no telegram for %d ms" % ((now - self.spoken_us) // MS))
         self._judge_motors(now)
+        if now - self._counted_us > S:
+            self._counted_us = now
+            self._judge_list(now)
         down = self.down
         if down:
             if "STOP" in down and "STOP" not in self.spoilt:
                 self._judge_held_stop(now, now - down["STOP"])
             if "SET" in down and now - down["SET"] > HELD_SET_US:
                 self.wishes["eeprom"] = now + self.wish_us
+
+    def _judge_list(self, now):
+        """Nobody is left out, whether or not it answers."""
+        for address in self.plan.addresses:
+            if address not in self.moved and self._asked_for_us(self.cases[address], now) > (
+                BACK_OFF_US + 4 * self.cycle_us
+            ):
+                raise Broken("NEGLECTED", "drive %d is not asked any more at %d" % (address, now))
+
+    def _asked_for_us(self, case, now):
+        """How long a drive was not asked that could have been."""
+        if self.hung_us is not None or self.stuck_us is not None:
+            return 0
+        return now - max(case.sent_us, self.stalled_us, self.late_us, self.boot_us)
+
+    def _judge_gap(self, case, address, now):
+        """One that runs, or may, has its turn in every round, whatever else there is to say."""
+        may_run = case.stw & RUN or (
+            case.zsw & ZSW_RUNNING and case.asked_us > case.answered_us > self.boot_us
+        )
+        if may_run and address not in self.moved:
+            gap_us = self._asked_for_us(case, now)
+            if gap_us > 2 * self.cycle_us + 12 * self.exchange_us + 200 * MS:
+                told = (address, gap_us // MS, now)
+                raise Broken("NEGLECTED", "drive %d not asked for %d ms at %d" % told)
 
     def _judge_held_stop(self, now, held_us):
         """What a STOP that is held must have led to by now."""
@@ -130,6 +161,8 @@ class Judge(Witness):
         case.zsw = zsw
         if zsw & ZSW_RUNNING:
             case.ran_us = now
+        if not zsw & (ZSW_FAULT | ZSW_INHIBIT):
+            case.good_us = now
         stops = False
         if case.stw & RUN:
             if zsw & ZSW_RUNNING:
@@ -149,6 +182,8 @@ class Judge(Witness):
                 waiting.append(one)
             elif self._is_sure(row, tape):
                 case.heard_us = max(case.heard_us, tape.end_us[row])
+                if tape.words[6 * row + 4] & (ZSW_FAULT | ZSW_INHIBIT):
+                    case.bad_us = max(case.bad_us, tape.end_us[row])
                 if stops:
                     case.void_us = max(case.void_us, tape.end_us[row])
         self.unsettled = waiting
@@ -170,6 +205,7 @@ class Judge(Witness):
         stw = words[at + 4]
         case = self.cases[address]
         self.exchanges += 1
+        self._judge_gap(case, address, now)
         if self.first_sent is not None:
             self._judge_first(row, tape)
         task = words[at] >> 12
@@ -179,7 +215,7 @@ class Judge(Witness):
         if self.owed:
             self._judge_owed(case, now)
         if task and task != 1:
-            self._judge_task(task, words[at] & 0x7FF, words[at + 1], now, address)
+            self._judge_task(task, words[at] & 0x7FF, words[at + 1], words[at + 3], now, address)
         if not stw & RUN:
             if words[at + 5]:
                 raise Broken("SETPOINT", "%04X with OFF" % words[at + 5])
@@ -239,10 +275,21 @@ class Judge(Witness):
         if not case.stw & RUN:
             case.on_us = now
             case.ran = False
+            self._judge_permission(case, address, stw not in (ON, ON_REVERSE), where, now)
         case.turned_us = now
         if case.owed_us > 0 and now > self._grace(case.owed_us):
             if self.hung_us is None:
                 raise Broken("STOP", "%s, and no OFF before it" % where)
+
+    def _judge_permission(self, case, address, jogs, where, now):
+        pressed_us = case.jog_us if jogs else case.used_us
+        if now - self.tape.chance_us < READ_US:
+            return
+        reason = reason_against(self, case, address, pressed_us, jogs)
+        if reason is not None:
+            raise Broken("REFUSED", "%s: %s" % (where, reason))
+        if runs_on_unasked(self, case, address, pressed_us, jogs):
+            raise Broken("UNSUPERVISED", where)
 
     def _judge_on(self, case, where, now):
         if case.stw & RUN and case.stw in (ON, ON_REVERSE):
@@ -290,6 +337,10 @@ class Judge(Witness):
         off = stw & ~ACKNOWLEDGE
         if off != OFF1:
             case.second_us = now
+        elif case.stw not in (OFF1, ON, ON_REVERSE) and not case.stw & RUN:
+            self._judge_back(case, address, now)
+        if off != case.stw:
+            case.second_since_us = now
         if off != OFF1 and off != case.stw:
             self._judge_second_stop(case, address, off, now)
         if not case.stw & RUN:
@@ -302,12 +353,19 @@ class Judge(Witness):
         if now > case.excused_us and not self._has_reason(case, now, jogged):
             raise Broken("WITHOUT REASON", "%04X to drive %d at %d" % (stw, address, now))
 
+    def _judge_back(self, case, address, now):
+        """From OFF2 or OFF3 to OFF1: when the drive has heard it, or is lost."""
+        if case.answered_us > case.second_since_us or now < case.excused_us:
+            return
+        if now - case.answered_us < self.lost_us * 9 // 10 and self.hung_us is None:
+            raise Broken("SECOND STOP", "drive %d never heard it, at %d" % (address, now))
+
     def _has_reason(self, case, now, jogged):
         if jogged and len(self.down) != 1:
             return True
         if jogged and now - max(self.up.values()) < 2 * S:
             return True
-        if "STOP" in self.down or now - self.up["STOP"] < 2 * S:
+        if self._is_stopping(case, now):
             return True
         if now - case.heard_us > self.lost_us * 9 // 10:
             return True
@@ -317,10 +375,23 @@ class Judge(Witness):
             return True
         return self.hung_us is not None
 
+    def _is_stopping(self, case, now):
+        """Whether STOP stops this drive: it is the one shown, or the key is held for 4 s."""
+        if now < self.all_until_us + 2 * S:
+            return True
+        is_down = "STOP" in self.down
+        if is_down and now - self.stop_from_us > ALL_STOP_US - 150 * MS:
+            return True
+        if not is_down and now - self.up["STOP"] > 2 * S:
+            return False
+        return self.stopping is None or case in self.stopping
+
     def _judge_second_stop(self, case, address, off, now):
-        pressed_us = self.down.get("STOP")
+        if self.stopping is not None and case not in self.stopping:
+            raise Broken("SECOND STOP", "%04X to drive %d, which is not shown" % (off, address))
+        pressed_us = self.stop_from_us if "STOP" in self.down else None
         if pressed_us is None and now - self.up["STOP"] < 200 * MS + self.exchange_us:
-            pressed_us = case.stop_us
+            pressed_us = min(case.stop_us, self.stop_from_us)
         held_us = now - (pressed_us if pressed_us is not None else ALWAYS)
         if off != self.second_stop or held_us < SECOND_STOP_US - 50 * MS:
             told = (off, address, now, held_us // MS)
@@ -338,20 +409,36 @@ class Judge(Witness):
     def _running(self):
         return sum(1 for case in self.cases if case.stw & RUN or case.turned_us > case.owed_us > 0)
 
-    def _judge_task(self, task, number, index, now, address):
+    def _judge_task(self, task, number, index, value, now, address):
         if task in READS:
             return
         number += 2000 if index & 0x8000 else 0
+        self.cases[address].settings_us = now
+        if number == 2011:
+            self.moved[address] = self.moved[value] = True
         where = "parameter %d of drive %d, task %d at %d" % (number, address, task, now)
         if task not in RAM_WRITES and task not in EEPROM_WRITES:
             raise Broken("TELEGRAM", where)
         if number in DANGEROUS and now > self.wishes.get("write", NEVER):
             raise Broken("WRITE", where)
+        if number in DANGEROUS and not self._is_confirmed((address, number, value), now):
+            raise Broken("WRITE", "%s: %d, and that was not asked" % (where, value))
         if number not in DANGEROUS and now - self.set_us > self.wish_us:
             raise Broken("WRITE", where)
         if task in EEPROM_WRITES and number not in PERMANENT:
             if now > self.wishes.get("eeprom", NEVER):
                 raise Broken("EEPROM", where)
+
+    def _is_confirmed(self, written, now):
+        for until_us, question in self.confirmed:
+            if until_us < now:
+                continue
+            if question is None or question == written:
+                return True
+            # A drive is told its new address at the old one, and there, until it has said yes.
+            if written[1] == question[1] == 2011 and written[0] == written[2] == question[2]:
+                return True
+        return False
 
     def _judge_motors(self, now):
         for index, drive in enumerate(self.drives):

@@ -4,6 +4,7 @@ Judge and reader are told of it before it happens.
 """
 
 from boards.sim.chip import Timer
+from tools.soaking.facts import QUESTIONS
 from tools.soaking.fingers import JOGS, SLICE_MS, Fingers, weights
 
 PARAMETERS = (  # what somebody sets at the drive itself
@@ -11,6 +12,9 @@ PARAMETERS = (  # what somebody sets at the drive itself
     (2000, 60.0), (2000, 50.0), (2009, 1), (2009, 0), (2014, 0), (2014, 5000), (1120, 2.0),
     (1121, 1.0), (1121, 10.0), (1058, 8.0),
 )  # fmt: skip
+
+# What START and JOG have to refuse, or to ask about; no number: a fault.
+DOUBTS = ((700, 2), (1000, 1), (2014, 0), (2014, 0), (2014, 0), (None, 0))
 
 
 class Mischief(Fingers):
@@ -24,6 +28,7 @@ class Mischief(Fingers):
             (3, self.hang), (3, self.restart), (1, self.cut_power), (1, self.cut_flash),
             (2, self.old_replies), (1, self.stick),
         ))  # fmt: skip
+        self.common += 3 * [self.distrust]
         for drive in self.drives:
             if not self.dice.below(4):
                 drive.stale_replies = 1 + self.dice.below(2)
@@ -91,6 +96,34 @@ class Mischief(Fingers):
         if self.set_at_drive(drive, number, value):
             self.note("drive %d: P%04d=%s at the drive itself" % (drive.address, number, value))
             self.count("parameter")
+
+    def distrust(self):
+        """The drive shown becomes one that START and JOG have to refuse, or to ask about; another
+        one may run meanwhile."""
+        if len(self.drives) > 1 and self.dice.below(4):
+            self.press("START")
+            self.run(self.dice.between(500, 2_000))
+            self.press("ADDRESS_UP")
+            self.run(self.dice.between(400, 1_000))
+        self.press("STOP")
+        self.run(self.dice.between(500, 2_000))
+        drive = None if self.judge.shown is None else self.reader.drive_at(self.judge.shown)
+        number, value = self.dice.one_of(DOUBTS)
+        if drive is None:
+            return
+        if number is None:
+            self.judge.excuse(drive.address)
+            drive.fault(self.dice.between(1, 80))
+        else:
+            self.set_at_drive(drive, number, value)
+        self.note("drive %d is not to be trusted: %s" % (drive.address, number or "a fault"))
+        self.run(self.dice.between(1_200, 4_000))
+        self.press(self.dice.one_of(("START", "START") + JOGS), 300)
+        self.run(self.dice.between(300, 3_000))
+        if self.reader.rows[1] == QUESTIONS[1] and self.dice.below(4):
+            self.run(1_200)
+            self.press("START")
+            self.run(self.dice.between(300, 5_000))
 
     def set_at_drive(self, drive, number, value):
         try:

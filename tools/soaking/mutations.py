@@ -290,6 +290,145 @@ MUTATIONS = (
         ("uss/timing.py", "START_INTERVAL_CHARACTERS = 2", "START_INTERVAL_CHARACTERS = 1"),
     ),
     Mutation(
+        "faults started",
+        "START is obeyed by a drive that has tripped",
+        ("REFUSED",), 1,
+        (
+            "panel/permits.py",
+            "    if state == pzd.FAULT:\n        return texts.REFUSED_FAULT\n",
+            "",
+        ),
+    ),
+    Mutation(
+        "foreign commands ignored",
+        "START is obeyed though the drive takes its commands elsewhere",
+        ("REFUSED",), 1,
+        (
+            "panel/permits.py",
+            "    if is_foreign(survey, profiles.COMMAND_SOURCE):\n"
+            "        return texts.REFUSED_COMMAND\n",
+            "",
+        ),
+    ),
+    Mutation(
+        "unsupervised is nothing",
+        "nobody is asked whether a motor may run on without the panel",
+        ("UNSUPERVISED",), 1,
+        (
+            "panel/permits.py",
+            "return survey.values[profiles.SUPERVISION] == 0",
+            "return False",
+        ),
+    ),
+    Mutation(
+        "STOP stops all",
+        "STOP stops drives that are not shown",
+        ("WITHOUT REASON",), 1,
+        (
+            "panel/stop_key.py",
+            "            control.stop()\n",
+            "            control.stop()\n"
+            "            for other in self._controls:\n"
+            "                other.stop_unseen()\n",
+        ),
+    ),
+    Mutation(
+        "all stopped too soon",
+        "STOP held for the second stop stops every drive",
+        ("WITHOUT REASON",), 1,
+        ("panel/stop_key.py", "_ALL_MS = const(4_000)", "_ALL_MS = const(1_500)"),
+    ),
+    Mutation(
+        "second stop for all",
+        "OFF3 goes to drives that are not shown",
+        ("SECOND STOP",), 1,
+        (
+            "panel/stop_key.py",
+            "            self._control.second_stop()\n",
+            "            for control in self._controls:\n"
+            "                control.second_stop()\n",
+        ),
+    ),
+    Mutation(
+        "second stop given up",
+        "OFF3 is sent once, whether or not the drive has heard it",
+        ("SECOND STOP",), 1,
+        (
+            "panel/control.py",
+            "        if drive.answered_stw & ~pzd.STW_ACKNOWLEDGE != drive.off:\n"
+            "            return\n",
+            "",
+        ),
+    ),
+    Mutation(
+        "written elsewhere",
+        "a parameter is written into the first drive, whichever is shown",
+        ("WRITE",), 1,
+        (
+            "panel/writer.py",
+            "        drive = self._control.drive\n        if drive.channel.is_full():",
+            "        drive = self._bus.drives[0]\n        if drive.channel.is_full():",
+        ),
+    ),
+    Mutation(
+        "another value written",
+        "what is written is not what was confirmed",
+        ("WRITE",), 1,
+        (
+            "panel/writer.py",
+            "self._job.number, self._job.index, 0, self._value)",
+            "self._job.number, self._job.index, 0, self._value ^ 1)",
+        ),
+    ),
+    Mutation(
+        "silent drives forgotten",
+        "a drive that does not answer is not asked again",
+        ("NEGLECTED",), 1,
+        ("uss/care.py", "                drive.ask_soon()\n", "                pass\n"),
+    ),
+    Mutation(
+        "a running drive backs off",
+        "a drive that runs, and is lost, is asked as seldom as one that stands",
+        ("NEGLECTED",), 1,
+        (
+            "uss/drive.py",
+            "and not self.contact and not self.was_running",
+            "and not self.contact",
+        ),
+    ),
+    Mutation(
+        "saved at any time",
+        "settings are written while a motor turns, and the bus stands still",
+        ("FLASH",), 1,
+        (
+            "app.py",
+            "if self.panel.any_runs() or self._just_failed",
+            "if self._just_failed",
+        ),
+    ),
+    Mutation(
+        "listens too long",
+        "the panel keeps silent after power-on, and nothing can be stopped",
+        ("SILENT PANEL", "WATCHDOG"), 1,
+        ("uss/master.py", "LISTEN_US = const(100_000)", "LISTEN_US = const(6_000_000)"),
+    ),
+    Mutation(
+        "BCC of yesterday",
+        "a telegram is changed behind its check",
+        ("TELEGRAM",), 1,
+        (
+            "uss/master.py",
+            "if not drive.sealed or request[2] != drive.address:",
+            "if request[2] != drive.address:",
+        ),
+    ),
+    Mutation(
+        "display hurried",
+        "the display is written to while it is still at work",
+        ("DISPLAY",), 1,
+        ("hal/hd44780.py", "_COMMAND_US = const(53)", "_COMMAND_US = const(20)"),
+    ),
+    Mutation(
         "an exception",
         "a page that fails takes the panel with it",
         ("EXCEPTION",), 5,

@@ -5,13 +5,21 @@
     reader.screens                  # the last pictures, (instant, row 1, row 2)
 """
 
-from tools.soaking.case import limits_of
-from tools.soaking.facts import MS, NEVER, ON, ON_REVERSE, QUESTIONS, ZSW_RUNNING, S
+from tools.soaking.case import drive_at, limits_of
+from tools.soaking.facts import (
+    CONTROLLED,
+    MS,
+    NEVER,
+    ON,
+    ON_REVERSE,
+    QUESTIONS,
+    ZSW_RUNNING,
+    S,
+)
 from tools.soaking.rules import Broken
 
 SCREENS = 12
 DRAWN_US = 100 * MS  # a row that is the same for so long is drawn to its end
-CONTROLLED = ("MICROMASTER 420", "MICROMASTER 440")
 VALUES = ("P0700:", "P1000:", "P2011:")
 STATES = (  # what row 2 begins with, the state of the drive
     ("READY", "ready"), ("RUNNING", "running"), ("STOPPING", "stopping"), ("FAULT", "fault"),
@@ -36,6 +44,7 @@ class Reader:
         self._written = -1
         self._calm_us = 3 * S + 12 * judge.cycle_us
         self._judged_us = 0
+        self._subject = None  # of a question, as read last
         self._hz = None  # of the drive shown, then; None: that was too long ago
 
     def look(self):
@@ -51,9 +60,11 @@ class Reader:
             address = address_in(self.rows[1])
             if address is not None:
                 self.judge.shown = address
-        if self.rows[1] in QUESTIONS:
-            self.judge.asked_us = now
         judge = self.judge
+        if self.rows[1] in QUESTIONS:
+            self._read_question(now)
+        else:
+            judge.question = None
         if judge.shown is None or now < judge.unsure_us or judge.hung_us is not None:
             return
         if not self.steady or now == self._written_us:
@@ -76,6 +87,16 @@ class Reader:
             if len(self.screens) >= SCREENS:
                 del self.screens[0]
             self.screens.append((now, rows[0], rows[1]))
+
+    def _read_question(self, now):
+        judge = self.judge
+        if self.rows[1] == QUESTIONS[1]:
+            judge.go_us = now
+        judge.asked_us = now
+        subject = subject_in(self.rows[0])
+        if subject is not None and subject == self._subject:  # drawn to its end
+            judge.question = subject
+        self._subject = subject
 
     def reads(self, text):
         row_1, row_2 = self.rows
@@ -140,6 +161,8 @@ class Reader:
         if drive is None or not self.is_able(address):
             return
         row_1, row_2 = self.rows
+        if self.reads("STOP UNCONFIRMED") and drive.state in ("ready", "fault", "inhibited"):
+            raise Broken("UNCONFIRMED", "drive %d stands, and says so" % address)
         hz, before_hz = drive.hz(), self._hz
         self._hz = hz
         if address_in(row_2) != address:
@@ -168,14 +191,24 @@ class Reader:
                 raise Broken("SHOWN", "%s, drive %d turns at %.2f Hz" % (row_1, address, hz))
 
     def drive_at(self, address):
-        for drive in self.world.drives.values():
-            if drive.address == address and drive.plugged and drive.powered:
-                return drive
+        return drive_at(self.world, address)
 
     def is_able(self, address):
         """Whether the drive there is one that this panel can control."""
         drive = self.drive_at(address)
         return drive is not None and drive.layout == (4, 2) and drive.family.NAME in CONTROLLED
+
+
+def subject_in(row_1):
+    """Address, number and value of a question that begins "A1: P0700=6", or None."""
+    words = row_1.strip().split(": P")
+    if len(words) != 2 or words[0][:1] != "A" or words[1][4:5] != "=":
+        return None
+    texts = words[0][1:], words[1][:4], words[1][5:]
+    for text in texts:
+        if not text.isdigit():
+            return None
+    return tuple(int(text) for text in texts)
 
 
 def address_in(row_2):

@@ -10,12 +10,14 @@ RULES = {
     # what makes a motor turn
     "START": "ON goes only to a drive started by START since power-on, loss, trip or STOP",
     "JOG": "JOG goes only to the drive shown, while its one jog key is held, by a fresh press",
+    "REFUSED": "START and JOG do nothing with a fault, an inhibit, or P0700 and P1000 not on USS",
+    "UNSUPERVISED": "with P2014 = 0 JOG is refused, and START asks until somebody has agreed",
     "LOST": "no ON and no JOG goes to a drive that has not answered for the lost time",
     "DEAD MAN": "no ON and no JOG is sent once the main loop has stood still for 300 ms",
     "TURNS": "a motor is switched on only by an ON or a JOG that this panel has just sent",
     # what makes it stop
     "STOP": "STOP is in the next telegram to that drive, beats START, and holds until START",
-    "SECOND STOP": "OFF2 and OFF3 only when STOP was held for 1.5 s, and then as the settings say",
+    "SECOND STOP": "OFF2 or OFF3, as the settings say, when STOP was held for 1.5 s; until heard",
     "STOP ALL": "STOP held for 4 s sends OFF to every drive",
     "WITHOUT REASON": "a drive that was started runs until STOP, a loss, a trip, or a hung loop",
     "ACKNOWLEDGE": "a fault is acknowledged only by a STOP",
@@ -23,12 +25,13 @@ RULES = {
     "CONTROL": "bit 10 of the control word is never 0, and no unknown control word is sent",
     "TELEGRAM": "every telegram of the panel is well formed",
     "SETPOINT": "the setpoint sent is within the limits of the drive and of the settings",
-    "WRITE": "a parameter is written only when SET confirmed the question about it",
+    "WRITE": "a parameter is written only when SET confirmed the question about this very value",
     "EEPROM": "the EEPROM is written only when SET was held, but for what must be permanent",
     "LISTEN": "nothing is sent before the line was silent for 100 ms after power-on",
     # the line
     "LINE": "start interval, no collision, driver enable within a character of the telegram",
     "SILENT PANEL": "as long as it lives the panel keeps talking",
+    "NEGLECTED": "every drive is asked again and again, one that runs or may run most of all",
     # the panel itself
     "EXCEPTION": "nothing in the firmware raises an exception",
     "WATCHDOG": "the watchdog bites when the loop has hung, or the bus stands, and only then",
@@ -36,7 +39,7 @@ RULES = {
     # the display
     "DISPLAY": "the display's controller has nothing to complain about",
     "MAY RUN": "a drive that ran and is lost reads NO CONTACT, MAY RUN, never its last state",
-    "UNCONFIRMED": "a STOP that no answer confirms is an alarm after a second",
+    "UNCONFIRMED": "a STOP that no answer confirms is an alarm after a second, and no other is",
     "SHOWN": "what the display says of the drive shown is so",
     "ANNOUNCED": "a drive that runs and is not shown is announced",
     "RECOVERS": "when all faults are over the panel controls every drive again",

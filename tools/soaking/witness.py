@@ -11,6 +11,7 @@ from tools.soaking.facts import (
     ALL_STOP_US,
     ALWAYS,
     DEAD_MAN_US,
+    DEBOUNCE_US,
     MS,
     NEVER,
     OFF1,
@@ -56,10 +57,16 @@ class Witness:
         self.late_us = NEVER  # the line was not its best lately
         self.wishes = {}  # "write" and "eeprom" -> until when
         self.set_us = NEVER
-        self.asked_us = NEVER  # the display has asked whether to write: the reader notes it
+        self.asked_us = NEVER  # the display asks something: the reader notes it
+        self.go_us = NEVER  # it asks whether a drive may run though nothing watches its line
+        self.question = None  # address, number and value that it asks about, as far as it is known
+        self.confirmed = []  # what SET has said yes to, until when: (instant, question)
+        self.moved = {}  # addresses that a drive was given, or left, or was to -> True
         self.unsettled = []  # replies that may still be spoilt: row, case, whether it has stopped
         self.owed = []  # cases that wait for their OFF
         self.all_until_us = NEVER  # until when every drive is being stopped, one after the other
+        self.stop_from_us = NEVER  # STOP is held since, as far as anybody can tell
+        self.stopping = ()  # cases that the last STOP is for, None: nobody can tell
         self.second_owed = None  # the drive that a STOP, if it is held, stops by OFF2 or OFF3
         self.shown = None  # the address shown, None while it cannot be told
         self.unsure_us = 0  # until when it cannot
@@ -88,6 +95,8 @@ class Witness:
             return
         self.down[key] = self.pressed_us[key] = now
         if key == "STOP":
+            if now - self.up[key] > DEBOUNCE_US:  # else the panel may not have seen it go up
+                self.stop_from_us = now
             self._stop_pressed(now)
         elif key == "START":
             self._start_pressed(now)
@@ -118,14 +127,17 @@ class Witness:
             return
         for case in self.candidates():
             case.start_us = now
+            if now - self.go_us < 500 * MS:
+                case.accepted = True
 
     def _stop_pressed(self, now):
         for case in self.candidates():
             case.acknowledge_us = now
             case.excused_us = max(case.excused_us, now + 600 * MS + 4 * self.exchange_us)
-        self.second_owed = None
+        self.second_owed = self.stopping = None
         if self.is_sure():
             case = self.cases[self.shown]
+            self.stopping = (case,)
             if self.second_stop != OFF1:
                 self.second_owed = case
             case.brakes = not case.stw & RUN
@@ -145,6 +157,8 @@ class Witness:
         self.set_us = now
         if self.asked_us > now - 500 * MS:
             self.wishes["write"] = now + self.wish_us
+            self.confirmed = [row for row in self.confirmed if row[0] > now]
+            self.confirmed.append((now + self.wish_us, self.question))
             self.shown = None
             self.unsure_us = now + 2 * S + 3 * self.cycle_us
 
@@ -185,6 +199,7 @@ class Witness:
         for key in self.down:
             self.spoilt[key] = True
         self.wishes.clear()
+        del self.confirmed[:]
         del self.owed[:]
         self.shown = None
         self.unsure_us = now + 1_500 * MS
@@ -222,8 +237,9 @@ class Witness:
 
     def meddled(self, drive):
         """Somebody has changed parameters at the drive itself."""
-        self.look()
         self.stirred_us = now = self.clock.now_us
+        self.cases[drive.address].settings_us = now
+        self.look()
         for address, other in self.world.drives.items():
             if other is drive:
                 self._note_limits(address, drive, now)
@@ -238,6 +254,7 @@ class Witness:
 
     def excuse(self, address, s=5):
         """Something is being done to this drive that may stop it."""
-        self.look()
         self.stirred_us = self.pulled_us = now = self.clock.now_us
+        self.cases[address].settings_us = now
+        self.look()
         self.cases[address].excused_us = now + s * S

@@ -13,7 +13,7 @@ from tools.soaking.dice import Dice
 # Families that this panel can control, with the layout that it speaks (4 PKW, 2 PZD), and two that
 # answer it with another one, or not at all.
 ABLE = ((mm420, {}), (mm420, {}), (mm440, {}))
-OTHERS = ((g110, {}), (mm420, {2013: 3}), (mm440, {2012: 4}), (v20, {2013: 4}))
+OTHERS = ((g110, {}), (mm420, {2013: 3}), (mm440, {2012: 4}), (v20, {2013: 4, 2014: 0}))
 
 BAUDS = (19200, 19200, 19200, 19200, 19200, 9600, 38400, 38400, 57600, 115200, 4800)
 CLEAN, ROUGH, WILD = range(3)
