@@ -4,12 +4,15 @@ At 19200 baud a character takes 573 us, a telegram of 16 characters 9.2 ms.
 """
 
 from boards.sim.clock import Clock
+from boards.sim.dice import Dice
 from boards.sim.drive import Drive
+from boards.sim.line_faults import LineFaults
 from boards.sim.port_line import PortMaster, PtyMaster
 from boards.sim.real_clock import RealClock
 from boards.sim.wire import Wire
 
 READ_P0700 = b"\x02\x0e\x01\x12\xbc\x00\x00\x00\x00\x00\x00\x04\x7e\x00\x00\xd9"
+WRITE_P2011 = b"\x02\x0e\x01\x20\x0b\x80\x00\x00\x00\x00\x07\x04\x7e\x00\x00\xdb"  # address 7
 TELEGRAM_US = 9_166
 CHARACTER_US = 573
 REPLY_US = 3 * CHARACTER_US  # the drive's delay
@@ -25,14 +28,19 @@ class Line:
         self.drives = [Drive(self.clock, self.wire, address) for address in addresses]
         self.said = []
         self.notes = []
-        self.master = kind(self.wire, self._written, self._noted)
+        self.seen = []  # the address of the drive when each of these began
+        self.master = kind(self.wire, self._written, self._noted, self._look)
         self.clock.advance(100_000)
 
     def _written(self, data):
         self.said.append((self.clock.now_us, data))
 
-    def _noted(self, at_us, from_master, data):
-        self.notes.append((at_us, from_master, len(data)))
+    def _noted(self, burst, from_master, seen):
+        self.notes.append((burst.start_us, from_master, burst.count))
+        self.seen.append(seen)
+
+    def _look(self):
+        return self.drives[0].address
 
     def gets(self, data, flaws=None):
         self.master.received(data, flaws)
@@ -132,18 +140,58 @@ def test_a_master_that_is_too_fast_behind_a_reply_is_waited_for():
     assert not line.wire.violations
 
 
-def test_who_talks_into_a_reply_loses_both():
+def test_who_talks_into_a_reply_loses_both_and_hears_nothing_that_was_not_said():
     line = Line(PtyMaster)
     line.gets(READ_P0700)
     line.clock.advance(TELEGRAM_US + REPLY_US + 2_000)
     line.gets(READ_P0700)
     line.clock.advance(100_000)
-    ((_, reply),) = line.said
-    assert reply[:2] == b"\x02\x0e" and reply[-1] != 0x6D
+    ((_, heard),) = line.said
+    assert len(heard) == 3  # so many were over
     assert line.counts(GOOD) == [1]
+    line.answers()
     line.gets(READ_P0700)
     line.clock.advance(100_000)
+    ((_, reply),) = line.said
+    assert reply[:3] == heard and len(reply) == 16
     assert line.counts(GOOD) == [2]
+
+
+def test_nor_does_he_at_a_low_rate_where_the_reply_comes_in_pieces():
+    line = Line(PtyMaster, baud=1200)
+    line.gets(READ_P0700)
+    line.clock.advance(1_000_000)
+    reply = b"".join(data for _, data in line.said)
+    line.answers()
+    line.gets(READ_P0700)
+    line.clock.advance(16 * TELEGRAM_US + 16 * REPLY_US + 50_000)
+    line.gets(READ_P0700)
+    line.clock.advance(1_000_000)
+    heard = b"".join(data for _, data in line.said)
+    assert 3 <= len(heard) < 8 and reply.startswith(heard)
+
+
+def test_a_character_with_a_wrong_bit_is_not_handed_over():
+    for kind, request_us in ((PtyMaster, TELEGRAM_US), (PortMaster, 0)):
+        line = Line(kind)
+        faults = LineFaults(line.wire, Dice(7, 1).random)
+        line.gets(READ_P0700)
+        line.clock.advance(request_us + 100)
+        faults.strike("flip", 1)
+        line.clock.advance(100_000)
+        ((_, heard),) = line.said
+        assert len(heard) == 15, kind
+
+
+def test_what_was_seen_when_a_telegram_began_is_told_when_it_is_over():
+    for kind in (PtyMaster, PortMaster):
+        line = Line(kind)
+        line.gets(WRITE_P2011)
+        line.clock.advance(100_000)
+        assert line.answers() == 1 and line.drives[0].address == 7
+        line.gets(READ_P0700)
+        line.clock.advance(100_000)
+        assert line.seen == [1, 1, 7], kind
 
 
 def test_garbage_is_counted_once_and_hurts_nobody():

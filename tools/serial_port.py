@@ -14,6 +14,8 @@ import array
 import errno
 import fcntl
 import os
+import pwd
+import stat
 import struct
 import sys
 import termios
@@ -31,6 +33,9 @@ OF_FLAGS, OF_SPEEDS = 8, 36  # places in struct termios2: c_cflag; c_ispeed, c_o
 
 NO_PORT = "there is no port %s"
 NOT_ALLOWED = "%s: not allowed; on Debian:  sudo adduser $USER dialout, then log in anew"
+NOT_YOURS = "%s: not allowed: it is a terminal of %s"
+OWN_TERMINAL = "%s is the terminal in which this runs"
+LINK_TAKEN = "%s leads to %s, which is not ours: remove it, or use another name"
 IN_USE = "%s is in use by another program"
 NO_TERMINAL = "%s is no serial port"
 NO_RATE = "%s does not know %d baud"
@@ -113,16 +118,28 @@ class SerialPort:
     def _take(self):
         if not os.isatty(self._descriptor):
             raise PortError(NO_TERMINAL % self.path)
-        self.is_pty = os.major(os.fstat(self._descriptor).st_rdev) in PTY_MAJORS
+        if self._is_our_terminal():
+            raise PortError(OWN_TERMINAL % self.path)
+        self.is_pty = is_pty(os.fstat(self._descriptor))
         try:
             fcntl.flock(self._descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)  # as pyserial does
-            fcntl.ioctl(self._descriptor, termios.TIOCEXCL)
+            if not self.is_pty:
+                # It stays until nobody has the port open any more: of a pty, whose maker keeps
+                # it open, for ever.
+                fcntl.ioctl(self._descriptor, termios.TIOCEXCL)
         except OSError:
             raise PortError(IN_USE % self.path) from None
         tty.setraw(self._descriptor)
         if not self.is_pty:
             self._set_up()
         termios.tcflush(self._descriptor, termios.TCIOFLUSH)
+
+    def _is_our_terminal(self):
+        try:
+            os.tcgetpgrp(self._descriptor)  # nobody is told that of any other terminal
+        except OSError:
+            return False
+        return True
 
     def _set_up(self):
         """8E1, no handshake, and characters that are wrong are marked."""
@@ -177,14 +194,36 @@ class SerialPort:
         if error.errno in (errno.ENOENT, errno.ENODEV, errno.ENXIO):
             return NO_PORT % self.path
         if error.errno in (errno.EACCES, errno.EPERM):
-            return NOT_ALLOWED % self.path
+            return self._why_not_allowed()
         if error.errno == errno.EBUSY:
             return IN_USE % self.path
         return f"{self.path}: {error.strerror}"
 
+    def _why_not_allowed(self):
+        try:
+            status = os.stat(self.path)
+        except OSError:
+            return NO_PORT % self.path
+        if is_pty(status):
+            return NOT_YOURS % (self.path, user_name(status.st_uid))
+        return (NOT_ALLOWED if stat.S_ISCHR(status.st_mode) else NO_TERMINAL) % self.path
+
+
+def is_pty(status):
+    """status: of `os.stat`."""
+    return stat.S_ISCHR(status.st_mode) and os.major(status.st_rdev) in PTY_MAJORS
+
+
+def user_name(number):
+    try:
+        return pwd.getpwuid(number).pw_name
+    except KeyError:
+        return "user %d" % number
+
 
 class Pty(SerialPort):
-    """A pty of our own; `path` is where the others find it. link: a name that stays the same.
+    """A pty of our own; `path` is where the others find it. link: a name that stays the same;
+    what else has that name is left alone.
 
     We keep the others' end open as well: they may come and go.
     """
@@ -196,25 +235,49 @@ class Pty(SerialPort):
         self._theirs = None
 
     def open(self):
+        """PortError: the link cannot be made."""
         self._descriptor, self._theirs = os.openpty()
         os.set_blocking(self._descriptor, False)
         tty.setraw(self._theirs)
         self.path = os.ttyname(self._theirs)
-        if self._link:
-            self._make_link()
+        try:
+            if self._link:
+                self._make_link()
+        except PortError:
+            self.close()
+            raise
 
     def close(self):
+        # First of all: a pty that is closed gives its path to the next one.
+        if self._link and self.path and target(self._link) == self.path:
+            os.remove(self._link)
         SerialPort.close(self)
         if self._theirs is not None:
             os.close(self._theirs)
             self._theirs = None
-        if self._link and os.path.islink(self._link) and os.readlink(self._link) == self.path:
-            os.remove(self._link)
 
     def _make_link(self):
+        there = target(self._link)
         try:
-            if os.path.islink(self._link):
-                os.remove(self._link)  # left by one that was killed
+            if there is not None:
+                if not self._is_left_over(there):
+                    raise PortError(LINK_TAKEN % (self._link, there))
+                os.remove(self._link)
             os.symlink(self.path, self._link)
         except OSError as error:
             raise PortError(f"{self._link}: {error.strerror}") from None
+
+    def _is_left_over(self, there):
+        """Whether a link that leads there was made by one of us that was killed."""
+        if there == self.path:
+            return True
+        is_a_pty = os.path.dirname(there) == os.path.dirname(self.path)
+        return is_a_pty and not os.path.exists(there)
+
+
+def target(link):
+    """Where a symbolic link leads, or None: it is none."""
+    try:
+        return os.readlink(link)
+    except OSError:
+        return None

@@ -12,6 +12,9 @@ its time already, and the reply is handed over at its beginning.
 Judged is what a computer can tell: characters that came together are one burst, a master that is
 too fast behind a reply is taken for one that has kept the start interval, and behind a real port,
 whose adapter may hand over late, a telegram may come in pieces.
+
+A port has no way to say that a character came with a wrong parity or stop bit: such a one is not
+handed over, as by a program that obeys its UART.
 """
 
 from boards.sim.clock import Event
@@ -26,18 +29,21 @@ ECHO_US = 100_000  # what is sent comes back within so long, or never
 
 
 class Master:
-    """What both have. write(data): to the port, at once. note(at_us, from_master, data): called
-    for every telegram, or what else was said, when it is over.
+    """What both have. write(data): to the port, at once. note(burst, from_master, seen): called
+    for every telegram, or what else was said, when it is over; seen: what look() answered when it
+    began, for things may change until then.
     """
 
     name = "panel"  # as the script language calls whoever asks
     is_panel = True
 
-    def __init__(self, wire, write, note=None):
+    def __init__(self, wire, write, note=None, look=None):
         self._wire = wire
         self._clock = wire.clock
         self._write = write
         self._note = note
+        self._look = look
+        self._seen = {}  # burst: what was seen when it began
         self._pending = bytearray()
         wire.attach(self)
 
@@ -45,16 +51,30 @@ class Master:
         """Whether so much waits that the port is better left alone."""
         return len(self._pending) >= QUEUE_FULL
 
+    def _begins(self, burst):
+        if self._look is not None:
+            self._seen[burst] = self._look()
+
     def _noted(self, burst, from_master):
         if self._note is not None:
-            self._note(burst.start_us, from_master, bytes(burst.data[: burst.count]))
+            self._note(burst, from_master, self._seen.pop(burst, None))
+
+    def _hand_to_port(self, burst, first, last):
+        """Characters first...last - 1, those that are any."""
+        heard = bytes(burst.data[first:last])
+        errors = burst.errors
+        if errors is not None:
+            heard = bytes([heard[i] for i in range(len(heard)) if not errors[first + i]])
+        if heard:
+            self._write(heard)
+        return heard
 
 
 class PtyMaster(Master):
     """Its characters take their time on the wire, one behind the other."""
 
-    def __init__(self, wire, write, note=None):
-        Master.__init__(self, wire, write, note)
+    def __init__(self, wire, write, note=None, look=None):
+        Master.__init__(self, wire, write, note, look)
         self._burst = None  # what it is saying
         self._go_on = Event(self._over)
         self._answered_us = None  # the end of a reply, until it talks
@@ -71,6 +91,7 @@ class PtyMaster(Master):
 
     def watch(self, burst):
         """A drive begins to talk. Of two at once the second one is handed over at its end."""
+        self._begins(burst)
         now_us = self._clock.now_us
         if self._heard is None or self._heard.end_us <= now_us:
             self._heard = burst
@@ -85,19 +106,19 @@ class PtyMaster(Master):
         if burst is self._heard:
             first, self._heard = self._handed_over, None
             self._clock.cancel(self._hand_over)
-        self._write(bytes(burst.data[first : burst.count]))
+        self._hand_to_port(burst, first, burst.count)
 
     def _hand_over_piece(self):
         burst = self._heard
         arrived = burst.arrived(self._clock.now_us)
         if arrived > self._handed_over:
-            self._write(bytes(burst.data[self._handed_over : arrived]))
+            self._hand_to_port(burst, self._handed_over, arrived)
             self._handed_over = arrived
         if self._clock.now_us < burst.end_us:
             self._clock.schedule(self._hand_over, self._clock.now_us + PIECE_US)
 
     def hear_itself(self, burst):
-        self._write(bytes(burst.data[: burst.count]))
+        self._hand_to_port(burst, 0, burst.count)
 
     def _begin(self):
         """Talk, or first let the start interval pass behind a reply."""
@@ -117,7 +138,10 @@ class PtyMaster(Master):
 
     def _say(self, room):
         count = min(len(self._pending), room)
+        begins = self._burst is None
         self._burst = self._wire.talk(self, self._pending, count)
+        if begins:
+            self._begins(self._burst)
         self._pending = self._pending[count:]
         self._clock.schedule(self._go_on, self._burst.end_us)
 
@@ -132,8 +156,8 @@ class PtyMaster(Master):
 class PortMaster(Master):
     """Its characters have been on a line already when they come; replies go there themselves."""
 
-    def __init__(self, wire, write, note=None):
-        Master.__init__(self, wire, write, note)
+    def __init__(self, wire, write, note=None, look=None):
+        Master.__init__(self, wire, write, note, look)
         self._flaws = bytearray()  # of the pending characters, as in Burst.errors
         self._echo = b""
         self._echo_until_us = 0
@@ -154,10 +178,9 @@ class PortMaster(Master):
 
     def watch(self, burst):
         """A drive begins to talk. The port takes as long for it as the simulated line."""
-        reply = bytes(burst.data[: burst.count])
-        self._echo = reply
+        self._begins(burst)
+        self._echo = self._hand_to_port(burst, 0, burst.count)
         self._echo_until_us = burst.end_us + ECHO_US
-        self._write(reply)
 
     def hear(self, burst):
         self._noted(burst, False)
@@ -193,5 +216,6 @@ class PortMaster(Master):
         burst.errors = self._flaws[:count] if any(self._flaws[:count]) else None
         self._pending = bytearray()
         self._flaws = bytearray()
+        self._begins(burst)
         wire.took_place(self, burst)
         self._noted(burst, True)

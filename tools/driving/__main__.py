@@ -1,5 +1,7 @@
 """Simulated drives for any USS master, on a pty or a serial port, in real time: tools/drive.
 
+Nothing that it says holds up the drives: what nobody reads is left out.
+
 Exit status: 0 after Ctrl-C or `quit`, 1 when the port cannot be had, 2 when the command line
 cannot be understood.
 """
@@ -12,9 +14,10 @@ import textwrap
 
 from boards.sim.drive_switches import SWITCHES
 from boards.sim.script import ORDER, ExpectationFailed, Script, ScriptError, parameter, value
+from boards.sim.script import drive as drive_at
 from tools.driving.line import OF_THE_PANEL, DriveLine
 from tools.serial_port import PortError, Pty, SerialPort
-from tools.standard_streams import has_room, is_ours, open_missing
+from tools.standard_streams import Output, is_ours, open_missing
 
 FAMILIES = ("mm420", "mm440", "mm3", "g110", "v20", "g120", "generic")
 USUAL = "mm420"
@@ -27,6 +30,12 @@ READ_MAX = 4096
 INDENTED = {"initial_indent": "    ", "subsequent_indent": "    "}
 
 COMMANDS = [name for name in ORDER if name not in OF_THE_PANEL] + ["off", "on", "help", "quit"]
+UNKNOWN = "unknown command %s (there are: %s)"
+
+SWITCH_VALUES = {"no_rights_error": (0, 7, 11)}  # of the others: 0 and 1, or from 0 to
+SWITCH_MAX = 0xFFFF
+
+UNHEARD = "standard output: %s; the drives are served all the same"
 
 DESCRIPTION = """\
 Serves simulated drives to a USS master of your own: a PLC, an Arduino, a program. They are those
@@ -115,11 +124,30 @@ def kinds(chosen):
             found[one]["parameters"][parameter(None, name)] = new
     for entry in chosen.switch:
         addresses, name, new = assignment("--switch", "stale_replies=2", entry, found)
-        if name not in [row[0] for row in SWITCHES if row[1] is not None]:
-            raise ValueError("--switch %s: there is no such switch; --switch help" % entry)
+        try:
+            new = switch_value(name, new)
+        except ValueError as error:
+            raise ValueError("--switch %s: %s" % (entry, error)) from None
         for one in addresses:
             found[one]["switches"][name] = new
     return found
+
+
+def switch_value(name, new):
+    """What a switch of the drive is set to. ValueError: there is none, or it cannot be set so."""
+    usual = {row[0]: row[1] for row in SWITCHES}.get(name)
+    if usual is None:
+        raise ValueError("there is no such switch; --switch help")
+    if isinstance(usual, bool):
+        allowed, named = (0, 1), "0 or 1"
+    elif name in SWITCH_VALUES:
+        allowed = SWITCH_VALUES[name]
+        named = "one of %s" % ", ".join(map(str, allowed))
+    else:
+        allowed, named = range(SWITCH_MAX + 1), "0...%d" % SWITCH_MAX
+    if isinstance(new, float) or new not in allowed:
+        raise ValueError("it can be %s" % named)
+    return type(usual)(new)
 
 
 def family_of(name):
@@ -153,10 +181,11 @@ def switches():
 
 
 class Keyboard:
-    """The commands on standard input, which may end before the drives do."""
+    """The commands on standard input, which may end before the drives do; `say` answers them."""
 
-    def __init__(self, line):
+    def __init__(self, line, say):
         self._line = line
+        self._say = say
         self._script = Script(line, "standard input", say)
         self._typed = b""
         self.open = True
@@ -187,18 +216,25 @@ class Keyboard:
         if words[:1] in (["quit"], ["q"]):
             self.left = True
         elif words[:1] == ["help"]:
-            say(" ".join(COMMANDS))
+            self._say(" ".join(COMMANDS))
         elif words[:1] in (["off"], ["on"]):
             self._switch(words)
+        elif words and words[0] not in COMMANDS and words[0] not in OF_THE_PANEL:
+            self._say(UNKNOWN % (words[0], " ".join(COMMANDS)))
         else:
             self._obey(command)
 
     def _switch(self, words):
         """The mains of a drive."""
-        if len(words) != 2 or not is_node(words[1]) or int(words[1]) not in self._line.drives:
-            say("use: %s A" % words[0])
+        use = "use: %s A" % words[0]
+        if len(words) != 2:
+            self._say(use)
             return
-        drive = self._line.drives[int(words[1])]
+        try:
+            drive = drive_at(self._line, words[1])
+        except ValueError as error:
+            self._say("%s (%s)" % (error, use))
+            return
         if words[0] == "on":
             drive.power_on()
         else:
@@ -210,45 +246,44 @@ class Keyboard:
             if name:
                 self._script.do(name, values)
         except (ScriptError, ExpectationFailed) as error:
-            say(str(error))
+            self._say(str(error))
+        except OverflowError:
+            self._say("%s: a number is too large" % command.split()[0])
 
 
-def say(line):
-    print(line, flush=True)
-
-
-class Log:
-    """The log on standard output. Where nobody reads it, the drives do not wait: lines are left
-    out, and counted.
-    """
+class Complaints:
+    """What is said on standard error, while somebody can be told there."""
 
     def __init__(self):
-        self._left_out = 0
+        self._output = Output(2)
 
     def __call__(self, line):
-        if not has_room(1):
-            self._left_out += 1
-            return
-        if self._left_out:
-            line = "(%d lines left out: nobody read them)\n%s" % (self._left_out, line)
-            self._left_out = 0
-        say(line)
+        try:
+            self._output.say("tools/drive: %s" % line)
+        except BrokenPipeError:
+            pass
+
+    def go_on(self):
+        try:
+            self._output.go_on()
+        except BrokenPipeError:
+            pass
 
 
-def complain(line):
-    print("tools/drive: %s" % line, file=sys.stderr, flush=True)
-
-
-def serve(chosen, found):
+def serve(chosen, found, complain):
     port = Pty(chosen.link) if chosen.pty else SerialPort(chosen.port, chosen.baud)
     port.open()
+    output = Output(1, lambda why: complain(UNHEARD % why))
     try:
-        line = DriveLine(port, found, chosen.baud, Log() if chosen.log else None, complain)
-        say(chosen.link or port.path)
-        keyboard = Keyboard(line)
+        log = output.say if chosen.log else None
+        line = DriveLine(port, found, chosen.baud, log, complain)
+        output.say(chosen.link or port.path)
+        keyboard = Keyboard(line, output.say)
         while not keyboard.left:
             if line.serve(keyboard if keyboard.listens() else None):
                 keyboard.read()
+            output.go_on()
+            complain.go_on()
     finally:
         port.close()
 
@@ -261,8 +296,9 @@ def main(words):
     signal.signal(signal.SIGTTIN, signal.SIG_IGN)  # in the background it is not typed to
     signal.signal(signal.SIGTTOU, signal.SIG_IGN)
     open_missing()
+    complain = Complaints()
     try:
-        serve(chosen, found)
+        serve(chosen, found, complain)
     except KeyboardInterrupt:
         return 0
     except BrokenPipeError:

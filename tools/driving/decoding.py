@@ -1,18 +1,25 @@
 """A telegram in words, for the log of tools/drive: who, which parameter task, which commands.
 
-    line(12_345_678, True, characters, drives)
+    setups = {1: Setup(drive)}          # when the telegram begins
+    characters, damage = said(burst)    # when it is over
+    line(12_345_678, True, characters, setups, damage)
     # "   12.345678 > A1  read P0700[0]  STW 047E  HSW    0.0 %"
 
-drives: {address: `Drive`}; how a telegram is divided into PKW and PZD is asked of them, at the
-moment. A telegram that none of them would take is shown as characters, with what is wrong.
+A telegram that no drive would take is shown as characters, with what is wrong.
 """
 
 import struct
 
+from boards.sim.drive_texts import SECOND_FIELD, TEXT_CHARACTERS, WRITES
+from boards.sim.parameter_channel import ALL_ELEMENTS, PAGE_BITS, number_of, sent_value
 from boards.sim.slave import BROADCAST_BIT, MIRROR_BIT, SPECIAL_BIT, STX, VARIABLE, xor_of
 
 NODE = 0x1F
 SHOWN = 24  # characters of something that is no telegram
+DAMAGED = "??"  # stands for a character that came with an error
+
+TALKED_INTO = "talked into: %d of %d characters damaged"
+WRONG_BITS = "parity or stop bit wrong: %d of %d characters"
 
 TASKS = (
     "", "read", "write", "write long", "read description", "write description", "read array",
@@ -27,9 +34,10 @@ REPLIES = (
 TASKS_WITH_VALUE = (2, 3, 7, 8, 11, 12, 13, 14)
 REPLIES_WITH_VALUE = (1, 2, 4, 5, 6, 7, 9, 10, 11, 12)
 LONG_TASKS, LONG_REPLIES = (3, 8, 11, 13), (2, 5, 10, 12)
+ARRAY_TASKS, ARRAY_REPLIES = (7, 8, 11, 12), (4, 5, 11, 12)
+TEXT = 15  # task and reply
 
-# High byte of IND: where a family numbers its parameters beyond 1999.
-PAGES = {0x80: 2000, 0x10: 4000, 0x90: 6000, 0x20: 8000}
+PAGE = sum(bit for bit, _ in PAGE_BITS)  # in IND
 
 # Bits of STW and ZSW (USS specification C-5.2.1): the word when it is 1, the word when it is 0.
 STW_BITS = (
@@ -37,6 +45,7 @@ STW_BITS = (
     ("", "ramp held"), ("", "setpoint off"), ("ACKNOWLEDGE", ""), ("JOG RIGHT", ""),
     ("JOG LEFT", ""), ("", "NOT BY PLC"), ("REVERSE", ""),
 )  # fmt: skip
+STW_BITS_OF_TWO_DIRECTIONS = STW_BITS[:11] + (("RIGHT", ""), ("LEFT", ""))
 ZSW_BITS = (
     ("", ""), ("ready", ""), ("running", ""), ("FAULT", ""), ("", "OFF2"), ("", "OFF3"),
     ("inhibited", ""), ("warning", ""), ("at setpoint", ""), ("", "local"),
@@ -45,15 +54,37 @@ ZSW_BITS = (
 FULL_SCALE = 0x4000  # is 100 %
 
 
-def line(at_us, from_master, characters, drives):
-    """One line of the log."""
+class Setup:
+    """How a drive takes a telegram that begins now: a write may have changed that at its end."""
+
+    def __init__(self, drive):
+        self.address = drive.address
+        self.layout = drive.layout
+        self.two_directions = drive.family.STYLE["two directions"]
+        self.raw_numbers = drive.switches.raw_numbers
+        self.second_word = drive.switches.second_word
+
+
+def said(burst):
+    """What was heard of it: characters, None for each that came with an error; and how damaged."""
+    characters = list(burst.data[: burst.count])
+    if burst.errors is None:
+        return characters, ""
+    heard = [None if burst.errors[i] else characters[i] for i in range(burst.count)]
+    if None not in heard:
+        return characters, ""
+    why = TALKED_INTO if burst.garbled else WRONG_BITS
+    return heard, why % (heard.count(None), len(heard))
+
+
+def line(at_us, from_master, characters, setups, damage=""):
+    """One line of the log. setups: {address: `Setup`}. characters, damage: as `said` has them."""
     head = "%5d.%06d %s " % (at_us // 1_000_000, at_us % 1_000_000, "<>"[from_master])
-    here = {drive.address: drive for drive in drives.values()}
-    wrong = flaw(characters, from_master, here)
+    wrong = damage or flaw(characters, from_master, setups)
     if wrong:
-        shown = " ".join("%02X" % character for character in characters[:SHOWN])
+        shown = " ".join(DAMAGED if one is None else "%02X" % one for one in characters[:SHOWN])
         return "%s%s%s  (%s)" % (head, shown, " ..." if len(characters) > SHOWN else "", wrong)
-    return head + telegram(characters, from_master, here)
+    return head + telegram(characters, from_master, setups)
 
 
 def flaw(characters, from_master, here):
@@ -100,32 +131,66 @@ def telegram(characters, from_master, here):
         return "all broadcast, enable " + " ".join("%04X" % word for word in words)
     if adr & MIRROR_BIT:
         return "A%-2d mirror" % (adr & NODE)
-    count = max(len(words) - here[adr].layout[1], 0)
+    setup = here[adr]
+    count = max(len(words) - setup.layout[1], 0)
     parts = ["A%-2d" % adr]
     if count:
-        parts.append(("%-28s" % parameter(words[:count], from_master)))
-    return " ".join(parts + [process(words[count:], from_master)]).rstrip()
+        parts.append("%-28s" % parameter(words[:count], from_master, setup))
+    return " ".join(parts + [process(words[count:], from_master, setup)]).rstrip()
 
 
-def parameter(words, from_master):
+def parameter(words, from_master, setup):
     """The PKW area in words: "read P0700[0]", "is P0700[0] = 5"."""
     kind = words[0] >> 12
     name = (TASKS if from_master else REPLIES)[kind]
     if not name:
         return "-"
-    index = words[1] if len(words) > 1 else 0
-    number = (words[0] & 0x7FF) + PAGES.get(index >> 8 & 0xFC, 0)
-    said = "%s P%04d[%d]" % (name, number, index & 0xFF)
+    ind = words[1] if len(words) > 1 else 0
+    writes_text = kind == TEXT and ind & WRITES
+    if from_master and writes_text:
+        name = "write text"
+    told = name + " " + place(words[0], ind, setup)
+    if kind == TEXT:
+        told += ", field 2" if ind & SECOND_FIELD else ""
+        return told if from_master and not writes_text else told + " = " + text(words[2:])
     if kind not in (TASKS_WITH_VALUE if from_master else REPLIES_WITH_VALUE):
-        return said
+        return told
     long = kind in (LONG_TASKS if from_master else LONG_REPLIES)
-    return said + " = " + value(words[2:], long)
+    array = kind in (ARRAY_TASKS if from_master else ARRAY_REPLIES)
+    if array and ind & 0xFF == ALL_ELEMENTS and setup.layout[0] == VARIABLE:
+        return told + " = " + values(words[2:], long)
+    return told + " = " + value(words[2:], long, setup, from_master)
 
 
-def value(words, long):
-    """The PWE area: a word, or a double word, which is a float where that makes sense."""
-    if not long or len(words) < 2:
-        return "%d" % words[-1] if words else "?"
+def place(pke, ind, setup):
+    """P2013[0]; or why that is no number: PNU goes to 1999, and IND tells the page."""
+    number = number_of(pke, ind, setup.raw_numbers)
+    if number is not None:
+        return "P%04d[%d]" % (number, ind & 0xFF)
+    page = "page %02X" % ((ind & PAGE) >> 8) if ind & PAGE else "no page"
+    return "PNU %d[%d] (%s)" % (pke & 0x7FF, ind & 0xFF, page)
+
+
+def value(words, long, setup, from_master):
+    """The PWE area with one value."""
+    if not words:
+        return "?"
+    if long and len(words) > 1:
+        return double_word(words)
+    # A reply has it in one place only, whatever a master may do.
+    (word,) = sent_value(words, 1, setup.layout[0], from_master and setup.second_word)
+    return "%d" % word
+
+
+def values(words, long):
+    """The PWE area with all elements of an array."""
+    if long:
+        return ", ".join(double_word(words[i : i + 2]) for i in range(0, len(words) - 1, 2))
+    return ", ".join("%d" % word for word in words)
+
+
+def double_word(words):
+    """A float, where that makes sense."""
     double = words[0] << 16 | words[1]
     (real,) = struct.unpack(">f", struct.pack(">I", double))
     if 1e-4 < abs(real) < 1e7:
@@ -133,16 +198,24 @@ def value(words, long):
     return "%d" % double
 
 
-def process(words, from_master):
+def text(words):
+    if 2 * len(words) != TEXT_CHARACTERS:
+        return " ".join("%04X" % word for word in words) or "?"
+    return repr(struct.pack(">8H", *words).decode("latin-1").rstrip())
+
+
+def process(words, from_master, setup):
     """The PZD area: control or status word, setpoint or actual value, the others as they are."""
     if not words:
         return ""
     name, second, bits = ("STW", "HSW", STW_BITS) if from_master else ("ZSW", "HIW", ZSW_BITS)
-    said = "%s %04X" % (name, words[0])
+    if from_master and setup.two_directions:
+        bits = STW_BITS_OF_TWO_DIRECTIONS
+    told = "%s %04X" % (name, words[0])
     if len(words) > 1:
         signed = words[1] - (words[1] >> 15 << 16)
-        said += " %s %7.2f %%" % (second, 100 * signed / FULL_SCALE)
+        told += " %s %7.2f %%" % (second, 100 * signed / FULL_SCALE)
     if len(words) > 2:
-        said += " " + " ".join("%04X" % word for word in words[2:])
+        told += " " + " ".join("%04X" % word for word in words[2:])
     meanings = (bits[i][not words[0] >> i & 1] for i in range(len(bits)))
-    return said + "  " + ", ".join(meaning for meaning in meanings if meaning)
+    return told + "  " + ", ".join(meaning for meaning in meanings if meaning)

@@ -20,7 +20,7 @@ from tools.driving import decoding
 from tools.serial_port import LineCut, PortError
 
 AGAIN_S = 1.0  # a port that has gone is looked for so often
-LONGEST_WAIT_S = 1.0
+LONGEST_WAIT_US = 1_000_000
 
 NO_PANEL = "there is no panel here, only drives"
 OF_THE_PANEL = ("press", "hold", "down", "up", "lcd", "expect", "hang", "reset", "power")
@@ -46,15 +46,18 @@ class DriveLine:
         for address, kind in kinds.items():
             self.drives[address] = Drive(self.clock, self.wire, address, **kind)
         station = PtyMaster if port.is_pty else PortMaster
-        self._master = station(self.wire, self._write, self._note if log else None)
+        noted = (self._note, self._look) if log else ()
+        self._master = station(self.wire, self._write, *noted)
 
     def run(self, ms):
         """Serve for so long, whatever is typed."""
         until_us = self.clock.true_us() + 1000 * ms
-        while self.clock.true_us() < until_us:
-            self.serve(None, (until_us - self.clock.true_us()) / 1e6)
+        left_us = 1000 * ms
+        while left_us > 0:
+            self.serve(None, min(left_us, LONGEST_WAIT_US) / 1e6)
+            left_us = until_us - self.clock.true_us()
 
-    def serve(self, keyboard=None, longest_s=LONGEST_WAIT_S):
+    def serve(self, keyboard=None, longest_s=LONGEST_WAIT_US / 1e6):
         """Wait for something to happen, and let it. Answers whether `keyboard` can be read."""
         wait_s = max(0, min(self.clock.next_us() / 1e6, longest_s))
         awaited = [keyboard] if keyboard is not None else []
@@ -101,5 +104,9 @@ class DriveLine:
         self._gone_at = None
         self._say("%s is back" % self._port.path)
 
-    def _note(self, at_us, from_master, characters):
-        self._log(decoding.line(at_us, from_master, characters, self.drives))
+    def _look(self):
+        return {drive.address: decoding.Setup(drive) for drive in self.drives.values()}
+
+    def _note(self, burst, from_master, setups):
+        characters, damaged = decoding.said(burst)
+        self._log(decoding.line(burst.start_us, from_master, characters, setups or {}, damaged))
