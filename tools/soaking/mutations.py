@@ -33,7 +33,7 @@ MUTATIONS = (
     Mutation(
         "jog bit kept",
         "a jog goes on when its key is let go",
-        ("JOG",), 5,
+        ("JOG",), 1,
         (
             "panel/jog_keys.py",
             "if down != self._key or control is not",
@@ -43,7 +43,7 @@ MUTATIONS = (
     Mutation(
         "both jog keys",
         "two jog keys at once are one",
-        ("JOG",), 13,
+        ("JOG",), 14,
         (
             "panel/jog_keys.py",
             "if down != self._key or control is not",
@@ -53,7 +53,7 @@ MUTATIONS = (
     Mutation(
         "BCC unchecked",
         "a spoilt reply counts",
-        ("WITHOUT REASON", "SHOWN", "LOST", "START"), 7,
+        ("WITHOUT REASON", "SHOWN", "LOST", "START"), 54,
         (
             "uss/telegram.py",
             "    if exclusive_or(buffer, count):\n        return BAD_BCC\n",
@@ -64,7 +64,7 @@ MUTATIONS = (
     Mutation(
         "ON kept over a loss",
         "a drive that comes back into contact starts by itself",
-        ("START", "LOST"), 10,
+        ("START", "LOST"), 2,
         (
             "uss/drive.py",
             "            self.was_running = self._may_run\n            self.revoke()\n",
@@ -79,7 +79,7 @@ MUTATIONS = (
     Mutation(
         "ON while lost",
         "ON is sent to a drive that does not answer",
-        ("LOST", "MAY RUN"), 10,
+        ("LOST", "MAY RUN"), 1,
         (
             "uss/master.py",
             "drive.miss(finding, now, self._lost_us, self._mask)\n        if",
@@ -89,7 +89,7 @@ MUTATIONS = (
     Mutation(
         "stale PKW accepted",
         "an old answer is taken for that of another parameter",
-        ("SETPOINT", "SHOWN", "RECOVERS"), 1,
+        ("SETPOINT", "SHOWN", "RECOVERS"), 3,
         (
             "uss/pkw.py",
             "reply = reply_about(net, at, self.words)",
@@ -109,13 +109,13 @@ MUTATIONS = (
     Mutation(
         "dead man removed",
         "ON goes on while the panel hangs",
-        ("DEAD MAN",), 6,
+        ("DEAD MAN",), 2,
         ("uss/master.py", "DEAD_MAN_US = const(300_000)", "DEAD_MAN_US = const(3_000_000)"),
     ),
     Mutation(
         "wrong drive stopped",
         "STOP stops the first drive, whichever is shown",
-        ("STOP", "START"), 3,
+        ("STOP", "START"), 2,
         (
             "panel/stop_key.py",
             "            control.stop()\n",
@@ -125,7 +125,7 @@ MUTATIONS = (
     Mutation(
         "STOP waits its turn",
         "STOP does not go before the list",
-        ("STOP",), 2,
+        ("STOP",), 8,
         (
             "uss/drive.py",
             "        self.stops = (self.stops + 1) & _TICKET_MASK\n        self.hurry()\n",
@@ -135,7 +135,7 @@ MUTATIONS = (
     Mutation(
         "STOP beaten by START",
         "START is obeyed while STOP is down",
-        ("STOP", "START"), 8,
+        ("STOP", "START"), 7,
         (
             "panel/panel.py",
             "if self.stop_key.is_down and pressed & self._motion_keys:",
@@ -145,7 +145,7 @@ MUTATIONS = (
     Mutation(
         "started after a reset",
         "a motor that turns when the panel has restarted is sent ON",
-        ("START",), 5,
+        ("START",), 6,
         (
             "panel/control.py",
             "            self._contact = drive.contact\n            self.lost_running",
@@ -157,7 +157,7 @@ MUTATIONS = (
     Mutation(
         "START without release",
         "a START that was down at power-on counts, sooner or later",
-        ("START",), 1,
+        ("START",), 35,
         ("panel/keys.py", "self._released = 0  #", "self._released = (1 << len(names)) - 1  #"),
         (
             "panel/panel.py",
@@ -168,7 +168,7 @@ MUTATIONS = (
     Mutation(
         "EEPROM without asking",
         "every write wears the EEPROM",
-        ("EEPROM",), 1,
+        ("EEPROM",), 13,
         (
             "panel/writer.py",
             "pkw.WRITE_WORD_EEPROM if eeprom else pkw.WRITE_WORD",
@@ -178,13 +178,13 @@ MUTATIONS = (
     Mutation(
         "no question",
         "a parameter that cuts the panel off is written at once",
-        ("WRITE",), 1,
+        ("WRITE",), 13,
         ("panel/pages/parameters.py", "elif number in profiles.ASK_FIRST:", "elif number < 0:"),
     ),
     Mutation(
         "setpoint limit dropped",
         "the limits of the drive are not kept",
-        ("SETPOINT",), 5,
+        ("SETPOINT",), 56,
         (
             "panel/setpoint.py",
             "            highest = min(highest, survey.highest())\n",
@@ -206,7 +206,7 @@ MUTATIONS = (
     Mutation(
         "STOP ALL forgets drives",
         "STOP held for 4 s stops only what is shown",
-        ("STOP ALL",), 3,
+        ("STOP ALL",), 21,
         (
             "panel/stop_key.py",
             "            self.left = 2 * len(self._controls)\n",
@@ -216,7 +216,7 @@ MUTATIONS = (
     Mutation(
         "selecting stops",
         "another drive is shown, and the one before is stopped",
-        ("WITHOUT REASON", "ANNOUNCED"), 3,
+        ("WITHOUT REASON", "ANNOUNCED"), 2,
         (
             "panel/panel.py",
             "        self.selected.keep_quiet()\n        position",
@@ -226,7 +226,7 @@ MUTATIONS = (
     Mutation(
         "watchdog fed always",
         "a bus that stands is not restarted",
-        ("WATCHDOG",), 1,
+        ("WATCHDOG",), 6,
         ("app.py", "if stands_ms * 1000 < self.bus.patience_us:", "if stands_ms >= 0:"),
     ),
     Mutation(
@@ -238,7 +238,7 @@ MUTATIONS = (
     Mutation(
         "lost drive looks alive",
         "a drive that is lost is shown as it was last",
-        ("MAY RUN",), 10,
+        ("MAY RUN",), 27,
         (
             "panel/state.py",
             "    if not drive.contact:\n        return texts.NO_CONTACT\n",
@@ -248,7 +248,7 @@ MUTATIONS = (
     Mutation(
         "lost drive forgotten",
         "a drive that ran and is lost is just NO CONTACT",
-        ("MAY RUN",), 1,
+        ("MAY RUN",), 2,
         (
             "panel/control.py",
             "self.lost_running = drive.was_running and not drive.contact",
@@ -258,7 +258,7 @@ MUTATIONS = (
     Mutation(
         "unconfirmed STOP unsaid",
         "nobody is told that a STOP has no effect",
-        ("UNCONFIRMED",), 1,
+        ("UNCONFIRMED",), 14,
         ("panel/stop_watch.py", "            self.unconfirmed = True\n", "            pass\n"),
     ),
     Mutation(
@@ -274,25 +274,25 @@ MUTATIONS = (
     Mutation(
         "wrong sign shown",
         "a motor that turns left reads as one that turns right",
-        ("SHOWN",), 6,
+        ("SHOWN",), 17,
         ("panel/view.py", "-setpoint if control.reversed else setpoint", "setpoint"),
     ),
     Mutation(
         "listens to nobody",
         "the panel talks into another master's telegrams after power-on",
-        ("LISTEN",), 5,
+        ("LISTEN",), 6,
         ("uss/master.py", "LISTEN_US = const(100_000)", "LISTEN_US = const(10_000)"),
     ),
     Mutation(
         "start interval halved",
         "the drives miss telegrams that come too soon",
-        ("LINE",), 1,
+        ("LINE",), 4,
         ("uss/timing.py", "START_INTERVAL_CHARACTERS = 2", "START_INTERVAL_CHARACTERS = 1"),
     ),
     Mutation(
         "faults started",
         "START is obeyed by a drive that has tripped",
-        ("REFUSED",), 1,
+        ("REFUSED",), 54,
         (
             "panel/permits.py",
             "    if state == pzd.FAULT:\n        return texts.REFUSED_FAULT\n",
@@ -302,7 +302,7 @@ MUTATIONS = (
     Mutation(
         "foreign commands ignored",
         "START is obeyed though the drive takes its commands elsewhere",
-        ("REFUSED",), 1,
+        ("REFUSED",), 18,
         (
             "panel/permits.py",
             "    if is_foreign(survey, profiles.COMMAND_SOURCE):\n"
@@ -313,7 +313,7 @@ MUTATIONS = (
     Mutation(
         "unsupervised is nothing",
         "nobody is asked whether a motor may run on without the panel",
-        ("UNSUPERVISED",), 1,
+        ("UNSUPERVISED",), 2,
         (
             "panel/permits.py",
             "return survey.values[profiles.SUPERVISION] == 0",
@@ -323,7 +323,7 @@ MUTATIONS = (
     Mutation(
         "STOP stops all",
         "STOP stops drives that are not shown",
-        ("WITHOUT REASON",), 1,
+        ("WITHOUT REASON",), 2,
         (
             "panel/stop_key.py",
             "            control.stop()\n",
@@ -335,13 +335,13 @@ MUTATIONS = (
     Mutation(
         "all stopped too soon",
         "STOP held for the second stop stops every drive",
-        ("WITHOUT REASON",), 1,
+        ("WITHOUT REASON",), 3,
         ("panel/stop_key.py", "_ALL_MS = const(4_000)", "_ALL_MS = const(1_500)"),
     ),
     Mutation(
         "second stop for all",
         "OFF3 goes to drives that are not shown",
-        ("SECOND STOP",), 1,
+        ("SECOND STOP",), 3,
         (
             "panel/stop_key.py",
             "            self._control.second_stop()\n",
@@ -352,7 +352,7 @@ MUTATIONS = (
     Mutation(
         "second stop given up",
         "OFF3 is sent once, whether or not the drive has heard it",
-        ("SECOND STOP",), 1,
+        ("SECOND STOP",), 2,
         (
             "panel/control.py",
             "        if drive.answered_stw & ~pzd.STW_ACKNOWLEDGE != drive.off:\n"
@@ -363,7 +363,7 @@ MUTATIONS = (
     Mutation(
         "written elsewhere",
         "a parameter is written into the first drive, whichever is shown",
-        ("WRITE",), 1,
+        ("WRITE",), 27,
         (
             "panel/writer.py",
             "        drive = self._control.drive\n        if drive.channel.is_full():",
@@ -373,7 +373,7 @@ MUTATIONS = (
     Mutation(
         "another value written",
         "what is written is not what was confirmed",
-        ("WRITE",), 1,
+        ("WRITE",), 13,
         (
             "panel/writer.py",
             "self._job.number, self._job.index, 0, self._value)",
@@ -383,13 +383,13 @@ MUTATIONS = (
     Mutation(
         "silent drives forgotten",
         "a drive that does not answer is not asked again",
-        ("NEGLECTED",), 1,
+        ("NEGLECTED",), 2,
         ("uss/care.py", "                drive.ask_soon()\n", "                pass\n"),
     ),
     Mutation(
         "a running drive backs off",
         "a drive that runs, and is lost, is asked as seldom as one that stands",
-        ("NEGLECTED",), 1,
+        ("NEGLECTED",), 11,
         (
             "uss/drive.py",
             "and not self.contact and not self.was_running",
@@ -399,7 +399,7 @@ MUTATIONS = (
     Mutation(
         "saved at any time",
         "settings are written while a motor turns, and the bus stands still",
-        ("FLASH",), 1,
+        ("FLASH",), 2,
         (
             "app.py",
             "if self.panel.any_runs() or self._just_failed",
@@ -409,7 +409,7 @@ MUTATIONS = (
     Mutation(
         "listens too long",
         "the panel keeps silent after power-on, and nothing can be stopped",
-        ("SILENT PANEL", "WATCHDOG"), 1,
+        ("SILENT PANEL", "WATCHDOG"), 2,
         ("uss/master.py", "LISTEN_US = const(100_000)", "LISTEN_US = const(6_000_000)"),
     ),
     Mutation(
@@ -431,7 +431,7 @@ MUTATIONS = (
     Mutation(
         "an exception",
         "a page that fails takes the panel with it",
-        ("EXCEPTION",), 5,
+        ("EXCEPTION",), 2,
         (
             "panel/view.py",
             "        screen.put(0, 10, 6, texts.BEYOND_VALUE)\n",
