@@ -162,7 +162,9 @@ class Reader:
             return
         row_1, row_2 = self.rows
         if self.reads("STOP UNCONFIRMED") and drive.state in ("ready", "fault", "inhibited"):
-            raise Broken("UNCONFIRMED", "drive %d stands, and says so" % address)
+            answered_us = self.judge.cases[address].answered_us
+            if self.world.clock.now_us - answered_us < S + self.judge.cycle_us:
+                raise Broken("UNCONFIRMED", "drive %d stands, and says so" % address)
         hz, before_hz = drive.hz(), self._hz
         self._hz = hz
         if address_in(row_2) != address:
