@@ -106,6 +106,17 @@ def test_a_motor_that_slows_down_and_then_does_not_is_an_alarm():
     assert row_2(world) == "STOP UNCONFIRMED"
 
 
+def test_a_motor_that_slows_down_and_falls_silent_is_an_alarm_before_contact_is_lost():
+    world = running(settings={"lost_ms": 5000})
+    world.press("STOP")
+    world.run(500)  # it ramps down
+    world.drives[1].unplug()
+    world.run(2_000)
+    assert not world.reads("STOP UNCONFIRMED")
+    world.run(1_500)
+    assert world.reads("STOP UNCONFIRMED"), world.lcd()
+
+
 def test_the_slowest_ramp_of_a_drive_is_no_alarm():
     for p2000, p2009 in ((50.0, 0), (650.0, 0), (50.0, 1)):
         world = panel()

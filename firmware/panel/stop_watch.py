@@ -18,6 +18,7 @@ _CONFIRM_US = const(1_000_000)  # a STOP that is not confirmed by then is an ala
 _SLOWING_US = const(3_000_000)  # from then on the drive slows down once in this time at the least,
 _SLOWER = const(4)  # by so many steps of HIW: 0.012 Hz of 50 Hz, more than the word trembles
 _ANSWERS_MIN = const(3)  # so many answers must have come to judge by: long lists take their time
+_SILENT_MAX = const(3)  # after so many telegrams without an answer none is waited for
 
 
 class StopWatch:
@@ -67,7 +68,8 @@ class StopWatch:
                     self.end()
                     return
                 self._look_at(abs(pzd.signed(drive.hiw)), now)
-            if (answers or self._slowed) and answers < _ANSWERS_MIN:
+            waits = answers or self._slowed
+            if waits and answers < _ANSWERS_MIN and drive.silent < _SILENT_MAX:
                 return
         patience_us = _SLOWING_US if self._slowed or self._seems_slower else _CONFIRM_US
         if elapsed(now, self._slowed_at, self._mask) >= patience_us:
