@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The application: engine, panel and settings put together on a board.
 
     app = App(board)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Starts the panel on the board it finds.
 
 Two ways lead to the prompt instead. DOWN held at power-on does, before anything is sent. Ctrl-C

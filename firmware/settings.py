@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What a user sets once: the bus, its drives, the limits of the setpoint, what was accepted.
 
 The schema is two tables; the settings stand in a board's store as JSON, a line for each. A file

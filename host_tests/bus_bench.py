@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What the tests of `uss.bus` share: a virtual board, drives on its line, and a bus with them.
 
     bench = Bench()                         # one drive, address 1; its ramps take a second

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Lets pytest run the test files on every interpreter that the firmware has to work on.
 
 A test file is plain Python that runs on MicroPython: functions `test_*` without arguments that

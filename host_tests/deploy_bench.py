@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A chip for the tests of tools/deploy: its file system is FLASH, and power can be cut.
 
 Runs under CPython, in pytest. The functions of tools/deploying/on_chip.py see FLASH instead of the

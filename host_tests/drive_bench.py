@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A drive on a line, and a bus master by hand: what the tests of the simulated drive share.
 
 It uses nothing of the panel's protocol code: telegrams are put together here, from the

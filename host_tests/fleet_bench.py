@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A master on the simulated chip, and up to 31 simulated drives of all families and layouts.
 
 The master alone, without a panel: the engine works by interrupts, `run` is the main loop.

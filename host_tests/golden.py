@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Golden telegrams: what documents print, byte for byte, and what it means. They pin the codec.
 
 golden.json holds one telegram a line. Not all of them are valid: misprints of the sources are kept

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What the tests of the displays share: the simulated controller, and a driver wired to it."""
 
 from boards.sim.backpack import I2C

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A master alone on a line, and at the other end nothing but what a test says: to the microsecond.
 
 `answer(request)` makes the reply to the characters of a request when its last stop bit is over:

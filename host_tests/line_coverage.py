@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Line coverage of firmware/, from the lines that the coverage tier saw run.
 
 MicroPython names only the lines it ran; which lines there are to run is read from the source

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What the tests of the master share: a master on a link whose drives are a few lines of test.
 
 A drive answers what it is told to; time passes as the master asks for it.

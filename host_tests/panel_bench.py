@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What the tests of the panel share: a panel on the virtual board, hands and eyes for it.
 
 The same firmware as on the chip, in virtual time.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What the tests of parameter mode share: a hand that looks at parameters and changes them."""
 
 import json

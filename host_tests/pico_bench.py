@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What the tests of the panel on the emulated Pico share: a chip with the real firmware file.
 
     world = running()                       # build/pico/panel.uf2, its drive at the setpoint

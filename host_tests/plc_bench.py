@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A PLC with the USS blocks, and drives on its line, in virtual time: for the tests of `plc`.
 
     plc = Plc((1, 2))                   # nodes 1 and 2, simulated drives

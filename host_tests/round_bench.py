@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A bus master on a line with nodes of a few lines each, exact to the microsecond.
 
 For the tests of what the bus does: nodes have any layout, are slow, unplugged, answer mirror

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Runs the test functions of one file, on MicroPython or on CPython, and reports each as it ends.
 
 pytest starts it (conftest.py, tiers.py), one process for each file and tier. By hand, from the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """31 simulated drives of mixed families and layouts on one line, all controlled and read."""
 
 from boards.sim.intruder import Intruder

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What an earlier 8051 panel for the same drives did wrong, and this one does right: its keys.
 
 Each of its 21 known defects has a test that shows the right behaviour on the whole panel; the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A silent drive costs the others little, unless it runs: that one is asked as often as ever.
 
 And the gap between two telegrams to a drive stays under a third of its telegram-off time.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The display behind an I2C backpack: the same pictures, and a panel that outlives its cable."""
 
 import random

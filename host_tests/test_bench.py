@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """tools/bench: its command line, and that a figure which does not hold is shown and told.
 
 What it measures is measured on the emulated chip, by tools/bench itself: no test repeats it.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The bus for a program of one's own: what a maker writes, and what becomes of the motor."""
 
 from boards.sim import g110, g120, mm3, mm440, v20

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Corners of the bus: where two things come together that each are tested elsewhere.
 
 A random hand found most of them; others showed when a line of the engine was left out and no test

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Whose line it is: bus off and on by command, and another master on it."""
 
 from round_bench import Bench, Node, framed

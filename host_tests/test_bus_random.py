@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A program that does anything at any time: no motor starts but by a run() that says it did.
 
 A failure names its seed; `play(seed, paced)` repeats it.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Change reports: what somebody else has written (specification C-4.2.1.2, replies 9...12)."""
 
 from test_channel import Line

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The parameter channel of a drive: one task at a time, repeated until the fitting reply comes.
 
 Specification C-4.2.1.1. Time is in microseconds and only passes when a test says so.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The parameter channel works in hard interrupts: whatever is asked, it takes no memory."""
 
 import gc

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Data sheet of the simulated chip: UART, pin, timer, watchdog and interrupts as on the RP2040."""
 
 from boards.sim.chip import UART, WDT, Chip, Pin, Timer, heap_lock, heap_unlock

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The simulated chip locks the heap while a hard interrupt runs, as MicroPython does."""
 
 from boards.sim.chip import UART, Chip, Pin, Timer

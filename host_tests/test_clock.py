@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Data sheet of the virtual clock: order, exactness, wrapping counters, no heap."""
 
 import random

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """./tools/panel as a user calls it: what it prints, and its exit status.
 
 In a terminal it is another thing: test_terminal.py.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What a drive is told and when: ON either way, JOG, OFF1, OFF2, OFF3, the acknowledgement.
 
 Control words as in USS.md 4.8 of the protocol notes: r0054 of a MICROMASTER 4.

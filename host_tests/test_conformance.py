@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The drives that tools/drive serves, tried by a USS master of its own: telegrams and addresses.
 
 The master (conformance/) speaks to them over a pseudo terminal with pyserial, and shares no code

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The parameter channel of the drives that tools/drive serves, tried by a master of its own.
 
 Every sentence of the specification that a master could notice has its test; sections are those of

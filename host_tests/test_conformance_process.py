@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The process data of the drives that tools/drive serves, tried by a master of its own.
 
 Which words are obeyed (digest 4.6 of the manuals), the state machine (C-5.2.1, PROFIdrive), and

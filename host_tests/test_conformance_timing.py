@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A simulated drive, character by character: gaps, pauses, parity, and when it answers.
 
 What a real line cannot show, in virtual time to the microsecond. The talker sends single

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What went wrong is counted, per drive and for the bus, and the status byte says what kind."""
 
 from round_bench import Bench, Node, framed

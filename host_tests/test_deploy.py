@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """tools/deploy: what it copies, what it leaves alone, and that power may fail at every step."""
 
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """./tools/drive as somebody uses it who has a USS master of his own.
 
 The master here is a file descriptor: it writes a telegram and reads what comes.

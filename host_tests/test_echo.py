@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A line with two wires whose receiver stays on: the master hears what it sends.
 
 The echo may come by itself, in one burst with the reply, or in pieces; a mirror telegram that

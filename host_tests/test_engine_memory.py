@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The bus engine takes no memory: it works in hard interrupts, where the heap is locked.
 
 The simulated chip locks the heap while an interrupt runs, so whatever allocates there raises

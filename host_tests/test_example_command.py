@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """./tools/example, as somebody calls it who has just cloned the project."""
 
 import os

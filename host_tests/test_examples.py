@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The examples of tools/examples: each fits a screen, and does what it says."""
 
 from tools.examples import broadcast_stop, one_drive, own_program, parameters, three_drives

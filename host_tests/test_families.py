@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The drive families: each one's table agrees with itself, with the line and with the manuals.
 
 Numbers of chapters are those of the protocol notes, USS.md.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The machine code of the bus engine means what its twins in plain Python mean."""
 
 import random

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Golden telegrams, there and back: built from what they mean, and understood as they are meant.
 
 There: the words of every telegram from the fields of its row; what a master sends, by the master's

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The display driver on the simulated controller: all is shown, nothing is written for nothing."""
 
 import random

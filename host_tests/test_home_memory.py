@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The home page takes no memory, so that no collection ever interrupts it: the heap is locked.
 
 The firmware runs with the heap locked from the first instruction of a step to the last; only the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The engine may come in between any two lines of what the loop does: nothing is lost by it.
 
 On a chip it is an interrupt. Here each call of the loop is made again and again, and between two

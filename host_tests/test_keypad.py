@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Keys by the hardware: on pins, normally closed, in a matrix without diodes, and broken ones."""
 
 import main

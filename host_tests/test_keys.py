@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Keys: debounced, repeated, and deaf to what was down when the panel was switched on."""
 
 from panel.keys import Acts, Keys

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Every layout: PKW of 0, 3, 4 or a variable number of words, PZD of 0 to 16.
 
 What is built is received, and what the line has cut, stretched or changed is not - but for the one

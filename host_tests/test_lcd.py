@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Data sheet of the simulated display controller: what it does, and what it complains about."""
 
 from boards.sim.chip import Pin

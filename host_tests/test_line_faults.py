@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What can happen to the simulated line: every kind of fault, by order and by chance.
 
 And who is to blame: the panel answers for what it could have heard, the weather for the rest.

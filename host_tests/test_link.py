@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The RS-485 link on the simulated chip: sends, hears, and lets go of the line in time."""
 
 from boards.sim.board import HardTimer

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The circulating list: repeats, editing while it goes round, a fixed cycle time, retries."""
 
 import random

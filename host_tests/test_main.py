@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The firmware's first file: finds the board, honours the escape key, stops the drives."""
 
 import sys

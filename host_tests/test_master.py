@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The bus master: the circulating list, supervision of replies, parameter jobs, tickets."""
 
 from master_bench import MASK, REPLY_DELAY_US, TIMING, Bus, parameters

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The pacer: whoever calls, the engine is entered once at a time and never left asleep."""
 
 import main

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The operator's manual, as tests: keys are pressed, the display is read, the shaft is watched.
 
 Everything runs on the virtual board, in virtual time, with the same firmware as on the chip. What

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A panel with 31 drives: no step of the main loop may look at all of them, nor miss one for long.
 
 Every drive is on the line and answers; the master's list has each of them once.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The operator's manual: a drive is given another address, and the panel follows it."""
 
 from panel_bench import OFF1, panel, row_2, running, starts, telegrams

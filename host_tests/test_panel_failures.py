@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The operator's manual, when something fails: the drive, the line, the panel, its clock."""
 
 import main

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The operator's manual, JOG, REVERSE, a held STOP: a motor turns only as long as it should."""
 
 from panel_bench import (

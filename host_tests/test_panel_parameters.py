@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The operator's manual, parameter mode: look at parameters and change them."""
 
 from panel_bench import OFF1, panel, row_1, row_2, running, starts, telegrams

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The operator's manual, START: what is asked before a motor turns, and when it is refused."""
 
 import main

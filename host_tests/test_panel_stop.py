@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The operator's manual, STOP: it is always sent, repeated, and watched until the motor rests."""
 
 from panel_bench import OFF1, all_running, panel, row_2, settled_row_2, running, starts, telegrams

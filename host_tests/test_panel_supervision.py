@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The operator's manual, P2014 = 0: a drive that would run on when the panel dies is not run
 without its operator's word.
 """

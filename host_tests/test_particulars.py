@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What a drive tells of itself before a start: when it is asked anew, what is never left out."""
 
 from bus_bench import Bench, refusal

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """./tools/panel --board pico as a user calls it: what it prints, its status, what it keeps."""
 
 import os

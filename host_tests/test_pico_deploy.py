@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """tools/deploy on the emulated Pico: the real mpremote, a real file system, and a motor that runs.
 
 The tool is a process of its own at the chip's serial port; meanwhile the world's time goes on.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The emulated Pico itself, with plain MicroPython on it, where a wrong model would make us
 believe something false: how long things take, what a reset leaves, what a power cut leaves."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Examples of tools/examples on the chip: a program of one's own, on the firmware people flash."""
 
 import os

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The operator's manual on the chip when the panel fails: a loop that hangs, an engine that fails,
 somebody at the USB cable. The motor stops, and nothing starts it again."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The rules of the RS-485 line on the chip, at every usual baud rate and while the panel has
 other things to do: collections, the display, saving. Figures are nanoseconds of its clock."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The operator's manual on the chip: the firmware file that people flash, on an emulated Pico."""
 
 from pico_bench import (

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What the panel keeps in the chip's flash survives resets, and power that goes while it is
 written: either the old settings are there afterwards or the new ones, and the panel starts."""
 

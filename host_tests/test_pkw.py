@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Parameter tasks and what their replies mean (specification C-4, MM420 Reference Manual).
 
 How tasks are repeated, and told apart, is in test_channel.py; arrays and texts have their own.

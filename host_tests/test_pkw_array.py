@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Arrays: an element, all elements, how many there are (specification C-4.2.2, tasks 6...12)."""
 
 from test_pkw import FOUR, THREE, VARIABLE, answered, asked, refused

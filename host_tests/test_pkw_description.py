@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Descriptions of parameters: elements, and the whole of it (specification C-6, tasks 4, 5)."""
 
 from test_channel import Line

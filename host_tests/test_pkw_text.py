@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Texts of parameters (specification C-4.2.2, task 15)."""
 
 from test_channel import Line

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The blocks of the S7-200's USS library, used as a PLC program uses them, on simulated drives."""
 
 from boards.sim import g120, mm3

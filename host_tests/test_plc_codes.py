@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Each status code of the S7-200's library, provoked: one function for every code that can occur.
 
 A line on which one drive, node 3, answers what the test says, to the character.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A PLC program whose inputs change at random, on a line and drives that fail at random.
 
 What is checked is read off the motors: none starts but by an edge of RUN that was given just

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The tables for PLC programmers in firmware/uss/README.md: nothing is missing, and every name in
 them is one of the library."""
 

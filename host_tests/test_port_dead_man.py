@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Data sheet of what stops the drives of a panel that hangs or has died. Times are in seconds."""
 
 import os

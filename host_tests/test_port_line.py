@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Data sheet of the simulated line at a port: what a master there may do, and what it costs.
 
 At 19200 baud a character takes 573 us, a telegram of 16 characters 9.2 ms.

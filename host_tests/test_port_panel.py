@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """./tools/panel on a real line: at the other end of a pty are drives served by ./tools/drive.
 
 Real programs in real time. A test waits for what it expects, and gives up after a while.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Whose a port is: one program has it at a time, and everybody else before and after.
 
 To root every door is open, so what others meet is tried as another user: in a program of its own,

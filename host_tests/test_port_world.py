@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The panel on a real line, in virtual time: its port leads to a line of simulated drives.
 
 The two have clocks of their own, as two computers have. An adapter may keep characters back.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A command that matters is in the next telegram on the line, whatever the bus is doing.
 
 Each state of the list is brought about anew for every instant that matters in it: just before,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Process data: what the control and status words say, and the scaling of PZD2."""
 
 import golden

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A random hand at everything that a bus offers, and a referee who reads the line.
 
 One number reproduces a run: it is in the message when a rule is broken.

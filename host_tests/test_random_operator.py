@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Somebody presses keys at random while line and panel fail at random; nothing starts by surprise.
 
 Each seed is a world of its own. What is checked is read off the wire, not asked of the firmware: a

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """From bursts to a telegram: start interval, response delay, residual run time, stray characters.
 
 Specification A-5.1.2 (start interval), A-5.2.1.1 (response delay), A-6.3 (residual run time).

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The telegram to a drive stands ready in a buffer, and only what has changed is written anew.
 
 Whatever an operator, the line and the drive do: it must be the one that would be built from

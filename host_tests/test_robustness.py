@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What a line does to telegrams, and what neither the master nor a drive may make of it.
 
 The set is the one that the protocol's documents suggest: each of SET's rows names a disturbance

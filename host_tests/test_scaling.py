@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """PZD2 in percent, Hz and 1/min, with the values of the manuals; how each family reverses."""
 
 import random

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Who is on the line, and at which rate: by mirror telegrams, which nobody acts on."""
 
 from round_bench import MASK, MIRROR, Bench, Node, framed

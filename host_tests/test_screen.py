@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The picture of 2 x 16 characters, and the texts that stand in it."""
 
 from panel import texts

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The script language: what each command does, and what is said to a line that is none."""
 
 import main

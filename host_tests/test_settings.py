@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Settings: tables of what may be set, and a file that may be damaged."""
 
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The simulated MICROMASTER 420 against telegrams from documents, and as a thing with a keypad.
 
 Each golden telegram names its origin: S1, S2 and S4 were recorded on real drives, SPEC is the USS

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The simulated drives of the other families: what each does unlike a MICROMASTER 420.
 
 S1, S2 are recordings of real drives, OI440, CU240, G120 and V20 the manuals of these drives; what

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The simulated drive's faults and warnings: what they do, what it remembers, what ends them.
 
 P and r numbers are those of the MICROMASTER 4 lists; "SPEC" is the USS specification.

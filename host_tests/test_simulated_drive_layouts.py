@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The simulated drive in every layout: 0, 3, 4 or variable PKW words, 0...16 PZD words.
 
 It is the drive of the specification (generic.py), which can be set to all of them. Section numbers

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The simulated drive on the line: what it takes for a telegram, when it answers and gives up.
 
 Section numbers are those of the USS specification (E20125-D0001-S302-A1-7600, "SPEC").

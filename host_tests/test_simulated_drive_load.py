@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The simulated drive under load: currents, voltages, heat, and the trips that come of them.
 
 They are plausible, no more: the tests say which way each goes, and by how much where a rating

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The bus master and the simulated drives, which share no code: every task, family and layout.
 
 What one of them has misread of the specification shows here against the other.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The simulated drive as a drive: commands, states, ramps and limits, faults.
 
 Section numbers are those of the USS specification ("SPEC"), P and r numbers those of the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The simulated drive's parameter channel, tasks and refusals.
 
 Section numbers are those of the USS specification (E20125-D0001-S302-A1-7600, "SPEC"); RM420 is

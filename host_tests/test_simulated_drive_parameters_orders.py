@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What a simulated drive does because a parameter was written: it saves, resets, calculates.
 
 Some of it takes its time, in which the drive says nothing and hears nothing. OI440 is the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Why a simulated drive refuses a parameter task, family by family, and the switches about it.
 
 Error numbers are those of the USS specification (C-4.2.1) up to 7, of the PROFIBUS profile and the

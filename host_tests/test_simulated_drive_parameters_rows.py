@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Every row of every family, asked and written over the bus: what its table says is what it does.
 
 The answers are worked out here from the rows alone, in the words of the USS specification; which

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The simulated drive against a slow one: the same random commands, integrated step by step.
 
 The drive works out what time does when somebody asks. The slow one below goes by the sentences of

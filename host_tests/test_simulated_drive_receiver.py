@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The receive algorithm of the simulated drive, against a machine that sees only characters.
 
 The drive judges a good telegram at one go, because a simulation has to be fast. Here it hears

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Where the simulated drive's setpoint comes from, what limits it, and how the motor follows.
 
 P and r numbers are those of the MICROMASTER 4 lists. Limits, ramps, reversal and jogging are in

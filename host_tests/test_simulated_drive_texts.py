@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The simulated drive's descriptions, texts and change reports: tasks 4, 5, 15, replies 9...12.
 
 Only the drive of the specification has them all. Section numbers are those of the USS

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What may be on the simulated line besides one drive: an echo, a second master, many drives."""
 
 from boards.sim import fleet, g110, mm3

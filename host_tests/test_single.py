@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Telegrams outside the list: mirror, broadcast, special."""
 
 from round_bench import MIRROR, Bench, Node, framed

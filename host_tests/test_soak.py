@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A short soak: some seeds, some seconds each. `./tools/soak` is the long one.
 
 The whole panel with an operator who presses random keys, drives, faults of line, drives and panel;

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """tools/soak: its command line, what it prints, its exit status. A few seconds of virtual time."""
 
 import shutil

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The soak finds planted bugs: a copy of the firmware with one thing wrong breaks the right rule.
 
 Each row of tools/soaking/mutations.py is soaked with the seed that is known to find it, then with

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The status codes of the S7-200's library, their texts, and the S7-1200's words beside them."""
 
 from uss import pkw, status

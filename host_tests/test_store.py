@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The file that keeps the settings: power cuts at every step of writing, a full flash, real files.
 
 "Old or new" is the promise; a panel that comes up with the defaults would look for its drives at

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The house rules that can be read off the files: who may import whom, lengths, texts."""
 
 import ast

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The simulated keys: a hand, contacts that bounce, wires that break, and a matrix with ghosts."""
 
 from boards.sim.chip import Chip, Pin

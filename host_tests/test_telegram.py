@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The telegram: STX LGE ADR net BCC (specification A-4), built and judged."""
 
 import golden

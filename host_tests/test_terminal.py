@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """./tools/panel in a terminal: a person types, looks at the screen, leaves; nothing stays behind.
 
 The terminal is a real one (a pty); what is written to it is shown on a screen of 24 x 80, so that

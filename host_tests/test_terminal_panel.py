@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The live panel without its terminal: what is typed, how the hand presses it, what is shown.
 
 The terminal itself is in test_terminal.py.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """An exception at any line of the engine: what waits is not forgotten, and nothing starts by it.
 
 On a chip that is a Ctrl-C while the main loop is inside the engine, or a fault of ours. Here each

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The times of the line (specification A-5.1.2, A-6; MICROMASTER operating instructions)."""
 
 from uss.timing import BAUD_RATES, Timing, characters_us, elapsed

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What firmware/uss/README.md shows is run, and what it names is there.
 
 Each block of Python is a program: with a `board`, and, unless it makes its own, a `bus` on which

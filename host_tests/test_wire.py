@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Data sheet of the simulated line: characters to the microsecond, and the rules of the line."""
 
 from boards.sim.chip import heap_lock, heap_unlock

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Control and status words bit by bit: their names, and whether a drive may be started."""
 
 from uss import words

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The workshop itself: how tests are collected and judged, and how MicroPython, node and the
 firmware for the Pico are obtained.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The tiers: the interpreters that every test file runs on, and the processes that run it there.
 
 A tier is one interpreter; runner.py is what runs inside it. `pico` is one of them with an emulated

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A command of the script language that lets time pass, done slice by slice.
 
 So the keys are heard and the picture lives on while it lasts, and it can be ended early:

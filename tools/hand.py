@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A hand at the panel's keys, for a keyboard that does not tell when a key is let go.
 
     hand = Hand(world)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The picture of a panel and its world: lines of text, for a terminal of 80 x 24.
 
     picture = Picture(world, hand, boxes=True)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The port of the computer, as a program on MicroPython has it beside tools/port_launch.py.
 
     port = Port()

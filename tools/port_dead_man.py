@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Stops the drives of a panel that says nothing any more: it hangs, was killed, or is suspended.
 
 It knows what the panel has sent, and nothing else: a drive whose last control word turns it is

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Holds a serial port, or a pty, for a program on MicroPython, which cannot set one up itself.
 
     python3 tools/port_launch.py PROGRAM ARGUMENTS...

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A serial port, or a pty, for programs on CPython: 8E1, at the rates of USS, nobody else on it.
 
     port = SerialPort("/dev/ttyUSB0", 19200)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What a program should know of the three streams that it was started with.
 
     open_missing()              # before anything else is opened

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The terminal as a picture of lines and a source of strokes. It knows nothing of a panel.
 
 On the Unix port of MicroPython. Whoever opens it closes it, whatever happens in between:

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The live panel in a terminal: the virtual world in real time, keys in, a picture out.
 
     live(world, speed=1)        # until q, Ctrl-C or the terminal's end

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What ./tools/panel runs: the panel's firmware on the virtual board, live or driven by a script.
 
 With --board pico it is the firmware file for the Raspberry Pi Pico on an emulated one: then this

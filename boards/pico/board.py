@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The panel on a Raspberry Pi Pico: which pin is what. README.md beside it shows the wiring.
 
 The attributes below the tables are those that `hal` asks of any board. A PIO state machine sends

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What panel.uf2 holds besides MicroPython: everything that runs, compiled beforehand, in flash.
 
 Read by MicroPython's tools/makemanifest.py, which defines the functions used here; paths start at

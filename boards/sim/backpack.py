@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The I2C backpack of an LCD: a PCF8574 whose eight outputs are the controller's wires.
 
 A byte that it acknowledges is on its outputs at once, all eight together. What that means for a

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The virtual board: the attributes that `hal` asks of any board, on a simulated chip.
 
 The display's controller, switches and flash are things of the panel that outlive a restart of the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Change reports of a simulated drive: it tells the master what somebody else has changed.
 
 Which report is open, and what bit 11 of PKE has to be (USS specification C-4.2.1.2). It knows no

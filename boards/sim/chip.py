@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The microcontroller: what firmware uses of `machine` on the RP2040, on virtual time.
 
 It executes no instructions: firmware runs as it is and takes no time. Names, arguments and limits

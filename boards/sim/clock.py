@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Virtual time: one clock for the whole simulated world, in integer microseconds.
 
 It is not a scheduler of tasks: it keeps a list of instants and calls what is due, in order, while

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Random numbers of a seed: the same ones for the same seed on every interpreter, without heap.
 
 Whoever must not be shifted by what others draw has dice of their own.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A simulated drive on the line: the electronics, the inverter and the motor behind them.
 
 It behaves as the manuals and the USS specification say a drive of its family does, a MICROMASTER

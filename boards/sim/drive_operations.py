@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What a simulated drive does because a parameter was written: it saves, resets, calculates.
 
 Some of it takes seconds in which a real drive says nothing (P0340, P0970, P0971, P1910, P3900).

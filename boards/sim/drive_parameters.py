@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The parameter store of a simulated drive: RAM, EEPROM, and what may be put into them.
 
 It knows numbers, indices, types and ranges from the rows of a family (mm420.py). It knows no bus:

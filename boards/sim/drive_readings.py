@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What a simulated drive shows under its read-only numbers.
 
 Most of it is the process (process.py), some of it the link's counters; a little follows from the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What the documents leave open about a drive: one switch for each question, with its default.
 
 A switch is how a whole drive behaves, of whatever family; what differs between families is in

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What a simulated drive tells about its parameters: elements of a description, and texts.
 
 Made from the rows of the family and from its table of texts (USS specification C-6 and C-4.2.2).

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The words that the parts of a simulated drive have in common: bits, states, readings.
 
 Bits of control word 1 are those of the USS specification (C-5.2.1), 11 to 14 those of the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What a simulated drive remembers of its faults and warnings: r0947, r0948, r0949, r2110.
 
 It decides nothing: process.py says when there is a fault and when one is acknowledged.

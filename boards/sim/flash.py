@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Files on a flash memory whose power can be cut before every step of writing.
 
 It behaves like littlefs: a file that is written appears with its new content when it is closed,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A line full of drives of all families and layouts: who they are, as data.
 
     drives = {

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The SINAMICS G110 as data: an MM420 without indices, and PKW of variable length as delivered.
 
 Tables and columns are those of mm420.py. It may also go without any PKW words (recorded on a live

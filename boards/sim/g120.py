@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The SINAMICS G120, second generation (CU230-2, CU240-2, G120C), as data: a PROFIdrive.
 
 Tables and columns are those of mm420.py. Bits 0 to 2 of its ZSW add up (idle EB31, running EF37),

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A drive that does all that the USS specification knows, and that nobody ever built.
 
 Tables and columns are those of mm420.py, and so are its numbers. It has every rate, 0...16 PZD

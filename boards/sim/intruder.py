@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A second master on the line, which there must not be: it talks now and then, whoever talks.
 
 It is a station that never listens. What it says is up to whoever makes it.

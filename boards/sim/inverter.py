@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The inverter of a simulated drive: its states, and what they make the motor do.
 
 The states are those of PROFIdrive as a MICROMASTER 4 goes through them (P and r numbers are its

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The display's controller as a chip: an HD44780U with ROM A00, 2 x 16, on four data lines.
 
 It takes nibbles from pins, executes instructions, keeps its memory while the microcontroller

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What happens to a real line: interference, bad contacts, bad slaves, mains dips. Seeded.
 
 It stands in the way of every telegram as `Wire.faults`; without it the line is perfect, and costs

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The mains of the drives: a supply that dips, for all of them at once.
 
 What a lower voltage does to one drive is `Drive.supply`; here there is none for a while.

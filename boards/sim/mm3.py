@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The MICROMASTER 3 as data: 3 + 2 words, numbers below 1000, 16-bit values, no index.
 
 Tables and columns are those of mm420.py. But for the layout, the control word 0C7Fh and IND 0

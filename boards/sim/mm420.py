@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The MICROMASTER 420 as data: which parameters it has and how they leave the factory.
 
 It is not a store: drive_parameters.py keeps the values, drive_readings.py gives the readings

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The MICROMASTER 440 as data: an MM420 with data sets, eight PZD words and more arrays.
 
 Tables and columns are those of mm420.py, the rows all of mm4_parameters.py. Three indices are the

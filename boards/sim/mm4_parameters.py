@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The parameters of the MICROMASTER 4 as data: one table, of which each family takes its own.
 
 A row has the columns that drive_parameters.py names. CHANGE tells in which states the number may

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What the readings of the MICROMASTER 4 show: one table, of which each family takes its own.
 
 The kinds are those of drive_words.py. A number that is not here has always the value of its row:

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The motor of a simulated drive: its frequency as a path through time.
 
 It decides nothing: process.py tells it where to go and how fast. The path is a few corners with

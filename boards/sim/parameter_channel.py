@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The parameter channel of a simulated drive: PKW tasks in, replies out.
 
 It carries out tasks 1 ... 9 and 11 ... 15 (specification C-4.2), as far as the family knows them,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What hangs on a simulated drive, mains and motor and load, and what that costs in amperes.
 
 Simple but plausible, no more: the motor turns as fast as its drive says, whatever the load. What

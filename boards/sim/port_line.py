@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A simulated line that somebody real talks on, through a port: the master of simulated drives.
 
 Two kinds of port. A pty has no line: whatever is written into it arrives at once, so the

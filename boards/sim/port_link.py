@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The panel's link over a port of the computer: a serial adapter, or a pty.
 
 Fulfils the contract `link` of `hal`, polled. The port is a stream that never waits; adapter and

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A panel on a real line: the virtual board, but for its UART, which is a port of the computer.
 
 The display, the keys and the chip around the firmware are simulated as ever, in real time; at the

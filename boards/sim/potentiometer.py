@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The motor potentiometer of a simulated drive: a setpoint that two bits turn up and down.
 
 It is not a ramp of the motor: it makes the setpoint, which the motor follows with its own ramp.

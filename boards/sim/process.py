@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The process data of a simulated drive: from STW and HSW to a turning motor, ZSW and HIW.
 
 Control and status words are those of the USS specification (C-5.2.1) with the bits of the drive's

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The world's clock where the world is joined to something real: it follows a true counter.
 
 What is simulated keeps its exact instants: events happen at theirs, only later than they should by

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The script language of the simulated panel: one command a line, for people and for tests.
 
     press START          # a tap; everything after # is a comment

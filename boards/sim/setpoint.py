@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The setpoint channel of a simulated drive: from the sources that it obeys to its ramp generator.
 
 It is no ramp: motor.py lays that. It knows no states either; process.py says when it counts.

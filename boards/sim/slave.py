@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The link layer of a simulated drive: which characters on the line are a telegram for it.
 
 It judges start interval, LGE, times, BCC, character errors and ADR in the order of the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The keys of the panel as switches: a hand, contacts, and wires to the chip's pins.
 
 A switch of its own joins a pin to ground; a normally closed one does while nobody presses it. The

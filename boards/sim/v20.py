@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The SINAMICS V20 as data: an MM440 with other defaults, as its macro Cn010 sets it up for USS.
 
 Tables and columns are those of mm420.py. It supervises the line, P2014, 500 ms after the macro and

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The RS-485 line: who talks when, exact to the character, and the rules of the line.
 
 It carries characters of 11 bits (8E1) between stations and judges their timing; what they mean is

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The whole world of a panel in virtual time: wire, drives, chip, a hand at the keys.
 
     world = World(main.start, addresses=(1, 2))

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What a board gives the panel: small contracts, and drivers that fulfil them.
 
 A driver is handed the objects of the chip (UART, Pin, Timer ...) and uses them; it imports no

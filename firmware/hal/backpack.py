@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A character display behind a PCF8574 backpack: the HD44780's four data lines through I2C.
 
 Fulfils the contract `display` of `hal`; what is written when is `hal.hd44780`. A backpack that is

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A character display of 2 x 16 with the controller HD44780: what is written when, and four wires.
 
 Fulfils the contract `display` of `hal`. The controller cannot be read (R/W is tied low), so the

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Keys on pins of their own, and in a matrix without diodes. Contract `keypad` of `hal`.
 
 A key joins its pin to ground, the pin has a pull-up: low is down. A normally closed key opens when

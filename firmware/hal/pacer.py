@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Calls the bus engine when something is due, from whatever the port offers.
 
 The receive interrupt, a one-shot timer and the main loop all end in `run`, which enters the engine

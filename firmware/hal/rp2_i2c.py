@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Writing through I2C of the RP2040 without waiting: the bytes are put into the FIFO, which sends.
 
 A backpack's piece takes 1 ms on the bus; the loop has better things to do. Has the one method of

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """An HD44780 on four data lines of the RP2040: a PIO state machine moves the pins and waits.
 
 Fulfils the contract `display` of `hal` as `hal.hd44780.Hd44780` does, which takes 250 us for each

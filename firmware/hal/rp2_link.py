@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A half-duplex RS-485 link of the RP2040: a PIO state machine sends, UART 1 receives.
 
 Fulfils the contract `link` of `hal`. The state machine puts the characters on the line (8E1) and

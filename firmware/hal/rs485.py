@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A half-duplex RS-485 link over a UART, a driver-enable pin and a one-shot timer.
 
 Fulfils the contract `link` of `hal`. The timer ends the transmission: it fires when the last stop

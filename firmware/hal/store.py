@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A small file that survives power cuts, on a file system whose rename overwrites at once.
 
 Fulfils the contract `store` of `hal`. New data are written to a file beside the old one, and a

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The operator's panel: drives and keys on one side, two rows of sixteen characters on the other.
 
     panel       the keys that act on every page, and the page that is shown

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The drive that needs most to be spoken of, besides what the page tells, and the row about it.
 
 Of 31 drives none is asked in the moment of drawing, which would take a loop's time several times

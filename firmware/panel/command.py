@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A START or a JOG that was obeyed: when that was, how things stood, and what took it back.
 
     command = Command(drive, survey, bus, mask)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """One drive under the operator's hand: start, stop, jog, reverse, and what came of them.
 
 The rules that keep a motor from starting by surprise and a STOP from getting lost live here, in

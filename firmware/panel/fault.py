@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The fault of one drive: its number, and whether it has been seen long enough to acknowledge it.
 
     fault = Fault(drive, mask)

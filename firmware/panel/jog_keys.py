@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The two jog keys: a drive turns while exactly one of them is held, and only by a fresh press.
 
 Two at once mean none. So does another drive that is shown, a STOP that is down, a page that has

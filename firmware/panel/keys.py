@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """From the keys that are down now to what an operator did: pressed, repeated.
 
     keys = Keys(keypad.names, clock.ticks_mask)

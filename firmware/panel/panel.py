@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The panel: keys that act on every page, which drive is selected, which page is shown.
 
     panel = Panel(controls, bus, keypad.names, settings, clock.ticks_mask)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Why a drive may not be started or jogged: the reasons, in the order an operator wants to know.
 
     why_not_start(control)              # None, or texts.REFUSED_...

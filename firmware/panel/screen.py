@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The picture that a display shows: two rows of sixteen character codes.
 
 Drawing writes into the picture and allocates nothing; a display driver finds the differences.

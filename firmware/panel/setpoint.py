@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The setpoint of one drive: what the operator set, kept within every limit, as a word to send.
 
     setpoint = Setpoint(drive, survey, settings)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What a drive does, in a word or two: the left part of row 2 on the home page.
 
     text(control)                       # texts.RUNNING

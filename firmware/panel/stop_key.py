@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The STOP key: what it does when it goes down, and what while it is held.
 
     when      what

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Whether a STOP is obeyed: the drive has answered OFF1, slows down, and comes to rest.
 
 An answer alone says that OFF1 was heard, not that it is obeyed: a drive that takes its commands

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """How long a drive may wait for a telegram before it stops by itself: P2014, telegram off time.
 
 With P2014 = 0 a motor runs on for ever when the panel dies. The panel offers a time that fits its

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Every text an operator can see. Nothing is wider than the place it is shown in.
 
 Bytes, because a display takes character codes and indexing bytes allocates nothing.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What is on the display: the page, and what must be said whatever the page is.
 
     row 1   frequencies of the drive shown, or NO CONTACT, when it ran and was lost

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Writes parameters for the panel, one at a time, and tells what became of it.
 
     writer.write(control, 1000, 0, 5, False)        # into RAM

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """USS, the serial protocol of Siemens drives: a bus master without clock, machine or I/O.
 
 Time and characters are arguments, so it runs anywhere and is tested to the microsecond. README.md

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The bus for a program of one's own: drives that run, stop, are read and written, in a few words.
 
 In front of the engine (`master`, `drive`), all of whose fields and methods are found here as well:

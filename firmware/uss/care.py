@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Drives that have too many turns, and drives that have too few: the loop's part in `turns`.
 
 One that stays silent, was not told to run and was not last seen running backs off: it is left out

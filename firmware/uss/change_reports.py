@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Parameters of a drive that somebody else has changed, as it reports them (replies 9...12).
 
 The drive reports in place of its answers, the master acknowledges each report by sending its bit

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The parameter channel of one drive: jobs wait their turn, one task at a time is on the line.
 
 The loop puts jobs in, the engine carries them out: a task is repeated in every telegram until the

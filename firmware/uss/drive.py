@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """One drive on the bus, as the master keeps it: commands, process image, counters.
 
 Two sides share a drive: the *loop* (panel, own program) and the *engine* (`master.poll`, possibly

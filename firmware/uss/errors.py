@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What a program of one's own gets instead of what it wanted: exceptions in plain words.
 
 For `bus` and `scan`. What is no fault of line or drive but of the program is a ValueError or a

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The drive families, as data: what a program must know of a drive to talk to it and to run it.
 
 A family is a class that only holds values and is never instantiated; what it does not say itself

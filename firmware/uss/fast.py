@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The loops over characters that the bus engine runs in every exchange, as fast as can be.
 
 In machine code (`fast_viper`) where the interpreter has it, or else, the same in plain Python

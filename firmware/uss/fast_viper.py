@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The machine code behind `fast`: MicroPython's viper, whose types are those of the processor.
 
 Each function has a twin in plain Python in `fast_python`, and means exactly the same.

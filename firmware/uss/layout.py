@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """How the net data of a drive's telegrams are divided: PKW words, then PZD words.
 
     PKW  0, 3 or 4 words, or VARIABLE: as many as a task or its reply needs, 3 at the least

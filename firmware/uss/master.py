@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The USS master: telegrams to the drives one after the other, and what becomes of each.
 
 Whose turn it is, is the subject of `turns`; this is the exchange: silence, request, reply.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What a drive tells of itself: who may command it, what 100 % is, how fast it may turn.
 
 For `bus`: it is asked before a start, and when a speed is wanted in Hz or 1/min. What is asked for

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The parameter channel: tasks, replies, numbers, values (specification C-4).
 
 A request and its reply begin with PKE, IND and the value, whose place depends on the length:

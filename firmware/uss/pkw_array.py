@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Parameters that are arrays: one element, all of them, how many there are (tasks 6...9, 11, 12).
 
 The panel does without: a MICROMASTER 4 gives one element to `pkw.read(number, index)` as well. A

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What a drive says of a parameter: its limits, name, unit, data type ... (tasks 4 and 5).
 
 The description elements of specification C-6. Not every drive has them, or all of them; with

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Jobs whose task or answer is longer than a double word, and words as the characters they are.
 
 What they are about is in `pkw_array`, `pkw_description` and `pkw_text`, each a kind of `LongJob`;

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The texts that a drive keeps for its parameters: what an index or a value means (task 15).
 
 No MICROMASTER, G110 or V20 has any; MASTERDRIVES have. Needs variable length (P2013 = 127).

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The blocks of the S7-200's USS library: USS_INIT, USS_CTRL, USS_RPM_W/D/R, USS_WPM_W/D/R.
 
 For people who know them: each block is an object that is called once a scan, with its inputs by

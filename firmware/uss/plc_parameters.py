@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The blocks for parameters of the S7-200's USS library: USS_RPM_W/D/R, USS_WPM_W/D/R.
 
 W: a word; D: a double word; R: floating point. RPM reads, WPM writes. A part of `plc`, which has

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What the panel must know of a drive, a MICROMASTER 4 on its RS-485 terminals: data, not code.
 
 MM410, MM420, MM430 and MM440 on the COM link. Parameter numbers and meanings: MICROMASTER

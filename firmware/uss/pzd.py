@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Process data: control word STW, status word ZSW, and the scaling of setpoint and actual value.
 
 Facts as tables; no telegram, no drive object. STW travels with the main setpoint HSW to the drive,

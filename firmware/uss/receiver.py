@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """From the bursts that a link delivers to the one telegram that is awaited.
 
 A link hands over characters in bursts of any size and says when the last of them came, as exactly

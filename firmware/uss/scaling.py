@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Between the words of PZD2 and percent, Hz and 1/min, in floating point; which way a drive turns.
 
 For programs that work in a loop: everything here takes memory, and nothing belongs into an

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Finds who is on the line, and at which baud rate, by mirror telegrams, which nobody acts on.
 
 A node sends a mirror telegram back as it came and does nothing else with it (specification A-4.3,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Telegrams outside the circulating list: mirror, broadcast, special (specification A-4.3, A-5.3).
 
 Each is built once, handed to `Master.post`, sent in between as soon as there is room, and tells

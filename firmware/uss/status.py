@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Status codes 0...22, numbered as in the S7-200's USS library; the S7-1200's words beside them.
 
 For programs that were written for these libraries: where the engine has findings, jobs end and

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What must be known of a drive before it may be started, read from it again and again.
 
 Works on the loop's side, through parameter jobs, which cost the bus nothing: every telegram has a

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The USS telegram: how net data becomes a frame, and whether received characters are one.
 
     STX  LGE  ADR  net[0] ... net[n-1]  BCC        LGE = n + 2, at most 254

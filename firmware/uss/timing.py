@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The times of the USS line, all derived from the baud rate, all integers in microseconds.
 
 Not a clock: nothing here knows what time it is. `Timing` answers how long something takes or may

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Whose turn it is on the bus: the circulating list, and what goes before it.
 
 The list is worked through entry by entry (specification A-5.1): a drive that stands in it twice is

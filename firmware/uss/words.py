@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Every bit of the control and status words by its name, for programs that show or ask for them.
 
 Tables of rows (bit, name, whether 0 is the remarkable value). The first words of a MICROMASTER 4

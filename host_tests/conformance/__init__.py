@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A plain USS master, to try drives with: written from the specification, for a serial port.
 
 It shares no code with the firmware's master (firmware/uss) nor with the simulated drives

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The drives that the conformance test tries: who they are, and which numbers they are asked for.
 
 Numbers and layouts are those of the specification and of the manuals, as a master would have to

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A USS master on a serial port: it asks, and waits for the answer.
 
 Everything is 8E1, but on a pseudo terminal, which refuses a parity and needs none. A reply is

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """./tools/drive as a process for each rate: the drives to be tried, behind pseudo terminals.
 
     with Drives(KINDS) as drives:

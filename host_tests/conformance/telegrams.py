@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What a USS telegram looks like: STX LGE ADR net data BCC (specification A-4).
 
 It knows no drive and no port; net data are words here, the high byte first.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """tools/bench: measures, prints one table, writes it into tools/bench.md.
 
     python3 tools/benching [--only NAME ...] [--quick]

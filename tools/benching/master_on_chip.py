@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What the bench runs inside the emulated chip besides on_chip.py: the master without a panel."""
 
 import json

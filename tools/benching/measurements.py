@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The measurements of the bench: an emulated Pico with the frozen firmware, or the host alone.
 
 One process, one measurement: it prints its figures as a line of JSON. What they are held against

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What the bench runs inside the emulated chip, typed in at the raw prompt (measurements.py).
 
 It builds the panel of the frozen modules, as the frozen main.py does, and steps it while it looks

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """From figures to the table that people read. It measures nothing and knows no row by name.
 
     judged = judge(ROWS, {task: figures})

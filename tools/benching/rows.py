@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The rows of the bench: what is measured, the bar it is held against, how it reads.
 
 The bars are facts and stand here; the figures come from measurements.py, whose functions and

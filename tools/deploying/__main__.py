@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Copies the firmware onto a Raspberry Pi Pico with MicroPython, and restarts it.
 
 What runs on the Pico is ended by Ctrl-C: a panel stops all its drives first. Only what differs is

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Whether the panel has come up after a restart: it says so itself, once, on the serial line.
 
 On a real Pico the serial port goes with the restart and comes again a little later; what was said

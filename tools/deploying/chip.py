@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A chip with MicroPython at the end of a serial line, through mpremote's transport.
 
     chip = Chip("/dev/ttyACM0")

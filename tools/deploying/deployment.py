@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The steps of tools/deploy, one after the other, each said in a line.
 
     Deployment(chip, firmware, options, say).run()

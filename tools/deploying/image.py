@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What has to be on the chip's file system: the firmware and a board file, compiled or not.
 
     firmware = Firmware.read(top, "pico")

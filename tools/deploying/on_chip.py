@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What tools/deploy has the chip do: look at files, put a new one in place of an old one, remove.
 
 This file is MicroPython. It is sent over the serial line and lives in the chip's RAM until the

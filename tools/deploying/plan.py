@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What is to be done, from what should be on the chip and what is: a comparison, nothing else.
 
 The chip keeps a list of what was copied onto it, LIST: {"files": {path: [SHA-256, ...]}}. A file

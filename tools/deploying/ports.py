@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Which serial port the Pico is at.
 
 A Pico with MicroPython is a USB device of the maker and product in MICROPYTHON_RP2; one that waits

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Simulated drives for any USS master, on a pty or a serial port, in real time: tools/drive.
 
 Nothing that it says holds up the drives: what nobody reads is left out.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A telegram in words, for the log of tools/drive: who, which parameter task, which commands.
 
     setups = {1: Setup(drive)}          # when the telegram begins

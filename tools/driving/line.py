@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Simulated drives at a port, in real time: what tools/drive serves.
 
     line = DriveLine(port, {1: {"family": mm440}}, 19200, log=print)

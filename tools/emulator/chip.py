@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The Python end of the pipe to the emulated chip: the protocol, and nothing of what it is for.
 
 It is no chip and no world: it writes records, lets the chip run, and hands over what it answers.

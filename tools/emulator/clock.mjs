@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The time of the emulated chip: whole nanoseconds that only the run loop moves, and alarms.
 //
 // It takes the place of rp2040js's SimulationClock and has its face. What differs: alarms of the

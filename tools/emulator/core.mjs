@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The processor, fast: instructions that matter are executed here, many at a stretch; rare ones,
 // exceptions and everything else of a processor are left to rp2040js's core.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a receiver on the line makes of the TX pin: characters of 8 data bits, even parity and one
 // stop bit at the line's baud rate, each bit looked at in its middle.
 //

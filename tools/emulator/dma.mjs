@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // DMA: rp2040js's, but each transfer takes a cycle at the least.
 //
 // There it takes no time, and a channel that starts itself again would never let go.

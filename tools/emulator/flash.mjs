@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The flash chip (2 MiB SPI-NOR, as on the Pico) and the two peripherals through which it is
 // reached when it is written: the SSI in its plain mode and the chip select in IO_QSPI.
 //

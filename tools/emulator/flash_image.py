@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Files on the Pico's flash, put there and read from outside: an image of 2 MiB in memory.
 
 MicroPython's board RPI_PICO keeps its littlefs in the last 1408 KiB (FLASH_STORAGE_BYTES of its

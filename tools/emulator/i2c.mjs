@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Devices on I2C0 that acknowledge what is written to them, and how long that takes.
 //
 // Two ways lead to them: the I2C peripheral, and the pins SDA and SCL moved by software (which is

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
 """Starts the emulated Pico beside a program, and ends with it.
 
     python3 tools/emulator/launch.py PROGRAM ARGUMENTS...

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // rp2040js and the boot ROM, from build/emulator (see tools/workshop/emulator.sh).
 //
 // The environment variable USS_EMULATOR names another folder that holds the two. Some classes that

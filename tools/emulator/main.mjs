@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The emulated Pico's server: reads records, runs the chip, answers (README.md has the protocol).
 //
 //     node main.mjs READ WRITE PTY

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The emulated Pico: rp2040js's chip with what it lacks put in, its flash, the wires at its pins.
 //
 // One object is one Pico; `run` moves its time, `pulseRunPin` and `cutPower` are what they are

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The wires at the chip's pins: three states on each side, and who is told of them.
 //
 // A pin's level is what the chip drives, else what the outside drives, else what the pulls make of

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // PIO on the chip's clock: each enabled state machine executes one instruction at an edge of its
 // divided clock, with the divider's fraction and the delays.
 //

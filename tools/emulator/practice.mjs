@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Lets V8 see every kind of instruction with every kind of operand before the chip starts.
 //
 // V8 compiles the processor's one long function for what it has seen so far, and throws the result

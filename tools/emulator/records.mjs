@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The records of the protocol, on the two pipes (see README.md). Everything is synchronous.
 import fs from 'node:fs';
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """MicroPython's prompt on the emulated chip, by way of its USB serial.
 
     world = PicoWorld("stock")

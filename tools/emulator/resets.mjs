@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The block that holds peripherals in reset: rp2040js's, but it does reset those whose old state
 // would show, the UARTs and the I2Cs. The SDK resets each of them when it sets it up.
 import { RPReset } from './library.mjs';

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The single-cycle I/O block: rp2040js's, with the FIFO to the second core.
 //
 // The second core is not there. The SDK resets it at a soft reset of MicroPython, and waits for

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The transceiver of an emulated panel: TX, RX and driver enable as a station on the wire.
 
 What the chip sends comes as characters with the instant of their start bits, known when they are

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The pty through which a person's programs talk to the chip's USB serial port.
 //
 // Nothing here waits: bytes that nobody takes are kept up to a limit, then dropped, as a terminal

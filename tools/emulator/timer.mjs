@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The microsecond timer: rp2040js's, but it begins at 0 when the chip comes out of reset, and its
 // alarms go off when it shows their value (there up to a microsecond early, so that the firmware
 // has to set them again).

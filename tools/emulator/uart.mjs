@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // A PL011 UART with time: characters take as long as they take on the line.
 //
 // FIFOs of 32, BUSY, the level and time-out interrupts, parity, framing and overrun errors, DMA

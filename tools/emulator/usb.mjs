@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The USB serial port of the chip: rp2040js's CDC host, which enumerates it, but answering
 // "nothing yet" (NAK) while there is nothing to send. Without that the chip is flooded with empty
 // packets and spends two thirds of its time on them.

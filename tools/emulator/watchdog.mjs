@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The watchdog with its true timing and memory: REASON and the scratch registers live through the
 // resets that it makes, and the register that tells how the chip came up.
 import { BasePeripheral } from './library.mjs';

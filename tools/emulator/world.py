@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The world of `boards.sim` around an emulated Pico: the real firmware in the real chip's time.
 
     world = PicoWorld("panel", addresses=(1, 2))    # build/pico/panel.uf2 on a chip that has power

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Broadcast: three drives run, and one telegram stops them all at the same instant.
 
 Each is sent a stop of its own after it, because nobody answers a broadcast.

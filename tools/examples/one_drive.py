@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """One drive: runs at 25 Hz for ten seconds, tells how fast it is, and stops.
 
 Its address is 1, its rate 19200 baud; P0700 = P1000 = 5 give it to the bus.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A program of its own, without a panel: START runs the pump, STOP stops it, for ever.
 
 The bus works by interrupts; the watchdog restarts the chip when this loop hangs, and 300 ms after

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Parameters of a drive: read, written into RAM and into EEPROM, and a refusal.
 
 What waits for an answer lets the bus go on meanwhile.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Runs a program on the virtual board, in virtual time: ./tools/example one_drive
 
     stage = Stage()                         # drives 1, 2 and 3 on a line at 19200 baud

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Three drives on one bus; the winder stands in the list twice and is asked twice as often.
 
 The other two follow it: at half and at a tenth of its speed.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """tools/soak: many seeds, two processes, one line of progress, and what came of them.
 
     python3 tools/soaking --seeds N --minutes M [--first SEED] [--drives N] [--jobs N]

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What the judge knows of one address on the line, and what its drive lets a setpoint be."""
 
 from tools.soaking.facts import NEVER, OFF1

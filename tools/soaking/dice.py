@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Numbers that look random, of a sequence that one seed decides, the same on every interpreter.
 
     dice = Dice(7)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What the judge goes by: words of the specification, the panel's promises as times.
 
 Written from the documents, not from the firmware: a mistake must not stand in both.

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """An operator's fingers: what somebody does with the keys of a panel, well or badly, at random.
 
 Time passes in slices, and after each of them judge and reader look.

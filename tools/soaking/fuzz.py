@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Bytes that may be anything, through the firmware's bus engine and its receiver: nothing breaks.
 
 Noise, telegrams with a few wrong bits, pieces of telegrams, good replies, in bursts of any size,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The hand of a soak: it presses keys at random and lets things fail at random.
 
 One number decides all of it. It lives in turns: a time in which anything may happen, then one in

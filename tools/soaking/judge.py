@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The judge of a soak: what the panel sends, held against what a hand at its keys has asked for.
 
 He knows the keys, the line, the loop and the display's picture, and asks the firmware nothing. He

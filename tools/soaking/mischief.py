@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What befalls drives, chip and flash during a soak; what befalls the line is `weather`.
 
 Judge and reader are told of it before it happens.

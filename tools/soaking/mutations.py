@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Planted bugs: what a soak must find, or it proves nothing.
 
 Each row of MUTATIONS is a firmware with one thing wrong. host_tests/test_soak_mutations.py makes

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """An eye on the display: what it must say, and what it must not, held against the drives.
 
     reader = Reader(world, plan, judge)

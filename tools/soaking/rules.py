@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The rules that a soak holds the panel to, in plain words, and how a broken one is told.
 
 They are those of the panel's own promises (README, "What it promises"), of the RS-485 line and of

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """One seed of the soak: its world, a hand, a judge and an eye.
 
     soak = Soak(7)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What led to a broken rule, for people: keys, faults, screens and telegrams, with their times.
 
     for line in story(soak): print(line)

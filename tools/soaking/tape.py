@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A tape of the line: every request of the panel as sent, every reply as it arrived whole.
 
 It runs in the panel's interrupt handlers, where nothing may take heap, so it only notes; the judge

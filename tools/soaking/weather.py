@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What befalls the line during a soak: which faults, how often, and how many there were.
 
     weather = Weather(world, plan)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What the judge is told: which keys move, when the chip restarts, hangs, writes its flash.
 
 From that follows what may be sent and what has to be, noted in the `Case` of each address. Where a

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """One process of a soak, on MicroPython: takes seeds from standard input, tells how they ended.
 
     micropython tools/soaking/worker.py soak MINUTES [DRIVES]       # then a seed a line

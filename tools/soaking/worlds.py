@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """What the world of a seed is: how many drives, of which families, the line, the settings.
 
 The same seed gives the same world, whatever else is asked of the soak.

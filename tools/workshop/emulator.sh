@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # The emulated Pico: rp2040js and the chip's boot ROM, in build/emulator. To be sourced after
 # folder.sh, packages.sh, pytest.sh and node.sh.
 #

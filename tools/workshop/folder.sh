@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # build/, the one folder that the workshop fills. To be sourced, with $top set to the top of the
 # tree.
 #

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # The Unix port of MicroPython, in the builds that the panel and the tests run on.
 # To be sourced after folder.sh and packages.sh.
 #

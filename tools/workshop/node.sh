@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # node, which runs the emulated Pico, and its npm: build/node/node and build/node/npm. To be sourced
 # after folder.sh, packages.sh and pytest.sh.
 #

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # Debian and Ubuntu packages without root. To be sourced after folder.sh.
 #
 # A private view of the archive: apt itself, its signatures checked as ever, but with sources,

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # The firmware for the Raspberry Pi Pico: build/pico/panel.uf2, with everything of ours frozen in,
 # and build/pico/stock.uf2, plain MicroPython. To be sourced after folder.sh, packages.sh and
 # pytest.sh.

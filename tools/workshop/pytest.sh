@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 # pytest, in a virtual environment in build/pytest. To be sourced after folder.sh and packages.sh.
 
 requirements=$top/host_tests/requirements.txt

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The pages of the panel, one file each. A page draws itself and takes keys of its own.
 
     whole               it takes both rows; otherwise row 1 shows the frequencies

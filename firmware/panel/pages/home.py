@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The home page: setpoint and actual frequency of the selected drive, its state, its address.
 
     S: 10.0 F:  9.98        row 1: setpoint and actual frequency in Hz, negative turns left

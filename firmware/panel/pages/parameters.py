@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """Parameter mode: row 1 stays as it is on the home page, row 2 is a parameter of the drive shown.
 
     S: 10.0 F:  9.98

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """A question that takes both rows: one key says yes, another may say something else, the rest no.
 
     panel.ask(Question(panel, texts.ASK_CUTS_OFF, {"SET": self._write}, mask))

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: MIT
 """The first thing shown after power-on: what this is, and what it is not."""
 
 from panel import texts
