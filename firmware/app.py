@@ -15,11 +15,12 @@ from micropython import const
 # From the bottom of the house up: an import inside an import inside an import takes stack.
 import uss.fast  # noqa: F401
 from uss.timing import Timing, elapsed
-from uss.survey import Survey
+from uss.survey import Survey, spare_jobs
 from uss.master import CLOSED, Master
 from hal.pacer import Pacer
-from panel.control import Control
 from panel import texts
+import panel.risks  # noqa: F401
+from panel.control import Control
 from panel.panel import Panel
 from panel.screen import GLYPHS
 from settings import load, save
@@ -27,13 +28,16 @@ from settings import load, save
 _CLOSE_MS = const(1_000)  # for the drives to answer their OFF1, and a round of the bus on top
 _FAREWELL_STEPS = const(100)  # for the display to show that nothing is controlled any more
 _SAVE_AGAIN_MS = const(10_000)  # after the store failed
+_LONG_US = const(900)  # a step that has taken so long is not to do two more things
 _FEED_MS = const(100)  # of the watchdog, which bites after 2 s
 
 
 class App:
-    """board: contract of `hal`. Nothing is sent before `start`."""
+    """board: contract of `hal`. Nothing is sent before `start`, which must follow within 2 s: the
+    watchdog is at work."""
 
     def __init__(self, board):
+        board.watchdog.feed()  # it bites from now on, whatever hangs before the loop is reached
         self.board = board
         self.settings = settings = load(board.store)
         mask = board.clock.ticks_mask
@@ -41,10 +45,11 @@ class App:
         timing = Timing(settings.baud, settings.reply_timeout_ms * 1000)
         self.bus = Master(self.link, timing, mask, settings.lost_ms * 1000)
         self.pacer = Pacer(self.bus, self.link, board.clock, board.timer)
-        controls = []
+        controls, spares = [], spare_jobs()
         for address in settings.drives:
             drive = self.bus.add(address)
-            controls.append(Control(drive, Survey(drive, mask), self.bus, mask, settings))
+            survey = Survey(drive, mask, spares)
+            controls.append(Control(drive, survey, self.bus, mask, settings))
         board.display.define(GLYPHS)
         notice = texts.WATCHDOG_RESTART if board.reset_cause else None
         self.panel = Panel(controls, self.bus, board.keypad.names, settings, mask, notice)
@@ -59,10 +64,11 @@ class App:
         self._fed_at_ms = 0
         self._save_failed = False
         self._saved_at_ms = 0
+        self._shows_next = False
 
     def start(self):
         self._progress_at_ms = self._fed_at_ms = self._ticks_ms()
-        self.board.watchdog.feed()  # it bites from now on, also if the loop is never reached
+        self.board.watchdog.feed()
         self.bus.refresh(self._ticks_us())
         self.pacer.start()
 
@@ -72,18 +78,29 @@ class App:
         keypad = board.keypad
         now_ms = self._ticks_ms()
         now_us = self._ticks_us()
-        # One of both, in the longer ones of the panel's turns the shorter one.
-        if self.panel.turn & 1 or self._polled:
-            self._tend()
-        if not self.panel.turn & 1:
-            self._refresh(now_us)
+        self._refresh(now_us, False)
         if self.panel.step(keypad.read(), now_ms, now_us, keypad.unclear):
-            board.display.show(self.panel.screen.picture)
-        if (now_ms - self._fed_at_ms) & self._mask >= _FEED_MS:
+            self._look_or_show(now_us)
+        elif (now_ms - self._fed_at_ms) & self._mask >= _FEED_MS:
             self._feed(now_ms)
+        if self._polled:
+            self._tend()
         if self.settings.dirty:
             self._save_if_quiet(now_ms)
         board.idle()
+
+    def _look_or_show(self, now_us):
+        """The drives that are silent or wait too long; a piece of the display, and the pacer: both
+        of these, or one where the step has taken long already, and next time the other one.
+        """
+        if not self._shows_next:
+            self._refresh(now_us)
+            if (self._ticks_us() - now_us) & self._mask > _LONG_US:
+                self._shows_next = True
+                return
+        self._shows_next = False
+        self.board.display.show(self.panel.screen.picture)
+        self._tend()
 
     def _save_if_quiet(self, now_ms):
         """Writing flash holds everything up for a while, interrupts too: only when no drive runs,

@@ -4,7 +4,7 @@
 The schema is two tables; the settings stand in a board's store as JSON, a line for each. A file
 that cannot be read or has a value that cannot be gives the default for what is wrong and says so
 in `complaint`. Nothing that was stored is lost by that: loading writes nothing, and the first save
-sets the file aside. What a newer firmware stored and this one does not know is kept.
+sets the file aside. What a newer firmware stored and this one does not know is kept as it is.
 
     settings = load(board.store)
     settings.readdress(1, 5)
@@ -14,8 +14,15 @@ sets the file aside. What a newer firmware stored and this one does not know is 
 
 import json
 
+from strict_json import fields
 from uss.telegram import NODE_MAX
 from uss.timing import BAUD_RATES
+
+SIZE_MAX = 4096  # bytes of the file: a chip has to hold it, and what is made of it
+UNKNOWN_MAX = 2048  # of that, what is kept though it is not known
+
+# What may be wrong with the file as a whole, in place of the name of a setting.
+UNREADABLE, TOO_BIG, NO_JSON = "unreadable", "too big", "no JSON"
 
 CHOICES = (  # name, default, what it may be, meaning
     ("baud", 19200, BAUD_RATES, "bit/s"),
@@ -40,15 +47,17 @@ class Settings:
     """One attribute for each row of CHOICES, NUMBERS and ADDRESSES (tuples), and
 
     complaint   None, or what was wrong with the file; stays until the next power-up
+    suspect     None, or what the complaint is about: the name of a setting, UNREADABLE ...
     damaged     True: the file holds what was not taken over and is not yet set aside
     dirty       True: something was changed and is not saved yet
     """
 
     def __init__(self):
         self.complaint = None
+        self.suspect = None
         self.damaged = False
         self.dirty = False
-        self._unknown = {}
+        self._unknown = {}  # name -> the line as it stands in the file
         for name in DEFAULTS:
             setattr(self, name, DEFAULTS[name])
 
@@ -59,23 +68,36 @@ class Settings:
             if type(value) is type(default) and value in choices:
                 setattr(self, name, value)
             else:
-                self.complain("%s: %r is none of %s" % (name, value, _words(choices)))
+                self.complain(name, "%r is none of %s" % (value, _words(choices)))
         for name, default, lowest, highest, _ in NUMBERS:
             value = stored.get(name, default)
             if _is_number(value, lowest, highest):
                 setattr(self, name, value)
             else:
-                self.complain("%s: %r is not %d...%d" % (name, value, lowest, highest))
+                self.complain(name, "%r is not %d...%d" % (value, lowest, highest))
         for name, default, fewest, _ in ADDRESSES:
             value = stored.get(name, default)
             if _are_addresses(value, fewest):
                 setattr(self, name, tuple(value))
             else:
-                self.complain("%s: %r are not up to 31 addresses 0...31" % (name, value))
+                self.complain(name, "%r are not up to 31 addresses 0...31" % (value,))
         self._check_limits()
-        for name in stored:
-            if name not in DEFAULTS and _survives(name, stored[name]):
-                self._unknown[name] = stored[name]
+
+    def take_file(self, found):
+        """As `take`, from the `fields` of the file; what is not known is kept."""
+        stored, kept = {}, 0
+        for name, value, source in found:
+            if name in stored:
+                self.complain(name, "it stands there twice")
+                value = DEFAULTS.get(name)  # nobody knows which of them was meant
+            elif name not in DEFAULTS:
+                kept += len(source)
+                if kept > UNKNOWN_MAX:
+                    self.complain(TOO_BIG, "more than %d bytes are not known" % UNKNOWN_MAX)
+                else:
+                    self._unknown[name] = source
+            stored[name] = value
+        self.take(stored)
 
     def accept_unsupervised(self, address):
         """The operator lets this drive run on when telegrams stay away. ValueError: no such drive.
@@ -101,42 +123,36 @@ class Settings:
         self.dirty = True
 
     def as_dictionary(self):
-        """All that is stored, unknown things as well."""
-        stored = dict(self._unknown)
-        for name in DEFAULTS:
-            stored[name] = getattr(self, name)
-        return stored
+        """All that is known."""
+        return {name: getattr(self, name) for name in DEFAULTS}
 
     def as_file(self):
         """What is stored, as bytes: JSON in the order of the tables, the unknown at the end."""
-        names = [row[0] for row in CHOICES + NUMBERS + ADDRESSES] + sorted(self._unknown)
-        stored = self.as_dictionary()
-        lines = ["  %s: %s" % (json.dumps(name), json.dumps(stored[name])) for name in names]
-        return ("{\n" + ",\n".join(lines) + "\n}\n").encode()
+        lines = []
+        for name, *_ in CHOICES + NUMBERS + ADDRESSES:
+            line = "%s: %s" % (json.dumps(name), json.dumps(getattr(self, name)))
+            lines.append(line.encode())
+        lines += [self._unknown[name] for name in sorted(self._unknown)]
+        return b"{\n  " + b",\n  ".join(lines) + b"\n}\n"
 
-    def complain(self, text):
+    def complain(self, suspect, text):
         """Note what is wrong with the file; the first complaint stays."""
-        self.complaint = self.complaint or text
+        if self.complaint is None:
+            self.complaint = "%s: %s" % (suspect, text)
+            self.suspect = suspect
         self.damaged = True
 
     def _check_limits(self):
         if self.lowest_centihertz > self.highest_centihertz:
             limits = (self.lowest_centihertz, self.highest_centihertz)
-            self.complain("lowest_centihertz: %d is above highest_centihertz: %d" % limits)
+            text = "%d is above highest_centihertz: %d" % limits
+            self.complain("lowest_centihertz", text)
             self.lowest_centihertz = DEFAULTS["lowest_centihertz"]
             self.highest_centihertz = DEFAULTS["highest_centihertz"]
 
     def _check_present(self, address):
         if address not in self.drives:
             raise ValueError("no drive %r" % (address,))
-
-
-def _survives(name, value):
-    """Whether it would be read again as it is written. MicroPython reads more than JSON allows."""
-    try:
-        return isinstance(name, str) and json.loads(json.dumps(value)) == value
-    except ValueError:
-        return False
 
 
 def _is_number(value, lowest, highest):
@@ -164,21 +180,21 @@ def load(store):
     """The settings that a store keeps; the defaults where it keeps none."""
     settings = Settings()
     try:
-        data = store.read()
+        data = store.read(SIZE_MAX + 1)
     except OSError:
-        settings.complain("the settings file cannot be read")
+        settings.complain(UNREADABLE, "the settings file cannot be read")
         return settings
     if data is None:
         return settings
+    if len(data) > SIZE_MAX:
+        settings.complain(TOO_BIG, "the settings file has more than %d bytes" % SIZE_MAX)
+        return settings
     try:
-        # MicroPython reads half a dictionary without complaint, so the end is looked at as well.
-        stored = json.loads(data) if data.rstrip().endswith(b"}") else None
-    except (ValueError, RuntimeError):  # RuntimeError: nested too deep
-        stored = None
-    if isinstance(stored, dict):
-        settings.take(stored)
+        found = fields(data)
+    except ValueError as error:
+        settings.complain(NO_JSON, "the settings file is damaged (%s)" % error)
     else:
-        settings.complain("the settings file is damaged")
+        settings.take_file(found)
     return settings
 
 

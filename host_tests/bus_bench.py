@@ -66,10 +66,10 @@ class Bench(Stage):
         self.clock.advance(IDLE_US)
 
 
-def refusal(kind, action, *arguments, **options):
+def refusal(expected, action, *arguments, **options):
     """The text of the exception that an action ends with; AssertionError when it does not."""
     try:
         action(*arguments, **options)
-    except kind as exception:
+    except expected as exception:
         return str(exception)
-    raise AssertionError("%s was not raised" % kind.__name__)
+    raise AssertionError("%s was not raised" % expected.__name__)

@@ -8,6 +8,7 @@ ids and the summary work as ever. A file that is not for every tier says so at m
 
     INTERPRETERS = "unix64 unix32"      # a part of: unix64 unix32 coverage cpython
     INTERPRETERS = "pico"               # beside an emulated Pico: tools/emulator/world.py
+    INTERPRETERS = "pico pico_again"    # ... whose UART behaves in either way the documents allow
     INTERPRETERS = "host"               # an ordinary pytest file, with fixtures and all
 
 Tracing lines makes a test some ten times slower. Long ones that run no line of their own stay out:

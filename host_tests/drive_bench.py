@@ -20,6 +20,8 @@ OFF1, RUN = 0x047E, 0x047F
 ACKNOWLEDGE = 0x04FE
 JOG_RIGHT, JOG_LEFT = 0x057E, 0x067E
 
+NO_BOOT = {"boot_ms": 0}
+
 HALF = 0x2000  # 50 % of P2000: 25 Hz
 
 
@@ -42,14 +44,25 @@ def float_words(value):
     return struct.unpack(">HH", struct.pack(">f", value))
 
 
+def with_more(parameters, more):
+    """Both, those of `more` where a number is in both."""
+    parameters = dict(parameters)
+    parameters.update(more or {})
+    return parameters
+
+
 class Bench:
-    """A drive on a line, and a master that keeps the rules unless told otherwise."""
+    """A drive on a line, and a master that keeps the rules unless told otherwise.
+
+    It boots at once, unless `switches` say otherwise: most tests look at what comes after that.
+    """
 
     name = "master"
 
     def __init__(self, parameters=None, address=1, baud=19200, **more):
         self.clock = Clock()
         self.wire = Wire(self.clock, baud)
+        more["switches"] = dict(NO_BOOT, **(more.get("switches") or {}))
         self.drive = Drive(self.clock, self.wire, address, parameters, **more)
         self.heard = []
         self.wire.attach(self)

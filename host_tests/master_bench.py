@@ -24,6 +24,7 @@ class Bus:
         self.sent = []  # (instant, characters)
         self.silent = set()
         self.zsw = {address: 0xFB31 for address in addresses}
+        self.hiw = {}  # 0 where there is none
         self.pkw = {address: None for address in addresses}  # request's PKW -> reply's PKW
         self.on_activity = None
         self.sent_at = 0
@@ -67,6 +68,7 @@ class Bus:
         take_pkw = self.pkw[address]
         net[:8] = take_pkw(request[3:11]) if take_pkw else bytes(8)
         telegram.put_word(net, 8, self.zsw[address])
+        telegram.put_word(net, 10, self.hiw.get(address, 0))
         reply = bytearray(20)
         reply[3:15] = net
         count = telegram.seal(reply, address, 12)

@@ -18,16 +18,27 @@ def panel(**options):
 def running(**options):
     """A panel whose drive 1 has been started and has reached its setpoint."""
     world = panel(**options)
+    wait_until_known(world)
     world.press("START")
     world.run(4000)
     assert world.drives[1].state == "running", world.drives[1].report()
     return world
 
 
+def wait_until_known(world, ms=20_000):
+    """Let time pass until the panel has read what it must know of the drive shown."""
+    for _ in range(ms // 20):
+        if row_2(world).startswith("READY"):
+            return
+        world.run(20)
+    raise AssertionError(world.lcd())
+
+
 def all_running(addresses):
     """A panel whose drives have all been started and have reached their setpoints."""
     world = panel(addresses=addresses)
     for _ in addresses:
+        wait_until_known(world)
         world.press("START")
         world.press("ADDRESS_UP")
         world.run(200)
@@ -35,6 +46,28 @@ def all_running(addresses):
     for drive in world.drives.values():
         assert drive.state == "running", drive.report()
     return world
+
+
+def late(world, number, address=1):
+    """Until a question about this parameter is given up, the drive goes on with its old answer."""
+    channel, drive = world.drives[address]._channel, world.drives[address]
+    asked = (0x1000 | number % 2000, 0x8000 if number >= 2000 else 0)
+    accept = channel.accept
+    when = []  # it was asked
+
+    def accept_late(words, layout):
+        if (words[0], words[1]) == asked:
+            when.append(world.clock.now_us)
+        drive.stale_replies = 10_000 if (words[0], words[1]) == asked else 0
+        accept(words, layout)
+
+    channel.accept = accept_late
+    for _ in range(1000):
+        world.run(20)
+        if when and world.clock.now_us - when[-1] > 100_000:
+            break
+    assert when and when[-1] - when[0] > 1_500_000, when
+    channel.accept = accept
 
 
 def unsupervised(*addresses):
@@ -62,6 +95,30 @@ def settled_row_2(world):
         seen = row_2(world)
         world.run(10)
     return seen
+
+
+def settled(world):
+    """Both rows, when nothing has changed in them for a while."""
+    rows, same = None, 0
+    while same < 2:
+        world.run(20)
+        same = same + 1 if rows == world.lcd() else 0
+        rows = world.lcd()
+    return rows
+
+
+def said(world, ms):
+    """What a person reads in row 2 in the time that follows, as {row: for how long, in ms}.
+
+    Nobody reads a picture that is still being written.
+    """
+    rows = {}
+    until_us = world.clock.now_us + ms * 1000
+    while world.clock.now_us < until_us:
+        since_us = world.clock.now_us
+        row = settled(world)[1].rstrip()
+        rows[row] = rows.get(row, 0) + (world.clock.now_us - since_us) // 1000
+    return {row: read_ms for row, read_ms in rows.items() if read_ms >= 200}
 
 
 def starts(world, address=1):

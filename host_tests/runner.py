@@ -26,7 +26,11 @@ PROMISES = {
     "coverage": ("micropython", 63, True),
     "cpython": ("cpython", 0, True),
     "pico": ("micropython", 63, False),
+    "pico_again": ("micropython", 63, False),
 }
+
+# The tiers with an emulated Pico: what it does otherwise than usual (tools/emulator/README.md).
+PICOS = {"pico": {}, "pico_again": {"receive_timeout": "again"}}
 
 # What the emulated Pico is made of; tools/test puts it there.
 PICO_FILES = (
@@ -48,8 +52,12 @@ TRACED_FOLDER = "firmware/"
 def main(tier, path=None, *names):
     sys.path[:] = search_path()
     version = prove(tier)
+    if tier in PICOS:
+        from tools.emulator import chip
+
+        chip.usual.update(PICOS[tier])
     if path is None:
-        print(chip() if tier == "pico" else version)
+        print(pico() if tier in PICOS else version)
         return
     lines = None
     if tier == "coverage":
@@ -108,7 +116,7 @@ def prove(tier):
     return "%s, small integers of %d bits" % (sys.version.split("; ")[-1], found[1])
 
 
-def chip():
+def pico():
     """Boots the emulated Pico and returns a line about it; ends the process when it does not."""
     import json
 

@@ -165,11 +165,11 @@ def test_all_of_it_on_a_line_with_an_echo():
 
 
 def test_a_scan_finds_them_all():
-    """None of them is known to the master, and none is moved by it."""
+    """None of them is known to the master, and none is moved by it. Each is told OFF1."""
     fleet = Fleet(baud=115200, listed=False)
     scan = Scan(fleet.master, fleet.clock.ticks_mask, net_counts=EVERY_NET_COUNT)
     promised_ms = scan.longest_ms
-    fleet.run_until(lambda: scan.step(fleet.clock.ticks_us()), promised_ms)
+    fleet.run_until(lambda: scan.step(fleet.clock.ticks_us()), 3 * promised_ms)
     assert sorted(scan.found) == sorted(fleet.motors)
     for address, motor in fleet.motors.items():
         pkw_words, pzd_words = motor.layout
@@ -179,7 +179,11 @@ def test_a_scan_finds_them_all():
             assert scan.found[address] == 2 * (pkw_words + pzd_words), (address, scan.found)
             assert address not in scan.variable
         assert motor.state == "inhibited" or "ready" in motor.state, motor.report()
-        assert "stw=0000" in motor.report(), motor.report()
+        assert "stw=047E" in motor.report() and "starts=0" in motor.report(), motor.report()
+        node = scan.nodes[address]
+        assert node.layout.fits(2 * (min(pkw_words, 3 if pkw_words == 127 else 4) + pzd_words))
+        if pkw_words:  # the others tell nothing of themselves
+            assert (node.layout.pkw_words, node.layout.pzd_words) == motor.layout
     assert not scan.unclear
     fleet.check()
 
@@ -192,6 +196,8 @@ def test_another_master_is_heard_and_starts_nothing():
     """
     fleet = Fleet(lost_us=5_000_000)
     contact(fleet)
+    for drive in fleet.drives.values():  # or they would be asked in the pauses
+        fleet.master.supervise(drive, 60_000)
     fleet.start_all()
     fleet.master.cycle_us = 1_500_000
     intruder = Intruder(fleet.clock, fleet.wire, framed(31, bytes(12)), 397_000)

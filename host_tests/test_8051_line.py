@@ -473,7 +473,9 @@ def test_no_other_rate_than_those_of_uss_can_be_set():
         world = panel(settings={"baud": baud})  # the line runs at 19200, which is the default
         assert row_2(world) == "SETTINGS DAMAGED", baud
         assert world.app.bus.timing.baud == load(world.app.board.store).baud == 19200
-        world.run(4000)
+        world.run(3000)
+        assert row_2(world) == "baud", baud
+        world.run(3000)
         assert row_2(world) == "READY        A1", baud
         world.check()
 

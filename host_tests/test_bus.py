@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: MIT
 """The bus for a program of one's own: what a maker writes, and what becomes of the motor."""
 
-from boards.sim import g110, g120, mm3, mm440, v20
+from boards.sim import g110, g120, generic, mm3, mm420, mm440, v20
 from bus_bench import QUICK, Bench, refusal
-from uss import pkw, pzd
+from spoilt_bench import TROUBLES, spoil
+from tools.examples.simulation import Stage
+from uss import pkw, pzd, words
 from uss.bus import MAY_RUN, NO_CONTACT, Master
-from uss.errors import NoContact, NotStarted, Refused, TimedOut, UssError
+from uss.errors import FallsSilent, NoContact, NotStarted, Refused, TimedOut, UssError
 from uss.families import G110, G120, GENERIC, MM3, MM420, MM440, V20
-from uss.layout import Layout
+from uss.layout import VARIABLE, Layout
 from uss.master import CLOSED, OFF
 from uss.profiles import WORD
 from uss.scaling import Scale
@@ -692,8 +694,97 @@ def test_read_brings_words_as_integers_and_double_words_as_floats():
     assert bench.drive.read(700) == 5
     near(bench.drive.read(1082), 50.0, 0)
     assert bench.drive.read(2010, index=1) == bench.motor().read(2010, 1)
-    assert bench.drive.read(1082, kind=int) == 0x42480000
     bench.end()
+
+
+def test_a_parameter_is_not_read_or_written_as_what_it_is_not():
+    bench = Bench()
+    drive = bench.drive
+    for number, value, kind, text in (
+        (1082, 40, int, "P1082[0] of drive 1 is a float, not of kind int"),
+        (700, 5, float, "P0700[0] of drive 1 is a word, not of kind float"),
+        (2019, 0, float, "P2019[0] of drive 1 is an integer, not of kind float"),
+        (1120, 5, str, "kind is int or float"),
+    ):
+        assert text in refusal(ValueError, drive.read, number, kind=kind)
+        assert text in refusal(ValueError, drive.write, number, value, kind=kind, sure=True)
+    assert drive.read(1082, kind=float) == 50.0 and drive.read(700, kind=int) == 5
+    assert bench.motor().read(1082) == 50.0 and bench.motor().read(700) == 5
+    bench.end()
+
+
+def test_where_the_family_does_not_say_what_a_double_word_is_the_drive_does():
+    """By its description of the parameter; without one, whoever reads says it."""
+    bench = of_family(GENERIC, generic, {}, unsupervised=True)
+    drive = bench.drive
+    assert drive.read(1082) == 50.0 and drive.read(2019, index=1) == 0x340000
+    assert "is a float, not of kind int" in refusal(ValueError, drive.write, 1082, 40, kind=int)
+    assert drive.write(1082, 45) == 45.0 and bench.motor().read(1082) == 45.0
+    bench.end()
+    bench = of_family(GENERIC, terse(), {}, unsupervised=True)
+    assert bench.drive.read(1082) == 0x42480000
+    assert bench.drive.read(1082, kind=float) == 50.0
+    assert bench.drive.write(1082, 45, kind=float) == 45.0
+    bench.end()
+
+
+def terse():
+    """The drive of the specification, without descriptions."""
+
+    class Terse:
+        pass
+
+    for name in dir(generic):
+        setattr(Terse, name, getattr(generic, name))
+    Terse.CHANNEL = dict(generic.CHANNEL)
+    Terse.CHANNEL["tasks"] = (1, 2, 3, 6, 7, 8)
+    return Terse
+
+
+def test_of_a_drive_that_was_never_heard_nothing_is_known():
+    """Nothing known is not zero: at 0 some bits would be alarms."""
+    bench = Bench()
+    drive = bench.drive
+    bench.motor().unplug()
+    bench.bus.wait(1)
+    assert words.names(drive.zsw, MM420.zsw_bits) == ["UNKNOWN"]
+    assert drive.zsw is None and drive.hiw is None and drive.word(1) is None
+    assert not words.may_start(drive.zsw)
+    refusal(ValueError, drive.word, 3)
+    bench.motor().plug()
+    bench.bus.wait(1)
+    assert "READY_TO_SWITCH_ON" in words.names(drive.zsw, MM420.zsw_bits)
+    assert words.may_start(drive.zsw) and drive.hiw == 0
+    bench.motor().unplug()
+    bench.bus.wait(2)
+    assert words.names(drive.zsw, MM420.zsw_bits) == ["UNKNOWN"]
+    bench.end()
+
+
+def test_an_element_of_an_array_goes_by_the_tasks_for_arrays_where_no_others_take_an_index():
+    """Specification C-4.2.2. Only of a MICROMASTER 4 it is known that its other tasks take one."""
+    for family, simulated, tasks in (
+        (GENERIC, generic, {6, 7, 12}),
+        (V20, v20, {6, 7, 12}),
+        (MM420, mm420, {1, 2, 14}),
+    ):
+        bench = of_family(family, simulated, {}, unsupervised=True)
+        first = family.first_index
+        index = first + 1
+        drive = bench.drive
+        bench.bus.wait(0.5)
+        before_us = bench.clock.now_us
+        assert drive.read(2010, index=index) == bench.motor().read(2010, 1)
+        for eeprom in (False, True):
+            value = drive.read(2010, index=index) ^ 1
+            assert drive.write(2010, value, index=index, eeprom=eeprom, sure=True) == value
+            assert bench.motor().read(2010, 1) == value
+        sent = [row[2] for row in bench.wire.log.last(1000) if row[1] and row[0] > before_us]
+        assert {characters[3] >> 4 for characters in sent} - {0} == tasks, family
+        if family is GENERIC:
+            refused = refusal(Refused, drive.do, pkw.read(2010, index))
+            assert "no such index" in refused
+        bench.end()
 
 
 def test_write_finds_out_what_the_parameter_is():
@@ -772,6 +863,50 @@ def test_a_drive_that_answers_but_not_to_the_task_times_out():
     bench.motor().stale_replies = 10_000
     text = refusal(TimedOut, bench.drive.read, 1082)
     assert text == "drive 1 does not answer about P1082[0]"
+    bench.end()
+
+
+def test_a_question_that_silences_the_drive_stops_no_motor():
+    """It is withdrawn long before contact would be lost, and says so; the next one is answered."""
+    bench = Bench()
+    bench.motor().switches.silent_refusals = True
+    drive = bench.drive
+    drive.run(10.0)
+    contacts = drive.contacts
+    for ask in (
+        lambda: drive.read(999),
+        lambda: drive.write(999, 5.0, kind=float),
+        lambda: drive.write(999, 5.0, kind=float, eeprom=True),
+        lambda: drive.read(999),
+    ):
+        before_us = bench.clock.now_us
+        text = refusal(FallsSilent, ask)
+        assert text == (
+            "drive 1 falls silent when it is asked about P0999[0], and answers without"
+        ), text
+        assert bench.clock.now_us - before_us < 500_000, "half of the lost time"
+        assert drive.contact and drive.contacts == contacts and drive.is_running
+        assert drive.read(1082) == 50.0
+    assert issubclass(FallsSilent, TimedOut)
+    assert bench.motor().starts == 1 and bench.motor().state == "running"
+    bench.end()
+
+
+def test_a_drive_that_was_away_is_asked_anew():
+    """What was wrong before is old news: at least one telegram goes out before anybody fails."""
+    bench = Bench()
+    drive = bench.drive
+    drive.read(700)
+    bench.motor().unplug()
+    refusal(NoContact, drive.read, 1082)
+    bench.bus.wait(5)
+    bench.motor().plug()
+    assert drive.read(1082) == 50.0
+    bench.motor().unplug()
+    refusal(NoContact, drive.read, 1082)
+    sent = drive.silent
+    assert refusal(NoContact, drive.read, 1082) == "drive 1 does not answer"
+    assert drive.silent >= sent + 3
     bench.end()
 
 
@@ -973,6 +1108,90 @@ def test_mirror_tells_who_is_there():
     bench.end()
 
 
+def scanned(drives, addresses=range(32), **options):
+    """A line on which nobody is known, address -> (family, parameters); the stage, the bus, what a
+    scan has found."""
+    kinds = {
+        address: {"family": family, "parameters": parameters}
+        for address, (family, parameters) in drives.items()
+    }
+    stage = Stage(tuple(drives), kinds=kinds, **options)
+    bus = Master(stage.board.make_link(stage.wire.baud), baud=stage.wire.baud)
+    scan = Scan(bus, stage.clock.ticks_mask, addresses)
+    while not scan.step(bus.clock.ticks_us()):
+        bus.rest()
+        stage.clock.advance(900)
+    return stage, bus, scan
+
+
+def test_a_scan_trips_nobody_and_says_who_will():
+    """A drive that has heard a telegram trips when it hears no more, some before it is over."""
+    drives = {
+        1: (mm420, {2014: 2_000}),
+        2: (mm420, {2014: 0}),
+        9: (mm440, {2014: 600, 2012: 4}),
+        17: (v20, {2014: 700}),
+        30: (g120, {2040: 500}),
+    }
+    stage, bus, scan = scanned(drives)
+    assert scan.asked > 100
+    assert [drive.state for drive in stage.drives.values()] == ["ready"] * 5, [
+        drive.report() for drive in stage.drives.values()
+    ]
+    for drive in stage.drives.values():
+        assert drive.stw == 0x047E and drive.starts == 0
+    assert scan.will_trip == {1: 2_000, 9: 600, 17: 700, 30: 500}
+    for address, node in scan.nodes.items():
+        bus.add(address, node.family, node.layout)
+    bus.wait(3)
+    assert [drive.state for drive in bus.drives] == ["ready"] * 5
+    bus.close()
+
+
+def test_a_scan_says_what_it_has_found_in_a_form_that_add_takes():
+    wanted = {
+        0: (mm420, {}, MM420, (4, 2)),
+        1: (mm440, {2012: 4}, MM420, (4, 4)),
+        2: (mm3, {}, MM3, (3, 2)),
+        3: (g110, {2013: 0}, GENERIC, (0, 2)),
+        4: (g110, {}, G110, (VARIABLE, 2)),
+        5: (v20, {2014: 0}, V20, (VARIABLE, 2)),
+        6: (g120, {}, G120, (VARIABLE, 2)),
+        7: (mm440, {2013: 127, 2012: 4}, MM420, (VARIABLE, 4)),
+        8: (mm420, {2013: 3}, MM420, (3, 2)),
+        9: (mm440, {2012: 8}, MM440, (4, 8)),
+        10: (generic, {2013: 127, 2012: 9}, GENERIC, (VARIABLE, 9)),
+        11: (mm420, {2013: 3, 2012: 3}, MM420, (3, 3)),
+    }
+    drives = {address: (row[0], row[1]) for address, row in wanted.items()}
+    stage, bus, scan = scanned(drives, range(13))
+    for address, (_, _, family, layout) in wanted.items():
+        node = scan.nodes[address]
+        told = (node.layout.pkw_words, node.layout.pzd_words)
+        assert (node.family, told) == (family, layout), (address, node)
+        bus.add(address, node.family, node.layout)
+    assert sorted(scan.nodes) == sorted(wanted)
+    assert bus.wait(3, lambda: all([drive.contact for drive in bus.drives]))
+    bus.close()
+    stage.check()
+
+
+def test_a_drive_that_keeps_silent_on_what_it_does_not_know_is_asked_what_it_is_all_the_same():
+    drives = {3: (mm3, {}), 5: (v20, {2014: 700}), 7: (g110, {})}
+    kinds = {
+        address: {"family": row[0], "parameters": row[1], "switches": {"silent_refusals": True}}
+        for address, row in drives.items()
+    }
+    stage = Stage(tuple(drives), kinds=kinds)
+    bus = Master(stage.board.make_link(stage.wire.baud), baud=stage.wire.baud)
+    scan = Scan(bus, stage.clock.ticks_mask, range(8))
+    while not scan.step(bus.clock.ticks_us()):
+        bus.rest()
+    assert [scan.nodes[address].family for address in (3, 5, 7)] == [MM3, V20, G110]
+    assert [drive.state for drive in stage.drives.values()] == ["ready"] * 3
+    bus.close()
+
+
 def test_leaving_the_bus_stops_every_drive():
     bench = Bench((1, 2))
     with bench.bus:
@@ -1035,3 +1254,20 @@ def test_the_link_has_a_clock_and_the_rate_is_one_of_uss():
     link = bench.board.make_link(19200)
     assert Master(link).clock is bench.board.clock
     assert "12345" in refusal(ValueError, Master, link, baud=12345)
+
+
+# --- what is wrong with the line ----------------------------------------------------------------
+
+
+def test_each_trouble_has_an_exception_that_says_so():
+    for how, trouble, _, words in TROUBLES:
+        bench = Bench()
+        bench.bus.wait(1)
+        spoil(bench.wire, bench.motor(), how)
+        bench.bus.wait(2)
+        text = refusal(NoContact, bench.drive.read, 700)
+        assert words in text, (how.__name__, text)
+        try:
+            bench.drive.read(700)
+        except NoContact as reason:
+            assert reason.trouble == trouble

@@ -5,7 +5,7 @@ A random hand found most of them; others showed when a line of the engine was le
 minded.
 """
 
-from round_bench import Bench, Node, framed
+from round_bench import RUNNING, Bench, Node, framed
 from uss import pkw, pzd, single, telegram
 from uss.layout import Layout
 from uss.master import OFF
@@ -82,6 +82,7 @@ def test_a_loop_that_seldom_comes_round_keeps_the_gap_of_all():
 def test_the_off_time_goes_with_the_drive_and_not_with_its_address():
     """Also when it is taken away, and another one comes in its place."""
     bench = bench_of(20)
+    bench.master.lost_us = 6_000_000  # those of which nobody has told may wait for long
     bench.master.supervise(bench.drives[5], 600)
     bench.nodes[25] = bench.nodes.pop(5)
     bench.nodes[25].address = 25
@@ -200,12 +201,12 @@ def test_a_second_drive_that_dies_later_is_looked_after_too():
     assert bench.drives[2].contact and bench.drives[3].contact
 
 
-def test_looking_for_a_dead_drive_is_cheap_at_300_baud_too():
+def test_looking_for_a_dead_drive_takes_a_fifth_of_the_line_at_300_baud_too():
     bench = bench_of(2, baud=300)
     best = bench_of(1, baud=300).rate(1, 200_000_000)
     bench.nodes[2].plugged = False
     bench.run(20_000_000)
-    assert bench.rate(1, 200_000_000) > 0.945 * best
+    assert bench.rate(1, 200_000_000) > 0.8 * best - 1
 
 
 def test_a_dead_drive_loses_contact_however_long_the_round_takes():
@@ -576,3 +577,64 @@ def test_jobs_asked_while_it_was_off_are_carried_out_later():
     sent = len(bench.sent)
     bench.run(500_000)
     assert pkw.READ in [each.task() for each in bench.sent[sent:]]
+
+
+# --- a drive that falls silent on a task --------------------------------------------------------
+
+
+class Touchy(Node):
+    """A drive that gives no reply at all to a telegram with a task."""
+
+    def answer(self, characters):
+        reply = Node.answer(self, characters)
+        return None if characters[3] >> 4 else reply
+
+
+def test_a_task_that_a_drive_leaves_unanswered_stops_no_motor():
+    for count, baud in ((1, 19200), (8, 19200), (31, 38400), (1, 2400)):
+        nodes = [Touchy(1)] + [Node(address % 32) for address in range(2, count + 1)]
+        bench = Bench(nodes, baud)
+        bench.contact()
+        drive = bench.drives[1]
+        drive.start(0x1000)
+        bench.run_until(lambda: bench.nodes[1].zsw == RUNNING)
+        for job in (pkw.read(999), pkw.write_word(999, 5), pkw.read(998)):
+            asked_at = bench.now
+            drive.ask(job)
+            bench.run_until(lambda: job.state != pkw.PENDING, 20_000_000)
+            assert drive.contact and drive.contacts == 1 and drive.is_on(), (count, baud, job)
+            assert job.state == pkw.UNANSWERED, (count, baud, job)
+            if baud > 2400:  # else half of the lost time is over after two
+                sent = [each for each in bench.sent if each.at >= asked_at and each.address == 1]
+                assert len([each for each in sent if each.task()]) <= 3
+        assert bench.nodes[1].zsw == RUNNING
+        assert all([other.contact for other in bench.master.drives])
+
+
+def test_three_losses_in_a_row_on_a_bad_line_withdraw_no_question():
+    """The line fails for a fifth of a second, with a question on its way.
+
+    Had the drive answered that by "no answer yet" before, it may as well lag and have fallen
+    silent on the question: nobody can tell these two apart.
+    """
+    bench = Bench([Node(1), Node(2)])
+    bench.contact()
+    for step in range(20):
+        first = len(bench.sent)
+        job = pkw.read(999)
+        bench.drives[1].ask(job)
+        bench.run(3_000 + 1_700 * step)
+        bench.nodes[1].plugged = False
+        bench.run(200_000)
+        assert job.state == pkw.PENDING, step
+        bench.nodes[1].plugged = True
+        sent = len(bench.sent)
+        asked = [each.task() for each in bench.sent[first:] if each.address == 1].count(1)
+        if asked > 3:  # one of them was answered
+            bench.run_until(lambda: job.state != pkw.PENDING)
+            assert step == 0 and job.state == pkw.UNANSWERED, step
+            continue
+        bench.run(100_000)
+        assert 1 in [each.task() for each in bench.sent[sent:] if each.address == 1], step
+        bench.run_until(lambda: job.state != pkw.PENDING)
+        assert job.state == pkw.TIMED_OUT  # this node knows no tasks, and says so by AK 0

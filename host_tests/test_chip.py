@@ -16,10 +16,10 @@ class Board:
 
     name = "drive"
 
-    def __init__(self, baud=19200):
+    def __init__(self, baud=19200, timeout_again=False):
         self.clock = Clock()
         self.wire = Wire(self.clock, baud)
-        self.chip = Chip(self.clock, self.wire)
+        self.chip = Chip(self.clock, self.wire, timeout_again)
         self.wire.attach(self)
         self.heard = []
         self.interrupts = []  # instants
@@ -217,14 +217,66 @@ def test_what_does_not_fit_into_288_characters_is_lost():
     for telegram in telegrams:
         board.reply(telegram)
         board.clock.advance(30_000)
-    assert board.uart.any() == 288
+    assert board.uart.any() == 256 and board.uart.fifo_holds()
     assert board.waiting() == telegrams[0] + telegrams[1][:38]
     board.reply()
     board.clock.advance(30_000)
     assert board.waiting() == TELEGRAM
 
 
+def test_the_driver_leaves_one_character_in_the_fifo_as_long_as_a_burst_goes_on():
+    board = Board()
+    board.reply(bytes(70))
+    for characters in range(1, 71):
+        board.clock.advance_to(-(-characters * 11_000_000 // 19200) + 2)
+        assert board.uart.fifo_holds()
+    board.uart.any()
+    assert not board.uart.fifo_holds()
+
+
+def test_while_interrupts_wait_the_fifo_holds_32_characters_and_no_more():
+    board = Board(115200)
+    telegram = bytes(range(100))
+    board.reply(telegram)
+    board.clock.advance(50 * board.wire.character_us)
+    state = board.chip.disable_irq()
+    board.clock.advance(20_000)
+    board.chip.enable_irq(state)
+    waiting = board.waiting()
+    assert waiting == telegram[: len(waiting)] and 50 + 32 - 24 < len(waiting) <= 50 + 32
+
+
 # UART: IRQ_RXIDLE
+
+
+def fills(board):
+    """So many characters that the buffer is full, and the FIFO as well."""
+    board.uart.irq(board.note, UART.IRQ_RXIDLE)
+    for _ in range(2):
+        board.reply(bytes(200))
+        board.clock.advance(200 * board.wire.character_us)
+    board.clock.advance(100_000)
+
+
+def test_of_a_full_receiver_rxidle_comes_once():
+    board = Board(115200)
+    fills(board)
+    assert len(board.interrupts) == 1 and not board.chip.storms
+    board.waiting()
+    board.reply()
+    board.clock.advance(50_000)
+    assert len(board.interrupts) == 2
+
+
+def test_of_a_full_receiver_rxidle_comes_again_and_again():
+    board = Board(115200, timeout_again=True)
+    fills(board)
+    assert len(board.interrupts) > 1_000 and board.chip.storms
+    board.waiting()
+    board.clock.advance(1_000)
+    came = len(board.interrupts)
+    board.clock.advance(50_000)
+    assert len(board.interrupts) == came and not board.chip.storms
 
 
 def test_rxidle_comes_32_bits_after_the_last_character():

@@ -6,6 +6,7 @@ In a terminal it is another thing: test_terminal.py.
 
 import json
 import os
+import shutil
 import subprocess
 
 import pytest
@@ -228,6 +229,40 @@ def test_a_damaged_settings_file_is_said_and_kept_aside(tmp_path):
     assert json.loads(kept.read_text())["unsupervised"] == [1]
 
 
+@pytest.mark.parametrize("from_file", [True, False])
+def test_a_line_of_three_megabytes_is_a_line_that_is_too_long(tmp_path, from_file):
+    text = "wait 10\nlcd\n" + 3_000_000 * "x" + "\n"
+    script = tmp_path / "script"
+    script.write_text(text)
+    if from_file:
+        ended = panel("--script", str(script))
+    else:
+        ended = panel("--script", "-", script=text)
+    assert ended.returncode == 2 and len(ended.stderr) < 1000
+    assert ":3: a line of more than 1000 characters is no command" in ended.stderr
+    assert ended.stdout.count("|") == 4
+
+
+def test_an_option_twice_is_refused():
+    ended = panel("--drives", "1", "--drives=2", "--script", "-")
+    assert ended.returncode == 2 and "--drives stands there twice" in ended.stderr
+
+
+def test_a_settings_file_that_no_chip_could_hold_is_a_damaged_one(tmp_path):
+    kept = tmp_path / "kept.json"
+    for text in (
+        '{"drives": [7], "new": "%s"}' % (20_000_000 * "x"),
+        '{"drives": [7], %s}' % ", ".join('"%d": 1' % n for n in range(200_000)),
+        '{"drives": [7], "new": %s}' % (1000 * "[" + 1000 * "]"),
+    ):
+        kept.write_text(text)
+        words = ("--settings", str(kept), "--script", "-")
+        ended = panel(*words, script="wait 1000\nexpect SETTINGS DAMAGED\n" + ACCEPTED)
+        assert (ended.returncode, ended.stderr) == (0, "")
+        assert (tmp_path / "kept.json.bad").read_text() == text
+        assert json.loads(kept.read_text())["unsupervised"] == [1]
+
+
 def test_settings_in_a_pipe_are_refused_and_nobody_waits(tmp_path):
     pipe = tmp_path / "pipe"
     os.mkfifo(pipe)
@@ -306,3 +341,20 @@ def test_a_crash_of_the_firmware_shows_where_and_has_a_status_of_its_own(tmp_pat
     assert ended.returncode == 4 and ended.stdout == ""
     assert "Traceback" in ended.stderr and ", in fail" in ended.stderr
     assert error.split("(")[0] in ended.stderr and "standard input:" not in ended.stderr
+
+
+def test_what_an_emulated_pico_cannot_do_is_refused_before_anything_is_fetched(tmp_path):
+    shutil.copytree(os.path.join(TOP, "tools"), tmp_path / "tools")
+    for folder in ("firmware", "boards"):
+        os.symlink(os.path.join(TOP, folder), tmp_path / folder)
+    os.mkdir(tmp_path / "build")
+    os.symlink(os.path.dirname(MICROPYTHON), tmp_path / "build" / "unix64")
+    for options, why in (("--polled", "--polled is not for --board pico"),
+                         ("--baud 300", "has no code for 300 baud"),
+                         ("--nonsense", "unknown option --nonsense")):  # fmt: skip
+        ended = subprocess.run(
+            [tmp_path / "tools" / "panel", "--script", "-", "--board", "pico", *options.split()],
+            input="", capture_output=True, text=True, timeout=60, check=False,
+        )  # fmt: skip
+        assert ended.returncode == 2 and why in ended.stderr, ended.stderr
+        assert ended.stdout == "" and os.listdir(tmp_path / "build") == ["unix64"]

@@ -111,7 +111,7 @@ def test_it_is_told_what_happens_to_the_drive(program):  # noqa: F811
 
 
 def test_mains_off_and_on_lose_the_ram_and_keep_the_eeprom(program):  # noqa: F811
-    drives = program(Drives, "--set", "P1082=40.0")
+    drives = program(Drives, "--set", "P1082=40.0", "--switch", "boot_ms=0")
     master = Master(drives.path)
     write = (0x24C7, 0x0000, 0, 0)  # P1223: there is none
     assert master.asks(telegram(1, write + (STOP, 0)))[3] >> 4 == 7
@@ -125,6 +125,27 @@ def test_mains_off_and_on_lose_the_ram_and_keep_the_eeprom(program):  # noqa: F8
     assert drives.report()["address"] == "1"
     assert drives.asked("param 1 P1082") == "P1082[0]=40.0"
     assert len(master.asks(telegram(1, NOTHING + (STOP, 0)))) == 16
+
+
+def test_a_drive_that_powers_up_ready_starts_for_an_on_that_stands(program):  # noqa: F811
+    drives = program(Drives, "--switch", "clean_power_up=1", "--set", "P1120=0.0")
+    assert drives.asked("switch 1 clean_power_up") == "clean_power_up=1"
+    assert drives.asked("switch 1 boot_ms=100") == "boot_ms=100"
+    master = Master(drives.path)
+    master.asks(telegram(1, NOTHING + (STOP, 0x1000)))
+    master.asks(telegram(1, NOTHING + (RUN, 0x1000)))
+    assert drives.report()["starts"] == "1"
+    drives.does("off 1")
+    assert master.is_not_answered(telegram(1, NOTHING + (RUN, 0x1000)))
+    drives.does("on 1")
+    assert drives.report()["state"] == "off"  # it boots
+    for _ in range(20):
+        os.write(master.port, telegram(1, NOTHING + (RUN, 0x1000)))
+        time.sleep(0.05)
+        if drives.report()["starts"] == "2":
+            break
+    report = drives.report()
+    assert (report["state"], report["starts"], report["fault"]) == ("running", "2", "-")
 
 
 def test_the_log_says_every_telegram_in_words(program):  # noqa: F811
@@ -183,6 +204,25 @@ def test_the_drives_do_not_wait_for_whoever_reads_the_log(program):  # noqa: F81
         assert len(master.asks(telegram(1, NOTHING + (STOP, 0)))) == 16
     while "lines left out: nobody read them" not in drives.line():
         os.write(master.port, telegram(1, NOTHING + (STOP, 0)))
+
+
+def test_a_second_after_garbage_at_the_speed_of_a_pty_the_drive_answers(program):  # noqa: F811
+    drives = program(Drives, "--log")  # which nobody reads
+    fcntl.fcntl(drives.process.stdout, SET_PIPE_SIZE, 4096)
+    port = os.open(drives.path, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
+    garbage, sent = bytes(range(256)) * 16, 0
+    until = time.monotonic() + 0.5
+    while time.monotonic() < until:
+        try:
+            sent += os.write(port, garbage)
+        except BlockingIOError:
+            pass
+    assert sent > 20_000, "10 s of a line at 19200"
+    os.close(port)
+    time.sleep(1)
+    master = Master(drives.path)
+    master.hears(4096, 0.05)
+    assert len(master.asks(telegram(1, NOTHING + (STOP, 0)))) == 16
 
 
 class Unread(Talking):
@@ -300,9 +340,10 @@ def test_commands_that_make_no_sense_are_told_and_change_nothing(program):  # no
     assert "no panel here" in drives.asked("press START")
     unknown = drives.asked("jump")
     assert unknown.startswith("unknown command jump (there are: wait ")
-    assert unknown.endswith(" off on help quit)") and "press" not in unknown
-    assert drives.asked("off") == "use: off A"
-    assert drives.asked("off 9") == "no drive at address 9: there are 1 (use: off A)"
+    assert unknown.endswith(" help quit)") and "press" not in unknown
+    assert drives.asked("off").endswith(": use: off A")
+    assert drives.asked("off 9").endswith(": no drive at address 9: there are 1 (use: off A)")
+    assert drives.asked("switch 1 boot_ms=x").endswith("(use: switch A NAME[=VALUE])")
     assert "quit" in drives.asked("help")
     drives.does("quit")
     assert drives.ends() == 0
@@ -323,7 +364,7 @@ def test_numbers_may_be_of_any_length(program, digits):  # noqa: F811
 
 def test_drives_are_served_however_long_a_command_waits(program):  # noqa: F811
     drives = program(Drives)
-    drives.does("drive 1", "wait " + 400 * "9")
+    drives.does("drive 1", "wait 8640000000")
     drives.line()
     assert len(Master(drives.path).asks(telegram(1, NOTHING + (STOP, 0)))) == 16
     drives.process.send_signal(signal.SIGINT)
@@ -365,13 +406,23 @@ def test_it_ends_quietly(program, tmp_path, ending):  # noqa: F811
         (("--pty", "--switch", "1:reexecute=7"), 2, "it can be 0 or 1"),
         (("--pty", "--baud", "12345"), 2, "invalid choice: 12345"),
         (("--pty", "--baud", "300"), 2, "has no code for 300 baud"),
-        (("--port", "/dev/no_such"), 1, "there is no port /dev/no_such"),
-        (("--port", "/dev/null"), 1, "/dev/null is no serial port"),
+        (("--pty", "--address", "1", "--drives", "2"), 2, "--drives stands there twice"),
+        (("--pty", "--baud=9600", "--baud=9600"), 2, "--baud stands there twice"),
+        (("--pty", "--switch", "1:stale_replies=True"), 2, "stale_replies=True: it can be 0"),
+        (("--pty", "--switch", "1:reexecute=maybe"), 2, "reexecute=maybe: it can be 0 or 1"),
+        (("--port", "/dev/no_such"), 5, "there is no port /dev/no_such"),
+        (("--port", "/dev/null"), 5, "/dev/null is no serial port"),
     ],
 )
 def test_what_cannot_be_is_refused(program, words, status, why):  # noqa: F811
     drives = program(Talking, DRIVE, *words)
     assert drives.ends() == status and why in drives.rest
+
+
+@pytest.mark.parametrize("word", ["1", "True", "on", "false"])
+def test_a_switch_is_turned_by_the_word_that_people_write(program, word):  # noqa: F811
+    drives = program(Drives, "--switch", "1:clean_power_up=" + word)
+    assert drives.asked("switch 1 clean_power_up") == "clean_power_up=%d" % (word != "false")
 
 
 def test_idle_it_takes_next_to_no_time(program):  # noqa: F811

@@ -18,22 +18,68 @@ with Master(board.make_link(19200)) as bus:
     print(drive.state, bus.mirror(1))
 """
 
+LONG = """
+import board
+from uss.bus import Master
+from uss.families import MM420
+
+with Master(board.make_link(19200)) as bus:
+    bus.add(1, MM420)
+    bus.wait(60)
+    assert not board.keypad.read()
+print("over")
+"""
+
 TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+
+
+def called(*words):
+    command = [os.path.join(TOP, "tools", "example"), *words]
+    return subprocess.run(command, capture_output=True, text=True, cwd="/", timeout=60)
 
 
 def example(*words):
     """(exit status, what it printed), called from some other folder."""
-    command = [os.path.join(TOP, "tools", "example"), *words]
-    done = subprocess.run(command, capture_output=True, text=True, cwd="/", timeout=60)
+    done = called(*words)
     assert not done.stderr, done.stderr
     return done.returncode, done.stdout
 
 
 def test_without_a_name_it_tells_which_there_are():
-    for words in ((), ("no_such",), ("simulation",)):
-        status, printed = example(*words)
-        assert status == 2
-        assert printed.startswith("usage: ./tools/example broadcast_stop|one_drive|own_program|")
+    status, printed = example()
+    assert status == 2
+    assert printed.startswith("usage: ./tools/example broadcast_stop|one_drive|own_program|")
+
+
+def test_what_there_is_not_is_said_in_a_line():
+    for words, told in (
+        (("no_such",), "there is no example no_such: broadcast_stop one_drive"),
+        (("simulation",), "there is no example simulation"),
+        (("/no/such.py",), "/no/such.py cannot be read (ENOENT)"),
+        (("no_such_folder/mine.py",), "no_such_folder/mine.py cannot be read"),
+        (("one_drive", "--drives", "1=foo"), "no family foo: there are g110 g120"),
+        (("one_drive", "--drives=x"), "x is no address 0...31"),
+        (("one_drive", "--drives", "32"), "32 is no address 0...31"),
+        (("one_drive", "--drives", "1,1"), "1 stands there twice"),
+        (("one_drive", "--drives", "1", "--drives", "2"), "--drives stands there twice"),
+        (("one_drive", "--drives"), "--drives wants a list"),
+        (("one_drive", "parameters"), "one at a time"),
+        (("one_drive", "--help-me"), "unknown option --help-me"),
+    ):
+        done = called(*words)
+        assert done.returncode == 2 and told in done.stderr, (words, done.stderr)
+        assert len(done.stderr.splitlines()) == 1 and not done.stdout, done.stderr
+
+
+def test_nobody_presses_keys_or_ends_a_program_that_does_not_want_it():
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "mine.py")
+        with open(path, "w") as file:
+            file.write(LONG)
+        status, printed = example(path, "--drives", "1")
+    assert status == 0
+    assert printed.startswith("over\n") and "pressed" not in printed
+    assert "\nThe simulated drives 60." in printed
 
 
 def test_an_example_runs_and_the_drives_say_what_became_of_them():
@@ -58,3 +104,5 @@ def test_somebody_presses_start_and_stop_for_the_program_that_wants_keys():
     status, printed = example("own_program")
     assert status == 0
     assert "address=1 state=ready" in printed and "starts=1\n" in printed
+    assert printed.startswith("(START is pressed after 2 s)\n(STOP is pressed after 12 s)\n")
+    assert "(Ctrl-C is pressed after 40 s)\n" in printed

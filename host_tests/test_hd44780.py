@@ -127,7 +127,7 @@ def test_a_piece_is_small_and_takes_less_than_a_millisecond():
         before, began_us = bench.written(), bench.clock.now_us
         bench.display.show(picture)
         largest = max(largest, bench.written() - before)
-        # What the computing takes stands in boards/pico/README.md; here only the waiting counts.
+        # What the computing takes stands in tools/bench.md; here only the waiting counts.
         assert bench.clock.now_us - began_us <= 600
         bench.clock.advance(LOOP_US)
         for position in range(32):

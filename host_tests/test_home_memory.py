@@ -50,6 +50,7 @@ def test_ten_minutes_of_the_home_page_take_no_memory():
 
 def test_nor_do_frequencies_that_change_or_three_drives_of_which_one_is_announced():
     world = panel(addresses=(1, 2, 3), keys="matrix")
+    world.run(2000)  # what is read for the first time takes memory
     world.press("START")
     world.press("ADDRESS_UP")
     lock(world, 20_000)

@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: MIT
 """The RS-485 link on the simulated chip: sends, hears, and lets go of the line in time."""
 
-from boards.sim.board import HardTimer
+from boards.sim.board import HardTimer, clear_fifo
 from boards.sim.chip import UART, Chip, Pin
 from boards.sim.clock import Clock
 from boards.sim.wire import Transceiver, Wire
 from hal.rs485 import Rs485Link
 
+COMING = -1
 RATES = (300, 600, 1200, 2400, 4800, 9600, 19200, 38400, 57600, 76800, 93750, 115200, 187500)
 REQUEST = bytes((0x02, 0x0E, 0x01, 0, 0, 0, 0, 0, 0, 0, 0, 0x04, 0x7E, 0, 0, 0x77))
 
@@ -28,15 +29,17 @@ class Neighbour:
 class Bench:
     """A link on a chip, and a neighbour on the line."""
 
-    def __init__(self, baud=19200, interrupts=True):
+    def __init__(self, baud=19200, interrupts=True, timeout_again=False):
         self.clock = Clock()
         self.wire = Wire(self.clock, baud)
-        self.chip = Chip(self.clock, self.wire)
+        self.chip = Chip(self.clock, self.wire, timeout_again)
         self.driver_enable = Pin(self.chip)
         self.uart = UART(self.chip, baud)
         Transceiver(self.wire, self.uart, self.driver_enable)
+        timer = HardTimer(self.chip)
+        fifo = (self.uart.fifo_holds, clear_fifo)
         self.link = Rs485Link(
-            self.uart, self.driver_enable, HardTimer(self.chip), self.clock, baud, interrupts
+            self.uart, self.driver_enable, timer, self.clock, baud, interrupts, fifo=fifo
         )
         self.neighbour = Neighbour(self.wire)
         self.activities = []
@@ -110,6 +113,57 @@ def test_a_burst_before_anybody_wants_to_know_is_kept():
     clock.advance(20_000)
     assert link.receive(bytearray(260), 0) == 16
     bench.check()
+
+
+def test_in_the_middle_of_a_burst_nothing_is_taken():
+    """To look would use up the interrupt that announces its end."""
+    bench = Bench()
+    bench.wire.talk(bench.neighbour, REQUEST, len(REQUEST))
+    for _ in range(8):
+        bench.clock.advance(1_100)
+        assert bench.link.receive(bytearray(260), 0) == COMING
+    bench.clock.advance(20_000)
+    assert len(bench.activities) == 1
+    assert bench.link.receive(bytearray(260), 0) == 16
+    bench.check()
+
+
+def fill(bench):
+    """More characters than the receiver holds."""
+    for _ in range(2):
+        bench.wire.talk(bench.neighbour, bytes(200), 200)
+        bench.clock.advance(200 * bench.wire.character_us)
+    bench.clock.advance(100_000)
+
+
+def test_characters_whose_end_is_not_announced_are_taken_after_128_characters():
+    bench = Bench(115200)
+    bench.uart.irq(None)  # nobody hears the only time-out of a full receiver
+    fill(bench)
+    character_us = bench.wire.character_us
+    buffer = bytearray(264)
+    for waiting in (256, 32):
+        assert bench.link.receive(buffer, 0) == COMING
+        bench.clock.advance(127 * character_us)
+        assert bench.link.receive(buffer, 0) == COMING
+        bench.clock.advance(2 * character_us)
+        assert bench.link.receive(buffer, 0) == waiting
+    assert bench.link.receive(buffer, 0) == 0
+
+
+def test_what_finds_no_room_in_a_full_receiver_is_dropped():
+    """Also before anybody takes anything: the chip would not leave its interrupt handler."""
+    for timeout_again in (False, True):
+        bench = Bench(115200, timeout_again=timeout_again)
+        fill(bench)
+        assert len(bench.activities) <= 2 and not bench.chip.storms
+        buffer = bytearray(264)
+        assert bench.link.receive(buffer, 0) == 256
+        assert bench.link.receive(buffer, 0) == 0
+        bench.wire.talk(bench.neighbour, REQUEST, len(REQUEST))
+        bench.clock.advance(20_000)
+        assert bench.link.receive(buffer, 0) == 16 and buffer[:16] == REQUEST
+        assert bench.chip.handler_errors == []
 
 
 def test_a_burst_may_be_taken_in_pieces():
@@ -189,8 +243,10 @@ def test_a_burst_that_somebody_drained_does_not_date_the_next_one():
     assert bench.link.receive(bytearray(260), 0) == 0
     burst = bench.wire.talk(bench.neighbour, REQUEST, len(REQUEST))
     bench.clock.advance(9_300)  # before the interrupt that ends it
+    assert bench.link.receive(bytearray(260), 0) == COMING
+    bench.clock.advance(2_000)
     assert bench.link.receive(bytearray(260), 0) == 16
-    assert bench.link.received_at >= burst.end_us
+    assert 0 <= bench.link.received_at - burst.end_us <= 2
 
 
 def test_the_longest_telegram_is_delivered_whole():

@@ -5,7 +5,7 @@ Every drive is on the line and answers; the master's list has each of them once.
 """
 
 from panel.control import Control
-from panel_bench import panel, row_2, telegrams, unsupervised
+from panel_bench import panel, row_2, telegrams, unsupervised, wait_until_known
 
 INTERPRETERS = "unix64 unix32"
 
@@ -55,9 +55,11 @@ def start(world, *addresses):
     """START for some drives, one after the other."""
     while world.app.panel.selected.drive.address != addresses[-1]:
         if world.app.panel.selected.drive.address in addresses:
+            wait_until_known(world)
             world.press("START")
             world.run(1_000)
         world.press("ADDRESS_UP", 30)
+    wait_until_known(world)
     world.press("START")
     world.run(3_000)
     for address in addresses:

@@ -188,7 +188,8 @@ def test_two_drives_never_get_the_same_address():
 
 def test_a_drive_whose_answer_was_lost_is_found_at_its_new_address():
     for silent_ms in (50, 1500, 3000):
-        world = edit(parameter("P2011", parameters={2014: 20_000}), 5)
+        options = {"parameters": {2014: 20_000}, "settings": {"unsupervised": [1]}}
+        world = edit(parameter("P2011", **options), 5)
         world.press("SET")
         lose_answer(world, 2011, 5, silent_ms)
         world.run(6500)
@@ -305,12 +306,48 @@ def full(world):
     store.replace = replace
 
 
-def test_a_lost_drive_that_was_acknowledged_does_not_keep_the_settings_from_being_saved():
+def lost_running():
+    """Drive 1 was running when its connector was pulled; STOP has acknowledged it."""
     world = running(addresses=(1, 2), parameters={2014: 0}, settings={"unsupervised": [1, 2]})
     world.drives[1].unplug()
     world.run(2000)
     assert world.reads("NO CONTACT, MAY RUN")
     world.press("STOP")
+    world.run(3000)
+    world.press("ADDRESS_UP")
+    world.run(500)
+    return show(world, "P2011")
+
+
+def test_stop_that_a_lost_drive_did_not_hear_makes_no_drive_stand():
+    """It is acknowledged, and turns on: no address changes until it is heard at rest."""
+    world = edit(lost_running(), 7)
+    world.press("SET", 40)
+    assert row_2(world) == "STOP ALL FIRST" and world.drives[1].hz() > 9
+    world.drives[1].plug()
+    world.run(8000)
+    world.press("SET")
+    world.press("SET")
+    world.run(2000)
+    assert world.drives[2].address == 7 and stored(world)["drives"] == [1, 7]
+    world.check()
+
+
+def test_nothing_is_saved_while_a_lost_drive_turns_that_was_acknowledged():
+    world = lost_running()
+    world.app.settings.dirty = True
+    world.run(5000)
+    assert world.app.settings.dirty and world.drives[1].hz() > 9
+    world.drives[1].plug()
+    world.run(8000)
+    assert not world.app.settings.dirty
+    world.check()
+
+
+def test_a_drive_that_was_taken_away_for_good_is_forgotten_by_a_restart():
+    world = lost_running()
+    world.reset()
+    world.run(3000)
     world.press("ADDRESS_UP")
     world.run(500)
     show(world, "P2011")

@@ -12,6 +12,7 @@ from panel_bench import (
     row_1,
     row_2,
     running,
+    said,
     starts,
     telegrams,
     unsupervised,
@@ -52,10 +53,14 @@ def test_unplugged_while_it_runs_the_display_does_not_pretend():
     world.run(300)
     assert world.reads("NO CONTACT, MAY RUN")
     assert "10.00" not in row_1(world)
-    world.press("STOP")  # acknowledges
-    world.run(100)
-    assert not world.reads("MAY RUN")
-    assert row_2(world) == "NO CONTACT   A1"
+    world.press("STOP")  # nobody knows whether it hears that
+    world.run(500)
+    assert world.reads("NO CONTACT, MAY RUN")
+    world.run(1000)
+    assert world.lcd() == ("NO CONTACT,     ", "STOP UNCONFIRMED")
+    world.drives[1].plug()
+    world.run(2000)
+    assert row_2(world) == "FAULT F0072  A1"
     world.check()
 
 
@@ -110,7 +115,7 @@ def test_a_drive_that_comes_later_is_found_and_not_started():
     world = World(main.start)
     world.drives[1].unplug()
     world.run(2000)
-    assert row_2(world) == "NO CONTACT   A1"
+    assert set(said(world, 4000)) == {"NO CONTACT   A1", "A1 MAY RUN"}
     world.drives[1].plug()
     world.run(1000)
     assert row_2(world) == "READY        A1" and starts(world) == 0
@@ -154,6 +159,28 @@ def test_a_panel_that_hangs_before_its_first_step_is_restarted():
     assert world.resets == 1
     world.run(2_000)
     assert world.reads("WATCHDOG RESTART")
+    world.check()
+
+
+def test_a_panel_that_hangs_while_it_opens_the_line_is_restarted():
+    def start(board):
+        make_link = board.make_link
+
+        def hangs_once(baud):
+            if not board.reset_cause:
+                board.clock.advance(2_500_000)
+            return make_link(baud)
+
+        board.make_link = hangs_once
+        return main.start(board)
+
+    world = World(start)
+    world.run(100)
+    assert world.resets == 1
+    world.run(2_000)
+    assert world.reads("WATCHDOG RESTART")
+    world.run(5_000)
+    assert row_2(world) == "READY        A1"
     world.check()
 
 
@@ -367,7 +394,7 @@ def leave(app, error):
     class Broken:
         names = app.board.keypad.names
 
-        def read(self):
+        def read(self, most=-1):
             raise error("on purpose")
 
     app.board.keypad = Broken()

@@ -57,6 +57,51 @@ def test_next_and_previous_walk_the_parameters_round():
     world.check()
 
 
+def test_a_parameter_on_which_the_drive_falls_silent_stops_no_motor():
+    """The question is withdrawn before the drive counts as lost, and row 2 says what happened."""
+    world = panel()
+    drive = world.drives[1]
+    world.press("START")
+    world.run(4000)
+    hear = drive._slave.hear
+    silent_on = []
+
+    def hear_selectively(burst):
+        characters = bytes(burst.data[: burst.count])
+        if characters[3:5] == b"\x10\x19" and characters[5] & 0x80:  # r2025, read
+            silent_on.append(burst.start_us)
+            return None
+        return hear(burst)
+
+    drive._slave.hear = hear_selectively
+    show(world, "r2025")
+    wait_for(world, "NO REPLY TO THIS")
+    assert len(silent_on) == 3
+    wait_for(world, "r2025: -----")
+    world.run(5000)
+    assert drive.state == "running" and starts(world) == 1 and drive.hz() > 9
+    world.press("NEXT")
+    wait_for(world, "P0700:     5 A1")
+    world.check()
+
+
+def test_a_write_on_which_the_drive_falls_silent_says_so():
+    world = parameter("P1000")
+    drive = world.drives[1]
+    hear = drive._slave.hear
+
+    def hear_selectively(burst):
+        task = bytes(burst.data[: burst.count])[3:4]
+        return None if task and task[0] >> 4 == 2 else hear(burst)
+
+    drive._slave.hear = hear_selectively
+    write(world, 6)
+    wait_for(world, "NO REPLY TO THIS", 900)
+    assert drive.read(1000) == 5
+    wait_for(world, "P1000:     6")  # still being edited: SET would try again
+    world.check()
+
+
 def test_next_is_read_at_once_and_repeats_while_it_is_held():
     world = parameter("P0700")
     world.press("NEXT", 60)

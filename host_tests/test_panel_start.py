@@ -3,7 +3,19 @@
 
 import main
 from boards.sim.world import World
-from panel_bench import OFF1, ON, panel, row_1, row_2, running, starts, telegrams, unsupervised
+from panel_bench import (
+    OFF1,
+    ON,
+    panel,
+    row_1,
+    row_2,
+    running,
+    said,
+    settled_row_2,
+    starts,
+    telegrams,
+    unsupervised,
+)
 from uss import pkw
 
 
@@ -113,7 +125,7 @@ def test_a_start_of_which_the_drive_changes_its_mind_is_taken_back():
     world.run(500)
     assert row_2(world) == "STARTING     A1"
     world.drives[1].write(700, 0, 2)
-    world.run(2500)
+    world.run(4000)  # before it has been STARTING for 5 s
     assert row_2(world) == "TAKEN AWAY   A1"
     world.check()
 
@@ -141,7 +153,8 @@ def test_a_start_takes_little_of_the_line_from_a_drive_that_runs():
         assert world.drives[2].state == "running"
         instants = [at_us for at_us, _ in telegrams(world, pressed_us, 1)]
         longest_us = max(after - before for before, after in zip(instants, instants[1:]))
-        assert longest_us <= 2 * cycle_us, (baud, longest_us, cycle_us)
+        # The ON itself goes before the list as well.
+        assert longest_us <= 2 * cycle_us + cycle_us // 2, (baud, longest_us, cycle_us)
         world.check()
 
 
@@ -178,11 +191,8 @@ def test_a_start_refused_while_another_drive_is_shown_is_not_said_of_that_one():
     world.press("ADDRESS_UP")
     world.drives[1].fault(1)
     world.run(3000)
-    rows = set()
-    for _ in range(40):
-        world.run(100)
-        rows.add(row_2(world))
-    assert rows == {"READY        A2", "A1 FAULT F0001"}, rows
+    rows = said(world, 4000)
+    assert set(rows) == {"READY        A2", "A1 FAULT F0001"}, rows
     world.press("ADDRESS_DOWN")
     world.run(100)
     assert row_2(world) == "FAULT F0001  A1" and starts(world) == 0
@@ -412,7 +422,7 @@ def test_start_of_a_drive_that_runs_changes_nothing():
     world.press("START")
     for _ in range(40):
         world.run(50)
-        assert row_2(world) == "RUNNING      A1", world.lcd()
+        assert settled_row_2(world) in ("RUNNING      A1", "RUN, P2014=0 A1"), world.lcd()
     assert starts(world) == 1
     world.check()
 

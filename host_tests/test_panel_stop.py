@@ -1,7 +1,12 @@
 # SPDX-License-Identifier: MIT
 """The operator's manual, STOP: it is always sent, repeated, and watched until the motor rests."""
 
-from panel_bench import OFF1, all_running, panel, row_2, settled_row_2, running, starts, telegrams
+import main
+from boards.sim.world import World
+from panel_bench import (
+    OFF1, all_running, panel, row_2, running, said, settled, settled_row_2, starts, telegrams,
+    wait_until_known,
+)  # fmt: skip
 
 NOT_TRACED = (
     "test_a_long_list_is_no_reason_for_an_alarm test_the_slowest_ramp_of_a_drive_is_no_alarm"
@@ -49,16 +54,39 @@ def test_an_off1_that_nobody_pressed_is_watched_as_well():
     assert row_2(world) == "STOP UNCONFIRMED"
 
 
-def test_an_answer_from_before_stop_confirms_nothing():
-    """The drive stands still and answers; it is unplugged, STOP is pressed."""
+def test_a_drive_that_was_heard_at_rest_after_its_last_on_needs_no_answer():
+    """It stands still and answers; it is unplugged, STOP is pressed."""
     world = panel()
     world.drives[1].unplug()
-    world.run(100)
+    world.press("STOP")
+    world.run(4_000)
+    assert row_2(world) == "NO CONTACT   A1"
+    world.check()
+
+
+def test_one_that_was_started_since_then_does():
+    world = running()
+    world.press("STOP")
+    world.run(8_000)
+    world.press("START")
+    world.run(1_000)
+    world.drives[1].unplug()
+    world.press("STOP")
+    world.run(1_200)
+    assert row_2(world) == "STOP UNCONFIRMED"
+    world.check()
+
+
+def test_so_does_one_that_was_never_heard():
+    world = World(main.start)
+    world.drives[1].unplug()
+    world.run(2_000)
     world.press("STOP")
     world.run(700)
-    assert world.app.bus.drives[0].contact
-    world.run(400)
+    assert row_2(world) == "NO CONTACT   A1"
+    world.run(500)
     assert row_2(world) == "STOP UNCONFIRMED"
+    world.check()
 
 
 def test_a_long_list_is_no_reason_for_an_alarm():
@@ -190,20 +218,84 @@ def test_a_stop_that_nobody_confirms_is_seen_while_stop_is_held():
     world.check()
 
 
-def test_a_fault_of_another_drive_that_was_not_on_is_not_spoken_of():
-    world = panel(addresses=(1, 2))
-    world.drives[2].fault(12)
-    for _ in range(80):
-        world.run(50)
-        assert row_2(world) == "READY        A1"
-    world.check()
-
-
 def test_another_drive_is_announced_by_both_digits_of_its_address():
     world = all_running((1, 12))
     rows = set()
     for _ in range(80):
         world.run(40)
-        rows.add(settled_row_2(world))
+        rows.add(settled(world)[1].rstrip())
     assert rows == {"RUNNING      A1", "A12 RUN,HOLD=ALL"}, rows
+    world.check()
+
+
+# --- a drive that sends something else as its status word ----------------------------------------
+
+NOTHING, SPEED, WORD_20, STATUS = 0, 0x00150000, 0x00140000, 0x00340000  # for P2019[0]
+ALWAYS_ON = 0x10000  # for P0840: 1:0, so that OFF1 is not obeyed
+
+
+def rows_until(world, text, ms):
+    """What row 2 says until it says this."""
+    rows = []
+    for _ in range(ms // 20):
+        rows.append(settled_row_2(world))
+        if rows[-1] == text:
+            return rows
+        world.run(20)
+    raise AssertionError((text, set(rows)))
+
+
+def test_a_drive_that_sends_no_status_word_confirms_no_stop():
+    for source in (NOTHING, SPEED, WORD_20):
+        world = running(parameters={2014: 2000})
+        world.drives[1].write(2019, 0, source)
+        world.drives[1].write(840, 0, ALWAYS_ON)
+        world.press("STOP")
+        rows_until(world, "STOP UNCONFIRMED", 6000)
+        assert world.drives[1].state == "running", world.drives[1].report()
+        world.run(2000)
+        rows = said(world, 5000)
+        assert "STOP UNCONFIRMED" in rows and not any("FAULT" in row for row in rows), rows
+        world.drives[1].write(840, 0, 0x07F40000)
+        world.drives[1].write(2019, 0, STATUS)  # now it tells that it stands
+        world.run(8000)
+        assert "STOP UNCONFIRMED" not in said(world, 5000), world.lcd()
+        assert world.drives[1].hz() == 0
+        world.check()
+
+
+def test_a_drive_that_sends_no_status_word_may_run_when_it_is_lost():
+    for source in (NOTHING, SPEED):
+        world = panel()
+        wait_until_known(world)
+        world.drives[1].write(2019, 0, source)
+        rows_until(world, "P2019[0] ??? A1", 6000)
+        world.drives[1].unplug()
+        world.run(3000)
+        assert settled(world)[0].startswith("NO CONTACT,"), world.lcd()
+        assert "MAY RUN" in settled(world)[1], world.lcd()
+        world.check()
+
+
+def test_a_drive_not_shown_that_sends_no_status_word_confirms_no_stop():
+    """It is asked seldom: the alarm comes once the panel has read P2019[0]."""
+    world = all_running((1, 2))
+    world.drives[1].write(2019, 0, NOTHING)
+    world.drives[1].write(840, 0, ALWAYS_ON)
+    world.press("STOP", 100)
+    world.press("ADDRESS_UP")
+    world.run(40_000)
+    assert world.drives[1].state == "running"
+    rows = said(world, 8000)
+    assert any(row == "A1 NOT STOPPED" for row in rows), rows
+    world.check()
+
+
+def test_the_second_stop_is_not_weakened_without_a_status_word():
+    world = running(parameters={2014: 2000, 1135: 20.0})
+    world.drives[1].write(2019, 0, NOTHING)
+    rows_until(world, "P2019[0] ??? A1", 15_000)
+    world.press("STOP", 1700)
+    world.run(3000)
+    assert {stw for _, stw in telegrams(world, world.clock.now_us - 1_000_000, 1)} == {0x047A}
     world.check()

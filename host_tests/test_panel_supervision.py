@@ -6,7 +6,18 @@ without its operator's word.
 import json
 
 from panel.supervision import off_time_ms
-from panel_bench import ON, panel, row_1, row_2, starts, telegrams, unsupervised
+from panel_bench import (
+    ON,
+    panel,
+    row_1,
+    row_2,
+    settled,
+    settled_row_2,
+    starts,
+    telegrams,
+    unsupervised,
+    wait_until_known,
+)
 
 NOT_TRACED = (
     "test_any_other_key_does_nothing_and_start_asks_again "
@@ -305,12 +316,14 @@ def test_stop_that_is_pressed_while_the_drive_is_asked_takes_the_question_away()
 def test_another_drive_that_is_shown_meanwhile_is_not_asked_about():
     """Nor is a question put that nobody waits for any more, when the first one is shown again."""
     world = unset(addresses=(1, 2))
+    world.run(2000)
     world.press("START", 40)
     world.press("ADDRESS_UP")
     for _ in range(60):
         world.run(50)
-        assert row_2(world) == "READY        A2"
+        assert settled(world)[1].rstrip() in ("READY        A2", "A1 NOT STARTED")
     world.press("ADDRESS_DOWN", 40)
+    world.run(1500)
     assert row_2(world) == "NOT STARTED  A1"
     world.run(1000)
     assert row_2(world) == "NOT STARTED  A1"
@@ -348,6 +361,7 @@ def test_nothing_is_accepted_while_stop_is_down():
 
 def test_a_drive_that_was_started_after_another_is_the_one_that_is_asked_about():
     world = unset(addresses=(1, 2))
+    world.run(2000)
     world.press("START", 40)
     world.press("ADDRESS_UP")
     world.press("START")
@@ -460,4 +474,174 @@ def test_a_drive_with_a_short_off_time_is_asked_more_often_than_the_list_has_it(
     gaps = [after - before for before, after in zip(instants, instants[1:])]
     assert max(gaps) < 500_000, gaps
     assert world.drives[1].state == "running"
+    world.check()
+
+
+def test_a_long_time_is_asked_about_with_its_seconds():
+    """65535 ms: a motor would run on for more than a minute after its panel has died."""
+    world = panel(parameters={2014: 65_535})
+    wait_until_known(world)
+    world.press("JOG_RIGHT", 1000)
+    assert row_2(world) == "NO: P2014 LONG" and starts(world) == 0
+    world.press("START")
+    wait_for(world, ASKED)
+    rows = set()
+    for _ in range(50):
+        world.run(100)
+        rows.add(row_1(world))
+    assert {"P2014=65535: IT", "RUNS ON 65.6 s", "IF PANEL DIES"} <= {row.strip() for row in rows}
+    assert starts(world) == 0
+    world.press("SET")
+    wait_for(world, "WRITTEN (RAM)", 1000)
+    assert world.drives[1].read(2014) == 1000 and starts(world) == 0
+    world.press("START")
+    world.run(2000)
+    assert world.drives[1].state == "running"
+    world.check()
+
+
+def test_which_times_are_long():
+    """More than 2 s, or than four rounds of the bus in which every answer comes late."""
+    for drives, baud, off_time_ms, is_long in (
+        (1, 19200, 2000, False),
+        (1, 19200, 2001, True),
+        (8, 4800, 2001, False),
+        (8, 4800, 60_000, True),
+    ):
+        world = panel(
+            addresses=tuple(range(1, drives + 1)), baud=baud, parameters={2014: off_time_ms}
+        )
+        wait_until_known(world)
+        world.press("START")
+        world.run(8000)
+        assert (row_2(world) == ASKED) == is_long, (drives, off_time_ms, world.lcd())
+        assert starts(world) == (0 if is_long else 1)
+        world.check()
+
+
+def test_a_long_time_is_accepted_as_it_is_and_until_the_panel_restarts():
+    world = panel(parameters={2014: 10_000})
+    wait_until_known(world)
+    world.press("START")
+    wait_for(world, ASKED)
+    world.run(1200)
+    world.press("START")
+    world.run(3000)
+    assert row_2(world) == "RUNNING      A1" and accepted(world) == []
+    world.press("STOP")
+    world.run(5000)
+    world.press("START")
+    world.run(2000)
+    assert row_2(world) == "RUNNING      A1"
+    world.press("STOP")
+    world.run(5000)
+    for off_time_ms in (10_001, 0):
+        world.drives[1].write(2014, 0, off_time_ms)
+        world.press("START")
+        wait_for(world, ASKED)
+        world.press("UP")
+    world.drives[1].write(2014, 0, 10_000)
+    world.reset()
+    world.run(2000)
+    world.press("START")
+    wait_for(world, ASKED)
+    world.check()
+
+
+def test_who_accepted_that_it_runs_on_for_ever_accepts_any_time():
+    world = panel(parameters={2014: 65_535}, settings={"unsupervised": [1]})
+    wait_until_known(world)
+    world.press("START")
+    world.run(3000)
+    assert row_2(world) == "RUNNING      A1"
+    world.check()
+
+
+def test_a_time_that_changes_while_it_runs_is_said():
+    for off_time_ms, text in ((0, "RUN, P2014=0 A1"), (65_535, "P2014 LONG   A1")):
+        world = panel(parameters={2014: 1000})
+        wait_until_known(world)
+        world.press("START")
+        world.run(4000)
+        world.drives[1].write(2014, 0, off_time_ms)
+        world.run(6500)
+        assert settled_row_2(world) == text and world.drives[1].state == "running"
+        world.drives[1].write(2014, 0, 1500)
+        world.run(6500)
+        assert settled_row_2(world) == "RUNNING      A1"
+        world.check()
+
+
+def test_a_drive_that_has_just_been_selected_is_jogged_once_it_has_told_its_p2014():
+    """What the panel knew of it may be old: the key has to be pressed again."""
+    world = panel(addresses=(1, 2))
+    world.run(40_000)
+    world.drives[2].write(2014, 0, 0)
+    world.run(10_000)
+    world.press("ADDRESS_UP")
+    world.down("JOG_LEFT")
+    world.run(100)
+    assert row_2(world) == "NO: STILL CHECKS"
+    world.run(4000)
+    assert starts(world, 2) == 0
+    world.up("JOG_LEFT")
+    world.run(100)
+    world.press("JOG_LEFT", 500)
+    assert row_2(world) == "NO JOG: P2014=0" and starts(world, 2) == 0
+    world.check()
+
+
+def test_a_jog_ends_when_its_drive_turns_out_to_be_unsupervised():
+    world = panel()
+    wait_until_known(world)
+    world.run(1000)
+    world.down("JOG_LEFT")
+    world.run(1000)
+    assert row_2(world) == "JOG LEFT     A1"
+    world.drives[1].write(2014, 0, 0)
+    world.run(8000)
+    assert row_2(world) == "P2014=0      A1" and world.drives[1].hz() == 0
+    world.up("JOG_LEFT")
+    world.run(500)
+    assert starts(world) == 1
+    world.check()
+
+
+def test_a_question_asks_about_what_is_and_not_about_what_was():
+    world = panel(parameters={2014: 5000})
+    wait_until_known(world)
+    world.press("START")
+    wait_for(world, ASKED)
+    assert settled(world)[0].strip() == "P2014=5000: IT"
+    world.drives[1].write(2014, 0, 0)
+    for _ in range(200):
+        world.run(20)
+        if row_1(world) == "P2014=0: IT RUNS":
+            break
+    world.press("START")  # too soon to have read that
+    world.run(500)
+    assert row_2(world) == ASKED and starts(world) == 0
+    world.drives[1].write(2014, 0, 1000)
+    world.run(4000)
+    assert row_2(world) == "NOT STARTED  A1" and accepted(world) == []
+    world.press("START")
+    world.run(3000)
+    assert starts(world) == 1
+    world.check()
+
+
+def test_a_p2014_that_only_start_has_read_is_known_to_the_bus():
+    """It decides how soon the drive is asked again while it runs."""
+    world = panel(parameters={2014: 2000})
+    wait_until_known(world)
+    for off_time_ms in (1500, 1200, 1600, 1300):
+        world.run(3000)
+        world.drives[1].write(2014, 0, off_time_ms)
+        world.press("START")
+        world.run(3000)
+        assert starts(world) and world.drives[1].state == "running"
+        bus = world.app.bus
+        assert bus._care.bound_us(bus.drives[0]) == off_time_ms * 1000 // 3, off_time_ms
+        world.press("STOP")
+        world.run(6000)
     world.check()

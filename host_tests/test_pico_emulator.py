@@ -2,6 +2,7 @@
 """The emulated Pico itself, with plain MicroPython on it, where a wrong model would make us
 believe something false: how long things take, what a reset leaves, what a power cut leaves."""
 
+from tools.emulator.chip import EmulatorError
 from tools.emulator.world import PicoWorld
 
 INTERPRETERS = "pico"
@@ -17,6 +18,27 @@ driver = Pin(6, Pin.OUT, value=0)
 uart = UART(1, 19200, bits=8, parity=0, stop=1, tx=Pin(4), rx=Pin(5), rxbuf=256)
 flash = rp2.Flash()
 """
+
+# A function in RAM that reads a word of each of so many lines of the flash; how long that takes.
+LOOKS = """
+import time, rp2
+@micropython.viper
+def look(lines: int) -> int:
+    flash = ptr32(0x10010000)
+    line = found = 0
+    while line < lines:
+        found ^= flash[2 * line]
+        line += 1
+    return found
+def took_us(lines):
+    began = time.ticks_us()
+    look(lines)
+    return time.ticks_diff(time.ticks_us(), began)
+flash = rp2.Flash()
+took_us(1)
+"""
+WAY_LINES = 1024  # of one of its two ways; the other is left to the interpreter's own code
+MISS_US = 60 / 125
 
 
 class Talker:
@@ -35,9 +57,15 @@ class Talker:
         self.world.wire.talk(self, data, len(data))
 
 
-def stock(code=SET_UP, **how):
+# What is exact is measured by Python as fast as it may be; only tests of the cache have one.
+UNCACHED, CACHED = {"cache_miss_cycles": 0}, {"cache_miss_cycles": 60}
+
+
+def stock(code=SET_UP, model=None, **how):
     """A Pico with plain MicroPython at its prompt that has done `code`."""
-    world = PicoWorld("stock", (), **how)
+    wanted = dict(UNCACHED)
+    wanted.update(model or {})
+    world = PicoWorld("stock", (), model=wanted, **how)
     world.repl.open()
     does(world, code)
     return world
@@ -137,6 +165,86 @@ def test_nothing_is_received_beyond_the_32_characters_of_the_fifo_while_flash_is
     Talker(world).say(bytes(range(60)))  # 34 ms
     world.run(80)
     assert does(world, "print(uart.read())") == repr(bytes(range(32)))
+
+
+def test_what_fits_the_flash_cache_is_read_without_waiting_the_second_time():
+    world = stock(LOOKS, model=CACHED)
+    first_us, second_us = map(int, does(world, "print(took_us(1024), took_us(1024))").split())
+    close_to(first_us - second_us, WAY_LINES * MISS_US, 0.1 * WAY_LINES * MISS_US)
+
+
+def test_what_is_larger_than_the_flash_cache_is_waited_for_each_time():
+    world = stock(LOOKS, model=CACHED)
+    first_us, second_us = map(int, does(world, "print(took_us(4096), took_us(4096))").split())
+    assert min(first_us, second_us) > 4 * WAY_LINES * MISS_US
+
+
+def test_writing_the_flash_empties_its_cache():
+    world = stock(LOOKS, model=CACHED)
+    took = does(
+        world,
+        "took_us(1024)\nbefore = took_us(1024)\nflash.writeblocks(300, bytes(256), 0)\n"
+        "print(before, took_us(1024))",
+    )
+    before_us, after_us = map(int, took.split())
+    close_to(after_us - before_us, WAY_LINES * MISS_US, 0.1 * WAY_LINES * MISS_US)
+
+
+def test_without_a_cache_the_flash_is_as_fast_as_ram():
+    world = stock(LOOKS)
+    first_us, second_us = map(int, does(world, "print(took_us(1024), took_us(1024))").split())
+    close_to(first_us, second_us, 5)
+
+
+def test_a_flash_as_slow_as_its_data_sheet_allows():
+    world = stock(model={"flash_times": "maximum"})
+    took_us = number(
+        world,
+        "t = time.ticks_us()\nflash.ioctl(6, 300)\nprint(time.ticks_diff(time.ticks_us(), t))",
+    )
+    close_to(took_us, 400_000, 1_000)
+    assert world.flash_log[-1][1:] == (1, 400_000)
+
+
+def test_a_chip_that_nobody_can_model_is_refused():
+    for model in ({"receive_timeout": "twice"}, {"cache_miss_cycles": -1}, {"cash": 1}):
+        try:
+            PicoWorld("stock", (), model=model)
+        except EmulatorError as error:
+            assert str(error).startswith("no chip: there is no model with"), error
+        else:
+            raise AssertionError(model)
+
+
+FULL = """
+import machine, time
+from machine import UART, Pin
+driver = Pin(6, Pin.OUT, value=0)
+led = Pin(25, Pin.OUT)
+uart = UART(1, 19200, bits=8, parity=0, stop=1, tx=Pin(4), rx=Pin(5), rxbuf=32)
+machine.WDT(timeout=1000)
+"""
+
+
+def test_a_receive_time_out_that_comes_once_leaves_a_full_receiver_alone():
+    """64 characters fill the ring of 32 and the FIFO of 32; nothing can be drained then."""
+    world = stock(FULL + "machine.mem32[0x4005B000] = 1 << 30", model={"receive_timeout": "once"})
+    Talker(world).say(bytes(70))
+    world.run(500)
+    assert does(world, "print(uart.any())") == "32"
+
+
+def test_a_receive_time_out_that_comes_again_never_leaves_a_full_receiver():
+    """The interrupt is there again whenever its handler returns: the chip does nothing else."""
+    world = stock(FULL, model={"receive_timeout": "again"})
+    world.repl.begin("while True:\n    led.toggle()\n    time.sleep_ms(1)")
+    world.run(100)
+    Talker(world).say(bytes(70))
+    world.run(1_500)
+    assert world.reset_causes == ["watchdog"]
+    bitten_us = world.restarts[0][0]
+    last_us = max(at_us for at_us, _ in world.led if at_us < bitten_us)
+    close_to(last_us, world.figures.heard_ns / 1000 + 32 * BIT_US, 1_100)
 
 
 def test_power_that_is_cut_while_a_sector_is_being_erased_leaves_garbage_in_it():

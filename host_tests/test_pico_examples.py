@@ -55,7 +55,7 @@ def test_own_program_works_by_interrupts_and_obeys_its_keys():
 
 def test_plain_micropython_starts_with_a_program_of_ones_own():
     """What firmware/uss/README.md has copied to it, as sources."""
-    files = {"board.py": "boards/pico/board.py", "main.py": "tools/examples/one_drive.py"}
+    files = {"board.py": "boards/pico/board.py", "one_drive.py": "tools/examples/one_drive.py"}
     for folder in ("uss", "hal"):
         for name in os.listdir("firmware/" + folder):
             if name.endswith(".py"):
@@ -63,6 +63,9 @@ def test_plain_micropython_starts_with_a_program_of_ones_own():
     for path in files:
         with open(files[path], "rb") as file:
             files[path] = file.read()
+    files["main.py"] = (
+        b"import gc, uss.bus\ngc.collect()\nimport board, one_drive\none_drive.main(board)\n"
+    )
     world = PicoWorld("stock", files=files, parameters=QUICK)
     assert turns(world, 25.0, 15_000), world.drives[1].report()
     assert stands(world, ms=20_000)

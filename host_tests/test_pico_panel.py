@@ -14,13 +14,14 @@ from pico_bench import (
     telegrams,
 )
 from tools.emulator.world import PicoWorld
+from version import VERSION
 
-INTERPRETERS = "pico"
+INTERPRETERS = "pico pico_again"
 
 
 def test_after_power_on_the_panel_says_what_it_is_not_and_shows_its_drive():
     world = PicoWorld("panel")
-    assert says(world, "USS PANEL IS NO EMERGENCY STOP")
+    assert says(world, "USS %s IS NO EMERGENCY STOP" % VERSION)
     assert says(world, "READY        A1")
     assert world.lcd()[0] == "S: 10.0 F:  0.00"
     assert b"USS panel: runs" in world.usb

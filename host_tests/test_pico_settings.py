@@ -12,6 +12,17 @@ INTERPRETERS = "pico"
 # At SET the panel has something to save: drive 2 is accepted as it is.
 ACCEPT = "app.settings.accept_unsupervised(2)\nwhile True:\n    app.step()"
 SAVING_MS = 1_500
+# At SET it saves another setpoint each second; that erases sectors as well.
+SAVE_OFTEN = """
+for _ in range(6):
+    app.settings.setpoint_centihertz += 10
+    app.settings.dirty = True
+    began = time.ticks_ms()
+    while time.ticks_diff(time.ticks_ms(), began) < 1_000:
+        app.step()
+while True:
+    app.step()
+"""
 CUTS = 6  # instants at which power goes, spread over the flash operations of one saving
 
 
@@ -33,6 +44,16 @@ def test_what_is_saved_is_there_after_a_reset():
     assert world.flash_log
     world.reset()
     assert says(world, "READY") and world.settings()["unsupervised"] == after
+    world.check()
+
+
+def test_a_flash_as_slow_as_its_data_sheet_allows_does_not_restart_the_panel():
+    world = scripted(SAVE_OFTEN, motor_on=False, model={"flash_times": "maximum"})
+    set_off(world)
+    world.run(8_000)
+    assert world.settings()["setpoint_centihertz"] == 1_000 + 6 * 10
+    assert max(lasts_us for _, _, lasts_us in world.flash_log) == 400_000
+    assert not world.restarts and says(world, "READY")
     world.check()
 
 
@@ -93,12 +114,14 @@ def test_nothing_is_written_while_a_drive_runs():
 def test_settings_that_are_no_settings_do_not_keep_the_panel_from_starting():
     world = PicoWorld("panel", files={"settings.json": b"{nonsense"})
     assert says(world, "DAMAGED", 5_000)
+    assert says(world, "FILE IS NO JSON", 5_000)
     assert says(world, "READY", 5_000) and starts(world) == 0
     world.check()
 
 
 def test_a_panel_on_an_erased_flash_starts_with_its_defaults():
     world = PicoWorld("panel", files={"settings.json": b""})
+    assert says(world, "FILE IS NO JSON", 6_000)
     assert says(world, "READY", 5_000)
     world.check()
 

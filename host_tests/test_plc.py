@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The blocks of the S7-200's USS library, used as a PLC program uses them, on simulated drives."""
 
-from boards.sim import g120, mm3
+from boards.sim import g120, generic, mm3
 from boards.sim.clock import Clock, Event
 from plc_bench import BAUD, Plc
 from uss import families, pkw, status
@@ -316,6 +316,19 @@ def test_an_element_by_its_index():
     read(EN=True, XMT_REQ=False)
     until_done(plc, read, DRIVE=1, PARAM=2012, INDEX=9)
     assert (read.ERROR, read.PKW_ERROR) == (status.PARAMETER_REPLY, 3)
+
+
+def test_an_element_goes_by_the_tasks_for_arrays_where_no_others_take_an_index():
+    """Specification C-4.2.2; its index counts from 1."""
+    plc = Plc(kinds={1: {"family": generic}}, types=(families.MM3, families.GENERIC))
+    plc.run(300)
+    read, write = USS_RPM_W(plc.port), USS_WPM_W(plc.port)
+    until_done(plc, read, DRIVE=1, PARAM=2012, INDEX=2)
+    assert (read.ERROR, read.VALUE) == (0, 2)
+    for eeprom, value in ((False, 5), (True, 6)):
+        write(EN=True, XMT_REQ=False)
+        until_done(plc, write, DRIVE=1, PARAM=2012, INDEX=2, VALUE=value, EEPROM=eeprom)
+        assert write.ERROR == 0 and plc.drive().read(2012, 1) == value
 
 
 def test_a_full_queue_of_the_drive_is_a_busy_port():

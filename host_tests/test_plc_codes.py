@@ -17,7 +17,7 @@ from uss.plc import (
 NODE = 3
 READY, RUNNING = 0xFB31, 0xFB34
 
-# Codes that nothing on this link leads to, and why; README.md says so, too.
+# Codes that nothing on this link leads to, and why; plc.md says so, too.
 NEVER = {
     3: "parity",  # no UART of MicroPython tells of it: the character is wrong or missing
     14: "DB_PTR",  # the blocks need no memory of the program

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The tables for PLC programmers in firmware/uss/README.md: nothing is missing, and every name in
-them is one of the library."""
+"""What firmware/uss/plc.md tells PLC programmers: its tables miss nothing, every name in them is
+one of the library, and its example runs."""
 
 import re
 
@@ -18,8 +18,7 @@ from uss import (
     timing, words,
 )  # fmt: skip
 
-README = "firmware/uss/README.md"
-HEADING = "## For PLC programmers"
+MANUAL = "firmware/uss/plc.md"
 
 # Codes of the B&R blocks, and all that may stand beside them.
 B_AND_R = (
@@ -80,24 +79,21 @@ def roots():
     return found
 
 
-def section():
-    with open(README, encoding="utf-8") as readme:
-        text = "\n" + readme.read()
-    begin = text.index("\n" + HEADING)
-    end = text.find("\n## ", begin + 1)
-    return text[begin : end if end >= 0 else len(text)]
+def manual():
+    with open(MANUAL, encoding="utf-8") as file:
+        return file.read()
 
 
 def part(title):
-    """The lines below a sub-heading."""
-    text = section()
-    begin = text.index("### " + title)
-    end = text.find("\n### ", begin)
+    """The lines below a heading."""
+    text = manual()
+    begin = text.index("\n## " + title)
+    end = text.find("\n## ", begin + 1)
     return text[begin : end if end >= 0 else len(text)].split("\n")
 
 
 def rows(title):
-    """The tables below a sub-heading: the cells of each row, heads and rulers left out."""
+    """The tables below a heading: the cells of each row, heads and rulers left out."""
     lines = part(title)
     for number, line in enumerate(lines):
         if not line.startswith("|") or line.startswith("|---"):
@@ -113,7 +109,7 @@ def code_numbers(cell):
 
 def test_every_name_in_the_tables_exists():
     known = roots()
-    text = section()
+    text = manual()
     names = set()
     for quoted in text.split("`")[1::2]:
         if "\n" not in quoted and "." in quoted and re.match("^[A-Za-z_0-9.]+$", quoted):
@@ -219,7 +215,7 @@ class Board:
 def play(switch, board):
     """Run the example until it ends; answer its names."""
     names = {"board": board, "switch": switch}
-    exec(section().split("```python\n")[1].split("```")[0], names)
+    exec(manual().split("```python\n")[1].split("```")[0], names)
     return names
 
 

@@ -208,17 +208,27 @@ def test_garbage_is_counted_once_and_hurts_nobody():
         assert line.counts(GOOD) == [1], kind
 
 
-def test_a_flood_fills_the_queue_and_ends():
-    line = Line(PtyMaster)
-    flood = bytes(range(256)) * 8
-    line.gets(flood)
-    assert line.master.full()
-    line.clock.advance(len(flood) * CHARACTER_US)
-    line.clock.advance(100_000)
-    assert not line.master.full()
-    line.gets(READ_P0700)
-    line.clock.advance(100_000)
-    assert line.counts(GOOD) == [1]
+def test_a_second_after_a_flood_the_drive_answers():
+    flood = bytes(range(256)) * 16
+    for baud in (9600, 19200, 115200):
+        line = Line(PtyMaster, baud=baud)
+        for _ in range(20):  # 80 kB, which are 84 s of a line at 9600
+            line.gets(flood)
+            line.clock.advance(10_000)
+        assert line.master.lost > 70_000
+        line.clock.advance(1_000_000)
+        line.gets(READ_P0700)
+        line.clock.advance(100_000)
+        assert line.counts(GOOD) == [1], baud
+
+
+def test_what_a_line_has_time_for_is_not_lost():
+    for baud in (1200, 19200):
+        line = Line(PtyMaster, baud=baud)
+        line.gets(bytes(256))  # the longest telegram there is
+        assert line.master.lost == 0
+        line.clock.advance(10_000_000)
+        assert sum(count for _, _, count in line.notes) == 256
 
 
 def test_a_wrong_parity_bit_spoils_the_telegram():

@@ -173,7 +173,7 @@ def test_a_drive_is_parameterised_started_and_stopped(program):
     panel.does("wait 1200", "press SET")  # a question has to be readable before it is answered
     panel.shows("WRITTEN (RAM)")
     assert int(drives.asked("param 1 P2014[0]").split("=")[1]) > 100
-    drives.asked("param 1 P2014[0] 30000")  # a machine that stalls for a second is no subject here
+    drives.asked("param 1 P2014[0] 2000")  # no longer, or START asks
     panel.shows("NOT STARTED")
     panel.runs()
     drives.waits(state="running", hz="10.00")
@@ -335,6 +335,11 @@ def test_the_live_panel_works_and_leaves_the_same_way(program, terminal, ending)
     panel.shows("READY        A1")
     assert drives.path in panel.screen.text()
     panel.type("s")
+    panel.shows("two keys within 2 s")
+    assert drives.report()["starts"] == "0"
+    panel.type("g")
+    panel.shows("now the letter of START")
+    panel.type("s")
     panel.shows("RUNNING      A1")
     drives.waits(state="running")
     if ending == "SIGTERM":
@@ -347,12 +352,26 @@ def test_the_live_panel_works_and_leaves_the_same_way(program, terminal, ending)
     assert "every drive was sent OFF1" in panel.screen.text() or ending != "q"
 
 
+def test_a_terminal_that_goes_away_leaves_no_motor_without_a_stop_key(program):
+    drives = program(Drives, *SUPERVISED)
+    panel = Terminal("--port", drives.path)
+    panel.shows("READY        A1")
+    panel.type("g")
+    panel.shows("now the letter of START")
+    panel.type("s")
+    panel.shows("RUNNING      A1")
+    os.close(panel.slave)
+    os.close(panel.master)
+    drives.waits(stw="047E", fault="-")  # OFF1, and before P2014 was over
+    panel.process.wait(PATIENCE_S)
+
+
 def test_somebody_else_may_not_use_the_port(program):
     drives = program(Drives)
     panel = program(Panel, drives.path)
     panel.shows("READY")
     other = program(Panel, drives.path)
-    assert other.ends() == 1
+    assert other.ends() == 5
     assert other.rest == "panel: %s is in use by another program\n" % drives.path
 
 
@@ -365,7 +384,7 @@ def test_what_is_no_port_is_said(program, tmp_path):
         (str(file), "panel: %s is no serial port\n" % file),
     ):
         panel = program(Panel, path)
-        assert panel.ends() == 1 and panel.rest == why
+        assert panel.ends() == 5 and panel.rest == why
 
 
 @pytest.mark.parametrize(

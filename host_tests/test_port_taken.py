@@ -16,9 +16,10 @@ TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 INTERPRETERS = "host"
 
 NOBODY = 65534
+LEFT_OVER = "%s is left over: the terminal that it leads to was made after it, by somebody else"
 
 BEGIN = """
-import fcntl, os, signal, struct, sys, termios
+import fcntl, os, signal, struct, sys, termios, time
 sys.path.insert(0, %r)
 from tools.serial_port import PortError, Pty, SerialPort
 
@@ -146,6 +147,63 @@ def test_the_link_of_one_that_was_killed_is_replaced(tmp_path):
     link.symlink_to("/dev/pts/987654")
     assert linked(link) == ["opened"]
     assert not link.is_symlink()
+
+
+def test_also_when_somebody_else_has_its_terminal_now(tmp_path):
+    link = tmp_path / "line"
+    said = tells("""
+link = %r
+killed = Pty(link)
+killed.open()
+was = killed.path
+killed._link = None         # which is left behind
+killed.close()
+time.sleep(0.1)
+other = Pty()
+other.open()
+print(other.path == was, os.readlink(link) == was)
+print(opens(link))          # it is not for us
+pty = Pty(link)
+pty.open()
+print(os.readlink(link) == pty.path != other.path, opens(link))
+""" % str(link))
+    assert said == [
+        "True True",
+        LEFT_OVER % link,
+        "True opened",
+    ]
+
+
+def test_a_pty_that_has_gone_does_not_come_back_as_another_one(tmp_path):
+    said = tells("""
+link = %r
+pty = Pty()
+pty.open()
+os.symlink(pty.path, link)
+ports = [SerialPort(pty.path, 19200), SerialPort(link, 19200)]
+for port in ports:
+    port.open()
+    port.close()
+    port.open()             # as long as it is the same
+    port.close()
+was = pty.path
+pty.close()
+time.sleep(0.1)
+other = Pty()
+other.open()
+print(other.path == was)
+for port in ports:
+    try:
+        port.open()
+    except PortError as error:
+        print(error)
+os.remove(link)
+os.symlink(other.path, link)
+ports[1].open()
+print("opened")
+""" % str(tmp_path / "line"))
+    assert said[0] == "True" and said[3:] == ["opened"], said
+    assert "has gone for good" in said[1] and "is left over" in said[2], said
 
 
 def test_the_link_of_one_that_lives_is_not(tmp_path):

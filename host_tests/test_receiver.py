@@ -6,7 +6,7 @@ Specification A-5.1.2 (start interval), A-5.2.1.1 (response delay), A-6.3 (resid
 
 from uss import receiver, telegram
 from uss.drive import Drive
-from uss.receiver import CUT_OFF, SILENT, WAITING, Receiver
+from uss.receiver import CUT_OFF, GARBLED, SILENT, WAITING, Receiver
 from uss.telegram import BAD_ADDRESS, BAD_BCC, BAD_LENGTH, BAD_START, GOOD
 from uss.timing import Timing
 
@@ -132,7 +132,34 @@ def test_every_other_error_is_found():
     other[2], other[15] = 2, other[15] ^ 3
     assert Line().come(other, 3 * TCH) == BAD_ADDRESS
     assert Line().come(b"\x02\x06\x01\xfb\x34\x20\x00\xea", 3 * TCH) == BAD_LENGTH
-    assert Line().come(REPLY + b"\x00", 3 * TCH) == BAD_LENGTH
+    assert Line().come(REPLY + b"\x00", 3 * TCH) == GARBLED
+
+
+def test_a_whole_telegram_of_another_length_is_told_from_noise():
+    """Shorter, longer, in one burst or in pieces; noise that begins like one is none."""
+    shorter = b"\x02\x06\x01\xfb\x34\x20\x00\xea"
+    longer = b"\x02\x12\x01" + bytes(16)
+    longer += bytes((telegram.bcc(longer, len(longer)),))
+    for whole in (shorter, longer):
+        assert Line().come(whole, 3 * TCH) == BAD_LENGTH
+        for cut in range(2, len(whole)):
+            line = Line()
+            assert line.come(whole[:cut], 3 * TCH) == WAITING
+            assert line.come(whole[cut:], 0) == BAD_LENGTH, cut
+            line = Line()
+            line.come(whole[:cut], 3 * TCH)
+            left_us = line.receiver.due_us(line.link, line.receiver.heard_at)
+            assert 2 * TCH <= left_us <= 3 * TCH  # nobody waits for the rest of it for long
+            now = line.receiver.heard_at + left_us
+            assert line.receiver.take(line.link, now) == GARBLED, cut
+        assert Line().come(whole[:-1] + b"\x55", 3 * TCH) == GARBLED
+        assert Line().come(whole + b"\x00", 3 * TCH) == GARBLED
+    for length in (0, 1, 2, 255):
+        assert Line().come(bytes((2, length, 1, 0, 0)), 3 * TCH) == GARBLED, length
+
+
+def test_a_whole_telegram_of_another_length_and_address_is_somebody_elses():
+    assert Line().come(b"\x02\x06\x02\xfb\x34\x20\x00\xe9", 3 * TCH) == BAD_ADDRESS
 
 
 def test_a_stray_character_does_not_hide_the_reply_that_follows():
@@ -201,7 +228,7 @@ def test_noise_of_any_kind_is_survived_and_the_next_reply_taken():
             length = 1 + (state >> 8) % 40
             noise = bytes((state >> (index % 17)) & 0xFF for index in range(length))
             finding = line.come(noise, (state >> 4) % 3000)
-            assert finding in range(WAITING, CUT_OFF + 1) and finding != GOOD
+            assert finding in range(WAITING, GARBLED + 1) and finding != GOOD
             if finding != WAITING:
                 line.receiver.open(line.drive, line.receiver.heard_at)
         line.receiver.open(line.drive, line.receiver.heard_at)
@@ -209,7 +236,7 @@ def test_noise_of_any_kind_is_survived_and_the_next_reply_taken():
 
 
 def test_every_finding_has_a_name():
-    assert len(receiver.FINDINGS) == CUT_OFF + 1
+    assert len(receiver.FINDINGS) == len(receiver.TROUBLES) == GARBLED + 1
     assert receiver.FINDINGS[: len(telegram.FINDINGS)] == telegram.FINDINGS
 
 

@@ -99,8 +99,8 @@ def test_the_drive_can_trip_and_be_unplugged():
     session.do("wait 1000", "fault 1 F0001", "wait 300", "expect FAULT")
     assert "fault=F0001" in session.do("drive 1")[0]
     session = Session(addresses=(1, 2))
-    session.do("wait 1000", "unplug 1", "wait 1500", "expect NO CONTACT", "plug 1", "wait 1000")
-    session.do("expect READY")
+    session.do("param 1 P2014[0] 0", "wait 1000", "unplug 1", "wait 1500", "expect NO CONTACT")
+    session.do("plug 1", "wait 2000", "expect READY")
 
 
 def test_hang_and_reset():
@@ -209,6 +209,10 @@ def test_what_cannot_be_understood_names_script_and_line_and_does_nothing():
         ("hold UP 0", "1 millisecond at the least"),
         ("wait", "use: wait MS"),
         ("wait soon", "soon is no number of milliseconds"),
+        ("wait 1" + 23 * "0", "more than 8640000000 milliseconds (100 days) are too many"),
+        ("hang 8640000001", "more than 8640000000 milliseconds"),
+        ("load 1 1" + 23 * "0", "has more than 9 digits"),
+        ("expect " + 3_000_000 * "x", "a line of more than 1000 characters is no command"),
         ("wait -5", "-5 is no number of milliseconds"),
         ("drive", "use: drive A"),
         ("drive 9", "no drive at address 9: there are 1"),
@@ -256,7 +260,7 @@ def test_what_cannot_be_understood_names_script_and_line_and_does_nothing():
     ):
         message = session.refused(line)
         assert message.startswith("test.txt:"), message
-        assert said in message, (line, message)
+        assert said in message and len(message) < 1000, (line[:50], message)
 
 
 def test_what_the_firmware_raises_is_no_mistake_of_the_script():

@@ -51,7 +51,8 @@ def test_a_damaged_file_gives_defaults_and_says_so():
     for data in unreadable + (b"[1, 2]", b'"text"', b"null", b"12"):
         chosen = loaded(data)
         assert chosen.baud == 19200 and chosen.drives == (1,)
-        assert chosen.complaint == "the settings file is damaged", data
+        assert chosen.complaint.startswith("no JSON: the settings file is damaged"), data
+        assert chosen.suspect == settings.NO_JSON
 
 
 def test_a_file_that_cannot_be_read_gives_defaults_and_says_so():
@@ -60,7 +61,8 @@ def test_a_file_that_cannot_be_read_gives_defaults_and_says_so():
     flash.unreadable = ("s",)
     chosen = settings.load(FileStore("s", flash.open, flash))
     assert chosen.baud == 19200
-    assert chosen.complaint == "the settings file cannot be read"
+    assert chosen.complaint == "unreadable: the settings file cannot be read"
+    assert chosen.suspect == settings.UNREADABLE
 
 
 def test_a_file_cut_at_any_character_is_noticed():
@@ -106,7 +108,83 @@ def test_a_value_that_cannot_be_gives_its_default_and_keeps_the_others():
         chosen = loaded({"lowest_centihertz": 100, name: value})
         assert getattr(chosen, name) == settings.DEFAULTS[name], (name, value)
         assert chosen.lowest_centihertz == 100
-        assert name in chosen.complaint
+        assert name in chosen.complaint and chosen.suspect == name
+
+
+def test_what_is_nearly_json_is_a_damaged_file():
+    """MicroPython's own reader takes most of it."""
+    for data in (
+        b'{"baud": 9600,}', b'{"drives": [1, 2,]}', b'{"drives": [1 2]}', b'{,}',
+        b'{"baud": 9600 "drives": [1]}', b'{"baud" 9600}', b'{"baud": 9600; "drives": [1]}',
+        b'{baud: 9600}', b"{'baud': 9600}", b'{"baud": 9600} {}', b'{"baud": 9600}x',
+        b'{"baud": 09600}', b'{"baud": +9600}', b'{"baud": 9600.}', b'{"baud": 9_600}',
+        b'{"baud": 0x2580}', b'{"baud": .5}', b'{"baud": 1e}', b'{"baud": -}', b'{"baud": }',
+        b'{"baud": nan}', b'{"baud": True}', b'{"second_stop": "OFF\\q3"}', b'{1: 2}',
+        b'{"a": "\\u12g4"}', b'{"a": "line\nline"}', b'{"a": "\xff"}', b'{"drives": [1}',
+        b'{"baud": 9600, // comment\n "drives": [1]}', b'{"a": ' + 30 * b"1" + b"}",
+    ):  # fmt: skip
+        chosen = loaded(data)
+        assert chosen.suspect == settings.NO_JSON, data
+        assert (chosen.baud, chosen.drives) == (19200, (1,)), data
+
+
+def test_all_that_json_allows_is_taken():
+    chosen = loaded(
+        b'\t{"a": [], "b": {}, "c": -0.5e+3, "d": [null, true, {"e": "\\"\\u00e9\\n"}],\r\n'
+        b' "drives":[ 3 ,4 ] , "second_stop": "\\u004fFF2", "baud": 9600}\n'
+    )
+    assert chosen.complaint is None
+    assert (chosen.drives, chosen.second_stop, chosen.baud) == ((3, 4), "OFF2", 9600)
+
+
+def test_a_file_that_nests_too_deep_is_damaged_and_no_more():
+    for deep in (1000 * b"[" + 1000 * b"]", 1000 * b'{"a":' + b"1" + 1000 * b"}"):
+        chosen = loaded(b'{"baud": 9600, "new": ' + deep + b"}")
+        assert chosen.baud == 19200 and chosen.complaint
+
+
+def test_a_file_that_is_too_big_is_not_read():
+    for data in (
+        b'{"baud": 9600, "text": "' + 10_000 * b"x" + b'"}',
+        b'{"baud": 9600' + b"".join(b', "%d": 1' % n for n in range(2_000)) + b"}",
+    ):
+        chosen = loaded(data)
+        assert (chosen.suspect, chosen.baud) == (settings.TOO_BIG, 19200)
+
+
+def test_a_file_that_is_too_big_is_set_aside_without_being_read():
+    flash = Flash(capacity_bytes=100_000)
+    flash.files["s"] = data = b'{"baud": 9600}' + 10_000 * b" "
+    store = FileStore("s", flash.open, flash)
+    chosen = settings.load(store)
+    chosen.readdress(1, 5)
+    settings.save(store, chosen)
+    assert flash.files["s.bad"] == data
+    assert settings.load(store).drives == (5,)
+
+
+def test_unknown_things_that_would_fill_the_file_are_left_out_and_said():
+    chosen = loaded({"baud": 9600, "new": 3_000 * "x"})
+    assert (chosen.suspect, chosen.baud) == (settings.TOO_BIG, 9600)
+    assert len(chosen.as_file()) < settings.SIZE_MAX
+
+
+def test_what_stands_there_twice_is_named_and_has_its_default():
+    """However often: nobody knows which of them was meant."""
+    for times in (2, 3):
+        chosen = loaded(b"{" + b", ".join([b'"baud": 9600'] + [b'"drives": [2]'] * times) + b"}")
+        assert (chosen.suspect, chosen.drives, chosen.baud) == ("drives", (1,), 9600)
+
+
+def test_the_biggest_file_that_is_saved_is_loaded_again():
+    every = list(range(31))
+    known = {"drives": every, "unsupervised": every, "new": 2_000 * "x"}
+    flash = Flash(capacity_bytes=20_000)
+    flash.files["s"] = json.dumps(known).encode()
+    store = FileStore("s", flash.open, flash)
+    settings.save(store, settings.load(store))
+    assert len(flash.files["s"]) > 2_000
+    assert settings.load(store).complaint is None
 
 
 def test_a_lowest_setpoint_above_the_highest_gives_the_defaults_for_both():
@@ -161,13 +239,14 @@ def test_a_person_can_read_the_file():
 
 
 def test_what_a_newer_firmware_stored_is_kept():
-    newer = {"language": "de", "baud": 9600, "motors": {"1": ["a", None]}}
+    newer = {"language": "de", "baud": 9600, "motors": {"1": ["a", None]}, "pi": 3.141592653589793}
     store = stored(newer)
     chosen = settings.load(store)
     assert chosen.complaint is None
     settings.save(store, chosen)
     again = json.loads(store.read())
     assert (again["language"], again["motors"]) == ("de", {"1": ["a", None]})
+    assert b"3.141592653589793" in store.read(), "also where numbers have fewer digits"
     assert again["baud"] == 9600
 
 

@@ -7,7 +7,7 @@ is that of parameter_channel.py.
 """
 
 from boards.sim import g110, g120, generic, mm3, mm420, mm440, v20
-from boards.sim.drive_switches import SWITCHES
+from boards.sim.drive_switches import SWITCHES, Switches
 from drive_bench import HALF, OFF1, RUN, Bench, float_words
 
 VARIABLE = 127
@@ -180,6 +180,25 @@ def test_what_says_that_there_are_no_rights():
 # --- numbers and places -----------------------------------------------------------------------
 
 
+def test_an_index_belongs_to_the_tasks_for_arrays():
+    """Specification C-4.2.2; a MICROMASTER takes it with the others as well."""
+    for family, error, second in ((generic, 3, 2), (mm420, None, 1), (mm440, None, 1)):
+        bench = Bench(family=family)
+        for ak, words in ((1, (0,)), (2, (2,)), (14, (2,))):
+            assert error_of(bench, ak, 2012, words, second) == error, (family, ak)
+        for ak, words in ((6, (0,)), (7, (2,)), (12, (2,))):
+            assert error_of(bench, ak, 2012, words, second) is None, (family, ak)
+
+
+def test_a_drive_may_keep_silent_where_others_refuse():
+    bench = Bench(switches={"silent_refusals": True})
+    assert bench.exchange(0x1000 | 700, 0, 0, 0, OFF1, 0)[0] == 0x1000 | 700
+    for _ in range(3):
+        assert bench.exchange(0x1000 | 999, 0, 0, 0, OFF1, 0) is None
+    assert bench.exchange(0, 0, 0, 0, OFF1, 0) is not None
+    assert bench.drive.stw == OFF1  # it obeys the process data all the same
+
+
 def test_numbers_without_a_page():
     # A third-party master for the G110 asks for P2013 as PNU 7DDh.
     for raw, reply in ((False, [0x77DD, 0, 0]), (True, [0x17DD, 0, 4])):
@@ -261,7 +280,7 @@ def test_a_limit_is_the_float_that_the_line_carries():
 def test_every_switch_has_a_default_and_a_reason():
     names = [name for name, _, _, _ in SWITCHES]
     assert len(set(names)) == len(names)
-    switches = Bench().drive.switches
+    switches = Switches()
     for name, default, what, why in SWITCHES:
         assert getattr(switches, name) == default and what and why
 

@@ -6,13 +6,19 @@ a judge who sees keys, line and display, and asks the firmware nothing (tools/so
 """
 
 from boards.sim.clock import Clock
+from boards.sim.drive_switches import SWITCHES
 from boards.sim.wire import Wire
+from tools.soaking.announced import ANY, MAY_RUN, OFF, RUNS, TRIPPED, number_in, said_in
+from tools.soaking.case import Case
+from tools.soaking.dice import Dice
 from tools.soaking.fuzz import fuzz
 from tools.soaking.reader import subject_in
 from tools.soaking.rules import RULES, Broken
+from tools.soaking.runs import is_standstill
 from tools.soaking.soak import Soak
 from tools.soaking.story import story
 from tools.soaking.tape import REPLY, Tape
+from tools.soaking.worlds import switched
 
 NOT_TRACED = "test_every_rule_holds test_the_receiver_stands_anything"
 
@@ -116,6 +122,57 @@ def test_a_motor_is_the_panels_unless_garbage_started_it():
         except Broken as broken:
             blamed = broken.args[0] == "TURNS"
         assert blamed == is_blamed, (faults, stw)
+
+
+def test_a_world_may_have_every_switch_of_the_drive_set():
+    drawn = {}
+    for seed in range(400):
+        drawn.update(switched(Dice(seed)))
+    assert set(drawn) == set(row[0] for row in SWITCHES)
+
+
+def test_a_drive_that_stands_though_nobody_ordered_it_is_told_from_one_that_turns_round():
+    case = Case()
+    case.stw, case.hsw = 0x047F, 0x2000
+    hiws = (0x0000, 0x1FF0, 0x2000, 0x1000, 0x0010)  # from rest to the setpoint, and to rest
+    assert [is_standstill(case, hiw) for hiw in hiws] == [False, False, False, False, True]
+    case.stw, case.reached = 0x0C7F, False  # REVERSE
+    hiws = (0x2000, 0x0010, 0xE000, 0x0000)  # right, through 0, left, and to rest
+    assert [is_standstill(case, hiw) for hiw in hiws] == [False, False, False, True]
+
+
+def test_what_an_announcement_says_of_whom_is_read_from_the_display():
+    assert said_in("A3 RUN,HOLD=ALL ") == (3, (RUNS,))
+    assert said_in("A31 FAULT F0001 ") == (31, (TRIPPED, OFF))
+    assert said_in("A7 LINE FAILED  ") == (7, (OFF,))
+    assert said_in("LOST,MAY RUN: 12") == (ANY, (MAY_RUN,))
+    assert number_in(("S: 10.0 F: 10.00", "LOST,MAY RUN: 12")) == 12
+    for other in ("RUNNING      A1 ", "P0700:     5 A1 ", "A", "                "):
+        assert said_in(other) is None, other
+
+
+def test_two_drives_that_run_unseen_are_both_to_be_announced():
+    soak = Soak(13, drives=3)
+    soak.hand.run(3_000)
+    addresses = soak.plan.addresses
+    judge, reader = soak.judge, soak.reader
+    judge.shown = addresses[0]
+    for address in addresses[1:]:
+        judge.cases[address].zsw = 0xFB34
+    reader.rows = ("S: 10.0 F:  0.00", "A%d RUN,HOLD=ALL " % addresses[1])
+    now = soak.world.clock.now_us
+    told = None
+    for _ in range(500):
+        now += 40_000
+        for address in addresses:
+            judge.cases[address].answered_us = judge.cases[address].heard_us = now
+        try:
+            reader.announced.look(now)
+        except Broken as broken:
+            told = broken
+            break
+    assert told is not None and told.args[0] == "ANNOUNCED", told
+    assert told.args[1].startswith("drive %d, it runs" % addresses[2]), told
 
 
 def test_what_a_question_is_about_is_read_from_the_display():

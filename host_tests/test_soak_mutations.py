@@ -10,7 +10,6 @@ the text of a row away this fails: give the row its new text. Better seeds are l
 
 import importlib.util
 import json
-import os
 import shutil
 import subprocess
 import sys
@@ -38,15 +37,15 @@ def module(name):
 
 
 MUTATIONS = module("mutations").MUTATIONS
+interpreters = module("interpreters")
 
 
-def soaked(folder, seeds, minutes):
+def soaked(folder, seeds, minutes, name=interpreters.MICROPYTHON):
     """What the soak says of each seed, with the firmware in folder/firmware."""
-    paths = (folder / "firmware", TOP, ".frozen")
     done = subprocess.Popen(
-        [MICROPYTHON, "-X", "heapsize=96M", "tools/soaking/worker.py", "soak", str(minutes)],
+        interpreters.command(name, ["soak", minutes]),
         cwd=TOP,
-        env={**os.environ, "MICROPYPATH": ":".join(map(str, paths))},
+        env=interpreters.environment(name, folder / "firmware"),
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         text=True,
@@ -87,6 +86,11 @@ def test_the_same_seeds_find_nothing_in_the_firmware_as_it_is(seed):
     assert said["rule"] is None, "\n".join(said["story"])
 
 
+def test_the_manual_says_how_many_they_are():
+    manual = (TOP / "tools" / "README.md").read_text(encoding="utf-8")
+    assert f"plant {len(MUTATIONS)} bugs" in manual
+
+
 def test_a_text_that_is_gone_is_told(tmp_path):
     mutation = MUTATIONS[0]
     name, old, _ = mutation.changes[0]
@@ -99,12 +103,13 @@ def test_a_text_that_is_gone_is_told(tmp_path):
 
 def find_seeds(names):
     """Print for each mutation the first seeds that find it, and after how many seconds."""
+    fast = interpreters.PYPY if interpreters.is_here(interpreters.PYPY) else interpreters.CPYTHON
     for mutation in MUTATIONS:
         if names and mutation.name not in names:
             continue
         with tempfile.TemporaryDirectory() as folder:
             found = []
-            for said in soaked(mutated(mutation, Path(folder)), SEEDS, MINUTES):
+            for said in soaked(mutated(mutation, Path(folder)), SEEDS, MINUTES, fast):
                 if said["rule"]:
                     found.append((said["seed"], said["rule"], said["seconds"]))
                 if len([1 for _, rule, _ in found if rule in mutation.rules]) == 2:

@@ -76,6 +76,7 @@ def test_how_a_job_ends():
     assert status.of_job(refused(17), word, 0) == status.PARAMETER_REPLY
     assert status.of_job(ended(pkw.TIMED_OUT), word, status.CHECKSUM) == status.CHECKSUM
     assert status.of_job(ended(pkw.TIMED_OUT), word, 0) == status.PARAMETER_REPLY
+    assert status.of_job(ended(pkw.UNANSWERED), word, 0) == status.NO_ANSWER
 
 
 def test_no_rights_has_a_word_of_its_own():

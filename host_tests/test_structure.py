@@ -14,15 +14,19 @@ TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 RULES = (
     ("firmware/main.py", ("app",), ("board",)),
     ("firmware/app.py", ("panel", "settings", "uss", "hal"), ("micropython",)),
-    ("firmware/settings.py", ("uss",), ("json",)),
+    ("firmware/settings.py", ("strict_json", "uss"), ("json",)),
+    ("firmware/strict_json.py", (), ("json",)),
+    ("firmware/version.py", (), ()),
     ("firmware/uss", ("uss",), ("struct", "array", "micropython")),
-    ("firmware/panel", ("panel", "uss"), ("micropython",)),
+    ("firmware/panel", ("panel", "uss", "version"), ("micropython",)),
     ("firmware/hal", ("hal",), ("micropython",)),
     ("firmware/hal/rp2_", ("hal",), ("micropython", "array", "rp2")),  # only this chip has it
     ("boards/sim", ("boards.sim", "hal"), None),
     ("boards", ("hal",), ("machine", "micropython", "os", "time", "rp2", "esp32")),
 )
-PROJECT = ("app", "panel", "settings", "uss", "hal", "boards", "main")
+PROJECT = (
+    "app", "panel", "settings", "strict_json", "version", "uss", "hal", "boards", "main",
+)  # fmt: skip
 
 
 def python_files(folder):
@@ -105,6 +109,20 @@ def test_no_line_is_wider_than_99_columns():
             with open(os.path.join(TOP, path), encoding="utf-8") as source:
                 for number, line in enumerate(source, 1):
                     assert len(line.rstrip("\n")) <= 99, "%s:%d" % (path, number)
+
+
+def test_every_source_file_begins_with_the_licence():
+    marks = {".py": "# ", ".sh": "# ", ".mjs": "// "}
+    for folder in ("firmware", "boards", "host_tests", "tools", ".ci"):
+        for path, _, names in os.walk(os.path.join(TOP, folder)):
+            for name in names:
+                with open(os.path.join(path, name), "rb") as source:
+                    head = source.read(200).split(b"\n")
+                ending = os.path.splitext(name)[1]
+                has_shebang = head[0].startswith(b"#!")
+                if ending in marks or has_shebang:
+                    line = marks.get(ending, "# ") + "SPDX-License-Identifier: MIT"
+                    assert head[has_shebang] == line.encode(), os.path.join(path, name)
 
 
 def test_every_function_fits_a_screen():

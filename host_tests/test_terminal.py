@@ -25,7 +25,7 @@ MICROPYTHON = os.path.join(TOP, "build", "unix64", "micropython")
 PATIENCE_S = 30  # for a machine that does other things as well
 
 # With its supervision set, START does not ask first.
-SUPERVISED = ":param 1 P2014[0] 1000\r"
+SUPERVISED = "param 1 P2014[0] 1000"
 
 SEQUENCE = re.compile(rb"\x1b\[([?\d;]*)([A-Za-z])")
 
@@ -39,6 +39,7 @@ class Screen:
         self.second = False
         self.cursor = True
         self.wraps = True
+        self.brackets = False  # around what is pasted
         self.clear()
         self._pending = b""
 
@@ -79,6 +80,8 @@ class Screen:
                 self.clear()
             elif parameters == "?25":
                 self.cursor = on
+            elif parameters == "?2004":
+                self.brackets = on
             else:
                 assert parameters == "?7", parameters
                 self.wraps = on
@@ -133,6 +136,22 @@ class Terminal:
     def type(self, text):
         os.write(self.master, text.encode())
 
+    def commands(self, *commands):
+        """Type what the script language knows after `:`. The line is left open."""
+        if " :_" not in self.screen.text():
+            self.type(":")
+        for command in commands:
+            self.shows(" :_")
+            self.type(command)
+            self.shows(" :%s_" % command)
+            time.sleep(0.2)  # at once it would be a part of what came at once
+            self.type("\r")
+
+    def back_to_the_keys(self):
+        self.shows(" :_")
+        self.type("\r")
+        self.shows_no_more(" :_")
+
     def waits(self, condition, what):
         """Take what is written until the condition holds."""
         deadline = time.monotonic() + PATIENCE_S
@@ -157,7 +176,8 @@ class Terminal:
 
     def is_as_before(self):
         assert self.settings() == self.before
-        assert self.screen.cursor and self.screen.wraps and not self.screen.second
+        assert self.screen.cursor and self.screen.wraps
+        assert not (self.screen.second or self.screen.brackets)
         return True
 
     def program(self):
@@ -188,8 +208,9 @@ def test_s_starts_the_drive_and_space_stops_it(terminal):
     panel = terminal("--speed", "5")
     panel.shows("READY        A1")
     assert panel.screen.second and not panel.screen.cursor
-    panel.type(SUPERVISED)
+    panel.commands(SUPERVISED)
     panel.shows("P2014[0]=1000")
+    panel.back_to_the_keys()
     panel.type("s")
     panel.shows("RUNNING      A1")
     panel.shows("10.00 Hz right  running")
@@ -238,13 +259,13 @@ def test_stop_and_ctrl_c_do_not_wait_for_a_command(terminal):
     panel.shows("READY        A1")
     panel.type("s")
     panel.shows("RUNNING      A1")
-    panel.type(":wait 600000\r")
+    panel.commands("wait 600000")
     panel.shows("waiting, 599 s left")
     panel.type(" ")
     panel.shows("ended early: wait 600000")
     panel.shows("READY        A1")
-    panel.type(":hang 600000\r")
-    panel.shows("hang 600000")
+    panel.commands("hang 600000")
+    panel.shows("waiting, 5")
     panel.type("\x03")
     assert panel.ends() == 130 and panel.is_as_before()
 
@@ -252,9 +273,9 @@ def test_stop_and_ctrl_c_do_not_wait_for_a_command(terminal):
 def test_help_and_quit_may_be_typed_after_a_colon(terminal):
     panel = terminal()
     panel.shows("READY")
-    panel.type(":help\r")
+    panel.commands("help")
     panel.shows("press hold down up wait")
-    panel.type(":quit\r")
+    panel.commands("quit")
     assert panel.ends() == 0 and panel.is_as_before()
 
 
@@ -284,20 +305,57 @@ def test_a_held_key_is_let_go_by_esc(terminal):
 def test_arrows_move_the_setpoint(terminal):
     panel = terminal("--speed", "5")
     panel.shows("READY")
-    panel.type("\x1b[A\x1b[A\x1bOB\x1b[A")
+    panel.type("\x1b[A\x1b[A")
     panel.shows("S: 10.2")
+    panel.type("\x1bOB")
+    panel.shows("S: 10.1")
 
 
 def test_commands_of_the_script_language_work_after_a_colon(terminal):
     panel = terminal()
     panel.shows("READY")
-    panel.type(":unplug 1")
-    panel.shows(":unplug 1_")
-    panel.type("\r")
+    panel.commands("unplug 1")
     panel.shows("done: unplug 1")
     panel.shows("NO CONTACT")
-    panel.type(":jump\r")
+    panel.commands("jump")
     panel.shows("unknown command jump")
+    panel.commands("plug 1", "off 1")
+    panel.shows("Hz        off")
+    panel.commands("on 1", "switch 1 boot_ms")
+    panel.shows("boot_ms=300")
+    panel.shows("READY        A1")
+
+
+@pytest.mark.parametrize("text", ["\x1b[200~test results\x1b[201~", "speed, and a lot of it\n"])
+def test_words_that_are_pasted_or_typed_after_a_command_start_no_motor(terminal, text):
+    panel = terminal()
+    panel.shows("READY        A1")
+    panel.commands(SUPERVISED, "jump")
+    panel.shows("unknown command jump")
+    for letter in "speed":
+        panel.type(letter)
+        time.sleep(0.05)
+    panel.shows(" :speed_")
+    panel.type("\x1b")
+    panel.shows_no_more(":speed_")
+    panel.type(text)
+    panel.shows("as a paste does")
+    time.sleep(0.2)  # what comes right behind a paste is a part of it
+    panel.commands("wait 500", "drive 1")
+    panel.shows("state=ready")
+    panel.shows("starts=0")
+
+
+def test_start_in_a_terminal_that_hides_the_display_is_refused(terminal):
+    panel = terminal()
+    panel.shows("READY        A1")
+    panel.resize(24, 18)
+    panel.type("s")
+    panel.shows("no START while")
+    panel.resize(24, 80)
+    panel.shows("READY        A1")
+    panel.commands("drive 1")
+    panel.shows("starts=0")
 
 
 def test_speed_lets_time_pass_faster(terminal):

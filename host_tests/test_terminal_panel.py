@@ -7,11 +7,12 @@ The terminal itself is in test_terminal.py.
 import main
 from boards.sim.script import ORDER
 from boards.sim.world import World
-from tools.hand import JOG_MS, WAITING_MAX, Hand
+from tools.hand import FIRST_REPEAT_MS, REPEAT_MS, WAITING_MAX, Hand
 from tools.panel_picture import COLUMNS, ROWS, SAID_ROWS, SHAFT
-from tools.panel_picture import Picture, fitted, seen, telegram_line
+from tools.panel_picture import Picture, fitted, seen, shows_display, telegram_line
 from tools.terminal import ESCAPE, OTHER, Strokes
-from tools.terminal_panel import WORK_MS, Pace, Session, farewell, shows_boxes, turning
+from tools.terminal_panel import WORK_MS, Pace, RealPace, Session
+from tools.terminal_panel import farewell, shows_boxes, turning
 
 NOT_TRACED = "test_stop_ends_every_command_at_once_and_stops"
 
@@ -58,8 +59,13 @@ class Seat:
             self.session.take(stroke, self.pace.now_ms)
 
     def command(self, text):
+        """Typed after `:`, and back to the keys."""
         self.type(":", *text)
         self.type("\r")
+        if not self.session.errand:
+            said = self.session.said
+            self.type(ESCAPE)
+            self.session.said = said
 
     def screen(self):
         return [seen(line) for line in self.session.lines(self.pace.now_ms, self.pace.speed)]
@@ -77,6 +83,8 @@ class Clock:
 
 class Keys:
     """A world of nothing but keys: what was done to them is a list."""
+
+    port = None
 
     def __init__(self):
         self.clock = Clock()
@@ -239,13 +247,31 @@ def test_a_hold_that_waits_does_not_outlast_the_tap_after_it():
 def test_a_jog_lets_go_when_the_keyboard_does_not_repeat_it():
     for key in ("JOG_RIGHT", "JOG_LEFT"):
         keys = Keys()
-        for now_ms in range(0, 3000, 500):
+        keys.hand.hold(key, 0)
+        keys.run(10, FIRST_REPEAT_MS - 1)  # it waits before it repeats
+        for now_ms in range(FIRST_REPEAT_MS, 3000, 250):
             keys.hand.hold(key, now_ms)
             keys.run(10, now_ms)
-        keys.run(10, 2500 + JOG_MS - 1)
+        keys.run(10, now_ms + REPEAT_MS - 1)
         assert keys.done == [key + " down"]
-        keys.run(1, 2500 + JOG_MS)
+        keys.run(1, now_ms + REPEAT_MS)
         assert keys.done == [key + " down", key + " up"]
+        keys = Keys()
+        keys.hand.hold(key, 0)
+        keys.run(10, FIRST_REPEAT_MS)
+        assert keys.done == [key + " down", key + " up"]
+
+
+def test_on_a_real_line_every_key_but_stop_has_to_be_repeated():
+    held = ((None, "UP", True), ("a port", "UP", False), ("a port", "STOP", True))
+    for port, key, stays in held:
+        keys = Keys()
+        keys.port = port
+        keys.hand.hold(key, 0)
+        keys.run(10, FIRST_REPEAT_MS - 1)
+        assert keys.done == [key + " down"]
+        keys.run(10, 60_000)
+        assert (keys.done == [key + " down"]) == stays, (port, key)
 
 
 def test_esc_lets_go():
@@ -381,6 +407,7 @@ def test_a_command_is_typed_after_a_colon():
     assert seat.shows(":unplug 1_") and seat.world.drives[1].plugged
     seat.type("\r")
     assert seat.shows("done: unplug 1") and seat.shows("unplugged")
+    seat.type(ESCAPE)
     seat.command("fault 1 F0001")
     assert seat.shows("F0001") and seat.shows("fault")
     seat.command("param 1 P2014[0]")
@@ -388,19 +415,206 @@ def test_a_command_is_typed_after_a_colon():
 
 
 def test_esc_or_an_empty_line_closes_the_command():
-    for stroke in (ESCAPE, "\r", " "):
+    for stroke in (ESCAPE, "\r"):
         seat = Seat()
         seat.type(":", stroke)
         assert seat.session.command is None and not seat.session.said
-    assert seat.session.hand.key == "STOP"  # a space where no command begins is STOP
+
+
+def test_a_command_line_stays_open_so_that_no_word_is_taken_for_keys():
+    """`speed` after a command would tap START, ADDRESS_DOWN and others."""
+    seat = Seat()
+    for command in (":load 1 50", "jump", "speed", "param 1 P1082[0]", "wait 10"):
+        seat.type(*command)
+        seat.type("\r")
+        seat.wait(300)
+        assert seat.session.command == "" and seat.session.hand.key is None, command
+    seat.type(*"speed")
+    assert seat.shows(":speed_")
+    seat.wait(3000)
+    assert seat.state() == "ready" and seat.world.drives[1].starts == 0
+    seat.type(" ", " ")
+    assert seat.session.hand.key == "STOP"  # and no word after it is keys either
+    seat.wait(500)
+    seat.type(*"speed\r")
+    seat.wait(3000)
+    assert seat.world.drives[1].starts == 0
+    seat.type("\r", "s")
+    seat.wait(3000)
+    assert seat.world.drives[1].starts == 1
 
 
 def test_of_two_spaces_in_a_command_the_second_is_stop():
     seat = Seat()
-    seat.type(*":wait ")
-    assert seat.session.command == "wait " and seat.session.hand.key is None
+    for typed in (":wait", ""):
+        seat.type(*typed)
+        seat.type(" ")
+        if typed:
+            assert seat.session.command == "wait " and seat.session.hand.key is None
+            seat.type(" ")
+        assert seat.session.command == "" and seat.session.hand.key == "STOP"
+        seat.wait(200)
+
+
+def pasted(seat, *pieces):
+    """What the panel takes when these bytes come, 20 ms apart."""
+    decoder = Strokes()
+    for piece in pieces:
+        taken = decoder.take(piece, seat.pace.now_ms)
+        if decoder.pasted:
+            seat.session.take_paste(taken, decoder.brackets, seat.pace.now_ms)
+        else:
+            seat.type(*taken)
+        seat.frame()
+
+
+def test_a_paste_is_no_keys():
+    text = b"test results: all is well, says the log\r\n"
+    for pieces in (
+        (b"\x1b[200~" + text + b"\x1b[201~",),
+        (b"\x1b[20", b"0~s", b"", b"s", b"l", b"s\x1b[201~"),
+        (b"\x1b[200~s",) + 60 * (b"",) + (b"\x1b[200~l\x1b[201~",),
+        (text,),
+        (b"sd", b"s", b"s"),  # the rest of it comes later
+        (b"Sr", b"L", b"", b"J"),
+        (b"s\x1b[A",),
+        (b"\x1b[As",),
+    ):
+        seat = Seat()
+        pasted(seat, *pieces)
+        assert seat.shows("as a paste does"), pieces
+        seat.wait(3000)
+        assert seat.world.drives[1].starts == 0 and seat.world.lcd()[0][2:7] == " 10.0", pieces
+        pasted(seat, b"s")
+        seat.wait(3000)
+        assert seat.world.drives[1].starts == 1, pieces
+
+
+def test_stop_in_a_paste_is_stop():
+    for piece in (b"\x1b[200~no words\x1b[201~", b"no words", b"u ", b"\x1b ", b"ut"):
+        seat = running()
+        pasted(seat, piece)
+        seat.wait(400)
+        assert seat.state() == "stopping", piece
+        seat = running()
+        seat.type(*":wait 60000\r")
+        pasted(seat, piece)
+        seat.wait(400)
+        assert seat.state() == "stopping" and not seat.session.errand, piece
+
+
+def test_a_command_line_takes_a_paste_as_text_and_never_its_enter():
+    seat = Seat()
+    pasted(seat, b":", b"press START\r")
+    seat.wait(2000)
+    assert seat.shows(":press START_") and seat.world.drives[1].starts == 0
+    pasted(seat, b"", b"\r")
+    seat.wait(2000)
+    assert seat.world.drives[1].starts == 1
+    pasted(seat, b"\x1b[200~unplug 1\x1b[201~", b"", b"", b"", b"", b"", b"", b"", b"", b"\r")
+    assert seat.world.drives[1].plugged and seat.session.command is None
+
+
+def test_a_key_that_the_keyboard_repeats_is_no_paste():
+    seat = Seat()
+    pasted(seat, b"uuu", b"uu")
+    seat.wait(1000)
+    assert seat.world.lcd()[0].startswith("S: 10.5")
+
+
+def test_start_and_jog_want_the_display_in_sight():
+    for rows, columns, whole in ((24, 79, True), (5, 19, True), (4, 19, False), (24, 18, False)):
+        assert shows_display(rows, columns) == whole, (rows, columns)
+        lines = fitted(Seat().session.lines(0, 1), rows, columns)
+        assert (seen("".join(lines[2:4])).count("\u2502") == 4) == whole  # both sides of both rows
+    for typed in ("s", "S", "l", "L", "j", "J", ":press START\r", ":hold JOG_LEFT 900\r",
+                  ":down JOG_RIGHT\r"):  # fmt: skip
+        seat = Seat()
+        seat.session.in_sight = False
+        seat.type(*typed)
+        assert seat.shows("make the terminal larger"), typed
+        seat.wait(1500)
+        assert seat.world.drives[1].starts == 0, typed
+    seat = running()
+    seat.session.in_sight = False
     seat.type(" ")
-    assert seat.session.command is None and seat.session.hand.key == "STOP"
+    seat.wait(400)
+    assert seat.state() == "stopping"
+
+
+class OnPort(Seat):
+    """The same in front of what counts as a real line."""
+
+    def __init__(self):
+        Seat.__init__(self)
+        self.world.port = "a port"
+
+
+def test_on_a_real_line_start_and_jog_are_two_keys():
+    for letter in "sSlLjJ":
+        seat = OnPort()
+        seat.type(letter)
+        assert seat.shows("two keys within 2 s"), letter
+        seat.type("g")
+        seat.wait(2100)
+        seat.type(letter)
+        seat.type("g", "u", letter)
+        seat.wait(1500)
+        assert seat.world.drives[1].starts == 0, letter
+        seat.type("g", letter)
+        seat.wait(1000)
+        assert seat.world.drives[1].starts == 1, letter
+    seat = OnPort()
+    assert seat.shows("gs START") and seat.shows("gl JOG_RIGHT") and seat.shows("t STOP")
+    seat.command("press START")  # two words and Enter
+    seat.wait(2000)
+    assert seat.world.drives[1].starts == 1
+    seat.type(" ")
+    seat.wait(300)
+    assert seat.state() == "stopping"
+
+
+def test_one_arming_is_one_start():
+    seat = OnPort()
+    seat.type("g", "s")
+    seat.wait(1000)
+    seat.type(" ")
+    seat.wait(200)
+    seat.type("s")
+    seat.wait(4000)
+    assert seat.world.drives[1].starts == 1 and seat.state() == "ready"
+
+
+def test_a_jog_that_is_held_is_armed_once():
+    seat = OnPort()
+    seat.type("g", "L")
+    for _ in range(10):
+        seat.wait(200)
+        seat.type("L")
+    assert seat.state() == "running" and not seat.shows("two keys")
+    seat.wait(700)
+    assert seat.state() != "running"
+    seat.type("L")
+    seat.wait(700)
+    assert seat.world.drives[1].starts == 1 and seat.state() != "running"
+
+
+def test_a_program_that_stood_still_has_let_go_of_all_keys():
+    class Stalling(Keys):
+        def run(self, ms):
+            self.clock.now_us += ms * 1000
+
+    keys = Stalling()
+    keys.hand.hold("JOG_RIGHT", 0)
+    keys.down("UP")
+    keys.hand.fix("UP", True)
+    keys.run(150)
+    pace = RealPace(keys.clock, keys)
+    pace.follow()
+    assert keys.done == ["UP down", "JOG_RIGHT down"]
+    keys.clock.now_us += 310_000
+    pace.follow()
+    assert keys.done[2:] == ["JOG_RIGHT up", "UP up"] and not keys.hand.fixed
 
 
 def test_what_is_wrong_with_a_command_is_said():
@@ -534,7 +748,7 @@ def test_esc_ends_a_command_and_lets_go_of_its_key():
     assert seat.shows("t STOP         down")
     seat.type(ESCAPE)
     assert seat.shows("ended early: hold STOP 60000") and not seat.shows("STOP         down")
-    assert seat.session.errand is None and not seat.session.command
+    assert seat.session.errand is None and seat.session.command == ""  # another Esc: keys
 
 
 def test_ctrl_c_and_q_leave_while_a_command_lasts():
@@ -556,10 +770,10 @@ def test_other_keys_have_to_wait_for_the_end_of_a_command():
         seat.type(stroke)
         assert seat.shows("has to wait") and seat.shows("waiting, 3 s left"), stroke
     seat.wait(1000)
-    assert seat.state() == "ready" and seat.session.command is None
+    assert seat.state() == "ready" and seat.session.command == ""
     assert seat.world.lcd()[0].startswith("S: 10.0")
     seat.wait(2500)
-    seat.type("s")
+    seat.type(ESCAPE, "s")
     seat.wait(4000)
     assert seat.state() == "running"
 
@@ -733,4 +947,4 @@ def test_a_small_terminal_shows_display_and_keys_first_and_says_that_it_is_small
     assert fitted(lines, 10, 80)[9] == "q quits. 80 x 10 is too small: the panel needs 79 x 24"
     assert all(fitted(lines, rows, 8)[-1].startswith("q quits") for rows in (1, 10, 24))
     seat.type(*":wait")
-    assert fitted(seat.screen(), 10, 80)[9] == ":wait_"
+    assert fitted(seat.screen(), 10, 80)[6].startswith(" :wait_")

@@ -2,7 +2,7 @@
 """What firmware/uss/README.md shows is run, and what it names is there.
 
 Each block of Python is a program: with a `board`, and, unless it makes its own, a `bus` on which
-`drive` answers at address 1. The blocks for PLC programmers have a test of their own.
+`drive` answers at address 1. What is for PLC programmers, plc.md, has a test of its own.
 """
 
 import sys
@@ -26,7 +26,7 @@ KINDS = {
 
 def text():
     with open(README) as file:
-        return file.read().partition("\n## For PLC programmers")[0]
+        return file.read()
 
 
 def blocks():
@@ -94,8 +94,9 @@ def test_the_results_that_it_shows_are_those():
     number, refusal = printed[-1]
     assert "%d %s" % (number, refusal) == "2 drive 1 refuses P1082[0]: beyond the limits"
     assert printed_under("The bus", "mirror") == [(True, False)]
-    (found,) = printed_under("The bus", "Scan(")[-1]
+    _, (found,), (will_trip,) = printed_under("The bus", "Scan(")
     assert found[1] == 12 and sorted(found) == [1, 2, 3, 4, 5]
+    assert will_trip == {2: 2_000, 3: 2_000, 4: 2_000, 5: None}
     (speed, state, highest) = printed_under("In two minutes", "import board")[0]
     assert 24.9 < speed < 25.1 and state == "running" and highest == 50.0
 

@@ -18,11 +18,13 @@ import tarfile
 import line_coverage
 import pytest
 import tiers
+from version import VERSION
 
 INTERPRETERS = "host"
 
 TOOLS = tiers.TOP / "tools"
 HOST_TESTS = tiers.TOP / "host_tests"
+FLASH = 0x10000000  # where a Pico has it
 
 
 # ---- collecting and judging -----------------------------------------------------------------
@@ -312,6 +314,43 @@ def test_what_is_only_called_micropython_is_passed_over(machine, program):
     assert machine.panel().returncode == 3
 
 
+def get_pypy(machine):
+    return machine.shell("get_pypy", ("folder", "packages", "pypy"))
+
+
+def test_an_installed_pypy_is_used(machine):
+    machine.install("pypy3", "#!/bin/sh\necho pypy True\n")
+    run = get_pypy(machine)
+    assert run.returncode == 0 and "PyPy: using" in run.stderr
+    assert (machine.top / "build" / "pypy" / "pypy3").resolve() == machine.programs / "pypy3"
+    assert get_pypy(machine).stderr == ""  # it remembers
+
+
+@pytest.mark.parametrize("answer", ["pypy False", "cpython True", ""])
+def test_what_is_no_pypy_or_too_old_is_not_used(machine, answer):
+    machine.install("pypy3", "#!/bin/sh\necho %s\n" % answer)
+    assert get_pypy(machine).returncode == 1
+    assert sorted(os.listdir(machine.top / "build")) == ["lock"]
+
+
+def test_a_starter_finds_loader_and_libraries_wherever_the_folder_is(machine, tmp_path):
+    packed = tmp_path / "packed"
+    libraries = packed / "usr/lib/some-linux-gnu"
+    libraries.mkdir(parents=True)
+    (packed / "usr/bin").mkdir()
+    (libraries / "libc.so.6").write_text("")
+    (libraries / "ld-linux-some.so.2").write_text('#!/bin/sh\nprintf "%s\\n" "$@"\n')
+    (libraries / "ld-linux-some.so.2").chmod(0o755)
+    run = machine.shell(f"packages_starter '{packed}' thing")
+    assert run.returncode == 0, run.stderr
+    moved = packed.rename(tmp_path / "a place")
+    started = machine.run(moved / "thing", "an argument", "more").stdout.splitlines()
+    assert started == [
+        "--library-path", f"{moved}/./usr/lib/some-linux-gnu", f"{moved}/usr/bin/thing",
+        "an argument", "more",
+    ]  # fmt: skip
+
+
 def test_the_mirror_is_the_one_that_the_machine_takes_its_release_from(machine, tmp_path):
     (tmp_path / "os-release").write_text("ID=debian\nVERSION_CODENAME=bookworm\n")
     machine.install(
@@ -400,7 +439,7 @@ def test_an_old_node_or_one_without_npm_is_not_used(machine, installed):
 
 # ---- the firmware for the Pico --------------------------------------------------------------
 
-PICO_FILES = ("folder", "packages", "pytest", "pico")
+PICO_FILES = ("version", "folder", "packages", "pytest", "pico")
 
 # Stands in for the compilers: what it "compiles" is the manifest and one Python file.
 PICO_STAND_IN = """
@@ -426,6 +465,7 @@ def pico(machine):
     for folder in ("firmware/uss", "boards/pico"):
         (machine.top / folder).mkdir(parents=True)
     (machine.top / "firmware" / "app.py").write_text("first\n")
+    (machine.top / "firmware" / "version.py").write_text('VERSION = "1.2.3"\n')
     (machine.top / "boards" / "pico" / "manifest.py").write_text("")
     return machine
 
@@ -572,6 +612,38 @@ def test_uf2_tells_where_the_file_is_and_how_it_gets_onto_the_pico(pico, tmp_pat
         assert (tmp_path / file).read_text() == "first\n"
 
 
+COMMANDS = "panel drive example test soak bench uf2 deploy".split()
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_every_command_tells_the_version_and_needs_nothing_for_it(pico, command):
+    for name in NEEDED:
+        if name not in ("bash", "env", "readlink", "sed"):
+            (pico.programs / name).unlink(missing_ok=True)
+    run = pico.run(pico.top / "tools" / command, "--version")
+    assert (run.returncode, run.stdout, run.stderr) == (0, "USS panel 1.2.3\n", "")
+
+
+def test_these_are_all_the_commands():
+    assert sorted(COMMANDS) == sorted(
+        path.name for path in TOOLS.iterdir() if path.is_file() and os.access(path, os.X_OK)
+    )
+
+
+def test_another_version_is_another_firmware_and_told_of_it(pico):
+    assert get_firmware(pico, "panel")[0] and get_firmware(pico, "stock")[0]
+    told = {}
+    for version in ("1.2.3", "1.3.0"):
+        (pico.top / "firmware" / "version.py").write_text(f'VERSION = "{version}"\n')
+        assert get_firmware(pico, "panel")[0] == (version != "1.2.3")
+        run = pico.shell("pico_flags panel; pico_versions panel", PICO_FILES)
+        told[version] = run.stdout
+        assert f"""-DPICO_PROGRAM_DESCRIPTION='"USS panel {version}"'""" in run.stdout
+        assert f"USS panel {version}\nmicropython 2\n" in run.stdout
+    assert not get_firmware(pico, "stock")[0]
+    assert "USS" not in pico.shell("pico_flags stock; pico_versions stock", PICO_FILES).stdout
+
+
 def test_uf2_says_what_is_wrong(pico, tmp_path):
     uf2 = pico.top / "tools" / "uf2"
     for arguments in (("--wrong",), ("--output",), ("--output", ""), ("a", "b", "c")):
@@ -586,6 +658,19 @@ def test_uf2_says_what_is_wrong(pico, tmp_path):
     assert pico.run(uf2, "--output", tmp_path / "no" / "such").returncode == 1
 
 
+def program_description(image):
+    """What `picotool info` finds under this name, or None (Pico SDK, binary_info/structure.h)."""
+    begin = image.index(struct.pack("<I", 0x7188EBF2), 0, 512)
+    first, end, _, marker = struct.unpack_from("<4I", image, begin + 4)
+    assert marker == 0xE71AA390
+    for at in range(first - FLASH, end - FLASH, 4):
+        entry = struct.unpack_from("<I", image, at)[0] - FLASH
+        kind, tag, number, text = struct.unpack_from("<HHII", image, entry)
+        if (kind, tag, number) == (6, 0x5052, 0xB6A07C19):  # a text, "RP", description
+            return image[text - FLASH : image.index(0, text - FLASH)].decode()
+    return None
+
+
 @pytest.mark.parametrize("name", ["panel", "stock"])
 def test_the_firmware_is_one_for_the_pico_and_tells_nothing_of_this_machine(name):
     file = tiers.TOP / "build" / "pico" / f"{name}.uf2"
@@ -597,9 +682,11 @@ def test_the_firmware_is_one_for_the_pico_and_tells_nothing_of_this_machine(name
         head = struct.unpack_from("<8I", blocks, at)
         assert head[:3] == (0x0A324655, 0x9E5D5157, 0x2000)  # a block of a file for a family
         assert head[7] == 0xE48BFF56  # the RP2040
-        assert head[3] == 0x10000000 + len(image)
+        assert head[3] == FLASH + len(image)
         image += blocks[at + 32 : at + 32 + head[4]]
     assert b"v1.25.0 on 2025-04-15" in image
+    told = program_description(bytes(image))
+    assert told == (f"USS panel {VERSION}" if name == "panel" else None)
     for path in (str(tiers.TOP), os.path.expanduser("~/"), "/tmp/", "/usr/"):
         assert path.encode() not in image
     firmware = tiers.TOP / "firmware"

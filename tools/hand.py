@@ -7,7 +7,8 @@
     hand.step(now_ms)               # every few milliseconds of the world
 
 Taps happen in the world's time, so that the panel sees a tap at every speed. A person's
-patience is real time: a JOG that is not renewed for a second, as by a keyboard's repeat, lets go.
+patience is real time: a JOG lets go when the keyboard does not repeat it. On a real line so does
+every key but STOP: a terminal that went silent must not move a setpoint on and on.
 """
 
 from boards.sim.world import RELEASE_MS, TAP_MS
@@ -32,10 +33,15 @@ LETTERS = (
     ("w", "SET"),
 )
 JOGS = ("JOG_RIGHT", "JOG_LEFT")
+STARTERS = ("START",) + JOGS  # what turns a motor
+ARM = "g"  # typed before each of these where the line is a real one
 
 TAP_US = TAP_MS * 1000
 RELEASE_US = RELEASE_MS * 1000  # a key that was let go is up for so long before the next one
-JOG_MS = 1_000  # longer than a keyboard waits before it repeats
+# Without a repeat it lets go after so long: of a keyboard that repeats already, and of one that
+# waits before its first repeat (X11: 660 ms).
+REPEAT_MS = 300
+FIRST_REPEAT_MS = 700
 WAITING_MAX = 6  # taps typed ahead; more would still be done when nobody wants them any more
 
 
@@ -54,6 +60,7 @@ class Hand:
         self._let_go_us = 0  # when the tap is over
         self._free_us = 0  # when the next key may go down
         self._renewed_ms = 0  # when the capital was typed last
+        self._patience_ms = FIRST_REPEAT_MS
 
     def tap(self, key):
         """Press a key and let it go. False: too many taps are waiting, this one is lost."""
@@ -61,16 +68,27 @@ class Hand:
 
     def hold(self, key, now_ms):
         """Press a key and keep it down until the next one; now_ms is real time. As `tap`."""
+        renewed = self.holds(key)
+        self._patience_ms = REPEAT_MS if renewed else FIRST_REPEAT_MS
         self._renewed_ms = now_ms
-        if (key, True) in self._waiting or self.held and self.key == key:
-            return True
-        return self._take(key, True)
+        return renewed or self._take(key, True)
+
+    def holds(self, key):
+        """Whether this key is held, or waits to be: another capital only renews that."""
+        return (key, True) in self._waiting or self.held and self.key == key
 
     def let_go(self):
         """Let go of what is held, and forget the taps that wait."""
         self._waiting.clear()
         if self.key:
             self._up()
+
+    def vanish(self):
+        """Whoever had the hand has not been heard: every key is up, those of commands too."""
+        self.let_go()
+        for key in self.fixed:
+            self._world.up(key)
+        self.fixed.clear()
 
     def fix(self, key, down):
         """A command put a key down, or up, without this hand; it is no longer in the hand."""
@@ -85,13 +103,17 @@ class Hand:
         """Do what is due; now_ms is real time."""
         world_us = self._world.clock.now_us
         if self.held:
-            tired = self.key in JOGS and now_ms - self._renewed_ms >= JOG_MS
+            tired = self._is_fleeting() and now_ms - self._renewed_ms >= self._patience_ms
             if tired or self._waiting:
                 self._up()
         elif self.key and world_us >= self._let_go_us:
             self._up()
         if self._waiting and not self.key and world_us >= self._free_us:
             self._down(*self._waiting.pop(0))
+
+    def _is_fleeting(self):
+        """Whether the key that is held has to be repeated."""
+        return self.key in JOGS or self.key != STOP and self._world.port is not None
 
     def _take(self, key, hold):
         if key == STOP:

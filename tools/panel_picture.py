@@ -3,18 +3,19 @@
 
     picture = Picture(world, hand, boxes=True)
     picture.turn(passed_us)
-    lines = picture.lines(world.wire.log.last(16), [":press STA_"])
+    lines = picture.lines(world.wire.log.last(16), ["done: unplug 1"])
 
 It looks at a `World` and a `Hand`, changes nothing, and knows no terminal: tests read it. What is
 lit (the display, keys that are down) stands between the marks HIGHLIGHT and PLAIN.
 """
 
-from tools.hand import LETTERS
+from tools.hand import ARM, LETTERS, STARTERS
 from tools.terminal import HIGHLIGHT, PLAIN
 
 ROWS = 24
 COLUMNS = 79  # nothing in the last one: some terminals begin a new line then
-SAID_ROWS = 2
+SAID_ROWS = 3
+DISPLAY_ROWS, DISPLAY_COLUMNS = 4, 19  # the corner of the picture that the display takes
 LEGEND_COLUMNS = 3
 LEGEND_COLUMN = 20
 CELL_COLUMNS = 20
@@ -22,6 +23,7 @@ DRIVE_ROWS_MAX = 6
 ADDRESS = 2011  # P2011
 
 HELP = " small letter: tap  CAPITAL: hold  Esc: let go  space: STOP  : command  q: quit"
+PROMPT_HELP = "Enter: do  empty line, Esc: keys  two spaces: STOP"
 DRIVES_HEAD = " drive   motor            turns  state"
 TELEGRAMS_HEAD = " telegrams: microseconds, > from the panel, < to it"
 
@@ -66,14 +68,15 @@ class Picture:
                 angle = max(-STEP, min(STEP, angle - step * STEP))
             self._angles[address] = angle
 
-    def lines(self, telegrams, said, broken="", speed=1.0):
+    def lines(self, telegrams, said, broken="", speed=1.0, command=None):
         """The whole picture, ROWS lines of COLUMNS at the most.
 
         telegrams: as `Wire.log.last` has them, newest last. said: up to SAID_ROWS lines for the
-        end: a command being typed, or what came of it. broken: a rule of the line that was
-        broken. speed: how fast the world's time passes.
+        end: what came of a command. broken: a rule of the line that was broken. speed: how fast
+        the world's time passes. command: what is being typed, in the place of the help on keys.
         """
-        lines = [self._title(speed)] + self._panel() + [HELP, ""]
+        lines = [self._title(speed)] + self._panel()
+        lines += [HELP if command is None else prompt(command), ""]
         lines += [DRIVES_HEAD] + self._drives() + [""] if self._world.drives else []
         lines.append(TELEGRAMS_HEAD)
         room = ROWS - SAID_ROWS - 1 - len(lines)
@@ -119,6 +122,8 @@ class Picture:
             how = "HELD" if self._hand.held else "down"
         elif key in self._hand.fixed:
             how = "down"
+        if key in STARTERS and self._world.port is not None:
+            letter = ARM + letter
         cell = padded("%s %s" % (letter, key), 14) + " " + how
         return padded(HIGHLIGHT + cell + PLAIN if how else cell, CELL_COLUMNS)
 
@@ -164,6 +169,19 @@ class Picture:
             character if ord(character) < 0x80 else STAND_INS.get(character, "?")
             for character in line
         )
+
+
+def prompt(command):
+    """The line that a command is typed on."""
+    line = " :%s_" % command
+    room = COLUMNS - len(PROMPT_HELP)
+    return padded(line, room) + PROMPT_HELP if len(line) < room else line
+
+
+def shows_display(rows, columns):
+    """Whether a terminal has room for all of the display."""
+    room = rows if rows >= ROWS else rows - 1  # the last one says that it is small
+    return room >= DISPLAY_ROWS and columns >= DISPLAY_COLUMNS
 
 
 def telegram_line(at_us, from_panel, characters):

@@ -20,6 +20,7 @@ import stat
 import struct
 import sys
 import termios
+import time
 import tty
 
 PARITY, FRAME = 1, 2  # of a character, as in boards.sim.wire
@@ -36,6 +37,8 @@ NO_PORT = "there is no port %s"
 NOT_ALLOWED = "%s: not allowed; on Debian:  sudo adduser $USER dialout, then log in anew"
 NOT_YOURS = "%s: not allowed: it is a terminal of %s"
 OWN_TERMINAL = "%s is the terminal in which this runs"
+LEFT_OVER = "%s is left over: the terminal that it leads to was made after it, by somebody else"
+OTHERS_NOW = "%s has gone for good: what has its number now is another terminal"
 LINK_TAKEN = "%s leads to %s, which is not ours: remove it, or use another name"
 IN_USE = "%s is in use by another program"
 NO_TERMINAL = "%s is no serial port"
@@ -58,6 +61,7 @@ class SerialPort:
         self.baud = baud
         self.is_pty = False
         self._descriptor = None
+        self._opened_ns = None  # when, by the clock of the machine, the last time that it was had
         self._marking = False
         self._rest = b""  # the beginning of a mark whose end has not come
 
@@ -121,7 +125,10 @@ class SerialPort:
             raise PortError(NO_TERMINAL % self.path)
         if self._is_our_terminal():
             raise PortError(OWN_TERMINAL % self.path)
-        self.is_pty = is_pty(os.fstat(self._descriptor))
+        status = os.fstat(self._descriptor)
+        self.is_pty = is_pty(status)
+        if self.is_pty:
+            self._look_whose(status)
         try:
             fcntl.flock(self._descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)  # as pyserial does
             if not self.is_pty:
@@ -134,6 +141,17 @@ class SerialPort:
         if not self.is_pty:
             self._set_up()
         termios.tcflush(self._descriptor, termios.TCIOFLUSH)
+        self._opened_ns = time.time_ns()
+
+    def _look_whose(self, status):
+        """The number of a pty that has gone is given to the next terminal that anybody opens:
+        what was made after the link to it, or after we had it, is another one.
+        """
+        if os.path.islink(self.path):
+            if os.lstat(self.path).st_mtime_ns < made_ns(status):
+                raise PortError(LEFT_OVER % self.path)
+        elif self._opened_ns is not None and self._opened_ns < made_ns(status):
+            raise PortError(OTHERS_NOW % self.path)
 
     def _is_our_terminal(self):
         try:
@@ -215,6 +233,15 @@ def is_pty(status):
     return stat.S_ISCHR(status.st_mode) and os.major(status.st_rdev) in PTY_MAJORS
 
 
+def made_ns(status):
+    """When a pty was made, at the latest. status: of `os.stat`.
+
+    Nothing else tells two ptys of one number apart: device and inode are the same. Of its times
+    the oldest counts: a terminal that is used, or whose mode is changed, renews the others.
+    """
+    return min(status.st_atime_ns, status.st_mtime_ns, status.st_ctime_ns)
+
+
 def user_name(number):
     try:
         return pwd.getpwuid(number).pw_name
@@ -269,11 +296,17 @@ class Pty(SerialPort):
             raise PortError(f"{self._link}: {error.strerror}") from None
 
     def _is_left_over(self, there):
-        """Whether a link that leads there was made by one of us that was killed."""
+        """Whether a link that leads there was made by one of us that was killed, and whose pty has
+        gone; somebody else may have its number by now.
+        """
         if there == self.path:
             return True
-        is_a_pty = os.path.dirname(there) == os.path.dirname(self.path)
-        return is_a_pty and not os.path.exists(there)
+        if os.path.dirname(there) != os.path.dirname(self.path):
+            return False  # it leads to no pty
+        try:
+            return os.lstat(self._link).st_mtime_ns < made_ns(os.stat(there))
+        except FileNotFoundError:
+            return True
 
 
 def target(link):

@@ -11,8 +11,8 @@ On the Unix port of MicroPython. Whoever opens it closes it, whatever happens in
     finally:
         terminal.close()
 
-Escape sequences are those of ECMA-48 that every terminal knows, and the DEC private modes 7, 25
-and 1049 as xterm has them.
+Escape sequences are those of ECMA-48 that every terminal knows, and the DEC private modes 7, 25,
+1049 and 2004 (a paste stands in brackets) as xterm has them.
 """
 
 import os
@@ -24,8 +24,9 @@ import termios
 HIGHLIGHT = "\x0e"
 PLAIN = "\x0f"
 
-OPEN = "\x1b[?1049h\x1b[?25l\x1b[?7l\x1b[2J"  # second screen, no cursor, no wrapping of lines
-CLOSE = "\x1b[0m\x1b[?7h\x1b[?25h\x1b[?1049l"
+# Second screen, no cursor, no wrapping of lines, pastes in brackets.
+OPEN = "\x1b[?1049h\x1b[?25l\x1b[?7l\x1b[?2004h\x1b[2J"
+CLOSE = "\x1b[0m\x1b[?2004l\x1b[?7h\x1b[?25h\x1b[?1049l"
 # Go there, clear it, write, plain again. Clearing comes first: after a character in the last
 # column the cursor still stands on it.
 LINE = "\x1b[%d;1H\x1b[K%s\x1b[0m"
@@ -37,7 +38,7 @@ USUAL_ROWS, USUAL_COLUMNS = 24, 80
 SIZE_COMMAND = "set -- $(stty size 2>/dev/null); n=${%d:-0}; exit $((n < 255 ? n : 255))"
 
 FLUSH = 2  # TCSAFLUSH: MicroPython's termios does not name it
-READ_MAX = 64  # a paste is taken in pieces
+READ_MAX = 1024  # a longer paste is taken in pieces
 
 ARROWS = {b"\x1b[A": "UP", b"\x1b[B": "DOWN", b"\x1b[C": "RIGHT", b"\x1b[D": "LEFT"}
 ESCAPE = "ESCAPE"
@@ -45,6 +46,11 @@ OTHER = "OTHER"  # a key that has no name here
 SPACE, DELETE = 0x20, 0x7F  # this one, and all up to that one, are no part of a key's sequence
 ESCAPE_MS = 60  # an escape sequence that was cut in two, as by ssh, is together again by then
 SEQUENCE_MAX = 16
+PASTE_BEGINS, PASTE_ENDS = b"\x1b[200~", b"\x1b[201~"
+# A paste comes in pieces of READ_MAX: what follows within so long is a part of it. And one whose
+# end never came is over after so long a silence.
+PIECE_MS = 60
+UNENDED_MS = 1_000
 
 
 class Terminal:
@@ -122,11 +128,18 @@ class Strokes:
 
     Nothing that is typed after Esc is lost for that: what begins no sequence is a stroke of its
     own, and a space or a control character ends every sequence.
+
+    pasted    the strokes taken last were no keys that somebody pressed one after the other:
+              they stood in brackets, or several different ones came in one read
+    brackets  they stood in brackets
     """
 
     def __init__(self):
+        self.pasted = self.brackets = False
         self._sequence = b""  # the beginning of an escape sequence
         self._began_ms = 0
+        self._in_brackets = False
+        self._pasted_ms = -UNENDED_MS  # when the last piece of a paste came
 
     def take(self, typed, now_ms):
         """The strokes that these bytes complete. Without a byte: an Esc that was only that."""
@@ -134,9 +147,22 @@ class Strokes:
         if not typed and self._sequence and now_ms - self._began_ms >= ESCAPE_MS:
             strokes.append(ESCAPE if self._sequence == b"\x1b" else OTHER)
             self._sequence = b""
+        self.brackets = self._in_brackets
         for byte in typed:
             self._take(byte, now_ms, strokes)
+        self._judge(typed, strokes, now_ms)
         return strokes
+
+    def _judge(self, typed, strokes, now_ms):
+        """Whether it is a paste, a piece of one, or an end of one that nobody sent."""
+        if self._in_brackets and not typed and now_ms - self._pasted_ms >= UNENDED_MS:
+            self._in_brackets = False
+        self.brackets = self.brackets or self._in_brackets
+        different = len(set(strokes)) > 1
+        follows = now_ms - self._pasted_ms < PIECE_MS
+        self.pasted = bool(strokes) and (self.brackets or different or follows)
+        if self.pasted or self._in_brackets and typed:
+            self._pasted_ms = now_ms
 
     def _take(self, byte, now_ms, strokes):
         if self._sequence and not self._goes_on(byte):
@@ -164,4 +190,8 @@ class Strokes:
         going_on = len(sequence) == 2 or byte < 0x40 or sequence == b"\x1b[["
         if not going_on or len(sequence) >= SEQUENCE_MAX:
             self._sequence = b""
+            if sequence in (PASTE_BEGINS, PASTE_ENDS):
+                self._in_brackets = sequence == PASTE_BEGINS
+                self.brackets = True
+                return
             strokes.append(ARROWS.get(sequence.replace(b"\x1bO", b"\x1b["), OTHER))

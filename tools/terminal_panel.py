@@ -6,6 +6,10 @@
 It joins the pieces: `terminal` (bytes and lines), `hand` (keys), `errand` (commands that take
 time), `panel_picture` (what is shown).
 Whatever ends it, the drives are stopped and the terminal is as it was before.
+
+A person is at the keys, and may mistype. Text is never keys: a command line stays open until it
+is left, and what comes all at once, as a paste does, is left out but for STOP. START and JOG want
+the display in sight, and on a real line, where a motor turns, a first key before them.
 """
 
 import os
@@ -13,8 +17,8 @@ import time
 
 from boards.sim.script import ORDER, ExpectationFailed, Script, ScriptError
 from tools.errand import ERRANDS, Errand
-from tools.hand import LETTERS, STOP, Hand
-from tools.panel_picture import COLUMNS, SAID_ROWS, Picture, fitted
+from tools.hand import ARM, LETTERS, STARTERS, STOP, Hand
+from tools.panel_picture import COLUMNS, SAID_ROWS, Picture, fitted, shows_display
 from tools.terminal import ESCAPE, Strokes, Terminal
 
 FRAME_MS = 20
@@ -26,17 +30,25 @@ CHECK_MS = 500
 SIZE_MS = 2_000
 SPEED_MS = 1_000  # the speed shown is the mean of so long
 TELEGRAMS = 16
+ARMED_MS = 2_000
+UNHEARD_MS = 300  # a front end that was not heard for so long has let go of all keys
 
 CTRL_C, CTRL_D, CTRL_U = "\x03", "\x04", "\x15"
 BACKSPACES = ("\x08", "\x7f")
 ENTERS = ("\r", "\n")
 COMMAND_MAX = 70
 KEY_COMMANDS = ("down", "up")
+PRESSING = ("press", "hold", "down")
 QUITS = ("quit", "q")
 HELP_WORDS = ORDER + ("help", "quit")
-HELP = (" ".join(HELP_WORDS[:15]), " ".join(HELP_WORDS[15:]))
+HELP = [" ".join(HELP_WORDS[at : at + 12]) for at in range(0, len(HELP_WORDS), 12)]
 LEFT = "every drive was sent OFF1."
 LINE_CUT = "the line is cut, and no drive could be sent OFF1."
+PASTED = "that came all at once, as a paste does: it was left out"
+STOP_KEPT = ", but for STOP"
+OUT_OF_SIGHT = "no %s while the display is not in sight: make the terminal larger"
+UNARMED = "on a real line %s is two keys within 2 s: g, then the letter"
+ARMED = "g: now the letter of START or of a JOG"
 WAITING = "waiting, %d s left (space: STOP, Esc: no further): %s"
 
 KEYS = {letter: key for letter, key in LETTERS}
@@ -77,14 +89,19 @@ def run(session, terminal, pace):
     drawn_ms = -DRAW_MS
     while not session.left:
         typed = terminal.read(0 if pace.late else FRAME_MS)
-        for stroke in strokes.take(typed, pace.now_ms):
-            session.take(stroke, pace.now_ms)
-        pace.follow()
-        if pace.now_ms - sized_ms >= SIZE_MS:
+        taken = strokes.take(typed, pace.now_ms)
+        if session.may_start(taken) or pace.now_ms - sized_ms >= SIZE_MS:
             sized_ms = pace.now_ms
             before, size = size, terminal.size()
             if size != before:
                 terminal.clear()
+        session.in_sight = shows_display(*size)
+        if strokes.pasted:
+            session.take_paste(taken, strokes.brackets, pace.now_ms)
+        else:
+            for stroke in taken:
+                session.take(stroke, pace.now_ms)
+        pace.follow()
         if pace.now_ms - drawn_ms >= DRAW_MS:
             drawn_ms = pace.now_ms
             terminal.draw(fitted(session.lines(pace.now_ms, pace.speed), *size))
@@ -147,7 +164,10 @@ class Pace:
 
 
 class RealPace:
-    """As `Pace`, where the world's time is the real one: to let it pass is to wait."""
+    """As `Pace`, where the world's time is the real one: to let it pass is to wait.
+
+    A program that stood still heard nobody meanwhile: the hand lets go of everything.
+    """
 
     late = True  # nobody else has to wait
     speed = 1.0
@@ -156,6 +176,7 @@ class RealPace:
         self._clock = clock
         self._run = session.run
         self._hand = session.hand
+        self._heard_ms = self.now_ms
 
     @property
     def now_ms(self):
@@ -163,6 +184,9 @@ class RealPace:
 
     def follow(self):
         for _ in range(FRAME_MS // SLICE_MS):
+            if self.now_ms - self._heard_ms >= UNHEARD_MS:
+                self._hand.vanish()
+            self._heard_ms = self.now_ms
             self._hand.step(self.now_ms)
             self._run(SLICE_MS)
 
@@ -170,9 +194,9 @@ class RealPace:
 class Session:
     """What a person does to the world, and sees of it, whatever the terminal: strokes and lines.
 
-    left: the person wants to go. command: what is being typed after `:`, or None. errand: the
-    command that lets time pass now, or None. said: up to two lines for the person, until the next
-    stroke.
+    left: the person wants to go. command: what is being typed after `:`, or None: keys. errand:
+    the command that lets time pass now, or None. said: up to SAID_ROWS lines for the person, until
+    the next stroke. in_sight: the terminal has room for the whole display.
     """
 
     def __init__(self, world, boxes, said=()):
@@ -181,6 +205,8 @@ class Session:
         self.command = None
         self.errand = None
         self.said = []
+        self.in_sight = True
+        self._armed_ms = -ARMED_MS  # when ARM was typed
         self._begun = ""  # the command that the errand is
         self._world = world
         self._picture = Picture(world, self.hand, boxes)
@@ -207,18 +233,44 @@ class Session:
         if stroke == CTRL_C:
             raise KeyboardInterrupt
         self.said = []
-        if self.command is not None:
+        if self.errand:
+            self._interrupt(stroke, now_ms)
+        elif self.command is not None:
             self._type(stroke, now_ms)
         elif stroke in ("q", CTRL_D):
             self.left = True
-        elif self.errand:
-            self._interrupt(stroke, now_ms)
         elif stroke == ":":
             self.command = ""
         elif stroke == ESCAPE:
             self.hand.let_go()
         else:
             self._press(stroke, now_ms)
+
+    def may_start(self, strokes):
+        """Whether these strokes may turn a motor: is the display in sight then?"""
+        if self.command is not None:
+            return any(stroke in ENTERS for stroke in strokes)
+        return any(KEYS.get(stroke.lower()) in STARTERS for stroke in strokes)
+
+    def take_paste(self, strokes, brackets, now_ms):
+        """Strokes that nobody typed one by one: only STOP counts, and Ctrl-C. In a command line
+        that is open they are text, if no brackets stand around them; its Enter has to be typed.
+        """
+        if CTRL_C in strokes:
+            raise KeyboardInterrupt
+        if self.command is not None and not self.errand and not brackets:
+            for stroke in strokes:
+                if stroke != ESCAPE and stroke not in ENTERS:
+                    self.take(stroke, now_ms)
+            return
+        stops = [stroke for stroke in strokes if KEYS.get(stroke.lower()) == STOP]
+        if ESCAPE in strokes:
+            self.hand.let_go()
+        if stops and self.errand:
+            self._interrupt(" ", now_ms)
+        elif stops:
+            self._press(" ", now_ms)
+        self.said = [PASTED + (STOP_KEPT if stops else "")]
 
     def lines(self, now_ms, speed):
         """The picture now; now_ms is real time, speed the true one."""
@@ -235,11 +287,12 @@ class Session:
         if now_ms - self._checked_ms >= CHECK_MS:
             self._checked_ms = now_ms
             self._check()
-        return self._picture.lines(self._telegrams, self._bottom(), self._broken, speed)
+        command = None if self.errand else self.command  # which waits for the errand
+        return self._picture.lines(
+            self._telegrams, self._bottom(), self._broken, speed, command
+        )
 
     def _bottom(self):
-        if self.command is not None:
-            return [":" + self.command + "_"]
         if self.errand:
             seconds = -(-self.errand.left_us() // 1_000_000)
             return [WAITING % (seconds, self._begun)] + self.said[-1:]
@@ -248,16 +301,39 @@ class Session:
     def _press(self, stroke, now_ms):
         small = stroke.lower() if len(stroke) == 1 else stroke
         key = KEYS.get(small)
-        if key not in self._world.keypad.names:
+        armed_ms, self._armed_ms = self._armed_ms, -ARMED_MS
+        if stroke == ARM and self._world.port is not None:
+            self._armed_ms = now_ms
+            self.said = [ARMED]
+        elif key not in self._world.keypad.names:
             name = stroke if len(stroke) == 1 and stroke > " " else "that key"
             self.said = ["%s does nothing here; the letters stand beside the keys" % name]
+        elif small != stroke and self.hand.holds(key):
+            self.hand.hold(key, now_ms)  # the keyboard repeats it
+        elif not self._may_press(key, now_ms - armed_ms < ARMED_MS):
+            return
         elif small != stroke:
             self.hand.hold(key, now_ms)
         elif not self.hand.tap(key):
             self.said = ["too fast: this %s was left out" % key]
 
+    def _may_press(self, key, armed):
+        """Whether a key may go down now; what keeps one that turns a motor from it is said."""
+        if key not in STARTERS:
+            return True
+        if not self.in_sight:
+            self._print(OUT_OF_SIGHT % key)
+        elif self._world.port is not None and not armed:
+            self._print(UNARMED % key)
+        else:
+            return True
+        return False
+
     def _interrupt(self, stroke, now_ms):
         """A stroke while a command lets time pass: STOP and Esc end that, the others wait."""
+        if stroke in ("q", CTRL_D):
+            self.left = True
+            return
         if stroke == ESCAPE:
             self.hand.let_go()
         elif KEYS.get(stroke.lower()) == STOP:
@@ -274,12 +350,13 @@ class Session:
 
     def _type(self, stroke, now_ms):
         command = self.command
-        if stroke == ESCAPE or stroke in ENTERS:
+        if stroke == ESCAPE or stroke in ENTERS and not command:
             self.command = None
-            if stroke in ENTERS:
-                self._do(command)
+        elif stroke in ENTERS:
+            self.command = ""  # it stays open: what is typed next is no key
+            self._do(command)
         elif stroke == " " and command[-1:] in ("", " "):  # no command needs it: it is STOP
-            self.command = None
+            self.command = ""
             self._press(stroke, now_ms)
         elif stroke in BACKSPACES:
             self.command = command[:-1]
@@ -302,6 +379,8 @@ class Session:
         """One line of the script language."""
         try:
             name, values = self._script.understood(command)
+            if name in PRESSING and not self._may_press(values[0], True):
+                return
             if name in ERRANDS:
                 self._begun = command
                 self.errand = Errand(self._world, self.hand, name, values)
@@ -319,7 +398,7 @@ class Session:
             self._print("done: " + command)
 
     def _print(self, line):
-        """Say a line, on in the next one where it is too long. The last two are kept; of one that
+        """Say a line, on in the next one where it is too long. The last few are kept; of one that
         is longer than that, the beginning."""
         line = line[: SAID_ROWS * COLUMNS]
         for start in range(0, len(line), COLUMNS):

@@ -3,9 +3,10 @@
 
 With --board pico it is the firmware file for the Raspberry Pi Pico on an emulated one: then this
 runs under emulator/launch.py. With --port it talks on a real line, in real time, and runs under
-port_launch.py. Runs on MicroPython. Exit status: 0, 1 when an expectation failed or
-a rule of the line was broken, 2 when the command line or a script cannot be understood, 4 with a
-traceback when the firmware or the simulation failed, 130 after Ctrl-C.
+port_launch.py. Runs on MicroPython. Exit status: 0, 1 when an expectation failed or a rule of the
+RS-485 line was broken, 2 when the command line or a script cannot be understood, 4 with a
+traceback when the firmware or the simulation failed, 5 when the serial port cannot be had, 130
+after Ctrl-C.
 """
 
 import gc
@@ -16,7 +17,7 @@ import time
 
 import main
 from boards.sim import mm420
-from boards.sim.script import ExpectationFailed, Script, ScriptError
+from boards.sim.script import LINE_MAX, ExpectationFailed, Script, ScriptError
 from boards.sim.board import WIRINGS
 from boards.sim.world import World
 from hal.store import FileStore
@@ -47,6 +48,7 @@ NEW = ".new"  # behind the name of a file that is being written
 FAILED = 1
 NOT_UNDERSTOOD = 2
 CRASHED = 4  # 3 is that of the wrapper: no MicroPython
+NO_PORT = 5
 INTERRUPTED = 130
 SPEED_MAX = 100
 # Bytes between two collections. Left alone, MicroPython fills the heap first, and takes ten times
@@ -82,6 +84,7 @@ usage: ./tools/panel [--speed N] [--drives 1,2,5] [--baud 19200] [--settings FIL
                   port: how long a drive may take to answer, 20...500, the adapter's own delay
                   included (60, or that of the settings). It delays a STOP as well
   -h, --help      this text
+  --version       alone: the version of the panel
 The simulated drive knows the rates from 1200 to 115200.
 An emulated Pico tells the path of its USB serial port, for mpremote and tools/deploy.
 Without --script, in a terminal: the live panel. It shows its keys; q ends it."""
@@ -178,6 +181,7 @@ OPTIONS = {
     "--reply-timeout": ("reply_timeout", None, milliseconds),
     "--help": ("help", False, None),
     "-h": ("help", False, None),
+    "--check": ("check", False, None),  # only whether it can be: before anything is fetched
 }
 
 
@@ -192,11 +196,14 @@ ONLY_PORT = ("--reply-timeout",)
 def options(words):
     """The values of OPTIONS that a command line means. UsageError when it means nothing."""
     values = {name: default for name, default, _ in OPTIONS.values()}
-    words = list(words)
+    words, seen = list(words), []
     while words:
         option, equals, given = words.pop(0).partition("=")
         if option not in OPTIONS:
             raise UsageError("unknown option %s" % option)
+        if option in seen:
+            raise UsageError("%s stands there twice" % option)
+        seen.append(option)
         name, _, reader = OPTIONS[option]
         if reader is None:
             if equals:
@@ -234,7 +241,6 @@ def world_of(chosen):
 
     UsageError: there is no such drive, or what is to be kept cannot be.
     """
-    fit_for_board(chosen)
     if chosen["board"] == "pico":
         return pico_world(chosen)
     store, kept = kept_settings(chosen)
@@ -387,8 +393,8 @@ class Stored:
     def __init__(self, data):
         self._data = data
 
-    def read(self):
-        return self._data
+    def read(self, most=-1):
+        return self._data[:most] if most >= 0 else self._data
 
 
 def keep_flash(world, path):
@@ -418,7 +424,7 @@ def store_of(path, chosen):
         if chosen["port"] is not None:
             new.reply_timeout_ms = chosen["reply_timeout"] or PORT_REPLY_TIMEOUT_MS
         save(store, new)
-    store.read()  # what `load` would make the best of is an error here
+    store.read(1)  # what `load` would make the best of is an error here
     return store, load(store)
 
 
@@ -436,24 +442,30 @@ def lines_of(name, world):
         return standard_input() if world.port is None else typed_meanwhile(world)
     try:
         with open(name) as script:
-            return script.read().lstrip(BYTE_ORDER_MARK).split("\n")
+            lines = list(pieces(script))
     except OSError as error:
         raise UsageError("--script %s: cannot be read (%s)" % (name, error))
     except UnicodeError:
         raise UsageError("--script %s: is no text" % name)
+    return [line.lstrip(BYTE_ORDER_MARK) for line in lines[:1]] + lines[1:]
+
+
+def pieces(stream):
+    """Its lines; of one that is longer than a command may be, pieces that are too long as well."""
+    line = stream.readline(LINE_MAX + 2)
+    while line:
+        yield line
+        line = stream.readline(LINE_MAX + 2)
 
 
 def standard_input():
-    while True:
-        try:
-            line = sys.stdin.readline()
-        except UnicodeError:
-            raise UsageError("standard input is no text")
-        except OSError as error:
-            raise StreamError(error)
-        if not line:
-            return
-        yield line
+    try:
+        for line in pieces(sys.stdin):
+            yield line
+    except UnicodeError:
+        raise UsageError("standard input is no text")
+    except OSError as error:
+        raise StreamError(error)
 
 
 def typed_meanwhile(world):
@@ -470,7 +482,8 @@ def typed_meanwhile(world):
         except OSError as error:
             raise StreamError(error)
         if character and character != b"\n":
-            line += character
+            if len(line) <= LINE_MAX:
+                line += character
             continue
         try:
             yield line.decode()
@@ -506,10 +519,14 @@ def panel(words):
     try:
         chosen = options(words)
         if chosen["help"]:
-            show(USAGE)
+            if not chosen["check"]:
+                show(USAGE)
             return 0
         if chosen["script"] is None and not (isatty(0) and isatty(1)):
             raise UsageError("this is no terminal: give the panel a --script FILE, or --script -")
+        fit_for_board(chosen)
+        if chosen["check"]:
+            return 0
         world, said = world_of(chosen)
         for line in said:
             complain(line)
@@ -524,7 +541,7 @@ def panel(words):
             if chosen["flash"] is not None:
                 keep_flash(world, chosen["flash"])
     except PortFailed as error:
-        return complain(error, FAILED)
+        return complain(error, NO_PORT)
     except UsageError as error:
         return complain("%s\n%s" % (error, USAGE), NOT_UNDERSTOOD)
     except ScriptError as error:

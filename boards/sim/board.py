@@ -102,12 +102,22 @@ class Board:
         uart = UART(chip, baud)
         Transceiver(chip.wire, uart, driver_enable)
         timer = HardTimer(chip)
+        interrupts = not self._polled
+        fifo = (uart.fifo_holds, clear_fifo)
         return Rs485Link(
-            uart, driver_enable, timer, chip.clock, baud, interrupts=not self._polled
+            uart, driver_enable, timer, chip.clock, baud, interrupts=interrupts, fifo=fifo
         )
 
     def idle(self):
         self.clock.advance(self._loop_us())
+        if self._chip.storms:
+            self._chip.wait_out_storm()
+
+
+def clear_fifo(uart):
+    """What is in the FIFO into the buffer; what finds no room is lost."""
+    uart.any()
+    uart.drop_fifo()
 
 
 def make_display(chip, lcd):

@@ -41,20 +41,32 @@ _ERROR_LIMIT = 16
 
 PINS = 30
 
-RX_LIMIT = 256 + 32  # characters a UART holds: the driver's buffer and the FIFO
+# Of a UART, in characters: the buffer of its driver and its FIFO. When this holds FULL_FIFO, the
+# driver's interrupt handler takes all but one of them, so that the receive time-out will come.
+RX_BUFFER, RX_FIFO = 256, 32
+FULL_FIFO = 24
+RX_LIMIT = RX_BUFFER + RX_FIFO
+
+STORM_US = 50  # what a handler takes that comes again and again
+STORM_LIMIT_US = 10_000_000  # nobody waits longer for the end of that
 
 
 class Chip:
     """The chip as a whole: its interrupts and its reset.
 
+    timeout_again: a receive time-out that was cleared comes again at once as long as characters
+    are left in the FIFO, which no document settles.
     levels           those of its pins as bits, which a read of its register answers
     handler_errors   exceptions that interrupt handlers ended with, the first 16
     on_bite          called when the watchdog bites: a reset, unless somebody puts another function
     """
 
-    def __init__(self, clock, wire):
+    def __init__(self, clock, wire, timeout_again=False):
         self.clock = clock
         self.wire = wire
+        self.timeout_again = timeout_again
+        self.uarts = []
+        self.storms = False  # an interrupt is there again whenever its handler returns
         self.levels = 0
         self.handler_errors = []
         self.on_bite = self.reset
@@ -72,6 +84,8 @@ class Chip:
         """
         peripherals, self.peripherals = self.peripherals, []
         pins, self.pins = self.pins, []
+        self.uarts = []
+        self.storms = False
         for peripheral in peripherals:
             peripheral.die()
         for pin in pins:
@@ -83,14 +97,31 @@ class Chip:
 
     def disable_irq(self):
         """Interrupts wait from now on. Returns the state for enable_irq."""
+        self._let_uarts_collect()
         state = self._masked
         self._masked = True
         return state
 
     def enable_irq(self, state):
         """Back to the `state` that disable_irq returned; interrupts that waited run at once."""
+        self._let_uarts_collect()
         self._masked = state
+        self._let_uarts_collect()
         self._serve()
+
+    def is_masked(self):
+        return self._masked
+
+    def wait_out_storm(self):
+        """The main loop does nothing as long as an interrupt comes again and again."""
+        waited_us = 0
+        while self.storms and waited_us < STORM_LIMIT_US:
+            self.clock.advance(STORM_US)
+            waited_us += STORM_US
+
+    def _let_uarts_collect(self):
+        for uart in self.uarts:
+            uart.collect()
 
     def interrupt(self, interrupt):
         """Run the handler of `interrupt` now, or as soon as interrupts are allowed."""
@@ -159,9 +190,11 @@ class Interrupt:
 class UART:
     """machine.UART, 8E1, as far as it is used, with the RP2040's ways.
 
-    Receiving: 256 characters of buffer and 32 of FIFO; what does not fit is lost. IRQ_RXIDLE comes
-    32 bit times after the last character, if characters are left in the FIFO: any() and readinto()
-    empty it, so whoever polls gets no interrupt.
+    Receiving: 32 characters of FIFO, which the driver moves into a buffer of 256 by interrupts;
+    what does not fit is lost. IRQ_RXIDLE comes 32 bit times after the last character, if
+    characters are left in the FIFO: any() and readinto() empty it, so whoever polls gets no
+    interrupt. While the buffer is full, the FIFO stays as it is: IRQ_RXIDLE then comes once, or
+    again and again.
     """
 
     IRQ_RXIDLE = 0x40
@@ -174,13 +207,14 @@ class UART:
         self._buffer = bytearray(RX_LIMIT)
         self._head = 0
         self._count = 0
-        self._undrained = 0  # how many of them are still in the FIFO
+        self._in_fifo = 0  # how many of them, the last ones, are still in the FIFO
         self._sent_us = chip.clock.now_us
         self._sending = 0
         self._interrupt = Interrupt(self, self._is_due)
         self._timeout = Event(self._timed_out)
         self._timeout_us = -(-32_000_000 // baudrate)
         chip.peripherals.append(self)
+        chip.uarts.append(self)
 
     def irq(self, handler=None, trigger=0, hard=False):
         """Call handler(uart) on IRQ_RXIDLE; None stops that. Anything else: ValueError."""
@@ -192,24 +226,59 @@ class UART:
         self._interrupt.hard = bool(hard)
 
     def any(self):
-        """How many characters wait. Empties the FIFO and so suppresses IRQ_RXIDLE."""
-        if self.line is not None:
-            self.line.collect()
-        self._undrained = 0
-        return self._count
+        """How many characters are in the buffer. Empties the FIFO into it, as far as there is
+        room, and so suppresses IRQ_RXIDLE."""
+        self.collect()
+        self._move(RX_FIFO)
+        return self._count - self._in_fifo
 
     def readinto(self, buffer, n=None):
         """Take what waits, at most len(buffer) or `n`. Returns how many, or None for nothing."""
-        count = self.any()
+        self.collect()
         limit = len(buffer)
         if n is not None and n < limit:
             limit = n
+        count = self._count - self._in_fifo
+        if count < limit:  # the buffer is empty then
+            count = self._count
+            self._in_fifo = 0
         if count > limit:
             count = limit
         if not count:
             return None
         self._hand_over(buffer, count)
         return count
+
+    def fifo_holds(self):
+        """Whether characters stand in the FIFO: what RXFE in the register UARTFR tells."""
+        self.collect()
+        return self._in_fifo > 0
+
+    def drop_fifo(self):
+        """Read the register UARTDR until the FIFO is empty."""
+        self._count -= self._in_fifo
+        self._in_fifo = 0
+
+    def collect(self):
+        """Characters that have come by now are in the FIFO, or further."""
+        if self.line is not None:
+            self.line.collect()
+        if self._in_fifo >= FULL_FIFO and not self._chip.is_masked():
+            self._serve_full()
+
+    def _move(self, most):
+        """So many from the FIFO to the buffer, as far as there is room."""
+        moved = min(most, self._in_fifo, RX_BUFFER - (self._count - self._in_fifo))
+        if moved:
+            self._in_fifo -= moved
+            if self._in_fifo:  # reading starts the time-out anew
+                self._clock.schedule(self._timeout, self._clock.now_us + self._timeout_us)
+
+    def _serve_full(self):
+        """The driver's handler, each time that the FIFO held FULL_FIFO."""
+        times = (self._in_fifo - FULL_FIFO) // (FULL_FIFO - 1) + 1
+        room = RX_BUFFER - (self._count - self._in_fifo)
+        self._in_fifo -= min(times * (FULL_FIFO - 1), room)
 
     def _hand_over(self, buffer, count):
         data = self._buffer
@@ -250,7 +319,7 @@ class UART:
         self._interrupt.handler = None
         self._clock.cancel(self._timeout)
         self._count = 0
-        self._undrained = 0
+        self._in_fifo = 0
         self._sent_us = self._clock.now_us
         if self.line is not None:
             self.line.unplug()
@@ -262,34 +331,42 @@ class UART:
     def receive(self, data, first, stop):
         """Characters first...stop - 1 of `data` come in."""
         buffer = self._buffer
-        room = RX_LIMIT - self._count
+        masked = self._chip.is_masked()
+        room = RX_FIFO - self._in_fifo if masked else RX_LIMIT - self._count
         if stop - first > room:
             stop = first + room
         at = (self._head + self._count) % RX_LIMIT
         self._count += stop - first
-        self._undrained += stop - first
+        self._in_fifo += stop - first
         while first < stop:
             buffer[at] = data[first]
             first += 1
             at += 1
             if at == RX_LIMIT:
                 at = 0
+        if self._in_fifo >= FULL_FIFO and not masked:
+            self._serve_full()
 
     def quiet_since(self, at_us):
         """The last character ended at `at_us`."""
-        if self._undrained:
+        if self._in_fifo:
             self._clock.schedule(self._timeout, at_us + self._timeout_us)
 
     def _timed_out(self):
+        self._chip.storms = False
         # Characters of the next burst have come already: its end will start the time-out anew.
         if self.line is not None and self.line.receiving():
             return
-        if self._undrained:
+        if self._in_fifo:
             self._chip.interrupt(self._interrupt)
 
     def _is_due(self):
-        due = self._undrained > 0
-        self._undrained = 0  # the interrupt empties the FIFO before it calls the handler
+        """The driver's handler, before it calls the program's."""
+        due = self._in_fifo > 0
+        if due and self._chip.timeout_again and self._count - self._in_fifo == RX_BUFFER:
+            self._chip.storms = True
+            self._clock.schedule(self._timeout, self._clock.now_us + STORM_US)
+        self._move(FULL_FIFO - 1)
         return due
 
 

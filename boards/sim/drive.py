@@ -21,6 +21,7 @@ from boards.sim.clock import Event
 from boards.sim.drive_operations import Operations
 from boards.sim.drive_parameters import Parameters
 from boards.sim.drive_readings import Readings
+from boards.sim.drive_supply import Supply
 from boards.sim.drive_switches import Switches
 from boards.sim.drive_words import RUNNING, STOPPING
 from boards.sim.parameter_channel import ALL_ELEMENTS, ParameterChannel
@@ -59,7 +60,6 @@ class Drive:
                     an object with an attribute for each
     eeprom_writes   how often something was written into its EEPROM, P0971 counts once
     plugged         whether the RS-485 connector is in
-    powered         whether it has mains
     silent          whether it is busy with P0970 or the like, and deaf
     plant           what hangs on it, mains, motor and load: plant.py
     """
@@ -86,7 +86,6 @@ class Drive:
         self.reply_delay_us = reply_delay_us
         self._any_baud = any_baud
         self.plugged = True
-        self.powered = False
         self._connected = False
         link = family.LINK
         self._parameters = Parameters(family, self._reading)
@@ -111,8 +110,9 @@ class Drive:
         self._silent = False  # busy with something that a parameter started
         self._unsettled = False  # writes wait for the end of the exchange to take effect
         self._buffer = bytearray(256)
+        self._supply = Supply(clock, self.switches, self._process, self._start_up, self._go_dark)
         self._commission(address, parameters or {})
-        self.power_on()
+        self._supply.begin()
 
     # Looking at it
 
@@ -126,6 +126,16 @@ class Drive:
         """inhibited, ready, ready to run, running, stopping, fault or off."""
         self._process.hz()  # what time has done meanwhile
         return self._process.state
+
+    @property
+    def powered(self):
+        """Whether its electronics live. They may boot still: it is "off" until they have."""
+        return self._supply.powered
+
+    @property
+    def mains(self):
+        """Whether its mains are there."""
+        return self._supply.mains
 
     @property
     def stw(self):
@@ -194,7 +204,7 @@ class Drive:
         process = self._process
         counters = self._slave.counters
         fault = process.faults[0]
-        hiw = process.words(2)[1] if self.powered else 0
+        hiw = process.words(2)[1] if self._supply.booted else 0
         return (
             "address=%d state=%s hz=%.2f stw=%04X zsw=%04X hsw=%04X hiw=%04X good=%d rejected=%d "
             "fault=%s starts=%d"
@@ -231,7 +241,7 @@ class Drive:
         value: r0949. lasting: its cause stays until `clear_cause`, and so does the fault: neither
         an acknowledgement nor the power helps. Otherwise it is gone at once.
         """
-        if not self.powered:
+        if not self._supply.booted:
             raise ValueError(self.name + " is off")
         self._process.trip(number, value, lasting)
 
@@ -253,8 +263,10 @@ class Drive:
         self._process.load(percent, kind, inertia_s)
 
     def supply(self, volts):
-        """The mains have so many volts from now on; 400 before. Below 248 it cannot run."""
-        self._process.supply(volts)
+        """The mains have so many volts from now on; 400 before. Below 248 it cannot run. Nothing
+        at all is `power_off`.
+        """
+        self._supply.set_volts(volts)
 
     def plug(self):
         """Put the RS-485 connector in."""
@@ -267,31 +279,35 @@ class Drive:
         self._connect()
 
     def power_off(self):
-        """Mains off: the motor coasts, RAM is lost."""
-        if self.powered:
-            self.powered = False
-            self._clock.cancel(self._reply)
-            self._clock.cancel(self._failure)
-            self._clock.cancel(self._end_of_silence)
-            self._silent = False
-            self._process.power_off()
-            self._connect()
+        """Mains off. Sooner or later (drive_supply.py) the motor coasts, and RAM is lost: its
+        parameters are those of the EEPROM again.
+        """
+        self._supply.off()
 
     def power_on(self):
-        """Mains on: parameters from the EEPROM, no process data yet, inhibited."""
-        if not self.powered:
-            self.powered = True
-            self._parameters.load()
-            self._operations.forget()
-            self._unsettled = False
-            self._slave.reset()
-            self._channel.reset()
-            self._heard_us = None
-            protocol = self.family.LINK["protocol"]
-            self._speaks_uss = protocol is None or self._parameters.ram[protocol][0] == USS
-            self._process.power_on()
-            self._configure_link()
-            self._connect()
+        """Mains on. Where its electronics were off they boot: no process data yet, inhibited."""
+        self._supply.on()
+
+    def _go_dark(self):
+        self._clock.cancel(self._reply)
+        self._clock.cancel(self._failure)
+        self._clock.cancel(self._end_of_silence)
+        self._silent = False
+        self._process.power_off()
+        self._parameters.load()
+        self._connect()
+
+    def _start_up(self):
+        self._operations.forget()
+        self._unsettled = False
+        self._slave.reset()
+        self._channel.reset()
+        self._heard_us = None
+        protocol = self.family.LINK["protocol"]
+        self._speaks_uss = protocol is None or self._parameters.ram[protocol][0] == USS
+        self._process.power_on()
+        self._configure_link()
+        self._connect()
 
     # The line
 
@@ -313,7 +329,7 @@ class Drive:
             self._mirrored = self._slave.telegram[: self._slave.length]
         else:
             self._take_request()
-            if self._silent:
+            if self._silent or self.switches.silent_refusals and self._channel.refuses():
                 return
         self._clock.schedule(self._reply, burst.end_us + self.reply_delay_us)
 
@@ -357,7 +373,7 @@ class Drive:
 
     def _connect(self):
         """Be on the line while plugged and powered. What it is sending when it leaves is cut."""
-        connected = self.plugged and self.powered and self._speaks_uss
+        connected = self.plugged and self._supply.booted and self._speaks_uss
         if connected and not self._connected:
             self._wire.attach(self)
         elif self._connected and not connected:
@@ -391,11 +407,11 @@ class Drive:
             settings[link["baud"]] = codes[0]
         settings[link["address"]] = address
         settings.update(parameters)
-        for number, value in settings.items():
-            index = 0
-            if isinstance(number, tuple):
-                number, index = number
-            self._parameters.set(number, index, value)
+        for connects in (True, False):  # P0700 before P0840, which it sets
+            for key in settings:
+                number, index = key if isinstance(key, tuple) else (key, 0)
+                if (number in family.SOURCES["sets"]) == connects:
+                    self._parameters.set(number, index, settings[key])
         self._parameters.eeprom_writes = 0
 
     def _reading(self, number, index):

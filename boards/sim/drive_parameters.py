@@ -15,6 +15,8 @@ index counts from 0, whatever the family does.
 
 import struct
 
+from boards.sim.sources import connected
+
 # Columns of a row.
 NUMBER, NAME, TYPE, UNIT, INDICES, MINIMUM, MAXIMUM, DEFAULT, CHANGE, LEVEL, NOTE = range(11)
 
@@ -111,6 +113,7 @@ class Parameters:
         self.ram = {}
         self.eeprom_writes = 0
         self._eeprom = {}
+        self._family = family
         self._permitted = family.PERMITTED
         self._reading = reading
         self._retained = family.LINK["retained"]  # other than 0: every change is kept
@@ -143,14 +146,26 @@ class Parameters:
         return ONLY_ZERO if value and number in self._only_zero else None
 
     def store(self, number, index, value, permanently):
-        """Keep a value that was checked, in RAM and, if `permanently`, in the EEPROM."""
+        """Keep a value that was checked, in RAM and, if `permanently`, in the EEPROM.
+
+        What it connects (P0700 sets P0840) is set with it.
+        """
         if number not in self.ram:
             return
         self.ram[number][index] = value
-        if permanently or self._retained is not None and self.ram[self._retained][0]:
+        keep = permanently or self._retained is not None and self.ram[self._retained][0]
+        if keep:
             self.eeprom_writes += 1
-            if number not in self._volatile:
-                self._kept(number)[index] = value
+            self._keep(number, index, value)
+        for target, connector in connected(self._family, number, value):
+            if target in self.ram and index < len(self.ram[target]):
+                self.ram[target][index] = connector
+                if keep:
+                    self._keep(target, index, connector)
+
+    def _keep(self, number, index, value):
+        if number not in self._volatile:
+            self._kept(number)[index] = value
 
     def fit(self, number, index, value):
         """Put what the drive has calculated into RAM, a float, within the limits of the number."""

@@ -29,6 +29,9 @@ SWITCHES = (
     ("no_rights_error", 0, "what a write without change rights (P0927) gets: 0 the reply AK 8, "
      "else this error number, 7 or 11",
      "USS specification: AK 8; the PROFIBUS board and the V20: 11"),
+    ("silent_refusals", False, "a telegram with a task that it does not carry out gets no reply "
+     "at all; False: the reply AK 7 or 8",
+     "USS specification C-4.2.1: a reply is due; slaves that keep silent were reported"),
     ("inactive_refused", False, "numbers that another one puts out of use (P0308 or P0309, as "
      "P0100 says) cannot be changed, error 101",
      "the error is listed, when it comes is not"),
@@ -47,6 +50,15 @@ SWITCHES = (
     ("clean_power_up", False, "at power-up OFF1 stands in the image: ready, FB31; False: 0000, "
      "inhibited, FBC1",
      "FBC1 was recorded once; the state of others is not told"),
+    ("boot_ms", 300, "milliseconds in which it says nothing after power-up",
+     "not told; short here, because a master that takes a silent drive for lost sees longer ones"),
+    ("buffered_ms", 0, "milliseconds without mains that its DC link carries it over",
+     "the MM4 instructions (automatic restart) tell no times; 0 is the hardest for a master"),
+    ("dark_ms", 0, "milliseconds that its electronics live after that, with F0003 where the motor "
+     "ran; mains that come back then were a brownout, later ones a blackout",
+     "the MM4 instructions (automatic restart) go by a display that is dark, and tell no times"),
+    ("bus_restart", True, "an ON of this bus that stands is one for P1210; False: terminals alone",
+     "the MM4 parameter lists ask for a digital input, what the bus does is not told"),
     ("bare_standby", False, "in standby bits 11 to 15 of ZSW are 0 and bit 10 is 1: 0731",
      "seen on one MM440; most recordings say FB31"),
     ("broadcast_bit_10", False, "a broadcast counts only with STW bit 10 in the telegram itself; "
@@ -68,6 +80,31 @@ SWITCHES = (
      "is held somehow",
      "Vdc-max controllers stretch the ramp, which this one does not"),
 )  # fmt: skip
+
+
+# What a switch can be set to by name: those with a truth value 0 and 1, these, and numbers up to
+# SWITCH_MAX.
+SWITCH_VALUES = {"no_rights_error": (0, 7, 11)}
+SWITCH_MAX = 0xFFFF
+
+
+def switch_value(name, word):
+    """What a switch of the drive is set to by a word. ValueError: there is none, or not so."""
+    usual = {row[0]: row[1] for row in SWITCHES}.get(name)
+    if usual is None:
+        raise ValueError("there is no such switch; --switch help of tools/drive lists them")
+    number = int(word) if word.isdigit() else None
+    if isinstance(usual, bool):
+        number = {"true": 1, "false": 0, "on": 1, "off": 0}.get(word.lower(), number)
+        allowed, named = (0, 1), "0 or 1"
+    elif name in SWITCH_VALUES:
+        allowed = SWITCH_VALUES[name]
+        named = "one of %s" % ", ".join([str(value) for value in allowed])
+    else:
+        allowed, named = range(SWITCH_MAX + 1), "0...%d" % SWITCH_MAX
+    if number not in allowed:
+        raise ValueError("it can be %s" % named)
+    return type(usual)(number)
 
 
 class Switches:

@@ -54,6 +54,7 @@ CONTROL_1, CONTROL_2 = "control word 1", "control word 2"
 RECEIVED = "word received"
 COUNTERS = "telegram counters"
 DRIVE_STATE = "drive state"
+COMMAND_SET, DATA_SETS = "command data set", "drive data sets"
 # Hz, 1/min
 WANTED, ACTUAL, AFTER_RAMP = "frequency wanted", "actual frequency", "ramp output"
 POTENTIOMETER, FIXED, TOTAL = "motor potentiometer", "fixed frequency", "total setpoint"

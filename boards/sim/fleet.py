@@ -10,6 +10,8 @@
 Every address has the same kind, and the same time to its reply, each time.
 """
 
+# From the bottom up: an import inside an import inside an import takes stack.
+from boards.sim import drive_parameters  # noqa: F401
 from boards.sim import g110, g120, generic, mm3, mm420, mm440, v20
 
 # Family, and what is set besides its commissioning. The layouts, PKW + PZD words, in their order:

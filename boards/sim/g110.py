@@ -52,8 +52,10 @@ PERMITTED[1300] = (0, 2, 3)
 BAUD_CODES = {code: baud for code, baud in mm420.BAUD_CODES.items() if code <= 9}
 COMMISSIONED = {3: 3, 700: 5, 1000: 5, 2012: 2, 2013: 127}
 LINK = mm420.LINK
-SETTINGS = tuple(row for row in mm420.SETTINGS if row[0] != "scaling")
+NUMBERS = [row[NUMBER] for row in ROWS]
+SETTINGS = tuple(row for row in mm420.SETTINGS if row[1] in NUMBERS)
 OTHER_COMMANDS = mm420.OTHER_COMMANDS
+SOURCES = mm420.SOURCES
 SETPOINT_SOURCES = mm420.SETPOINT_SOURCES
 READINGS = only(mm420.READINGS, ROWS)
 OPERATIONS = mm420.OPERATIONS

@@ -9,6 +9,7 @@ numbers, their ranges and defaults are general knowledge.
     Drive(clock, wire, 4, family=g120)      # p0015 = 21: USS has the drive
 """
 
+from boards.sim import restart, sources
 from boards.sim.drive_operations import CLEAR_FAULTS, RESET, SAVE
 from boards.sim.drive_parameters import in_single_precision
 from boards.sim.drive_words import (
@@ -74,6 +75,7 @@ ROWS = in_single_precision((
     (310, "rated motor frequency", "F", "Hz", 1, 1.0, 650.0, 50.0, "C", 1, ""),
     (311, "rated motor speed", "F", "1/min", 1, 1.0, 210000.0, 1395.0, "C", 1, ""),
     (722, "digital inputs", "U32", "", 1, None, None, 0, "", 2, ""),
+    (840, "ON, source", "U32", "", 1, 0, 0x0FFF0000, 0x02D20000, "CT", 3, "p0015 sets it"),
     (945, "fault code", "U16", "", 8, None, None, 0, "", 3, ""),
     (947, "fault number", "U16", "", 8, None, None, 0, "", 3, ""),
     (948, "fault times", "U32", "ms", 8, None, None, 0, "", 3, ""),
@@ -81,11 +83,15 @@ ROWS = in_single_precision((
     (952, "number of faults", "U16", "", 1, 0, 8, 0, "CT", 3, "0 clears"),
     (970, "reset drive parameters", "U16", "", 1, 0, 1, 0, "C", 1, "1 resets and returns to 0"),
     (971, "save parameters", "U16", "", 1, 0, 1, 0, "CUT", 3, "1 saves and returns to 0"),
+    (1070, "main setpoint, source", "U32", "", 1, 0, 0x0FFF0000, 0x02F30000, "CT", 3,
+     "p0015 sets it"),
     (1080, "minimum speed", "F", "1/min", 1, 0.0, 210000.0, 0.0, "CT", 1, ""),
     (1082, "maximum speed", "F", "1/min", 1, 0.0, 210000.0, 1500.0, "CT", 1, ""),
     (1120, "ramp-up time", "F", "s", 1, 0.0, 999999.0, 10.0, "CUT", 1, "for 0...p1082"),
     (1121, "ramp-down time", "F", "s", 1, 0.0, 999999.0, 10.0, "CUT", 1, "for p1082...0"),
     (1135, "OFF3 ramp-down time", "F", "s", 1, 0.0, 600.0, 3.0, "CUT", 2, "for p1082...0"),
+    (1200, "flying start", "U16", "", 1, 0, 4, 0, "CUT", 3, "see restart.py"),
+    (1210, "automatic restart", "U16", "", 1, 0, 6, 0, "CUT", 3, "see restart.py"),
     (2000, "reference speed", "F", "1/min", 1, 6.0, 210000.0, 1500.0, "CT", 2, "4000h in PZD"),
     (2020, "baud rate", "U16", "", 1, 4, 13, 8, "CUT", 2, "a code, see BAUD_CODES"),
     (2021, "address", "U16", "", 1, 0, 31, 0, "CUT", 2, ""),
@@ -103,6 +109,8 @@ ROWS = in_single_precision((
 
 PERMITTED = {
     15: (12, 17, 18, 19, 20, 21),
+    1200: (0, 1, 4),
+    1210: (0, 1, 4, 6),
     2023: (0, 3, 4, 127),
     # What the simulated drive can send: nothing, or one of these readings.
     2051: tuple(number << 16 for number in (0, 20, 21, 52, 54, 63, 2089)),
@@ -142,10 +150,15 @@ SETTINGS = (
     ("down_s", 1121, 1),
     ("off3_s", 1135, 1),
     ("reference_hz", 2000, RPM_PER_HZ),
+    ("on_source", 840, 1),
+    ("main_source", 1070, 1),
+    ("flying_start", 1200, 1),
+    ("auto_restart", 1210, 1),
 )
 
 # The macros without USS.
 OTHER_COMMANDS = {macro: NO_COMMAND for macro in (12, 17, 18, 19, 20)}
+SOURCES = sources.G120
 SETPOINT_SOURCES = {12: 0, 17: 0, 18: 0, 19: 0, 20: 0, 21: 5}
 
 READINGS = {
@@ -194,6 +207,7 @@ STYLE = {
     "absolute": None,
     "obeyed bits": 0xFCFF,  # 8 and 9 are reserved
     "control fault": 7220,
+    "restarts": restart.G120,
     "faults": {
         OVERCURRENT: 30001,
         OVERVOLTAGE: 30002,
@@ -208,6 +222,7 @@ CHANNEL = {
     "tasks": (1, 2, 3, 4, 6, 7, 8, 9, 11, 12, 13, 14),
     "pages": True,
     "first index": 0,
+    "plain index": True,
     "scalar as array": True,
     "elements": (1, 2, 7, 8, 9),
     "variable elements": (3, 4, 6, 255),

@@ -2,8 +2,9 @@
 """A drive that does all that the USS specification knows, and that nobody ever built.
 
 Tables and columns are those of mm420.py, and so are its numbers. It has every rate, 0...16 PZD
-words, complete descriptions and texts, and counts the elements of an array from 1. P4, P7, P9 and
-P18 are those of the specification's examples (C-8).
+words, complete descriptions and texts, and counts the elements of an array from 1. A task that is
+not for arrays has no index (C-4.2.2): with one it is refused. P4, P7, P9 and P18 are those of the
+specification's examples (C-8).
 
     Drive(clock, wire, 1, {2013: 127, 2012: 16}, family=generic, reports=True)
 """
@@ -39,6 +40,7 @@ COMMISSIONED = mm420.COMMISSIONED
 LINK = mm420.LINK
 SETTINGS = mm420.SETTINGS
 OTHER_COMMANDS = mm420.OTHER_COMMANDS
+SOURCES = mm420.SOURCES
 SETPOINT_SOURCES = mm420.SETPOINT_SOURCES
 READINGS = mm420.READINGS
 OPERATIONS = mm420.OPERATIONS
@@ -51,6 +53,7 @@ CHANNEL = {
     "tasks": (1, 2, 3, 4, 5, 6, 7, 8, 9, 11, 12, 13, 14, 15),
     "pages": True,
     "first index": 1,
+    "plain index": False,
     "scalar as array": False,
     "elements": (1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 255),
     "variable elements": (),

@@ -13,6 +13,7 @@ Nothing runs in the background: what time does (a ramp ends, pulses go off, an o
 worked out when somebody asks, for the instant at which it happened.
 """
 
+from boards.sim import restart
 from boards.sim.drive_words import (
     ACKNOWLEDGE,
     COM_LINK,
@@ -43,6 +44,7 @@ from boards.sim.motor import Motor
 from boards.sim.plant import Plant
 from boards.sim.potentiometer import Potentiometer
 from boards.sim.setpoint import SetpointChannel
+from boards.sim.sources import Sources
 
 WORDS = 16  # process data words, at most
 
@@ -77,6 +79,12 @@ class Inverter:
     fixed_1_hz = fixed_2_hz = fixed_3_hz = fixed_4_hz = 0.0
     no_reverse = 0  # P1110
     flying_start = 1  # P1200
+    auto_restart = None  # P1210
+    selection = 0  # P0719
+    on_source = main_source = None  # P0840, P1070
+    controller = 0  # P2200
+    controller_source = 0  # P2253
+    gain, highest_percent, lowest_percent = 3.0, 100.0, 0.0
     # The rating plates of motor and inverter.
     rated_v, rated_a, rated_kw = 230, 3.25, 0.75
     rated_hz, rated_rpm = 50.0, 1395
@@ -97,12 +105,18 @@ class Inverter:
         self.plant = Plant(self, switches)
         self._motor = Motor(self._settle)
         self._potentiometer = Potentiometer()
-        self._setpoint = SetpointChannel(self, self.image, self._potentiometer, family.STYLE)
+        self._sources = Sources(family)
+        self._setpoint = SetpointChannel(
+            self, self.image, self._potentiometer, self._sources, family.STYLE
+        )
         self._numbers = family.STYLE["faults"]
+        self._restart_table = family.STYLE["restarts"]
         self.starts = 0
         self.state = OFF
         self._jogging = False  # running, or stopping, on a JOG command
         self._off3 = False  # stopping on OFF3, which cannot be taken back
+        self._restarts = False  # P1210: ON that stands in the next telegram starts it
+        self._freed_by = restart.OTHER  # what took the pulses away last
         self._stw = 0  # the control word that was obeyed last
         self._given_hz = None  # the setpoint, once it was worked out
         self._passed_us = -1  # up to here it is known what time has done
@@ -112,17 +126,40 @@ class Inverter:
     # What happens to it
 
     def power_on(self):
-        """Inhibited. A fault counts as acknowledged; where its cause is left, it is back."""
-        self.memory.file()
-        self.state = INHIBITED
+        """Inhibited, or in fault as before: P1210. A fault whose cause is left is back."""
+        action = self._action(restart.BLACKOUT)
+        self.state = FAULT
+        if action != restart.NOTHING or not self.faults[0]:
+            self.memory.file()
+            self.state = INHIBITED
         self._on_us = self._clock.now_us
         for number in self.memory.causes:
             self.trip(number)
+        self._restarts = action == restart.RESTART and self._switches.bus_restart
+
+    def after_brownout(self):
+        """The mains are back in time; a second has passed."""
+        self._pass_time()
+        action = self._action(restart.BROWNOUT)
+        if self.state == FAULT and action != restart.NOTHING:
+            self.acknowledge()
+            self._restarts = action == restart.RESTART and self._switches.bus_restart
+            stw = self.command_word()
+            self.command(stw, self.risen_again(stw))
+
+    def _action(self, away):
+        number = self.faults[0]
+        fault = restart.OTHER_FAULT if number else restart.NO_FAULT
+        if number == self._numbers[UNDERVOLTAGE]:
+            fault = restart.UNDERVOLTED
+        return restart.action(self._restart_table, self.auto_restart, away, fault)
 
     def power_off(self):
         self._pass_time()
-        self._run_us += self._clock.now_us - self._on_us
-        self._pulses_off(OFF, self._clock.now_us)
+        if self.state != OFF:
+            self._run_us += self._clock.now_us - self._on_us
+        self._restarts = False
+        self._pulses_off(OFF, self._clock.now_us, restart.POWER)
 
     def trip(self, number, value=0, lasting=False):
         """A fault: pulses off at once. One more before it is acknowledged is noted beside it.
@@ -204,7 +241,7 @@ class Inverter:
             if rising & ACKNOWLEDGE:
                 self.acknowledge()
         elif not stw & NO_OFF2:
-            self._pulses_off(INHIBITED, self._clock.now_us)
+            self._pulses_off(INHIBITED, self._clock.now_us, restart.OFF2)
         elif not stw & NO_OFF3:
             self._quick_stop(stw)
         elif self.state == INHIBITED:
@@ -217,6 +254,14 @@ class Inverter:
         self._given_hz = None
         self._turn_potentiometer(stw)
         self._steer(self._clock.now_us)
+
+    def risen_again(self, stw):
+        """ON if it stands when the drive restarts by itself: it counts as risen, once."""
+        restarts, self._restarts = self._restarts, False
+        if not (restarts and stw & ON and self.state in (INHIBITED, READY)):
+            return 0
+        self.state = READY
+        return ON
 
     def _quick_stop(self, stw):
         if self.state in (RUNNING, STOPPING) and stw & PULSES:
@@ -259,12 +304,15 @@ class Inverter:
         self.plant.driven = True
         if not self.potentiometer_kept:
             self._potentiometer.set(self.potentiometer_hz)
-        if not self.flying_start:
+        hz = self._motor.hz(self._clock.now_us)
+        if hz and not restart.catches(
+            self.flying_start, self._freed_by, hz, self.setpoint_hz()
+        ):
             self._motor.jump(self._clock.now_us, 0.0)  # it forces its own frequency on the motor
 
     def _trip(self, at_us, number, value):
         self.memory.strike(number, value, self.run_s(at_us))
-        self._pulses_off(FAULT, at_us)
+        self._pulses_off(FAULT, at_us, restart.FAULT)
 
     def _persists(self):
         """Whether what made it trip by itself is still there."""
@@ -273,7 +321,9 @@ class Inverter:
                 return True
         return False
 
-    def _pulses_off(self, state, at_us):
+    def _pulses_off(self, state, at_us, freed_by=restart.OTHER):
+        if self.plant.driven or state == OFF:
+            self._freed_by = freed_by
         if self.plant.driven:
             self._settle(at_us)
             self.plant.driven = False
@@ -346,7 +396,8 @@ class Inverter:
 
     def _turn_potentiometer(self, stw):
         direction = 0
-        if self.state == RUNNING and not self._jogging and MOP in self._setpoint.sources:
+        sources = (self._sources.main, self._sources.additional)
+        if self.state == RUNNING and not self._jogging and MOP in sources:
             direction = TURNS.get(stw & (UP | DOWN), 0)
         self._potentiometer.turn(self._clock.now_us, direction)
 

@@ -22,7 +22,7 @@ class Mains:
     def dip(self, ms):
         """From now on, for so long, or as long as a dip that goes on lasts. Also in an event."""
         for drive in self._drives:
-            if drive.powered:
+            if drive.mains:
                 drive.power_off()
                 self._without.append(drive)
         at_us = self._clock.now_us + ms * 1000

@@ -8,6 +8,7 @@ P095 is not 0), the direction bits, the fault number. A change goes into the EEP
     Drive(clock, wire, 2, {93: 2}, family=mm3)
 """
 
+from boards.sim import restart, sources
 from boards.sim.drive_operations import RESET
 from boards.sim.drive_words import (
     ACTUAL,
@@ -126,6 +127,7 @@ SETTINGS = (
 )
 
 OTHER_COMMANDS = {0: NO_COMMAND, 2: NO_COMMAND, 4: NO_COMMAND}
+SOURCES = sources.FIXED
 SETPOINT_SOURCES = {0: 0, 1: 5, 2: 5, 3: 0, 4: 0}
 
 READINGS = {
@@ -161,6 +163,7 @@ STYLE = {
     "absolute": 2,
     "obeyed bits": 0xFFFF,
     "control fault": 0,
+    "restarts": restart.PLAIN,
     "faults": {
         OVERCURRENT: 2,
         OVERVOLTAGE: 1,
@@ -175,6 +178,7 @@ CHANNEL = {
     "tasks": (1, 2),
     "pages": False,
     "first index": 0,
+    "plain index": True,
     "scalar as array": False,
     "elements": (),
     "variable elements": (),

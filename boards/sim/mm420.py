@@ -9,7 +9,7 @@ its columns mean.
     Drive(clock, wire, 3, family=mm440)
 """
 
-from boards.sim import mm4_parameters, mm4_readings
+from boards.sim import mm4_parameters, mm4_readings, restart, sources
 from boards.sim.drive_operations import (
     ACKNOWLEDGE,
     CALCULATE,
@@ -147,6 +147,15 @@ SETTINGS = (
     ("skip_band_hz", 1101, 1),
     ("no_reverse", 1110, 1),
     ("flying_start", 1200, 1),
+    ("auto_restart", 1210, 1),
+    ("selection", 719, 1),
+    ("on_source", 840, 1),
+    ("main_source", 1070, 1),
+    ("controller", 2200, 1),
+    ("controller_source", 2253, 1),
+    ("gain", 2280, 1),
+    ("highest_percent", 2291, 1),
+    ("lowest_percent", 2292, 1),
     ("brake", 1215, 1),
     ("vdc_controller", 1240, 1),
     ("reference_v", 2001, 1),
@@ -160,6 +169,9 @@ SETTINGS = (
 # Values of the command source with which the drive does not obey this bus, and the control word
 # that it obeys then.
 OTHER_COMMANDS = {0: NO_COMMAND, 1: NO_COMMAND, 2: NO_COMMAND, 4: 0, 6: 0}
+
+# What P0700 and P1000 connect: sources.py tells the columns.
+SOURCES = sources.MM4
 
 # Values of the setpoint source that do not mean what its digits say: units main, tens additional.
 SETPOINT_SOURCES = {}
@@ -196,6 +208,7 @@ TERMINALS = mm4_parameters.TERMINALS
 # 14. `two directions`: a bit of STW for each, 11 and 12, in the place of one that reverses.
 # `absolute`: the value of `scaling` with which setpoint and actual value are in 0.01 Hz, None:
 # there is none. `obeyed bits`: of STW. `control fault`: trips when STW bit 10 drops while it runs.
+# `restarts`: what it does when its mains are back, a table of restart.py.
 # `faults` and `warnings`: its numbers for what it trips with and warns of by itself.
 STYLE = {
     "states": {
@@ -212,6 +225,7 @@ STYLE = {
     "absolute": 1,
     "obeyed bits": 0xFFFF,
     "control fault": 0,
+    "restarts": restart.MM4,
     "faults": {
         OVERCURRENT: 1,
         OVERVOLTAGE: 2,
@@ -245,6 +259,7 @@ CHANNEL = {
     "tasks": (1, 2, 3, 4, 6, 7, 8, 9, 11, 12, 13, 14),
     "pages": True,
     "first index": 0,
+    "plain index": True,
     "scalar as array": True,
     "elements": (1, 2, 7, 8, 9),
     "variable elements": (3, 4, 6, 255),

@@ -2,7 +2,7 @@
 """The MICROMASTER 440 as data: an MM420 with data sets, eight PZD words and more arrays.
 
 Tables and columns are those of mm420.py, the rows all of mm4_parameters.py. Three indices are the
-data sets of commands or of the drive; the simulated one obeys the first.
+data sets of commands or of the drive, see data_sets.py.
 
     Drive(clock, wire, 3, {2012: 4}, family=mm440)
 """
@@ -24,6 +24,7 @@ COMMISSIONED = mm420.COMMISSIONED
 LINK = mm420.LINK
 SETTINGS = mm420.SETTINGS
 OTHER_COMMANDS = mm420.OTHER_COMMANDS
+SOURCES = mm420.SOURCES
 SETPOINT_SOURCES = mm420.SETPOINT_SOURCES
 READINGS = mm4_readings.READINGS
 OPERATIONS = mm420.OPERATIONS

@@ -13,10 +13,11 @@ where a range or a default was not, it is general knowledge, unverified, as most
 """
 
 from boards.sim.drive_parameters import CHANGE, DEFAULT, INDICES, in_single_precision
+from boards.sim.sources import SELECTIONS
 
 MM440, MM420 = 0, 1  # the place in a pair
 
-SETS = (3, 1)  # data sets, of commands or of the drive; the simulated one obeys the first
+SETS = (3, 1)  # data sets, of commands or of the drive: data_sets.py tells which counts
 SETS_440 = (3, 0)
 ONE_440 = (1, 0)
 INPUTS = (2, 1)
@@ -63,6 +64,7 @@ ROWS = (
     (39, "energy meter", "F", "kWh", 1, None, None, 0.0, "", 2, ""),
     (40, "reset energy meter", "U16", "", 1, 0, 1, 0, "CT", 2, "1: begins at 0"),
     (50, "active command data set", "U16", "", ONE_440, None, None, 0, "", 2, ""),
+    (51, "drive data set", "U16", "", (2, 0), None, None, 0, "", 2, "[0] selected, [1] active"),
     (52, "status word 1", "U16", "", 1, None, None, 0, "", 2, "as delivered: PZD1"),
     (53, "status word 2", "U16", "", 1, None, None, 0, "", 2, "as delivered: PZD4"),
     (54, "control word 1", "U16", "", 1, None, None, 0, "", 3, "the one that is obeyed"),
@@ -146,7 +148,11 @@ ROWS = (
     (781, "analog output, dead band", "F", "", INPUTS, 0.0, 20.0, 0.0, "CUT", 2, ""),
     # commands, faults, storage
     (810, "command data set, bit 0", "U32", "", 1, 0, 0x0FFF0000, 0, "CUT", 2, ""),
-    (840, "source of ON", "U32", "", SETS, 0, LAST_SOURCE, 0x02D20000, "CT", 3, ""),
+    (811, "command data set, bit 1", "U32", "", ONE_440, 0, 0x0FFF0000, 0, "CUT", 2, ""),
+    (820, "drive data set, bit 0", "U32", "", ONE_440, 0, 0x0FFF0000, 0, "CT", 3, ""),
+    (821, "drive data set, bit 1", "U32", "", ONE_440, 0, 0x0FFF0000, 0, "CT", 3, ""),
+    (840, "source of ON", "U32", "", SETS, 0, LAST_SOURCE, 0x02D20000, "CT", 3,
+     "722:0; P0700 sets it"),
     (918, "CB address", "U16", "", 1, 0, 65535, 3, "CT", 2, ""),
     (927, "parameters changeable via", "U16", "", 1, 0, 15, 15, "CUT", 2,
      "bit 0 CB, 1 keypad, 2 BOP link, 3 this bus"),
@@ -191,7 +197,7 @@ ROWS = (
     (1060, "JOG ramp-up time", "F", "s", SETS, 0.0, 650.0, 10.0, "CUT", 2, "for 0...P1082"),
     (1061, "JOG ramp-down time", "F", "s", SETS, 0.0, 650.0, 10.0, "CUT", 2, "for P1082...0"),
     (1070, "source of the main setpoint", "U32", "", SETS, 0, LAST_SOURCE, 0x02F30000, "CT", 3,
-     "755:0, the analog input"),
+     "755:0; P1000 sets it"),
     (1078, "total setpoint", "F", "Hz", 1, None, None, 0.0, "", 3, ""),
     (1080, "minimum frequency", "F", "Hz", SETS, 0.0, 650.0, 0.0, "CUT", 1, ""),
     (1082, "maximum frequency", "F", "Hz", SETS, 0.0, 650.0, 50.0, "CT", 1, ""),
@@ -213,10 +219,10 @@ ROWS = (
     (1135, "OFF3 ramp-down time", "F", "s", SETS, 0.0, 650.0, 5.0, "CUT", 2, "for P1082...0"),
     (1170, "setpoint after the ramp", "F", "Hz", 1, None, None, 0.0, "", 3, ""),
     # starting, stopping, braking
-    (1200, "flying start", "U16", "", 1, 0, 6, 0, "CUT", 2, ""),
+    (1200, "flying start", "U16", "", 1, 0, 6, 0, "CUT", 2, "see restart.py"),
     (1202, "flying start current", "U16", "%", SETS, 10, 200, 100, "CUT", 3, ""),
-    (1210, "automatic restart", "U16", "", 1, 0, 6, 1, "CUT", 2, ""),
-    (1211, "restart attempts", "U16", "", 1, 0, 10, 3, "CUT", 3, "then F0035"),
+    (1210, "automatic restart", "U16", "", 1, 0, 6, 1, "CUT", 2, "see restart.py"),
+    (1211, "restart attempts", "U16", "", 1, 0, 10, 3, "CUT", 3, "not counted here"),
     (1215, "holding brake", "U16", "", 1, 0, 1, 0, "T", 2, ""),
     (1216, "brake release delay", "F", "s", 1, 0.0, 20.0, 1.0, "T", 2, ""),
     (1217, "holding time after ramp-down", "F", "s", 1, 0.0, 20.0, 1.0, "T", 2, ""),
@@ -310,6 +316,7 @@ DIGITAL_INPUT = (0, 1, 2, 3, 4, 9, 10, 11, 12, 13, 14, 15, 16, 21, 25, 29, 99)
 PERMITTED = {
     10: (0, 1, 2, 29, 30),
     700: (0, 1, 2, 4, 5, 6),
+    719: SELECTIONS,
     2013: (0, 3, 4, 127),
 }
 PERMITTED.update({number: DIGITAL_INPUT for number in range(701, 709)})

@@ -162,6 +162,10 @@ class ParameterChannel:
         words[0] |= reports.bit
         return words
 
+    def refuses(self):
+        """Whether the reply to the last request is a refusal."""
+        return self._refusal is not None
+
     def report(self, number, index):
         """Somebody else has changed this element, or ALL_ELEMENTS."""
         if self._reports is not None:
@@ -297,6 +301,8 @@ class ParameterChannel:
                 return NO_ARRAY if index > 1 or not self._family["scalar as array"] else None
             if index == ALL_ELEMENTS:
                 return None if layout == VARIABLE else CHANNEL_TOO_SMALL
+        elif index and not self._family["plain index"]:
+            return WRONG_SUBINDEX
         return None if 0 <= self._position(row, task[2], index) < row[INDICES] else WRONG_SUBINDEX
 
     def _describe(self, ak, which, layout):

@@ -15,14 +15,16 @@ too fast behind a reply is taken for one that has kept the start interval, and b
 whose adapter may hand over late, a telegram may come in pieces.
 
 A port has no way to say that a character came with a wrong parity or stop bit: such a one is not
-handed over, as by a program that obeys its UART.
+handed over, as by a program that obeys its UART. What is written into a pty faster than a line
+could carry it is lost: nobody has to wait until a simulated line has said it all.
 """
 
 from boards.sim.clock import Event
 from boards.sim.wire import BURST_LIMIT, Burst
 
 STX = 0x02
-QUEUE_FULL = 1024  # characters that wait for the line; more are left in the port
+WAITS_US = 500_000  # what has come and waits for the line: so much of its time, or one telegram
+TELEGRAM_MAX = 256
 LATE_US = 20_000  # adapters keep characters back for up to 16 ms
 TOGETHER_US = 3_000  # characters that begin no telegram belong together when they are closer
 PIECE_US = 10_000  # what is heard in so long is handed over together
@@ -32,7 +34,7 @@ ECHO_US = 100_000  # what is sent comes back within so long, or never
 class Master:
     """What both have. write(data): to the port, at once. note(burst, from_master, seen): called
     for every telegram, or what else was said, when it is over; seen: what look() answered when it
-    began, for things may change until then.
+    began, for things may change until then. lost: characters that the line had no time for.
     """
 
     name = "panel"  # as the script language calls whoever asks
@@ -46,11 +48,8 @@ class Master:
         self._look = look
         self._seen = {}  # burst: what was seen when it began
         self._pending = bytearray()
+        self.lost = 0
         wire.attach(self)
-
-    def full(self):
-        """Whether so much waits that the port is better left alone."""
-        return len(self._pending) >= QUEUE_FULL
 
     def _begins(self, burst):
         if self._look is not None:
@@ -84,7 +83,9 @@ class PtyMaster(Master):
         self._hand_over = Event(self._hand_over_piece)
 
     def received(self, data, flaws=None):
-        self._pending += data
+        taken = data[: self._room()]
+        self.lost += len(data) - len(taken)
+        self._pending += taken
         if self._burst is not None:
             self._say_more()
         elif not self._go_on.armed:
@@ -120,6 +121,12 @@ class PtyMaster(Master):
 
     def hear_itself(self, burst):
         self._hand_to_port(burst, 0, burst.count)
+
+    def _room(self):
+        """For so many characters the line will have time soon."""
+        said_us = self._burst.end_us - self._clock.now_us if self._burst is not None else 0
+        room = (WAITS_US - said_us) // self._wire.character_us
+        return max(max(room, TELEGRAM_MAX) - len(self._pending), 0)
 
     def _begin(self):
         """Talk, or first let the start interval pass behind a reply."""

@@ -17,11 +17,13 @@ from boards.sim.drive_words import (
     ALWAYS,
     BOTH_JOGS,
     BY_PLC,
+    COMMAND_SET,
     CONTROL_1,
     CONTROL_2,
     CONTROL_WORD_2,
     CURRENT,
     CURRENT_LIMIT,
+    DATA_SETS,
     DC_LINK,
     DRIVE_STATE,
     ENERGY,
@@ -62,6 +64,7 @@ from boards.sim.drive_words import (
     WARNING_COUNT,
     WARNINGS,
 )
+from boards.sim.data_sets import DataSets
 from boards.sim.inverter import WORDS, Inverter
 
 # Bits of status word 1 that no family has elsewhere.
@@ -87,9 +90,6 @@ FROM_PLANT = (
 # r0002. 3, starting, is over too soon to be seen.
 DRIVE_STATES = {FAULT: 2, RUNNING: 4, STOPPING: 5}
 READY_FOR_USE, IN_COMMISSIONING = 1, 0
-
-# A binary source, number << 16 | bit: the place of the number's word in the image.
-BINARY_SOURCES = {2036: 0, 2037: CONTROL_WORD_2}
 
 
 class Process(Inverter):
@@ -120,6 +120,7 @@ class Process(Inverter):
         self._warning_numbers = style["warnings"]
         self._alarms = 0  # LIMITED ... BOTH_JOGS, those there are
         Inverter.__init__(self, clock, parameters, family, switches)
+        self._sets = DataSets(self._sources)
         memory = self.memory
         self._lists = {
             RECEIVED: self.image,
@@ -139,6 +140,7 @@ class Process(Inverter):
             TOTAL: self._setpoint.total_hz,
             FIXED: self._setpoint.fixed_hz,
             POTENTIOMETER: self._potentiometer_hz,
+            COMMAND_SET: self._command_set,
             SPEED: self._speed_rpm,
             FAULT_COUNT: memory.fault_count,
             WARNING_COUNT: memory.warning_count,
@@ -198,8 +200,7 @@ class Process(Inverter):
 
     def command_word(self):
         """The control word that is obeyed, r0054: that of this bus if P0700 says so."""
-        word = self._other_command
-        return self.image[0] & self._obeyed_bits if word is None else word
+        return self._sources.command(self.image, self._obeyed_bits)
 
     def steps_per_hz(self):
         """Of a family whose frequencies are whole numbers."""
@@ -211,19 +212,24 @@ class Process(Inverter):
             return  # nothing new
         self._taken = list(words)
         self.image[: len(words)] = words
+        if self._sets.by_bus and self._sets.look(self.image, not self.plant.driven):
+            self._take_settings()
         stw = self.command_word()
         rising = stw & ~self._previous
         self._previous = stw
         self._watch_external_fault()
+        if self._restarts:
+            rising |= self.risen_again(stw)
         self.command(stw, rising)
         self._led_to = self.state if self.state != INHIBITED else None
+        if self._sets.selected != self._sets.drive:
+            self._led_to = None  # look again when it stands
 
     def _watch_external_fault(self):
-        place = BINARY_SOURCES.get(self.external_fault >> 16)
-        if place is None:
+        if not self._sources.is_word(self.external_fault):
             return
         number = self._numbers[EXTERNAL]
-        if self.image[place] >> (self.external_fault & 0x0F) & 1:
+        if self._sources.bit(self.external_fault, self.image):
             self.clear_cause(number)
         elif number not in self.memory.causes:
             self.trip(number, 0, True)
@@ -232,8 +238,12 @@ class Process(Inverter):
         ram = self._parameters.ram
         family = self._family
         before_hz = self.potentiometer_hz
+        sets = self._sets
+        sets.take(ram)
+        sets.look(self.image, not self.plant.driven)
         for name, number, divisor in family.SETTINGS:
-            value = ram[number][0]
+            values = ram[number]
+            value = values[sets.index(number, len(values))]
             if divisor != 1:
                 value = value / (divisor or self.steps_per_hz())
             setattr(self, name, value)
@@ -241,11 +251,8 @@ class Process(Inverter):
             self._potentiometer.set(self.potentiometer_hz)
         self.skipped_hz = _not_zero(self.skip_1_hz, self.skip_2_hz, self.skip_3_hz, self.skip_4_hz)
         self.fixed_hz = (self.fixed_1_hz, self.fixed_2_hz, self.fixed_3_hz, self.fixed_4_hz)
-        self._other_command = family.OTHER_COMMANDS.get(self.command_source)
-        source = family.SETPOINT_SOURCES.get(self.setpoint_source, self.setpoint_source)
-        channel = self._setpoint
-        channel.sources = (source % 10, source // 10)  # main, additional
-        channel.absolute = self.scaling == family.STYLE["absolute"]
+        self._sources.take(self)
+        self._setpoint.absolute = self.scaling == family.STYLE["absolute"]
         self._sent = PLAIN
         if family.LINK["sent"]:
             readings = family.READINGS
@@ -371,6 +378,8 @@ class Process(Inverter):
             return value if self.state != OFF or what == ENERGY else 0.0
         if what == CONTROL_2:
             return self.image[CONTROL_WORD_2]
+        if what == DATA_SETS:
+            return self._sets.drive if index else self._sets.selected
         if what == RUN_TIME:
             seconds = self.run_s(self._clock.now_us)
             return seconds & 0xFFFF if index else seconds >> 16 & 0xFFFF
@@ -389,6 +398,9 @@ class Process(Inverter):
         self._pass_time()
         self._settle(self._clock.now_us)
         self.plant.energy_kwh = 0.0
+
+    def _command_set(self):
+        return self._sets.command
 
     def _drive_state(self):
         if self.commissioning:

@@ -12,11 +12,16 @@ firmware raises while a command lets time pass goes through as it is.
 """
 
 from boards.sim.dice import Dice
+from boards.sim.drive_switches import switch_value
 from boards.sim.line_faults import KINDS, SUPPLIES, WAYS, LineFaults
 from boards.sim.mains import Mains
 from boards.sim.plant import EXPONENTS, FAN
 
 FAULT_MAX = 9999
+DAYS_MAX = 100
+MS_MAX = DAYS_MAX * 24 * 3600 * 1000
+COUNT_DIGITS_MAX = 9
+LINE_MAX = 1000  # characters of a command
 DICE = 2  # those of the line: the drives' delays, drawn from others, stay as they are
 
 
@@ -51,6 +56,8 @@ class Script:
     def understood(self, line):
         """The next line: the name of its command and the values for it, or None and nothing."""
         self._line += 1
+        if len(line) > LINE_MAX:
+            raise self._error("a line of more than %d characters is no command" % LINE_MAX)
         words = line.split("#", 1)[0].split()
         if not words:
             return None, ()
@@ -106,6 +113,13 @@ class Script:
             drive.fault(number, 0, lasting is not None)
         except ValueError as error:
             raise Refused(error.args[0])
+
+    def set_switch(self, drive, setting):
+        """How it behaves where the documents leave it open."""
+        name, wanted = setting
+        if wanted is not None:
+            drive.switches.set(name, wanted)
+        self.show("%s=%s" % (name, int(getattr(drive.switches, name))))
 
     def warn(self, drive, number, on=True):
         drive.warn(number, on)
@@ -180,6 +194,8 @@ def key(world, word):
 def milliseconds(world, word):
     if not word.isdigit():
         raise ValueError("%s is no number of milliseconds" % word)
+    if len(word) > len(str(MS_MAX)) or int(word) > MS_MAX:
+        raise ValueError("more than %d milliseconds (%d days) are too many" % (MS_MAX, DAYS_MAX))
     return int(word)
 
 
@@ -192,6 +208,8 @@ def duration(world, word):
 def count(world, word):
     if not word.isdigit():
         raise ValueError("%s is no number" % word)
+    if len(word) > COUNT_DIGITS_MAX:
+        raise ValueError("%s has more than %d digits" % (word, COUNT_DIGITS_MAX))
     return int(word)
 
 
@@ -255,6 +273,18 @@ def switch(world, word):
     return word == "on"
 
 
+def setting(world, word):
+    """NAME or NAME=VALUE of a switch of the drive: name and value, None to look."""
+    name, equals, wanted = word.partition("=")
+    try:
+        if equals:
+            return name, switch_value(name, wanted)
+        switch_value(name, "0")
+        return name, None
+    except ValueError as error:
+        raise ValueError("%s: %s" % (word, error.args[0]))
+
+
 def rate(world, word):
     """A number, on or off."""
     if word in ("on", "off"):
@@ -304,6 +334,9 @@ COMMANDS = {
     "load": ("load A PERCENT [fan|linear|constant]", (drive, count, one_of(EXPONENTS)), 1,
         Script.load),
     "supply": ("supply A VOLTS", (drive, count), 0, lambda do, drive, volts: drive.supply(volts)),
+    "off": ("off A", (drive,), 0, lambda do, drive: drive.power_off()),
+    "on": ("on A", (drive,), 0, lambda do, drive: drive.power_on()),
+    "switch": ("switch A NAME[=VALUE]", (drive, setting), 0, Script.set_switch),
     "unplug": ("unplug A", (drive,), 0, lambda do, drive: drive.unplug()),
     "plug": ("plug A", (drive,), 0, lambda do, drive: drive.plug()),
     "hang": ("hang MS", (milliseconds,), 0, lambda do, ms: do.world.hang(ms)),
@@ -321,7 +354,8 @@ COMMANDS = {
 
 ORDER = (
     "press", "hold", "down", "up", "wait", "lcd", "expect", "bus", "drive", "param", "fault",
-    "clear", "warn", "load", "supply", "unplug", "plug", "hang", "reset", "power",
+    "clear", "warn", "load", "supply", "off", "on", "switch", "unplug", "plug", "hang",
+    "reset", "power",
     "line", "strike", "late", "babble", "cut", "mend", "dip",
 )  # fmt: skip
 OF_THE_LINE = ORDER[-7:]  # nobody can do them where the line is a real one

@@ -5,7 +5,7 @@ It is no ramp: motor.py lays that. It knows no states either; process.py says wh
 
     channel.hz(0x047F)      # Hz, signed: what the ramp generator is given, r0020
     channel.jog_hz(0x057E)  # the same for a jog
-    channel.sources         # (5, 0): COM link, and nothing added
+    channel.total_hz()      # all sources, r1078
 
 The order is that of the MM4 parameter lists: main and additional setpoint, direction, skip
 frequencies, limits.
@@ -28,18 +28,17 @@ FIXED_SELECTION = 4  # bits of control word 2, one for each fixed frequency, whi
 
 class SetpointChannel:
     """settings: has the frequencies, see Process. image: the process data in force, by word.
-    potentiometer: the motor potentiometer. style: of the family.
+    potentiometer: the motor potentiometer. sources: which are chosen. style: of the family.
 
-    sources   main and additional one
     absolute  whether the main setpoint is in 0.01 Hz
     """
 
-    def __init__(self, settings, image, potentiometer, style):
-        self.sources = (COM_LINK, 0)
+    def __init__(self, settings, image, potentiometer, sources, style):
         self.absolute = False
         self._settings = settings
         self._image = image
         self._potentiometer = potentiometer
+        self._sources = sources
         self._two_directions = style["two directions"]
 
     def hz(self, stw):
@@ -57,9 +56,12 @@ class SetpointChannel:
 
     def total_hz(self):
         """Of all sources, r1078: before direction and limits."""
-        main, additional = self.sources
-        hz = self._source_hz(main)
-        return hz + self._source_hz(additional) if additional else hz
+        sources = self._sources
+        if self._settings.controller and sources.bit(self._settings.controller, self._image):
+            return self._controlled_hz()
+        hz = self._source_hz(sources.main, sources.place)
+        additional = sources.additional
+        return hz + self._source_hz(additional, 1) if additional else hz
 
     def fixed_hz(self):
         """The sum of the fixed frequencies that are selected, r1024."""
@@ -70,12 +72,26 @@ class SetpointChannel:
                 hz += self._settings.fixed_hz[bit]
         return hz
 
-    def _source_hz(self, source):
+    def _controlled_hz(self):
+        """What the PID controller makes of its setpoint: the proportional part, and a feedback
+        of 0, which is what an analog input without a signal says.
+        """
+        settings = self._settings
+        source, place = self._sources.setpoint(settings.controller_source)
+        percent = settings.gain * self._source_hz(source, place) * 100 / settings.reference_hz
+        percent = min(max(percent, settings.lowest_percent), settings.highest_percent)
+        return percent * settings.reference_hz / 100
+
+    def _source_hz(self, source, place):
         if source == COM_LINK:
-            hsw = self._image[1]
-            if hsw & 0x8000:
-                hsw -= 0x10000
-            return hsw / 100 if self.absolute else hsw * self._settings.reference_hz / 16384
+            if place >= len(self._image):
+                return 0.0
+            word = self._image[place]
+            if word & 0x8000:
+                word -= 0x10000
+            if self.absolute and place == 1:
+                return word / 100
+            return word * self._settings.reference_hz / 16384
         if source == MOP:
             return self._potentiometer.output_hz
         return self.fixed_hz() if source == FIXED_FREQUENCY else 0.0

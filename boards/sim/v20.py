@@ -10,13 +10,14 @@ knowledge, and so is the default of P2014.
 
 from boards.sim import mm440
 from boards.sim.drive_parameters import only, rows_like
+from boards.sim.mm4_parameters import LAST_SOURCE
 
 NAME = "SINAMICS V20"
 
 # What it has no hardware for: further inputs and outputs, communication board, link on the side of
 # the keypad (general knowledge). And no P2009.
 WITHOUT = (
-    50, 705, 706, 707, 708, 733, 918, 2009, 2015, 2016, 2032, 2033, 2040, 2050, 2051, 2053, 2054,
+    705, 706, 707, 708, 733, 918, 2009, 2015, 2016, 2032, 2033, 2040, 2050, 2051, 2053, 2054,
     2090, 2091, 3980,
 )  # fmt: skip
 
@@ -28,6 +29,7 @@ ROWS = rows_like(
         (304, "rated motor voltage", "U16", "V", 3, 10, 2000, 400, "C", 1, ""),
         (700, "command source", "U16", "", 3, 0, 5, 1, "CT", 1, "0, 1 keypad, 2 terminals, 5 USS"),
         (720, "number of digital inputs", "U16", "", 1, None, None, 4, "", 3, ""),
+        (840, "source of ON", "U32", "", 3, 0, LAST_SOURCE, 0x00130000, "CT", 3, "19:0, keypad"),
         (927, "parameters changeable via", "U16", "", 1, 0, 31, 31, "CUT", 2, "bit 3 this bus"),
         (947, "last fault codes", "U16", "", 64, None, None, 0, "", 2, ""),
         (948, "fault times", "U16", "", 64, None, None, 0, "", 3, ""),
@@ -35,6 +37,8 @@ ROWS = rows_like(
         (952, "number of faults", "U16", "", 1, 0, 64, 0, "CT", 3, "0 clears"),
         (970, "factory reset", "U16", "", 1, 0, 21, 0, "C", 1, "1, 21 reset and return to 0"),
         (1000, "frequency setpoint source", "U16", "", 3, 0, 77, 1, "CT", 1, "see PERMITTED"),
+        (1070, "source of the main setpoint", "U32", "", 3, 0, LAST_SOURCE, 0x041A0000, "CT", 3,
+         "1050:0, the motor potentiometer"),
         (2000, "reference frequency", "F", "Hz", 3, 1.0, 599.0, 50.0, "CT", 2, "4000h in PZD"),
         (2010, "USS baud rate", "U16", "", 2, 6, 12, 8, "CUT", 2, "a code, see BAUD_CODES"),
         (2011, "USS address", "U16", "", 2, 0, 31, 1, "CUT", 2, ""),
@@ -58,6 +62,7 @@ LINK["from process data"] = True
 LINK["protocol"] = 2023
 SETTINGS = tuple(row for row in mm440.SETTINGS if row[0] != "scaling")
 OTHER_COMMANDS = mm440.OTHER_COMMANDS
+SOURCES = mm440.SOURCES
 SETPOINT_SOURCES = mm440.SETPOINT_SOURCES
 READINGS = only(mm440.READINGS, ROWS)
 OPERATIONS = mm440.OPERATIONS

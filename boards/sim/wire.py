@@ -304,7 +304,8 @@ class Wire:
         self._babble_pause_us = max(BABBLE_PAUSE_US, 4 * self.character_us)
         self._idle_since_us = LONG_AGO_US
         self._last_began_us = LONG_AGO_US
-        self._babble_since_us = 0  # of the weather, without a pause
+        self._busy_since_us = 0  # no silence since then that would be a start interval
+        self._babble_since_us = 0  # of the weather, without a pause, and what it has run into
         self._babble_until_us = LONG_AGO_US
         self._violations = Book()
         self._weather = Book()
@@ -409,8 +410,10 @@ class Wire:
             burst.append(data, count)
             self._miss_driver(tap)
             return
+        if not self._talkers and now - self._idle_since_us >= self.start_interval_us:
+            self._busy_since_us = now
         if tap.is_weather and now - self._babbled_until_us(now) >= self._babble_pause_us:
-            self._babble_since_us = now
+            self._babble_since_us = self._busy_since_us
         tap.alone = tap.mute
         if not tap.mute:
             self._judge_start(tap, now)

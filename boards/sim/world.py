@@ -12,6 +12,7 @@ The world knows nothing of the firmware: `start(board)` makes it and answers an 
 """
 
 import json
+from collections import OrderedDict
 
 from boards.sim import mm420
 from boards.sim.board import KEYS, LOOP_US, NORMALLY_CLOSED, WIRINGS, Board
@@ -76,7 +77,7 @@ class Surroundings:
         self.seed = seed
         self.random = Dice(seed).random
         supervised_ms = supervision_ms(baud, len(addresses))
-        self.drives = {}
+        self.drives = OrderedDict()  # a dict of MicroPython has an order of its own
         for address in addresses:
             # Not before two characters have passed, not later than the master waits at this rate.
             fastest_us = self.wire.start_interval_us
@@ -146,7 +147,8 @@ class World(Surroundings):
     """start: makes the firmware. polled: no receive interrupt. ticks_start, ticks_mask: of the
     chip's clock, which `clock` replaces. store: keeps the panel's settings in place of the flash;
     what it has already is not touched. The others are those of `Surroundings`; in the plain world
-    every step of the loop takes 2 ms, with a seed each its own time.
+    every step of the loop takes 2 ms, with a seed each its own time. With an odd seed the UART's
+    receive time-out comes again while characters are left (`Chip`).
     """
 
     def __init__(
@@ -174,7 +176,7 @@ class World(Surroundings):
         self.store = store or FileStore(SETTINGS_FILE, self.flash.open, self.flash)
         if store is None:
             self.flash.files[SETTINGS_FILE] = stored
-        elif store.read() is None:
+        elif store.read(0) is None:
             store.replace(stored)
         self.app = None
         self._start = start
@@ -251,7 +253,7 @@ class World(Surroundings):
     def _boot(self):
         cause = "WATCHDOG" if self._bitten else ""
         self._bitten = self._dipped = False
-        self.chip = Chip(self.clock, self.wire)
+        self.chip = Chip(self.clock, self.wire, timeout_again=bool(self.seed & 1))
         self.chip.on_bite = self._bite
         self.chips.append(self.chip)
         self.clock.advance(BOOT_US)
@@ -288,5 +290,5 @@ def supervision(family, ms):
 
 def supervision_ms(baud, drives):
     """A telegram off time that fits a line: four rounds in which every answer comes late."""
-    exchange_ms = 2 * 16 * 11_000 // baud + 30
+    exchange_ms = 2 * 16 * 11_000 // baud + 20
     return min(max(4 * exchange_ms * drives, 2_000), 60_000)

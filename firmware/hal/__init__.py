@@ -66,7 +66,7 @@ keypad
     unclear             the keys, as bits, of which the last reading could not tell; mostly 0
 
 store                   keeps one small file over power cuts; any method may raise OSError
-    read() -> bytes or None
+    read(most=-1) -> bytes or None   the first `most` bytes; -1: all
     replace(data)       all or nothing: after a power cut either the old or the new data are there
     set_aside()         keep what is there under another name, for a person to look at
 

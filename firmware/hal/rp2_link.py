@@ -20,13 +20,13 @@ import micropython
 import rp2
 from micropython import const
 
-_IDLE_BITS = const(32)  # silence after which the UART reports the end of a burst (PL011)
+from hal.bursts import Bursts
+
 _CYCLES_PER_BIT = const(8)  # of the state machine; its divider allows 239 baud ... 15 Mbaud
 _LEAD_CYCLES = const(4)  # from the DMA's first word to the first start bit, at the most
 _BITS_PER_CHARACTER = const(11)
 _BITS_BEFORE_STOP = const(10)
 _SIZE_MAX = const(256)
-_COMING = const(-1)  # what `receive` says of characters whose end will be announced
 _WORDS = const(1)  # code of the DMA for transfers of 16 bits
 
 
@@ -73,13 +73,20 @@ def _transmit(buffer: ptr8, count: int, words: ptr16, channel: ptr32):
 
 
 @micropython.viper
-def _holds_characters() -> bool:
-    """Whether characters stand in the FIFO of UART 1.
+def _fifo_holds() -> bool:
+    """Whether characters stand in the FIFO of UART 1."""
+    uart = ptr32(0x40038000)
+    return uart[6] & 0x10 == 0  # UARTFR, RXFE: it is empty
 
-    The driver below Python leaves one there as long as the burst goes on.
-    """
-    flags = ptr32(0x40038018)  # UARTFR
-    return flags[0] & 0x10 == 0  # RXFE: the FIFO is empty
+
+@micropython.viper
+def _clear_fifo(uart):
+    """The characters in the FIFO of UART 1 into its buffer; those that find no room are lost."""
+    registers = ptr32(0x40038000)
+    if registers[6] & 0x10 == 0:
+        uart.any()
+        while registers[6] & 0x10 == 0:
+            registers[0]  # UARTDR: to read it is enough
 
 
 @micropython.viper
@@ -90,34 +97,21 @@ def _copy(source: ptr8, target: ptr8, at: int, count: int):
         index += 1
 
 
-def _nobody():
-    """Whom the link tells of what it hears, until somebody wants to know."""
-
-
-class Rp2Link:
+class Rp2Link(Bursts):
     """uart: UART 1 as above, made before this. state_machine: its number, 0...7.
 
     dma: an rp2.DMA that the link may keep; `close` gives the channel back. tx_pin and
     driver_enable: pins, which the state machine takes over. baud: 300...187500.
     """
 
-    interrupts = True
     foreseen = True
 
     def __init__(self, uart, state_machine, dma, tx_pin, driver_enable, clock, baud):
-        self.on_activity = _nobody
-        self.clock = clock
-        self.received_at = 0
         self.sent_at = 0
-        self._idle_us = _IDLE_BITS * 1_000_000 // baud
-        self.resolution_us = self._idle_us
-        self._uart = uart
         self._dma = dma
         self._tx_pin = tx_pin
         self._driver_enable = driver_enable
         self._is_driving = driver_enable.value
-        self._ticks_us = clock.ticks_us
-        self._mask = clock.ticks_mask
         self._frequency = _CYCLES_PER_BIT * baud
         # Both rounded up. 64 characters, so that the product of `send` is exact to a microsecond
         # or two and fits a small integer at every rate.
@@ -125,9 +119,6 @@ class Rp2Link:
         self._sixty_four_us = -(-64 * _BITS_PER_CHARACTER * 1_000_000 // baud)
         self._started_at = 0
         self._duration_us = 0
-        self._burst_ended = False
-        self._burst_ended_at = 0
-        self._scratch = bytearray(_SIZE_MAX)
         self._words = array("H", bytes(2 * (_SIZE_MAX + 1)))
         self._state_machine = rp2.StateMachine(state_machine)
         self._set_up()
@@ -135,7 +126,7 @@ class Rp2Link:
         control = dma.pack_ctrl(size=_WORDS, inc_read=True, inc_write=False, treq_sel=request)
         dma.config(read=self._words, write=self._state_machine, count=1, ctrl=control)
         self._channel = dma.registers
-        uart.irq(handler=self._on_idle, trigger=uart.IRQ_RXIDLE, hard=True)
+        Bursts.__init__(self, uart, clock, baud, _copy, (_fifo_holds, _clear_fifo))
 
     def send(self, buffer, count):
         if self._is_driving():  # the last one never ended; nothing on the chip does that
@@ -157,37 +148,14 @@ class Rp2Link:
         self._duration_us = 0  # or else, much later, the clock would have gone round
         return 1 if self._is_driving() else 0
 
-    def receive(self, buffer, at):
-        uart = self._uart
-        if not self._burst_ended and _holds_characters():
-            return _COMING  # to take them now would use up the interrupt that announces their end
-        count = uart.any()
-        if not count:
-            self._burst_ended = False
-            return 0
-        if at:
-            count = min(count, len(buffer) - at, _SIZE_MAX)
-            if count:
-                uart.readinto(self._scratch, count)
-                _copy(self._scratch, buffer, at, count)
-        else:
-            count = uart.readinto(buffer, count)  # as far as there is room
-        if self._burst_ended:
-            self._burst_ended = False
-            self.received_at = self._burst_ended_at
-        else:
-            self.received_at = self._ticks_us()
-        return count
-
     def close(self):
-        self._uart.irq(handler=None, trigger=0)
+        self._uart.deinit()  # first, for nobody empties it any more: its interrupts end with it
         self._driver_enable.init(self._driver_enable.OUT, value=0)
         self._tx_pin.init(self._tx_pin.IN, self._tx_pin.PULL_UP)
         self._state_machine.active(0)
         self._dma.active(0)
         self._dma.close()
         self._duration_us = 0
-        self._uart.deinit()
 
     def _set_up(self):
         """The state machine at its beginning, the driver off, nothing in its FIFO."""
@@ -198,8 +166,3 @@ class Rp2Link:
             out_base=self._tx_pin,
         )
         self._state_machine.active(1)
-
-    def _on_idle(self, _uart):
-        self._burst_ended_at = (self._ticks_us() - self._idle_us) & self._mask
-        self._burst_ended = True
-        self.on_activity()  # no jump before it: a pending Ctrl-C would end this handler for good

@@ -12,51 +12,39 @@ line.
 
 from micropython import const
 
-# The RP2040 reports the end of a burst 32 bit times after its last character (PL011 manual,
-# receive time-out). The burst therefore ended that long before the interrupt.
-IDLE_BITS = const(32)
+from hal.bursts import Bursts
 
-POLLED_RESOLUTION_US = const(5_000)  # how late a polled link may be looked at
 RELEASES_MAX = const(16)  # looks at the transmitter, a quarter of a character apart
 
 
-def _nobody():
-    """Whom the link tells of what it hears, until somebody wants to know."""
+def _copy(source, target, at, count):
+    for index in range(count):
+        target[at + index] = source[index]
 
 
-class Rs485Link:
+class Rs485Link(Bursts):
     """uart: 8E1 at `baud`, buffers of at least 256 characters. driver_enable: a Pin, 1 sends.
 
     timer: its own, for the driver enable only. interrupts: False where the UART has none.
-    hard: False where the port takes only soft ones (ESP32).
+    hard: False where the port takes only soft ones (ESP32). fifo: of `Bursts`.
     """
 
-    def __init__(self, uart, driver_enable, timer, clock, baud, interrupts=True, hard=True):
-        self.on_activity = _nobody
-        self.clock = clock
-        self.interrupts = interrupts
-        self.received_at = 0
+    def __init__(
+        self, uart, driver_enable, timer, clock, baud, interrupts=True, hard=True, fifo=None
+    ):
         self.sent_at = 0
         self.late_releases = 0  # transmissions that did not end when they should have
-        self.resolution_us = IDLE_BITS * 1_000_000 // baud if interrupts else POLLED_RESOLUTION_US
-        self._uart = uart
         self._driver_enable = driver_enable
         self._timer = timer
-        self._ticks_us = clock.ticks_us
-        self._mask = clock.ticks_mask
         # A table, because the product does not fit a small integer at every rate.
         self._durations_us = [-(-11_000_000 * count // baud) for count in range(257)]
         self._sending = False
         self._started_at = 0
         self._duration_us = 0
         self._releases = 0
-        self._burst_ended = False
-        self._burst_ended_at = 0
-        self._scratch = bytearray(256)
         self._on_timer = self._release  # bound once: binding allocates
         driver_enable.value(0)
-        if interrupts:
-            uart.irq(handler=self._on_idle, trigger=uart.IRQ_RXIDLE, hard=hard)
+        Bursts.__init__(self, uart, clock, baud, _copy, fifo, interrupts, hard)
 
     def send(self, buffer, count):
         self._sending = True
@@ -76,30 +64,6 @@ class Rs485Link:
             passed_us = 0
         return max(self._duration_us - passed_us, 1)
 
-    def receive(self, buffer, at):
-        uart = self._uart
-        count = 0
-        came = uart.any()
-        while came:
-            scratch = self._scratch
-            came = min(came, len(scratch), len(buffer) - at)
-            came = uart.readinto(scratch, came) or 0 if came else 0
-            for index in range(came):
-                buffer[at + index] = scratch[index]
-            at += came
-            count += came
-            if came:
-                came = uart.any()
-        if not count:
-            self._burst_ended = False
-            return 0
-        if self._burst_ended:
-            self._burst_ended = False
-            self.received_at = self._burst_ended_at
-        else:
-            self.received_at = self._ticks_us()
-        return count
-
     def close(self):
         self._timer.deinit()
         if self.interrupts:
@@ -107,11 +71,6 @@ class Rs485Link:
         self._driver_enable.value(0)
         self._sending = False
         self._uart.deinit()
-
-    def _on_idle(self, _uart):
-        self._burst_ended_at = (self._ticks_us() - self.resolution_us) & self._mask
-        self._burst_ended = True
-        self.on_activity()  # no jump before it: a pending Ctrl-C would end this handler for good
 
     def _release(self, _timer):
         if not self._uart.txdone() and self._releases < RELEASES_MAX:

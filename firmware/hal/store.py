@@ -13,7 +13,9 @@ takes its place.
 
 from micropython import const
 
+_PIECE = const(256)
 _ENOENT = const(2)
+_COPY_MAX = const(4096)  # bytes: a chip has to hold it
 
 
 class FileStore:
@@ -28,8 +30,8 @@ class FileStore:
         self._open = open
         self._os = os
 
-    def read(self):
-        return self._read(self._path)
+    def read(self, most=-1):
+        return self._read(self._path, most)
 
     def replace(self, data):
         self._put(self._path, data)
@@ -38,20 +40,22 @@ class FileStore:
         """Keep a copy as path + ".bad", in place of an earlier one.
 
         A copy, because between moving the file away and writing the next one power may be cut.
-        Only what cannot be read is moved.
+        Only what cannot be read, or is too big to be copied, is moved.
         """
         try:
-            data = self.read()
+            data = self.read(_COPY_MAX + 1)
+            is_copied = data is None or len(data) <= _COPY_MAX
         except OSError:
+            is_copied = False
+        if not is_copied:
             self._os.rename(self._path, self._path + ".bad")
-            return
-        if data is not None:
+        elif data is not None:
             self._put(self._path + ".bad", data)
 
-    def _read(self, path):
+    def _read(self, path, most):
         try:
             with self._open(path, "rb") as file:
-                return file.read()
+                return _whole(file, most)
         except OSError as error:
             if error.args[0] == _ENOENT:
                 return None
@@ -71,7 +75,7 @@ class FileStore:
 
     def _holds(self, path, data):
         try:
-            return self._read(path) == data
+            return self._read(path, len(data) + 1) == data
         except OSError:  # it cannot be read: certainly not
             return False
 
@@ -80,3 +84,15 @@ class FileStore:
             self._os.remove(path)
         except OSError:
             pass
+
+
+def _whole(file, most):
+    """What is in a file, `most` bytes of it unless that is below 0: in pieces, because a read
+    takes room for all that it may bring, in one piece, and a chip may not have that."""
+    data = b""
+    while len(data) != most:
+        piece = file.read(_PIECE if most < 0 else min(_PIECE, most - len(data)))
+        if not piece:
+            break
+        data += piece
+    return data

@@ -12,7 +12,7 @@
     supervision the telegram off time that is offered to a drive
     pages       one file for each page
     view        what is shown whatever the page is
-    announcer   which other drive has to be spoken of
+    announcer   what has to be said of drives besides what the page tells, one after the other
     screen      the picture of 2 x 16 characters
     texts       every word that can be seen
 

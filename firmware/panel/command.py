@@ -50,7 +50,7 @@ class Command:
 
     def is_overdue(self, now):
         """Whether the drive has had more time to tell all its settings than it may need."""
-        patience_us = 2 * len(profiles.SURVEY) * self._bus.patience_us
+        patience_us = 2 * len(profiles.ROWS) * self._bus.patience_us
         # A clock of a short period cannot tell more than half of it.
         return elapsed(now, self._since, self._mask) >= min(patience_us, self._mask >> 2)
 
@@ -65,6 +65,10 @@ class Command:
             return texts.ENGINE_FAILED
         return texts.STOPPED_ITSELF
 
+    def has_judged(self):
+        """Whether `why_in_vain` has judged all that is known of the drive."""
+        return self._survey.version == self._version
+
     def why_in_vain(self, jogs, now):
         """Why it has to be taken back, as a notice, or None. jogs: the setpoint does not matter.
 
@@ -74,8 +78,8 @@ class Command:
         survey = self._survey
         if survey.version != self._version:  # else there is nothing new to judge
             self._version = survey.version
-            self._is_local = permits.is_local(survey)
-            self._is_foreign = permits.is_foreign(survey, profiles.SETPOINT_SOURCE)
+            self._is_local = permits.is_local(survey) or permits.tells_no_status(survey)
+            self._is_foreign = permits.is_foreign(survey)
         if self._is_local or self._is_foreign and not jogs:
             return texts.TAKEN_AWAY
         if not self._ran:

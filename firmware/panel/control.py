@@ -15,16 +15,20 @@ The rules that keep a motor from starting by surprise and a STOP from getting lo
 
 from micropython import const
 
-from panel import permits, texts
+from panel import permits, risks, texts
 from panel.command import Command
 from panel.fault import Fault
 from panel.setpoint import Setpoint
 from panel.stop_watch import StopWatch
-from uss import pzd
+from uss import profiles, pzd
 from uss.survey import REREAD_US
+from uss.timing import elapsed
 
 _UNKNOWN = const(-1)  # no status word
 _SILENT_MAX = const(3)  # telegrams without an answer after which the speed is not known any more
+_RUNS_REREAD_US = const(200_000)  # a setting of one that runs is read again so often: while shown,
+_UNSEEN_REREAD_US = const(330_000)  # and while not
+_DOUBT_US = const(40_000_000)  # in which P2019[0] of each drive has been read again
 
 # settings.second_stop: what a held STOP sends.
 SECOND_STOPS = {"OFF3": pzd.OFF3, "OFF2": pzd.OFF2, "none": 0}
@@ -37,16 +41,21 @@ class Control:
 
     Fields for a page: `setpoint`; `reversed`, the direction START takes; `jogging`, 0 or the
     control word of the jog that is held; `checking`, START was obeyed and the drive is being
-    asked; `refusal`, why a key was not obeyed, to be shown once; `question`, START waits to be
-    told that the drive may run unsupervised; `notice`, why the drive is not on any more, or None;
-    `lost_running`, it was running when contact was lost and nobody has acknowledged that;
-    `stop_watch`, whether a STOP is obeyed; `fault`; `moving`, it is being given another address;
-    `moved`, it has been.
+    asked; `refusal`, why a key was not obeyed, to be shown once; `question`, the row of
+    risks.RISKS that START waits to be told to take, or None; `notice`, why the drive is not on any
+    more, or None; `remark`, what has become of its P2014 while it runs, or None;
+    `lost_running`, when contact was lost it was running, or not heard at rest since the last ON;
+    `absence_known`, STOP was pressed while it was shown and not heard;
+    `stop_watch`, whether a STOP is obeyed; `fault`; `moving`, it is being given another
+    address; `moved`, it has been.
     """
 
     def __init__(self, drive, survey, bus, mask, settings):
         self.drive = drive
         self.survey = survey
+        self.bus = bus
+        self.longest_off_time_ms = 0  # a longer P2014 is a risk: the panel sets it
+        self.accepted = [risks.NONE] * len(risks.RISKS)  # by row, its value
         self.setpoint = Setpoint(drive, survey, settings)
         self.stop_watch = StopWatch(drive, mask)
         self.fault = Fault(drive, mask)
@@ -56,15 +65,24 @@ class Control:
         self.jogging = 0
         self.checking = False
         self.refusal = None
-        self.question = False
+        self.question = None
         self.notice = None
+        self.remark = None
         self.lost_running = False
+        self.absence_known = False
         self._command = Command(drive, survey, bus, mask)
         self._settings = settings
+        self._mask = mask
         self._now = 0
         self._contact = False  # as last seen
         self._quiet_zsw = _UNKNOWN  # drive.zsw when there was nothing to watch
+        self._risk = 0  # the row of risks.RISKS that a START is to be asked about next
+        self._exposure_ms = 0  # how long the motor would run on too long, when it was started
+        self._version = -1  # of the survey, when that was looked at last
         self._jogged = False  # what turns, or ramps down, is a jog of this panel
+        self._judged = -1  # version of the survey when its status word was judged
+        self._stirred = False  # it ran, or may have: its rest is still to be known for sure,
+        self._stirred_at = 0  # and when it last did
 
     # --- what an operator does ------------------------------------------------------------------
 
@@ -76,13 +94,21 @@ class Control:
         self.refusal = permits.why_not_start(self)
         if self.refusal is None and not self.is_starting():
             self._obey()
+            self.notice = None
             self.checking = True
+            self._risk = 0
+            self.survey.count_anew()
             self.survey.recheck()
 
-    def accept_unsupervised(self):
-        """The operator takes the risk for this drive, once and for all, and starts it."""
-        self._settings.accept_unsupervised(self.drive.address)
+    def accept_risk(self, row, value):
+        """The operator takes the risk that `question` asked about, as it was then, and starts the
+        drive."""
+        risks.accept(self, row, value)
         self.start()
+
+    def accept_unsupervised(self):
+        """P2014 = 0 is accepted for this drive, once and for all."""
+        self._settings.accept_unsupervised(self.drive.address)
 
     def stop(self):
         """OFF, always; acknowledge what was announced about this drive and its fault, if shown."""
@@ -90,7 +116,7 @@ class Control:
             self.drive.acknowledge()
         self.stop_unseen()
         self.notice = None
-        self.lost_running = False
+        self.absence_known = not self.drive.contact
 
     def stop_unseen(self):
         """OFF for a drive that need not be the one shown, so nothing is acknowledged.
@@ -113,6 +139,8 @@ class Control:
             self.stop_watch.end()
             self.jogging = stw
             self._jogged = True
+            self.survey.count_anew()
+            self._exposure_ms = risks.exposure_ms(self)
             self.drive.start(self.drive.hsw, stw)
 
     def end_jog(self):
@@ -144,7 +172,7 @@ class Control:
     def keep_quiet(self):
         """Forget what would be said and asked: another drive is shown."""
         self.refusal = None
-        self.question = False
+        self.question = None
         if not self.checking:
             self.survey.drop_recheck()
 
@@ -157,9 +185,10 @@ class Control:
     def actual_centihertz(self):
         """The actual frequency with its sign, or None while it cannot be told."""
         drive = self.drive
-        if not drive.contact or drive.silent >= _SILENT_MAX or self.survey.scaling is None:
+        actual = self.survey.actual
+        if not drive.contact or drive.silent >= _SILENT_MAX or actual is None:
             return None
-        return self.survey.scaling.centihertz(drive.hiw)
+        return actual.centihertz(drive.hiw)
 
     def actual_is_beyond(self):
         """Whether the actual frequency is more than its word can say, and so unknown."""
@@ -167,17 +196,24 @@ class Control:
 
     def runs(self):
         """Whether its motor turns by the last status word. False without contact."""
-        return self.drive.contact and self.drive.state() == pzd.RUNNING
+        drive = self.drive
+        return drive.contact and drive.tells_status and drive.state() == pzd.RUNNING
+
+    def is_unheard(self):
+        """Whether it has not been heard since the panel started: it may be running."""
+        return not self.drive.contacts and self.drive.silent >= _SILENT_MAX
 
     def is_active(self):
-        """Whether it runs, is told to, or may run out of contact."""
-        return self.lost_running or self.drive.wanted != 0 or self.runs()
+        """Whether it runs, or is told to, or was and has not been heard at rest since. STOP ends
+        an alarm, but a motor that nobody hears may turn on: a restart of the panel forgets it.
+        """
+        return self.drive.wanted != 0 or self.runs() or self._may_run()
 
     def is_quiet(self):
         """Whether it stands, as when `watch` found nothing that would have to be watched."""
         drive = self.drive
         is_same = drive.zsw == self._quiet_zsw and drive.contact == self._contact
-        return is_same and not self.moved
+        return is_same and not self.moved and self.survey.version == self._judged
 
     def is_starting(self):
         """Whether START has been obeyed: the drive is being asked, or ON is sent."""
@@ -203,13 +239,23 @@ class Control:
     def ask(self, now, reread_us=REREAD_US):
         """Learn the settings of the drive, and keep the setpoint within them.
 
-        Answers whether there was news: then it took long, and the step is for nothing else.
+        Answers whether the setpoint had news to take: then it took long, and the step is for
+        nothing else.
         """
         survey = self.survey
-        survey.step(now, reread_us)
-        if reread_us == REREAD_US:  # it is shown, or waited for
+        is_shown = reread_us == REREAD_US
+        if self.drive.wanted:
+            survey.step(now, _RUNS_REREAD_US if is_shown else _UNSEEN_REREAD_US)
             survey.settle()
-        return self.setpoint.step()
+            if survey.restarted and survey.take_restart():
+                self._take_back(texts.DRIVE_RESET)
+            return self.setpoint.step()  # at once: a limit may have come down
+        if self.setpoint.step() and survey.complete:
+            return True
+        survey.step(now, reread_us)
+        if is_shown:
+            survey.settle()
+        return False  # what follows from that is for the next turn
 
     def ask_on(self, now):
         """In between, for somebody waits: what was just answered is not all."""
@@ -220,10 +266,13 @@ class Control:
         """Look what became of the commands, and whether the drive does as it is told."""
         self._now = now
         drive = self.drive
+        if self.survey.version != self._judged:
+            self._judge_status()
         self.fault.step(now)
         if drive.contact != self._contact:
             self._contact = drive.contact
             self.lost_running = drive.was_running and not drive.contact
+            self.absence_known = False
         if self.checking:
             self._finish_check(now)
             return  # that may have taken long
@@ -239,15 +288,16 @@ class Control:
             zsw & (pzd.ZSW_RUNNING | pzd.ZSW_FAULT)
             or drive.wanted
             or self.lost_running
-            or self.stop_watch.active
+            or self._stirred
             or drive.off != pzd.OFF1
+            or self._may_run()  # ON was sent, and its answer is still to come
         )
         self._quiet_zsw = _UNKNOWN if is_busy else zsw
 
     def _stop(self, off):
         self.drive.stop(off)
         self.jogging = 0
-        self.question = False
+        self.question = None
         self.checking = False
         self._quiet_zsw = _UNKNOWN
         self.survey.drop_recheck()
@@ -258,19 +308,29 @@ class Control:
         return pzd.ON_REVERSE if self.reversed else pzd.ON
 
     def _obey(self):
-        """A key was obeyed: what was said of the drive is over."""
-        self.notice = None
-        self.question = False
+        """A key was obeyed: what was said of the run before, and asked, is over."""
+        self.remark = None
+        self.question = None
         self._quiet_zsw = _UNKNOWN
         self._command.give(self._now)
 
     def _finish_check(self, now):
         """ON, if the drive has told its settings and there is nothing against it."""
+        if self.setpoint.has_news():
+            return  # HSW may be another once `ask` has taken them
         refusal = permits.why_not_start(self)
-        if refusal is None and self.survey.unchecked:
+        if refusal is None and (self.survey.unchecked or not self.survey.is_settled()):
             if not self._command.is_overdue(now):
                 return
             refusal = texts.REFUSED_CHECKING
+        if refusal is None and self._risk < len(risks.RISKS):  # one in a turn: each takes long
+            if risks.is_open(self, self._risk):
+                self.checking = False
+                self.survey.drop_recheck()
+                self.question = self._risk
+                self.notice = texts.DID_NOT_START
+            self._risk += 1
+            return
         self.checking = False
         self.survey.drop_recheck()
         if self._command.is_stale():
@@ -278,11 +338,9 @@ class Control:
         elif refusal is not None:
             self.refusal = refusal
             self.notice = texts.DID_NOT_START  # the operator may look at another drive by now
-        elif permits.is_unsupervised(self.survey) and not self.accepts_unsupervised():
-            self.question = True
-            self.notice = texts.DID_NOT_START
         else:
             self._command.send(now)
+            self._exposure_ms = risks.exposure_ms(self)
             self.stop_watch.end()
             self._jogged = False
             self.drive.start(self.drive.hsw, self._on())
@@ -291,10 +349,25 @@ class Control:
         """ON, or JOG, is taken back here when the engine did so or when it leads to nothing."""
         if self.drive.stopped_by_engine():
             self._take_back(self._command.why_stopped())
-        elif self.drive.is_on():
+        elif not self.drive.is_on():
+            return
+        elif self._command.has_judged() and self.survey.version != self._version:
+            self._version = self.survey.version  # in a turn of its own
+            self._look_at_supervision()
+        else:
             notice = self._command.why_in_vain(self.jogging, now)
             if notice is not None:
                 self._take_back(notice)
+
+    def _look_at_supervision(self):
+        """Whether it would run on longer without this panel than when it was started."""
+        self.remark = None
+        if risks.exposure_ms(self) > self._exposure_ms:
+            is_long = self.survey.values[profiles.SUPERVISION] > 0
+            if self.jogging:  # that is refused
+                self._take_back(texts.RUNS_LONG if is_long else texts.UNSUPERVISED)
+            else:
+                self.remark = texts.RUNS_LONG if is_long else texts.RUNS_FOR_EVER
 
     def _watch_stop(self, now):
         """Whether a drive that is to stand still comes to rest; a STOP is watched from the key on,
@@ -302,10 +375,29 @@ class Control:
         watch = self.stop_watch
         if watch.active:
             watch.step(now)
-        elif not self.drive.wanted and self._runs_against_off():
+        elif not self.drive.wanted and (self._runs_against_off() or self._is_in_doubt()):
             watch.begin()
+        if watch.active or self.drive.wanted:
+            self._stirred = True
+            self._stirred_at = now
+        elif self._stirred and elapsed(now, self._stirred_at, self._mask) >= _DOUBT_US:
+            self._stirred = False
         if self._jogged and not (self.jogging or watch.active):
             self._jogged = False
+
+    def _judge_status(self):
+        """Whether ZSW is its status word. What was known stays true until that is read again."""
+        self._judged = self.survey.version
+        if self.survey.values[profiles.STATUS_SENT] >= 0:
+            self.drive.tells_status = not permits.tells_no_status(self.survey)
+
+    def _may_run(self):
+        """Whether the motor may turn. Of one that never tells only what has stirred it counts."""
+        return self.drive.may_run() if self.drive.tells_status else self._is_in_doubt()
+
+    def _is_in_doubt(self):
+        """Whether it came to rest by words that may have been none: the STOP is to be watched."""
+        return self._stirred and not self.drive.tells_status
 
     def _take_back(self, notice):
         self.drive.stop(self.drive.off)
@@ -318,7 +410,7 @@ class Control:
         if drive.answered_stw & ~pzd.STW_ACKNOWLEDGE != drive.off:
             return
         local = permits.is_local(self.survey)
-        if drive.state() != pzd.RUNNING or local:
+        if drive.tells_status and drive.state() != pzd.RUNNING or local:
             drive.stop(pzd.OFF1)
 
     def _runs_against_off(self):

@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: MIT
-"""The fault of one drive: its number, and whether it has been seen long enough to acknowledge it.
+"""What a status bit reports and a parameter numbers: the fault of a drive, its warning.
 
-    fault = Fault(drive, mask)
-    fault.step(now)                     # again and again
-    fault.number                        # 1 for F0001; 0 while it is not known
-    fault.seen = True                   # it is on the display
+    warning = Report(drive, mask, pzd.ZSW_WARNING, profiles.WARNING_NUMBER)
+    warning.step(now)                   # again and again
+    warning.number                      # 501 for A0501; 0 while it is not known
+    warning.turn_to(other)              # another drive is shown
+
+    fault = Fault(drive, mask)          # has to be seen before it may be acknowledged
+    fault.show(passed_ms)               # it was on the display for so long
     if fault.was_shown: drive.acknowledge()
 """
 
@@ -13,57 +16,62 @@ from micropython import const
 from uss import pkw, profiles, pzd
 from uss.timing import elapsed
 
-_SHOWN_US = const(1_000_000)  # a STOP in the moment of the trip must not wipe its number away
+_SHOWN_MS = const(1_000)  # a STOP in the moment of the trip must not wipe its number away
 _AGAIN_US = const(500_000)  # between two questions
+_REFUSED_US = const(10_000_000)  # and after one that the drive does not answer
 
 
-class Fault:
-    """drive: a `Drive`. mask: the clock's period - 1.
+class Report:
+    """drive: a `Drive`. mask: the clock's period - 1. bit: of ZSW. parameter: its index 0 has the
+    number.
 
-    active: the drive has tripped. seen: whoever shows it says so here. was_shown: for a second.
+    active: the drive reports it now.
     """
 
-    def __init__(self, drive, mask):
+    def __init__(self, drive, mask, bit, parameter):
         self.active = False
         self.number = 0
-        self.seen = False
-        self.was_shown = False
         self._drive = drive
         self._mask = mask
-        self._job = None  # made with the first trip: most drives never have one
+        self._bit = bit
+        self._parameter = parameter
+        self._job = None  # made with the first report: most drives never have one
         self._asked = False
         self._asked_at = 0
         self._wait_us = 0  # between the last question and the next
-        self._stale = False  # what was asked belongs to an earlier trip
-        self._since = 0  # when it was seen first
+        self._stale = False  # what was asked belongs to an earlier report
 
     def step(self, now):
         drive = self._drive
-        if not (self.active or self._asked or drive.zsw & pzd.ZSW_FAULT):
+        if not (self.active or self._asked or drive.zsw & self._bit):
             return  # as it mostly is
-        active = drive.contact and drive.state() == pzd.FAULT
+        active = drive.contact and drive.tells_status and drive.zsw & self._bit != 0
         if active != self.active:
-            self.active = active
-            self.number = 0
-            self.seen = False
-            self.was_shown = False
-            self._wait_us = 0
-            self._stale = self._asked
-        if not self.seen:
-            self._since = now
-        elif active and elapsed(now, self._since, self._mask) >= _SHOWN_US:
-            self.was_shown = True  # for good: the clock forgets how long ago that was
+            self._turn(active)
         if self._asked:
             self._take()
         elif active:
             self._ask(now)  # again and again: there may be another one by now
+
+    def turn_to(self, drive):
+        """It is about another drive from now on."""
+        if self.active:
+            self._turn(False)
+        self._drive = drive
+
+    def _turn(self, active):
+        """It comes or goes."""
+        self.active = active
+        self.number = 0
+        self._wait_us = 0
+        self._stale = self._asked
 
     def _ask(self, now):
         waited_us = elapsed(now, self._asked_at, self._mask)
         if waited_us < self._wait_us or self._drive.channel.is_full():
             return
         if self._job is None:
-            self._job = pkw.read(profiles.FAULT_NUMBER)
+            self._job = pkw.read(self._parameter)
         self._drive.ask(self._job)
         self._asked = True
         self._asked_at = now
@@ -73,6 +81,38 @@ class Fault:
         if self._job.state == pkw.PENDING:
             return
         self._asked = False
-        if self._job.state == pkw.DONE and not self._stale:
+        stale, self._stale = self._stale, False
+        if stale:
+            return
+        if self._job.state in (pkw.REFUSED, pkw.UNANSWERED):
+            self._wait_us = _REFUSED_US
+        elif self._job.state == pkw.DONE:
             self.number = self._job.low
-        self._stale = False
+
+
+class Fault(Report):
+    """was_shown: it has been on the display for a second since the drive tripped."""
+
+    def __init__(self, drive, mask):
+        Report.__init__(self, drive, mask, pzd.ZSW_FAULT, profiles.FAULT_NUMBER)
+        self.was_shown = False
+        self._shown_ms = 0
+
+    def show(self, passed_ms):
+        """It was on the display for so long."""
+        if self.active and not self.was_shown:
+            self._shown_ms += passed_ms
+            if self._shown_ms >= _SHOWN_MS:
+                self.was_shown = True  # until the next one
+
+    def _turn(self, active):
+        Report._turn(self, active)
+        self.was_shown = False
+        self._shown_ms = 0
+
+
+def draw_number(screen, row, column, letter, report):
+    """A letter and the number of a fault or a warning, once that is known."""
+    if report.number:
+        screen.put(row, column, 1, letter)
+        screen.digits(row, column + 1, 4, report.number)

@@ -11,7 +11,9 @@ on every page that shows the drive they act on; PARAM changes between home and p
 
 from micropython import const
 
-from panel import texts
+from panel import risks, texts
+from panel.announcer import Announcer
+from panel.fault import Report
 from panel.jog_keys import JogKeys
 from panel.keys import Acts, Keys
 from panel.pages.home import Home
@@ -20,10 +22,10 @@ from panel.pages.question import Question
 from panel.pages.splash import Splash
 from panel.screen import Screen
 from panel.stop_key import StopKey
-from panel.supervision import off_time_ms
+from panel.supervision import longest_off_time_ms, off_time_ms
 from panel.view import View
 from panel.writer import Writer
-from uss import profiles
+from uss import profiles, pzd
 from uss.timing import elapsed
 
 _SPLASH_MS = const(800)
@@ -31,7 +33,7 @@ _DRAW_MS = const(50)
 _MESSAGE_MS = const(3_000)
 _READING_MS = const(1_000)  # so long a START does not answer a question: it may be a double tap
 _LAST_TURN = const(7)
-_UNSEEN_US = const(5_000_000)  # of a drive that is not shown, a setting is read again so often
+_UNSEEN_US = const(2_000_000)  # of a drive that is not shown, a setting is read again so often
 
 # They act on every page that shows the drive they act on. STOP acts on every page.
 COMMAND_KEYS = (
@@ -46,16 +48,20 @@ class Panel:
     """controls: a `Control` for each drive, at least one. key_names: as the keypad has its bits.
 
     settings: a `Settings`. mask: the clock's period - 1. notice: a row that is said after the
-    splash, or None.
+    splash, or None; what is wrong with the settings goes before it.
 
-    For pages and view: `selected`, the control that is shown; `message`, a row that is shown for a
-    while, or None; `stop_key`; `setpoint_step` in centihertz. `turn`: of what takes turns; the odd
-    ones take longer.
+    For pages and view: `selected`, the control that is shown; `warning`, its `Report`; `message`,
+    a row that is shown for a while, or None; `stop_key`; `announcer`; `setpoint_step` in
+    centihertz.
     """
 
     def __init__(self, controls, bus, key_names, settings, mask, notice=None):
         self.controls = controls
         self.selected = controls[0]
+        self.announcer = Announcer(controls, mask)
+        self.warning = Report(
+            self.selected.drive, mask, pzd.ZSW_WARNING, profiles.WARNING_NUMBER
+        )
         self.screen = screen = Screen()
         self.message = None
         self.setpoint_step = settings.setpoint_step_centihertz
@@ -68,30 +74,36 @@ class Panel:
         )
         self._jog_keys = JogKeys(keys.bit("JOG_RIGHT"), keys.bit("JOG_LEFT"))
         self._writer = Writer(bus, settings, mask)
-        self._off_time_ms = off_time_ms(bus.longest_cycle_us())
+        cycle_us = bus.longest_cycle_us()
+        self._off_time_ms = off_time_ms(cycle_us)
+        for control in controls:
+            control.longest_off_time_ms = longest_off_time_ms(cycle_us)
         self._home = Home(self, keys)
         self._parameters = Parameters(self, keys, self._writer, mask)
         self._page = self._home
         self._splash = Splash()
+        self._risk = None  # that is asked about,
+        self._risk_value = None  # and as it was then
         self._over = self._splash  # what hides the page: the splash, a question, or None
         self._began_at = None
-        self._notice = texts.SETTINGS_DAMAGED if settings.complaint else notice
+        self._notices = _about(settings) or ([notice] if notice else [])
         self._message_at = 0
         self._view = View(self, screen)
         self._view.begin(self._splash)
         self._drawn_at = None  # when the picture was begun; None: a new one at once
         self._name_keys(keys)
+        self._position = 0  # of the selected one in the controls
         self._around = 0  # of the controls: the one besides the selected that was looked at last
         self._neighbour = None  # it was asked, and is still to be watched
-        self._put_off = 0  # looking at it
+        self._put_off = 0  # what can wait, in the turn before
         self._at_rest = 0  # so many of them in a row were found at rest
         # What is not done at once takes turns, so that each step of the loop stays short.
         around = self._look_around if len(controls) > 1 else self._ask
         self._turns = (
-            self._draw, self._ask, self._let_show, self._watch,
-            self._draw, self._follow, self._let_show, around,
+            self._draw, self._ask, self._leave, self._watch,
+            self._draw, self._follow, self._leave, around,
         )  # fmt: skip
-        self.turn = 0
+        self._turn = 0
 
     def _name_keys(self, keys):
         """The bits of keys, because names take long to look up."""
@@ -113,9 +125,11 @@ class Panel:
 
         Both times are readings of the clock. STOP and the jog keys act in this very step, the
         others in the next one; what comes of it is taken up in those that follow, each of which
-        does one thing of several in turn. Answers whether the rest of the step is for the display.
+        does one thing of several in turn. Answers whether the rest of the step is for others: the
+        display, and drives that are silent or wait too long.
         """
         keys = self._keys
+        self._turn = turn = self._turn + 1 & _LAST_TURN
         if raw_keys or unclear_keys or not keys.at_rest:
             if keys.update(raw_keys, now_ms, unclear_keys) and self._take_keys(keys, now_ms):
                 return False  # that was enough for a step
@@ -125,8 +139,7 @@ class Panel:
         if self.stop_key.left:
             self.stop_key.stop_next()
             return False
-        self.turn = self.turn + 1 & _LAST_TURN
-        return self._turns[self.turn - 1](now_ms, now_us)
+        return self._turns[turn](now_ms, now_us)
 
     # --- for the pages --------------------------------------------------------------------------
 
@@ -141,7 +154,7 @@ class Panel:
 
     def close_question(self):
         self._over = None
-        self.selected.question = False
+        self.selected.question = None
 
     def is_taken(self, address):
         """Whether another drive of this panel than the selected one has this address."""
@@ -159,7 +172,7 @@ class Panel:
         """Whether another master was heard before the first telegram, so that none is sent."""
         return self._bus.is_line_in_use()
 
-    # --- what takes turns: each answers whether the step has time left for the display ----------
+    # --- what takes turns: each answers whether it leaves the rest of the step to others -------
 
     def _ask(self, _now_ms, now_us):
         if self.selected.ask(now_us):
@@ -175,7 +188,7 @@ class Panel:
     def _watch(self, _now_ms, now_us):
         selected = self.selected
         if not selected.checking:
-            self._view.look(selected)
+            self.announcer.look(self._position)
         selected.watch(now_us)
         return False
 
@@ -189,25 +202,38 @@ class Panel:
             self._parameters.step(self._keys, now_ms)
         return False
 
-    def _draw(self, now_ms, _now_us):
+    def _draw(self, now_ms, now_us):
         # In a slow loop a picture takes longer than _DRAW_MS: it is drawn to its end all the same.
         view, drawn_at = self._view, self._drawn_at
         if drawn_at is None or (
             view.is_done() and elapsed(now_ms, drawn_at, self._mask) >= _DRAW_MS
         ):
             self._drawn_at = now_ms
-            view.begin(self._over or self._page)
-        view.step(now_ms)
+            self._begin_picture(now_ms)
+            self.warning.step(now_us)
+        else:
+            view.step(now_ms)
         return False
 
-    def _let_show(self, _now_ms, _now_us):
-        return True
+    def _begin_picture(self, now_ms):
+        """What it tells is settled here: drawing changes nothing but the picture."""
+        page, view = self._over or self._page, self._view
+        if page is not self._splash:
+            self.announcer.begin(self._position, page, view.tells_state(page), now_ms)
+        view.begin(page)
+
+    def _leave(self, _now_ms, _now_us):
+        return not self._puts_off()
+
+    def _puts_off(self):
+        """Keys that are unsettled take long already: what can wait does, once."""
+        self._put_off = self._keys.unsettled and not self._put_off
+        return self._put_off
 
     def _look_around(self, _now_ms, now_us):
         """The next of the drives that are not shown. It has nothing to say and nothing to ask:
         START has to be pressed anew, with that drive in sight."""
-        self._put_off = self._keys.unsettled and not self._put_off
-        if self._put_off:  # once, for the keys take long already
+        if self._puts_off():
             return False
         control = self._neighbour
         if control is None:
@@ -216,6 +242,8 @@ class Panel:
                 self._heed(control)
                 self._around -= 1  # it has told something: in its next turn it is asked for more
             elif control.is_quiet():
+                if not control.drive.contact:  # of the others nothing new can be said
+                    self.announcer.look(self._around)
                 self._at_rest += 1
             else:
                 self._neighbour = control  # that was enough for a step
@@ -223,7 +251,7 @@ class Panel:
         self._neighbour = None
         control.watch(now_us)
         control.keep_quiet()
-        self._view.look(control)
+        self.announcer.look(self._around)
         self._at_rest = 0 if control.is_active() else self._at_rest + 1
         return False
 
@@ -297,9 +325,11 @@ class Panel:
         What is known of it may be old: all of that is asked for at once.
         """
         self.selected.keep_quiet()
-        position = self.controls.index(self.selected)
-        self.selected = self.controls[(position + direction) % len(self.controls)]
+        position = self._position
+        self._position = (position + direction) % len(self.controls)
+        self.selected = self.controls[self._position]
         self.selected.learn_anew()
+        self.warning.turn_to(self.selected.drive)
         # The one that is shown no longer is looked at next, and all are counted anew.
         self._around = position - 1
         self._neighbour = None
@@ -316,17 +346,32 @@ class Panel:
         result = self._writer.take_result(selected)
         if result:
             self.say(result, now_ms)
-        if selected.question and self._over is None:
-            self._ask_unsupervised()
+        if selected.question is not None and self._over is None:
+            self._ask_risk(selected.question)
         if self._over is not None and self._over is not self._splash:
-            if selected.needs_attention() or self._over.is_stale(now_ms):
+            if selected.question is not None and self._asks_what_was():
+                self._ask_risk(self._risk)
+            elif self._over.step(now_ms) or selected.needs_attention():
                 self.close_question()  # an alarm is not to be hidden
         if self.message and elapsed(now_ms, self._message_at, self._mask) >= _MESSAGE_MS:
             self.message = None
+            if self._notices:
+                self.say(self._notices.pop(0), now_ms)
 
-    def _ask_unsupervised(self):
-        answers = {"SET": self._supervise, "START": self._accept_unsupervised}
-        self.ask(Question(self, texts.ASK_UNSUPERVISED, answers, self._mask, _READING_MS))
+    def _ask_risk(self, row):
+        if not risks.is_open(self.selected, row):  # not any more
+            self.close_question()
+            return
+        self._risk = row
+        text, can_fix, self._risk_value = risks.ask(self.selected, row)
+        answers = {"START": self._accept_risk}
+        if can_fix:
+            answers["SET"] = self._supervise
+        self.ask(Question(self, text, answers, self._mask, _READING_MS))
+
+    def _asks_what_was(self):
+        """Whether the risk that is asked about is another one by now."""
+        return risks.measure(self.selected, self._risk) != self._risk_value
 
     def _supervise(self, now_ms):
         """Have the drive stop by itself when this panel falls silent."""
@@ -335,11 +380,11 @@ class Panel:
         if reason is not None:
             self.say(reason, now_ms)
 
-    def _accept_unsupervised(self, now_ms):
+    def _accept_risk(self, now_ms):
         if self.stop_key.is_down:
             self.say(texts.REFUSED_STOP, now_ms)
         else:
-            self.selected.accept_unsupervised()
+            self.selected.accept_risk(self._risk, self._risk_value)
 
     def _wait_for_splash(self, now_ms):
         """It ends by itself."""
@@ -350,7 +395,16 @@ class Panel:
 
     def _end_splash(self, now_ms):
         self._over = None
-        if self._notice:
-            self.say(self._notice, now_ms)
+        if self._notices:
+            self.say(self._notices.pop(0), now_ms)
         elif self._acts.pressed & self._start_key:
             self.say(texts.REFUSED_EARLY, now_ms)
+
+
+def _about(settings):
+    """What is wrong with the settings file: rows that are said one after the other."""
+    if settings.complaint is None:
+        return []
+    suspect = settings.suspect
+    name = suspect[: texts.ROW_WIDTH].encode()
+    return [texts.SETTINGS_DAMAGED, texts.SETTINGS_SUSPECTS.get(suspect, name)]

@@ -5,24 +5,36 @@
     why_not_jog(control)
 """
 
-from panel import texts
+from panel import risks, texts
 from uss import profiles, pzd
+from uss.survey import RIGHT
 
-
-def is_foreign(survey, source):
-    """Whether a source is known and is not this bus. source: row of profiles.SURVEY."""
-    value = survey.values[source]
-    return value >= 0 and value != profiles.USS_ON_COM_LINK
+# Why START is refused where this row of profiles.ROWS says that somebody else commands the drive,
+# tells it its speed, or that its status word is none.
+REFUSED_SOURCES = {
+    profiles.COMMAND_SOURCE: texts.REFUSED_COMMAND,
+    profiles.SETPOINT_SOURCE: texts.REFUSED_SETPOINT,
+    profiles.SELECTION: texts.REFUSED_SELECTION,
+    profiles.ON_SOURCE: texts.REFUSED_ON_SOURCE,
+    profiles.MAIN_SOURCE: texts.REFUSED_MAIN_SOURCE,
+    profiles.PID: texts.REFUSED_PID,
+    profiles.STATUS_SENT: texts.REFUSED_STATUS,
+}
 
 
 def is_local(survey):
-    """Whether the drive takes its commands from elsewhere, P0700."""
-    return is_foreign(survey, profiles.COMMAND_SOURCE)
+    """Whether the drive takes its commands from elsewhere: P0700, P0719, P0840."""
+    return survey.wrong[profiles.COMMAND] != RIGHT
 
 
-def is_unsupervised(survey):
-    """Whether the drive runs on for ever when telegrams stay away, P2014 = 0."""
-    return survey.values[profiles.SUPERVISION] == 0
+def is_foreign(survey):
+    """Whether its setpoint comes from elsewhere, or from here and elsewhere: P1000 and others."""
+    return survey.wrong[profiles.SETPOINT] != RIGHT
+
+
+def tells_no_status(survey):
+    """Whether what it sends as ZSW is known to be something else, P2019[0]."""
+    return survey.wrong[profiles.STATUS] != RIGHT
 
 
 def why_not_start(control):
@@ -35,8 +47,8 @@ def why_not_start(control):
     reason = _why_no_command(control, state)
     if reason is not None:
         return reason
-    if is_foreign(survey, profiles.SETPOINT_SOURCE):
-        return texts.REFUSED_SETPOINT
+    if is_foreign(survey):
+        return REFUSED_SOURCES[survey.wrong[profiles.SETPOINT]]
     if min(survey.lowest(), survey.values[profiles.HIGHEST]) > survey.scaling.limit_centihertz():
         return texts.REFUSED_MINIMUM
     return _why_not_now(state)
@@ -53,8 +65,11 @@ def why_not_jog(control):
         return reason
     if control.is_starting() or state == pzd.RUNNING and not control.own_jog_ends():
         return texts.REFUSED_RUNS
-    if is_unsupervised(survey) and not control.accepts_unsupervised():
-        return texts.REFUSED_UNSUPERVISED
+    if risks.is_open(control, risks.SUPERVISION):
+        is_long = survey.values[profiles.SUPERVISION] > 0
+        return texts.REFUSED_LONG if is_long else texts.REFUSED_UNSUPERVISED
+    if survey.unchecked:
+        return texts.REFUSED_CHECKING  # P2014 may be another by now
     return _why_not_now(state)
 
 
@@ -70,8 +85,10 @@ def _why_no_command(control, state):
         return texts.REFUSED_FAULT
     if not survey.complete:
         return texts.REFUSED_SCALING if survey.unreadable else texts.REFUSED_CHECKING
-    if is_foreign(survey, profiles.COMMAND_SOURCE):
-        return texts.REFUSED_COMMAND
+    if tells_no_status(survey):
+        return texts.REFUSED_STATUS
+    if is_local(survey):
+        return REFUSED_SOURCES[survey.wrong[profiles.COMMAND]]
     return None
 
 

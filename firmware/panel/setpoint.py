@@ -5,6 +5,9 @@
     setpoint.step()                     # again and again: limits may have been read
     setpoint.change(10)                 # 0.1 Hz up
     setpoint.centihertz                 # what is shown and sent, without its sign
+
+While the drive is wanted to run nothing but a key raises it, in hertz: no limit that goes away, no
+minimum frequency that comes, no other scaling. What lowered it then has done so for good.
 """
 
 
@@ -24,12 +27,29 @@ class Setpoint:
         self._drive = drive
         self._survey = survey
         self._version = 0  # of the survey, as last seen
+        self._scaling = None  # by which drive.hsw was made
+        self._wanted = False  # the drive was to run, as last seen
 
     def change(self, centihertz):
-        """Move it by so much, within the limits of the drive and of the settings."""
+        """A key moves it by so much, within the limits of the drive and of the settings."""
         self.step()
-        self._apply(self.centihertz + centihertz)
+        wish = self.centihertz + centihertz
+        if centihertz > 0:
+            wish = max(wish, self._lowest)
+        elif self._drive.wanted:
+            wish = max(wish, min(self._lowest, self.centihertz))  # down is not up to the lowest
+        else:
+            wish = max(wish, self._lowest)
+        self._send(max(min(wish, self._highest), 0))
         self._asked_centihertz = self.centihertz
+
+    def is_below(self):
+        """Whether it is below the lowest frequency of the drive, at which that runs instead."""
+        return self.centihertz < self._lowest
+
+    def has_news(self):
+        """Whether the survey knows what `step` has not taken yet."""
+        return self._survey.version != self._version
 
     def step(self):
         """A limit that comes or goes moves it at once; what the operator set is remembered.
@@ -37,12 +57,18 @@ class Setpoint:
         While a drive runs and does not tell its limits, what is shown stays what is sent. Answers
         whether the survey has news.
         """
-        if self._survey.version == self._version:
+        survey = self._survey
+        wanted = self._drive.wanted != 0
+        ended = self._wanted and not wanted
+        self._wanted = wanted
+        if survey.version == self._version and not ended:
             return False
-        self._version = self._survey.version
+        self._version = survey.version
         self._find_limits()
-        if self._survey.complete or not self._drive.wanted:
-            self._apply(self._asked_centihertz)
+        if not wanted:
+            self._send(max(min(self._asked_centihertz, self._highest), self._lowest))
+        elif survey.complete:
+            self._lower()
         return True
 
     def _find_limits(self):
@@ -54,7 +80,19 @@ class Setpoint:
         self._highest = highest
         self._lowest = min(lowest, highest)
 
-    def _apply(self, centihertz):
-        self.centihertz = centihertz = max(min(centihertz, self._highest), self._lowest)
+    def _lower(self):
+        """No more than what is in force, which another scaling has changed, and the limits."""
+        drive, scaling = self._drive, self._survey.scaling
+        centihertz = min(self.centihertz, self._highest)
+        in_force = drive.hsw
+        if scaling is not self._scaling:
+            centihertz = min(centihertz, scaling.centihertz(in_force))
+        self._send(centihertz)
+        drive.hsw = min(drive.hsw, in_force)  # nor by rounding
+        self._asked_centihertz = min(self._asked_centihertz, centihertz)
+
+    def _send(self, centihertz):
+        self.centihertz = centihertz
         if self._survey.complete:
-            self._drive.hsw = self._survey.scaling.hsw(centihertz)
+            self._scaling = self._survey.scaling
+            self._drive.hsw = self._scaling.hsw(centihertz)

@@ -5,15 +5,22 @@
 """
 
 from panel import texts
-from panel.permits import is_local
+from panel.permits import is_local, tells_no_status
 from uss import pzd
+
+# Without contact, by `Drive.trouble`.
+_TROUBLES = (
+    texts.NO_CONTACT, texts.LINE_NOISE, texts.OTHER_LENGTH, texts.WRONG_DRIVE, texts.WRONG_CHECK,
+)  # fmt: skip
 
 
 def text(control):
     """The state in words, at most texts.STATE_WIDTH. A motor that turns outranks a notice."""
     drive, survey = control.drive, control.survey
     if not drive.contact:
-        return texts.NO_CONTACT
+        return _TROUBLES[drive.trouble]
+    if tells_no_status(survey):
+        return texts.STATUS_UNKNOWN
     state = drive.state()
     if state == pzd.FAULT:
         return texts.FAULT
@@ -40,4 +47,13 @@ def _running(control):
         return texts.STOPPING
     if control.jogging:
         return texts.JOGS_RIGHT if control.jogging == pzd.JOG_RIGHT else texts.JOGS_LEFT
-    return texts.RUNNING_WARNING if drive.zsw & pzd.ZSW_WARNING else texts.RUNNING
+    return remark(control) or texts.RUNNING
+
+
+def remark(control):
+    """What somebody has changed at a drive that is on, since it was started; None: nothing."""
+    if control.remark is not None:
+        return control.remark
+    if not control.jogging and control.setpoint.is_below():
+        return texts.RUNS_FASTER
+    return None

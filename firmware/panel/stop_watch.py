@@ -2,7 +2,9 @@
 """Whether a STOP is obeyed: the drive has answered OFF1, slows down, and comes to rest.
 
 An answer alone says that OFF1 was heard, not that it is obeyed: a drive that takes its commands
-from elsewhere answers as well. So its speed is watched until the motor stands still.
+from elsewhere answers as well. So its speed is watched until the motor stands still. A drive that
+falls silent need not answer where it was heard at rest after the last ON it was sent. Words of one
+that does not send its status are no evidence: its STOP is never confirmed.
 
     watch = StopWatch(drive, mask)
     watch.begin()                   # OFF1 is being sent; the time counts from the next step on
@@ -64,7 +66,7 @@ class StopWatch:
         drive = self._drive
         if drive.contact:
             answers = (drive.off_answers - self._off_answers) & 0xFFFF
-            if answers:
+            if answers and drive.tells_status:
                 if drive.state() != pzd.RUNNING:
                     self.end()
                     return
@@ -73,7 +75,11 @@ class StopWatch:
             if waits and answers < _ANSWERS_MIN and drive.silent < _SILENT_MAX:
                 return
         patience_us = _SLOWING_US if self._slowed or self._seems_slower else _CONFIRM_US
-        if elapsed(now, self._slowed_at, self._mask) >= patience_us:
+        if elapsed(now, self._slowed_at, self._mask) < patience_us:
+            return
+        if drive.contacts and not drive.may_run():
+            self.end()
+        else:
             self.unconfirmed = True
 
     def _look_at(self, speed, now):

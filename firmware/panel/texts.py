@@ -4,25 +4,36 @@
 Bytes, because a display takes character codes and indexing bytes allocates nothing.
 """
 
+from version import VERSION
+
 STATE_WIDTH = 12  # row 2, in front of the address
 ROW_WIDTH = 16
 
 # State of the drive that is shown: at most STATE_WIDTH.
-NO_CONTACT = b"NO CONTACT"
+NO_CONTACT = b"NO CONTACT"  # silence, and what comes instead of a valid reply:
+LINE_NOISE = b"LINE NOISE"
+OTHER_LENGTH = b"OTHER LENGTH"  # its telegrams are longer or shorter: P2013, P2012
+WRONG_DRIVE = b"WRONG DRIVE"  # another address answers
+WRONG_CHECK = b"WRONG CHECK"  # the BCC
 CHECKING = b"CHECKING"  # its settings are being read
 NOT_READY = b"NOT READY"
 READY = b"READY"
 STARTING = b"STARTING"
 RUNNING = b"RUNNING"
-RUNNING_WARNING = b"RUNNING WARN"
+RUNS_FOR_EVER = b"RUN, P2014=0"  # since it was started somebody has set it so
+RUNS_LONG = b"P2014 LONG"  # likewise
+RUNS_FASTER = b"BELOW P1080"  # the setpoint is: the drive turns at P1080
 STOPPING = b"STOPPING"
 JOGS_RIGHT = b"JOG RIGHT"
 JOGS_LEFT = b"JOG LEFT"
 FAULT = b"FAULT"  # with FAULT_LETTER and four digits behind it, once they are known
 FAULT_LETTER = b"F"
+WARNING = b"WARN"  # in turn with the state; with WARNING_LETTER and four digits behind it
+WARNING_LETTER = b"A"
 INHIBITED = b"INHIBITED"
 LOCAL = b"LOCAL"  # commands do not come from this bus
 RUNS_LOCALLY = b"RUNS LOCALLY"
+STATUS_UNKNOWN = b"P2019[0] ???"  # what the drive sends as its status word is none
 
 # Why a drive is not on any more; stays until START or STOP of that drive. At most STATE_WIDTH.
 LINE_FAILED = b"LINE FAILED"
@@ -30,7 +41,9 @@ PANEL_HUNG = b"PANEL HUNG"
 ENGINE_FAILED = b"BUS ERROR"
 STOPPED_ITSELF = b"STOPPED SELF"
 DID_NOT_START = b"NOT STARTED"
-TAKEN_AWAY = b"TAKEN AWAY"  # P0700 or P1000 hands it to somebody else
+TAKEN_AWAY = b"TAKEN AWAY"  # P0700, P1000 or the like hands it to somebody else
+DRIVE_RESET = b"DRIVE RESET"  # its mains were away for a moment, r2024
+UNSUPERVISED = b"P2014=0"  # somebody has set it so while it was jogged; RUNS_LONG likewise
 
 # In place of the actual frequency: 6 wide.
 UNKNOWN_VALUE = b" -----"
@@ -43,6 +56,12 @@ STOP_UNCONFIRMED = b"STOP UNCONFIRMED"
 ALL_STOPPED = b"ALL DRIVES: STOP"
 LINE_IN_USE = b"LINE IN USE"  # another master talks; nothing is sent
 SETTINGS_DAMAGED = b"SETTINGS DAMAGED"  # defaults are used for what is wrong
+# What is wrong, said after it: the name of a setting, as far as it fits, or this of the file.
+SETTINGS_SUSPECTS = {
+    "unreadable": b"FILE UNREADABLE",
+    "too big": b"FILE TOO BIG",
+    "no JSON": b"FILE IS NO JSON",
+}
 NOT_SAVED = b"SETTINGS UNSAVED"  # the flash is full or broken
 WATCHDOG_RESTART = b"WATCHDOG RESTART"  # after the splash: the panel hung, and was restarted
 FAREWELL = (b"PANEL STOPPED", b"NO CONTROL")  # left behind by a panel that was ended
@@ -63,6 +82,11 @@ REFUSED_INHIBITED = b"NO: INHIBITED"
 REFUSED_NOT_READY = b"NO: NOT READY"
 REFUSED_COMMAND = b"NO:P0700 NOT USS"
 REFUSED_SETPOINT = b"NO:P1000 NOT USS"
+REFUSED_SELECTION = b"NO:P0719 NOT USS"
+REFUSED_ON_SOURCE = b"NO:P0840 NOT USS"
+REFUSED_MAIN_SOURCE = b"NO:P1070 NOT USS"
+REFUSED_PID = b"NO: P2200, PID"  # the setpoint is none of the frequency
+REFUSED_STATUS = b"NO: P2019[0] ???"
 REFUSED_SCALING = b"NO: SCALING ???"
 REFUSED_MINIMUM = b"NO: P1080 > 200%"  # the drive would run faster than a telegram can say
 REFUSED_STOP = b"NO: STOP IS DOWN"
@@ -72,6 +96,7 @@ REFUSED_JOG = b"NO: JOG IS DOWN"
 REFUSED_RUNS = b"NO JOG: IT RUNS"
 REFUSED_UNSAVED = b"NO: UNSAVED"  # its new address is not in the settings yet
 REFUSED_UNSUPERVISED = b"NO JOG: P2014=0"
+REFUSED_LONG = b"NO: P2014 LONG"
 
 # --- parameter mode ------------------------------------------------------------------------------
 
@@ -90,6 +115,7 @@ WRITER_BUSY = b"STILL WRITING"
 WRITTEN = b"WRITTEN (RAM)"
 WRITTEN_EEPROM = b"WRITTEN (EEPROM)"
 NO_ANSWER = b"NO ANSWER"
+NO_REPLY_TO_THIS = b"NO REPLY TO THIS"  # the drive answers, but falls silent on this task
 NOT_WRITTEN = b"NOT WRITTEN"
 
 # What became of a write to a drive that is not shown any more; follows "A" and its address.
@@ -134,12 +160,31 @@ ASK_CUTS_OFF = ((b"PANEL MAY LOSE", b"THE DRIVE BY IT"), b"SET=DO  PARAM=NO")
 ASK_RESCALES = ((b"SETPOINTS MAY", b"CHANGE THEIR HZ"), b"SET=DO  PARAM=NO")
 # SET writes P2014, START takes the risk.
 ASK_UNSUPERVISED = ((b"P2014=0: IT RUNS", b"ON IF PANEL DIES"), b"SET=FIX START=GO")
+ASK_LONG = (b"P2014=%d: IT", b"RUNS ON %d.%d s", b"IF PANEL DIES")  # ms, s; the same choice
+ASK_LATE = ((b"A%d: P2014 SHORT", b"FOR THIS BUS", b"IT MAY TRIP"), b"START=GO STOP=NO")
+ASK_RESTART = (
+    (b"P1210=%d: DRIVE", b"STARTS BY ITSELF", b"THE PANEL WILL", b"STOP IT THEN"),
+    b"START=GO STOP=NO",
+)
 
-# What another drive does; follows "A" and its address. At most ROW_WIDTH with a two-digit address.
-OTHER_RUNS = b" RUN,HOLD=ALL"
-OTHER_LOST = b" LOST,MAY RUN"
+# --- announcements -------------------------------------------------------------------------------
+
+# What has to be said of a drive; follows "A" and its address, ROW_WIDTH with two digits. A notice,
+# such as LINE_FAILED, stands there as well, and of a drive that runs RUNS_FOR_EVER and RUNS_LONG.
 OTHER_UNCONFIRMED = b" NOT STOPPED"
-OTHER_TRIPPED = b" FAULT"  # with the letter and four digits behind it, once they are known
+OTHER_LOST = b" LOST,MAY RUN"
+OTHER_RUNS = b" RUN,HOLD=ALL"
+OTHER_TRIPPED = b" FAULT"  # with FAULT_LETTER and four digits behind it, once they are known
+OTHER_UNHEARD = b" MAY RUN"  # not heard since the panel started
+
+# The same of several drives at once; their number follows.
+SEVERAL_UNCONFIRMED = b"NOT STOPPED:"
+SEVERAL_LOST = b"LOST,MAY RUN:"
+SEVERAL_RUN = b"RUN,HOLD=ALL:"
+SEVERAL_REMARKED = b"RUN, P2014 ?:"
+SEVERAL_TRIPPED = b"DRIVES FAULT:"
+SEVERAL_NOTED = b"DRIVES OFF:"
+SEVERAL_UNHEARD = b"MAY RUN:"
 
 # Shown after power-on, both rows: the panel's STOP goes over a wire and through two processors.
-SPLASH = (b"USS PANEL IS NO", b"EMERGENCY STOP")
+SPLASH = (b"USS %s IS NO" % VERSION.encode(), b"EMERGENCY STOP")

@@ -141,7 +141,7 @@ class Writer:
         elif self._moves and self._control.drive.answered_address == self._value:
             self._confirm()
         else:
-            self._end(texts.NO_ANSWER, False)
+            self._end(unanswered(job), False)
 
     def _confirm(self):
         if self._moves:
@@ -207,6 +207,11 @@ class Writer:
         elif elapsed(now, self._since, self._mask) >= self._patience_us:
             self._bus.readdress(drive, self._old_address)
             self._end(texts.NO_ANSWER, False)
+
+
+def unanswered(job):
+    """Words for a task that ended without an answer, at most a row."""
+    return texts.NO_REPLY_TO_THIS if job.state == pkw.UNANSWERED else texts.NO_ANSWER
 
 
 def refusal(error):

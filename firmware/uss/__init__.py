@@ -14,7 +14,8 @@ The telegrams:
 The engine, which may run in interrupts:
     master           the exchange: silence, request, reply; supervision of the loop
     turns            who talks when: the circulating list, and what goes before it
-    care             drives that back off, and drives that need more turns
+    care             drives that need more turns
+    silence          what the silent ones may cost
     receiver         bursts of a link -> the one telegram awaited
     drive            one slave: commands, process image, counters
     channel          the parameter channel of one drive: jobs wait, one task is on the line
@@ -38,6 +39,7 @@ For other programs; the panel imports none of these:
     pkw_long         what the last three share
     change_reports   parameters that somebody else has changed
     scan             who is on the line, and at which baud rate
+    enquiry          what somebody who was found there is
     plc              the blocks USS_INIT and USS_CTRL of the S7-200's USS library
     plc_parameters   its blocks USS_RPM and USS_WPM
     status           its error codes, and the S7-1200's

@@ -16,14 +16,14 @@ Whoever does not wait calls `step` again and again: without it for 300 ms every 
 """
 
 from uss import families, master, pkw, pzd, single, words
-from uss.errors import NoContact, NotStarted, Refused, TimedOut, UssError
+from uss.errors import FallsSilent, NoContact, NotStarted, Refused, TimedOut, UssError
 from uss.layout import Layout
 from uss.particulars import Particulars
 from uss.scaling import Scale, run_words, with_direction
 from uss.timing import Timing, elapsed
 
 REST_US = 100  # between two looks at the bus while a call waits
-TRIES = 3  # telegrams in a row without a valid reply: nobody waits for more of them
+TRIES = 3  # telegrams without a valid reply: nobody waits for more of them
 LISTEN_US = 1_000_000  # a bus that has just begun, or was put on, sends long before
 START_S = 5.0  # for a drive to run after it was told to
 SETTLE_S = 1.0  # for a drive to lift its inhibit, or a fault to go, before it is started
@@ -38,6 +38,15 @@ NO_CONTACT = "no contact"
 MAY_RUN = "no contact, may run"
 
 LINE_IN_USE = "another master is on the line"
+
+# Why there is no contact with drive %d, by `drive.Drive.trouble`.
+TROUBLES = (
+    "drive %d does not answer",
+    "drive %d: what comes for an answer is noise",
+    "drive %d answers in telegrams of another length: its layout has another P2012 or P2013",
+    "drive %d: another address answers in its place",
+    "drive %d: its answers have a wrong check character (BCC)",
+)
 
 
 class Drive:
@@ -54,7 +63,10 @@ class Drive:
         self.family = family
         self.unsupervised = unsupervised
         self.particulars = Particulars(self, scale)
+        if not family.hiw_is_signed:
+            engine.tell_speed(0)
         self._off_time_ms = 0  # as the bus was told last
+        self._kinds = {}  # of double words, number -> (contacts, kind), as the drive tells them
 
     def __getattr__(self, name):
         if name in ("start", "turn"):  # they check nothing
@@ -140,6 +152,21 @@ class Drive:
         return self.engine.contact and not self._why_not_asked()
 
     @property
+    def zsw(self):
+        """The status word of its last reply; None when it does not answer: nothing is known."""
+        return self.word(1)
+
+    @property
+    def hiw(self):
+        """The actual value of its last reply, 0...FFFFh; None likewise."""
+        return self.word(2)
+
+    def word(self, place):
+        """PZD word `place` of its last reply, as of `drive.Drive`; None likewise."""
+        word = self.engine.word(place)
+        return word if self.contact else None
+
+    @property
     def state(self):
         """One of STATES, NO_CONTACT, or MAY_RUN: it ran when contact was lost."""
         if self.contact:
@@ -186,21 +213,23 @@ class Drive:
     def read(self, number, index=0, kind=None):
         """The value of a parameter; waits for it. Refused, TimedOut.
 
-        A word comes as an int from 0 on. A double word is a float or an int, as far as the family
-        is known; kind: float or int, where it is not.
+        A word comes as an int from 0 on. A double word is a float or an int, as the family has it,
+        or else the drive's own description of the parameter; where neither says, an int, or what
+        `kind` says, float or int. ValueError: a kind that it is known not to be.
         """
-        return self._value(self.do(pkw.read(number, index)), kind)
+        _check_kind(kind)
+        job = self.do(self._addressed(pkw.read(number, index)))
+        return self._value(job, self._agreed(job, kind))
 
     def write(self, number, value, index=0, eeprom=False, kind=None, sure=False):
         """Write a parameter into RAM, or RAM and EEPROM; answers what the drive has confirmed.
 
-        The drive is asked first whether it is a word or a double word, unless `kind` says which
-        double word it is: float or int. sure: to be said for parameters by which this bus may lose
-        the drive, or a speed mean something else: family.ask_first. ValueError without it, and for
-        a value or a kind that does not fit. Waits; Refused, TimedOut; UssError: its address, while
-        the motor may run.
+        The drive is asked first what it is, a word or a double word; kind: as of read(). sure: to
+        be said for parameters by which this bus may lose the drive, or a speed mean something
+        else: family.ask_first. ValueError without it, and for a value or a kind that does not fit.
+        Waits; Refused, TimedOut; UssError: its address, while the motor may run.
         """
-        self._check_kind(number, index, kind)
+        _check_kind(kind)
         if eeprom and not self.family.has_eeprom_tasks:
             raise ValueError(
                 "no task of %s writes the EEPROM: write parameter %d afterwards"
@@ -217,8 +246,7 @@ class Drive:
                 "drive %d may be running: stop it before it gets another address, or nobody could"
                 % self.engine.address
             )
-        if kind is None:
-            kind = self._kind(self.do(pkw.read(number, index)))
+        kind = self._agreed(self.do(self._addressed(pkw.read(number, index))), kind)
         if kind is float:
             job = pkw.write_float(number, value, index, eeprom)
         elif int(value) != value:
@@ -229,12 +257,13 @@ class Drive:
             job = pkw.write_word(number, int(value), index, eeprom)
         if asked_first:
             self.particulars.forget()
-        return self._value(self.do(job), kind)
+        return self._value(self.do(self._addressed(job)), kind)
 
     def do(self, job):
         """Carry out any job of `pkw`, wait for its end and answer it; `ask` does not wait.
 
-        Refused, TimedOut; UssError when the drive's telegrams have no PKW words.
+        Refused; TimedOut, and as one FallsSilent; UssError when the drive's telegrams have no PKW
+        words.
         """
         self.carry_out(job)
         self.raise_unless_done(job)
@@ -266,35 +295,63 @@ class Drive:
         if job.state == pkw.REFUSED:
             text = pkw.error_text(job.error)
             raise Refused("drive %d refuses %s: %s" % (self.engine.address, name, text), job)
+        if job.state == pkw.UNANSWERED:
+            raise FallsSilent(
+                "drive %d falls silent when it is asked about %s, and answers without"
+                % (self.engine.address, name)
+            )
         if not self.engine.contact:
-            raise NoContact(self._why_no_contact())
+            raise self._no_contact()
         raise TimedOut("drive %d does not answer about %s" % (self.engine.address, name))
 
     # --- behind it ------------------------------------------------------------------------------
 
-    def _check_kind(self, number, index, kind):
-        """ValueError: the family knows this parameter to be of another kind."""
-        if kind not in (None, int, float):
-            raise ValueError("kind is int or float, not %r" % (kind,))
-        family = self.family
-        if kind is None or family.integer_doubles is None:
-            return
-        if (kind is float) != families.is_float(family, number):
-            raise ValueError(
-                "%s of a %s is not to be written as %s: leave kind= out"
-                % (pkw.name(number, index), family.name, "float" if kind is float else "int")
-            )
+    def _addressed(self, job):
+        if not job.index or not self.family.has_array_tasks:
+            return job
+        from uss import pkw_array  # here, because most programs need the room that it takes
 
-    def _kind(self, job):
-        """What a finished job has brought: float or int for a double word, None for a word."""
-        if job.width == pkw.WORD:
-            return None
-        return float if families.is_float(self.family, job.number) else int
+        return pkw_array.with_array_task(job, self.family)
+
+    def _agreed(self, job, kind):
+        """What a parameter is that a finished job has read: None, a word; else float or int.
+
+        kind: what the program says that it is, None for nothing. ValueError: it is not.
+        """
+        found = None if job.width == pkw.WORD else self._kind_of_double(job.number)
+        if job.width != pkw.WORD and found is None:
+            return kind or int
+        if kind is not None and kind is not (found or int):
+            raise ValueError(
+                "%s of drive %d is %s, not of kind %s: leave kind= out"
+                % (
+                    pkw.name(job.number, job.index), self.engine.address,
+                    "a word" if found is None else "a float" if found is float else "an integer",
+                    "float" if kind is float else "int",
+                )
+            )  # fmt: skip
+        return found
+
+    def _kind_of_double(self, number):
+        """float or int, as the family or the drive's description says; None: nobody says it."""
+        if self.family.integer_doubles is not None:
+            return float if families.is_float(self.family, number) else int
+        contacts = self.engine.contacts  # behind a loss it may be another drive
+        known, kind = self._kinds.get(number, (None, None))
+        if known != contacts:
+            from uss import pkw_description  # as above
+
+            job = pkw_description.read_description(number, pkw_description.IDENTIFIER)
+            self.carry_out(job)
+            told = job.description().data_type() if job.state == pkw.DONE else None
+            kind = float if told == pkw_description.FLOAT else None
+            if told in (pkw_description.I32, pkw_description.U32):
+                kind = int
+            self._kinds[number] = (contacts, kind)
+        return kind
 
     def _value(self, job, kind):
-        if job.width != pkw.WORD and (kind or self._kind(job)) is float:
-            return job.float_value()
-        return job.integer_value()
+        return job.float_value() if kind is float else job.integer_value()
 
     def _actual(self):
         """HIW with its sign."""
@@ -382,22 +439,37 @@ class Drive:
         raise NotStarted("drive %d %s" % (self.engine.address, reason))
 
     def _wait_for_contact(self):
-        """Until it answers, or has failed to a few times in a row."""
+        """Until it answers, or has failed to a few times from now on: what it did before is old
+        news."""
         self._raise_unless_asked()
-        if not self.engine.contact:
-            patience_us = LISTEN_US + TRIES * self.bus.engine.longest_cycle_us()
-            self.bus.wait(patience_us / 1_000_000, self._has_answered_or_failed)
-            if not self.contact:
-                raise NoContact(self._why_no_contact())
-
-    def _has_answered_or_failed(self):
         engine = self.engine
-        return engine.contact or engine.silent >= TRIES or self._why_not_asked() is not None
+        if engine.contact:
+            return
+        failures = self._failures()
 
-    def _why_no_contact(self):
+        def has_answered_or_failed():
+            failed = (self._failures() - failures) & 0xFFFF
+            return engine.contact or failed >= TRIES or self._why_not_asked() is not None
+
+        patience_us = LISTEN_US + TRIES * self.bus.engine.longest_cycle_us()
+        engine.ask_soon()  # among other silent ones it may have no turn for long
+        self.bus.wait(patience_us / 1_000_000, has_answered_or_failed)
+        if not self.contact:
+            raise self._no_contact()
+
+    def _failures(self):
+        """Telegrams to it without a valid reply; wraps."""
+        return sum(self.engine.counters[1:])
+
+    def _no_contact(self):
+        """The exception that says why."""
+        reason = self._why_not_asked()
         if self.bus.engine.is_line_in_use():
-            return LINE_IN_USE
-        return self._why_not_asked() or "drive %d does not answer" % self.engine.address
+            reason = LINE_IN_USE
+        if reason:
+            return NoContact(reason)
+        trouble = self.engine.trouble
+        return NoContact(TROUBLES[trouble] % self.engine.address, trouble)
 
     def _raise_unless_asked(self):
         reason = self._why_not_asked()
@@ -680,6 +752,11 @@ class Master:
             if drive.urgency() > 1 or (drive.contact and not drive.answered_off()):
                 return False
         return True
+
+
+def _check_kind(kind):
+    if kind not in (None, int, float):
+        raise ValueError("kind is int or float, not %r" % (kind,))
 
 
 def _check_speed(hertz, percent, rpm):

@@ -1,11 +1,16 @@
 # SPDX-License-Identifier: MIT
-"""Drives that have too many turns, and drives that have too few: the loop's part in `turns`.
+"""Drives that have too few turns: the loop's part in `turns`.
 
-One that stays silent, was not told to run and was not last seen running backs off: it is left out
-of the round and asked now and then, so that it costs the others little. One that may run and trips
-after a short time without telegrams (P2014) gets more turns than the list gives it.
+A drive that may run is to have its telegrams less than a third of the time apart after which it
+trips for want of them: P2014 of a MICROMASTER 4. Where the list alone would not do, it gets more
+turns: it is pressed in time for what may still go before it. A drive that never trips counts as
+one that trips when it would be lost.
 
-Works a little at a time, whenever the loop refreshes the bus; the engine only walks the round.
+While silent drives are told to stop, the list has few turns. Then those at rest are pressed as
+well: they trip like the others, and cannot be started before somebody acknowledges that.
+
+What is left is for the silent ones, see `silence`. Works a little at a time, whenever the loop
+refreshes the bus; the engine only walks the round.
 """
 
 from array import array
@@ -14,16 +19,17 @@ from micropython import const
 
 from uss.drive import NODES
 from uss.pzd import ZSW_RUNNING
+from uss.silence import SHARE, SPENT_MASK, Silence
 
-_BACK_OFF_US = const(1_600_000)  # a drive that backs off is asked again after so long
-_PROBE_SHARE = const(22)  # or after so many times what that costs, so that it takes below 5 %
 LOOK_US = const(4_000)  # how often drives are looked after
 _SWEEP_US = const(130_000)  # in which each of them has been
-_MEASURE_US = const(250_000)  # how often the duration of a round is measured
-_NEAR = const(2)  # a gap of less than so many rounds is looked after
-_MEASURED_MAX_US = const(1_000_000)  # what took longer tells nothing; 255 times it is small
-_LONGEST_US = const(100_000_000)  # of a round; small enough to be multiplied
-_FAR = const(6)  # until it is so many: the turns it gets besides make a round seem shorter
+_SLOW_US = const(25_000)  # between two looks: a loop that is so slow does more in each
+_PRESS_US = const(16_000)  # in which each of those that may run has been
+_MEASURE_US = const(250_000)  # how often the duration of an exchange is measured
+_MEASURED_MAX_US = const(1_000_000)  # nobody measured meanwhile: it tells nothing
+_EXCHANGES_MIN = const(4)  # that are measured
+_RARE_US = const(1_000_000)  # from one silence to the next that makes a drive that runs late
+_LONGEST_US = const(100_000_000)  # small enough to be multiplied
 
 
 class Care:
@@ -34,167 +40,290 @@ class Care:
 
     def __init__(self, turns, mask):
         self.looked_at = 0
+        self.silence = Silence(turns)
         self._turns = turns
         self._mask = mask
-        # Drives that back off.
-        self._rests = bytearray(NODES)  # by address: whether it does
-        self._back_off_us = _BACK_OFF_US
-        self._uneasy = False  # one may have to begin, or to end it
-        self._looked = 0  # which drive was looked after last
-        self._since_silent = 0  # how many were looked after since one was silent
-        # Drives whose turns in the list may be too far apart.
-        self._gaps_us = array("i", bytes(4 * NODES))  # by address: how far they may be; 0: any
-        self._least_us = 0  # of these; 0: there is none
-        self._limit_us = 0  # gaps below this are looked after
-        self._pressed = 0  # which drive was looked after last
-        self._near = 0  # how many of these may have to be pressed
-        self._crowded = False  # so many that the list alone does better
-        self._exchanges = 0  # of the bus, when the duration of a round was measured last
+        self._bounds_us = array("i", bytes(4 * NODES))  # by address: a third of P2014; 0: none
+        # Those that may run, as of the last sweep.
+        self._hurried = [None] * NODES  # the first
+        self._hurried_count = 0
+        self._hurried_us = 0  # an exchange with each of them
+        self._least_us = _LONGEST_US  # the narrowest bound of them,
+        self._trips_us = _LONGEST_US  # and of those that trip
+        self._needed_us = 0  # between two telegrams to one of them, if all are answered
+        self._gap_us = 0  # if not
+        self._list_does = True  # none of them needs more, or so many that it does better alone
+        self._latest_us = array("i", bytes(4 * NODES))  # of each: when it is to be pressed
+        self._pressed = 0  # of these, so many were looked after,
+        self._press_us = 0  # in so long
+        # The sweep that goes on.
+        self._swept = 0  # so many drives were looked after,
+        self._sweep_us = 0  # in so long
+        self._running = 0
+        self._running_us = 0  # an exchange with each of them
+        self._needy = 0  # those whose turns in the list may be too far apart
+        self._in_vain = 0  # those that are told to stop and do not answer,
+        self._stops_in_vain = False  # of the last sweep: several, one may just have its turn
+        self._least_so_far_us = self._trips_so_far_us = _LONGEST_US
+        self._round_us = _LONGEST_US  # between two turns in the list, at the most
+        self._loop_us = LOOK_US  # how far apart looks are
+        self._next = 0  # of four things, which is done next
+        # The duration of an exchange that is answered.
+        self._exchange_us = 0
+        self._quickest_us = 0
         self._measured_at = 0
+        self._exchanges = 0  # of the bus, when it was measured last
+        self._silences = 0
+        self._silences_us = 0
 
-    def supervise(self, drive, gap_us):
-        """Keep two telegrams to a drive that may run at most so far apart; 0: any distance."""
-        before_us = self._gaps_us[drive.address]
-        if gap_us == before_us:
-            return
-        self._gaps_us[drive.address] = gap_us
-        if 0 < gap_us < (self._least_us or _LONGEST_US):
-            self._least_us = gap_us
-        elif before_us == self._least_us:
-            self._find_least()
+    # --- what may be asked ----------------------------------------------------------------------
+
+    def supervise(self, drive, bound_us):
+        """Keep two telegrams to a drive that may run less than so far apart; 0: it never trips."""
+        if bound_us != self._bounds_us[drive.address]:
+            self._bounds_us[drive.address] = bound_us
+            self._sweep_us = _SWEEP_US  # it counts from the next looks on
+
+    def bound_us(self, drive):
+        return self._bounds_us[drive.address] or self._turns.lost_us // 3
+
+    def gap_us(self, drive):
+        """See `Turns.gap_us`. Of those that run as the last sweep found them: to walk the drives
+        takes as long as a step of the loop may.
+        """
+        running, running_us = self._hurried_count, self._hurried_us
+        if not drive.may_run():
+            running += 1
+            running_us += self._cost_us(drive)
+        return self._with_silences(self._needed(running, running_us))
+
+    def first_late(self, drive):
+        """See `Turns.first_late`."""
+        gap_us = self.gap_us(drive)
+        bounds_us = self._bounds_us  # of one that never trips 0: it is never late
+        if 0 < bounds_us[drive.address] <= gap_us:
+            return drive
+        if self._least_us <= gap_us:
+            for place in range(self._hurried_count):
+                other = self._hurried[place]
+                if other.contact and 0 < bounds_us[other.address] <= gap_us:
+                    return other
+        return None
+
+    def silence_wait_us(self):
+        """See `Turns.silence_wait_us`."""
+        if not self._has_room():
+            return _LONGEST_US
+        return max(self.silence.wait_us, 0)
+
+    # --- what changes ---------------------------------------------------------------------------
 
     def forget(self, drive):
         """It is not on the bus any more."""
-        self._rests[drive.address] = False
-        self.supervise(drive, 0)
+        self.silence.forget(drive)
+        self._bounds_us[drive.address] = 0
 
     def readdressed(self, old, new):
         """A drive has another address."""
-        self._rests[new] = self._rests[old]
-        self._rests[old] = False
-        self._gaps_us[new] = self._gaps_us[old]
-        self._gaps_us[old] = 0
+        self.silence.readdressed(old, new)
+        self._bounds_us[new] = self._bounds_us[old]
+        self._bounds_us[old] = 0
 
     def list_changed(self):
         """There is another list: what follows from that."""
-        turns = self._turns
-        timing = turns.timing
-        probe_us = 0
-        for drive in turns.drives:
-            probe_us = max(probe_us, timing.telegram_us(drive.layout.net_count))
-        probe_us += timing.start_interval_us + timing.reply_timeout_us + timing.character_us
-        self._back_off_us = min(max(_BACK_OFF_US, _PROBE_SHARE * probe_us), self._mask >> 1)
-        turns.round_count = 0  # nobody has a turn until it is filled
-        turns.round = list(turns.list)
-        self._fill_round()
+        self.silence.list_changed()
+        timing = self._turns.timing
+        longest_us = 0
+        for drive in self._turns.drives:
+            net_count = drive.layout.net_count
+            longest_us = max(longest_us, timing.exchange_us(net_count, timing.start_interval_us))
+        self._exchange_us = self._quickest_us = longest_us
 
     def look(self, now):
         """From the loop: a little of what is due."""
         passed_us = (now - self.looked_at) & self._mask
         self.looked_at = now
-        turns = self._turns
-        if turns.uneasy:  # of the engine, which does not write the other one
-            turns.uneasy = False
-            self._uneasy = True
-        if self._uneasy:
-            self._look_for_silent(now, passed_us)
-        if self._least_us:
-            if (now - self._measured_at) & self._mask >= _MEASURE_US:
-                self._measure(now)
-            if self._limit_us:
-                self._look_for_overdue(now, passed_us)
+        if passed_us > self._loop_us:
+            self._loop_us = min(passed_us, _SWEEP_US)
+        else:
+            self._loop_us -= self._loop_us >> 5  # a loop that was slow once is soon forgiven
+        if self.silence.wait_us > -_LONGEST_US:
+            self.silence.wait_us -= passed_us
+        self._sweep_us += passed_us
+        self._press_us += passed_us
+        self._do_next(now)
+        if passed_us >= _SLOW_US:  # a slow loop has time for all of it
+            for _ in range(3):
+                self._do_next(now)
 
-    # --- drives that back off -------------------------------------------------------------------
+    # --- behind it ------------------------------------------------------------------------------
 
-    def _look_for_silent(self, now, passed_us):
+    def _do_next(self, now):
+        """One thing in a look: the loop's steps are to be short."""
+        silence = self.silence
+        self._next = following = self._next + 1 & 3
+        if following & 1 and (self._stops_in_vain or not self._list_does):
+            self._press(now)
+        elif following == 0 and (now - self._measured_at) & self._mask >= _MEASURE_US:
+            self._measure(now)
+        elif following == 2 and self._turns.shared_us != silence.charged_us:
+            silence.settle()
+        elif following == 2 and silence.resting and self._has_room():
+            silence.give_turn()
+        else:
+            self._sweep(now)
+
+    def _cost_us(self, drive):
+        """What an exchange with it takes."""
+        return self._exchange_us if drive.contact else self.silence.silent_exchange_us
+
+    def _sweep(self, now):
         drives = self._turns.drives
         count = len(drives)
-        for _ in range(_share(count, passed_us, _SWEEP_US)):
-            self._looked = self._looked + 1 if self._looked + 1 < count else 0
-            self._look_after(drives[self._looked], now)
-        if self._since_silent > count:
-            self._since_silent = 0
-            self._uneasy = False
-
-    def _look_after(self, drive, now):
-        """Is it to back off, or to come back, or is it high time to ask it?"""
-        backs_off = drive.keeps_silent() and self._anyone_has_contact()
-        if backs_off != self._rests[drive.address]:
-            self._rests[drive.address] = backs_off
-            self._fill_round()
-        if backs_off and drive.silent_us(now, self._mask) >= self._back_off_us:
-            if not self._turns.is_under_way(drive):
-                drive.ask_soon()
-        self._since_silent = 0 if drive.silent else self._since_silent + 1
-
-    def _anyone_has_contact(self):
-        for drive in self._turns.drives:
-            if drive.contact:
-                return True
-        return False
-
-    def _fill_round(self):
-        """The list without those that back off. In place: it takes no heap, and an interrupt that
-        walks it meanwhile finds a drive everywhere, the one before or the one after.
-        """
-        turns = self._turns
-        rests = self._rests
-        count = 0
-        for drive in turns.list:
-            if not rests[drive.address]:
-                turns.round[count] = drive
-                count += 1
-        turns.round_count = count
-
-    # --- drives whose turns are too far apart ---------------------------------------------------
-
-    def _find_least(self):
-        least_us = _LONGEST_US
-        for gap_us in self._gaps_us:
-            if 0 < gap_us < least_us:
-                least_us = gap_us
-        self._least_us = least_us if least_us < _LONGEST_US else 0
-
-    def _measure(self, now):
-        """How long a round takes, by the telegrams since last time; which gaps that presses."""
-        turns = self._turns
-        passed_us = (now - self._measured_at) & self._mask
-        exchanges = (turns.exchanges - self._exchanges) & 0xFFFF
-        self._measured_at = now
-        self._exchanges = turns.exchanges
-        if passed_us >= _MEASURED_MAX_US:
-            return  # nobody measured meanwhile: this is where it begins
-        round_us = _LONGEST_US
-        if exchanges:
-            round_us = min(len(turns.list) * (passed_us // exchanges), _LONGEST_US)
-        round_us = max(round_us, min(turns.cycle_us, _LONGEST_US))
-        limit_us = (_FAR if self._limit_us else _NEAR) * round_us
-        self._limit_us = limit_us if self._least_us < limit_us else 0
-
-    def _look_for_overdue(self, now, passed_us):
-        """Is a third of a gap over? Others may be due at the same time.
-
-        Two telegrams of three are for these drives. When they are two thirds of the list, or more,
-        each has its turn soonest if there are no others than those in the list.
-        """
-        drives = self._turns.drives
-        count = len(drives)
-        for _ in range(_share(count, passed_us, min(_SWEEP_US, self._least_us >> 2))):
-            self._pressed = self._pressed + 1 if self._pressed + 1 < count else 0
-            if not self._pressed:
-                self._crowded = 3 * self._near >= 2 * len(self._turns.list)
-                self._near = 0
-            drive = drives[self._pressed]
+        swept = self._swept
+        if swept >= count:
+            self._end_sweep()  # that takes long enough
+            return
+        until = _share(count, self._sweep_us, _SWEEP_US)
+        if swept >= until:
+            return
+        rests = self.silence.rests
+        while swept < until:
+            drive = drives[swept]
+            swept += 1
+            if not drive.contact or rests[drive.address]:
+                self.silence.look_after(drive)
+                if drive.is_told_in_vain():
+                    self._in_vain += 1
+            elif self._stops_in_vain:
+                self._press_if_late(drive, now)
             # What most drives are is seen without a call: standing.
             if drive.wanted or drive.was_running or drive.zsw & ZSW_RUNNING:
-                gap_us = self._gaps_us[drive.address]
-                if 0 < gap_us < self._limit_us:
-                    self._near += 1
-                    if not self._crowded and drive.silent_us(now, self._mask) > gap_us // 3:
-                        if not self._turns.is_under_way(drive):
-                            drive.press()
+                if drive.may_run():
+                    self._hurry(drive)
+        self._swept = swept
+
+    def _press_if_late(self, drive, now):
+        bound_us = self._bounds_us[drive.address]
+        if 0 < bound_us < drive.silent_us(now, self._mask) and not drive.may_run():
+            drive.press(1)
+
+    def _hurry(self, drive):
+        running = self._running
+        bound_us = self._bounds_us[drive.address]
+        if bound_us and drive.contact and bound_us < self._trips_so_far_us:
+            self._trips_so_far_us = bound_us
+        bound_us = bound_us or self._turns.lost_us // 3
+        if drive.contact:
+            cost_us = self._exchange_us
+            if bound_us < self._least_so_far_us:
+                self._least_so_far_us = bound_us
+        else:  # nobody else needs to wait for its sake
+            cost_us = self.silence.silent_exchange_us
+        self._hurried[running] = drive
+        # While the one after it is asked, at the earliest: it is to be the next but one.
+        self._latest_us[running] = max(bound_us - self._gap_us, cost_us >> 1)
+        self._running = running + 1
+        self._running_us += cost_us
+        if bound_us < self._round_us:
+            self._needy += 1
+
+    def _end_sweep(self):
+        """All have been looked after: what their turns come to."""
+        turns = self._turns
+        running = self._running
+        self._hurried_count = running
+        self._hurried_us = self._running_us
+        self._least_us = self._least_so_far_us
+        self._trips_us = self._trips_so_far_us
+        self._needed_us = self._needed(running, self._running_us)
+        self._gap_us = self._with_silences(self._needed_us)
+        # With two thirds of the list in need nobody waits shorter for being pressed.
+        needy = self._needy
+        crowded = 3 * needy >= 2 * turns.round_count > 0 and not turns.cycle_us
+        turns.lists_between = 3 if crowded else 1
+        self._list_does = crowded or not needy
+        self._stops_in_vain = self._in_vain > 1
+        self._in_vain = 0
+        if self._list_does and not self._stops_in_vain:
+            self._press_us = 0  # nobody is pressed
+        # Every second telegram may be one that is not in the list.
+        exchanges_us = (2 * turns.round_count + 1) * self._exchange_us
+        self._round_us = max(exchanges_us, turns.cycle_us) + self.silence.silent_exchange_us
+        self._needy = 0
+        self._swept = 0
+        self._sweep_us = 0
+        self._running = 0
+        self._running_us = 0
+        self._least_so_far_us = self._trips_so_far_us = _LONGEST_US
+
+    def _press(self, now):
+        """Those whose next telegram would be late if something else still went before it."""
+        count = self._hurried_count
+        pressed = self._pressed
+        until = _share(count, self._press_us, min(_PRESS_US, self._least_us >> 2))
+        while pressed < until:
+            drive = self._hurried[pressed]
+            if drive.silent_us(now, self._mask) > self._latest_us[pressed]:
+                if not self._turns.is_under_way(drive):
+                    drive.press()
+            pressed += 1
+        if pressed >= count:
+            pressed = 0
+            self._press_us = 0
+        self._pressed = pressed
+
+    def _needed(self, running, running_us):
+        """The gap between two telegrams to each of so many drives, with none that is not answered.
+
+        Two telegrams out of three are theirs, and one may just have begun; or all have their turns
+        in the list, with a telegram besides after every third. The loop has to see it first.
+        """
+        exchange_us = self._exchange_us
+        turns = self._turns
+        list_count = max(turns.round_count, running)
+        if 3 * running >= 2 * list_count and not turns.cycle_us:
+            others_us = (list_count - running) * exchange_us
+            return (running_us + others_us) * 4 // 3
+        seen_us = 2 * self._loop_us + _PRESS_US
+        return seen_us + running_us + ((running_us + exchange_us) >> 1) + exchange_us
+
+    def _with_silences(self, needed_us):
+        """That gap with the share of those that rest in it, and with one that falls silent."""
+        if self.silence.resting:
+            needed_us += needed_us // (SHARE - 1)
+        return needed_us + self.silence.silent_exchange_us
+
+    def _has_room(self):
+        """Whether a silence leaves the drives that run their bound. Where there are too many of
+        them for that anyway, it may take a quarter of what they need: it trips none. Where only
+        one that never trips would be late, and not lost, it may be now and then.
+        """
+        needed_us = self._needed_us
+        least_us = self._least_us
+        if self.silence.wait_us < -_RARE_US:
+            least_us = min(self._trips_us, 2 * least_us)
+        room_us = max(least_us - needed_us, needed_us >> 2)
+        return self.silence.silent_exchange_us < room_us
+
+    def _measure(self, now):
+        """How long exchanges take that are answered."""
+        turns = self._turns
+        passed_us = (now - self._measured_at) & self._mask
+        silences = (turns.silences - self._silences) & 0xFFFF
+        count = ((turns.exchanges - self._exchanges) & 0xFFFF) - silences
+        passed_us -= (turns.silences_us - self._silences_us) & SPENT_MASK
+        self._measured_at = now
+        self._exchanges = turns.exchanges
+        self._silences = turns.silences
+        self._silences_us = turns.silences_us
+        # What waits for its cycle takes no longer for that.
+        if _EXCHANGES_MIN <= count and 0 < passed_us < _MEASURED_MAX_US and not turns.cycle_us:
+            longest_us = self._quickest_us + turns.timing.reply_timeout_us
+            measured_us = min(max(passed_us // count, self._quickest_us), longest_us)
+            self._exchange_us += (measured_us - self._exchange_us) >> 2
 
 
-def _share(count, passed_us, sweep_us):
-    """How many of `count` are to be looked after now, so that all have been after `sweep_us`."""
-    return min(count, -(-count * min(passed_us, sweep_us) // max(sweep_us, 1)))
+def _share(count, passed_us, period_us):
+    """How many of `count` are to have been looked after by now, so that all have at the end."""
+    return count if passed_us >= period_us else count * passed_us // period_us

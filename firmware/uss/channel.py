@@ -5,6 +5,12 @@ The loop puts jobs in, the engine carries them out: a task is repeated in every 
 fitting reply comes, then "no task" follows (specification C-4.2.1.1). The queue is a ring with one
 writer at each end, so that neither side waits for the other.
 
+A drive may fall silent on a task that it does not know. It must not be lost by that, for its motor
+would be stopped: when telegrams with a task stay unanswered, one without it shows whether the
+drive answers that. If it does, the task is to blame, and ends as UNANSWERED. If not, the drive or
+the line is silent: a task that reads goes on when the drive answers again. One that writes is not
+sent again, because it would be carried out twice.
+
     channel.ask(pkw.read(700))                  # loop
     channel.fill(net, at, now)                  # engine: the PKW words of the next request,
     channel.size                                # so many characters
@@ -21,6 +27,7 @@ NO_TASK = bytes(8)
 JOBS_MAX = const(8)  # of a drive, with the one on the line; a power of two
 REST_MAX = const(20)  # telegrams without a task that are tried before the next one is sent anyway
 _TRIES_MIN = const(5)  # a task is sent at least so often: a drive may lag three, one may be lost
+_SILENCES_MAX = const(3)  # telegrams with a task in a row that may stay unanswered
 _WORK_TIMEOUT_US = const(2_000_000)  # a reply may lag some cycles
 _EEPROM_TIMEOUT_US = const(5_000_000)
 
@@ -36,6 +43,9 @@ _VARIABLE_LENGTH = const(0x100)
 _FOLLOWED = const(0x200)  # in _form: somebody follows change reports
 _POSITION = const(7)  # bits of _turn: where the job on the line stands in the queue
 _REST = const(8)  # above: telegrams without a task still to be tried for an answer with AK 0
+_PROBE = const(1 << 8)  # further above: telegrams without the task that stays unanswered
+_LAG = const(16)  # in job.silences, above them: old answers in a row, before
+_LAG_MAX = const(4)
 _WAITING = const(-1)  # tries of a job whose turn has not come
 _PENDING = const(1)
 _FIRST_PERMANENT = const(11)
@@ -62,7 +72,7 @@ class Channel:
         self._mask = mask
         self._queue = [None] * JOBS_MAX if pkw_words else NO_QUEUE
         self._in = 0
-        self._turn = 0  # see _POSITION and _REST
+        self._turn = 0  # see _POSITION, _REST and _PROBE
         self._ended = _ANY  # the key of the job that must be told apart from the next, or _ANY
 
     def is_full(self):
@@ -86,6 +96,7 @@ class Channel:
             job.refuse(pkw.TOO_SMALL)
             return
         job.tries = _WAITING
+        job.silences = 0
         job.state = _PENDING
         self._queue[position] = job
         self._in = position + 1 & _POSITION
@@ -161,24 +172,59 @@ class Channel:
         turn = self._turn
         job = self._queue[turn & _POSITION]
         if turn >= _REST:
+            if turn >= _PROBE:
+                self._judge(job)
+                return
             # The task was withdrawn; until the drive says AK 0 an old reply may still come.
             self._turn = turn = turn & _POSITION if net[at] < 0x10 else turn - _REST
             if job is None and turn < _REST and self._form < _FOLLOWED:
                 self.idle = True
-        elif job is not None and job.tries > 0 and job.answer(net, at, count, form):
-            # As in `_end`, without the call: this is the common case.
-            self._ended = _ANY if job.task >= _FIRST_PERMANENT else job.key
-            self._queue[turn] = None
-            self._turn = REST_MAX * _REST | turn + 1 & _POSITION
+        elif job is not None:
+            if job.tries > 0 and job.answer(net, at, count, form):
+                # As in `_end`, without the call: this is the common case.
+                self._ended = _ANY if job.task >= _FIRST_PERMANENT else job.key
+                self._queue[turn] = None
+                self._turn = REST_MAX * _REST | turn + 1 & _POSITION
+            else:  # an old answer; the next silence is the first
+                job.silences = min(job.silences // _LAG + 1, _LAG_MAX) * _LAG
 
-    def miss(self, now):
-        """There was no valid reply."""
+    def miss(self, now, silent=0, pressing=False):
+        """There was no valid reply. silent: telegrams in a row without one. pressing: with one
+        more, half of the time after which the drive counts as lost would be over.
+        """
         turn = self._turn
-        if turn >= _REST:
-            self._turn = turn - _REST
         job = self._queue[turn & _POSITION]
+        if turn >= _PROBE:
+            if turn // _PROBE > job.silences // _LAG:
+                job.silences &= -_LAG  # it is not for the task
+            else:  # a drive that lags is at the task for as many telegrams more
+                self._turn = turn + _PROBE
+            job.tries = min(job.tries + 1, _TRIES_MIN)
+        elif turn >= _REST:
+            self._turn = turn - _REST
+        elif job is not None and job.tries > 0:
+            job.silences += 1
+            silences = job.silences % _LAG
+            if pressing or silences >= _SILENCES_MAX:
+                self._turn = turn | _PROBE
+                if silent > silences:  # the drive was silent before it heard of the task
+                    job.silences -= silences
         if job is not None and job.tries >= _TRIES_MIN:
             self._watch(job, now)
+
+    def _judge(self, job):
+        """The drive answers a telegram without the task: is the task to blame?"""
+        writes = job.writes()
+        silences = job.silences % _LAG
+        lags = silences != job.silences  # each time that it is asked: they do not add up
+        if silences >= _SILENCES_MAX - lags or writes and silences:
+            job.state = pkw.UNANSWERED
+            self._end(job, writes)
+        elif writes:
+            job.state = pkw.TIMED_OUT
+            self._end(job, True)
+        else:
+            self._turn &= _POSITION  # it goes on
 
     def _watch(self, job, now):
         """Time out a job that takes long."""

@@ -4,13 +4,14 @@
 Two sides share a drive: the *loop* (panel, own program) and the *engine* (`master.poll`, possibly
 in an interrupt). They share words, not structures; each field has one writer:
 
-    loop     wanted, off, ticket, stops, hsw, urgent, asking, acknowledgements, further words on
-             their way out
+    loop     wanted, off, ticket, stops, hsw, urgent, asking, acknowledgements, near, tells_status,
+             further words on their way out
     engine   void, zsw, hiw, contact, contacts, was_running, silent, served, counters and the rest
     both     steady: False by whoever changes something, at last; True by the engine alone
 
 ON and JOG are sent only on a ticket. Every `start` draws a new one; the engine voids the one in
-force when the drive is lost, faults, stops of its own accord, or the loop stops refreshing. A void
+force when the drive is lost, faults, stops of its own accord, stands still though it was not told
+to, or the loop stops refreshing. A void
 ticket stays void: whatever happens to the line or the loop, only a fresh `start` makes a drive run
 again. Every STOP is sent: one telegram at least carries OFF before the next ON, however soon that
 comes.
@@ -33,17 +34,26 @@ from uss import pzd
 from uss.channel import Channel
 from uss.fast import get_words
 from uss.layout import STANDARD
-from uss.pzd import STW_ON, STW_RUN, ZSW_FAULT, ZSW_INHIBIT, ZSW_RUNNING
+from uss.pzd import STW_ON, STW_RUN, ZSW_RUNNING
+from uss.receiver import SILENCE, TROUBLES
 from uss.telegram import NET, NODE_MAX, put_word
 from uss.timing import elapsed
 
 _TICKET_MASK = const(0xFFFF)
-_INSIST_MAX = const(10)  # telegrams out of turn that an OFF1 may take until the drive answers one
-SILENT_MAX = const(3)  # without contact and so often silent, a drive need not have every turn
+_INSIST_MAX = const(10)  # telegrams out of turn that an OFF1 may take until the drive answers one,
+_RESTING_INSIST_MAX = const(3)  # and if it did not answer before: there may be 30 of those
+SILENT_MAX = const(3)  # so often silent in a row, a drive is not just disturbed
+_SURE = const(2)  # telegrams that may meet with something else before `trouble` says so
+_SURE_MAX = const(3)
 _AHEAD_US = const(100_000)  # so far an interrupt may have been ahead of who asks for the time
 _UNKNOWN = const(-1)  # no control word
 _NO_EDGE = const(-1)  # no acknowledgement on its way
 _ANSWERED = const(-2)  # one was confirmed: a word without bit 7 must follow
+_NO_ORDER = const(-1)  # nothing by which a standstill could be told
+_ORDER = const(0x0071)  # STW bits of an ON whose setpoint counts: 0, 4, 5 and 6
+_PERCENT = const(100)
+_TROUBLE = const(0x0048)  # ZSW_FAULT, ZSW_INHIBIT; a const that is imported is none here
+_MOTION = const(0x004C)  # and ZSW_RUNNING
 _COUNTER_MASK = const(0xFFFF)  # counters wrap like the drive's own (specification A-5.2.3)
 
 # What each receiver finding is counted as, and its bit of the error status word. Both named as in
@@ -58,7 +68,8 @@ COUNTERS = (
     "no_reply",
     "residual",  # residual run time expired
 )
-STATUS_BITS = (0x00, 0x08, 0x40, 0x10, 0x08, 0x80, 0x20)
+STATUS_BITS = (0x00, 0x08, 0x40, 0x10, 0x08, 0x80, 0x20, 0x40)
+_GARBLED_COUNTER = const(2)  # "length": it has no counter of its own
 
 # What the drives of a bus let the engine know, three rows by address: the urgency of a command;
 # that its next turn would be too late; that it is to have more than its turn. At ANY, whether
@@ -86,7 +97,8 @@ class Drive:
 
     Fields to look at: `zsw`, `hiw`, `contact`, `was_running`; `silent`, telegrams without a valid
     reply in a row; `counters`, see COUNTERS; `status`, the error status word: what went wrong
-    since the last valid reply, 0 after one.
+    since the last valid reply, 0 after one; `trouble`, which of `receiver.TROUBLES` that mostly
+    was: it stays what it is while others mix in.
     """
 
     outside = False  # of the list; what is, has a state (`single`)
@@ -111,6 +123,8 @@ class Drive:
         self.urgent = 0
         self.asking = False  # somebody waits for its parameters
         self.acknowledgements = 0  # of faults
+        self.near = pzd.FULL_SCALE // _PERCENT * 2  # 2 % of HIW's full scale, even; 0: no speed
+        self.tells_status = True  # ZSW is its status word; False: it says nothing of the motor
         self.further = None  # PZD words beyond two: those to the drive, then those from it
         # Written by the engine.
         self.void = 0
@@ -125,6 +139,8 @@ class Drive:
         self.answered_address = address  # of the last valid reply
         self.silent = 0
         self.status = 0
+        self.trouble = SILENCE
+        self._sure = 0  # how much of it is to be outweighed before it is another
         self.served = 0
         self.stops_sent = 0  # `stops` when the last telegram was built
         self.insist = 0  # telegrams out of turn left to an OFF1 that no answer has confirmed
@@ -137,6 +153,8 @@ class Drive:
         self._hsw = 0  # `hsw` when the telegram was built
         self._edge = _NO_EDGE  # of bit 7: `acknowledgements` when it was sent
         self._may_run = False  # sent ON or seen running, and not seen standing after OFF1
+        self._order = _NO_ORDER  # the word that HIW is to become
+        self._arrived = False  # and has become
         if layout.pzd_words > 2:
             self.further = array("H", bytes(4 * (layout.pzd_words - 2)))
 
@@ -232,6 +250,15 @@ class Drive:
         self._toggled = self._toggled & ~bits | bits & ~usual
         self.steady = False
 
+    def tell_speed(self, full_scale):
+        """How HIW tells the speed: the count that stands for 100 %, negative to the left.
+
+        4000h unless told otherwise; 0: HIW is no speed with a sign. By it a motor that stands
+        still though nobody told it to is noticed, and ON taken back.
+        """
+        self.near = full_scale // _PERCENT * 2
+        self.steady = False
+
     def put(self, place, word):
         """Send `word`, 0...FFFFh, as PZD word `place` from the next telegram on.
 
@@ -263,8 +290,8 @@ class Drive:
         return self.contact and not self.answered_stw & STW_RUN
 
     def may_run(self):
-        """Whether the motor may turn: told to, seen to, or lost while it did."""
-        return self._may_run or self.was_running or self.is_on()
+        """Whether the motor may turn: told to, seen to, lost while it did, or nothing tells."""
+        return self._may_run or self.was_running or not self.tells_status or self.is_on()
 
     def is_on(self):
         """Whether ON or JOG is being sent."""
@@ -308,11 +335,17 @@ class Drive:
         self.steady = False
         self._call_for_turns()
 
-    def press(self):
-        """From the loop: its next turn in the list would be too late."""
+    def press(self, urgency=2):
+        """From the loop: its next turn in the list would be too late. urgency: 1 for a drive at
+        rest, which goes behind those that may run.
+        """
         attention = self._attention
-        attention[OVERDUE + self.address] = 1
+        attention[OVERDUE + self.address] = urgency
         attention[ANY] = 1
+
+    def is_told_in_vain(self):
+        """Whether it does not answer, and has still to be told to stop or asked once more."""
+        return not self.contact and (self.insist > 0 or self.stops != self.stops_sent)
 
     def urgency(self):
         """How much this drive is in a hurry.
@@ -322,10 +355,10 @@ class Drive:
         that runs, or may run.
         """
         if self.urgent == self.served and self.stops == self.stops_sent:
-            return 1 if self.insist or self.asking else 0
+            return 1 if self.insist or self.asking and self.contact else 0
         if self.is_on():
             return 2
-        return 4 if self._may_run or self.zsw & ZSW_RUNNING else 3
+        return 4 if self._may_run or self.zsw & ZSW_RUNNING or not self.tells_status else 3
 
     def fill(self, now):
         """Bring the words of the request up to date. What changes in it breaks its seal."""
@@ -346,7 +379,7 @@ class Drive:
         on = self.wanted and self.is_on()
         if self.stops != self.stops_sent:
             self.stops_sent = self.stops
-            self.insist = _INSIST_MAX
+            self.insist = _RESTING_INSIST_MAX if self.may_rest() else _INSIST_MAX
             self._call_for_turns()
         elif self.insist:
             self.insist -= 1
@@ -363,6 +396,8 @@ class Drive:
         if not stw & STW_ON:
             hsw = 0
         stw ^= self._toggled
+        if on or self._order != _NO_ORDER:
+            self._note_order(stw, hsw)
         self.sealed = self.steady = False  # should this fail half way, it is done anew
         self._sent_stw = _UNKNOWN
         behind = self._behind
@@ -378,6 +413,19 @@ class Drive:
                     self._put_further(at + 4)
         self._sent_stw = stw
         self.steady = not self.insist and self.acknowledgements == self.acknowledged
+
+    def _note_order(self, stw, hsw):
+        """What HIW is to become by this telegram. Another order has still to be carried out."""
+        order = hsw
+        if stw & pzd.STW_REVERSE:
+            order = -hsw & 0xFFFF
+        # Below 5 % a standstill is what was told. A jog has no setpoint.
+        least = 5 * self.near >> 1
+        if stw & _ORDER != _ORDER or not least or (order + least - 1) & 0xFFFF < 2 * least - 1:
+            order = _NO_ORDER
+        if order != self._order:
+            self._order = order
+            self._arrived = False
 
     def _put_further(self, at):
         for index in range(len(self.further) >> 1):
@@ -425,25 +473,44 @@ class Drive:
 
         finding: one of the receiver's, not GOOD.
         """
-        self.counters[finding] = (self.counters[finding] + 1) & _COUNTER_MASK
+        row = finding if finding < len(COUNTERS) else _GARBLED_COUNTER
+        self.counters[row] = (self.counters[row] + 1) & _COUNTER_MASK
         self.status |= STATUS_BITS[finding]
+        self._weigh(TROUBLES[finding])
         if self.silent < _COUNTER_MASK:
             self.silent += 1
+        pressing = False
         if not self.contact:
             self._tried_at = now
-        elif elapsed(now, self._tried_at, mask) >= lost_us:
-            self.lose()
-        self.channel.miss(now)
+        else:
+            passed_us = elapsed(now, self._tried_at, mask)
+            pressing = passed_us + passed_us // self.silent > lost_us >> 1
+            if passed_us >= lost_us:
+                self.lose()
+        if not self.channel.idle:
+            self.channel.miss(now, self.silent, pressing)
+
+    def _weigh(self, trouble):
+        """What the telegrams without a valid reply have mostly met with since the last one: two
+        kinds that take turns do not take turns on the display.
+        """
+        if self.silent and trouble == self.trouble:
+            self._sure = min(self._sure + 1, _SURE_MAX)
+        elif self.silent and self._sure:
+            self._sure -= 1
+        else:
+            self.trouble = trouble
+            self._sure = _SURE
 
     def fits(self, net_count):
         """Whether a reply may have so many net characters."""
         return self.layout.fits(net_count)
 
-    def keeps_silent(self):
-        """Whether it need not have every turn: silent again and again, and nobody can have told it
-        to run. One that was running when contact was lost keeps its turns.
+    def may_rest(self):
+        """Whether it need not have every turn: it does not answer, and nobody can have told it to
+        run. One that was running when contact was lost keeps its turns.
         """
-        return self.silent > SILENT_MAX and not self.contact and not self.was_running
+        return not self.contact and not self.was_running
 
     def silent_us(self, now, mask):
         """How long ago the last valid reply came; without contact, the last telegram."""
@@ -459,7 +526,7 @@ class Drive:
     def lose(self):
         """Contact is lost; ON, if it was being sent, is void."""
         if self.contact:
-            self.was_running = self._may_run
+            self.was_running = self._may_run or not self.tells_status
             self.revoke()
             self.acknowledged = self.acknowledgements
             self.answered_stw = 0
@@ -479,12 +546,20 @@ class Drive:
     def _watch_running(self, zsw):
         # A drive that ran on this ticket and runs no more, trips or inhibits itself has stopped of
         # its own accord. It must not start again of its own accord when the cause goes away.
-        if zsw & ZSW_RUNNING:
+        if zsw & _MOTION == ZSW_RUNNING:
             self.ran = True
-        elif self.ran:
+        elif self.ran or zsw & _TROUBLE:
             self.revoke()
-        if zsw & (ZSW_FAULT | ZSW_INHIBIT):
-            self.revoke()
+        # So has one that had its speed and stands still while nothing else was told: its mains
+        # were away, and it powered up and runs again before anything else could show it.
+        order = self._order
+        if order >= 0:
+            near = self.near
+            if self._arrived:
+                if (self.hiw + (near >> 1)) & 0xFFFF <= near:  # 1 %
+                    self.revoke()
+            elif (self.hiw - order + near) & 0xFFFF <= 2 * near:
+                self._arrived = True
 
     def __repr__(self):
         return "<drive %d ZSW %04X HIW %04X>" % (self.address, self.zsw, self.hiw)

@@ -16,11 +16,24 @@ class UssError(Exception):
 
 
 class NoContact(UssError):
-    """The drive does not answer, or nothing is sent to it."""
+    """The drive does not answer, or nothing is sent to it.
+
+    trouble: what came instead of valid answers, one of SILENCE, NOISE, OTHER_LENGTH, OTHER_ADDRESS
+    and WRONG_CHECK of `receiver`; None when nothing is sent.
+    """
+
+    def __init__(self, text, trouble=None):
+        super().__init__(text)
+        self.trouble = trouble
 
 
 class TimedOut(UssError):
     """The drive answers, but not to this parameter task."""
+
+
+class FallsSilent(TimedOut):
+    """The drive answers telegrams without this parameter task, but none with it. The task was
+    withdrawn, so that the drive is not lost by it. Whether it has written, nobody knows."""
 
 
 class NotStarted(UssError):

@@ -57,6 +57,9 @@ class GENERIC:
     has_indices = True
     has_eeprom_tasks = True  # 11...14, which write RAM and EEPROM; else `save` does it
     first_index = 1  # of an array: the specification counts positions, the drives from 0
+    # An index other than 0 goes with the tasks for arrays, 6...8, 11, 12 (C-4.2.2). False: the
+    # family is known to take it with 1...3, 13 and 14, or has no arrays.
+    has_array_tasks = True
 
     # The line: code of the parameter -> bits per second; as the drive is delivered.
     baud_codes = {}
@@ -123,6 +126,7 @@ class MM3(GENERIC):
     has_indices = False
     has_eeprom_tasks = False
     first_index = 0
+    has_array_tasks = False
     baud_codes = _baud_codes(3, 7)
     baud = 9600
     baud_number = 92
@@ -176,6 +180,7 @@ class MM420(GENERIC):
     pzd_choices = range(0, 5)  # (?)
     takes_broadcast = True  # (?) the manuals ask for the specification's PKW area, nobody saw one
     first_index = 0
+    has_array_tasks = False  # it has them, and takes an index with the others (MM420 manual)
     baud_codes = _baud_codes(3, 9)  # (?) the ends of the range
     baud = 9600
     link_index = profiles.COM_LINK
@@ -246,6 +251,7 @@ class V20(MM440):
 
     name = "SINAMICS V20"
     layout = Layout(VARIABLE, 2)
+    has_array_tasks = True
     baud_codes = _baud_codes(6, 12)
     baud = 38400
     fault_format = "F%d"
@@ -262,6 +268,7 @@ class CU240S(MM440):
     besides the link, the scaling and the arrays."""
 
     name = "SINAMICS G120 CU240S"
+    has_array_tasks = True
 
 
 class G120(GENERIC):

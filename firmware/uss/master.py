@@ -20,10 +20,11 @@ from micropython import const
 
 # From the bottom of the house up: an import inside an import inside an import takes stack.
 from uss import pkw, telegram
-from uss.drive import ANY, SILENT_MAX
+from uss.drive import ANY
 from uss.care import LOOK_US
 from uss.fast import frame
 from uss.receiver import COMING, SILENT, WAITING, Receiver
+from uss.silence import SPENT_MASK
 from uss.timing import elapsed
 from uss.turns import Turns
 
@@ -66,7 +67,7 @@ class Master(Turns):
     """
 
     def __init__(self, link, timing, mask, lost_us=LOST_US):
-        Turns.__init__(self, timing, mask)
+        Turns.__init__(self, timing, mask, lost_us)
         self.phase = LISTENING
         self.progress = 0
         self.patience_us = _BABBLE_US + _STUCK_US
@@ -77,7 +78,6 @@ class Master(Turns):
         self._foreign_at = 0  # `exchanges` then
         self.paused = False
         self._link = link
-        self._lost_us = lost_us
         self._receiver = Receiver(timing, mask)
         self._foreseen = link.interrupts and getattr(link, "foreseen", False)
         self._reply_window_us = self._receiver.window_us
@@ -97,11 +97,14 @@ class Master(Turns):
 
     # --- for the loop ---------------------------------------------------------------------------
 
-    def refresh(self, now):
-        """The loop says that it is alive. Whatever ran when it was not stays stopped."""
+    def refresh(self, now, looks=True):
+        """The loop says that it is alive. Whatever ran when it was not stays stopped.
+
+        looks: there is time to look after drives that are silent or wait too long, where due.
+        """
         self._refreshed_at = now
         self._dead_man = False
-        if (now - self._care.looked_at) & self._mask >= LOOK_US:
+        if looks and (now - self._care.looked_at) & self._mask >= LOOK_US:
             self._care.look(now)
             if self._shared and (self.exchanges - self._foreign_at) & 0xFFFF >= _SHARED_EXCHANGES:
                 self._shared = False
@@ -366,7 +369,7 @@ class Master(Turns):
 
     def _give_up(self, now):
         """The link does not get rid of a telegram. Try again; this is no progress."""
-        self._drive.miss(SILENT, now, self._lost_us, self._mask)
+        self._drive.miss(SILENT, now, self.lost_us, self._mask)
         self._begin_rest(now)
         self._quiet_since = now
         self._resting_since = (now - _BABBLE_US) & self._mask
@@ -396,11 +399,11 @@ class Master(Turns):
     def _miss(self, finding, now):
         """There was no valid reply: it is counted, and the exchange repeated if it is to be."""
         drive = self._drive
-        drive.miss(finding, now, self._lost_us, self._mask)
+        drive.miss(finding, now, self.lost_us, self._mask)
         if finding == telegram.BAD_ADDRESS:
             self._count_foreign()
-        if drive.silent > SILENT_MAX:
-            self.uneasy = True
+        if drive.outside or not drive.contact:
+            self._count_silence(drive, now)
         if drive.silent <= self.retries:
             if drive.outside:
                 drive.state = pkw.PENDING  # it is not over yet
@@ -408,3 +411,12 @@ class Master(Turns):
                 return  # it was removed meanwhile
             self._again = drive
             self._attention[ANY] = 1
+
+    def _count_silence(self, drive, now):
+        """It answered nothing, and costs the others so much of the line's time."""
+        spent_us = elapsed(now, self._receiver.sent_at, self._mask)
+        spent_us += self._start_interval_us + drive.size * self._character_us
+        self.silences = (self.silences + 1) & 0xFFFF
+        self.silences_us = (self.silences_us + spent_us) & SPENT_MASK
+        if drive.outside or not drive.was_running:
+            self.shared_us = (self.shared_us + spent_us) & SPENT_MASK

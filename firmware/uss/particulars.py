@@ -13,7 +13,8 @@ for it may be another drive that answers then. The panel has `survey` for it, wh
 
 from uss import families, pkw, profiles
 from uss.pkw import NO_PARAMETER
-from uss.scaling import Scale, pole_pairs
+from uss.pzd import FULL_SCALE
+from uss.scaling import CENTIHERTZ_PER_HERTZ, Scale, pole_pairs
 
 TOLERANCE = 1.001  # a limit that was rounded to a word of PZD2 is still within itself
 
@@ -52,6 +53,7 @@ class Particulars:
             for row in range(len(survey))
         ]
         self.scale = self._scale()
+        self._tell_speed()
         self._contact = drive.contacts
 
     def forget(self):
@@ -152,6 +154,14 @@ class Particulars:
         if scale is None or scale.reference_hertz is None and scale.reference_rpm is None:
             return told
         return scale
+
+    def _tell_speed(self):
+        """Let the engine know what 100 % of the actual value is, where that tells the speed."""
+        drive, scale = self._drive, self.scale
+        if scale is not None and drive.family.hiw_is_signed:
+            is_hertz = scale.absolute and scale.reference_hertz
+            full = scale.reference_hertz * CENTIHERTZ_PER_HERTZ if is_hertz else FULL_SCALE
+            drive.engine.tell_speed(round(full))
 
     def _own_scale(self):
         """What the values say of the scale; None when they lack what could change it."""

@@ -138,6 +138,7 @@ ERRORS = (
 NO_CHANGE_RIGHTS = const(-1)  # what `Job.error` holds after reply 8, which carries no number
 NO_PARAMETER = const(0)
 BEYOND_LIMITS = const(2)
+NO_INDEX = const(3)
 TOO_LONG = const(21)
 TOO_SMALL = const(102)
 
@@ -183,8 +184,10 @@ def name(number, index=0):
 # --- jobs ---------------------------------------------------------------------------------------
 
 # States of a job. While PENDING it belongs to the engine, before and after to the loop.
-NEW, PENDING, DONE, REFUSED, TIMED_OUT = range(5)
-STATE_TEXTS = ("new", "pending", "done", "refused", "timed out")
+# UNANSWERED: the drive answers telegrams without the task, but not those with it. Whether a write
+# that ended as TIMED_OUT or UNANSWERED was carried out, nobody knows.
+NEW, PENDING, DONE, REFUSED, TIMED_OUT, UNANSWERED = range(6)
+STATE_TEXTS = ("new", "pending", "done", "refused", "timed out", "unanswered")
 
 # The form of a parameter channel: its characters with fixed length, 6 or 8. With variable length
 # this bit, and in the low byte the most characters that a task may have.
@@ -214,7 +217,8 @@ class Job:
     def __init__(self, task, number, index=0, high=0, low=0):
         self.words = bytearray(8)  # PKE, IND, PWE1, PWE2 as four fixed words have them
         self.since = 0  # for the engine: when it was begun,
-        self.tries = 0  # and how often it was sent, as far as that matters
+        self.tries = 0  # how often it was sent, as far as that matters,
+        self.silences = 0  # how often in a row the drive was silent on it, see `channel`
         self.aim(task, number, index, high, low)
 
     def aim(self, task, number, index=0, high=0, low=0):

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Parameters that are arrays: one element, all of them, how many there are (tasks 6...9, 11, 12).
 
-The panel does without: a MICROMASTER 4 gives one element to `pkw.read(number, index)` as well. A
-G120 prefers these tasks. All elements at once need variable length (P2013 = 127). Their index
-counts as the drive does, from 0 or from 1.
+The panel does without: a MICROMASTER 4 gives one element to `pkw.read(number, index)` as well. By
+the specification (C-4.2.2) an index belongs to these tasks alone, and a G120 prefers them: what
+`families` says of a drive decides in `bus` and `plc`, by `with_array_task`. All elements at once
+need variable length (P2013 = 127). Their index counts as the drive does, from 0 or from 1.
 
     job = read_all(304)                         # or write_element_word(304, 2, 230)
     drive.ask(job)                              # ... later:
@@ -16,6 +17,22 @@ from uss import pkw
 from uss.pkw_long import LongJob
 
 WORDS_MAX = const(124)  # of an answer, behind PKE and IND
+
+# For one value -> for an element of an array.
+_ARRAY_TASKS = {
+    pkw.READ: pkw.READ_ELEMENT,
+    pkw.WRITE_WORD: pkw.WRITE_ELEMENT_WORD,
+    pkw.WRITE_DOUBLE: pkw.WRITE_ELEMENT_DOUBLE,
+    pkw.WRITE_DOUBLE_EEPROM: pkw.WRITE_ELEMENT_DOUBLE_EEPROM,
+    pkw.WRITE_WORD_EEPROM: pkw.WRITE_ELEMENT_WORD_EEPROM,
+}
+
+
+def with_array_task(job, family):
+    """Aim a job of `pkw` by the task that drives of the family take its index with; answer it."""
+    if job.index and family.has_array_tasks and job.task in _ARRAY_TASKS:
+        job.aim(_ARRAY_TASKS[job.task], job.number, job.index, job.high, job.low)
+    return job
 
 
 def read_element(number, index):

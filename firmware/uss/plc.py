@@ -3,7 +3,7 @@
 
 For people who know them: each block is an object that is called once a scan, with its inputs by
 name; its outputs are its attributes. On top of the engine, which goes on by itself between the
-calls. Never imported by the panel. README.md says where each pin and code went.
+calls. Never imported by the panel. plc.md says where each pin and code went.
 
     with Port(open_bus, board.clock) as port:   # open_bus(baud) answers a `master.Master`
         init, motor, frequency = USS_INIT(port), USS_CTRL(port), USS_RPM_R(port)

@@ -9,7 +9,7 @@ the port that they share; one of them at a time is at work there.
     if frequency.DONE and not frequency.ERROR: print(frequency.VALUE)
 """
 
-from uss import pkw, status
+from uss import pkw, pkw_array, status
 
 FLOAT_MAX = 3.4028235e38  # the largest number of a REAL
 
@@ -71,6 +71,7 @@ class Parameter:
     def _ask(self, drive, number, index, value, eeprom):
         try:
             job = self._make_job(number, index, value, eeprom)
+            pkw_array.with_array_task(job, self._port.family(drive.address))
         except (ValueError, TypeError, OverflowError):
             self._end(status.ILLEGAL_COMMAND, status.WRONG_VALUE_TYPE)
             return

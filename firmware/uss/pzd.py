@@ -135,6 +135,10 @@ class Scaling:
         self.reference_centihertz = reference_centihertz
         self.absolute = absolute
 
+    def full_scale(self):
+        """The count that stands for the reference."""
+        return self.reference_centihertz if self.absolute else FULL_SCALE
+
     def limit_centihertz(self):
         """The largest frequency that a word can carry: 200 % of the reference, or 327.67 Hz."""
         if self.absolute:

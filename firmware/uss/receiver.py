@@ -18,11 +18,21 @@ from uss.fast import agreeing, is_reply
 from uss.timing import BITS_PER_CHARACTER, elapsed
 
 WAITING = const(-1)  # nothing to say yet
-# 0 is telegram.GOOD, 1...4 are the BAD_ findings of telegram.judge.
+# 0 is telegram.GOOD, 1...4 are the BAD_ findings of telegram.judge; BAD_LENGTH: it is whole.
 SILENT = const(5)  # no STX within the response delay
 CUT_OFF = const(6)  # the residual run time passed before the telegram was complete
+GARBLED = const(7)  # LGE is not the agreed one, and what came is no telegram of that length either
 
-FINDINGS = telegram.FINDINGS + ("no reply", "residual time expired")
+FINDINGS = telegram.FINDINGS + ("no reply", "residual time expired", "wrong length and content")
+
+# What a finding amounts to for somebody who looks for the fault. A whole telegram of another
+# length is another thing than noise: its drive has another P2013, or P2012, than it should.
+SILENCE = const(0)
+NOISE = const(1)
+OTHER_LENGTH = const(2)
+OTHER_ADDRESS = const(3)
+WRONG_CHECK = const(4)
+TROUBLES = (SILENCE, NOISE, OTHER_LENGTH, WRONG_CHECK, OTHER_ADDRESS, SILENCE, NOISE, NOISE)
 
 COMING = const(-1)  # what a link says of characters that it will announce when they are over
 
@@ -60,7 +70,7 @@ class Receiver:
         self._sixteen_us = 16 * BITS_PER_CHARACTER * 1_000_000 // timing.baud
         self._mask = mask
         self._awaited = None
-        self._sent_at = 0
+        self.sent_at = 0
         self._began_at = 0
         self._echoed = 0  # characters of the request that have come back
         self._coming = False  # the link has announced nothing yet, but will
@@ -73,7 +83,7 @@ class Receiver:
         characters; `may_reply_alike()`. sent_at: when the last stop bit of the request had left.
         """
         self._awaited = awaited
-        self._sent_at = sent_at
+        self.sent_at = sent_at
         self.heard_at = sent_at
         self.count = 0
         self.stray = False
@@ -125,14 +135,36 @@ class Receiver:
             return WAITING
         size = buffer[1] + 2
         if not awaited.fits(size - _FRAME):
-            return telegram.BAD_LENGTH
+            return self._judge_other(count, size)
         if count < size:
             return WAITING
         passed_us = (self.heard_at - self._began_at) & self._mask
         if passed_us > self._limit_us() + link.resolution_us:
             return CUT_OFF
+        if count > size:
+            return GARBLED
         # The ADR of the request: the drive may have been given another address since.
         return telegram.judge(buffer, count, awaited.request[2], size - _FRAME)
+
+    def _judge_other(self, count, size):
+        """LGE is none that is awaited: it may be a telegram of another length, or noise."""
+        buffer = self.buffer
+        if not 5 <= size <= telegram.SIZE_MAX or count > size:
+            return GARBLED
+        if count < size:
+            return WAITING
+        finding = telegram.judge(buffer, count, self._awaited.request[2], None)
+        if finding == telegram.BAD_BCC:
+            return GARBLED
+        return finding or telegram.BAD_LENGTH
+
+    def _is_other(self):
+        """Whether what has begun is none of the lengths that are awaited."""
+        return self.count >= 2 and not self._awaited.fits(self.buffer[1] + 2 - _FRAME)
+
+    def _ended_us(self, link):
+        """So long after its last character what is not awaited is over: nobody waits for it."""
+        return self._start_interval_us + link.resolution_us + 1
 
     def _is_echo(self, added, pause_us):
         """Whether the first characters are the request come back. pause_us: before them, at least.
@@ -171,14 +203,14 @@ class Receiver:
         buffer = self.buffer
         self.echo = True
         self.stray = False
-        self.heard_at = self._sent_at
+        self.heard_at = self.sent_at
         added -= count
         if not added:
             return WAITING
         for index in range(added):
             buffer[index] = buffer[count + index]
         began_at = (link.received_at - (added * self._sixteen_us >> 4)) & self._mask
-        pause_us = elapsed(began_at, self._sent_at, self._mask) + _ROUNDING_US
+        pause_us = elapsed(began_at, self.sent_at, self._mask) + _ROUNDING_US
         self.heard_at = link.received_at
         if pause_us + link.resolution_us < self._start_interval_us or buffer[0] != _STX:
             self.stray = True
@@ -207,10 +239,13 @@ class Receiver:
         A link with interrupts announces what it hears, so that only the time-outs are due. Another
         one is looked at when the telegram can be complete at the earliest, then every _POLL_US.
         """
-        passed_us = elapsed(now, self._sent_at, self._mask)
+        passed_us = elapsed(now, self.sent_at, self._mask)
         if self.count:
             left = self._limit_us() + link.resolution_us + 1
             left -= elapsed(now, self._began_at, self._mask)
+            if not self._coming and self._is_other():
+                silent_us = elapsed(now, self.heard_at, self._mask)
+                left = min(left, self._ended_us(link) - silent_us)
         elif self._coming:
             left = self.window_us + self._limit_us() + link.resolution_us - passed_us
         else:
@@ -226,14 +261,16 @@ class Receiver:
         self._coming = added == COMING
         if self.count:
             passed_us = elapsed(now, self._began_at, self._mask)
+            finding = GARBLED if self._is_other() else CUT_OFF
             if passed_us <= self._limit_us() + link.resolution_us:
-                return WAITING
-            finding = CUT_OFF
+                silent_us = elapsed(now, self.heard_at, self._mask)
+                if finding == CUT_OFF or self._coming or silent_us < self._ended_us(link):
+                    return WAITING
         else:
             window_us = self.window_us
             if self._coming:
                 window_us += self._limit_us() + link.resolution_us
-            if elapsed(now, self._sent_at, self._mask) < window_us:
+            if elapsed(now, self.sent_at, self._mask) < window_us:
                 return WAITING
             finding = telegram.BAD_START if self.stray or self._coming else SILENT
         if self._coming:

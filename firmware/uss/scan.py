@@ -5,10 +5,15 @@ A node sends a mirror telegram back as it came and does nothing else with it (sp
 A-5.3). The net data are zeros: no parameter task, and wherever a control word may stand its bit 10
 is 0, so that even a node that took it for an ordinary telegram would obey nothing in it.
 
+A drive that has heard a telegram may trip when it hears no more (P2014). So whoever was found and
+is not on the bus is asked again and again until the scan is over. Before that each of them gets
+OFF1 and says what it is (`enquiry`), and when it will trip unless it is added to the bus.
+
     scan = Scan(bus, clock.ticks_mask)
     while not scan.step(clock.ticks_us()):      # in the own loop, which keeps the bus going
         ...
-    scan.found                                  # {3: 12}: node 3 takes 12 net characters
+    for address, node in scan.nodes.items():
+        bus.add(address, node.family, node.layout)
 
 A node of fixed length answers only its own one: most usual first, NET_COUNTS are tried at every
 address. Whoever is silent costs a reply time-out each time; `longest_ms` says it all together.
@@ -16,9 +21,12 @@ address. Whoever is silent costs a reply time-out each time; `longest_ms` says i
 
 from micropython import const
 
-from uss.errors import NoContact
+from uss.enquiry import Node, Question, enquiry
+from uss.errors import NoContact, UssError
 from uss.master import CLOSED, LISTENING, OFF, PAUSE_LOOK_US
+from uss.pzd import ZSW_RUNNING
 from uss.receiver import SILENT
+from uss.silence import SHARE
 from uss.single import DONE, PENDING, Mirror
 from uss.timing import BAUD_RATES, FRAME_CHARACTERS, Timing, elapsed
 
@@ -33,42 +41,63 @@ EVERY_NET_COUNT = range(2, 42, 2)  # of all fixed layouts: PKW 0, 3, 4 and PZD 0
 RATES = (9600, 19200, 38400, 57600, 115200, 187500, 4800, 2400, 76800, 93750, 1200, 600, 300)
 
 TRIES = const(3)  # when something came back, but not the telegram
-SHARE = const(10)  # one part in so many of the line's time, when drives are in contact
+ACCOUNT_US = const(10_000)  # the bus takes so long to charge a silence to that share
+KEEP_US = const(100_000)  # a node that was found is asked again after so long,
+KEEP_MAX = const(2)  # but so many of them in a row at the most
+QUESTION_TRIES = const(6)  # for an answer: a drive may lag
+SILENCES = const(2)  # to a question: it has no answer
 
 
 class Scan:
     """bus: a `Master`. mask: the clock's period - 1. addresses: 0...31 in the order of asking.
-    net_counts: the lengths to try, in net characters, even, 2...250.
+    net_counts: the lengths to try, in net characters, even, 2...250. enquire: False sends mirror
+    telegrams only, and `nodes` and `will_trip` stay empty.
 
     Fields to look at: `found`, a dictionary address -> net characters; `variable`, a set of those
     that take any length; `unclear`, address -> finding of `receiver`, where something came that
     was no answer: two nodes of one address, or a fault on the line; `asked`, telegrams so far;
-    `over`, all is asked.
+    `nodes`, address -> `enquiry.Node`, of those that are not on the bus; `will_trip`, address ->
+    milliseconds, those of them that trip when they hear no more, None where the drive does not
+    tell; `over`, all is asked; `stopped`, a stop or `end` ended it.
 
     Drives of the bus are found without being asked as long as they answer. While one of them does,
-    the scan takes a tenth of the line's time.
+    the scan asks whoever may not be there only in the share of the line's time that silent drives
+    have, see `silence`; where those that run leave none, it waits. A stop of any of them ends the
+    scan.
     """
 
-    def __init__(self, bus, mask, addresses=ADDRESSES, net_counts=NET_COUNTS):
+    def __init__(self, bus, mask, addresses=ADDRESSES, net_counts=NET_COUNTS, enquire=True):
         self.found = {}
         self.variable = set()
         self.unclear = {}
+        self.nodes = {}
+        self.will_trip = {}
         self.asked = 0
         self.over = False
+        self.stopped = False
         self._bus = bus
         self._mask = mask
         self._addresses = addresses
         self._net_counts = net_counts
+        self._enquires = enquire
+        self._stops = self._count_stops()
         self._position = 0  # in the addresses, once for every length
         self._tries = 0
+        self._silences = 0
         self._another_length = False  # the next telegram is to show whether any length will do
-        self._mirror = None  # the telegram that is under way
-        self._ended_at = 0  # when the last one was through
-        self._rest_us = 0  # so long the line belongs to the drives
+        self._telegram = None  # the one that is under way, and who takes what became of it
+        self._take = None
+        self._silent_at = None  # when the last one that nobody answered was through
+        self._kept = {}  # address -> when it was asked last: found, and not on the bus
+        self._kept_in_a_row = 0
+        self._enquiring = None  # the address whose turn it is,
+        self._questions = None  # those to it,
+        self._question = None  # and the one that waits for an answer
 
     @property
     def longest_ms(self):
-        """How long all of it takes, in ms, when nobody answers; with what the drives take."""
+        """How long it takes to ask everybody, in ms, when nobody answers; with what the drives
+        take. Those who are found are asked in between: that takes up to three times as long."""
         total_us = 0
         for net_count in self._net_counts:
             total_us += len(self._addresses) * _probe_us(self._bus.timing, net_count)
@@ -82,32 +111,70 @@ class Scan:
         """
         if self._bus.phase in (OFF, CLOSED) and not self.over:
             raise NoContact("the bus is %s" % ("off" if self._bus.phase == OFF else "closed"))
-        mirror = self._mirror
-        if mirror is not None:
-            if mirror.state == PENDING:
+        if self._count_stops() != self._stops:
+            self.end()
+        if self.over:
+            return True
+        telegram = self._telegram
+        if telegram is not None:
+            if telegram.state == PENDING:
                 return False
-            self._mirror = None
-            self._ended_at = now
-            self._judge(mirror)
-        elif self._rest_us and elapsed(now, self._ended_at, self._mask) >= self._rest_us:
-            self._rest_us = 0
-        if not self.over and not self._rest_us and self._bus.phase != LISTENING:
-            self._ask()
+            self._telegram = None
+            self._take(telegram, now)
+        if self._bus.phase != LISTENING:
+            self._go_on(now)
         return self.over
+
+    def end(self):
+        """Ask nobody any more, at once. Whoever was found and not asked what it is may trip."""
+        if not self.over:
+            for address in self._kept:
+                self.will_trip.setdefault(address, None)
+            self.over = self.stopped = True
+
+    def _go_on(self, now):
+        """The next telegram: to somebody who was found, or to look for others."""
+        if self._keep(now):
+            return
+        if self._silent_at is not None:
+            if elapsed(now, self._silent_at, self._mask) < ACCOUNT_US:
+                return
+            self._silent_at = None
+        if self._bus.silence_wait_us():
+            return
+        if not self._is_searched():
+            self._ask()
+        elif not self._enquires or not self._enquire():
+            self.over = True
+
+    def _send(self, telegram, take):
+        """Hand in a telegram; `take` is told of its end. False: others wait already."""
+        try:
+            self._bus.post(telegram)
+        except RuntimeError:
+            return False
+        self._telegram = telegram
+        self._take = take
+        return True
+
+    # --- who is there ---------------------------------------------------------------------------
+
+    def _is_searched(self):
+        return self._position >= len(self._addresses) * len(self._net_counts)
 
     def _ask(self):
         """Send the next telegram that is worth it."""
-        while self._position < len(self._addresses) * len(self._net_counts):
+        while not self._is_searched():
             row, place = divmod(self._position, len(self._addresses))
             address, net_count = self._addresses[place], self._net_counts[row]
             drive = self._listed(address)
             if self._another_length:
-                self._send(address, self.found[address] + 2)
+                self._probe(address, self.found[address] + 2)
                 return
             if address in self.found:
-                self._go_on()
+                self._next()
             elif drive is None or not drive.contact and drive.silent:
-                self._send(address, net_count)
+                self._probe(address, net_count)
                 return
             elif drive.contact:
                 self.found[address] = drive.layout.net_count
@@ -115,42 +182,97 @@ class Scan:
                     self.variable.add(address)
             else:
                 return  # it was not asked yet; the list will soon have come round to it
-        self.over = True
 
-    def _send(self, address, net_count):
-        mirror = Mirror(address, bytes(net_count))
-        try:
-            self._bus.post(mirror)
-        except RuntimeError:  # other telegrams outside the list wait already
-            return
-        self._mirror = mirror
-        self.asked += 1
-        if self._has_contact():
-            self._rest_us = (SHARE - 1) * _probe_us(self._bus.timing, net_count)
+    def _probe(self, address, net_count):
+        if self._send(Mirror(address, bytes(net_count)), self._judge):
+            self.asked += 1
 
-    def _judge(self, mirror):
+    def _judge(self, mirror, now):
         """What came back, and what to ask next."""
         address = mirror.node
+        self._note_silence(mirror, now)
         self._tries += 1
         if self._another_length:
             self._another_length = False
             if mirror.state == DONE:
                 self.variable.add(address)
-            self._go_on()
+            self._next()
         elif mirror.state == DONE:
             self.found[address] = mirror.size - FRAME_CHARACTERS
             self.unclear.pop(address, None)
             self._another_length = True
+            if self._listed(address) is None:
+                self._kept[address] = now
         elif mirror.finding == SILENT:
-            self._go_on()
+            self._next()
         else:
             self.unclear[address] = mirror.finding
             if self._tries >= TRIES:
-                self._go_on()
+                self._next()
 
-    def _go_on(self):
+    def _next(self):
         self._position += 1
         self._tries = 0
+
+    def _note_silence(self, telegram, now):
+        if telegram.state != DONE and self._has_contact():
+            self._silent_at = now
+
+    # --- who was found: none is to trip while this goes on --------------------------------------
+
+    def _keep(self, now):
+        """Ask whoever was found and waits longest, if it is high time; whether one is asked."""
+        longest_us = KEEP_US
+        waits = None
+        for address, asked_at in self._kept.items():
+            waited_us = elapsed(now, asked_at, self._mask)
+            if waited_us >= longest_us:
+                waits, longest_us = address, waited_us
+        if waits is None or self._kept_in_a_row >= KEEP_MAX:
+            self._kept_in_a_row = 0
+            return False
+        if self._send(Mirror(waits, bytes(self.found[waits])), self._note):
+            self._kept_in_a_row += 1
+        return True
+
+    def _note(self, mirror, now):
+        self._kept[mirror.node] = now
+        self._note_silence(mirror, now)
+
+    def _enquire(self):
+        """The next question to somebody who was found; False when nobody is left to be asked."""
+        if self._questions is None:
+            left = [address for address in sorted(self._kept) if address not in self.nodes]
+            if not left:
+                return False
+            address = self._enquiring = left[0]
+            node = Node(self.found[address], address in self.variable)
+            self.nodes[address] = node
+            self._questions = enquiry(node)
+            self._question = next(self._questions)
+        self._send(Question(self._enquiring, *self._question), self._take_answer)
+        return True
+
+    def _take_answer(self, question, now):
+        address = self._enquiring
+        self._kept[address] = now
+        self._tries += 1
+        if question.state != DONE:
+            self._note_silence(question, now)
+            if question.finding == SILENT:
+                self._silences += 1
+            if self._silences < SILENCES and self._tries < QUESTION_TRIES:
+                return  # once more
+        self._tries = self._silences = 0
+        try:
+            self._question = self._questions.send(question.value())
+        except StopIteration:
+            self._questions = None
+            off_time_ms = self.nodes[address].off_time_ms
+            if off_time_ms != 0:
+                self.will_trip[address] = off_time_ms
+
+    # --- the bus --------------------------------------------------------------------------------
 
     def _listed(self, address):
         for drive in self._bus.drives:
@@ -164,6 +286,9 @@ class Scan:
                 return True
         return False
 
+    def _count_stops(self):
+        return sum([drive.stops for drive in self._bus.drives])
+
 
 class RateScan:
     """Looks for the baud rate of a line on which nothing is known, and who is there.
@@ -171,6 +296,10 @@ class RateScan:
     open_bus: function baud -> a `Master` without drives, on a link of that rate; the caller lets
     go of the one before and keeps the new one going. nothing_runs: ValueError unless it is True. A
     drive hears noise at any rate but its own, and one that runs may trip for want of telegrams.
+    bus: the `Master` whose line it is so far, if there is one, kept going by the caller until its
+    phase is OFF. UssError unless each of its drives is seen to stand, and no other master is heard
+    there; it is put off before the first rate is tried, and those of its drives trip whose P2014
+    is set. The others are as of `Scan`.
 
         scan = RateScan(open_bus, clock.ticks_mask, nothing_runs=True)
         while not scan.step(clock.ticks_us()): ...
@@ -184,7 +313,7 @@ class RateScan:
 
     def __init__(
         self, open_bus, mask, nothing_runs=False, rates=RATES,
-        addresses=ADDRESSES, net_counts=NET_COUNTS,
+        addresses=ADDRESSES, net_counts=NET_COUNTS, enquire=True, bus=None,
     ):  # fmt: skip
         if nothing_runs is not True:
             raise ValueError("only when no motor runs on this line: say nothing_runs=True")
@@ -202,13 +331,26 @@ class RateScan:
         self._next = 0
         self._addresses = addresses
         self._net_counts = net_counts
+        self._enquires = enquire
         self._bus = None
+        self._left = bus  # until it is off
+        self._is_leaving = False
         self._foreign = 0  # what the bus had counted when it sent its first telegram
 
     @property
     def found(self):
         """As of `Scan`: who answered, address -> net characters."""
         return self.scan.found if self.scan else {}
+
+    @property
+    def nodes(self):
+        """As of `Scan`: what those are who answered, address -> `enquiry.Node`."""
+        return self.scan.nodes if self.scan else {}
+
+    @property
+    def will_trip(self):
+        """As of `Scan`: who of them trips when he hears no more, address -> milliseconds."""
+        return self.scan.will_trip if self.scan else {}
 
     @property
     def longest_ms(self):
@@ -221,10 +363,13 @@ class RateScan:
         return total_us // 1000
 
     def step(self, now):
-        """Do what is next; True when it is over. ValueError: the bus opened has drives."""
+        """Do what is next; True when it is over. ValueError: the bus opened has drives. UssError:
+        a drive of the bus before is not seen to stand, or another master is heard."""
         if self.over:
             return True
-        if self.scan is None:
+        if self._left is not None:
+            self._leave()
+        elif self.scan is None:
             self._open()
         elif self._hears_a_master():
             self.line_in_use = True
@@ -233,6 +378,26 @@ class RateScan:
         elif self.scan.step(now):
             self._end_rate()
         return self.over
+
+    def end(self):
+        """Try no further rate, ask nobody any more, at once."""
+        self.over = True
+        if self.scan:
+            self.scan.end()
+
+    def _leave(self):
+        """Put the bus off whose drives all stand."""
+        bus = self._left
+        if bus.phase == OFF and (self._is_leaving or not bus.drives):
+            self._left = None
+        elif not self._is_leaving:
+            for drive in bus.drives:
+                if not drive.contact or drive.may_run() or drive.zsw & ZSW_RUNNING:
+                    raise UssError("drive %d is not seen to stand: no other rate" % drive.address)
+            if bus.is_line_in_use() or bus.is_line_shared():
+                raise UssError("another master is on the line: no other rate")
+            bus.off()
+            self._is_leaving = True
 
     def _hears_a_master(self):
         """Whether one talks before the first telegram, or was heard since."""
@@ -245,7 +410,7 @@ class RateScan:
         self._bus = bus = self._open_bus(self._rates[self._next])
         if bus.drives:
             raise ValueError("a bus with drives would send them telegrams that nobody knows yet")
-        self.scan = Scan(bus, self._mask, self._addresses, self._net_counts)
+        self.scan = Scan(bus, self._mask, self._addresses, self._net_counts, self._enquires)
 
     def _end_rate(self):
         rate = self._rates[self._next]

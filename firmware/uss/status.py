@@ -133,10 +133,13 @@ def of_job(job, width, reply_code):
     """The code of a parameter job that ended.
 
     width: pkw.WORD or pkw.DOUBLE, what was expected. reply_code: what the drive's last reply was
-    worth, for a job that timed out: the drive was silent, or did answer, but something else.
+    worth, for a job that timed out: the drive was silent, or did answer, but something else. One
+    on which alone the drive is silent is NO_ANSWER.
     """
     if job.state == pkw.TIMED_OUT:
         return reply_code or PARAMETER_REPLY
+    if job.state == pkw.UNANSWERED:
+        return NO_ANSWER
     if job.state != pkw.DONE:
         return PARAMETER_REPLY
     if job.width == width:

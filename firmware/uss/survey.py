@@ -2,11 +2,11 @@
 """What must be known of a drive before it may be started, read from it again and again.
 
 Works on the loop's side, through parameter jobs, which cost the bus nothing: every telegram has a
-parameter channel. It reads the rows of `profiles.SURVEY` at once when contact is made and one
-every REREAD_US from then on, so that a change made at the drive itself is noticed. What was known
-is forgotten when contact is lost. `recheck` has all of it read again soon.
+parameter channel. It reads the rows of `profiles.ROWS` at once when contact is made and one every
+REREAD_US from then on, so that a change made at the drive itself is noticed. What was known is
+forgotten when contact is lost. `recheck` has all of it read again soon.
 
-    survey = Survey(drive, clock.ticks_mask)
+    survey = Survey(drive, clock.ticks_mask, spare_jobs())
     survey.step(now)                # each step of the loop
     if survey.complete: survey.scaling.hsw(1000)
     survey.recheck()                # before a START; survey.unchecked counts down to 0
@@ -15,38 +15,93 @@ is forgotten when contact is lost. `recheck` has all of it read again soon.
 from micropython import const
 
 from uss import pkw, profiles, pzd
+from uss.drive import COUNTERS, NODES
 from uss.timing import elapsed
 
-REREAD_US = const(200_000)
+REREAD_US = const(100_000)
 _UNKNOWN = const(-1)
+_JOBS = const(2)  # on their way at a time: its own, and perhaps
+_SECOND = const(1)  # another one,
+_SPARES = const(4)  # of so many; a list of four is never made smaller, so it takes no memory
+_NOTHING = const(-1)  # no row
+_GOOD = COUNTERS.index("good")
+_COUNTED_BESIDE = const(64)  # telegrams that a drive may count and this master does not,
+_COUNTED_LATE = const(32)  # and that it may count later than it answers them
+
+# Of the frequencies that a drive can have, as floating-point singles: the exponents as they are
+# coded, those that differ from 0.00 and from infinity.
+_EXPONENT_MIN = const(119)  # 2**-8 Hz and more
+_EXPONENT_MAX = const(136)  # less than 2**10 Hz
+_MANTISSA_BITS = const(148)  # mantissa * 25 >> 148 - exponent is in 0.01 Hz
+_CENTI = const(100)
+_CENTIHERTZ_MAX = const(65_000)
+
+_UNANSWERED_MAX = const(2)  # then it is taken to be missing, and asked for before a START alone
+_ABSENT = (pkw.NO_PARAMETER, pkw.NO_INDEX)  # the drive has no such parameter
+RIGHT = const(-1)  # no row is wrong
+SOURCES = tuple(row for _, row, _, _, _ in profiles.MEANING)
+
+
+def spare_jobs():
+    """Second jobs for surveys that ask a lot: those of drives that are shown, or were just now.
+
+    With a second one no telegram goes without a question while somebody waits for the answers. To
+    have one for each survey would take memory for nothing.
+    """
+    return [pkw.read(0) for _ in range(_SPARES)]
 
 
 class Survey:
-    """drive: a `Drive`. mask: the clock's period - 1.
+    """drive: a `Drive`. mask: the clock's period - 1. spares: `spare_jobs()`, those of
+    several surveys.
 
-    values: for each row of profiles.SURVEY the number read, or _UNKNOWN.
-    complete: all rows are known. scaling: a `pzd.Scaling`, or None while it is not known.
-    unreadable: the drive refused one of them. version: counts the changes of all this.
+    values: for each row of profiles.ROWS the number read, or _UNKNOWN; 0 for profiles.LATER as
+    long as nobody has read them.
+    complete: all rows are known. scaling: a `pzd.Scaling` of the setpoint, or None while it is not
+    known; actual: that of HIW, or None while nobody knows that HIW tells the frequency.
+    wrong: for each subject of profiles.MEANING the row that is known and wrong, or RIGHT.
+    unreadable: the drive refused one of them, or fell silent on it. version: counts the changes
+    of all this.
     unchecked: how many rows `recheck` has still to read.
+    restarted: since `recheck` the drive has begun to count its telegrams anew while it was wanted
+    to run: it was without its mains.
     """
 
-    def __init__(self, drive, mask):
+    def __init__(self, drive, mask, spares):
+        rows = len(profiles.ROWS)
         self.drive = drive
-        self.values = [_UNKNOWN] * len(profiles.SURVEY)
+        self.values = [0 if row in profiles.LATER else _UNKNOWN for row in range(rows)]
         self.complete = False
         self.scaling = None
+        self.actual = None
+        self.wrong = [RIGHT] * profiles.SUBJECTS
         self.unreadable = False
         self.version = 0
         self.unchecked = 0
+        self.restarted = False
         self._mask = mask
         self._job = pkw.read(0)
-        self._words = [_UNKNOWN] * (2 * len(profiles.SURVEY))  # as last read: high, low, high ...
-        self._row = 0
-        self._asked = False
-        self._stale = False  # what was asked was asked too early to count
-        self._changed = False  # what was read is new, and still to be judged
+        self._second = None  # of its jobs, while it has one of the spares
+        self._spares = spares
+        self._asked = bytearray(_JOBS)  # the row that each of the two reads
+        self._first = 0  # which was asked first of those on their way
+        self._waiting = 0  # so many are on their way
+        self._stale = 0  # so many of them were asked too early to count
+        self._unanswered = bytearray(rows)  # so often the drive fell silent on it
+        self._row = profiles.FIRST  # that is next in the round
+        self._watched = 0  # of profiles.WATCHED
+        self._round_is_next = False  # and not one of profiles.WATCHED
+        self._changed = _NOTHING  # this row is new, and still to be judged
         self._read_at = 0
+        self._tells_count = True  # as far as anybody knows
+        self._counts = False  # it has been read since `count_anew`
+        self._counts_all = False  # the telegrams to others as well
+        self._moves = False  # since there is contact
+        self._exchanges = 0  # with the drive, when its counter was read,
+        self._answers = 0  # and those of them that it has answered,
+        self._answers_asked = 0  # and had, when it was asked for the present count
         self._contact = 0  # drive.contacts to which the values belong
+        self._knows = False  # something has been asked since all was forgotten
 
     def lowest(self):
         """The lowest frequency of the drive, P1080, in centihertz. Once complete."""
@@ -58,12 +113,23 @@ class Survey:
 
     def recheck(self):
         """Have every row read again soon: the drive gets more than its turn meanwhile."""
+        self._knows = True
         self.unchecked = len(self.values)
-        if self._changed:
-            self._changed = False
-            self._judge()
-        self._row = 0
-        self._stale = self._asked
+        self._tells_count = True
+        self.settle()
+        self._row = profiles.FIRST
+        self._stale = self._waiting
+
+    def count_anew(self):
+        """From the next count of telegrams on fewer of them mean that the drive was reset."""
+        self.restarted = False
+        self._counts = False
+        self._tells_count = True
+
+    def take_restart(self):
+        """`restarted`, which is forgotten by this."""
+        restarted, self.restarted = self.restarted, False
+        return restarted
 
     def drop_recheck(self):
         """Nobody waits for it any more."""
@@ -76,91 +142,220 @@ class Survey:
         reread_us: once all is known, a row is read again so long after the one before.
         """
         drive = self.drive
-        if not drive.contact or drive.contacts != self._contact:
-            self._forget()
-            self._contact = drive.contacts
-            self._stale = self._asked
-        if self._changed:
+        if drive.contacts != self._contact or self._knows and not drive.contact:
+            self._forget()  # that takes long enough
+            self._stale = self._waiting
+            if drive.contacts != self._contact:
+                self._contact = drive.contacts
+                if reread_us == REREAD_US:  # it is shown: somebody waits
+                    self.unchecked = len(self.values)
+        elif self._changed != _NOTHING:
             self.settle()
-        elif self._asked:
-            if self._job.state != pkw.PENDING:
-                self._asked = False
-                self._read_at = now
-                if not self._stale:
-                    self._take()
-                self._stale = False
-        elif drive.contact:
-            in_a_hurry = self.unchecked or not self.complete
-            if in_a_hurry or elapsed(now, self._read_at, self._mask) >= reread_us:
-                self._ask(drive.channel)
+        elif self._waiting and self._oldest().state != pkw.PENDING:
+            self._read_at = now
+            self._take()
+        elif self._is_due(now, reread_us):
+            self._ask(drive.channel)
         if self.unchecked or drive.asking:
             drive.want_turns(self.unchecked > 0)
+
+    def is_settled(self):
+        """Whether all that was read has been judged."""
+        return self._changed == _NOTHING
 
     def settle(self):
         """Find out what a value that is new amounts to; else the next step begins with it, because
         it takes long.
         """
-        if self._changed:
-            self._changed = False
-            self._judge()
-            self._go_on()
+        row, self._changed = self._changed, _NOTHING
+        if row == _NOTHING:
+            return
+        if row in SOURCES:
+            self._judge_meaning()
+        elif row == profiles.REFERENCE or row == profiles.ABSOLUTE:
+            self._judge_scaling()
+        self._judge()
 
     def _forget(self):
+        self._knows = False
+        self._counts_all = self._moves = False
         self.unchecked = 0
-        changed, self._changed = self._changed, False
-        if not (self.complete or self._row or self.unreadable or changed):
-            return
-        self.complete = False
-        self.scaling = None
-        self.unreadable = False
-        self.version += 1
-        self._row = 0
+        self._changed = _NOTHING
+        self._row = profiles.FIRST
+        self.count_anew()
+        known = self.unreadable
         for row in range(len(self.values)):
-            self.values[row] = _UNKNOWN
-            self._words[2 * row] = _UNKNOWN
+            self._unanswered[row] = 0
+            if row in profiles.LATER:
+                self.values[row] = 0
+            else:
+                known = known or self.values[row] != _UNKNOWN
+                self.values[row] = _UNKNOWN
+        if known:
+            self.scaling = None
+            self._judge_meaning()
+            self._judge()
+            self.unreadable = False
+
+    def _is_due(self, now, reread_us):
+        """Whether a row is to be asked for now."""
+        waiting = self._waiting
+        if waiting == _JOBS or not self.drive.contact:
+            return False
+        if waiting and self._first != _SECOND and not self._spares:
+            return False
+        if self.unchecked > waiting or not self.complete:
+            return True
+        return not waiting and elapsed(now, self._read_at, self._mask) >= reread_us
+
+    # --- questions and answers ------------------------------------------------------------------
 
     def _ask(self, channel):
         if channel.is_full():
             return  # others ask as well: later
-        number, index, _ = profiles.SURVEY[self._row]
-        self._job.aim(pkw.READ, number, index)
-        channel.ask(self._job)
-        self._asked = True
+        row = self._next_row()
+        number, index, _, _ = profiles.ROWS[row]
+        if index < 0:
+            active = profiles.DRIVE_SET if index == profiles.BY_DRIVE_SET else profiles.COMMAND_SET
+            index = max(self.values[active], 0)
+        if not self._waiting:
+            self._first = 0
+        place = (self._first + self._waiting) % _JOBS
+        job = self._job
+        if place == _SECOND:
+            job = self._second = self._spares.pop()
+        job.aim(pkw.READ, number, index)
+        self._asked[place] = row
+        if row == profiles.COUNTER:
+            self._answers_asked = self.drive.counters[_GOOD]
+        self._knows = True
+        channel.ask(job)
+        self._waiting += 1
+
+    def _next_row(self):
+        """The round goes on; while the drive runs, every other row is one that is watched."""
+        self._round_is_next = not self._round_is_next
+        rechecks = self.unchecked or not self.complete
+        if self._round_is_next or rechecks or not self.drive.wanted:
+            row = self._row
+            while not self.unchecked and self._is_left_out(row):
+                row = (row + 1) % len(self.values)
+            self._row = (row + 1) % len(self.values)
+            return row
+        self._watched = (self._watched + 1) % len(profiles.WATCHED)
+        if profiles.WATCHED[self._watched] == profiles.COUNTER and not self._tells_count:
+            self._watched += 1
+        return profiles.WATCHED[self._watched]
+
+    def _is_left_out(self, row):
+        """Whether the round goes on without it: START alone asks for it, or it is watched."""
+        missing = profiles.ROWS[row][3]
+        if self._unanswered[row] == _UNANSWERED_MAX and self.values[row] == missing:
+            return True
+        if row in profiles.LATER:
+            return self.values[row] != _UNKNOWN
+        return self.drive.wanted != 0 and self.complete and row in profiles.WATCHED
+
+    def _oldest(self):
+        return self._second if self._first == _SECOND else self._job
 
     def _take(self):
-        job = self._job
-        row = self._row
-        kind = profiles.SURVEY[row][2]
-        if job.state != pkw.DONE:
-            self.values[row] = _UNKNOWN
-            self._words[2 * row] = _UNKNOWN
-            self.unreadable = job.state == pkw.REFUSED
-            self._changed = True
-        elif job.high != self._words[2 * row] or job.low != self._words[2 * row + 1]:
-            self._words[2 * row] = job.high
-            self._words[2 * row + 1] = job.low
-            if kind == profiles.CENTIHERTZ:
-                self.values[row] = _centihertz(job.float_value())
-            else:
-                self.values[row] = job.low
-            self._changed = True
-        else:
-            self._go_on()
-
-    def _go_on(self):
-        """This row is done with."""
+        """The answer to the question that was asked first."""
+        job, row = self._oldest(), self._asked[self._first]
+        if self._first == _SECOND:
+            self._spares.append(job)
+        self._first = (self._first + 1) % _JOBS
+        self._waiting -= 1
+        if self._stale:
+            self._stale -= 1
+            return
         if self.unchecked:
             self.unchecked -= 1
-        self._row = self._row + 1 if self._row + 1 < len(profiles.SURVEY) else 0
+        if job.state != pkw.DONE:
+            self._take_refusal(job, row)
+            return
+        self._unanswered[row] = 0
+        kind = profiles.ROWS[row][2]
+        if kind == profiles.COUNT:
+            self._take_count(job.low)
+            return
+        value = job.low
+        if kind == profiles.CENTIHERTZ:
+            value = centihertz(job.high, value)
+        elif kind == profiles.SOURCE:
+            value = profiles.source(job.high, value)
+        if value != self.values[row] or value == _UNKNOWN:
+            self._put(row, value)
+
+    def _take_refusal(self, job, row):
+        value = _UNKNOWN
+        if row == profiles.COUNTER:
+            if job.state == pkw.TIMED_OUT:
+                return  # the line was bad: the count that comes next tells as much
+            self._tells_count = False
+        is_absent = job.state == pkw.REFUSED and job.error in _ABSENT
+        if job.state == pkw.UNANSWERED:
+            self._unanswered[row] = min(self._unanswered[row] + 1, _UNANSWERED_MAX)
+            is_absent = self._unanswered[row] == _UNANSWERED_MAX
+        if is_absent or row in profiles.LATER and job.state != pkw.TIMED_OUT:
+            value = profiles.ROWS[row][3]
+        if value is None or value == _UNKNOWN:
+            value = _UNKNOWN
+            self.unreadable = job.state == pkw.REFUSED or job.state == pkw.UNANSWERED
+        if self.values[row] != value or value == _UNKNOWN:
+            self._put(row, value)
+
+    def _take_count(self, count):
+        """Telegrams that the drive has counted: it was without power when it has gone back, or
+        when it lacks some that it has answered. One that never moved does not count at all.
+        """
+        before, exchanges = self.values[profiles.COUNTER], 0
+        for counted in self.drive.counters:
+            exchanges += counted
+        # The loop may be late: what was answered since the question is none of this count's.
+        since = (exchanges - self._exchanges) & 0xFFFF
+        answered = (self._answers_asked - self._answers) & 0xFFFF
+        self._exchanges, self._answers = exchanges, self.drive.counters[_GOOD]
+        self.values[profiles.COUNTER] = count
+        grown = (count - before) & 0xFFFF
+        self._moves = self._moves or before > 0 and grown > 0
+        counted, self._counts = self._counts, True
+        if not counted:
+            return
+        if count >= before and grown > since + (_COUNTED_BESIDE >> 2):
+            self._counts_all = True
+        most = (since * NODES if self._counts_all else since) + _COUNTED_BESIDE
+        least = answered - (answered >> 3) - _COUNTED_LATE
+        if count < before and grown > most or self._moves and grown < least:
+            self.restarted = self.drive.wanted != 0
+
+    def _put(self, row, value):
+        """A value that is new, and still to be judged. Another data set makes others unknown."""
+        self.values[row] = value
+        self._changed = row
+        if row == profiles.COMMAND_SET or row == profiles.DRIVE_SET:
+            for other in range(len(self.values)):
+                if profiles.ROWS[other][1] < 0:
+                    self.values[other] = _UNKNOWN
+            self.scaling = None
+            self.complete = False  # at once: who looks before that is judged finds no scaling
+
+    # --- what it amounts to ---------------------------------------------------------------------
 
     def _judge(self):
-        """What the values amount to, after one of them changed."""
+        """What all values together amount to, after one of them changed."""
         values = self.values
         self.version += 1
-        self.complete = _UNKNOWN not in values
-        reference, absolute = values[profiles.REFERENCE], values[profiles.ABSOLUTE]
+        tells = values[profiles.ACTUAL_SENT] != _UNKNOWN and self.wrong[profiles.ACTUAL] == RIGHT
+        self.actual = self.scaling if tells else None
+        self.complete = self.scaling is not None and _UNKNOWN not in values
+        if self.complete:
+            self.unreadable = False
+            self.drive.tell_speed(self.scaling.full_scale() if tells else 0)
+
+    def _judge_scaling(self):
+        reference, absolute = self.values[profiles.REFERENCE], self.values[profiles.ABSOLUTE]
         if reference < pzd.REFERENCE_MIN or absolute == _UNKNOWN:
-            self.complete = False
             self.scaling = None
         elif (
             self.scaling is None
@@ -168,12 +363,33 @@ class Survey:
             or self.scaling.absolute != bool(absolute)
         ):
             self.scaling = pzd.Scaling(reference, bool(absolute))
-        if self.complete:
-            self.unreadable = False
+
+    def _judge_meaning(self):
+        """Which row gives a word another meaning than this panel takes it for."""
+        values, wrong = self.values, self.wrong
+        for subject in range(profiles.SUBJECTS):
+            wrong[subject] = RIGHT
+        selection = max(values[profiles.SELECTION], 0)
+        for subject, row, place, right, digit in profiles.MEANING:
+            if digit is not None and selection // digit % 10:
+                continue
+            value = values[row]
+            if value == _UNKNOWN or wrong[subject] != RIGHT:
+                continue
+            if (value // place % 10 if place else value) not in right:
+                wrong[subject] = row
 
 
-def _centihertz(hertz):
-    """A frequency as an integer in 0.01 Hz; _UNKNOWN when it is none that a drive can have."""
-    if not 0 <= hertz <= 650:  # also true of a NaN, which compares with nothing
-        return _UNKNOWN
-    return int(hertz * 100 + 0.5)
+def centihertz(high, low):
+    """An IEEE-754 single in hertz, as two words, in 0.01 Hz; -1 when a drive can have no such
+    frequency. Without a floating-point number, which would take memory each time.
+    """
+    exponent = high >> 7  # with the sign
+    if exponent > _EXPONENT_MAX:
+        return 0 if high == 0x8000 and not low else _UNKNOWN  # minus nothing
+    if exponent < _EXPONENT_MIN:
+        return 0
+    shift = _MANTISSA_BITS - exponent
+    mantissa = (0x80 | high & 0x7F) << 16 | low
+    value = (mantissa * (_CENTI >> 2) + (1 << shift - 1)) >> shift
+    return value if value <= _CENTIHERTZ_MAX else _UNKNOWN

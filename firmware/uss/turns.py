@@ -6,12 +6,14 @@ asked twice as often. Before it goes, in this order,
 
     a telegram outside the list that is `ahead`: a broadcast stop
     a command that matters: a stop of a drive that runs, another stop, anything else
-    a drive whose next turn would be too late (two telegrams out of three)
+    a drive whose next turn would be too late (two telegrams out of three, and between commands to
+        drives without contact)
     an exchange that is repeated because no valid reply came
     one outside the list, or a drive that is to have more than its turn (every second telegram)
 
-A drive that stays silent is counted and shown, and never taken off the list. Which of them back
-off, and whose turns are too far apart, is the subject of `care`. Sends nothing: `master` does.
+A drive that stays silent is counted and shown, and never taken off the list. Which of them rest is
+the subject of `silence`, whose turns are too far apart that of `care`. Sends nothing: `master`
+does.
 """
 
 from micropython import const
@@ -21,10 +23,12 @@ from uss.drive import ANY, ATTENTION, COMMANDS, COUNTERS, NODES, OVERDUE, WANTS,
 from uss.care import Care
 from uss.fast import calling, greatest
 from uss.layout import STANDARD
+from uss.silence import SPENT_MASK
 
 _LIST_MAX = const(255)  # entries of the circulating list
 _SINGLES_MAX = const(8)  # telegrams outside the list that wait
 _OVERDUE_IN_A_ROW = const(2)
+_OVERDUE_BETWEEN = const(3)  # commands to drives without contact
 # Rows of the drives' attention, as bits of `calling`.
 _COMMANDS = const(1)
 _OVERDUE = const(2)
@@ -40,16 +44,17 @@ class Turns:
     `drives`, each once, in the order added; `list`, the circulating list: see `arrange`.
     """
 
-    def __init__(self, timing, mask):
+    def __init__(self, timing, mask, lost_us):
         self.drives = []
         self.list = []
+        self.by_address = [None] * NODES  # the same drives
         self.timing = timing
+        self.lost_us = lost_us  # without a valid reply for so long, contact with a drive is lost
         self.cycle_us = 0
         self.retries = 0
         self._mask = mask
         self._attention = bytearray(ATTENTION)
-        self._at = [None] * NODES  # drives by address
-        self.round = []  # the list without those that back off, which the engine walks:
+        self.round = []  # the list without those that rest, which the engine walks:
         self.round_count = 0  # so many of these
         self._next = _LIST_MAX  # place in it; behind its end a round begins
         self._round_began_at = None
@@ -60,10 +65,16 @@ class Turns:
         self._singles_in = 0
         self._singles_out = 0
         self._single_last = False  # of both, a telegram outside the list had the last such turn
-        self._extra = 0  # turns in a row that drives had besides those in the list
-        self._look_from = 0  # behind which address the search for one with a hurry begins
+        self._overdue = 0  # turns in a row that overdue drives had; below 0: that they have first
+        self.lists_between = 1  # from one telegram that is extra to the next, so many of the list
+        self._lists_left = 0
+        self._look_from = 0  # behind which address the search for one with a hurry begins,
+        self._overdue_from = 0  # and for one that is overdue
         self.exchanges = 0  # telegrams sent
-        self.uneasy = False  # a drive without contact was silent: the loop is to look after it
+        # Telegrams to drives without contact, and outside the list, that brought no valid reply:
+        self.silences = 0  # how many, 16 bit
+        self.silences_us = 0  # what they took; wraps
+        self.shared_us = 0  # and that without drives that may run, whose turns are not the others'
         self._care = Care(self, mask)
 
     # --- for the loop ---------------------------------------------------------------------------
@@ -85,7 +96,7 @@ class Turns:
         else:
             drive = Drive(address, self._mask, self._attention, layout or STANDARD)
             # New lists, because an interrupt may be walking the old ones.
-            self._at[address] = drive
+            self.by_address[address] = drive
             self.drives = self.drives + [drive]
         self._set_list(self.list + [drive])
         return drive
@@ -102,7 +113,7 @@ class Turns:
         self._care.forget(drive)
         self.drives = [other for other in self.drives if other is not drive]
         self._set_list([entry for entry in self.list if entry is not drive])
-        self._at[drive.address] = None
+        self.by_address[drive.address] = None
         if self._again is drive:
             self._again = None
 
@@ -134,21 +145,42 @@ class Turns:
         old = drive.address
         if address == old:
             return
-        if self._at[address] is not None:
+        if self.by_address[address] is not None:
             raise ValueError("address %d is taken" % address)
-        self._at[address] = drive
+        self.by_address[address] = drive
         drive.move(address)
         self._care.readdressed(old, address)
         self._attention[old] = 0
-        self._at[old] = None
+        self.by_address[old] = None
 
     def supervise(self, drive, off_time_ms):
         """Keep two telegrams to a drive that may run less than a third of `off_time_ms` apart: the
-        time without telegrams after which it trips, P2014 of a MICROMASTER 4. 0: it never does.
+        time without telegrams after which it trips, P2014 of a MICROMASTER 4. 0, it never does,
+        counts as the time after which it is lost; so does a drive of which nobody has told.
 
         Where its turns in the list are further apart it gets more, through `refresh`.
         """
         self._care.supervise(drive, off_time_ms * 1000 // 3)
+
+    def gap_us(self, drive):
+        """The longest gap in microseconds between two telegrams to `drive`, and to every drive
+        that runs, that this line can promise once `drive` runs beside them; one exchange in it
+        that is not answered. A tenth of a second after a start it counts in.
+        """
+        return self._care.gap_us(drive)
+
+    def first_late(self, drive):
+        """Whom its telegrams would reach too late for `supervise` if `drive` ran beside those that
+        run now: `drive` or one of them. None: nobody. One that never trips, or of which nobody
+        has told when it does, is never late.
+        """
+        return self._care.first_late(drive)
+
+    def silence_wait_us(self):
+        """How long to wait, in microseconds, before one more telegram that perhaps nobody answers:
+        until the share of the silent drives has room for it. It is theirs that it takes.
+        """
+        return self._care.silence_wait_us()
 
     def _set_list(self, entries):
         self.list = entries
@@ -254,7 +286,9 @@ class Turns:
         """Who is in the greatest hurry; None when the list may go on.
 
         What is only to have more than its turn gets every second telegram at the most, and what
-        is overdue two in a row, so that the list goes on in between.
+        is overdue two in a row, so that the list goes on in between. A command to a drive without
+        contact takes long: behind one of these, three that are overdue and not told to run go
+        before the next.
         """
         attention = self._attention
         attention[ANY] = 0  # before looking: whoever calls for it from now on is not missed
@@ -266,19 +300,24 @@ class Turns:
         if rows & _COMMANDS:
             drive = self._find(COMMANDS, 2)
             if drive is not None:
-                return drive
-        extra, self._extra = self._extra, 0
-        if rows & _OVERDUE and extra < _OVERDUE_IN_A_ROW:
+                if drive.contact:
+                    return drive
+                if self._overdue >= 0 or not rows & _OVERDUE or self._overdue_is_on():
+                    self._overdue = -_OVERDUE_BETWEEN
+                    return drive
+        if rows & _OVERDUE and self._overdue < _OVERDUE_IN_A_ROW:
             drive = self._next_overdue()
             if drive is not None:
-                self._extra = extra + 1
+                self._overdue += 1
                 return drive
+        self._overdue = 0
         if self._again is not None:
             drive, self._again = self._again, None
             attention[ANY] = 1
             return drive
-        if extra:
-            if rows or self._singles_out != self._singles_in:
+        if self._lists_left:
+            self._lists_left -= 1
+            if rows or self._lists_left or self._singles_out != self._singles_in:
                 attention[ANY] = 1
             return None
         drive = self._find(WANTS, 1) if rows & _WANTS and self._single_last else None
@@ -289,16 +328,21 @@ class Turns:
         if drive is None and rows & _WANTS:
             drive = self._find(WANTS, 1)
         if drive is not None:
-            self._extra = 1
+            self._lists_left = self.lists_between
         return drive
+
+    def _overdue_is_on(self):
+        """Whether the next one that is overdue is told to run: no such telegram before a stop."""
+        drive = self.by_address[greatest(self._attention, OVERDUE, NODES, self._overdue_from)]
+        return drive is not None and drive.wanted != 0
 
     def _next_overdue(self):
         attention = self._attention
-        address = greatest(attention, OVERDUE, NODES, self._look_from)
+        address = greatest(attention, OVERDUE, NODES, self._overdue_from)
         attention[OVERDUE + address] = 0  # it is asked now
         attention[ANY] = 1
-        self._look_from = address
-        return self._at[address]
+        self._overdue_from = address
+        return self.by_address[address]
 
     def _find(self, row, least):
         """Of the drives that have called in this row, the one that is in the greatest hurry, and
@@ -311,7 +355,7 @@ class Turns:
             if address < 0:
                 return None
             attention[ANY] = 1
-            drive = self._at[address]
+            drive = self.by_address[address]
             if drive is not None and drive.urgency() >= least:
                 self._look_from = address
                 return drive

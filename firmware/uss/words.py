@@ -7,6 +7,10 @@ are in `pzd`, which is enough to run a drive; here are the second ones and the o
     names(0xFB34, ZSW_BITS)             # ["RUNNING", "CONTROL_REQUESTED", "BRAKE", "RUNS_RIGHT"]
     drive.zsw & bit("WARNING", ZSW_BITS)
     may_start(drive.zsw)
+
+Nothing known is not zero, in which bits that are active at 0 would be set: a `bus.Drive` without
+contact has None, whose only name is UNKNOWN, and which is no permission to start. A `drive.Drive`
+has a word at any time; ask its `contact`.
 """
 
 from uss.pzd import STW_BITS, ZSW_BITS
@@ -75,13 +79,19 @@ ZSW2_BITS = (
     (15, "LOADS_DATA_SET_1", False),
 )
 
+UNKNOWN = "UNKNOWN"  # no bit's name
+
 # No fault, no inhibit, neither OFF2 nor OFF3 in force.
 _START_MASK = 0x0078
 _START_VALUE = 0x0030
 
 
 def names(word, bits):
-    """The names of the remarkable bits of a word, a list. bits: one of the tables."""
+    """The names of the remarkable bits of a word, a list. bits: one of the tables. Of None, which
+    is no word: [UNKNOWN].
+    """
+    if word is None:
+        return [UNKNOWN]
     return [name for place, name, at_0 in bits if (word >> place & 1 == 0) == at_0]
 
 
@@ -98,4 +108,4 @@ def may_start(zsw):
 
     Not after OFF2, OFF3 or a fault, until OFF1 has lifted the inhibit (USS.md 4.9, 4.10).
     """
-    return zsw & _START_MASK == _START_VALUE
+    return zsw is not None and zsw & _START_MASK == _START_VALUE

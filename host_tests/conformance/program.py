@@ -54,8 +54,8 @@ class Drives:
         return Node(master, kind.address, kind.pkw_words, kind.pzd_words)
 
     def power_cycle(self, node):
-        """Take a drive's mains away and give them back."""
-        assert self._command(node, "off {0}\non {0}") == []
+        """Take a drive's mains away, give them back, and let it boot."""
+        assert self._command(node, "off {0}\non {0}\nwait 400") == []
 
     def fault(self, node, number, lasting=False):
         """Trip a drive, for a reason that is gone at once, or lasts until `clear`."""

@@ -28,6 +28,7 @@ READY_MS = 1_200  # until it shows READY
 OLD_SETPOINT = 1_000  # 0.01 Hz
 SAVE_MS = 300  # from one save to the next
 SAVES = 3  # the last of which erases a sector
+START_MS = 5_000  # until ON is sent, at most
 STOP_HZ = 0.3  # the motor turns
 ON, JOGS = 0x0001, 0x0300  # bits of STW
 STW_AT = 11  # in a telegram with a PKW area of 4 words
@@ -136,14 +137,23 @@ def checked(world, figures):
 
 def line(quick, baud, drives):
     """Exchanges, idle time, driver enable; keys and display busy, a collection every 100 ms."""
+    return exchanges(quick, baud, drives, False)
+
+
+def asking(quick, baud, drives):
+    """The same, a parameter task always pending for each drive."""
+    return exchanges(quick, baud, drives, True)
+
+
+def exchanges(quick, baud, drives, tasks):
     baud, drives = int(baud), int(drives)
     most = 10_000 if drives == 1 else 3_000
     telegrams = (100 if quick else 400) if baud < 57600 else 500 if quick else most
     world = world_at(baud, drives)
     at_the_prompt(world)
-    busy_ms = telegrams * 1000 // rate_limit(baud) * 13 // 10 + 2_000
+    busy_ms = telegrams * 1000 // rate_limit(baud) * 18 // 10 + 2_000
     whole_ms = busy_ms + SETTLE_MS + 3_000 + 400 * drives
-    world.repl.begin("steps(%d, 1, %d)" % (whole_ms, COLLECT_MS))
+    world.repl.begin("steps(%d, 1, %d, %r)" % (whole_ms, COLLECT_MS, tasks))
     start_the_motor(world)
     first = Line(world)
     while first.telegrams() < telegrams and world.clock.now_us < whole_ms * 1000:
@@ -153,6 +163,7 @@ def line(quick, baud, drives):
     inside = result(world, whole_ms)
     found["steps_us"] = steps_of(inside["steps"][0])
     found["collections_us"] = spread(inside["collections_us"])
+    found["tasks"] = inside["tasks"]
     return checked(world, found)
 
 
@@ -277,7 +288,7 @@ def memory(quick, drives):
     """Heap taken by exchanges."""
     drives = int(drives)
     exchanges = 500 if quick else 10_000
-    settled_ms = 6_000 + 400 * drives  # by then each drive has told all, and the splash is over
+    settled_ms = 20_000 + 1_700 * drives  # by then each drive has told all
     world = world_at(115200, drives)
     at_the_prompt(world)
     world.repl.begin("memory(%d, %d)" % (exchanges, settled_ms))
@@ -286,16 +297,16 @@ def memory(quick, drives):
 
 
 def stop(quick, baud, drives):
-    """STOP, from the contact to the end of the telegram that carries OFF1."""
+    """START, from the contact to the end of the telegram that carries ON, and STOP to OFF1."""
     baud, drives = int(baud), int(drives)
     presses = 5 if quick else 50 if drives == 1 else 20
     world = world_at(baud, drives, seed=5)
     at_the_prompt(world)
     world.repl.begin("collecting(%d, %d)" % (presses * 20_000, COLLECT_MS))
-    took_us, lost_starts = [], 0
+    took_us, starts_us, lost_starts = [], [], 0
     settle(world)
     for _ in range(presses):
-        lost_starts += start_the_motor_again(world)
+        lost_starts += start_the_motor_again(world, starts_us)
         world.run(world.random(1, 150))
         since_us = world.clock.now_us
         world.down("STOP")
@@ -306,15 +317,23 @@ def stop(quick, baud, drives):
         world.run(300)
     exchange_us = 1_000_000 // rate_limit(baud)
     found = {"baud": baud, "took_us": sorted(took_us), "exchange_us": exchange_us}
+    found["starts_us"] = sorted(starts_us)
     found["lost_starts"] = lost_starts
     return checked(world, found)
 
 
-def start_the_motor_again(world):
-    """How many times START did nothing before it did."""
+def start_the_motor_again(world, starts_us):
+    """How many times START did nothing before it did; how long that took goes to `starts_us`."""
+    drive = world.drives[1]
     for lost in range(5):
-        world.press("START")
-        if world.run_until(lambda: world.drives[1].hz() > STOP_HZ, 2_000):
+        since_us = world.clock.now_us
+        world.down("START")
+        is_on = world.run_until(lambda: drive.stw & ON, START_MS)
+        if is_on:
+            starts_us.append(world.clock.now_us - since_us)
+        world.run(100)
+        world.up("START")
+        if is_on and world.run_until(lambda: drive.hz() > STOP_HZ, 2_000):
             return lost
     raise RuntimeError("the motor does not turn: %r" % (world.lcd(),))
 
@@ -490,7 +509,7 @@ def checked_host(world, figures):
 MEASUREMENTS = {
     function.__name__: function
     for function in (
-        line, mixed, saving, cuts, memory, stop, hang, steps, boot, heap, codec, simulation
+        line, asking, mixed, saving, cuts, memory, stop, hang, steps, boot, heap, codec, simulation
     )
 }
 

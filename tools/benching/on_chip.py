@@ -12,6 +12,7 @@ from array import array
 
 import board
 import main
+from uss import pkw
 
 BUCKET_US = 20  # of a table of durations
 BUCKETS = 1000  # the last one holds what is longer, too
@@ -26,13 +27,34 @@ def idle():
     time.sleep_ms(1)
 
 
-def steps(phase_ms, phases, collect_ms):
-    """Step the panel; print {"steps": [[[us, count], ...] for each phase], "collections_us"}."""
+class Tasks:
+    """Two jobs for each drive, so that one is on the line whenever another has ended."""
+
+    def __init__(self, drives):
+        self._jobs = [(drive, pkw.read(number)) for number in (700, 1082) for drive in drives]
+        self._next = 0
+        self.ended = 0
+
+    def ask(self):
+        """One of them again, when it has ended: a drive has its turn every so many steps."""
+        drive, job = self._jobs[self._next]
+        self._next = (self._next + 1) % len(self._jobs)
+        if job.state != pkw.PENDING and not drive.channel.is_full():
+            self.ended += job.state == pkw.DONE
+            drive.ask(job)
+
+
+def steps(phase_ms, phases, collect_ms, tasks=False):
+    """Step the panel; print {"steps": [[[us, count], ...] for each phase], "collections_us"}.
+
+    tasks: each drive has a parameter task always pending; how many were done is "tasks".
+    """
     ticks_us, ticks_ms, since = time.ticks_us, time.ticks_ms, time.ticks_diff
     tables = [array("H", bytes(2 * BUCKETS)) for _ in range(phases)]
     collections = array("I")
     board.idle = idle
     app = main.start(board)
+    asking = Tasks(app.bus.drives if tasks else ())
     gc.collect()
     try:
         began = collected = ticks_ms()
@@ -43,6 +65,8 @@ def steps(phase_ms, phases, collect_ms):
             app.step()
             took = since(idle_at, at) // BUCKET_US
             table[took if took < BUCKETS else BUCKETS - 1] += 1
+            if tasks:
+                asking.ask()
             now = ticks_ms()
             passed = since(now, began)
             if collect_ms and since(now, collected) >= collect_ms:
@@ -54,7 +78,9 @@ def steps(phase_ms, phases, collect_ms):
     finally:
         app.close()
     found = [[[at * BUCKET_US, n] for at, n in enumerate(table) if n] for table in tables]
-    print(json.dumps({"steps": found, "collections_us": list(collections)}))
+    print(json.dumps({
+        "steps": found, "collections_us": list(collections), "tasks": asking.ended
+    }))  # fmt: skip
 
 
 def memory(exchanges, settled_ms):

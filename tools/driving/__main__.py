@@ -3,8 +3,8 @@
 
 Nothing that it says holds up the drives: what nobody reads is left out.
 
-Exit status: 0 after Ctrl-C or `quit`, 1 when the port cannot be had, 2 when the command line
-cannot be understood.
+Exit status: 0 after Ctrl-C or `quit`, 2 when the command line cannot be understood, 5 when the
+port cannot be had.
 """
 
 import argparse
@@ -12,10 +12,18 @@ import os
 import signal
 import sys
 import textwrap
+from functools import partial
 
-from boards.sim.drive_switches import SWITCHES
-from boards.sim.script import ORDER, ExpectationFailed, Script, ScriptError, parameter, value
-from boards.sim.script import drive as drive_at
+from boards.sim.drive_switches import SWITCHES, switch_value
+from boards.sim.script import (
+    LINE_MAX,
+    ORDER,
+    ExpectationFailed,
+    Script,
+    ScriptError,
+    parameter,
+    value,
+)
 from tools.driving.line import OF_THE_PANEL, DriveLine
 from tools.serial_port import PortError, Pty, SerialPort
 from tools.standard_streams import Output, is_ours, open_missing
@@ -28,13 +36,11 @@ BAUD_RATES = (
 NODE_MAX = 31
 REPLY_DELAY_MAX_MS = 60_000
 READ_MAX = 4096
+NOT_UNDERSTOOD, NO_PORT = 2, 5  # exit status
 INDENTED = {"initial_indent": "    ", "subsequent_indent": "    "}
 
-COMMANDS = [name for name in ORDER if name not in OF_THE_PANEL] + ["off", "on", "help", "quit"]
+COMMANDS = [name for name in ORDER if name not in OF_THE_PANEL] + ["help", "quit"]
 UNKNOWN = "unknown command %s (there are: %s)"
-
-SWITCH_VALUES = {"no_rights_error": (0, 7, 11)}  # of the others: 0 and 1, or from 0 to
-SWITCH_MAX = 0xFFFF
 
 UNHEARD = "standard output: %s; the drives are served all the same"
 
@@ -51,6 +57,7 @@ While it runs it takes commands, one a line:
   drive 1            the state of drive 1        param 1 P2014[0] 0   read or set a parameter
   fault 1 F0001      it trips                    unplug 1, plug 1     its RS-485 connector
   off 1, on 1        its mains                   bus 10               the last telegrams
+  switch 1 boot_ms=0 as --switch, from now on
   help               lists all                   quit                 or Ctrl-C ends it
 
 examples:
@@ -60,6 +67,18 @@ examples:
 """
 
 
+class Once(argparse.Action):
+    """Keeps a value, and refuses a second one: which of the two was meant?"""
+
+    given = False
+
+    def __call__(self, parser, chosen, value, option_string=None):
+        if self.given:
+            parser.error("%s stands there twice" % option_string)
+        self.given = True
+        setattr(chosen, self.dest, value)
+
+
 def arguments(words):
     parser = argparse.ArgumentParser(
         prog="tools/drive",
@@ -67,19 +86,19 @@ def arguments(words):
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    add = parser.add_argument
+    add, once = parser.add_argument, partial(parser.add_argument, action=Once)
     where = parser.add_mutually_exclusive_group(required=True)
     where.add_argument("--pty", action="store_true", help="on a new pty, whose path is printed")
-    where.add_argument("--port", metavar="PATH", help="on a serial port, such as /dev/ttyUSB0")
-    add("--link", metavar="PATH", help="with --pty: a symbolic link to it, always the same")
-    add("--address", "--drives", default="1", metavar="LIST", help="such as 1,2=g110,3=v20 (1)")
-    add("--family", default=USUAL, choices=FAMILIES, help="of those without one (%(default)s)")
-    add("--baud", type=int, default=19200, choices=BAUD_RATES, metavar="RATE", help="(19200)")
+    where.add_argument("--port", action=Once, metavar="PATH", help="on a port, as /dev/ttyUSB0")
+    once("--link", metavar="PATH", help="with --pty: a symbolic link to it, always the same")
+    once("--address", "--drives", default="1", metavar="LIST", help="such as 1,2=g110,3=v20 (1)")
+    once("--family", default=USUAL, choices=FAMILIES, help="of those without one (%(default)s)")
+    once("--baud", type=int, default=19200, choices=BAUD_RATES, metavar="RATE", help="(19200)")
     add("--set", action="append", default=[], metavar="A:P2014=0",
         help="a parameter of drive A, of all without A:")  # fmt: skip
     add("--switch", action="append", default=[], metavar="A:NAME=VALUE",
         help="how A behaves where the documents leave it open; --switch help")  # fmt: skip
-    add("--reply-delay", type=milliseconds, metavar="MS", help="to every reply (three characters)")
+    once("--reply-delay", type=milliseconds, metavar="MS", help="of each reply (three characters)")
     add("--log", action="store_true", help="print every telegram, decoded")
     if "--switch=help" in words or ("--switch", "help") in zip(words, words[1:]):
         parser.exit(message=switches() + "\n")
@@ -120,9 +139,13 @@ def kinds(chosen):
         if chosen.reply_delay is not None:
             found[int(address)]["reply_delay_us"] = int(chosen.reply_delay * 1000)
     for entry in chosen.set:
-        addresses, name, new = assignment("--set", "P2014=0", entry, found)
+        addresses, name, word = assignment("--set", "P2014=0", entry, found)
+        try:
+            which, new = parameter(None, name), value(None, word)
+        except ValueError as error:
+            raise ValueError("--set %s: %s" % (entry, error)) from None
         for one in addresses:
-            found[one]["parameters"][parameter(None, name)] = new
+            found[one]["parameters"][which] = new
     for entry in chosen.switch:
         addresses, name, new = assignment("--switch", "stale_replies=2", entry, found)
         try:
@@ -134,40 +157,18 @@ def kinds(chosen):
     return found
 
 
-def switch_value(name, new):
-    """What a switch of the drive is set to. ValueError: there is none, or it cannot be set so."""
-    usual = {row[0]: row[1] for row in SWITCHES}.get(name)
-    if usual is None:
-        raise ValueError("there is no such switch; --switch help")
-    if isinstance(usual, bool):
-        allowed, named = (0, 1), "0 or 1"
-    elif name in SWITCH_VALUES:
-        allowed = SWITCH_VALUES[name]
-        named = "one of %s" % ", ".join(map(str, allowed))
-    else:
-        allowed, named = range(SWITCH_MAX + 1), "0...%d" % SWITCH_MAX
-    if isinstance(new, float) or new not in allowed:
-        raise ValueError("it can be %s" % named)
-    return type(usual)(new)
-
-
 def family_of(name):
     return getattr(__import__("boards.sim." + name).sim, name)
 
 
 def assignment(option, example, entry, found):
-    """What "1:NAME=VALUE" means: addresses, name, value. ValueError: nothing."""
+    """What "1:NAME=VALUE" means: addresses, name, the word. ValueError: nothing."""
     left, equals, right = entry.partition("=")
     address, colon, name = left.rpartition(":")
     if not equals or colon and not (is_node(address) and int(address) in found):
         use = "use A:%s, A one of the addresses" % example
         raise ValueError("%s %s: %s" % (option, entry, use))
-    try:
-        if option == "--set":
-            parameter(None, name)
-        return [int(address)] if colon else list(found), name, value(None, right)
-    except ValueError as error:
-        raise ValueError("%s %s: %s" % (option, entry, error)) from None
+    return [int(address)] if colon else list(found), name, right
 
 
 def switches():
@@ -211,6 +212,7 @@ class Keyboard:
         while b"\n" in self._typed and not self.left:
             command, self._typed = self._typed.split(b"\n", 1)
             self._do(command.decode("utf-8", "replace"))
+        self._typed = self._typed[: LINE_MAX + 1]  # of a line that is too long the rest is lost
 
     def _do(self, command):
         words = command.split("#")[0].split()
@@ -218,28 +220,10 @@ class Keyboard:
             self.left = True
         elif words[:1] == ["help"]:
             self._say(" ".join(COMMANDS))
-        elif words[:1] in (["off"], ["on"]):
-            self._switch(words)
         elif words and words[0] not in COMMANDS and words[0] not in OF_THE_PANEL:
             self._say(UNKNOWN % (words[0], " ".join(COMMANDS)))
         else:
             self._obey(command)
-
-    def _switch(self, words):
-        """The mains of a drive."""
-        use = "use: %s A" % words[0]
-        if len(words) != 2:
-            self._say(use)
-            return
-        try:
-            drive = drive_at(self._line, words[1])
-        except ValueError as error:
-            self._say("%s (%s)" % (error, use))
-            return
-        if words[0] == "on":
-            drive.power_on()
-        else:
-            drive.power_off()
 
     def _obey(self, command):
         try:
@@ -306,7 +290,7 @@ def main(words):
         return 0  # whoever read the log has gone
     except (PortError, ValueError, KeyError) as error:
         complain(error.args[0])
-        return 1 if isinstance(error, PortError) else 2
+        return NO_PORT if isinstance(error, PortError) else NOT_UNDERSTOOD
     return 0
 
 

@@ -23,6 +23,7 @@ from tools.serial_port import LineCut, PortError
 AGAIN_S = 1.0  # a port that has gone is looked for so often
 LONGEST_WAIT_US = 1_000_000
 
+LOST = "%d characters are lost: they came faster than a line of %d baud carries them"
 NO_PANEL = "there is no panel here, only drives"
 OF_THE_PANEL = ("press", "hold", "down", "up", "lcd", "expect", "hang", "reset", "power")
 
@@ -64,12 +65,15 @@ class DriveLine:
         awaited = [keyboard] if keyboard is not None else []
         if self._gone_at is not None:
             self._look_again()
-        elif not self._master.full():
+        else:
             awaited.append(self._port)
         ready, _, _ = select.select(awaited, (), (), wait_s)
         self.clock.follow()
         if self._gone_at is None and self._port in ready:
             self._read()
+        elif self._master.lost:
+            self._say(LOST % (self._master.lost, self.wire.baud))
+            self._master.lost = 0
         return keyboard in ready
 
     def _read(self):

@@ -20,6 +20,10 @@ CONTENT_MAX = 0xFFFF
 # Kinds of record that have a content behind them, of b bytes.
 WITH_CONTENT = "NUF!"
 
+# How chips of this process are modelled where nobody says anything: {setting: value} of the table
+# in README.md. Empty: as it says there.
+usual = {}
+
 
 class EmulatorError(Exception):
     """The emulator failed, or has ended. Text: what it said."""
@@ -41,12 +45,12 @@ class Chip:
         self._waiting = []  # (at_ns, record and content), in the order of time
         self._record = bytearray(RECORD_BYTES)
 
-    def begin(self, program, watch, baud, flash=None, keep=False, usb=True, i2c=()):
+    def begin(self, program, watch, baud, flash=None, keep=False, usb=True, i2c=(), model=None):
         """A new chip in place of the old one; power comes now.
 
         program: path of a UF2 file. watch: GPIOs whose output is told ("E"). baud: of the line.
         flash: path of a flash image to begin with; keep: and the program in it stays. i2c:
-        addresses that acknowledge.
+        addresses that acknowledge. model: what is modelled otherwise than `usual` says.
         """
         self._waiting = []
         wanted = {
@@ -57,7 +61,9 @@ class Chip:
             "baud": baud,
             "watch": list(watch),
             "i2c": list(i2c),
+            "model": dict(usual),
         }
+        wanted["model"].update(model or {})
         self.tell(self.now_ns, "N", content=json.dumps(wanted).encode())
 
     def tell(self, at_ns, kind, a=0, b=0, content=None):

@@ -6,12 +6,14 @@
 // before anything outside of RAM, flash and ROM is touched, so that each access happens at the
 // very instant at which it would if the clock ticked for each instruction. Whatever such an access
 // makes due (an alarm, an interrupt, a reset) ends the stretch. Cycles are counted as rp2040js
-// does.
+// does, and besides them those that it waits for the flash (cache.mjs).
+import { LINE_SHIFT } from './cache.mjs';
 import { CortexM0Core } from './library.mjs';
 
 const CYCLE_NANOS = 8;
 const STRETCH_CYCLES = 1 << 24;
 const RAM = 0x20000000, RAM_BYTES = 264 * 1024;
+const FLASH = 0x10; // the first byte of its addresses, where it is read through the cache
 const FLASH_MASK = 2 * 1024 * 1024 - 1, ROM_BYTES = 16384;
 const FLASH_WINDOWS = 4; // 0x10000000 ... 0x13ffffff: the flash, cached or not; in 64 MiB
 const EXCEPTION_RETURN = 15; // the first digit of its addresses
@@ -78,8 +80,9 @@ const writeCycles = (address) => {
 export class Fault extends Error {}
 
 export class Core extends CortexM0Core {
-  constructor(mcu) {
+  constructor(mcu, cache) {
     super(mcu);
+    this.cache = cache;
     this.leave = false; // the stretch is to end: the chip is about to be reset
     this.changed = false; // ... something has become due
     this.rare = false; // ... the next instruction is one for rp2040js
@@ -183,6 +186,13 @@ export class Core extends CortexM0Core {
     this.after();
   }
 
+  // The cycles that LDMIA waits for the words of the registers in `list`, one after the other.
+  waitForAll(address, list) {
+    let cycles = 0;
+    for (; list; list &= list - 1, address += 4) cycles += this.cache.wait(address >> LINE_SHIFT);
+    return cycles;
+  }
+
   // Where instructions at `address` are.
   codeAt(address) {
     switch (address >>> 28) {
@@ -214,7 +224,7 @@ export class Core extends CortexM0Core {
   // due.
   stretch(left) {
     const r = this.signed;
-    const { ram8, ram16, ram32, flash8, flash16, flash32 } = this;
+    const { ram8, ram16, ram32, flash8, flash16, flash32, cache } = this;
     let pc = r[15] & ~1;
     let code = this.codeAt(pc);
     let base = pc & 0xf0000000;
@@ -224,7 +234,15 @@ export class Core extends CortexM0Core {
     let v = this.V ? 1 : 0;
     let unspent = 0;
     this.rare = false;
+    let line = -1; // from which the last instruction came
     while (left > 0) {
+      if (pc >> LINE_SHIFT !== line) {
+        line = pc >> LINE_SHIFT;
+        if (base === FLASH << 24) {
+          left -= cache.wait(line);
+          if (left <= 0) break; // something is due before the line has come
+        }
+      }
       const op = code[(pc - base) >> 1];
       switch (DECODE[op]) {
         case 1: { // LSLS immediate
@@ -468,6 +486,7 @@ export class Core extends CortexM0Core {
         case 33: { // LDR literal
           const at = ((pc + 4) & ~3) + ((op & 0xff) << 2) - base;
           r[(op >> 8) & 7] = code[at >> 1] | (code[(at >> 1) + 1] << 16);
+          if (base === FLASH << 24) left -= cache.wait((base + at) >> LINE_SHIFT);
           pc += 2; left -= 2; continue;
         }
         case 34: { // STR register
@@ -514,6 +533,10 @@ export class Core extends CortexM0Core {
             r[op & 7] = (ram8[offset] << 24) >> 24;
             left -= 2; continue;
           }
+          if (address >>> 24 === FLASH) {
+            r[op & 7] = (flash8[address & FLASH_MASK] << 24) >> 24;
+            left -= 2 + cache.wait(address >> LINE_SHIFT); continue;
+          }
           r[op & 7] = (this.load8(address, left) << 24) >> 24;
           left -= readCycles(address);
           break;
@@ -526,9 +549,9 @@ export class Core extends CortexM0Core {
             r[op & 7] = ram32[offset >> 2];
             left -= 2; continue;
           }
-          if (address >>> 24 === 0x10 && (address & 3) === 0) {
+          if (address >>> 24 === FLASH && (address & 3) === 0) {
             r[op & 7] = flash32[(address & FLASH_MASK) >> 2];
-            left -= 2; continue;
+            left -= 2 + cache.wait(address >> LINE_SHIFT); continue;
           }
           r[op & 7] = this.load32(address, left);
           left -= readCycles(address);
@@ -542,9 +565,9 @@ export class Core extends CortexM0Core {
             r[op & 7] = ram16[offset >> 1];
             left -= 2; continue;
           }
-          if (address >>> 24 === 0x10 && (address & 1) === 0) {
+          if (address >>> 24 === FLASH && (address & 1) === 0) {
             r[op & 7] = flash16[(address & FLASH_MASK) >> 1];
-            left -= 2; continue;
+            left -= 2 + cache.wait(address >> LINE_SHIFT); continue;
           }
           r[op & 7] = this.load16(address, left);
           left -= readCycles(address);
@@ -558,9 +581,9 @@ export class Core extends CortexM0Core {
             r[op & 7] = ram8[offset];
             left -= 2; continue;
           }
-          if (address >>> 24 === 0x10) {
+          if (address >>> 24 === FLASH) {
             r[op & 7] = flash8[address & FLASH_MASK];
-            left -= 2; continue;
+            left -= 2 + cache.wait(address >> LINE_SHIFT); continue;
           }
           r[op & 7] = this.load8(address, left);
           left -= readCycles(address);
@@ -573,6 +596,10 @@ export class Core extends CortexM0Core {
           if (offset >>> 0 < RAM_BYTES && (address & 1) === 0) {
             r[op & 7] = (ram16[offset >> 1] << 16) >> 16;
             left -= 2; continue;
+          }
+          if (address >>> 24 === FLASH && (address & 1) === 0) {
+            r[op & 7] = (flash16[(address & FLASH_MASK) >> 1] << 16) >> 16;
+            left -= 2 + cache.wait(address >> LINE_SHIFT); continue;
           }
           r[op & 7] = (this.load16(address, left) << 16) >> 16;
           left -= readCycles(address);
@@ -598,9 +625,9 @@ export class Core extends CortexM0Core {
             r[op & 7] = ram32[offset >> 2];
             left -= 2; continue;
           }
-          if (address >>> 24 === 0x10 && (address & 3) === 0) {
+          if (address >>> 24 === FLASH && (address & 3) === 0) {
             r[op & 7] = flash32[(address & FLASH_MASK) >> 2];
-            left -= 2; continue;
+            left -= 2 + cache.wait(address >> LINE_SHIFT); continue;
           }
           r[op & 7] = this.load32(address, left);
           left -= readCycles(address);
@@ -626,9 +653,9 @@ export class Core extends CortexM0Core {
             r[op & 7] = ram8[offset];
             left -= 2; continue;
           }
-          if (address >>> 24 === 0x10) {
+          if (address >>> 24 === FLASH) {
             r[op & 7] = flash8[address & FLASH_MASK];
-            left -= 2; continue;
+            left -= 2 + cache.wait(address >> LINE_SHIFT); continue;
           }
           r[op & 7] = this.load8(address, left);
           left -= readCycles(address);
@@ -654,9 +681,9 @@ export class Core extends CortexM0Core {
             r[op & 7] = ram16[offset >> 1];
             left -= 2; continue;
           }
-          if (address >>> 24 === 0x10 && (address & 1) === 0) {
+          if (address >>> 24 === FLASH && (address & 1) === 0) {
             r[op & 7] = flash16[(address & FLASH_MASK) >> 1];
-            left -= 2; continue;
+            left -= 2 + cache.wait(address >> LINE_SHIFT); continue;
           }
           r[op & 7] = this.load16(address, left);
           left -= readCycles(address);
@@ -791,6 +818,7 @@ export class Core extends CortexM0Core {
           const to = (op >> 8) & 7;
           const offset = (r[to] - RAM) | 0;
           if (offset >>> 0 > RAM_BYTES - 36 || (offset & 3) !== 0) {
+            if (r[to] >>> 24 === FLASH) left -= this.waitForAll(r[to], op & 0xff);
             this.rare = true;
             break;
           }

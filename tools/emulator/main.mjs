@@ -17,7 +17,7 @@ const SLICE_NANOS = 1e6; // how often the pty is looked at
 const ORPHAN_SLICES = 20; // and how often whether anybody still waits for the answer
 const COMPLAINTS = 20; // different ones, for each chip
 const PAYLOADS = new Set(['N', 'U', 'F']);
-const UNIT_NANOS = 10000; // of V's duration
+const UNIT_NANOS = 100000; // of V's duration
 
 // What the chip reports, as records. It is the chip's logger as well.
 class Report {

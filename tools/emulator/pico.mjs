@@ -4,13 +4,14 @@
 // One object is one Pico; `run` moves its time, `pulseRunPin` and `cutPower` are what they are
 // called. It tells what happens through the `report` it was given (see the methods called on it
 // below and main.mjs). A reset makes a new chip; flash, wires and time stay.
-import { bootRom, RP2040 } from './library.mjs';
+import { Cache, CacheControl } from './cache.mjs';
 import { Clock } from './clock.mjs';
 import { Core } from './core.mjs';
 import { LineDecoder } from './decoder.mjs';
 import { giveTime } from './dma.mjs';
 import { Flash, IoQspi, Ssi } from './flash.mjs';
 import { BitBangedI2c, SCL, SDA, TimedI2c } from './i2c.mjs';
+import { bootRom, RP2040 } from './library.mjs';
 import { isUart, LOW, RELEASED, Wires } from './pins.mjs';
 import { TimedPio } from './pio.mjs';
 import { Resets } from './resets.mjs';
@@ -26,15 +27,37 @@ const ROM = bootRom();
 const RUNS_IN_BUSY_FLASH = 'the program runs in the flash while that is being written';
 const WHY = { watchdog: 1, software: 2, runPin: 2, power: 3 }; // the chip restarted; as reported
 
+// What differs from chip to chip, or what the documents leave open (README.md): each with what it
+// may be, the first of which it is where nobody says anything.
+const MODEL = {
+  cache_miss_cycles: [60, 0], // 0: no cache is modelled, the flash is as fast as RAM
+  flash_times: ['typical', 'maximum'], // of the data sheet
+  receive_timeout: ['once', 'again'], // cleared while characters are left in the FIFO
+};
+
+function modelOf(wanted) {
+  const model = {};
+  for (const name in MODEL) model[name] = wanted[name] ?? MODEL[name][0];
+  for (const name in wanted) {
+    const allowed = MODEL[name];
+    const good = allowed && (typeof allowed[0] === 'number'
+      ? Number.isInteger(wanted[name]) && wanted[name] >= 0 : allowed.includes(wanted[name]));
+    if (!good) throw new Error(`there is no model with ${name} ${wanted[name]}`);
+  }
+  return model;
+}
+
 export class Pico {
-  // options: { baud, watch, i2c, usb, seed }; image(bytes) fills the flash.
+  // options: { baud, watch, i2c, usb, seed, model }; image(bytes) fills the flash.
   constructor(options, image, nanos, report) {
     this.report = report;
+    this.model = modelOf(options.model ?? {});
     this.baud = options.baud ?? 9600;
     this.watched = new Set(options.watch ?? []);
     this.addresses = new Set(options.i2c ?? []);
     this.hasUsb = options.usb ?? true;
-    this.flash = new Flash((code, duration) => report.flash(code, duration), options.seed ?? 1);
+    this.flash = new Flash((code, duration) => report.flash(code, duration), options.seed ?? 1,
+      this.model.flash_times);
     image(this.flash.bytes);
     this.decoder = new LineDecoder(this.baud, (...character) => report.character(...character));
     this.wires = new Wires((gpio, state) => this.pinChanged(gpio, state),
@@ -60,7 +83,8 @@ export class Pico {
     mcu.flash = bytes;
     mcu.flash16 = new Uint16Array(bytes.buffer);
     mcu.flashView = new DataView(bytes.buffer);
-    this.core = mcu.core = new Core(mcu);
+    this.cache = new Cache(this.model.cache_miss_cycles);
+    this.core = mcu.core = new Core(mcu, this.cache);
     this.core.SP = ROM[0];
     this.core.PC = START;
     this.flash.reset(clock);
@@ -72,7 +96,8 @@ export class Pico {
   putIn(mcu, cause) {
     const { peripherals, clock } = mcu;
     for (const index of [0, 1]) {
-      const uart = new TimedUart(mcu, index, () => this.wires.uartMoved(index));
+      const uart = new TimedUart(mcu, index, () => this.wires.uartMoved(index),
+        this.model.receive_timeout === 'again');
       mcu.uart[index] = peripherals[0x40034 + 4 * index] = uart;
       mcu.pio[index] = peripherals[0x50200 + 0x100 * index] = new TimedPio(mcu, index);
     }
@@ -82,6 +107,7 @@ export class Pico {
     new TimedI2c(mcu, mcu.i2c[0], this.addresses, this.written);
     new TimedI2c(mcu, mcu.i2c[1], new Set(), this.written);
     peripherals[0x4000c] = new Resets(mcu, 'RESETS');
+    peripherals[0x14000] = new CacheControl(mcu, this.cache);
     peripherals[0x18000] = new Ssi(mcu, this.flash);
     peripherals[0x40018] = new IoQspi(mcu, this.flash);
     peripherals[0x40054] = new ExactTimer(mcu);

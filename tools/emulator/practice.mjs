@@ -5,13 +5,14 @@
 // away whenever something new turns up, which costs a good second of the first ones. So a chip
 // that nobody uses executes each instruction some times, with operands drawn by lot (always the
 // same).
+import { Cache } from './cache.mjs';
 import { Clock } from './clock.mjs';
 import { Core, DECODE } from './core.mjs';
 import { RP2040 } from './library.mjs';
 import { Sio } from './sio.mjs';
 
 const ROUNDS = 40;
-const CODE = 0x20001000;
+const CODES = [0x20001000, 0x10001000]; // in RAM, and in the flash
 const SCRATCH = 0x20002000, STACK = 0x20003000, TABLE = 0x10000100;
 const GPIO_OUT = 0xd0000010, TIMER = 0x40054028;
 const BASES = [SCRATCH, SCRATCH, SCRATCH, STACK, TABLE, GPIO_OUT, TIMER, 0x7fffffff, 0xfffffffe];
@@ -52,13 +53,14 @@ export function practise() {
     const mcu = new RP2040(new Clock(start));
     mcu.logger = QUIET;
     mcu.sio = new Sio(mcu);
-    const core = mcu.core = new Core(mcu);
+    const core = mcu.core = new Core(mcu, new Cache(1));
     for (let round = 0; round < ROUNDS; round++) {
       for (const opcodes of kinds) {
         deal(core);
-        core.PC = CODE;
-        core.ram16[(CODE & 0xffff) >> 1] = opcodes[draw(opcodes.length)];
-        core.ram16[((CODE & 0xffff) >> 1) + 1] = 0xf800 | draw(0x7ff); // the second half of a BL
+        core.PC = CODES[round % CODES.length];
+        const code = core.codeAt(core.PC), at = (core.PC & 0xffff) >> 1;
+        code[at] = opcodes[draw(opcodes.length)];
+        code[at + 1] = 0xf800 | draw(0x7ff); // the second half of a BL
         try {
           core.run(mcu.clock.nanos + 8);
         } catch {

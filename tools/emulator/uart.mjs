@@ -24,13 +24,15 @@ const TIMEOUT_BITS = 32;
 const BAUD_TOLERANCE = 0.03;
 
 export class TimedUart extends BasePeripheral {
-  // onLevel(): the level of the TX line has changed.
-  constructor(mcu, index, onLevel) {
+  // onLevel(): the level of the TX line has changed. timeoutAgain: the receive time-out that was
+  // cleared is there again as long as its characters are left in the FIFO.
+  constructor(mcu, index, onLevel, timeoutAgain) {
     super(mcu, 'UART' + index);
     const { irq, dreq } = mcu.uart[index];
     this.irq = irq;
     this.dreq = dreq;
     this.onLevel = onLevel;
+    this.timeoutAgain = timeoutAgain;
     this.bitAlarm = mcu.clock.createAlarm(() => this.nextBit());
     this.timeoutAlarm = mcu.clock.createAlarm(() => this.timeout());
     this.level = 1; // of the TX line
@@ -46,6 +48,7 @@ export class TimedUart extends BasePeripheral {
     this.tx = [];
     this.rx = [];
     this.overrun = false;
+    this.timedOut = false; // the FIFO holds characters, and for 32 bits nothing came or was read
     this.bits = null; // of the character being sent: levels, one for each bit
     this.bitsSent = 0;
     this.bitsStart = 0;
@@ -156,12 +159,18 @@ export class TimedUart extends BasePeripheral {
     if (parityWrong) this.ris |= PARITY_ERROR;
     if (framingWrong) this.ris |= FRAMING_ERROR;
     if (this.rx.length >= this.rxTrigger) this.ris |= RX_LEVEL;
-    this.timeoutAlarm.schedule(TIMEOUT_BITS * this.bitNanos);
+    this.awaitTimeout();
     this.update();
+  }
+
+  awaitTimeout() {
+    this.timedOut = false;
+    this.timeoutAlarm.schedule(TIMEOUT_BITS * this.bitNanos);
   }
 
   timeout() {
     if (!this.rx.length) return;
+    this.timedOut = true;
     this.ris |= RX_TIMEOUT;
     this.update();
   }
@@ -170,8 +179,9 @@ export class TimedUart extends BasePeripheral {
     const value = this.rx.shift() ?? 0;
     if (this.rx.length < this.rxTrigger) this.ris &= ~RX_LEVEL;
     if (this.rx.length) {
-      this.timeoutAlarm.schedule(TIMEOUT_BITS * this.bitNanos);
+      this.awaitTimeout();
     } else {
+      this.timedOut = false;
       this.ris &= ~RX_TIMEOUT;
       this.timeoutAlarm.cancel();
     }
@@ -221,7 +231,10 @@ export class TimedUart extends BasePeripheral {
         break;
       case IFLS: this.ifls = value & 0x3f; break;
       case IMSC: this.imsc = value & 0x7ff; break;
-      case ICR: this.ris &= ~this.rawWriteValue; break;
+      case ICR:
+        this.ris &= ~this.rawWriteValue;
+        if (this.timeoutAgain && this.timedOut) this.ris |= RX_TIMEOUT;
+        break;
       case DMACR: this.dmacr = value & 7; break;
     }
     this.update();

@@ -96,7 +96,8 @@ class PicoWorld(Surroundings):
 
     display: "wires", four data lines, or "backpack", on I2C. files: path -> content, put on the
     chip's file system. flash: path of a flash image to begin with, of which all but the program
-    stays, and which gets no settings if it has some.
+    stays, and which gets no settings if it has some. model: settings of the emulated chip that
+    differ from the usual ones, as {"receive_timeout": "again"}: README.md.
 
     figures        of the line, see `station.Figures`
     restarts       [(at_us, cause)], also as `reset_causes`; cause: "watchdog", "reset" or "power"
@@ -120,6 +121,7 @@ class PicoWorld(Surroundings):
         display="wires",
         files=None,
         flash=None,
+        model=None,
     ):
         if display not in DISPLAYS:
             raise ValueError("a display is one of: %s" % " ".join(DISPLAYS))
@@ -136,7 +138,7 @@ class PicoWorld(Surroundings):
         self._records = []  # (at_ns, kind, a, b) that are not due in the world yet
         self._due = Event(self._take_due)
         self._outputs = {}
-        self._begin_chip(program_path(program), baud, display, files or {}, flash)
+        self._begin_chip(program_path(program), baud, display, files or {}, flash, model)
         self.station = Station(self.wire, self.chip.tell, self._origin_ns)
         self.figures = self.station.figures
         self.backpack = None
@@ -244,7 +246,7 @@ class PicoWorld(Surroundings):
 
     # --- inside ---------------------------------------------------------------------------------
 
-    def _begin_chip(self, program, baud, display, files, flash):
+    def _begin_chip(self, program, baud, display, files, flash, model):
         """Put the files on a flash, and power to a chip with it."""
         image = FlashImage(flash)
         if flash is None or image.read(SETTINGS_FILE) is None:
@@ -258,7 +260,7 @@ class PicoWorld(Surroundings):
             devices = [0x27]
         else:
             watch += [LCD_RS, LCD_E] + list(LCD_DATA)
-        self.chip.begin(program, watch, baud, path, i2c=devices)
+        self.chip.begin(program, watch, baud, path, i2c=devices, model=model)
         try:
             self._settle()
         finally:
@@ -302,7 +304,7 @@ class PicoWorld(Surroundings):
             if len(self.usb) > USB_KEPT_BYTES:
                 self.usb = self.usb[-USB_KEPT_BYTES:]
         elif kind == "V":
-            self._note(self.flash_log, (self._world_us(at_ns), a, b * 10))
+            self._note(self.flash_log, (self._world_us(at_ns), a, b * 100))
         elif kind == "E" and a == LED:
             self._note(self.led, (self._world_us(at_ns), b == HIGH))
         else:

@@ -8,13 +8,17 @@
 
 A file of one's own finds a module `board`, as on a chip: ./tools/example mine.py --drives 1,2=g110
 
-Exit status: 0; 1 when a rule of the line was broken, or with the exception that ended the program;
-2 when there is no such example.
+Only an example that wants somebody at its keys has one, and a Ctrl-C at its end (SOMEBODY); that
+is said. Exit status: 0; 1 when a rule of the line was broken, or with the exception that ended the
+program; 2 when there is no such example, file or drive.
 """
 
 import os
 import sys
+from errno import errorcode
 
+# From the bottom of the house up, or the 32-bit build runs out of stack.
+import boards.sim.drive_parameters  # noqa: F401
 from boards.sim import g110, g120, generic, mm3, mm420, mm440, v20
 from boards.sim.clock import Event
 from boards.sim.world import World
@@ -26,9 +30,16 @@ FAMILIES = {
     "v20": v20,
 }  # fmt: skip
 
-# What a person does meanwhile: seconds, key.
-TAPS = ((2.0, "START"), (12.0, "STOP"))
-CTRL_C_S = 40.0
+# Example: what a person does meanwhile, seconds of its time and key.
+CTRL_C = "Ctrl-C"
+SOMEBODY = {"own_program": ((2.0, "START"), (12.0, "STOP"), (40.0, CTRL_C))}
+
+USAGE = "usage: ./tools/example %s|FILE.py [--drives 1,2=g110]"
+NODE_MAX = 31
+
+
+class UsageError(Exception):
+    """The command line asks for something that cannot be."""
 
 
 class _Nobody:
@@ -73,28 +84,80 @@ def names():
 
 
 def kinds(text):
-    """What drives "1,2=g110" are: address -> kind, as of World. ValueError: none like that."""
+    """What drives "1,2=g110" are: address -> kind, as of World. UsageError: none like that."""
     found = {}
     for entry in text.split(","):
         address, _, family = entry.partition("=")
         family = family.lower() or "mm420"
+        if not address.isdigit() or int(address) > NODE_MAX:
+            raise UsageError("--drives: %s is no address 0...31" % (address or "nothing"))
+        if int(address) in found:
+            raise UsageError("--drives: %s stands there twice" % address)
         if family not in FAMILIES:
-            raise ValueError("no drive %r: %s" % (family, " ".join(sorted(FAMILIES))))
+            there = " ".join(sorted(FAMILIES))
+            raise UsageError("--drives: no family %s: there are %s" % (family, there))
         found[int(address)] = {"family": FAMILIES[family]}
     return found
 
 
-def run(name, drives="1,2,3"):
+def understood(words):
+    """The name of an example, or of a file, and the kinds of the drives. UsageError."""
+    chosen, drives = None, None
+    words = list(words)
+    while words:
+        word, equals, given = words.pop(0).partition("=")
+        if word == "--drives":
+            if drives is not None:
+                raise UsageError("--drives stands there twice: --drives 1,2")
+            if not equals and not words:
+                raise UsageError("--drives wants a list: --drives 1,2")
+            drives = kinds(given if equals else words.pop(0))
+        elif word[:1] == "-":
+            raise UsageError("unknown option %s" % word)
+        elif chosen is not None:
+            raise UsageError("%s and %s: one at a time" % (chosen, word))
+        else:
+            chosen = word + equals + given
+    return chosen, drives or kinds("1,2,3")
+
+
+def program(name):
+    """main(board) of an example or a file. UsageError: there is none."""
+    if name in names():
+        return __import__(name).main
+    if not name.endswith(".py"):
+        raise UsageError("there is no example %s: %s" % (name, " ".join(names())))
+    try:
+        with open(name) as file:
+            return _own(name, file.read())
+    except OSError as error:
+        raise UsageError("%s cannot be read (%s)" % (name, errorcode.get(error.args[0], error)))
+
+
+def attend(stage, name):
+    """Somebody at the keys, where the example wants that."""
+    for seconds, key in SOMEBODY.get(name, ()):
+        if key == CTRL_C:
+            stage.at(seconds, stage.interrupt)
+        else:
+            stage.at(seconds, stage.tap, key)
+        print("(%s is pressed after %d s)" % (key, seconds))
+
+
+def run(words):
     """Play an example, or a file, as somebody would who tries it out; answer the exit status."""
-    if name not in names() and not name.endswith(".py"):
-        print("usage: ./tools/example %s|FILE.py [--drives 1,2=g110]" % "|".join(names()))
+    try:
+        name, found = understood(words)
+        if name is None:
+            print(USAGE % "|".join(names()))
+            return 2
+        main = program(name)
+    except UsageError as error:
+        print("tools/example: %s" % error, file=sys.stderr)
         return 2
-    found = kinds(drives)
     stage = Stage(tuple(sorted(found)), kinds=found)
-    for seconds, key in TAPS:
-        stage.at(seconds, stage.tap, key)
-    stage.at(CTRL_C_S, stage.interrupt)
-    stage.play(_own(name) if name.endswith(".py") else __import__(name).main)
+    attend(stage, name)
+    stage.play(main)
     seconds = stage.clock.now_us / 1_000_000
     print("\nThe simulated drives %.1f s after power-on:" % seconds)
     for address in sorted(stage.drives):
@@ -105,17 +168,15 @@ def run(name, drives="1,2,3"):
     return 1 if complaints else 0
 
 
-def _own(path):
+def _own(path, text):
     """main(board) of a file of one's own."""
 
     def main(board):
         sys.modules["board"] = board
-        with open(path) as file:
-            exec(compile(file.read(), path, "exec"), {"__name__": "__main__"})
+        exec(compile(text, path, "exec"), {"__name__": "__main__"})
 
     return main
 
 
 if __name__ == "__main__":
-    words = [word for word in sys.argv[1:] if word != "--drives"]
-    sys.exit(run(*(words or [""])))
+    sys.exit(run(sys.argv[1:]))

@@ -4,27 +4,28 @@
     python3 tools/soaking --seeds N --minutes M [--first SEED] [--drives N] [--jobs N]
     python3 tools/soaking --fuzz BYTES [--first SEED] [--jobs N]
 
-The work is done by worker.py on MicroPython, a process for each job. Standard library only,
+The work is done by worker.py, on the interpreters of interpreters.py. Standard library only,
 CPython 3.11 or newer.
 """
 
 import argparse
 import json
-import os
+import math
 import queue
 import subprocess
 import sys
 import threading
 import time
 from collections import Counter
-from pathlib import Path
 
-TOP = Path(__file__).resolve().parents[2]
-WORKER = "tools/soaking/worker.py"
-INTERPRETER = TOP / "build/unix64/micropython"
-HEAP = "heapsize=96M"
+import interpreters
+from interpreters import CPYTHON, NAMES, PYPY, TOP
+
 PORTION = 250_000  # bytes of a seed that fuzzes
-BROKEN, NOT_UNDERSTOOD, CRASHED = 1, 2, 4
+PORTION_MINUTES = 1  # of virtual time: about as much work
+BROKEN, MISSING, CRASHED = 1, 3, 4
+SEEDS_MAX = 1_000_000
+MINUTES_MAX = 1_000_000
 
 
 def parser():
@@ -32,72 +33,112 @@ def parser():
         prog="tools/soak",
         description="The whole panel in virtual time: an operator who presses random keys, "
         "drives, seeded faults, and the rules that must hold at every step.",
-        epilog="Exit status: 0 every rule held, 1 one was broken, 2 wrong arguments, 3 there is "
-        "no MicroPython, 4 a process failed.",
+        epilog="Exit status: 0 every rule held, 1 one was broken, 2 wrong arguments, 3 an "
+        "interpreter is missing, 4 a process failed.",
     )
-    arguments.add_argument("--seeds", type=at_least_one, default=20, metavar="N", help="(20)")
-    arguments.add_argument(
-        "--minutes", type=float, default=3, metavar="M", help="virtual time of each seed (3)"
+    add = arguments.add_argument
+    add("--seeds", type=count(1, SEEDS_MAX), default=20, metavar="N", help="(20)")
+    add("--minutes", type=minutes, default=3, metavar="M", help="virtual time of each seed (3)")
+    add("--first", type=count(0, 2**60), default=1, metavar="SEED", help="(1)")
+    add("--drives", type=count(1, 31), metavar="N", help="1...31 (each seed has its own number)")
+    add(
+        "--two-troubles",
+        action="store_true",
+        help="several drives run, and two things fail at once, in every second thing that happens",
     )
-    arguments.add_argument("--first", type=int, default=1, metavar="SEED", help="(1)")
-    arguments.add_argument(
-        "--drives", type=at_least_one, metavar="N", help="1...31 (each seed has its own number)"
+    add("--jobs", type=count(1, 1000), default=2, metavar="N", help="processes at a time (2)")
+    add("--fuzz", type=count(1, 10**12), metavar="BYTES", help="feed the receiver instead")
+    add(
+        "--interpreter",
+        choices=NAMES,
+        help="for all seeds (every tenth seed on MicroPython; the others on CPython, in a long "
+        "run on PyPy where it is to be had)",
     )
-    arguments.add_argument(
-        "--jobs", type=at_least_one, default=2, metavar="N", help="processes at a time (2)"
-    )
-    arguments.add_argument(
-        "--fuzz", type=at_least_one, metavar="BYTES", help="feed the receiver instead"
-    )
-    arguments.add_argument(
-        "--firmware", metavar="FOLDER", default=TOP / "firmware", help="another copy of firmware/"
-    )
-    arguments.add_argument("--check", action="store_true", help=argparse.SUPPRESS)
+    add("--firmware", metavar="FOLDER", default=TOP / "firmware", help="another copy of firmware/")
+    add("--needs", action="store_true", help=argparse.SUPPRESS)  # what it runs on, for tools/soak
     return arguments
 
 
-def at_least_one(word):
-    number = int(word)
-    if number < 1:
-        raise argparse.ArgumentTypeError("%s is not at least 1" % word)
+def count(low, high):
+    """Type of an argument: an integer from low to high."""
+
+    def understand(word):
+        try:
+            number = int(word)
+        except ValueError:
+            raise argparse.ArgumentTypeError("%s is no whole number" % word) from None
+        if not low <= number <= high:
+            raise argparse.ArgumentTypeError("%s is not %d...%d" % (word, low, high))
+        return number
+
+    return understand
+
+
+def minutes(word):
+    """Type of an argument: minutes, a second at least."""
+    try:
+        number = float(word)
+    except ValueError:
+        raise argparse.ArgumentTypeError("%s is no number" % word) from None
+    if not (math.isfinite(number) and 1 <= number * 60 <= MINUTES_MAX * 60):
+        raise argparse.ArgumentTypeError(
+            "%s is no time: 0.02 (a second) to %d minutes" % (word, MINUTES_MAX)
+        )
     return number
 
 
 class Worker:
-    """A process with its own thread, which gives it seeds and hands on what it says."""
+    """A job with its own thread, which gives its processes seeds and hands on what they say.
+
+    processes: of each interpreter one, from the first seed on that it has to live.
+    """
 
     def __init__(self, wanted, arguments, seeds, said):
+        self.wanted = wanted
+        self.arguments = arguments
         self.seeds = seeds
         self.said = said
-        command = [INTERPRETER, "-X", HEAP, WORKER, *map(str, arguments)]
-        paths = (wanted.firmware, TOP, ".frozen")
-        self.process = subprocess.Popen(
-            command,
-            cwd=TOP,
-            env={**os.environ, "MICROPYPATH": ":".join(map(str, paths))},
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            text=True,
-        )
+        self.processes = {}
         threading.Thread(target=self.run, daemon=True).start()
 
     def run(self):
         try:
             while True:
-                seed = self.seeds.get_nowait()
-                print(seed, file=self.process.stdin, flush=True)
-                while self.hand_on(self.process.stdout.readline()):
+                seed, name = self.seeds.get_nowait()
+                process = self.process(name)
+                print(seed, file=process.stdin, flush=True)
+                while self.hand_on(name, process.stdout.readline()):
                     pass
         except (queue.Empty, BrokenPipeError):
             pass
-        self.process.stdin.close()
-        self.said.put((self, {"ended": self.process.wait()}))
+        statuses = [abs(self.end(process)) for process in self.processes.values()]
+        self.said.put((self, {"ended": max(statuses, default=0)}))
 
-    def hand_on(self, line):
+    def process(self, name):
+        if name not in self.processes:
+            self.processes[name] = subprocess.Popen(
+                interpreters.command(name, self.arguments),
+                cwd=TOP,
+                env=interpreters.environment(name, self.wanted.firmware),
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                text=True,
+            )
+        return self.processes[name]
+
+    def end(self, process):
+        try:
+            process.stdin.close()
+        except BrokenPipeError:
+            pass
+        return process.wait()
+
+    def hand_on(self, name, line):
         """Whether the seed goes on."""
         if not line:
             raise BrokenPipeError
         what = json.loads(line)
+        what["interpreter"] = name
         self.said.put((self, what))
         return "at" in what
 
@@ -114,6 +155,7 @@ class Tally:
         self.seconds = 0
         self.exchanges = 0
         self.faults = Counter()
+        self.interpreters = Counter()
         self.broken = []
 
     def take(self, worker, what):
@@ -125,6 +167,7 @@ class Tally:
             self.seconds += what["seconds"]
             self.exchanges += what["exchanges"]
             self.faults.update(what["faults"])
+            self.interpreters[what["interpreter"]] += 1
             if what["rule"]:
                 self.broken.append(what)
 
@@ -144,18 +187,48 @@ class Tally:
         counted = ("%s %d" % (kind, count) for kind, count in sorted(self.faults.items()))
         yield "faults: %s" % (", ".join(counted) or "none")
         took_s = self.took_s()
-        yield "took %d:%02d min, %d times real time" % (
-            took_s // 60, took_s % 60, self.seconds / took_s,
+        yield "took %d:%02d min, %d times real time, on %s" % (
+            took_s // 60, took_s % 60, self.seconds / took_s, lived_on(self.interpreters),
         )  # fmt: skip
+        yield self.verdict()
+
+    def verdict(self):
+        """What came of it, in words."""
+        missing = self.count - self.done
+        if self.broken:
+            said = "%d of %d seeds broke a rule" % (len(self.broken), self.done)
+        else:
+            said = "every rule held in %d seeds" % self.done
+        if missing:
+            said += ", but %d were not lived to their end" % missing
+        return said
 
 
-def start(wanted, seeds, arguments):
+def lived_on(counts):
+    """Such as "PyPy 18, MicroPython 2"."""
+    return ", ".join("%s %d" % (NAMES[name], count) for name, count in counts.items()) or "nothing"
+
+
+def lives(wanted):
+    """Each seed with the interpreter that is to live it, here or not."""
+    seeds = -(-wanted.fuzz // PORTION) if wanted.fuzz else wanted.seeds
+    each_minutes = PORTION_MINUTES if wanted.fuzz else wanted.minutes
+    fast = interpreters.fastest(each_minutes * seeds / wanted.jobs)
+    for seed in range(wanted.first, wanted.first + seeds):
+        yield seed, wanted.interpreter or interpreters.of_seed(seed, fast)
+
+
+def start(wanted, arguments):
     """The workers, at work, and the queue into which they speak."""
     waiting = queue.SimpleQueue()
-    for seed in seeds:
-        waiting.put(seed)
+    chosen = list(lives(wanted))
+    if PYPY in dict(chosen).values() and not interpreters.is_here(PYPY):
+        print("tools/soak: no PyPy is here, CPython does it", file=sys.stderr)
+        chosen = [(seed, CPYTHON if name == PYPY else name) for seed, name in chosen]
+    for seed_and_name in chosen:
+        waiting.put(seed_and_name)
     said = queue.SimpleQueue()
-    jobs = min(wanted.jobs, len(seeds))
+    jobs = min(wanted.jobs, len(chosen))
     return {Worker(wanted, arguments, waiting, said) for _ in range(jobs)}, said
 
 
@@ -169,9 +242,8 @@ def sayings(workers, said):
 
 
 def soak(wanted):
-    arguments = ["soak", wanted.minutes] + ([wanted.drives] if wanted.drives else [])
-    seeds = range(wanted.first, wanted.first + wanted.seeds)
-    workers, said = start(wanted, seeds, arguments)
+    arguments = ["soak", wanted.minutes, wanted.drives or 0, 2 if wanted.two_troubles else 1]
+    workers, said = start(wanted, arguments)
     tally = Tally(wanted.seeds, wanted.minutes)
     crashed = 0
     for worker, what in sayings(workers, said):
@@ -180,7 +252,7 @@ def soak(wanted):
         if what.get("rule"):
             show_line("")
             print("\n".join(what["story"]))
-            print("again: %s" % again(wanted, what["seed"]), flush=True)
+            print("again: %s" % again(wanted, what), flush=True)
         show_line(tally.line())
     show_line("")
     for line in tally.summary():
@@ -190,9 +262,12 @@ def soak(wanted):
     return CRASHED if crashed else BROKEN if tally.broken else 0
 
 
-def again(wanted, seed):
+def again(wanted, what):
     drives = " --drives %d" % wanted.drives if wanted.drives else ""
-    return "./tools/soak --seeds 1 --first %d --minutes %g%s" % (seed, wanted.minutes, drives)
+    troubles = " --two-troubles" if wanted.two_troubles else ""
+    return "./tools/soak --seeds 1 --first %d --minutes %r%s%s --interpreter %s" % (
+        what["seed"], wanted.minutes, drives, troubles, what["interpreter"],
+    )  # fmt: skip
 
 
 def show_line(text):
@@ -203,20 +278,21 @@ def show_line(text):
 
 def fuzz(wanted):
     began = time.monotonic()
-    count = min(wanted.fuzz, PORTION)
-    seeds = range(wanted.first, wanted.first + -(-wanted.fuzz // PORTION))
+    portion = min(wanted.fuzz, PORTION)
     fed = Counter()
     broken = crashed = 0
-    for _, what in sayings(*start(wanted, seeds, ["fuzz", count])):
+    for _, what in sayings(*start(wanted, ["fuzz", portion])):
         crashed = crashed or what.pop("ended", 0)
         seed = what.pop("seed", None)
         reason = what.pop("broken", None)
+        name = what.pop("interpreter", None)
         fed.update(what)
         if reason:
             broken = BROKEN
             show_line("")
             print("seed %d: %s" % (seed, reason))
-            print("again: ./tools/soak --fuzz %d --first %d" % (count, seed), flush=True)
+            command = "./tools/soak --fuzz %d --first %d --interpreter %s"
+            print("again: " + command % (portion, seed, name), flush=True)
         show_line("%d of %d bytes" % (fed["bytes"], wanted.fuzz))
     show_line("")
     took_s = time.monotonic() - began
@@ -230,10 +306,12 @@ def fuzz(wanted):
 
 def main():
     wanted = parser().parse_args()
-    if wanted.drives and wanted.drives > 31:
-        parser().error("--drives %d: 31 at the most" % wanted.drives)
-    if wanted.check:
+    if wanted.needs:
+        print(*sorted({name for _, name in lives(wanted)}))
         return 0
+    if wanted.interpreter and not interpreters.is_here(wanted.interpreter):
+        print("tools/soak: no %s is here" % NAMES[wanted.interpreter], file=sys.stderr)
+        return MISSING
     return fuzz(wanted) if wanted.fuzz else soak(wanted)
 
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""What the judge knows of one address on the line, and what its drive lets a setpoint be."""
+"""What the judge knows of one address on the line."""
 
-from tools.soaking.facts import NEVER, OFF1
+from tools.soaking.facts import ALWAYS, NEVER, OFF1
 
 
 class Case:
@@ -20,9 +20,24 @@ class Case:
         self.heard_us = NEVER  # the last one that the panel is sure to have taken
         self.asked_us = NEVER  # the last request, if no reply has come to it
         self.missed_us = NEVER  # a request that stayed without a reply, the last one
+        self.lost_us = NEVER  # such a one, for the lost time or more after a reply, was over
+        self.task = None  # of the first request that stayed without a reply, and how often
+        self.tasks = 0
+        self.replies = 0  # ever
+        self.unheard = 0  # requests since power-on, while no reply has come
+        self.off_us = NEVER  # it was running by START, and stopped by something else than STOP
         self.ran = False  # since ON was sent first
         self.ran_us = NEVER  # seen running last
+        self.rested_us = NEVER  # heard at rest last, in answer to an OFF
         self.turned_us = NEVER  # ON or JOG sent last
+        self.highest_hsw = 0  # that the run may have: what UP left, or less
+        self.raised_us = NEVER  # UP was down for it last
+        self.exposed_us = ALWAYS  # so long the motor was to run on without a panel, by its start
+        self.reached = False  # HIW has come up to HSW since one of them, or the direction, changed
+        self.run_starts = 0  # of its motor, in this run
+        self.again_us = NEVER  # it started once more in this run
+        self.powered_us = 0  # mains came last
+        self.telltale = False  # when they went it had run so long that its counter tells it
         self.stop_us = NEVER  # STOP pressed for it last
         self.owed_us = NEVER  # STOP pressed, and no OFF sent since
         self.owed_requests = 0  # to whomever, since that must have had its effect
@@ -35,8 +50,14 @@ class Case:
         self.second_since_us = NEVER  # sent first, of those without another word between
         self.bad_us = NEVER  # a status word that forbids a START, and that the panel has taken
         self.good_us = NEVER  # one that does not
-        self.settings_us = NEVER  # parameters of the drive may have changed last
+        self.settings_us = NEVER  # parameters of the drive may have changed last,
+        self.settings_at = NEVER  # at so many replies
         self.accepted = False  # somebody said that it may run though nothing watches its line
+
+    def changes(self, now):
+        """Its parameters may be others from now on."""
+        self.settings_us = now
+        self.settings_at = self.replies
 
 
 def drive_at(world, address):
@@ -44,39 +65,3 @@ def drive_at(world, address):
     for drive in world.drives.values():
         if drive.address == address and drive.plugged and drive.powered:
             return drive
-
-
-class Limits:
-    """What a drive lets a setpoint be: P1080, P1082, P2000, and whether PZD2 is in 0.01 Hz."""
-
-    def __init__(self, lowest_hz, highest_hz, reference_hz, absolute):
-        self.lowest_hz = lowest_hz
-        self.highest_hz = highest_hz
-        self.reference_hz = reference_hz
-        self.absolute = absolute
-
-    def hz(self, hsw):
-        return hsw / 100 if self.absolute else hsw * self.reference_hz / 0x4000
-
-    def allow(self, hsw, settings):
-        if hsw & 0x8000:
-            return False
-        hz = self.hz(hsw)
-        highest_hz = min(self.highest_hz, settings.get("highest_centihertz", 65000) / 100)
-        lowest_hz = max(self.lowest_hz, settings.get("lowest_centihertz", 0) / 100)
-        full_hz = 327.67 if self.absolute else 1.99994 * self.reference_hz
-        highest_hz = min(highest_hz, full_hz)
-        lowest_hz = min(lowest_hz, highest_hz)
-        slack_hz = 0.006 + self.reference_hz / 0x4000
-        return lowest_hz - slack_hz <= hz <= highest_hz + slack_hz
-
-
-def limits_of(drive):
-    try:
-        absolute = bool(drive.read(2009))
-    except KeyError:
-        absolute = False
-    try:
-        return Limits(drive.read(1080), drive.read(1082), drive.read(2000), absolute)
-    except KeyError:
-        return Limits(0, 650, 50, False)

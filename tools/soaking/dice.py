@@ -2,6 +2,7 @@
 """Numbers that look random, of a sequence that one seed decides, the same on every interpreter.
 
     dice = Dice(7)
+    other = Dice(7, 1)      # others of the same seed
     dice.below(6)           # 0...5
 """
 
@@ -9,8 +10,8 @@ MASK = 0x3FFFFFFF  # a small integer on 32-bit builds
 
 
 class Dice:
-    def __init__(self, seed):
-        self._state = (seed * 0x1E3779B + 0x2545F49) & MASK or 1
+    def __init__(self, seed, which=0):
+        self._state = (seed * 0x1E3779B + which * 0x3C6EF35 + 0x2545F49) & MASK or 1
         for _ in range(8):
             self.below(2)
 

@@ -16,7 +16,7 @@ OFFS = (OFF1, OFF2, OFF3)
 KNOWN = OFFS + (ON, ON_REVERSE, JOG_RIGHT, JOG_LEFT)
 SECOND_STOPS = {"OFF3": OFF3, "OFF2": OFF2, "none": OFF1}
 
-ZSW_RUNNING, ZSW_FAULT, ZSW_INHIBIT = 0x0004, 0x0008, 0x0040
+ZSW_RUNNING, ZSW_FAULT, ZSW_INHIBIT, ZSW_WARNING = 0x0004, 0x0008, 0x0040, 0x0080
 
 # Task ids (specification C-4.2.1, table 4.1).
 READS = (0, 1, 4, 6, 9)
@@ -31,11 +31,16 @@ DANGEROUS = (
     2016, 2019, 2023, 3900,
 )  # fmt: skip
 PERMANENT = (2010, 2011, 2012, 2013)
-QUESTIONS = ("SET=DO  PARAM=NO", "SET=FIX START=GO")
+# Row 2 of a question: to which SET says yes; START may; about a risk that nothing takes away.
+WRITES, RUNS_ON, RISKS = "SET=DO  PARAM=NO", "SET=FIX START=GO", "START=GO STOP=NO"
+QUESTIONS = (WRITES, RUNS_ON)
+GOES = (RUNS_ON, RISKS)
+CHOICES = (WRITES, RUNS_ON, RISKS)
 
-# How long the panel may take: a key settles in 20 ms and bounces for up to 5; two steps of the
-# loop, 4 ms each at the most, and those of a drawing that is under way.
-DEBOUNCE_US = 45 * MS
+# How long the panel may take: a key settles in 20 ms and bounces for up to 5; five steps of the
+# loop, two of them of its own and those of a drawing that is under way.
+SETTLED_US = 25 * MS
+STEPS = 5
 SHORT_CHORD_US = 120 * MS  # within which nobody can tell which of two keys came first
 DEAD_MAN_US = 300 * MS
 SECOND_STOP_US = 1_500 * MS
@@ -43,12 +48,31 @@ ALL_STOP_US = 4_000 * MS
 START_S = 10  # a START that has not led to ON by then is forgotten, and 14 exchanges each
 HELD_SET_US = 1_400 * MS
 WISH_US = 40 * S  # a write that SET has asked for is over by then, and 20 rounds of the line
-SETTINGS_US = 60 * S  # so long settings that the drive has had may still count
+# Settings of a drive that runs are read so often: what setpoint and actual frequency mean, and its
+# limits, while it is shown and while not; in so many readings, and replies to each of those.
+MEANT_US, MEANT_READS = 10 * S, 36
+LIMITED_SHOWN_US, LIMITED_US, LIMITED_READS = 2_500 * MS, 10 * S, 8
+READ_REPLIES = 2  # of a drive whose replies do not lag
+# Of the loop, for each that runs and is not shown, where that takes longer: until its limits have
+# been read, and all its settings.
+LOOKED_STEPS, MEANT_STEPS = 200, 900
+LONG_US = 2 * S  # a P2014 that is longer, or 4 rounds, is a risk
+HUNG_MAX_US = 5 * S
+LOST_SAID_US = 700 * MS  # until the display says that a drive is lost
 STUCK_US = 5_000 * MS  # a bus that stands for so long makes the watchdog bite
 WATCHDOG_US = 2_000 * MS
 
 NEVER = -1_000_000_000_000  # an instant long ago
 ALWAYS = 1 << 60
+
+
+def debounce_us(plan):
+    """From when a key moves to when that must have had its effect."""
+    return SETTLED_US + STEPS * plan.loop_us
+
+
+def lost_us(plan):
+    return plan.settings.get("lost_ms", 1000) * MS
 
 
 def exchange_us(plan):

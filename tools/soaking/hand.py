@@ -11,17 +11,22 @@ which everything is put in order and it looks whether the panel controls its dri
 
 import json
 
-from tools.soaking.facts import MS, QUESTIONS, S
+from tools.soaking.drive_settings import ACTUAL_HZ
+from tools.soaking.facts import GOES, MS, S
 from tools.soaking.fingers import SLICE_MS
-from tools.soaking.mischief import Mischief
+from tools.soaking.mischief import WARNINGS, Mischief
 from tools.soaking.reader import address_in
 from tools.soaking.rules import Broken
 from tools.soaking.worlds import CLEAN
 
 TURN_S = (8, 25)
+RISKS_MAX = 3  # one may ask about before a motor starts
+ACKNOWLEDGED_MS = 5_000
+TRIES = 12  # of so many addresses the hand looks for one that answers
 IN_ORDER = {
     700: 5, 1000: 5, 1080: 0.0, 1082: 50.0, 2000: 50.0, 2009: 0, 1120: 2.0, 1121: 2.0, 1135: 1.0,
-    3: 3, 10: 0, 927: 15,
+    3: 3, 10: 0, 927: 15, 719: 0, 840: 2036 << 16, 1070: 2018 << 16 | 1, 2200: 0, 1210: 1,
+    (2019, 1): ACTUAL_HZ,
 }  # fmt: skip
 
 
@@ -59,10 +64,12 @@ class Hand(Mischief):
             self.judge.excuse(drive.address, 3)
             if not drive.plugged:
                 drive.plug()
-            if not drive.powered:
-                drive.power_on()
+            if not drive.mains:
+                self.power_on(drive)
             for number, value in IN_ORDER.items():
                 self.set_at_drive(drive, number, value)
+            for number in WARNINGS:
+                drive.warn(number, False)
         self.follow_addresses()
         self.run(1_500 + 4 * self.judge.cycle_us // MS)
         self.press("STOP", 4_300)
@@ -80,14 +87,17 @@ class Hand(Mischief):
         """START runs the drive shown, and STOP stops it."""
         if not self.find_one_that_answers():
             return
-        self.wait_for("an address on the display", self._is_home, 8)
         reader = self.reader
+        if self.is_unconfirmed():
+            return
+        self.wait_for("an address on the display", self._is_home, 8)
         address = self.judge.shown
         if not reader.is_able(address):
             return
         drive = reader.drive_at(address)
         self.run(1_500)  # a fault has to be shown for a second
         self.press("STOP")  # and what was said of the drive is read
+        self.acknowledge(drive)
         self.wait_for("drive %d to be ready" % address, lambda: drive.state == "ready", 20)
         self.wait_for("READY on the display", lambda: reader.rows[1].startswith("READY"), 8)
         self.press("START")
@@ -95,10 +105,13 @@ class Hand(Mischief):
         if self.reader.reads("NO:"):  # a drive that was not shown is not always known by now
             self.run(3_000 + 20 * self.judge.cycle_us // MS)
             self.press("START")
-        self.wait_for("a START to be answered", lambda: self._is_answered(drive), 8)
-        if reader.reads(QUESTIONS[1]):
+        for _ in range(RISKS_MAX):
+            self.wait_for("a START to be answered", lambda: self._is_answered(drive), 8)
+            if drive.state == "running":
+                break
             self.run(1_200)
             self.press("START")
+            self.run(200)
         self.wait_for("drive %d to run" % address, lambda: drive.state == "running", 8)
         self.run(self.dice.between(100, 6_000))
         if self.dice.below(2):
@@ -107,17 +120,32 @@ class Hand(Mischief):
         elif len(self.drives) > 1 and self._all_are_well():
             self.prove_announced(drive)
 
+    def acknowledge(self, drive):
+        """STOP again, where a fault took turns with others and was not shown for a second."""
+        for _ in range(ACKNOWLEDGED_MS // SLICE_MS):
+            if drive.state != "fault":
+                return
+            self.run(SLICE_MS)
+        self.press("STOP")
+
     def find_one_that_answers(self):
         """A drive that the panel cannot control never confirms its STOP: another one is shown.
         Answers whether there is one that it can control."""
         able = [drive for drive in self.drives if self.reader.is_able(drive.address)]
-        for _ in range(len(self.drives) - len(able)):
-            self.run(2_000)
-            if not self.reader.rows[1].startswith("STOP UNCONFIRMED"):
+        for _ in range(min(len(self.plan.listed) - len(able), TRIES)):
+            if not self.is_unconfirmed():
                 break
             self.press("ADDRESS_UP")
             self.run(2_000)
         return bool(able)
+
+    def is_unconfirmed(self):
+        """Whether the display says, now and then, that the STOP of the drive shown is."""
+        for _ in range(3_000 // SLICE_MS):
+            self.run(SLICE_MS)
+            if self.reader.reads("STOP UNCONFIRMED"):
+                return True
+        return False
 
     def prove_announced(self, drive):
         """Another drive is shown: this one runs on, and the display says so."""
@@ -142,7 +170,11 @@ class Hand(Mischief):
         return True
 
     def _is_answered(self, drive):
-        return drive.state == "running" or self.reader.reads(QUESTIONS[1])
+        """START is pressed again where it was given up: the drive tells its settings slowly, or
+        the line is busy, and a clock that wraps soon lets it wait for a few seconds alone."""
+        if self.reader.reads("NO: STILL CHECKS"):
+            self.press("START")
+        return drive.state == "running" or self.reader.rows[1] in GOES
 
     def _is_home(self):
         """Parameter mode is left as soon as it is seen."""

@@ -11,17 +11,18 @@ telegram is judged by the keys as they were when it began.
     judge.hangs(True)
 """
 
+from tools.soaking.drive_settings import scalings
 from tools.soaking.facts import (
     ACKNOWLEDGE,
     ALL_STOP_US,
     ALWAYS,
     DANGEROUS,
     DEAD_MAN_US,
-    DEBOUNCE_US,
     EEPROM_WRITES,
     HELD_SET_US,
     JOG_RIGHT,
     KNOWN,
+    MEANT_US,
     MS,
     NEVER,
     OFF1,
@@ -40,12 +41,20 @@ from tools.soaking.facts import (
     ZSW_RUNNING,
     S,
 )
-from tools.soaking.refusals import READ_US, reason_against, runs_on_unasked
+from tools.soaking.refusals import reason_against, runs_on_unasked
 from tools.soaking.rules import Broken
+from tools.soaking.runs import (
+    begin,
+    begin_again,
+    is_over,
+    is_standstill,
+    judge_restart,
+    judge_rise,
+)
+from tools.soaking.shares import Shares
 from tools.soaking.tape import MALFORMED, REQUEST
 from tools.soaking.witness import Witness
 
-BACK_OFF_US = 3 * S  # a drive that is silent is asked every 1.6 s, many of them within 2 s
 LISTEN_US = 95 * MS  # 100 ms, and what the panel's clocks may be short of
 SILENT_US = 3_500 * MS  # a panel that listens, and then one exchange
 
@@ -56,6 +65,7 @@ class Judge(Witness):
     def __init__(self, world, plan):
         Witness.__init__(self, world, plan)
         self.exchanges = 0
+        self.shares = Shares(self)
         self.patience_us = SILENT_US + self.exchange_us
         self._counted_us = 0
 
@@ -71,9 +81,6 @@ class Judge(Witness):
         chip = world.chip
         if chip.handler_errors:
             raise Broken("EXCEPTION", "interrupt handler: %r" % chip.handler_errors[0])
-        failure = world.app.pacer.failure
-        if failure is not None:
-            raise Broken("EXCEPTION", "the bus engine: %r" % failure)
         if world.wire.violation_count:
             self._judge_line()
         if world.lcd_chip.complaints:
@@ -88,7 +95,8 @@ class Judge(Witness):
         self._judge_motors(now)
         if now - self._counted_us > S:
             self._counted_us = now
-            self._judge_list(now)
+            self.shares.look(now)
+            self.note_settings(now)
         down = self.down
         if down:
             if "STOP" in down and "STOP" not in self.spoilt:
@@ -96,41 +104,22 @@ class Judge(Witness):
             if "SET" in down and now - down["SET"] > HELD_SET_US:
                 self.wishes["eeprom"] = now + self.wish_us
 
-    def _judge_list(self, now):
-        """Nobody is left out, whether or not it answers."""
-        for address in self.plan.addresses:
-            if address not in self.moved and self._asked_for_us(self.cases[address], now) > (
-                BACK_OFF_US + 4 * self.cycle_us
-            ):
-                raise Broken("NEGLECTED", "drive %d is not asked any more at %d" % (address, now))
-
-    def _asked_for_us(self, case, now):
+    def asked_for_us(self, case, now):
         """How long a drive was not asked that could have been."""
         if self.hung_us is not None or self.stuck_us is not None:
             return 0
         return now - max(case.sent_us, self.stalled_us, self.late_us, self.boot_us)
-
-    def _judge_gap(self, case, address, now):
-        """One that runs, or may, has its turn in every round, whatever else there is to say."""
-        may_run = case.stw & RUN or (
-            case.zsw & ZSW_RUNNING and case.asked_us > case.answered_us > self.boot_us
-        )
-        if may_run and address not in self.moved:
-            gap_us = self._asked_for_us(case, now)
-            if gap_us > 2 * self.cycle_us + 12 * self.exchange_us + 200 * MS:
-                told = (address, gap_us // MS, now)
-                raise Broken("NEGLECTED", "drive %d not asked for %d ms at %d" % told)
 
     def _judge_held_stop(self, now, held_us):
         """What a STOP that is held must have led to by now."""
         pressed_us = now - held_us
         if max(self.stalled_us, self.late_us) > pressed_us or self.hung_us is not None:
             return
-        patience_us = DEBOUNCE_US + 4 * self.exchange_us
+        patience_us = self.debounce_us + 4 * self.exchange_us
         if self.second_owed is not None and held_us > SECOND_STOP_US + patience_us:
             if self.second_owed.second_us < pressed_us:
                 raise Broken("SECOND STOP", "not sent at %d" % now)
-        patience_us += len(self.plan.addresses) * (2 * self.exchange_us + 10 * MS)
+        patience_us += len(self.plan.listed) * (2 * self.exchange_us + 10 * MS)
         if held_us > ALL_STOP_US + patience_us:
             for address, case in enumerate(self.cases):
                 if case.stw & RUN:
@@ -158,20 +147,31 @@ class Judge(Witness):
             case.excused_us = now + 2 * S + self.cycle_us
             case.heard_us = NEVER
         case.answered_us = now
+        case.unheard = 0
         case.asked_us = NEVER
         case.zsw = zsw
         if zsw & ZSW_RUNNING:
             case.ran_us = now
+        elif not case.stw & RUN:
+            case.rested_us = now
         if not zsw & (ZSW_FAULT | ZSW_INHIBIT):
             case.good_us = now
         stops = False
         if case.stw & RUN:
             if zsw & ZSW_RUNNING:
                 case.ran = True
-            stops = zsw & (ZSW_FAULT | ZSW_INHIBIT) or case.ran and not zsw & ZSW_RUNNING
+            stops = is_over(case, zsw)
+            if is_standstill(case, tape.words[at + 5]) and self._tells_speed(case, row, now):
+                stops = True
             if stops:
                 case.excused_us = now + 2 * S + self.cycle_us
         self.unsettled.append((row, case, stops))
+
+    def _tells_speed(self, case, row, now):
+        """Whether HIW is the speed, in percent, by what the drive is set to."""
+        meant = self.meant(self.tape.address[row])
+        told = [values.tells_hz and not values.absolute for values in meant]
+        return bool(told) and all(told)
 
     def _settle_replies(self, now):
         """Those by now that the panel must have taken."""
@@ -182,11 +182,12 @@ class Judge(Witness):
             if not tape.is_settled(row, now):
                 waiting.append(one)
             elif self._is_sure(row, tape):
+                case.replies += 1
                 case.heard_us = max(case.heard_us, tape.end_us[row])
                 if tape.words[6 * row + 4] & (ZSW_FAULT | ZSW_INHIBIT):
                     case.bad_us = max(case.bad_us, tape.end_us[row])
                 if stops:
-                    case.void_us = max(case.void_us, tape.end_us[row])
+                    case.void_us = case.off_us = max(case.void_us, tape.end_us[row])
         self.unsettled = waiting
 
     def _is_sure(self, row, tape):
@@ -206,13 +207,17 @@ class Judge(Witness):
         stw = words[at + 4]
         case = self.cases[address]
         self.exchanges += 1
-        self._judge_gap(case, address, now)
+        task = words[at] >> 12
+        asks = (words[at], words[at + 1]) if task else None
+        self.shares.ask(case, address, asks, now)
         if self.first_sent is not None:
             self._judge_first(row, tape)
-        task = words[at] >> 12
         if case.asked_us > 0:
             case.missed_us = case.asked_us
+            if case.lost_us < max(case.answered_us, self.boot_us) < case.missed_us - self.lost_us:
+                case.lost_us = now
         case.asked_us = now
+        case.unheard += 1
         if self.owed:
             self._judge_owed(case, now)
         if task and task != 1:
@@ -253,7 +258,7 @@ class Judge(Witness):
         """From when on a key moved at `since_us` must have had its effect."""
         if self.stalled_us > since_us:
             since_us = self.stalled_us
-        return since_us + DEBOUNCE_US
+        return since_us + self.debounce_us
 
     def _judge_run(self, case, address, stw, hsw, now):
         where = "%04X to drive %d at %d" % (stw, address, now)
@@ -268,14 +273,23 @@ class Judge(Witness):
         if stop_us is not None and self.hung_us is None and case.stop_us == stop_us:
             if now > self._grace(stop_us):
                 raise Broken("STOP", "%s, and STOP is down" % where)
+        begins = case.stw not in (ON, ON_REVERSE) and stw in (ON, ON_REVERSE)
         if stw in (ON, ON_REVERSE):
             self._judge_on(case, where, now)
-            self._judge_setpoint(address, hsw, now, where)
+            self._judge_setpoint(address, hsw, now, where, begins)
         else:
             self._judge_jog(case, "JOG_RIGHT" if stw == JOG_RIGHT else "JOG_LEFT", where, now)
+        if begins or not case.stw & RUN:
+            begin(case, hsw)
+            is_on = stw in (ON, ON_REVERSE)
+            case.exposed_us = self.exposed_us(address, case) if is_on else ALWAYS
+        elif stw in (ON, ON_REVERSE):
+            judge_rise(self, case, hsw, now, where)
+            judge_restart(self, case, where, now)
+        if stw != case.stw or hsw != case.hsw:
+            case.reached = False
         if not case.stw & RUN:
             case.on_us = now
-            case.ran = False
             self._judge_permission(case, address, stw not in (ON, ON_REVERSE), where, now)
         case.turned_us = now
         if case.owed_us > 0 and now > self._grace(case.owed_us):
@@ -284,7 +298,7 @@ class Judge(Witness):
 
     def _judge_permission(self, case, address, jogs, where, now):
         pressed_us = case.jog_us if jogs else case.used_us
-        if now - self.tape.chance_us < READ_US:
+        if now - self.tape.chance_us < MEANT_US:
             return
         reason = reason_against(self, case, address, pressed_us, jogs)
         if reason is not None:
@@ -326,12 +340,14 @@ class Judge(Witness):
         if case.stw in (ON, ON_REVERSE):
             raise Broken("JOG", "%s, right behind ON" % where)
 
-    def _judge_setpoint(self, address, hsw, now, where):
-        for until_us, limits in self.limits.get(address, ()):
-            if until_us >= now and limits.allow(hsw, self.plan.settings):
-                return
-        if address not in self.limits or address != self.world.drives[address].address:
-            return  # it was given another address: nobody knows whose limits these are
+    def _judge_setpoint(self, address, hsw, now, where, begins):
+        limited = self.limited(address)
+        for scaling in scalings(self.meant(address)):
+            for values in limited:
+                if scaling.allows(hsw, values, self.plan.settings, begins):
+                    return
+        if not limited:
+            return
         raise Broken("SETPOINT", "%s, HSW %04X" % (where, hsw))
 
     def _judge_off(self, case, address, stw, now):
@@ -393,6 +409,8 @@ class Judge(Witness):
         pressed_us = self.stop_from_us if "STOP" in self.down else None
         if pressed_us is None and now - self.up["STOP"] < 200 * MS + self.exchange_us:
             pressed_us = min(case.stop_us, self.stop_from_us)
+        if case.sent_us < self.held_us + SECOND_STOP_US + self.debounce_us:
+            pressed_us = self.held_us  # the line was taken: nothing has gone to it since then
         held_us = now - (pressed_us if pressed_us is not None else ALWAYS)
         if off != self.second_stop or held_us < SECOND_STOP_US - 50 * MS:
             told = (off, address, now, held_us // MS)
@@ -414,7 +432,7 @@ class Judge(Witness):
         if task in READS:
             return
         number += 2000 if index & 0x8000 else 0
-        self.cases[address].settings_us = now
+        self.cases[address].changes(now)
         if number == 2011:
             self.moved[address] = self.moved[value] = True
         where = "parameter %d of drive %d, task %d at %d" % (number, address, task, now)
@@ -447,6 +465,7 @@ class Judge(Witness):
             if starts != self.starts[index]:
                 self.starts[index] = starts
                 case = self.cases[drive.address]
+                begin_again(case, now)
                 if now - case.turned_us > S + self.exchange_us and not self._is_garbage(drive.stw):
                     raise Broken("TURNS", "the motor of drive %d starts" % drive.address)
 

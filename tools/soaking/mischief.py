@@ -5,17 +5,28 @@ Judge and reader are told of it before it happens.
 """
 
 from boards.sim.chip import Timer
-from tools.soaking.facts import QUESTIONS
+from tools.soaking.drive_settings import ACTUAL_HZ
+from tools.soaking.facts import GOES
 from tools.soaking.fingers import JOGS, SLICE_MS, Fingers, weights
+from tools.soaking.worlds import bears_silences
 
 PARAMETERS = (  # what somebody sets at the drive itself
     (700, 5), (700, 2), (1000, 5), (1000, 1), (1080, 5.0), (1080, 0.0), (1082, 50.0), (1082, 35.0),
-    (2000, 60.0), (2000, 50.0), (2009, 1), (2009, 0), (2014, 0), (2014, 5000), (1120, 2.0),
-    (1121, 1.0), (1121, 10.0), (1058, 8.0),
+    (2000, 60.0), (2000, 50.0), (2009, 1), (2009, 0), (2014, 0), (2014, 5000), (2014, 65535),
+    (1120, 2.0), (1121, 1.0), (1121, 10.0), (1058, 8.0), (1210, 1), (1210, 2), (1210, 6),
+    ((2019, 1), 0), ((2019, 1), 20 << 16), ((2019, 1), ACTUAL_HZ), (719, 11), (719, 0),
+    (1070, 755 << 16), (840, 722 << 16), (2200, 1 << 16),
 )  # fmt: skip
 
 # What START and JOG have to refuse, or to ask about; no number: a fault.
-DOUBTS = ((700, 2), (1000, 1), (2014, 0), (2014, 0), (2014, 0), (None, 0))
+DOUBTS = (
+    (700, 2), (1000, 1), (2014, 0), (2014, 0), (2014, 0), (2014, 65535), (719, 11),
+    (1070, 755 << 16), (None, 0),
+)  # fmt: skip
+AT_ONCE_MS = (0, 0, 20, 200)  # between two troubles
+LONGER_MS = 16_000  # a P2014 that has become longer is said by then
+SAID_S = 3  # hands off, for each drive in trouble
+WARNINGS = (501, 503, 505)
 
 
 class Mischief(Fingers):
@@ -25,14 +36,21 @@ class Mischief(Fingers):
         Fingers.__init__(self, world, plan, judge, reader, weather)
         self.faults = {}
         self.failures = weights((
-            (4, self.unplug), (3, self.plug), (3, self.trip), (2, self.mains), (3, self.meddle),
-            (3, self.hang), (3, self.restart), (1, self.cut_power), (1, self.cut_flash),
-            (2, self.old_replies), (1, self.stick),
+            (4, self.unplug), (3, self.plug), (3, self.trip), (2, self.mains), (3, self.blink),
+            (3, self.meddle), (3, self.hang), (3, self.restart), (1, self.cut_power),
+            (1, self.cut_flash), (2, self.old_replies), (1, self.stick), (2, self.warn),
+            (3, self.two_troubles),
         ))  # fmt: skip
-        self.common += 3 * [self.distrust]
+        self.at_once = (
+            self.unplug, self.unplug, self.trip, self.mains, self.blink, self.meddle, self.warn,
+            self.hang, self.restart, self.old_replies,
+        )  # fmt: skip
+        self.common += 6 * [self.distrust] + 2 * [self.meddle_while_it_runs]
+        if plan.troubles > 1:
+            self.common += len(self.common) * [self.two_troubles]
         for drive in self.drives:
             if not self.dice.below(4):
-                drive.stale_replies = 1 + self.dice.below(2)
+                self.lag(drive, 1 + self.dice.below(2))
             drive.reexecute = not self.dice.below(4)
 
     def count(self, fault):
@@ -58,7 +76,7 @@ class Mischief(Fingers):
 
     def trip(self):
         drive = self.any_drive()
-        if drive.powered:
+        if drive.state != "off":
             self.note("drive %d trips" % drive.address)
             self.count("trip")
             self.judge.excuse(drive.address)
@@ -66,28 +84,46 @@ class Mischief(Fingers):
 
     def mains(self):
         drive = self.any_drive()
-        self.judge.excuse(drive.address)
-        self.judge.look()
-        if drive.powered:
+        if drive.mains:
             self.note("drive %d loses its mains" % drive.address)
             self.count("mains")
-            drive.power_off()
+            self.power_off(drive)
         else:
             self.note("drive %d has mains again" % drive.address)
-            drive.power_on()
+            self.power_on(drive)
+
+    def blink(self):
+        """The mains of one drive fail for a moment, of one that runs if there is any."""
+        running = [drive for drive in self.drives if drive.state == "running"]
+        drive = self.dice.one_of(running) if running else self.any_drive()
+        if not drive.mains:
+            return
+        ms = self.dice.one_of((30, 80, 150, 300, 600, 1_000))
+        self.note("the mains of drive %d fail for %d ms" % (drive.address, ms))
+        self.count("blink")
+        self.power_off(drive)
+        self.run(ms)
+        self.power_on(drive)
+        self.run(self.dice.between(500, 8_000))
+
+    def power_off(self, drive):
+        self.judge.unpowered(drive)
+        drive.power_off()
+
+    def power_on(self, drive):
+        self.judge.powered(drive)
+        drive.power_on()
 
     def dip(self, whose, ms):
         """The supply fails for a moment: of all drives, of the panel, of both."""
         self.note("the supply of %s fails for %d ms" % (whose, ms))
         if whose != "panel":
-            off = [drive for drive in self.drives if drive.powered]
+            off = [drive for drive in self.drives if drive.mains]
             for drive in off:
-                self.judge.excuse(drive.address)
-                drive.power_off()
+                self.power_off(drive)
             self.run(ms)
             for drive in off:
-                self.judge.excuse(drive.address)
-                drive.power_on()
+                self.power_on(drive)
         if whose != "drives":
             self.cut_power()
 
@@ -95,8 +131,39 @@ class Mischief(Fingers):
         drive = self.any_drive()
         number, value = self.dice.one_of(PARAMETERS)
         if self.set_at_drive(drive, number, value):
-            self.note("drive %d: P%04d=%s at the drive itself" % (drive.address, number, value))
+            self.note("drive %d: P%s=%s at the drive itself" % (drive.address, number, value))
             self.count("parameter")
+            return number
+
+    def meddle_while_it_runs(self):
+        """A motor turns, parameters are changed at the drive, and nobody presses a key."""
+        self.run_long()
+        for _ in range(self.dice.between(1, 3)):
+            number = self.meddle()
+            self.run(self.dice.between(1_000, 14_000))
+            if number == 2014:
+                self.run(LONGER_MS)
+
+    def warn(self):
+        drive = self.any_drive()
+        number, on = self.dice.one_of(WARNINGS), bool(self.dice.below(3))
+        happens = "comes" if on else "goes"
+        self.note("drive %d: warning A%04d %s" % (drive.address, number, happens))
+        self.count("warning")
+        self.judge.stirred_us = self.world.clock.now_us
+        drive.warn(number, on)
+        self.run(self.dice.one_of((50, 50, 9_000)))
+
+    def two_troubles(self):
+        """Drives run, two things fail at once, and nobody presses a key until all is said."""
+        self.start_others()
+        first = self.dice.below(len(self.at_once))
+        second = (first + 1 + self.dice.below(len(self.at_once) - 1)) % len(self.at_once)
+        self.note("two troubles at once")
+        self.at_once[first]()
+        self.run(self.dice.one_of(AT_ONCE_MS))
+        self.at_once[second]()
+        self.run(SAID_S * 1_000 * self.dice.between(1, 4))
 
     def distrust(self):
         """The drive shown becomes one that START and JOG have to refuse, or to ask about; another
@@ -110,7 +177,7 @@ class Mischief(Fingers):
         self.run(self.dice.between(500, 2_000))
         drive = None if self.judge.shown is None else self.reader.drive_at(self.judge.shown)
         number, value = self.dice.one_of(DOUBTS)
-        if drive is None:
+        if drive is None or drive.state == "off":
             return
         if number is None:
             self.judge.excuse(drive.address)
@@ -121,16 +188,18 @@ class Mischief(Fingers):
         self.run(self.dice.between(1_200, 4_000))
         self.press(self.dice.one_of(("START", "START") + JOGS), 300)
         self.run(self.dice.between(300, 3_000))
-        if self.reader.rows[1] == QUESTIONS[1] and self.dice.below(4):
+        if self.reader.rows[1] in GOES and self.dice.below(4):
             self.run(1_200)
             self.press("START")
             self.run(self.dice.between(300, 5_000))
 
     def set_at_drive(self, drive, number, value):
+        """number: of the parameter, or this and an index."""
+        number, index = number if isinstance(number, tuple) else (number, 0)
         try:
-            if drive.read(number) == value:
+            if drive.read(number, index) == value:
                 return
-            drive.write(number, 0, value)
+            drive.write(number, index, value)
         except (KeyError, ValueError):
             return
         self.judge.meddled(drive)
@@ -138,8 +207,12 @@ class Mischief(Fingers):
 
     def old_replies(self):
         drive = self.any_drive()
-        drive.stale_replies = self.dice.below(4)
+        self.lag(drive, self.dice.below(4))
         drive.reexecute = not self.dice.below(3)
+
+    def lag(self, drive, count):
+        if not drive.switches.silent_refusals or bears_silences(self.plan):
+            drive.stale_replies = count
 
     def hang(self):
         ms = self.dice.one_of((60, 200, 400, 700, 1_500, 2_600, 4_000))

@@ -44,7 +44,7 @@ MUTATIONS = (
     Mutation(
         "both jog keys",
         "two jog keys at once are one",
-        ("JOG",), 14,
+        ("JOG",), 11,
         (
             "panel/jog_keys.py",
             "if down != self._key or control is not",
@@ -65,11 +65,12 @@ MUTATIONS = (
     Mutation(
         "ON kept over a loss",
         "a drive that comes back into contact starts by itself",
-        ("START", "LOST"), 2,
+        ("START", "LOST"), 15,
         (
             "uss/drive.py",
-            "            self.was_running = self._may_run\n            self.revoke()\n",
-            "            self.was_running = self._may_run\n",
+            "            self.was_running = self._may_run or not self.tells_status\n"
+            "            self.revoke()\n",
+            "            self.was_running = self._may_run or not self.tells_status\n",
         ),
         (
             "uss/drive.py",
@@ -83,8 +84,8 @@ MUTATIONS = (
         ("LOST", "MAY RUN"), 1,
         (
             "uss/master.py",
-            "drive.miss(finding, now, self._lost_us, self._mask)\n        if",
-            "drive.miss(finding, now, 8 * self._lost_us, self._mask)\n        if",
+            "drive.miss(finding, now, self.lost_us, self._mask)\n        if",
+            "drive.miss(finding, now, 8 * self.lost_us, self._mask)\n        if",
         ),
     ),
     Mutation(
@@ -110,7 +111,7 @@ MUTATIONS = (
     Mutation(
         "dead man removed",
         "ON goes on while the panel hangs",
-        ("DEAD MAN",), 2,
+        ("DEAD MAN",), 5,
         ("uss/master.py", "DEAD_MAN_US = const(300_000)", "DEAD_MAN_US = const(3_000_000)"),
     ),
     Mutation(
@@ -126,7 +127,7 @@ MUTATIONS = (
     Mutation(
         "STOP waits its turn",
         "STOP does not go before the list",
-        ("STOP",), 8,
+        ("STOP",), 2,
         (
             "uss/drive.py",
             "        self.stops = (self.stops + 1) & _TICKET_MASK\n        self.hurry()\n",
@@ -146,7 +147,7 @@ MUTATIONS = (
     Mutation(
         "started after a reset",
         "a motor that turns when the panel has restarted is sent ON",
-        ("START",), 6,
+        ("START",), 11,
         (
             "panel/control.py",
             "            self._contact = drive.contact\n            self.lost_running",
@@ -158,7 +159,7 @@ MUTATIONS = (
     Mutation(
         "START without release",
         "a START that was down at power-on counts, sooner or later",
-        ("START",), 35,
+        ("START",), 47,
         ("panel/keys.py", "self._released = 0  #", "self._released = (1 << len(names)) - 1  #"),
         (
             "panel/panel.py",
@@ -169,7 +170,7 @@ MUTATIONS = (
     Mutation(
         "EEPROM without asking",
         "every write wears the EEPROM",
-        ("EEPROM",), 13,
+        ("EEPROM",), 31,
         (
             "panel/writer.py",
             "pkw.WRITE_WORD_EEPROM if eeprom else pkw.WRITE_WORD",
@@ -179,7 +180,7 @@ MUTATIONS = (
     Mutation(
         "no question",
         "a parameter that cuts the panel off is written at once",
-        ("WRITE",), 13,
+        ("WRITE",), 3,
         ("panel/pages/parameters.py", "elif number in profiles.ASK_FIRST:", "elif number < 0:"),
     ),
     Mutation(
@@ -207,7 +208,7 @@ MUTATIONS = (
     Mutation(
         "STOP ALL forgets drives",
         "STOP held for 4 s stops only what is shown",
-        ("STOP ALL",), 21,
+        ("STOP ALL",), 11,
         (
             "panel/stop_key.py",
             "            self.left = 2 * len(self._controls)\n",
@@ -217,7 +218,7 @@ MUTATIONS = (
     Mutation(
         "selecting stops",
         "another drive is shown, and the one before is stopped",
-        ("WITHOUT REASON", "ANNOUNCED"), 2,
+        ("WITHOUT REASON", "ANNOUNCED"), 3,
         (
             "panel/panel.py",
             "        self.selected.keep_quiet()\n        position",
@@ -227,7 +228,7 @@ MUTATIONS = (
     Mutation(
         "watchdog fed always",
         "a bus that stands is not restarted",
-        ("WATCHDOG",), 6,
+        ("WATCHDOG",), 15,
         ("app.py", "if stands_ms * 1000 < self.bus.patience_us:", "if stands_ms >= 0:"),
     ),
     Mutation(
@@ -239,17 +240,17 @@ MUTATIONS = (
     Mutation(
         "lost drive looks alive",
         "a drive that is lost is shown as it was last",
-        ("MAY RUN",), 27,
+        ("MAY RUN",), 1,
         (
             "panel/state.py",
-            "    if not drive.contact:\n        return texts.NO_CONTACT\n",
+            "    if not drive.contact:\n        return _TROUBLES[drive.trouble]\n",
             "",
         ),
     ),
     Mutation(
         "lost drive forgotten",
         "a drive that ran and is lost is just NO CONTACT",
-        ("MAY RUN",), 2,
+        ("MAY RUN",), 15,
         (
             "panel/control.py",
             "self.lost_running = drive.was_running and not drive.contact",
@@ -259,41 +260,41 @@ MUTATIONS = (
     Mutation(
         "unconfirmed STOP unsaid",
         "nobody is told that a STOP has no effect",
-        ("UNCONFIRMED",), 14,
+        ("UNCONFIRMED",), 2,
         ("panel/stop_watch.py", "            self.unconfirmed = True\n", "            pass\n"),
     ),
     Mutation(
         "faults acknowledged by themselves",
         "a tripped drive is reset though nobody has seen it",
-        ("ACKNOWLEDGE",), 4,
+        ("ACKNOWLEDGE",), 11,
         (
             "panel/fault.py",
-            "            self.was_shown = True  #",
-            "            drive.acknowledge()  #",
+            "                self.was_shown = True  #",
+            "                self._drive.acknowledge()  #",
         ),
     ),
     Mutation(
         "wrong sign shown",
         "a motor that turns left reads as one that turns right",
-        ("SHOWN",), 17,
+        ("SHOWN",), 30,
         ("panel/view.py", "-setpoint if control.reversed else setpoint", "setpoint"),
     ),
     Mutation(
         "listens to nobody",
         "the panel talks into another master's telegrams after power-on",
-        ("LISTEN",), 6,
+        ("LISTEN",), 11,
         ("uss/master.py", "LISTEN_US = const(100_000)", "LISTEN_US = const(10_000)"),
     ),
     Mutation(
         "start interval halved",
         "the drives miss telegrams that come too soon",
-        ("LINE",), 4,
+        ("LINE",), 5,
         ("uss/timing.py", "START_INTERVAL_CHARACTERS = 2", "START_INTERVAL_CHARACTERS = 1"),
     ),
     Mutation(
         "faults started",
         "START is obeyed by a drive that has tripped",
-        ("REFUSED",), 54,
+        ("REFUSED",), 113,
         (
             "panel/permits.py",
             "    if state == pzd.FAULT:\n        return texts.REFUSED_FAULT\n",
@@ -303,11 +304,11 @@ MUTATIONS = (
     Mutation(
         "foreign commands ignored",
         "START is obeyed though the drive takes its commands elsewhere",
-        ("REFUSED",), 18,
+        ("REFUSED",), 41,
         (
             "panel/permits.py",
-            "    if is_foreign(survey, profiles.COMMAND_SOURCE):\n"
-            "        return texts.REFUSED_COMMAND\n",
+            "    if is_local(survey):\n"
+            "        return REFUSED_SOURCES[survey.wrong[profiles.COMMAND]]\n",
             "",
         ),
     ),
@@ -316,15 +317,15 @@ MUTATIONS = (
         "nobody is asked whether a motor may run on without the panel",
         ("UNSUPERVISED",), 2,
         (
-            "panel/permits.py",
-            "return survey.values[profiles.SUPERVISION] == 0",
-            "return False",
+            "panel/risks.py",
+            "    off_time_ms = max(control.survey.values[profiles.SUPERVISION], 0)\n",
+            "    return NONE\n",
         ),
     ),
     Mutation(
         "STOP stops all",
         "STOP stops drives that are not shown",
-        ("WITHOUT REASON",), 2,
+        ("WITHOUT REASON",), 20,
         (
             "panel/stop_key.py",
             "            control.stop()\n",
@@ -364,7 +365,7 @@ MUTATIONS = (
     Mutation(
         "written elsewhere",
         "a parameter is written into the first drive, whichever is shown",
-        ("WRITE",), 27,
+        ("WRITE",), 340,
         (
             "panel/writer.py",
             "        drive = self._control.drive\n        if drive.channel.is_full():",
@@ -374,7 +375,7 @@ MUTATIONS = (
     Mutation(
         "another value written",
         "what is written is not what was confirmed",
-        ("WRITE",), 13,
+        ("WRITE",), 16,
         (
             "panel/writer.py",
             "self._job.number, self._job.index, 0, self._value)",
@@ -384,17 +385,17 @@ MUTATIONS = (
     Mutation(
         "silent drives forgotten",
         "a drive that does not answer is not asked again",
-        ("NEGLECTED",), 2,
-        ("uss/care.py", "                drive.ask_soon()\n", "                pass\n"),
+        ("NEGLECTED",), 8,
+        ("uss/silence.py", "            asked.ask_soon()\n", "            pass\n"),
     ),
     Mutation(
         "a running drive backs off",
         "a drive that runs, and is lost, is asked as seldom as one that stands",
-        ("NEGLECTED",), 11,
+        ("NEGLECTED",), 93,
         (
             "uss/drive.py",
-            "and not self.contact and not self.was_running",
-            "and not self.contact",
+            "return not self.contact and not self.was_running",
+            "return not self.contact",
         ),
     ),
     Mutation(
@@ -428,6 +429,153 @@ MUTATIONS = (
         "the display is written to while it is still at work",
         ("DISPLAY",), 1,
         ("hal/hd44780.py", "_COMMAND_US = const(53)", "_COMMAND_US = const(20)"),
+    ),
+    Mutation(
+        "the first alarm for ever",
+        "of several drives in trouble one is announced, and hides the others",
+        ("ANNOUNCED",), 2,
+        (
+            "panel/announcer.py",
+            "                position = self._find(kind, position + 1)\n",
+            "                position = self._find(kind, max(position, 0))\n",
+        ),
+    ),
+    Mutation(
+        "a question hides a trip",
+        "what a drive does is not said as long as a question has the display",
+        ("ANNOUNCED",), 53,
+        (
+            "panel/view.py",
+            "            if panel.announcer.kind != NOTHING:\n"
+            "                panel.announcer.draw(screen, 0)\n            return DONE\n",
+            "            return DONE\n",
+        ),
+    ),
+    Mutation(
+        "never heard is nothing",
+        "nobody is told that a drive that is silent since power-on may be running",
+        ("ANNOUNCED",), 5,
+        (
+            "panel/control.py",
+            "return not self.drive.contacts and self.drive.silent >= _SILENT_MAX",
+            "return False",
+        ),
+    ),
+    Mutation(
+        "trips unseen",
+        "a drive that is not shown trips, and nobody is told",
+        ("ANNOUNCED",), 5,
+        (
+            "panel/announcer.py",
+            "        if control.fault.active:\n            return TRIPPED\n",
+            "        if control.fault.active:\n            return NOTHING\n",
+        ),
+    ),
+    Mutation(
+        "a warning without its number",
+        "what a drive warns of is not shown",
+        ("SHOWN",), 10,
+        (
+            "panel/pages/warning.py",
+            "report.active and panel.announcer.page_turns & 1",
+            "report.active and panel.announcer.page_turns < 0",
+        ),
+    ),
+    Mutation(
+        "silence costs nothing",
+        "drives that do not answer take the line from those that run",
+        ("NEGLECTED",), 2,
+        (
+            "uss/silence.py",
+            "        elif self.wait_us <= 0 and self.resting:\n",
+            "        elif self.resting:\n",
+        ),
+    ),
+    Mutation(
+        "a task for ever",
+        "a task that a drive answers with silence is sent until the drive is lost",
+        ("TASK",), 1,
+        (
+            "uss/channel.py",
+            "            if pressing or silences >= _SILENCES_MAX:\n",
+            "            if silences >= 50 * _SILENCES_MAX:\n",
+        ),
+    ),
+    Mutation(
+        "lost a little later",
+        "ON goes to a silent drive for a tenth longer than the settings say",
+        ("LOST",), 15,
+        ("app.py", "settings.lost_ms * 1000", "settings.lost_ms * 1100"),
+    ),
+    Mutation(
+        "faster without a key",
+        "a limit or a scaling that changes raises the setpoint of a motor that runs",
+        ("RISES",), 188,
+        (
+            "panel/setpoint.py",
+            "        elif survey.complete:\n            self._lower()\n",
+            "        elif survey.complete:\n"
+            "            highest, asked = self._highest, self._asked_centihertz\n"
+            "            self._send(max(min(asked, highest), self._lowest))\n",
+        ),
+    ),
+    Mutation(
+        "one START, two runs",
+        "a motor that was without mains for a moment starts again by itself",
+        ("TURNS", "START"), 184,
+        (
+            "uss/drive.py",
+            "                if (self.hiw + (near >> 1)) & 0xFFFF <= near:  # 1 %\n"
+            "                    self.revoke()\n",
+            "                pass\n",
+        ),
+        (
+            "panel/control.py",
+            "            if survey.restarted and survey.take_restart():\n"
+            "                self._take_back(texts.DRIVE_RESET)\n",
+            "",
+        ),
+    ),
+    Mutation(
+        "hertz believed",
+        "HIW is shown as hertz whatever the drive sends as HIW",
+        ("SHOWN",), 84,
+        (
+            "uss/survey.py",
+            "        self.actual = self.scaling if tells else None\n",
+            "        self.actual = self.scaling\n",
+        ),
+    ),
+    Mutation(
+        "a long time is short",
+        "a motor may run on for a minute without the panel, and nobody is asked",
+        ("UNSUPERVISED",), 78,
+        (
+            "panel/risks.py",
+            "    if 0 < off_time_ms <= control.longest_off_time_ms:\n",
+            "    if 0 < off_time_ms:\n",
+        ),
+    ),
+    Mutation(
+        "runs on longer, unsaid",
+        "somebody takes the supervision of a motor that runs away, and nobody is told",
+        ("SHOWN", "ANNOUNCED"), 3,
+        (
+            "panel/control.py",
+            "        if risks.exposure_ms(self) > self._exposure_ms:\n",
+            "        if risks.exposure_ms(self) < 0:\n",
+        ),
+    ),
+    Mutation(
+        "a silence for all",
+        "one drive that may run and is silent takes the turns of those that rest",
+        ("NEGLECTED",), 98,
+        (
+            "uss/master.py",
+            "        if drive.outside or not drive.was_running:\n"
+            "            self.shared_us = (self.shared_us + spent_us) & SPENT_MASK\n",
+            "        self.shared_us = (self.shared_us + spent_us) & SPENT_MASK\n",
+        ),
     ),
     Mutation(
         "an exception",

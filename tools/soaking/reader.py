@@ -6,32 +6,46 @@
     reader.screens                  # the last pictures, (instant, row 1, row 2)
 """
 
-from tools.soaking.case import drive_at, limits_of
+from tools.soaking.announced import Announced, said_in
+from tools.soaking.case import drive_at
+from tools.soaking.drive_settings import scalings
 from tools.soaking.facts import (
+    CHOICES,
     CONTROLLED,
     MS,
     NEVER,
     ON,
     ON_REVERSE,
     QUESTIONS,
+    RUNS_ON,
+    ZSW_FAULT,
     ZSW_RUNNING,
+    ZSW_WARNING,
     S,
 )
 from tools.soaking.rules import Broken
 
 SCREENS = 12
-DRAWN_US = 100 * MS  # a row that is the same for so long is drawn to its end
+EXPOSED = ("RUN, P2014", "P2014 LONG")
+EXPOSED_US = 6 * S
+NUMBERS = 2110  # r2110: the warnings that are present
+WARNED_US = 5_500 * MS
+DRAWN_STEPS = 25  # of the loop: a row that is the same for so long is drawn to its end
 VALUES = ("P0700:", "P1000:", "P2011:")
 STATES = (  # what row 2 begins with, the state of the drive
     ("READY", "ready"), ("RUNNING", "running"), ("STOPPING", "stopping"), ("FAULT", "fault"),
     ("INHIBITED", "inhibited"),
 )  # fmt: skip
-DOINGS = (("STARTING",), ("JOG",), ("LOCAL",), ("RUNS",))  # what only a drive in contact reads
+DOINGS = (  # what only a drive in contact reads
+    ("STARTING",), ("JOG",), ("LOCAL",), ("RUNS",), ("CHECKING",), ("NOT READY",), ("RUN,",),
+    ("BELOW P1080",), ("P2014 LONG",),
+)  # fmt: skip
 MAY_RUN = ("NO CONTACT,", "UNCONFIRMED", "PANEL STOPPED", "USS PANEL")
 
 
 class Reader:
-    """screens: the last pictures, oldest first. rows: the present one."""
+    """screens: the last pictures, oldest first. rows: the present one. address: that row 2 shows,
+    or None."""
 
     def __init__(self, world, plan, judge):
         self.world = world
@@ -39,14 +53,21 @@ class Reader:
         self.judge = judge
         self.screens = []
         self.rows = ("", "")
+        self.address = None
+        self.announced = Announced(plan, judge, self)
         self.steady = False  # row 2 is drawn to its end
+        self._drawn_us = DRAWN_STEPS * plan.loop_us
         self._changed_us = 0  # row 2 was another one until then
         self._written_us = 0  # when the controller was last seen to have been written to
         self._written = -1
         self._calm_us = 3 * S + 12 * judge.cycle_us
         self._judged_us = 0
+        self._exposed_us = 0  # that its P2014 is longer by now was said, or could not be
+        self._warned_us = NEVER  # a warning of the drive shown was read last
+        self._unwarned_us = 0  # it had none, or something else was to be seen
         self._subject = None  # of a question, as read last
         self._hz = None  # of the drive shown, then; None: that was too long ago
+        self._unconfirmed_us = 0  # when that was read last
 
     def look(self):
         lcd = self.world.lcd_chip
@@ -56,23 +77,28 @@ class Reader:
             self._written = written
             self._read(lcd.text(), now)
             self._written_us = now
-        self.steady = now - self._changed_us > DRAWN_US
+        self.steady = now - self._changed_us > self._drawn_us
+        if self.reads("BUS ERROR"):
+            raise Broken("EXCEPTION", "the display says BUS ERROR at %d" % now)
         if self.steady and now > self.judge.unsure_us:
-            address = address_in(self.rows[1])
-            if address is not None:
-                self.judge.shown = address
+            if self.address is not None:
+                self.judge.shows(self.address)
+        self.announced.look(now)
         judge = self.judge
         if self.rows[1] in QUESTIONS:
             self._read_question(now)
         else:
             judge.question = None
         if judge.shown is None or now < judge.unsure_us or judge.hung_us is not None:
+            self._unwarned_us = self._exposed_us = now
             return
         if not self.steady or now == self._written_us:
             return
         case = judge.cases[judge.shown]
         self._judge_lost(case, now)
         self._judge_unconfirmed(case, now)
+        self._judge_warning(case, now)
+        self._judge_exposed(case, now)
         if now - judge.stirred_us > self._calm_us and now - self._judged_us > S:
             if not judge.down and now - judge.late_us > self._calm_us:
                 if now - self._judged_us > 2 * S:
@@ -83,6 +109,7 @@ class Reader:
     def _read(self, rows, now):
         if rows[1] != self.rows[1]:
             self._changed_us = now
+            self.address = address_in(rows[1])
         if rows != self.rows:
             self.rows = rows
             if len(self.screens) >= SCREENS:
@@ -91,7 +118,7 @@ class Reader:
 
     def _read_question(self, now):
         judge = self.judge
-        if self.rows[1] == QUESTIONS[1]:
+        if self.rows[1] == RUNS_ON:
             judge.go_us = now
         judge.asked_us = now
         subject = subject_in(self.rows[0])
@@ -106,8 +133,8 @@ class Reader:
     def _judge_lost(self, case, now):
         judge = self.judge
         address = judge.shown
-        silent_us = now - max(case.answered_us, judge.boot_us, judge.tape.blurred_us)
-        if silent_us < judge.lost_us + 700 * MS + 2 * judge.cycle_us:
+        silent_us = judge.silent_us(case, now)
+        if not judge.is_lost(case, now):
             return
         if now - judge.stalled_us < S or now - judge.unsure_us < S:
             return
@@ -128,6 +155,43 @@ class Reader:
                 return
         raise Broken("MAY RUN", "drive %d, silent for %d ms" % (address, silent_us // MS))
 
+    def _judge_warning(self, case, now):
+        """The number of a warning is shown in turn with the state, standing and running."""
+        row_2 = self.rows[1]
+        drive = self.drive_at(self.judge.shown)
+        if drive is None or not self.is_able(self.judge.shown):
+            self._unwarned_us = now
+            return
+        present = [drive.read(NUMBERS, index) for index in range(4)]
+        for number in present:
+            if number and row_2.startswith("WARN A%04d" % number):
+                self._warned_us = now
+        if not any(present) and row_2.startswith("WARN  "):
+            self._warned_us = now  # the drive has no number for it
+        hidden = row_2[5:6] == ":" or row_2 in CHOICES or self.reads("STOP UNCONFIRMED")
+        hidden = hidden or "STOP" in self.judge.down  # row 2 tells what that does
+        hidden = hidden or address_in(row_2) is None and said_in(row_2) is None  # a message
+        lost = now - case.answered_us > self.judge.lost_us // 2
+        if hidden or lost or not case.zsw & ZSW_WARNING or case.zsw & ZSW_FAULT:
+            self._unwarned_us = now
+        waited_us = now - max(self._unwarned_us, self._warned_us, self.judge.stirred_us)
+        patience_us = WARNED_US + 4 * self.judge.cycle_us
+        if waited_us > patience_us and now - self.judge.late_us > waited_us:
+            raise Broken("SHOWN", "a warning of drive %d is not shown" % self.judge.shown)
+
+    def _judge_exposed(self, case, now):
+        """A P2014 that has become longer while the drive runs is said in place of RUNNING, which
+        takes turns with announcements and warnings."""
+        judge = self.judge
+        row_2 = self.rows[1]
+        hides = row_2.startswith("RUNNING") or row_2.startswith("WARN") or said_in(row_2)
+        if not hides or self.reads(EXPOSED[0]) or self.reads(EXPOSED[1]):
+            self._exposed_us = now
+        elif not judge.is_more_exposed(judge.shown, case):
+            self._exposed_us = now
+        elif now - self._exposed_us > EXPOSED_US + 2 * judge.cycle_us:
+            raise Broken("SHOWN", "%s, and P2014 has become longer" % row_2)
+
     def _may_run(self, case):
         """Whether it ran by its last reply, or had been told to before."""
         return case.zsw & ZSW_RUNNING and case.ran_us == case.answered_us
@@ -136,9 +200,14 @@ class Reader:
         judge = self.judge
         address = judge.shown
         stop_us = case.stop_us
+        if self.reads("STOP UNCONFIRMED"):
+            self._unconfirmed_us = now
+            return
         if case.answered_us >= stop_us - 100 * MS or stop_us < judge.boot_us:
             return
-        patience_us = 3_800 * MS if case.brakes else 1_800 * MS
+        if not case.zsw & ZSW_RUNNING and case.turned_us < case.answered_us > judge.boot_us:
+            return  # heard at rest since the last ON
+        patience_us = 5_800 * MS if case.brakes else 3_800 * MS
         if now - stop_us < patience_us + judge.exchange_us or now - judge.stalled_us < S:
             return
         if judge.stuck_us is not None:
@@ -151,7 +220,7 @@ class Reader:
             return
         if case.start_us > stop_us:
             return
-        if not self.reads("STOP UNCONFIRMED"):
+        if now - self._unconfirmed_us > 2 * S:  # it may take turns with other drives
             since_ms = (now - stop_us) // MS
             raise Broken("UNCONFIRMED", "STOP of drive %d, %d ms ago" % (address, since_ms))
 
@@ -180,18 +249,26 @@ class Reader:
                     raise Broken("SHOWN", "drive %d is %s" % (address, drive.state))
                 break
         case = self.judge.cases[address]
+        meant = self.judge.meant(address)
         if row_1[:2] == "S:" and case.stw in (ON, ON_REVERSE):
-            hz_sent = limits_of(drive).hz(case.hsw)
-            if case.stw == ON_REVERSE:
-                hz_sent = -hz_sent
             shown = row_1[2:7].strip()
             if shown[-1:].isdigit() and not shown.startswith("- "):
-                if abs(float(shown) - hz_sent) > 0.06 + abs(hz_sent) / 0x2000:
-                    raise Broken("SHOWN", "%s, %.2f Hz are sent" % (row_1, hz_sent))
+                self._judge_setpoint(case, float(shown), meant)
         shown = row_1[10:].strip()
-        if row_1[7:10] == " F:" and shown[-1:].isdigit() and before_hz == hz:
+        is_steady = before_hz == hz and len({values.meaning() for values in meant}) == 1
+        if row_1[7:10] == " F:" and shown[-1:].isdigit() and is_steady:
             if abs(float(shown) - hz) > 0.06:
                 raise Broken("SHOWN", "%s, drive %d turns at %.2f Hz" % (row_1, address, hz))
+
+    def _judge_setpoint(self, case, shown_hz, meant):
+        """It is the one sent, by what that meant the last time that the panel could read it."""
+        for scaling in scalings(meant):
+            hz = scaling.hz(case.hsw)
+            hz = -hz if case.stw == ON_REVERSE else hz
+            if abs(shown_hz - hz) <= 0.06 + abs(hz) / 0x2000:
+                return
+        if meant:
+            raise Broken("SHOWN", "%s, %.2f Hz are sent" % (self.rows[0], hz))
 
     def drive_at(self, address):
         return drive_at(self.world, address)

@@ -5,10 +5,11 @@
 """
 
 from tools.soaking.case import drive_at
-from tools.soaking.facts import CONTROLLED, MS, S
+from tools.soaking.facts import CONTROLLED, LONG_US, MS, S
 
-USS = 5  # P0700, P1000
-READ_US = 60 * S  # settings of a drive that is shown are read within; START has them read anew
+USS = 5  # P0700, P1000, a digit of P0719
+COMMAND = ((700, USS), (840, 2036 << 16))  # with what connects the words received
+SETPOINT = ((1000, USS), (1070, 2018 << 16 | 1), (2200, 0))
 TAKEN_US = 1 * S  # a change at the drive that is so young may still come in between
 
 
@@ -19,22 +20,38 @@ def reason_against(judge, case, address, pressed_us, jogs):
     drive = drive_at(judge.world, address)
     if drive is None or drive.family.NAME not in CONTROLLED:
         return None
-    if case.settings_us > pressed_us - (READ_US if jogs else TAKEN_US):
+    if not _knows(judge, case, address, pressed_us, jogs):
         return None
-    if drive.read(700) != USS:
-        return "P0700 is %s" % drive.read(700)
-    if not jogs and drive.read(1000) != USS:
-        return "P1000 is %s" % drive.read(1000)
+    tens, units = drive.read(719) // 10, drive.read(719) % 10
+    wrong = _wrong(drive, tens, COMMAND)
+    return wrong if jogs else wrong or _wrong(drive, units, SETPOINT)
+
+
+def _knows(judge, case, address, pressed_us, jogs):
+    """Whether the panel must know its settings. START has them read anew."""
+    if jogs:
+        return judge.knows(case, address, pressed_us)
+    return case.settings_us <= pressed_us - TAKEN_US
+
+
+def _wrong(drive, selected, sources):
+    """What of these sources is not USS. selected: a digit of P0719; 0 leaves it to the others."""
+    if selected not in (0, USS):
+        return "P0719 is %s" % drive.read(719)
+    for number, value in () if selected else sources:
+        if drive.read(number) != value:
+            return "P%04d is %s" % (number, drive.read(number))
     return None
 
 
 def runs_on_unasked(judge, case, address, pressed_us, jogs):
-    """Whether P2014 is 0, so that the motor would run on without the panel, and nobody agreed."""
+    """Whether the motor would run on without the panel, for ever or long, and nobody agreed."""
     if case.accepted or address in judge.plan.settings.get("unsupervised", ()):
         return False
     drive = drive_at(judge.world, address)
     if drive is None or drive.family.NAME not in CONTROLLED or address in judge.moved:
         return False
-    if case.settings_us > pressed_us - (READ_US if jogs else TAKEN_US):
+    if not _knows(judge, case, address, pressed_us, jogs):
         return False
-    return drive.read(2014) == 0
+    off_time_us = drive.read(2014) * MS
+    return not off_time_us or off_time_us > 2 * max(LONG_US, 4 * judge.cycle_us)

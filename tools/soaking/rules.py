@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
 """The rules that a soak holds the panel to, in plain words, and how a broken one is told.
 
-They are those of the panel's own promises (README, "What it promises"), of the RS-485 line and of
-the display. The judge and the reader say when one is broken; a rule is named by its key here.
+They are those of the panel's own promises (firmware/panel/README.md, "What it promises"), of the
+RS-485 line and of the display. The judge and the reader say when one is broken; a rule is named by
+its key here.
 
     raise Broken("STOP", "drive 3 was sent ON 62 ms after STOP")
 """
@@ -11,11 +12,12 @@ RULES = {
     # what makes a motor turn
     "START": "ON goes only to a drive started by START since power-on, loss, trip or STOP",
     "JOG": "JOG goes only to the drive shown, while its one jog key is held, by a fresh press",
-    "REFUSED": "START and JOG do nothing with a fault, an inhibit, or P0700 and P1000 not on USS",
-    "UNSUPERVISED": "with P2014 = 0 JOG is refused, and START asks until somebody has agreed",
+    "REFUSED": "START and JOG do nothing with a fault, an inhibit, or a source that is not USS",
+    "UNSUPERVISED": "with P2014 = 0, or long, JOG is refused, and START asks first",
     "LOST": "no ON and no JOG goes to a drive that has not answered for the lost time",
     "DEAD MAN": "no ON and no JOG is sent once the main loop has stood still for 300 ms",
-    "TURNS": "a motor is switched on only by an ON or a JOG that this panel has just sent",
+    "TURNS": "a motor is switched on only by an ON or a JOG just sent, and once for each START",
+    "RISES": "while a drive runs nothing raises its setpoint but UP",
     # what makes it stop
     "STOP": "STOP is in the next telegram to that drive, beats START, and holds until START",
     "SECOND STOP": "OFF2 or OFF3, as the settings say, when STOP was held for 1.5 s; until heard",
@@ -32,7 +34,8 @@ RULES = {
     # the line
     "LINE": "start interval, no collision, driver enable within a character of the telegram",
     "SILENT PANEL": "as long as it lives the panel keeps talking",
-    "NEGLECTED": "every drive is asked again and again, one that runs or may run most of all",
+    "NEGLECTED": "running drives are asked in time, silent ones again and again, at a fifth of it",
+    "TASK": "a parameter task that a drive answers with silence is taken back after 3 telegrams",
     # the panel itself
     "EXCEPTION": "nothing in the firmware raises an exception",
     "WATCHDOG": "the watchdog bites when the loop has hung, or the bus stands, and only then",
@@ -42,7 +45,7 @@ RULES = {
     "MAY RUN": "a drive that ran and is lost reads NO CONTACT, MAY RUN, never its last state",
     "UNCONFIRMED": "a STOP that no answer confirms is an alarm after a second, and no other is",
     "SHOWN": "what the display says of the drive shown is so",
-    "ANNOUNCED": "a drive that runs and is not shown is announced",
+    "ANNOUNCED": "n drives in trouble are each announced for a second within 2 n seconds",
     "RECOVERS": "when all faults are over the panel controls every drive again",
 }
 

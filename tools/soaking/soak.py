@@ -16,6 +16,7 @@ import boards.sim.world  # noqa: F401
 from tools.soaking.hand import Hand
 from tools.soaking.judge import Judge
 from tools.soaking.reader import Reader
+from tools.soaking.rules import Broken
 from tools.soaking.weather import Weather
 from tools.soaking.worlds import Plan, SoakWorld
 
@@ -28,10 +29,10 @@ class Soak:
     drives: how many, None: as the seed has it. broken: the exception that ended it, or None.
     """
 
-    def __init__(self, seed, drives=None):
+    def __init__(self, seed, drives=None, troubles=1):
         self.seed = seed
         self.broken = None
-        self.plan = plan = Plan(seed, drives)
+        self.plan = plan = Plan(seed, drives, troubles)
         self.world = world = SoakWorld(main.start, plan)
         self.judge = judge = Judge(world, plan)
         self.reader = reader = Reader(world, plan, judge)
@@ -51,6 +52,14 @@ class Soak:
 
     def seconds(self):
         return self.world.clock.now_us // 1_000_000
+
+    def digest(self):
+        """A number for all of this life, the same on every interpreter."""
+        reports = [drive.report() for drive in self.world.drives.values()]
+        return self.world.digest.with_more(
+            self.hand.deeds, sorted(self.faults().items()), reports,
+            isinstance(self.broken, Broken) and self.broken.args,
+        )  # fmt: skip
 
     def faults(self):
         """How many of each kind: what failed beside the line, and on it."""

@@ -11,7 +11,9 @@ its end, when no character of it was spoilt.
 
 from array import array
 
+NEVER = -1_000_000_000_000
 LENGTH = 512
+HEARD_MAX = 64
 ROUNDING_US = 3
 BEHIND_BITS = 40
 LOOK_US = 8_000  # of a link without interrupts: how often it is looked at
@@ -30,7 +32,7 @@ class Tape:
     sent          requests ever
     sent_us       when the last request began
     blurred_us    the end of the last telegram that somebody talked into
-    chance_us     the end of the last one that was spoilt, and whose BCC fits by chance
+    chance_us     the end of the last characters that are no reply, and whose BCC fits by chance
     """
 
     name = "the tape"
@@ -49,7 +51,10 @@ class Tape:
         self.sent = 0
         self.sent_us = -1
         self.blurred_us = 0
-        self.chance_us = -1
+        self.chance_us = NEVER
+        self._heard = bytearray(HEARD_MAX)  # since the request, if it is no whole reply,
+        self._heard_count = 0  # so many characters,
+        self._heard_us = 0  # until then
         self._asked = -1  # the address in the last request, and when that was over
         self._ended_us = 0
         self._played = 0
@@ -82,6 +87,7 @@ class Tape:
             self.sent_us = burst.start_us
             self._asked = data[2]
             self._ended_us = burst.end_us
+            self._heard_count = 0
             self._note(REQUEST, data, count, burst)
         return burst
 
@@ -99,18 +105,35 @@ class Tape:
         data = burst.data
         if burst.garbled and data[0] == STX:
             self.blurred_us = burst.end_us
-        if burst.count < COUNT or data[0] != STX or data[1] != LGE:
-            return
-        check = 0
-        for index in range(COUNT):
-            check ^= data[index]
-        if check or data[2] != self._asked:  # or somebody else's
-            return
-        if burst.garbled or burst.count != COUNT:
-            self.chance_us = burst.end_us
+        is_whole = not burst.garbled and burst.count == COUNT and self._fits(data, 0)
+        if self._heard_count or not is_whole:
+            self._hear_more(burst, is_whole)
+        if not is_whole:
             return
         self._last_reply = self.count % LENGTH
         self._note(REPLY, data, COUNT, burst)
+
+    def _fits(self, data, at):
+        """Whether what begins there is whole, and from the drive that was asked."""
+        if data[at] != STX or data[at + 1] != LGE or data[at + 2] != self._asked:
+            return False
+        check = 0
+        for index in range(at, at + COUNT):
+            check ^= data[index]
+        return not check
+
+    def _hear_more(self, burst, is_whole):
+        """What is spoilt, or in pieces: who does not notice the gaps may take it for a reply."""
+        heard, count = self._heard, self._heard_count
+        if burst.start_us - self._heard_us > self._behind_us:
+            count = 0
+        for index in range(min(burst.count, HEARD_MAX - count)):
+            heard[count + index] = burst.data[index]
+        self._heard_count = count = min(count + burst.count, HEARD_MAX)
+        self._heard_us = burst.end_us
+        for at in range(count - COUNT + (0 if is_whole else 1)):
+            if self._fits(heard, at):
+                self.chance_us = burst.end_us
 
     def _note(self, kind, data, count, burst):
         index = self.count % LENGTH

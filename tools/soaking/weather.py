@@ -37,6 +37,7 @@ class Weather:
         self._dice = plan.dice
         self._plan = plan
         self._clock = world.clock
+        self._wire = world.wire
         self._struck = self._lasting = 0  # faults so far; of those those that go on for a while
         self._cuts = 0
         self._deaf_until_us = 0
@@ -60,6 +61,7 @@ class Weather:
     def clear(self):
         if self.faults is not None:
             self.faults.calm()
+            self._wire.echo = self._plan.echo  # which is no weather
             self._until_us = 0
 
     def is_bad(self):

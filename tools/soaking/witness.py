@@ -7,23 +7,39 @@ keys move) either way is allowed.
 """
 
 from boards.sim.board import KEYS
-from tools.soaking.case import Case, limits_of
+from tools.soaking.case import Case, drive_at
+from tools.soaking.drive_settings import Settings
 from tools.soaking.facts import (
     ALL_STOP_US,
     ALWAYS,
     DEAD_MAN_US,
-    DEBOUNCE_US,
+    HUNG_MAX_US,
+    LIMITED_READS,
+    LIMITED_SHOWN_US,
+    LIMITED_US,
+    LONG_US,
+    LOOKED_STEPS,
+    LOST_SAID_US,
+    MEANT_READS,
+    MEANT_STEPS,
+    MEANT_US,
     MS,
     NEVER,
     OFF1,
+    ON,
+    ON_REVERSE,
+    READ_REPLIES,
     RUN,
+    SECOND_STOP_US,
     SECOND_STOPS,
-    SETTINGS_US,
     SHORT_CHORD_US,
     WATCHDOG_US,
     WISH_US,
+    ZSW_RUNNING,
     S,
+    debounce_us,
     exchange_us,
+    lost_us,
 )
 from tools.soaking.rules import Broken
 from tools.soaking.tape import Tape
@@ -41,10 +57,11 @@ class Witness:
         self.drives = list(world.drives.values())
         self.starts = [0] * len(self.drives)  # of their motors, as counted last
         self.exchange_us = exchange_us(plan)
-        self.cycle_us = self.exchange_us * len(plan.addresses)
+        self.debounce_us = debounce_us(plan)
+        self.cycle_us = self.exchange_us * len(plan.listed)
         self.wish_us = WISH_US + 20 * self.cycle_us
         self.timeout_us = plan.settings.get("reply_timeout_ms", 20) * MS
-        self.lost_us = plan.settings.get("lost_ms", 1000) * MS
+        self.lost_us = lost_us(plan)
         self.second_stop = SECOND_STOPS[plan.settings.get("second_stop", "OFF3")]
         self.down = {}  # key -> since when
         self.up = {key: NEVER for key in KEYS}  # key -> when it was let go
@@ -65,17 +82,21 @@ class Witness:
         self.moved = {}  # addresses that a drive was given, or left, or was to -> True
         self.unsettled = []  # replies that may still be spoilt: row, case, whether it has stopped
         self.owed = []  # cases that wait for their OFF
-        self.all_until_us = NEVER  # until when every drive is being stopped, one after the other
+        self.all_from_us = NEVER  # a STOP of all began then, as far as anybody can tell,
+        self.all_until_us = NEVER  # and until then every drive is stopped, one after the other
         self.stop_from_us = NEVER  # STOP is held since, as far as anybody can tell
         self.stopping = ()  # cases that the last STOP is for, None: nobody can tell
+        self.held_us = NEVER  # since when the last STOP that lasted until OFF2 or OFF3 was held
         self.second_owed = None  # the drive that a STOP, if it is held, stops by OFF2 or OFF3
         self.shown = None  # the address shown, None while it cannot be told
+        self.shown_us = NEVER  # since when
         self.unsure_us = 0  # until when it cannot
-        self.limits = {a: [(ALWAYS, limits_of(d))] for a, d in world.drives.items()}
+        self.settings = {address: Settings(drive) for address, drive in world.drives.items()}
         self.spoken_us = 0  # the panel's last telegram
         self.stirred_us = 0  # when something was last done to keys, drives, line or loop
         self.pulled_us = NEVER  # something was last done that may cut what a drive sends
         self.stuck_us = None  # since when the chip's timers are dead
+        self._noted_us = NEVER  # settings of the drives
         world.witness = self
 
     # --- what the hand tells --------------------------------------------------------------------
@@ -84,6 +105,9 @@ class Witness:
         """A key is about to move."""
         self.look()
         self.stirred_us = now = self.clock.now_us
+        if key == "UP":
+            for case in self.candidates():
+                case.raised_us = now
         if not down:
             held_us = now - self.down.pop(key, now)
             self.up[key] = now
@@ -96,7 +120,7 @@ class Witness:
             return
         self.down[key] = self.pressed_us[key] = now
         if key == "STOP":
-            if now - self.up[key] > DEBOUNCE_US:  # else the panel may not have seen it go up
+            if now - self.up[key] > self.debounce_us:  # else the panel may not have seen it go up
                 self.stop_from_us = now
             self._stop_pressed(now)
         elif key == "START":
@@ -150,8 +174,11 @@ class Witness:
                 self.owed.append(case)
 
     def _stop_is_up(self, now, held_us):
+        if now - self.stop_from_us > SECOND_STOP_US - 50 * MS:
+            self.held_us = self.stop_from_us
         if held_us > ALL_STOP_US - 100 * MS:
-            drives = len(self.plan.addresses)
+            drives = len(self.plan.listed)
+            self.all_from_us = now - held_us + ALL_STOP_US - 150 * MS
             self.all_until_us = now + drives * (2 * self.exchange_us + 10 * MS)
 
     def _set_pressed(self, now):
@@ -192,6 +219,7 @@ class Witness:
         self.first_sent = self.tape.sent
         self.hung_us = None
         for case in self.cases:
+            case.unheard = 0
             case.void_us = now
             case.owed_us = NEVER
             case.excused_us = now + 3 * S
@@ -239,23 +267,123 @@ class Witness:
     def meddled(self, drive):
         """Somebody has changed parameters at the drive itself."""
         self.stirred_us = now = self.clock.now_us
-        self.cases[drive.address].settings_us = now
+        self.cases[drive.address].changes(now)
         self.look()
-        for address, other in self.world.drives.items():
-            if other is drive:
-                self._note_limits(address, drive, now)
+        self.note_settings(now)
         self.cases[drive.address].excused_us = now + 30 * S
 
-    def _note_limits(self, address, drive, now):
-        history = self.limits[address]
-        history[-1] = (now + SETTINGS_US, history[-1][1])
-        history.append((ALWAYS, limits_of(drive)))
-        while history[0][0] < now:
-            del history[0]
+    def unpowered(self, drive):
+        """The mains of a drive are about to go."""
+        self.excuse(drive.address, 5 + 4 * self.cycle_us // S)
+        case, now = self.cases[drive.address], self.clock.now_us
+        ran_us = now - case.on_us - 2 * self.cycle_us
+        case.telltale = ran_us > 4 * S and now - case.powered_us > 10 * S + 4 * self.cycle_us
+
+    def powered(self, drive):
+        """They are about to come."""
+        self.excuse(drive.address, 5 + 4 * self.cycle_us // S)
+        self.cases[drive.address].powered_us = self.clock.now_us
+
+    # --- what follows from that -----------------------------------------------------------------
+
+    def stops_all_us(self, now):
+        """When the last STOP of all drives has begun."""
+        if "STOP" in self.down and now - self.down["STOP"] > ALL_STOP_US - 150 * MS:
+            return self.down["STOP"] + ALL_STOP_US - 150 * MS
+        return self.all_from_us
+
+    def silent_us(self, case, now):
+        """How long ago a reply came that the panel may have taken."""
+        return now - max(case.answered_us, self.boot_us, self.tape.blurred_us)
+
+    def is_lost(self, case, now):
+        """Whether a drive is silent for so long, and was asked meanwhile, that all must say so."""
+        return (
+            self.silent_us(case, now) > self.lost_us + LOST_SAID_US + 2 * self.cycle_us
+            and case.lost_us > max(case.answered_us, self.boot_us)
+            and now - case.lost_us > LOST_SAID_US
+        )
+
+    # --- settings of the drives -----------------------------------------------------------------
+
+    def note_settings(self, now):
+        """Of drives that may have others by now."""
+        for settings in self.settings.values():
+            case = self.cases[settings.drive.address]
+            if case.settings_us > self._noted_us - 2 * S:  # a task may just be on its way
+                settings.note(now, case.replies)
+        self._noted_us = now
+
+    def shows(self, address):
+        """The display tells which drive is shown."""
+        if address != self.shown:
+            self.shown = address
+            self.shown_us = self.clock.now_us
+
+    def meant(self, address):
+        """What setpoint and actual frequency may mean to the panel: `Values`; none: who knows."""
+        return self._in_force(address, self.clock.now_us - MEANT_US, MEANT_READS)
+
+    def exposed_us(self, address, case):
+        """How long the motor may run on too long when the panel dies, by the P2014 that the panel
+        has read when START was pressed: ALWAYS, for ever; 0, not at all.
+        """
+        settings = self.settings.get(address)
+        if settings is None or settings.drive.address != address:
+            return ALWAYS
+        found = settings.in_force(case.used_us - S, ALWAYS)
+        return max(_exposure_us(values, LONG_US) for values in found)
+
+    def is_more_exposed(self, address, case):
+        """Whether a motor runs that would run on longer by now, and the panel must know that."""
+        if case.stw not in (ON, ON_REVERSE) or not case.zsw & ZSW_RUNNING:
+            return False
+        running = sum(1 for other in self.cases if other.stw & RUN)
+        patience_us = max(MEANT_US, MEANT_STEPS * self.plan.loop_us * running)
+        found = self._in_force(address, self.clock.now_us - patience_us, MEANT_READS)
+        long_us = 2 * max(LONG_US, 4 * self.cycle_us)
+        return any(found) and min(_exposure_us(one, long_us) for one in found) > case.exposed_us
+
+    def limited(self, address):
+        """What the panel may take for the limits of a drive: `Values`; none: nobody can tell."""
+        now = self.clock.now_us
+        since_us = now - LIMITED_SHOWN_US
+        if not self.is_sure() or self.shown != address or self.shown_us > since_us:
+            running = sum(1 for case in self.cases if case.stw & RUN)
+            since_us = now - max(LIMITED_US, LOOKED_STEPS * self.plan.loop_us * running)
+        return self._in_force(address, since_us, LIMITED_READS)
+
+    def knows(self, case, address, by_us):
+        """Whether the panel must know by then what a drive that is shown is set to."""
+        since_us = max(case.settings_us, self.shown_us, self.stalled_us)
+        drive = drive_at(self.world, address)
+        if drive is None or self.shown != address or by_us - since_us < MEANT_US:
+            return False
+        replies = MEANT_READS * (READ_REPLIES + drive.stale_replies)
+        return case.replies - case.settings_at > replies
+
+    def _in_force(self, address, since_us, reads):
+        settings = self.settings.get(address)
+        if settings is None or settings.drive.address != address:
+            return ()  # it was given another address: nobody knows whose they are
+        if self.hung_us is not None or self.stalled_us > since_us:
+            since_us -= HUNG_MAX_US
+        replies = reads * (READ_REPLIES + settings.drive.stale_replies)
+        return settings.in_force(since_us, self.cases[address].replies - replies)
+
+    # --- what is excused ------------------------------------------------------------------------
 
     def excuse(self, address, s=5):
         """Something is being done to this drive that may stop it."""
         self.stirred_us = self.pulled_us = now = self.clock.now_us
-        self.cases[address].settings_us = now
+        self.cases[address].changes(now)
         self.look()
         self.cases[address].excused_us = now + s * S
+
+
+def _exposure_us(values, long_us):
+    """How long a motor runs on without a panel. ALWAYS: for ever; 0: not longer than it may."""
+    off_time_us = values.off_time_us
+    if not off_time_us:
+        return ALWAYS
+    return off_time_us if off_time_us > long_us else 0

@@ -28,8 +28,8 @@ def progress(seconds):
     tell(at=seconds)
 
 
-def soak_seed(seed, minutes, drives=None):
-    soak = Soak(seed, int(drives) if drives else None)
+def soak_seed(seed, minutes, drives="0", troubles="1"):
+    soak = Soak(seed, int(drives) or None, int(troubles))
     soak.run(int(float(minutes) * 60), progress)
     broken, rule, told = soak.broken, None, []
     if broken is not None:
@@ -41,6 +41,7 @@ def soak_seed(seed, minutes, drives=None):
         exchanges=soak.judge.exchanges,
         faults=soak.faults(),
         rule=rule,
+        digest=soak.digest(),
         story=told,
     )
 
@@ -53,7 +54,8 @@ DEEDS = {"soak": soak_seed, "fuzz": fuzz_seed}
 
 
 def main(deed, *arguments):
-    gc.threshold(COLLECT_AFTER)
+    if hasattr(gc, "threshold"):
+        gc.threshold(COLLECT_AFTER)
     for line in sys.stdin:
         DEEDS[deed](int(line), *arguments)
         gc.collect()

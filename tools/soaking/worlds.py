@@ -8,8 +8,12 @@ The same seed gives the same world, whatever else is asked of the soak.
 """
 
 from boards.sim import g110, mm420, mm440, v20
+from boards.sim.board import LOOP_US
+from boards.sim.drive_switches import SWITCHES
 from boards.sim.world import World, supervision, supervision_ms
 from tools.soaking.dice import Dice
+from tools.soaking.digest import Digest
+from tools.soaking.facts import S, exchange_us, lost_us
 
 # Families that this panel can control, with the layout that it speaks (4 PKW, 2 PZD), and two that
 # answer it with another one, or not at all.
@@ -20,22 +24,46 @@ BAUDS = (19200, 19200, 19200, 19200, 19200, 9600, 38400, 38400, 57600, 115200, 4
 CLEAN, ROUGH, WILD = range(3)
 NAMES = ("clean", "rough", "wild")
 
+# What a switch of the drives that is no yes or no may be set to, besides its default.
+VALUES = {
+    "stale_replies": (1, 2),
+    "text_bits_error": (3, 5),
+    "no_rights_error": (7, 11),
+    "buffered_ms": (20, 200),
+    "dark_ms": (100, 1_000),
+    "boot_ms": (200, 700, 2_500),
+    "silence_s": ({970: 2.0, 971: 1.0},),
+}
+LONG_MS = (8_000, 20_000, 65_535)  # a P2014 that is as good as none
+SLOW_LOOP_US = 10_000  # the longest step of a main loop that has much to do
+
 
 class Plan:
-    """seed, dice, addresses, baud, settings, keys, polled, echo, level (CLEAN, ROUGH, WILD), and
-    what else a `World` is given: `ticks_start`, `ticks_mask`, `kinds`.
+    """seed, dice, addresses, listed (these, and those of the panel's list where no drive is),
+    baud, settings, keys, polled, echo, level (CLEAN, ROUGH, WILD), loop_us (the longest step of
+    the main loop), and what else a `World` is given: `ticks_start`, `ticks_mask`, `kinds`.
+
+    troubles: how many things the hand lets fail at once, 1 or 2.
     """
 
-    def __init__(self, seed, drives=None):
+    def __init__(self, seed, drives=None, troubles=1):
         self.seed = seed
+        self.troubles = troubles
         self.dice = dice = Dice(seed)
+        # What the worlds were widened by has dice of its own, so that it does not change the rest.
+        self.more = more = Dice(seed, 7)
         self.level = (CLEAN, CLEAN, ROUGH, ROUGH, ROUGH, WILD)[dice.below(6)]
-        self.addresses = _addresses(dice, drives or _count(dice))
+        count = drives or _count(dice)
+        if troubles > 1 and count == 1 and not drives:
+            count = 2 + more.below(4)
+        self.addresses = _addresses(dice, count)
+        self.loop_us = LOOP_US * 2 if more.below(4) else SLOW_LOOP_US
+        self.listed = self.addresses + _silent(more, self.addresses)
         self.baud = BAUDS[dice.below(len(BAUDS))] if dice.below(3) else 19200
         self.polled = not dice.below(5)
         self.keys = "matrix" if not dice.below(3) else "direct"
         self.ticks_mask = (1 << (24, 27, 30, 30)[dice.below(4)]) - 1
-        if len(self.addresses) > 3 or self.baud < 9600:  # a round takes long beside 16 s
+        if len(self.listed) > 3 or self.baud < 9600:  # a round takes long beside 16 s
             self.ticks_mask |= (1 << 27) - 1
         self.supervised = dice.below(4)  # else no drive watches its line
         self.ticks_start = dice.below(self.ticks_mask)
@@ -43,21 +71,27 @@ class Plan:
             self.ticks_start = self.ticks_mask - dice.below(60_000_000) & self.ticks_mask
         self.echo = not dice.below(10)
         self.settings = _settings(dice, self.addresses)
+        self.settings["drives"] = list(self.listed)
         self.kinds = {address: _kind(self, address) for address in self.addresses}
 
     def __str__(self):
-        return "%d drives at %d baud%s, keys %s, %s, settings %s" % (
-            len(self.addresses), self.baud,
+        return "%d drives of %d at %d baud%s, keys %s, loop %d ms, %s, settings %s" % (
+            len(self.addresses), len(self.listed), self.baud,
             (", polled" if self.polled else "") + (", echo" if self.echo else ""), self.keys,
-            NAMES[self.level], self.settings,
+            self.loop_us // 1000, NAMES[self.level],
+            ", ".join("%s %r" % pair for pair in sorted(self.settings.items())),
         )  # fmt: skip
 
 
 class SoakWorld(World):
-    """A `World` that tells its `witness` when the chip restarts and when its flash is written."""
+    """A `World` that tells its `witness` when the chip restarts and when its flash is written.
+
+    digest: of all that has happened in it.
+    """
 
     def __init__(self, start, plan):
         self.witness = None
+        self._longest_loop_us = plan.loop_us
         World.__init__(
             self,
             start,
@@ -72,6 +106,15 @@ class SoakWorld(World):
             kinds=plan.kinds,
         )
         self.wire.echo = plan.echo
+        self.digest = Digest(self)
+
+    def run(self, ms):
+        World.run(self, ms)
+        self.digest.look()
+
+    def hang(self, ms):
+        World.hang(self, ms)
+        self.digest.look()
 
     def reset(self):
         bitten = self._bitten
@@ -81,6 +124,9 @@ class SoakWorld(World):
         del self.chips[:-1]
         if self.witness is not None:
             self.witness.booted()
+
+    def _uneven_loop_us(self):
+        return self.random(LOOP_US // 4, self._longest_loop_us)
 
     def _flash_is_busy(self, us):
         World._flash_is_busy(self, us)
@@ -106,6 +152,14 @@ def _addresses(dice, count):
         if address not in found:
             found.append(address)
     return tuple(found)
+
+
+def _silent(dice, addresses):
+    """Addresses of the list at which there is no drive."""
+    roll = dice.below(16)
+    count = 0 if roll > 2 else 1 + dice.below(4) if roll else 31
+    free = [address for address in range(32) if address not in addresses]
+    return tuple(free[: min(count, 31 - len(addresses))])
 
 
 def _settings(dice, addresses):
@@ -136,6 +190,28 @@ def _kind(plan, address):
     if plan.supervised:
         parameters = dict(parameters)
         parameters.update(
-            supervision(family, supervision_ms(plan.baud, len(plan.addresses)))
+            supervision(family, supervision_ms(plan.baud, len(plan.listed)))
         )
-    return {"family": family, "parameters": parameters}
+    if plan.more.below(12) == 0 and family in (mm420, mm440):
+        parameters = dict(parameters)
+        parameters[2014] = plan.more.one_of(LONG_MS)
+    switches = switched(plan.more)
+    if not bears_silences(plan) and (lost_us(plan) < S or "stale_replies" in switches):
+        switches.pop("silent_refusals", None)
+    return {"family": family, "parameters": parameters, "switches": switches}
+
+
+def bears_silences(plan):
+    """Whether three turns in a row on which a drive is silent do not lose it: else the panel asks
+    in vain for what it is silent about, the more when it lags.
+    """
+    return lost_us(plan) >= 3 * len(plan.listed) * exchange_us(plan)
+
+
+def switched(dice):
+    """Some of the switches of a drive, each with another value than its default."""
+    found = {}
+    for name, default, _, _ in SWITCHES:
+        if not dice.below(8):
+            found[name] = not default if isinstance(default, bool) else dice.one_of(VALUES[name])
+    return found

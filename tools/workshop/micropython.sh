@@ -112,7 +112,8 @@ unpack_from_view() {
     local libraries
     libraries=$(packages_dependencies "$view" micropython)
     # shellcheck disable=SC2086  # one word a package
-    packages_unpack "$view" "$folder" micropython $libraries && write_starter "$folder"
+    packages_unpack "$view" "$folder" micropython $libraries &&
+        packages_starter "$folder" micropython
 }
 
 # Whether the view offers a MicroPython that is new enough; says which.
@@ -129,21 +130,6 @@ offered() {
         return 1
     fi
     say "    taking MicroPython $version"
-}
-
-# The starter finds the folder that it stands in, so that the tree can be moved.
-write_starter() {
-    local folder=$1 loader library
-    loader=$(cd "$folder" && find . -name 'ld-linux*.so.*' -path './*lib*' | head -n 1)
-    library=$(cd "$folder" && find . -name libc.so.6 -printf '%h\n' | head -n 1)
-    [[ -n $loader && -n $library ]] || return
-    cat >"$folder/micropython" <<STARTER
-#!/bin/sh
-# Runs MicroPython with the loader and the libraries it was packed for, not those of the machine.
-here=\${0%/*}
-exec "\$here/$loader" --library-path "\$here/$library" "\$here/usr/bin/micropython" "\$@"
-STARTER
-    chmod +x "$folder/micropython"
 }
 
 # ---- built here from the source package -----------------------------------------------------

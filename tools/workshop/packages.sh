@@ -131,7 +131,26 @@ packages_unpack() {
 
 # packages_dependencies FOLDER PACKAGE: the packages that PACKAGE itself asks for, one a line.
 packages_dependencies() {
-    apt_cache "$1" depends --no-recommends --no-suggests "$2" | awk '$1 == "Depends:" { print $2 }'
+    apt_cache "$1" depends --no-recommends --no-suggests "$2" |
+        awk '$1 ~ /^(Pre)?Depends:$/ { print $2 }'
+}
+
+# packages_starter FOLDER PROGRAM: writes FOLDER/PROGRAM, which runs what was unpacked below FOLDER
+# with the loader and the libraries it was packed for, not those of the machine. It finds the folder
+# that it stands in, so that the tree can be moved.
+packages_starter() {
+    local folder=$1 program=$2 loader libraries
+    loader=$(cd "$folder" && find . -name 'ld-linux*.so.*' -path './*lib*' | head -n 1)
+    libraries=$(cd "$folder" && find . -name 'lib*.so*' -regex '.*/lib/[^/]*-linux-gnu[^/]*/[^/]*' \
+        -printf '$here/%h\n' | sort -u | awk '{ printf "%s%s", sep, $0; sep = ":" }')
+    [[ -n $loader && -n $libraries ]] || return
+    cat >"$folder/$program" <<STARTER
+#!/bin/sh
+# Runs $program with the loader and the libraries it was packed for, not those of the machine.
+here=\${0%/*}
+exec "\$here/$loader" --library-path "$libraries" "\$here/usr/bin/$program" "\$@"
+STARTER
+    chmod +x "$folder/$program"
 }
 
 # unpack_tar FILE FOLDER: the tar of a source package, without the folder that it begins with.

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # The firmware for the Raspberry Pi Pico: build/pico/panel.uf2, with everything of ours frozen in,
-# and build/pico/stock.uf2, plain MicroPython. To be sourced after folder.sh, packages.sh and
-# pytest.sh.
+# and build/pico/stock.uf2, plain MicroPython. To be sourced after version.sh, folder.sh,
+# packages.sh and pytest.sh.
 #
 # What the machine has installed takes no part, but for python3 and apt: the versions are named
 # here, and the same sources give the same bytes. The first firmware takes a minute or two, the
@@ -71,7 +71,8 @@ pico_fingerprint() (
 # How it is made, in words that change when that changes: bash tells functions without comments.
 pico_recipe() {
     declare -p top pico_micropython pico_sdk pico_released
-    declare -f pico_manifest pico_flags compile_pico_firmware prepare_pico_make pico_do
+    pico_flags "$1"
+    declare -f pico_manifest compile_pico_firmware prepare_pico_make pico_do
     cat "$pico_requirements"
 }
 
@@ -91,10 +92,12 @@ pico_manifest() {
 # of 8 KB has room for 24.
 # A collection that has more than 64 objects in hand looks through the whole heap once more, and
 # again: with room for 192 it takes half as long.
+# The description is what `picotool info` tells of a file; its version is MicroPython's.
 pico_flags() {
     [[ $1 != panel ]] ||
         echo -DMICROPY_OPT_MAP_LOOKUP_CACHE_SIZE=2048 -DVM_MAX_STATE_ON_STACK=96 \
-            -DMICROPY_ALLOC_GC_STACK_SIZE=192
+            -DMICROPY_ALLOC_GC_STACK_SIZE=192 \
+            "-DPICO_PROGRAM_DESCRIPTION='\"USS panel $(panel_version)\"'"
 }
 
 # ---- the compilation --------------------------------------------------------------------------
@@ -111,8 +114,11 @@ make_pico_firmware() {
     fi
     rm -f "$build/pico/$name.made_of" &&
         mv "$pico_make/$name/$name.uf2" "$build/pico/" &&
-        cat - "$build"/pico_{sources,compiler}/versions <<<"$fingerprint" \
-            >"$build/pico/$name.made_of" &&
+        {
+            echo "$fingerprint"
+            [[ $name != panel ]] || echo "USS panel $(panel_version)"
+            cat "$build"/pico_{sources,compiler}/versions
+        } >"$build/pico/$name.made_of" &&
         say "    ready after $((SECONDS - started)) s"
 }
 

@@ -2,13 +2,14 @@
 """The home page: setpoint and actual frequency of the selected drive, its state, its address.
 
     S: 10.0 F:  9.98        row 1: setpoint and actual frequency in Hz, negative turns left
-    RUNNING      A1         row 2: state in words, address
+    RUNNING      A1         row 2: state in words, in turn with a warning; address
 
 Row 1 and the address are drawn by `panel.view`, because parameter mode shows them too.
 """
 
 from panel import state, texts
-from panel.announcer import draw_fault
+from panel.fault import draw_number
+from panel.pages import warning
 
 
 class Home:
@@ -33,6 +34,8 @@ class Home:
     def draw(self, screen, now_ms):
         control = self._panel.selected
         text = state.text(control)
+        if text is not texts.FAULT and warning.draw(screen, self._panel):
+            return
         screen.put(1, 0, texts.STATE_WIDTH + 1, text)
         if text is texts.FAULT:
-            draw_fault(screen, 1, len(text) + 1, control.fault)
+            draw_number(screen, 1, len(text) + 1, texts.FAULT_LETTER, control.fault)

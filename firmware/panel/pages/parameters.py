@@ -7,15 +7,16 @@
 NEXT and PREVIOUS walk the rows of PARAMETERS. EDIT freezes the value, UP and DOWN change it, EDIT
 lets it go again. SET writes it into the drive's RAM; SET held for 1.5 s, and no other key with it,
 writes it into the EEPROM as well. Between value and address: an arrow while the value is frozen,
-an hourglass while a write is on its way.
+an hourglass while a write is on its way. A warning of the drive takes turns with all that.
 """
 
 from micropython import const
 
 from panel import texts
+from panel.pages import warning
 from panel.pages.question import Question
 from panel.screen import BUSY, EDITS
-from panel.writer import refusal
+from panel.writer import refusal, unanswered
 from uss import pkw, profiles
 from uss.timing import elapsed
 
@@ -197,9 +198,10 @@ class Parameters:
             return
         self._asked = False
         self._read_at_ms = now_ms
-        refused = job.state == pkw.REFUSED
+        refused = job.state in (pkw.REFUSED, pkw.UNANSWERED)
         if refused and not self._refused:
-            self._panel.say(refusal(job.error), now_ms)
+            text = refusal(job.error) if job.state == pkw.REFUSED else unanswered(job)
+            self._panel.say(text, now_ms)
         self._refused = refused
         self._value = job.low if job.state == pkw.DONE else None
 
@@ -220,6 +222,8 @@ class Parameters:
                 self._job = pkw.read(0)
 
     def draw(self, screen, now_ms):
+        if warning.draw(screen, self._panel):
+            return
         value = self._edited if self._editing else self._value
         screen.put(1, 0, texts.PARAMETER_WIDTH, PARAMETERS[self._row][0])
         if value is not None:

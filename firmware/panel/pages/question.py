@@ -11,7 +11,6 @@ from micropython import const
 from panel import texts
 from uss.timing import elapsed
 
-_TURN_MS = const(1_500)
 _STALE_MS = const(30_000)
 
 
@@ -48,17 +47,19 @@ class Question:
         if chosen is not None:
             chosen(now_ms)
 
+    def step(self, now_ms):
+        """Again and again while it is shown. Answers whether it has been there so long that
+        whoever caused it is gone."""
+        if self._shown_at is None:
+            self._shown_at = now_ms
+        return self._shown_for(now_ms) >= _STALE_MS
+
     def draw(self, screen, now_ms):
         turns, choice = self._text
-        turn = self._shown_for(now_ms) // _TURN_MS
-        screen.put(0, 0, texts.ROW_WIDTH, turns[turn % len(turns)])
+        screen.put(0, 0, texts.ROW_WIDTH, turns[self._panel.announcer.page_turns % len(turns)])
         screen.put(1, 0, texts.ROW_WIDTH, choice)
-
-    def is_stale(self, now_ms):
-        """Whether it has been there so long that whoever caused it is gone."""
-        return self._shown_for(now_ms) >= _STALE_MS
 
     def _shown_for(self, now_ms):
         if self._shown_at is None:
-            self._shown_at = now_ms
+            return 0
         return elapsed(now_ms, self._shown_at, self._mask)

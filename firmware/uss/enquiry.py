@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: MIT
+"""Asks a node that was found what it is: its layout, its family, when it trips. For `scan`.
+
+A node's telegrams have a length, but not every length has one meaning: 12 net characters are 4 + 2
+words, 3 + 3, or none and 6. So the drive is asked for the parameters that hold its layout, in each
+of these forms, until it confirms one; which other parameters it has tells the family. Each
+question is an ordinary telegram with OFF1, so that a motor that somebody left running stops; in a
+form that is wrong, bit 10 is 0 where the drive looks for its control word, and it obeys nothing.
+
+    node = Node(12, False)
+    questions = enquiry(node)           # a generator: (layout, number) each, the value goes in
+    layout, number = next(questions)
+    layout, number = questions.send(4)  # ... until StopIteration
+    node.family, node.layout, node.off_time_ms
+"""
+
+from uss import pkw, pzd
+from uss.families import G110, G120, GENERIC, MM3, MM4, MM440, V20, can_be_set_to
+from uss.layout import PZD_WORDS_MAX, VARIABLE, Layout
+from uss.single import DONE, TIMED_OUT, Single
+from uss.telegram import GOOD, NET, put_word
+
+FRAME = 4  # characters of a telegram that are not net data
+NO_CHANNEL = -1  # instead of a value: where that should stand is no parameter channel
+
+# In the order of trying: a family; one whose parameters tell the layout and the telegram-off time;
+# and a parameter that it has and those further down lack, or None.
+SIGNS = (
+    (MM4, MM4, 2009),
+    (MM440, MM4, 2009),  # with more PZD words
+    (V20, MM4, 2023),
+    (G110, MM4, None),
+    (G120, G120, None),
+    (MM3, MM3, 93),
+    (GENERIC, MM4, None),  # with even more
+)
+
+# PZD words of a drive with variable length, the most usual first.
+USUAL_PZD_WORDS = (2, 4, 8, 1, 3, 5, 6, 7, 0, 16, 12, 10, 9, 11, 13, 14, 15)
+
+
+class Node:
+    """What answers at an address. net_count: net characters that it takes. variable: any number.
+
+    layout, family: as `bus.add` takes them. off_time_ms: after so long without a telegram it
+    trips; 0 never, None: it does not tell. A layout that the drive does not confirm is the most
+    usual one of its length, and its family is GENERIC.
+    """
+
+    def __init__(self, net_count, variable):
+        self.net_count = net_count
+        self.variable = variable
+        self.layout = layouts(net_count, variable)[0]
+        self.family = GENERIC
+        self.off_time_ms = None
+
+    def __repr__(self):
+        return "<%s %r>" % (self.family.name, self.layout)
+
+
+def layouts(net_count, variable):
+    """The layouts that may be meant, the most usual first, a list."""
+    if variable:
+        return [Layout(VARIABLE, pzd_words) for pzd_words in USUAL_PZD_WORDS]
+    words = net_count // 2
+    found = []
+    for pkw_words in (4, 3, 0):
+        if 0 <= words - pkw_words <= PZD_WORDS_MAX:
+            found.append(Layout(pkw_words, words - pkw_words))
+    return found or [Layout(VARIABLE, 2)]
+
+
+def enquiry(node):
+    """A generator of (layout, number) to be read; it is sent the value, None where there is none,
+    or NO_CHANNEL. number None: a telegram without a task. At its end the fields of `node` are what
+    is known.
+    """
+    usual = None
+    for layout in layouts(node.net_count, node.variable):
+        if not layout.pkw_words:
+            usual = usual or layout
+            break
+        known = {}  # number -> value
+        for family, link, sign in SIGNS:
+            if not can_be_set_to(family, layout):
+                continue
+            rows = (
+                (link.pkw_words_number, layout.pkw_words),
+                (link.pzd_words_number, layout.pzd_words),
+                (sign, None),
+            )
+            for number, wanted in rows:
+                if number is None:
+                    continue
+                if number not in known:
+                    known[number] = yield layout, number
+                if known[number] in (None, NO_CHANNEL):
+                    break
+                if wanted is not None and known[number] != wanted:
+                    break
+            else:
+                node.layout = layout
+                node.family = family
+                off_time = yield layout, link.off_time_number
+                if off_time is not None:
+                    node.off_time_ms = off_time * link.off_time_unit_ms
+                return
+        if NO_CHANNEL not in known.values():
+            usual = usual or layout
+    node.layout = usual or node.layout
+    yield node.layout, None
+
+
+class Question(Single):
+    """An ordinary telegram to a node outside the list: OFF1, and a parameter to be read, or None.
+
+    DONE: it has answered it; `job` holds the answer, or the refusal. TIMED_OUT: it was silent, or,
+    where `finding` is GOOD, said something older.
+    """
+
+    def __init__(self, address, layout, number):
+        self.job = None if number is None else pkw.read(number)
+        self._layout = layout
+        self._speaks = True  # what came may be the reply of a parameter channel
+        self._form = layout.pkw_words * 2
+        if layout.variable:
+            self._form = pkw.VARIABLE_LENGTH | 2 * layout.longest
+        net = bytearray(layout.net_count)
+        if self.job is not None:
+            net[:FRAME] = self.job.words[:FRAME]  # PKE and IND; the others are 0
+        if layout.pzd_words:
+            put_word(net, layout.net_count - layout.pzd_count, pzd.OFF1)
+        Single.__init__(self, address, net)
+
+    def fits(self, net_count):
+        """Whether a reply may have so many net characters."""
+        return self._layout.fits(net_count)
+
+    def may_reply_alike(self):
+        """Whether the reply may be the very request."""
+        return not self._layout.pzd_words
+
+    def value(self):
+        """The value that was read; None where there is none; NO_CHANNEL."""
+        job = self.job
+        if job is not None and job.state == pkw.DONE:
+            return job.integer_value()
+        return None if self._speaks else NO_CHANNEL
+
+    def take(self, buffer, count, now):
+        self.finding = GOOD
+        job = self.job
+        pkw_count = count - FRAME - self._layout.pzd_count
+        if job is None or job.answer(buffer, NET, pkw_count, self._form):
+            self.state = DONE
+        else:
+            self._speaks = buffer[NET] == buffer[NET + 1] == 0  # AK 0, no reply yet
+            self.state = TIMED_OUT

@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: MIT
+"""What drives cost that do not answer: all of them together at most a fifth of the line's time.
+
+A drive without contact, not told to run and not last seen running, rests as soon as it was silent
+once: it has no turn in the round, and the resting ones are asked one after the other. A telegram
+that nobody answers takes long, the reply time-out and itself. So the share is one of time, not of
+telegrams: from one of them to the next passes five times as long as it took. A drive that answers
+owes nothing: where many are switched on at once, they are found one behind the other.
+
+Drives that run go before that: `Care` says whether one more silence leaves them their bound.
+"""
+
+from micropython import const
+
+from uss.drive import NODES, SILENT_MAX
+from uss.fast import greatest
+
+SHARE = const(5)  # one part in so many
+_ROUND_US = const(700_000)  # few silent ones are asked no oftener than once in this: it will do
+_OWED_MAX = const(2)  # silences; a STOP to many at once is not made up for by asking nobody
+SPENT_MASK = const(0x3FFFFFFF)  # of the sum that `Turns` keeps
+
+
+class Silence:
+    """turns: the `Turns` that it belongs to.
+
+    rests: by address, whether a drive rests. resting: how many do. wait_us: until the share has
+    room for one more silence, counted down by `Care`; below 0 it has had for so long. charged_us:
+    of `Turns.shared_us`.
+    """
+
+    def __init__(self, turns):
+        self.rests = bytearray(NODES)
+        self.resting = 0
+        self.wait_us = 0
+        self.charged_us = 0
+        self.silent_exchange_us = 0  # what a telegram takes that nobody answers, at the most
+        self._turns = turns
+        self._asked = None  # who was given a turn last
+        self._is_asked = False  # and has not had it
+        self._witness = None  # a drive for whose sake others rest
+
+    def list_changed(self):
+        turns = self._turns
+        timing = turns.timing
+        longest_us = 0
+        for drive in turns.drives:
+            longest_us = max(longest_us, timing.telegram_us(drive.layout.net_count))
+        longest_us += timing.start_interval_us + timing.reply_timeout_us + timing.character_us
+        self.silent_exchange_us = longest_us
+        self._witness = None
+        turns.round_count = 0  # nobody has a turn until it is filled
+        turns.round = list(turns.list)
+        self._fill_round()
+
+    def forget(self, drive):
+        """It is not on the bus any more."""
+        if self.rests[drive.address]:
+            self._set(drive.address, 0)
+        if self._asked is drive:
+            self._asked = None
+            self._is_asked = False
+
+    def readdressed(self, old, new):
+        self.rests[new], self.rests[old] = self.rests[old], 0
+
+    def settle(self):
+        """Time was spent in vain."""
+        shared_us = self._turns.shared_us
+        spent_us = (shared_us - self.charged_us) & SPENT_MASK
+        self.charged_us = shared_us
+        if not self._is_anyone_there():
+            return  # nobody whom it might cost anything
+        most_us = _OWED_MAX * SHARE * self.silent_exchange_us
+        # Being late with one telegram is made up with the next, or the share would not be had.
+        wait_us = max(self.wait_us, -2 * self.silent_exchange_us)
+        self.wait_us = min(wait_us + SHARE * min(spent_us, most_us), most_us)
+        if self._asked is not None and self._asked.silent > SILENT_MAX:
+            self.wait_us = max(self.wait_us, _ROUND_US // max(self.resting, 1))
+
+    def look_after(self, drive):
+        """Is it to rest, or to come back into the round?"""
+        rests = 0
+        if drive.may_rest():
+            # One that was never asked has its turn first, unless others are owed time.
+            rests = self.rests[drive.address] or drive.silent or self.wait_us > 0
+            rests = 1 if rests and self._is_anyone_there() else 0
+        if rests != self.rests[drive.address]:
+            self._set(drive.address, rests)
+            self._fill_round()
+
+    def give_turn(self):
+        """One that rests has a turn, if none of them has."""
+        asked = self._asked
+        if self._is_asked:
+            # What it took is known at the next look. One that answers may be under way for ever.
+            waits = asked.insist > 0 or self._turns.is_under_way(asked)
+            self._is_asked = waits and not asked.contact
+            if asked.contact:
+                self.look_after(asked)
+        elif self.wait_us <= 0 and self.resting:
+            last = asked.address if asked is not None else 0
+            self._asked = asked = self._turns.by_address[greatest(self.rests, 0, NODES, last)]
+            self._is_asked = True
+            asked.ask_soon()
+
+    def _is_anyone_there(self):
+        """1 if a drive answers, or may run: without one the silent ones cost nobody anything."""
+        witness = self._witness
+        if witness is not None and (witness.contact or witness.was_running):
+            return 1
+        for drive in self._turns.drives:
+            if drive.contact or drive.was_running:
+                self._witness = drive
+                return 1
+        self._witness = None
+        self.wait_us = 0
+        return 0
+
+    def _set(self, address, rests):
+        self.rests[address] = rests
+        self.resting += 1 if rests else -1
+
+    def _fill_round(self):
+        """The list without those that rest. In place: it takes no heap, and an interrupt that
+        walks it meanwhile finds a drive everywhere, the one before or the one after.
+        """
+        turns = self._turns
+        rests = self.rests
+        count = 0
+        for drive in turns.list:
+            if not rests[drive.address]:
+                turns.round[count] = drive
+                count += 1
+        turns.round_count = count

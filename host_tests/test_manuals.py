@@ -1,0 +1,234 @@
+# SPDX-License-Identifier: MIT
+"""What the manuals say is so: links lead somewhere, no key, text, setting or command is missing.
+
+The library's manuals have tests of their own: test_uss_readme.py, test_plc_table.py.
+"""
+
+import json
+import re
+import subprocess
+from types import ModuleType
+
+import pytest
+import settings
+import version
+from boards.sim.script import COMMANDS
+from panel import texts
+from tiers import TOP
+from tools import virtual_panel
+
+INTERPRETERS = "host"
+
+MADE = {"build", ".git", ".pytest_cache"}  # folders in which nothing is ours
+MANUALS = sorted(
+    path.as_posix()
+    for path in (found.relative_to(TOP) for found in TOP.rglob("*.md"))
+    if not MADE.intersection(path.parts)
+)
+PANEL, TOOLS, PICO = "firmware/panel/README.md", "tools/README.md", "boards/pico/README.md"
+
+
+def text(manual):
+    return (TOP / manual).read_text(encoding="utf-8")
+
+
+def prose(manual):
+    """Without the blocks of examples, in which a bracket is no link and # no heading."""
+    found = re.sub(r"^```.*?^```", "", text(manual), flags=re.M | re.S)
+    return "\n".join(line for line in found.split("\n") if not line.startswith("    "))
+
+
+def section(manual, title):
+    """What stands under a heading, down to the next one of its kind."""
+    level = re.search(rf"^(#+) {re.escape(title)}$", text(manual), re.M)
+    assert level, (manual, title)
+    rest = text(manual)[level.end() :]
+    end = re.search(rf"^#{{1,{len(level[1])}}} ", rest, re.M)
+    return rest[: end.start()] if end else rest
+
+
+# ---- the front page -------------------------------------------------------------------------
+
+
+def test_the_front_page_is_short_and_says_what_it_must():
+    page = text("README.md")
+    assert page.count("\n") < 110
+    assert "STOP on this panel is not an emergency stop." in page
+    assert "MIT" in section("README.md", "Licence") and (TOP / "firmware/LICENSE").exists()
+
+
+def test_every_manual_is_reached_from_the_front_page():
+    reached, waiting = set(), ["README.md"]
+    while waiting:
+        manual = waiting.pop()
+        if manual not in reached:
+            reached.add(manual)
+            waiting += [path for path, _ in links(manual) if path in MANUALS]
+    assert reached == set(MANUALS)
+
+
+def indented(page):
+    """The indented blocks of a manual, without the indent."""
+    blocks = re.findall(r"(?:^    .*\n(?:\n(?=    ))?)+", page, re.M)
+    return [re.sub("^    ", "", block, flags=re.M) for block in blocks]
+
+
+def test_the_first_command_prints_what_the_front_page_shows():
+    command, printed = indented(section("README.md", "Two commands"))[:2]
+    run = subprocess.run(["bash", "-c", command], cwd=TOP, capture_output=True, text=True)
+    assert run.returncode == 0, run.stderr
+    said, shown = run.stdout.splitlines(), printed.splitlines()
+    assert len(said) == len(shown)
+    for line, expected in zip(said, shown):
+        assert line.startswith(expected.removesuffix("...")), line
+        assert expected.endswith("...") or line == expected
+
+
+def test_the_second_command_is_what_the_check_on_a_fresh_clone_calls():
+    command = indented(section("README.md", "Two commands"))[2].strip()
+    assert command == "./tools/test"
+    last = text(".ci/run").rstrip().splitlines()[-1]
+    assert last.endswith('exec tools/test "$@"')
+
+
+# ---- links ----------------------------------------------------------------------------------
+
+
+def links(manual):
+    """(path from the top, anchor) of every link that does not leave the project."""
+    for target in re.findall(r"\]\(([^)\s]+)\)", prose(manual)):
+        if "://" not in target:
+            path, _, anchor = target.partition("#")
+            found = (TOP / manual).parent / path if path else TOP / manual
+            yield found.resolve().relative_to(TOP).as_posix(), anchor
+
+
+def anchors(manual):
+    """As the forge makes them: small letters, blanks as hyphens, no other marks."""
+    headings = re.findall(r"^#+ (.*)$", prose(manual), re.M)
+    return {re.sub(r"[^\w -]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
+@pytest.mark.parametrize("manual", MANUALS)
+def test_every_link_leads_somewhere(manual):
+    for path, anchor in links(manual):
+        assert (TOP / path).exists(), path
+        assert not anchor or anchor in anchors(path), f"{path}#{anchor}"
+
+
+def test_every_file_and_folder_that_a_table_names_is_there():
+    title = "Where things are"
+    tables = section("README.md", title) + section(".github/CONTRIBUTING.md", title)
+    named = [name for name in re.findall(r"`([\w./]+)`", tables) if "/" in name]
+    assert len(named) > 25
+    for name in named:
+        assert (TOP / name).exists(), name
+
+
+# ---- the operator's manual ------------------------------------------------------------------
+
+
+def words(row):
+    """A text of the display as a pattern: a number may be any, blanks count once."""
+    return r"\s*".join(
+        re.sub(r"%d", r"[\\d]+", re.escape(word)) for word in row.decode("latin-1").split()
+    )
+
+
+def every_text(thing):
+    """All texts in the module, in whatever they stand: bytes, tuples, dictionaries."""
+    if isinstance(thing, bytes):
+        yield thing
+    elif isinstance(thing, dict):
+        for value in thing.values():
+            yield from every_text(value)
+    elif isinstance(thing, (tuple, list)):
+        for value in thing:
+            yield from every_text(value)
+    elif isinstance(thing, ModuleType):
+        for name, value in vars(thing).items():
+            if not name.startswith("_"):
+                yield from every_text(value)
+
+
+def test_every_text_of_the_display_is_explained():
+    said = section(PANEL, "What the display says")
+    found = [row for row in every_text(texts) if row not in texts.SPLASH]
+    assert len(found) > 100
+    missing = [row for row in found if not re.search(words(row), said)]
+    assert not missing
+
+
+def test_the_splash_is_where_it_is_seen_first():
+    assert all(len(row) <= texts.ROW_WIDTH for row in texts.SPLASH)
+    assert version.VERSION.encode() in texts.SPLASH[0]
+    first, second = (row.decode() for row in texts.SPLASH)
+    assert f"`{first}` / `{second}`" in section(PICO, "First power-on")
+
+
+def test_every_key_is_explained():
+    board = text("boards/pico/board.py")
+    keys = re.findall(r'^    \("([A-Z_]+)", \d+\),$', board, re.M)
+    assert len(keys) == 14
+    told = section(PANEL, "The keys")
+    rows = " ".join(re.findall(r"^\| ([A-Z_, ]+) \|", told, re.M)).replace(",", "").split()
+    assert sorted(keys) == sorted(rows)
+    wiring = section(PICO, "Pins")
+    for key in keys:
+        assert re.search(rf"\bkey {key}\b", wiring), key
+
+
+def test_every_setting_has_its_default_and_its_limits():
+    told = {}
+    for names, defaults, meaning in re.findall(
+        r"^\| (`.*?`) \| (.*?) \| (.*) \|$", section(PANEL, "Settings"), re.M
+    ):
+        names = re.findall(r"`(\w+)`", names)
+        defaults = json.loads(f"[{defaults}]")
+        assert len(names) == len(defaults)
+        told |= {name: (value, meaning) for name, value in zip(names, defaults)}
+    assert {name: value for name, (value, _) in told.items()} == {
+        name: list(value) if isinstance(value, tuple) else value
+        for name, value in settings.DEFAULTS.items()
+    }
+    for name in ("reply_timeout_ms", "lost_ms"):
+        _, _, lowest, highest, _ = next(row for row in settings.NUMBERS if row[0] == name)
+        assert f"{lowest}...{highest}" in told[name][1], name
+    for name, _, choices, _ in settings.CHOICES:
+        shown = (choices[0], choices[-1]) if name == "baud" else choices
+        assert all(str(choice) in told[name][1] for choice in shown), name
+    assert f"{settings.SIZE_MAX} bytes" in section(PANEL, "Settings")
+
+
+# ---- the workbench --------------------------------------------------------------------------
+
+
+def test_every_command_of_the_scripts_has_a_row():
+    table = section(TOOLS, "Scripts")
+    told = {
+        words.split()[0]
+        for cell in re.findall(r"^\| (`.*?`) \|", table, re.M)
+        for words in re.findall(r"`(.*?)`", cell)
+    }
+    assert told == set(COMMANDS)
+
+
+def test_every_exit_status_of_the_panel_is_explained():
+    told = section(TOOLS, "Scripts").partition("Exit status: ")[2]
+    statuses = [int(number) for number in re.findall(r"(?:^|; )(\d+)\b", told)]
+    panel = virtual_panel
+    ours = [panel.FAILED, panel.NOT_UNDERSTOOD, panel.CRASHED, panel.NO_PORT, panel.INTERRUPTED]
+    assert sorted(statuses) == sorted([0, 3, *ours])  # 3 is that of the command around it
+
+
+def test_every_command_has_a_row():
+    there = [path.name for path in (TOP / "tools").iterdir() if path.is_file() and not path.suffix]
+    assert sorted(re.findall(r"^\| \[`\./tools/(\w+)`\]", text(TOOLS), re.M)) == sorted(there)
+
+
+# ---- the version ----------------------------------------------------------------------------
+
+
+def test_the_changes_begin_with_this_version():
+    assert re.fullmatch(r"\d+\.\d+\.\d+", version.VERSION)
+    assert re.findall(r"^## (.*)$", text(".github/CHANGELOG.md"), re.M)[0] == version.VERSION

@@ -1,0 +1,652 @@
+# SPDX-License-Identifier: MIT
+"""The operator's manual, what is said of drives that are not shown: every trouble, one by one.
+
+States are said as long as they hold, events until STOP acknowledges them. With n drives in trouble
+each of them is said for a second and more in every 2 n s.
+"""
+
+import main
+from boards.sim.world import World
+from panel_bench import (
+    all_running,
+    panel,
+    row_1,
+    row_2,
+    running,
+    said,
+    settled,
+    starts,
+    unsupervised,
+    wait_until_known,
+)
+
+NOT_TRACED = (
+    "test_with_n_drives_in_trouble_each_is_said_for_a_second_in_every_2_n_seconds "
+    "test_the_most_dangerous_ones_come_first "
+    "test_drives_that_were_never_heard_share_one_text_and_are_no_alarm_each "
+    "test_a_stop_of_all_takes_no_time_from_the_dead_man "
+    "test_a_drive_that_does_not_matter_hides_none_that_does "
+    "test_stop_never_ends_what_is_said_of_a_motor_that_was_heard_running_last"
+)
+
+ASKED = "SET=FIX START=GO"
+
+
+def silent(addresses, plugged, **options):
+    """A panel of which only these drives are there since it was switched on."""
+    world = World(main.start, addresses=addresses, **options)
+    for address in addresses:
+        if address not in plugged:
+            world.drives[address].unplug()
+    world.run(4_000)
+    return world
+
+
+def all_started(addresses):
+    """A panel whose drives run all, however many."""
+    world = panel(addresses=addresses)
+    world.run(3_000)
+    for address in addresses:
+        show(world, address)
+        world.press("START")
+        world.run(2_000)
+    world.run(2_000)
+    for drive in world.drives.values():
+        assert drive.state == "running", drive.report()
+    return world
+
+
+def show(world, address):
+    while world.app.panel.selected.drive.address != address:
+        world.press("ADDRESS_UP", 40)
+        world.run(60)
+
+
+def start(world, address):
+    show(world, address)
+    wait_until_known(world)
+    world.press("START")
+    world.run(4_000)
+    assert world.drives[address].state == "running", world.drives[address].report()
+
+
+def wait_for_rest(world, address):
+    for _ in range(1_000):
+        world.run(20)
+        if world.drives[address].hz() == 0 and world.drives[address].state == "ready":
+            return
+    raise AssertionError(world.drives[address].report())
+
+
+# --- every drive ---------------------------------------------------------------------------------
+
+
+def test_a_drive_that_does_not_matter_hides_none_that_does():
+    """Drive 3 is unplugged, and cannot confirm a STOP of all. Then a motor is lost."""
+    for heard in (False, True):
+        world = panel(addresses=(1, 2, 3)) if heard else World(main.start, addresses=(1, 2, 3))
+        world.drives[3].unplug()
+        world.run(3_000)
+        world.press("STOP", 4_500)
+        world.run(2_000)
+        start(world, 1)
+        show(world, 2)
+        world.run(500)
+        world.drives[1].write(2014, 0, 0)
+        world.drives[1].unplug()
+        world.run(5_000)
+        rows = said(world, 4_000)
+        assert rows["A1 LOST,MAY RUN"] >= 1_000, rows
+        assert ("A3 MAY RUN" in rows) != heard and "A3 NOT STOPPED" not in rows, rows
+        assert abs(world.drives[1].hz() - 10) < 0.01
+        world.check()
+
+
+def test_an_alarm_hides_no_drive_that_runs_trips_or_was_taken_back():
+    world = all_started((1, 2, 3, 4))
+    world.drives[1].unplug()
+    world.drives[3].fault(7)
+    world.run(3_000)
+    show(world, 4)
+    world.press("STOP")
+    world.run(5_000)
+    rows = said(world, 6_000)
+    for row in ("A1 LOST,MAY RUN", "A2 RUN,HOLD=ALL", "A3 FAULT F0007", "READY        A4"):
+        assert rows.get(row, 0) >= 1_000, rows
+    assert len(rows) == 4, rows
+    world.check()
+
+
+def test_of_two_drives_that_are_lost_stopping_one_hides_none():
+    """STOP cannot be heard: nobody knows whether either of them stands."""
+    world = all_running((1, 2, 3))
+    world.drives[1].unplug()
+    world.drives[2].unplug()
+    show(world, 3)
+    world.run(2_500)
+    rows = said(world, 4_000)
+    assert rows["A1 LOST,MAY RUN"] >= 1_000 and rows["A2 LOST,MAY RUN"] >= 1_000, rows
+    show(world, 1)
+    world.press("STOP")
+    world.run(1_500)
+    rows = said(world, 4_000)
+    assert rows["A2 LOST,MAY RUN"] >= 1_000 and rows["STOP UNCONFIRMED"] >= 1_000, rows
+    assert rows["A3 RUN,HOLD=ALL"] >= 1_000, rows
+    show(world, 3)
+    world.run(1_500)
+    rows = said(world, 4_000)
+    assert rows["A1 NOT STOPPED"] >= 1_000 and rows["A2 LOST,MAY RUN"] >= 1_000, rows
+    world.check()
+
+
+def test_with_n_drives_in_trouble_each_is_said_for_a_second_in_every_2_n_seconds():
+    addresses = (1, 2, 3, 4, 5, 6)
+    world = all_started(addresses)
+    troubles = ("A1 LOST,MAY RUN", "A2 LOST,MAY RUN", "A3 RUN,HOLD=ALL", "A4 FAULT F0011",
+                "A5 FAULT F0012")  # fmt: skip
+    world.drives[1].unplug()
+    world.drives[2].unplug()
+    world.drives[4].fault(11)
+    world.drives[5].fault(12)
+    show(world, 6)
+    world.press("STOP")
+    world.run(9_000)
+    for _ in range(5):
+        rows = said(world, 2_000 * len(troubles))
+        for row in troubles:
+            assert rows.get(row, 0) >= 1_000, (row, rows)
+        assert rows["READY        A6"] >= 1_000
+    world.check()
+
+
+class SlowWorld(World):
+    """A step of the main loop may take as long as it does where it has much to do."""
+
+    def _uneven_loop_us(self):
+        return self.random(500, 10_000)
+
+
+def test_a_slow_loop_says_each_of_them_for_a_second_as_well():
+    """Steps and pictures are late there, which is at the expense of the page."""
+    texts = ("A2 FAULT F0011", "A3 FAULT F0012", "A4 FAULT F0013")
+    world = SlowWorld(main.start, addresses=(1, 2, 3, 4), seed=1)
+    world.run(4_000)
+    for address, number in ((2, 11), (3, 12), (4, 13)):
+        world.drives[address].fault(number)
+    world.run(8_000)
+    world.down("STOP")  # they go to row 1, beside what STOP does
+    read_us = [dict.fromkeys(texts, 0)]  # in each round of them
+    us = began_us = world.clock.now_us
+    for _ in range(24_000):
+        before_us, us = us, world.clock.now_us
+        row = row_1(world).rstrip()
+        if row in texts:
+            read_us[-1][row] += us - before_us
+        elif min(read_us[-1].values()):
+            read_us.append(dict.fromkeys(texts, 0))
+        world.run(5)
+    rounds = read_us[1:-1]
+    assert min(min(read.values()) for read in rounds) >= 1_000_000, rounds
+    assert len(rounds) + 2 >= (us - began_us) // (2_000_000 * len(texts)), len(rounds)
+    world.check()
+
+
+def test_the_most_dangerous_ones_come_first():
+    world = all_started((1, 2, 3, 4, 5))
+    world.drives[1].fault(11)
+    world.drives[3].unplug()
+    world.drives[4].unplug()
+    world.run(2_000)
+    show(world, 4)
+    world.press("STOP")
+    show(world, 5)
+    world.run(8_000)
+    ranks = ("A4 NOT STOPPED", "A3 LOST,MAY RUN", "A2 RUN,HOLD=ALL", "A1 FAULT F0011")
+    order = []
+    for _ in range(250):
+        row = settled(world)[1].rstrip()
+        if row in ranks and order[-1:] != [row]:
+            order.append(row)
+    first = order.index(ranks[0])
+    assert tuple(order[first:first + 4]) == ranks, order
+    world.check()
+
+
+def test_a_trip_of_a_drive_that_was_not_on_is_said_as_well():
+    world = panel(addresses=(1, 2))
+    world.drives[2].fault(12)
+    world.run(500)
+    rows = said(world, 4_000)
+    assert rows["A2 FAULT F0012"] >= 2_000 and rows["READY        A1"] >= 1_000, rows
+    show(world, 2)
+    world.run(1_500)
+    world.press("STOP")
+    show(world, 1)
+    world.run(1_500)
+    assert set(said(world, 4_000)) == {"READY        A1"}
+    world.check()
+
+
+def test_an_event_is_said_until_it_is_acknowledged():
+    """The line of a motor that is not shown failed for a while, and its drive took no notice."""
+    world = all_running((1, 2))
+    show(world, 1)
+    world.drives[2].write(2014, 0, 0)
+    world.drives[2].unplug()
+    world.run(2_000)
+    world.drives[2].plug()
+    world.run(12_000)
+    assert world.drives[2].state == "ready"
+    world.press("STOP")  # that is for the drive shown
+    world.run(10_000)
+    rows = said(world, 4_000)
+    assert rows["A2 LINE FAILED"] >= 2_000 and rows["READY        A1"] >= 1_000, rows
+    show(world, 2)
+    world.press("STOP")
+    show(world, 1)
+    world.run(1_500)
+    assert set(said(world, 4_000)) == {"READY        A1"}
+    world.check()
+
+
+def test_a_jog_acknowledges_nothing():
+    world = running()
+    world.drives[1].write(2014, 0, 0)
+    world.drives[1].unplug()
+    world.run(2_000)
+    world.drives[1].plug()
+    wait_for_rest(world, 1)
+    world.run(8_000)
+    assert row_2(world) == "LINE FAILED  A1", world.lcd()
+    world.drives[1].write(2014, 0, 2_000)
+    world.run(4_000)
+    world.press("JOG_RIGHT", 2_000)
+    wait_for_rest(world, 1)
+    world.run(2_000)
+    assert row_2(world) == "LINE FAILED  A1" and starts(world) == 2, world.lcd()
+    world.press("STOP")
+    world.run(1_000)
+    assert row_2(world) == "READY        A1", world.lcd()
+    world.check()
+
+
+def test_a_drive_that_would_run_on_too_long_by_now_is_said_to():
+    """Somebody has changed P2014 while it runs, and it is not shown."""
+    world = panel(addresses=(1, 2), parameters={2014: 1_000})
+    world.run(3_000)
+    start(world, 2)
+    show(world, 1)
+    for off_ms, row in ((0, "A2 RUN, P2014=0"), (65_535, "A2 P2014 LONG"),
+                        (1_000, "A2 RUN,HOLD=ALL")):  # fmt: skip
+        world.drives[2].write(2014, 0, off_ms)
+        world.run(12_000)
+        rows = said(world, 4_000)
+        assert set(rows) == {row, "READY        A1"}, rows
+    world.check()
+
+
+def test_what_somebody_changes_while_it_runs_is_said_in_parameter_mode():
+    """In turn with the parameter: its time-out, and a lowest frequency above the setpoint."""
+    for number, value, row in ((2014, 0, "A1 RUN, P2014=0"), (2014, 65_535, "A1 P2014 LONG"),
+                               (1080, 20.0, "A1 BELOW P1080")):  # fmt: skip
+        world = running(parameters={2014: 2_000})
+        world.press("PARAM")
+        world.drives[1].write(number, 0, value)
+        world.run(8_000)
+        rows = said(world, 10_000)
+        assert set(rows) == {row, "P0700:     5 A1"}, rows
+        world.press("STOP")
+        world.run(9_000)
+        assert set(said(world, 4_000)) == {"P0700:     5 A1"}
+        world.check()
+
+
+def test_a_warning_takes_turns_with_the_parameter():
+    for started in (running, panel):
+        world = started(parameters={2014: 2_000})
+        world.press("PARAM")
+        world.drives[1].warn(501)
+        world.run(2_000)
+        rows = said(world, 6_000)
+        assert set(rows) == {"WARN A0501   A1", "P0700:     5 A1"}, rows
+        assert min(rows.values()) > 2_000, rows
+        world.drives[1].warn(501, False)
+        world.run(2_000)
+        assert set(said(world, 4_000)) == {"P0700:     5 A1"}
+        world.check()
+
+
+# --- many of a kind ------------------------------------------------------------------------------
+
+
+def test_more_than_four_of_a_kind_share_a_text():
+    for count in (4, 5, 11):
+        addresses = tuple(range(1, count + 2))
+        world = panel(addresses=addresses, baud=57600)
+        for address in addresses[:-1]:
+            world.drives[address].fault(address)
+        show(world, addresses[-1])
+        world.run(4_000)
+        rows = said(world, 2_000 * count)
+        own = "READY        A%d" % addresses[-1]
+        if count > 4:
+            assert set(rows) == {"DRIVES FAULT: %d" % count, own}, rows
+        else:
+            assert set(rows) == {"A%d FAULT F%04d" % (a, a) for a in addresses[:-1]} | {own}, rows
+        world.check()
+
+
+def test_of_many_that_share_a_text_the_one_shown_is_said_by_itself_where_its_page_does_not():
+    """STOP acknowledges what has been on the display; so the number is to be there."""
+    addresses = (1, 2, 3, 4, 5, 6)
+    world = panel(addresses=addresses, baud=57600)
+    for address in addresses:
+        world.drives[address].fault(address)
+    world.press("PARAM")
+    world.run(4_000)
+    for address in (1, 2):
+        rows = said(world, 8_000)
+        own = {"DRIVES FAULT: %d" % (7 - address), "A%d FAULT F%04d" % (address, address)}
+        assert set(rows) == own | {"P0700:     5 A%d" % address}, rows
+        assert rows["A%d FAULT F%04d" % (address, address)] >= 2_000, rows
+        world.press("STOP")
+        world.run(1_000)
+        assert world.drives[address].state == "ready"
+        world.press("ADDRESS_UP")
+        world.run(4_000)
+    world.check()
+
+
+def test_one_more_of_a_kind_for_a_moment_puts_none_of_them_off():
+    """The message that START is refused hides that drive 1 has tripped: then there are five."""
+    tripped = (2, 3, 4, 5)
+    for said_then in tripped:
+        world = silent((1, 2, 3, 4, 5, 6), (1, 2, 3, 4, 5))
+        for address in (1,) + tripped:
+            world.drives[address].fault(11)
+        world.run(6_000)
+        while not row_2(world).startswith("A%d FAULT" % said_then):
+            world.run(40)
+        world.press("START")
+        unsaid_ms = dict.fromkeys(tripped, 0)
+        read_ms = {}
+        for _ in range(30_000 // 40):
+            world.run(40)
+            texts = [row.rstrip() for row in world.lcd()]
+            read_ms = {text: read_ms.get(text, 0) + 40 for text in texts}
+            for address in tripped:
+                unsaid_ms[address] += 40
+                for text in ("A%d FAULT F0011" % address, "DRIVES FAULT: 5"):
+                    if read_ms.get(text, 0) >= 1_000:
+                        unsaid_ms[address] = 0
+            assert max(unsaid_ms.values()) <= 12_000, (said_then, unsaid_ms)
+        world.check()
+
+
+def test_drives_that_were_never_heard_share_one_text_and_are_no_alarm_each():
+    addresses = tuple(range(1, 32))
+    world = silent(addresses, (1, 2), baud=115200)
+    world.run(12_000)
+    rows = said(world, 12_000)
+    assert set(rows) == {"MAY RUN: 29", "READY        A1"} and rows["MAY RUN: 29"] >= 2_000, rows
+    world.press("STOP", 4_500)  # all of them
+    world.run(6_000)
+    rows = said(world, 12_000)
+    assert set(rows) == {"MAY RUN: 29", "READY        A1"} and rows["MAY RUN: 29"] >= 2_000, rows
+    world.check()
+
+
+def test_a_drive_that_was_not_heard_since_a_reset_may_run():
+    world = panel(addresses=(1, 2), **{"parameters": {2014: 0}, "settings": {"unsupervised": [2]}})
+    start(world, 2)
+    world.drives[2].unplug()
+    world.run(100)
+    world.reset()
+    world.run(3_000)
+    assert abs(world.drives[2].hz() - 10) < 0.01
+    rows = said(world, 4_000)
+    assert rows["A2 MAY RUN"] >= 2_000 and rows["READY        A1"] >= 1_000, rows
+    world.drives[2].plug()
+    world.run(10_000)
+    assert set(said(world, 4_000)) == {"READY        A1"} and world.drives[2].hz() == 0
+    world.check()
+
+
+def test_stop_acknowledges_a_drive_that_was_never_heard():
+    world = silent((1, 2), (1,))
+    assert "A2 MAY RUN" in said(world, 4_000)
+    show(world, 2)
+    assert "A2 MAY RUN" in said(world, 4_000)
+    world.press("STOP")
+    show(world, 1)
+    world.run(1_500)
+    assert set(said(world, 4_000)) == {"READY        A1"}
+    world.check()
+
+
+# --- nothing hides it ----------------------------------------------------------------------------
+
+
+def test_stop_never_ends_what_is_said_of_a_motor_that_was_heard_running_last():
+    world = all_running((1, 2))
+    world.drives[1].unplug()
+    show(world, 1)
+    world.run(1_500)
+    for _ in range(3):
+        world.press("STOP")
+        world.run(1_500)
+        assert world.reads("STOP UNCONFIRMED")
+        world.press("ADDRESS_UP")
+        rows = said(world, 3_000)
+        assert rows["A1 NOT STOPPED"] >= 1_000, rows
+        world.press("ADDRESS_UP")
+        world.run(300)
+    world.drives[1].plug()
+    world.run(2_000)  # it tripped, and says that it stands
+    assert not world.reads("UNCONFIRMED") and not world.reads("MAY RUN")
+    world.check()
+
+
+def test_the_own_alarm_stays_when_another_drive_is_spoken_of():
+    world = all_running((1, 2))
+    world.drives[1].unplug()
+    show(world, 1)
+    world.press("STOP")
+    world.run(2_000)
+    rows = set()
+    for _ in range(60):
+        first, second = settled(world)
+        if second == "A2 RUN,HOLD=ALL ":
+            rows.add(first)
+    assert rows == {"STOP UNCONFIRMED"}, rows
+    world.check()
+
+
+def test_keys_that_are_refused_again_and_again_hide_nothing():
+    world = all_running((1, 2))
+    world.drives[1].unplug()
+    show(world, 2)
+    world.run(2_500)
+    rows = {}
+    for _ in range(8):
+        world.press("JOG_RIGHT", 40)
+        world.run(60)
+        assert row_2(world) == "NO JOG: IT RUNS"
+        for _ in range(20):
+            world.run(20)
+            rows[row_1(world)] = rows.get(row_1(world), 0) + 20
+    assert rows["A1 LOST,MAY RUN "] >= 1_600, rows
+    world.check()
+
+
+def test_nor_does_a_stop_that_is_held():
+    world = all_running((1, 2))
+    world.drives[1].unplug()
+    show(world, 2)
+    world.run(2_500)
+    world.down("STOP")
+    rows = {}
+    for _ in range(100):
+        world.run(40)
+        rows[row_1(world)] = rows.get(row_1(world), 0) + 40
+    assert rows["A1 LOST,MAY RUN "] >= 2_000, rows
+    assert row_2(world) == "OFF3, HOLD: ALL"
+    world.check()
+
+
+def test_a_question_hides_no_trip_of_the_drive_that_it_is_about():
+    world = panel(parameters={2014: 0})
+    world.press("START")
+    world.run(1_500)
+    assert row_2(world) == ASKED
+    world.drives[1].fault(1)
+    rows = {}
+    for _ in range(200):
+        world.run(20)
+        assert row_2(world) == ASKED
+        rows[row_1(world)] = rows.get(row_1(world), 0) + 20
+    assert rows["A1 FAULT F0001  "] >= 2_000, rows
+    assert rows["P2014=0: IT RUNS"] + rows["ON IF PANEL DIES"] >= 1_000, rows
+    world.press("STOP")  # no, and it has been seen
+    world.run(1_000)
+    assert row_2(world) == "READY        A1"
+    world.check()
+
+
+def test_nor_what_another_drive_does():
+    world = panel(addresses=(1, 2), **{"parameters": {2014: 0}, "settings": {"unsupervised": [2]}})
+    start(world, 2)
+    show(world, 1)
+    world.press("START")
+    world.run(1_500)
+    assert row_2(world) == ASKED
+    rows = set()
+    for _ in range(200):
+        world.run(20)
+        rows.add(row_1(world))
+    assert "A2 RUN,HOLD=ALL " in rows, rows
+    world.check()
+
+
+# --- what has been seen --------------------------------------------------------------------------
+
+
+def test_a_message_hides_no_fault_of_the_drive_shown():
+    world = panel()
+    world.drives[1].fault(3)
+    world.run(300)
+    world.press("START", 60)
+    rows = set()
+    for _ in range(100):
+        world.run(20)
+        assert row_2(world) == "NO: FAULT"
+        rows.add(row_1(world))
+    assert "A1 FAULT F0003  " in rows, rows
+    world.check()
+
+
+def test_stop_acknowledges_what_has_been_on_the_display_for_a_second():
+    for shown_ms, state in ((500, "fault"), (1_500, "ready")):
+        world = panel()
+        world.drives[1].fault(3)
+        world.run(100 + shown_ms)
+        world.press("STOP")
+        world.run(500)
+        assert world.drives[1].state == state, shown_ms
+        world.check()
+
+
+def test_drawing_changes_nothing_but_the_picture():
+    world = panel(addresses=(1, 2))
+    shown = world.app.panel
+    fault = shown.selected.fault
+    world.drives[1].fault(3)
+    while not fault.active:
+        world.run(1)
+    before = dict(fault.__dict__)
+    for now_ms in range(0, 10_000, 100):
+        shown._home.draw(shown.screen, now_ms)
+    assert fault.__dict__ == before
+    world.check()
+
+
+# --- warnings ------------------------------------------------------------------------------------
+
+
+def test_a_warning_and_its_number_are_shown_at_standstill_and_while_it_runs():
+    world = panel()
+    for state in ("READY        A1", "RUNNING      A1"):
+        world.drives[1].warn(501, True)
+        world.run(500)
+        rows = said(world, 6_000)
+        assert set(rows) == {state, "WARN A0501   A1"}, rows
+        assert min(rows.values()) >= 2_000, rows
+        world.drives[1].warn(501, False)
+        world.run(500)
+        assert set(said(world, 4_000)) == {state}
+        world.press("START")
+        world.run(4_000)
+    world.check()
+
+
+def test_the_number_of_a_warning_that_is_followed_by_another_is_that_of_the_one_that_is_there():
+    world = panel(addresses=(1, 2))
+    world.drives[1].warn(501, True)
+    world.drives[2].warn(504, True)
+    world.run(1_000)
+    assert "WARN A0501   A1" in said(world, 4_000)
+    world.drives[1].warn(502, True)
+    world.drives[1].warn(501, False)
+    world.run(1_000)
+    assert set(said(world, 4_000)) == {"READY        A1", "WARN A0502   A1"}
+    show(world, 2)
+    world.run(1_000)
+    assert set(said(world, 4_000)) == {"READY        A2", "WARN A0504   A2"}
+    world.check()
+
+
+def test_a_drive_that_falls_silent_on_the_number_of_its_warning_is_not_asked_all_the_time():
+    world = running()
+    slave, asked = world.drives[1]._slave, []
+    hear = slave.hear
+
+    def hear_selectively(burst):
+        characters = bytes(burst.data[: burst.count])
+        if characters[3:5] == b"\x10\x6e" and characters[5] & 0x80:  # r2110, read
+            asked.append(burst.start_us)
+            return None
+        return hear(burst)
+
+    slave.hear = hear_selectively
+    world.drives[1].warn(501, True)
+    rows = said(world, 9_000)
+    assert set(rows) == {"RUNNING      A1", "WARN         A1"}, rows
+    assert len(asked) == 3, asked  # and then it is withdrawn
+    assert abs(world.drives[1].hz() - 10) < 0.1
+    world.check()
+
+
+# --- and the loop goes on ------------------------------------------------------------------------
+
+
+def test_a_stop_of_all_takes_no_time_from_the_dead_man():
+    """31 drives are told one after the other, a step of the loop each, and here it is a slow one.
+    """
+    world = panel(addresses=tuple(range(1, 32)), baud=115200, **_runs_on(31))
+    world.run(4_000)
+    start(world, 1)
+    board, bus = world.app.board, world.app.bus
+    usual_idle = board.idle
+    board.idle = lambda: (usual_idle(), world.clock.advance(4_000))
+    for wait_ms in range(0, 40, 5):  # whatever the loop is at when it begins
+        world.run(wait_ms)
+        world.press("STOP", 4_500)
+        world.run(500)
+    assert bus.dead_man_trips == 0
+    world.check()
+
+
+def _runs_on(count):
+    options = unsupervised(*range(1, count + 1))
+    del options["addresses"]
+    return options

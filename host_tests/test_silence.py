@@ -1,0 +1,319 @@
+# SPDX-License-Identifier: MIT
+"""Drives that do not answer cost the others a fifth of the line's time at the most, all together.
+
+A telegram that nobody answers takes as long as the reply is waited for: 20 ms by the
+specification, 60 ms and more behind a USB adapter. Drives that run go before that: two telegrams
+to one of them are less than a third of its telegram-off time apart.
+"""
+
+from round_bench import Bench, Node
+from uss.timing import Timing
+
+TIMEOUTS_MS = (20, 60, 500)
+PRESENT = 2
+LISTED = 31
+MINUTE_US = 60_000_000
+
+NOT_TRACED = """
+    test_together_they_take_a_fifth_of_the_lines_time
+    test_a_drive_that_runs_has_its_telegrams_beside_29_silent_ones
+    test_each_of_them_is_found_within_five_seconds_or_what_the_share_allows
+    test_no_gap_is_longer_than_the_bus_has_promised
+"""
+
+
+class SlowTiming(Timing):
+    """That of a line on which replies are waited for longer."""
+
+    timeout_ms = 20
+
+    def __init__(self, baud):
+        Timing.__init__(self, baud, self.timeout_ms * 1000)
+
+
+def bench_of(timeout_ms, present=PRESENT, listed=LISTED, **more):
+    """A bus on which only the first few drives of the list are there."""
+    import round_bench
+
+    SlowTiming.timeout_ms = timeout_ms
+    round_bench.Timing = SlowTiming
+    try:
+        bench = Bench([Node(address) for address in range(1, listed + 1)], **more)
+    finally:
+        round_bench.Timing = Timing
+    for address in range(present + 1, listed + 1):
+        bench.nodes[address].plugged = False
+    bench.contact()
+    return bench
+
+
+def silence_us(bench):
+    """What a telegram takes that nobody answers."""
+    timing = bench.timing
+    waited_us = timing.reply_timeout_us + timing.character_us
+    return timing.start_interval_us + timing.telegram_us(12) + waited_us
+
+
+def spent_us(bench, since, until=None):
+    """Time of the line between two places of the log that went to drives that are not there."""
+    sent = bench.sent[since:until]
+    total_us = 0
+    for telegram, following in zip(sent, sent[1:]):
+        if telegram.address in bench.nodes and not bench.nodes[telegram.address].plugged:
+            total_us += following.at - telegram.at
+    return total_us, sent[-1].at - sent[0].at
+
+
+def gaps(bench, address, since):
+    instants = [telegram.at for telegram in bench.sent[since:] if telegram.address == address]
+    return [after - before for before, after in zip(instants, instants[1:])]
+
+
+def started(bench, address, off_time_ms):
+    bench.master.supervise(bench.drives[address], off_time_ms)
+    bench.drives[address].start(0x1000)
+    bench.run(1_000_000)
+    assert bench.nodes[address].zsw == 0xFB34
+    return len(bench.sent)
+
+
+# --- the share ----------------------------------------------------------------------------------
+
+
+def test_together_they_take_a_fifth_of_the_lines_time():
+    for timeout_ms in TIMEOUTS_MS:
+        bench = bench_of(timeout_ms)
+        bench.run(1_000_000)
+        since = len(bench.sent)
+        bench.run(MINUTE_US)
+        spent, total_us = spent_us(bench, since)
+        print("%d ms: %.1f %%" % (timeout_ms, 100 * spent / total_us))
+        assert spent < total_us // 5 + 2 * silence_us(bench), (timeout_ms, spent, total_us)
+        assert spent > total_us // 7, (timeout_ms, spent, total_us)  # and they have it
+
+
+def test_those_that_were_never_heard_do_not_hold_up_the_first_that_answers():
+    """From the first reply on: the list is not worked through before."""
+    bench = bench_of(500, present=1)
+    since = len(bench.sent)
+    bench.run(10_000_000)
+    assert max(gaps(bench, 1, since)) < 1_100_000
+    assert bench.addresses(since).count(1) > 100
+
+
+def test_where_nobody_answers_and_nobody_may_run_the_line_is_all_theirs():
+    bench = bench_of(60, present=0, listed=5)
+    bench.run(3_000_000)
+    since = len(bench.sent)
+    bench.run(3_000_000)
+    assert len(bench.sent) - since > 3_000_000 // (silence_us(bench) + 5_000)
+    assert set(bench.addresses(since)) == {1, 2, 3, 4, 5}
+
+
+def test_those_that_are_switched_on_together_are_found_one_behind_the_other():
+    """A drive that answers owes nothing."""
+    bench = bench_of(60)
+    bench.run(20_000_000)
+    for node in bench.nodes.values():
+        node.plugged = True
+    began = bench.now
+    bench.run_until(lambda: all([drive.contact for drive in bench.master.drives]))
+    assert bench.now - began < 2_500_000
+
+
+def test_each_of_them_is_found_within_five_seconds_or_what_the_share_allows():
+    for timeout_ms in TIMEOUTS_MS:
+        bench = bench_of(timeout_ms)
+        bench.run(3_000_000)
+        started(bench, 1, 2_000)
+        allowed_us = max(5_000_000, 5 * (LISTED - PRESENT) * silence_us(bench) * 101 // 100)
+        for address in (3, 17, 31):
+            bench.run(2_345_678)
+            bench.nodes[address].plugged = True
+            began = bench.now
+            bench.run_until(lambda: bench.drives[address].contact, allowed_us)
+            print("%d ms, A%d: %d ms" % (timeout_ms, address, (bench.now - began) // 1000))
+
+
+def test_they_are_found_beside_one_that_may_run_and_is_silent():
+    """Its turns are its own: it does not use up what the others share."""
+    bench = bench_of(60, present=1, listed=5)
+    bench.run(3_000_000)
+    started(bench, 1, 2_000)
+    bench.nodes[1].plugged = False
+    bench.run(5_000_000)
+    assert bench.drives[1].was_running
+    since = len(bench.sent)
+    bench.run(20_000_000)
+    for address in (2, 3, 4, 5):
+        assert max(gaps(bench, address, since)) < 5_000_000
+    assert max(gaps(bench, 1, since)) < 333_333
+    bench.nodes[4].plugged = True
+    bench.run_until(lambda: bench.drives[4].contact, 5_000_000)
+
+
+def test_one_that_was_found_does_not_keep_the_turn_of_the_others():
+    """It is the only one in the round by then: whenever the loop looks, it is being asked."""
+    bench = bench_of(20, present=1, listed=3)
+    bench.run(3_000_000)
+    found, is_under_way = bench.drives[2], bench.master.is_under_way
+    bench.master.is_under_way = lambda drive: (
+        drive is found and drive.contact or is_under_way(drive)
+    )
+    bench.nodes[2].plugged = True
+    bench.run_until(lambda: found.contact, 5_000_000)
+    bench.nodes[1].plugged = False
+    bench.run_until(lambda: not bench.drives[1].contact, 3_000_000)
+    since = len(bench.sent)
+    bench.run(20_000_000)
+    for address in (1, 3):
+        assert bench.addresses(since).count(address) > 5, address
+
+
+def test_a_stop_of_all_is_repeated_three_times_to_those_that_rest():
+    """Ahead of their share; then they have that again."""
+    bench = bench_of(60)
+    bench.run(3_000_000)
+    since = len(bench.sent)
+    bench.master.stop_all()
+    bench.run(MINUTE_US)
+    spent, total_us = spent_us(bench, since)
+    stops_us = 4 * (LISTED - PRESENT) * silence_us(bench)
+    print("%.1f s, of them %.1f s for the STOP" % (spent / 1e6, stops_us / 1e6))
+    assert spent < total_us // 5 + stops_us
+    told = bench.addresses(since)[: 8 * LISTED]
+    for address in range(PRESENT + 1, LISTED + 1):
+        assert told.count(address) >= 4, address
+
+
+def test_what_waits_for_a_drive_that_is_gone_gives_it_no_more_turns():
+    bench = bench_of(60)
+    for address in (3, 4, 5):
+        bench.drives[address].want_turns(True)
+    bench.run(3_000_000)
+    since = len(bench.sent)
+    bench.run(20_000_000)
+    spent, total_us = spent_us(bench, since)
+    assert spent < total_us // 5 + 2 * silence_us(bench)
+
+
+# --- drives that run ----------------------------------------------------------------------------
+
+
+def test_a_drive_that_runs_has_its_telegrams_beside_29_silent_ones():
+    for timeout_ms, off_time_ms in ((20, 0), (20, 600), (60, 0), (60, 2_000), (500, 2_000)):
+        bench = bench_of(timeout_ms)
+        since = started(bench, 1, off_time_ms)
+        bench.run(MINUTE_US)
+        longest_us = max(gaps(bench, 1, since))
+        third_us = (off_time_ms or 1_000) * 1000 // 3
+        print("%d ms, P2014 = %d: %d ms" % (timeout_ms, off_time_ms, longest_us // 1000))
+        assert longest_us < third_us, (timeout_ms, off_time_ms, longest_us)
+        assert bench.drives[1].is_on()
+
+
+def test_a_silence_that_would_be_longer_than_that_is_not_risked():
+    """Half a second, beside a drive that trips after one: the silent ones have to wait."""
+    bench = bench_of(500)
+    bench.run(5_000_000)
+    assert bench.master.first_late(bench.drives[1]) is None  # it never trips
+    since = started(bench, 1, 1_000)
+    assert bench.master.first_late(bench.drives[1]) is bench.drives[1]
+    bench.run(10_000_000)
+    assert set(bench.addresses(since)) == {1, 2}
+    assert max(gaps(bench, 1, since)) < 333_333
+    bench.nodes[31].plugged = True
+    bench.drives[1].stop()
+    bench.run_until(lambda: bench.drives[31].contact, 5 * 29 * silence_us(bench))
+
+
+def test_one_that_never_trips_may_be_late_now_and_then_for_their_sake():
+    """It is lost after 0.3 s, and is to be asked three times in that; a silence takes longer."""
+    bench = bench_of(90, listed=6)
+    bench.master.lost_us = 300_000
+    bench.run(3_000_000)
+    since = started(bench, 1, 0)
+    bench.run(20_000_000)
+    late = [gap_us for gap_us in gaps(bench, 1, since) if gap_us > 100_000]
+    assert 4 < len(late) < 20 and max(late) < 200_000, late
+    for address in (3, 4, 5, 6):
+        assert max(gaps(bench, address, since)) < 4 * (1_000_000 + 6 * silence_us(bench)), address
+    assert bench.drives[1].is_on()
+
+
+def test_where_they_are_too_many_for_their_bound_the_silent_ones_are_still_asked():
+    """Thirty that run, a third of a second each: the line cannot carry that, and says so."""
+    bench = bench_of(20, present=30)
+    for address in range(1, 31):
+        bench.master.supervise(bench.drives[address], 1_000)
+        bench.drives[address].start(0x1000)
+    bench.run(3_000_000)
+    assert bench.master.first_late(bench.drives[1]) is bench.drives[1]
+    bench.nodes[31].plugged = True
+    bench.run_until(lambda: bench.drives[31].contact, 5_000_000)
+
+
+# --- what is promised ---------------------------------------------------------------------------
+
+
+def test_no_gap_is_longer_than_the_bus_has_promised():
+    """Beside drives that run, that stand and that are silent, and while one falls silent."""
+    for present, running, listed, timeout_ms in (
+        (1, 1, 1, 20), (2, 1, 31, 60), (5, 5, 31, 20), (31, 3, 31, 20), (31, 12, 31, 20),
+        (31, 31, 31, 20), (20, 14, 31, 60), (4, 2, 4, 500),
+    ):  # fmt: skip
+        bench = bench_of(timeout_ms, present, listed)
+        drives = [bench.drives[address] for address in range(1, running + 1)]
+        for drive in drives:
+            bench.master.supervise(drive, 2_000)
+        bench.run(3_000_000)
+        for drive in drives[1:]:
+            drive.start(0x1000)
+        bench.run(1_000_000)
+        promised_us = bench.master.gap_us(drives[0])
+        late = bench.master.first_late(drives[0])
+        drives[0].start(0x1000)
+        bench.run(500_000)
+        since = len(bench.sent)
+        bench.run(10_000_000)
+        if running < present:
+            bench.nodes[present].plugged = False
+        bench.run(2_000_000)
+        for drive in drives:
+            longest_us = max(gaps(bench, drive.address, since))
+            where = (present, running, listed, timeout_ms, longest_us, promised_us)
+            assert longest_us < promised_us or late is None and longest_us < 666_666, where
+            assert late is None or longest_us < 2_000_000, where
+        assert (late is None) == (promised_us < 666_666), (present, running, promised_us)
+
+
+def test_a_drive_that_runs_is_named_when_another_one_would_make_it_late():
+    bench = bench_of(20, present=31)
+    master, drives = bench.master, bench.drives
+    for address in range(1, 32):
+        master.supervise(drives[address], 10_000)
+    master.supervise(drives[7], 350)
+    assert master.first_late(drives[1]) is None
+    assert master.first_late(drives[7]) is drives[7] or master.gap_us(drives[7]) < 116_666
+    started(bench, 7, 350)
+    for address in range(8, 15):
+        drives[address].start(0x1000)
+    bench.run(500_000)
+    assert master.first_late(drives[1]) is drives[7]
+    drives[7].stop()
+    bench.run(500_000)
+    assert master.first_late(drives[1]) is None
+
+
+def test_a_telegram_that_nobody_may_answer_waits_for_its_share():
+    """Asked before a mirror telegram to an address of which nothing is known."""
+    bench = bench_of(60)
+    bench.run(3_000_000)
+    waits = []
+    bench.loop = lambda: waits.append(bench.master.silence_wait_us())
+    bench.run(5_000_000)
+    assert max(waits) <= 5 * (silence_us(bench) + 2_000) and min(waits) == 0
+    started(bench, 1, 200)  # no silence of 60 ms and more leaves it a third of that
+    del waits[:]
+    bench.run(1_000_000)
+    assert min(waits) > 1_000_000

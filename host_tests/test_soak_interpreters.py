@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: MIT
+"""The soak lives a seed alike on every interpreter: the same telegrams, faults and pictures."""
+
+import importlib.util
+import json
+import subprocess
+from pathlib import Path
+
+import pytest
+
+INTERPRETERS = "host"
+
+TOP = Path(__file__).resolve().parent.parent
+MINUTES = 0.3
+SEEDS = (4, 9, 13, 26, 31)  # clean, rough, wild; one drive and several; direct and matrix; polled
+
+found = importlib.util.spec_from_file_location(
+    "soaking_interpreters", TOP / "tools/soaking/interpreters.py"
+)
+interpreters = importlib.util.module_from_spec(found)
+found.loader.exec_module(interpreters)
+
+
+def lives(name, deed="soak", length=MINUTES, seeds=SEEDS):
+    """What the worker says of each seed."""
+    done = subprocess.run(
+        interpreters.command(name, (deed, length)),
+        input="".join("%d\n" % seed for seed in seeds),
+        cwd=TOP,
+        env=interpreters.environment(name, TOP / "firmware"),
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    said = map(json.loads, done.stdout.splitlines())
+    return [life for life in said if "seed" in life]
+
+
+@pytest.fixture(scope="module")
+def on_micropython():
+    if not interpreters.is_here("micropython"):
+        pytest.skip("there is no MicroPython: tools/test")
+    return lives("micropython")
+
+
+@pytest.mark.parametrize("name", ["cpython", "pypy"])
+def test_a_seed_is_the_same_life_on_micropython_and(name, on_micropython):
+    if not interpreters.is_here(name):
+        pytest.skip("there is no %s: a long tools/soak fetches it" % interpreters.NAMES[name])
+    assert lives(name) == on_micropython
+    assert all(life["exchanges"] > 100 for life in on_micropython)
+
+
+def test_the_number_of_a_life_tells_one_from_another(on_micropython):
+    digests = {life["digest"] for life in on_micropython}
+    assert len(digests) == len(SEEDS), digests
+
+
+@pytest.mark.parametrize("name", ["cpython", "pypy"])
+def test_the_receiver_is_fed_alike(name, on_micropython):
+    if not interpreters.is_here(name):
+        pytest.skip("there is no %s: a long tools/soak fetches it" % interpreters.NAMES[name])
+    fed = lives(name, "fuzz", 20_000, (1, 2))
+    assert fed == lives("micropython", "fuzz", 20_000, (1, 2))
+
+
+def test_every_tenth_seed_stays_on_micropython():
+    chosen = [interpreters.of_seed(seed, "pypy") for seed in range(1, 101)]
+    assert chosen.count("micropython") == 10 and chosen.count("pypy") == 90
+
+
+def test_a_long_run_is_worth_the_time_in_which_pypy_gets_warm():
+    assert interpreters.fastest(minutes=1) == "cpython"
+    assert interpreters.fastest(minutes=60) == "pypy"

@@ -1,0 +1,192 @@
+# SPDX-License-Identifier: MIT
+"""What the panel reads of its drives before a motor may turn: several surveys, few spare jobs."""
+
+import struct
+
+from boards.sim.dice import Dice
+from uss import profiles
+from uss.drive import Drive
+from uss.receiver import SILENCE
+from uss.survey import Survey, centihertz, spare_jobs
+
+MASK = (1 << 30) - 1
+ROWS = len(profiles.ROWS)
+US = 20_000  # an exchange
+LOST_US = 1_000_000
+R2024 = b"\x10\x18\x80\x00"  # PKE and IND of the task that reads it
+SEEDS = range(1, 5)
+
+
+class Line:
+    """Drives in contact that answer each question in their next telegram, and their surveys."""
+
+    def __init__(self, addresses):
+        self.spares = spare_jobs()
+        self.drives = [Drive(address, MASK) for address in addresses]
+        self.surveys = [Survey(drive, MASK, self.spares) for drive in self.drives]
+        self.now = 0
+        self.questions = [0] * len(self.drives)
+        self.counts = {}  # by place: r2024, and by how much it grows with each telegram
+        self.silent = set()
+
+    def exchange(self, place):
+        """A reply comes, and the next telegram goes out before the panel has looked at it."""
+        drive = self.drives[place]
+        self.now += US
+        if place in self.silent:
+            drive.miss(SILENCE, self.now, LOST_US, MASK)
+        else:
+            self._reply(drive, place)
+        drive.fill(self.now)
+        if drive.request[3] >> 4:
+            self.questions[place] += 1
+
+    def _reply(self, drive, place):
+        count, step = self.counts.get(place, (0x4248, 0))
+        count = count + step & 0xFFFF
+        self.counts[place] = (count, step)
+        net = bytearray(16)
+        struct.pack_into(">H", net, 11, 0xFB31)
+        if drive.request[3] >> 4:
+            net[3:11] = b"\x20" + bytes(drive.request[4:7]) + b"\x42\x48\x00\x00"  # 50.0
+            net[3] |= drive.request[3] & 0x07
+            if bytes(drive.request[3:7]) == R2024:
+                net[7:11] = struct.pack(">HH", 0, count)
+        drive.take(net, 16, self.now)
+
+
+def test_frequencies_are_what_a_floating_point_number_says():
+    for hertz in (0.0, 0.004, 0.005, 0.01, 5.0, 41.9, 49.995, 50.0, 87.5, 349.99, 649.99, 650.0):
+        high, low = words(hertz)
+        assert centihertz(high, low) == int(single(high, low) * 100 + 0.5), hertz
+    for seed in SEEDS:
+        print("seed", seed)
+        dice = Dice(seed)
+        for _ in range(2_000):
+            high, low = words(dice.random(0, 650_000_000) / 1e6)
+            hertz = single(high, low)
+            assert abs(centihertz(high, low) - hertz * 100) < 0.51, hertz
+
+
+def test_what_is_no_frequency_of_a_drive_is_unknown():
+    nothing = ((0x7FC0, 0), (0x7F80, 0), (0xFF80, 0), (0x8000, 1), words(-0.01), words(650.1))
+    for high, low in nothing + (words(1e30), words(-1e30), (0xFFFF, 0xFFFF)):
+        assert centihertz(high, low) == -1, (high, low)
+    assert centihertz(0x8000, 0) == 0  # minus nothing
+    assert centihertz(0, 1) == centihertz(*words(1e-30)) == 0
+
+
+def words(hertz):
+    return struct.unpack(">HH", struct.pack(">f", hertz))
+
+
+def single(high, low):
+    return struct.unpack(">f", struct.pack(">HH", high, low))[0]
+
+
+def test_one_that_asks_alone_has_a_question_in_every_telegram():
+    line = Line((1,))
+    line.exchange(0)
+    ask_everything(line, 0)
+
+
+def ask_everything(line, place):
+    """From the first telegram to the last not one goes without a question."""
+    survey = line.surveys[place]
+    survey.recheck()
+    before = line.questions[place]
+    for _ in range(ROWS + 1):
+        for _ in range(4):
+            survey.step(line.now)
+        line.exchange(place)
+    assert line.questions[place] - before >= ROWS, line.questions[place] - before
+    for _ in range(4):
+        survey.step(line.now)
+    assert survey.complete and not survey.unchecked
+
+
+def test_of_several_that_ask_each_gets_all_its_answers():
+    """The spare jobs go from hand to hand, and no answer lands at another drive's."""
+    for seed in SEEDS:
+        print("seed", seed)
+        dice = Dice(seed)
+        line = Line(range(1, 8))
+        for place in range(7):
+            line.exchange(place)
+        for _ in range(6_000):
+            line.surveys[dice.random(0, 6)].step(line.now)
+            if dice.random(0, 1):
+                line.exchange(dice.random(0, 6))
+            if dice.random(1, 100) == 1:
+                line.surveys[dice.random(0, 6)].recheck()
+        for place in range(7):
+            assert line.surveys[place].complete and line.questions[place] > 100, place
+            assert 50_00 in line.surveys[place].values
+
+
+def test_those_that_fall_silent_give_the_spare_jobs_back():
+    line = Line(range(1, 7))
+    last = 5
+    for place in range(6):
+        line.exchange(place)
+    for place in range(last):
+        for _ in range(4):
+            line.surveys[place].step(line.now)
+        line.silent.add(place)
+    assert not line.spares  # one had none
+    for _ in range(200):  # 24 s
+        for place in range(6):
+            line.exchange(place)
+            line.surveys[place].step(line.now)
+    assert line.surveys[last].complete
+    ask_everything(line, last)
+
+
+# --- the telegrams that a drive has counted since its power-up, r2024 ---------------------------
+
+
+def runs(count, step):
+    """A drive that runs, whose counter is at `count` and has been read."""
+    line = Line((1,))
+    line.counts[0] = (count, step)
+    line.exchange(0)
+    let_pass(line, 40)
+    line.drives[0].start(0x1000)
+    survey = line.surveys[0]
+    survey.count_anew()
+    survey.recheck()
+    let_pass(line, 40)
+    assert survey.complete and not survey.restarted
+    return line
+
+
+def let_pass(line, exchanges):
+    for _ in range(exchanges):
+        for _ in range(4):
+            line.surveys[0].step(line.now)
+        line.exchange(0)
+
+
+def test_a_drive_that_counts_from_the_beginning_was_without_power():
+    for before, after in ((5000, 0), (65_000, 3), (40_000, 20_000), (30, 0), (90, 0), (90, 85)):
+        line = runs(before, 1)
+        let_pass(line, 60)
+        line.counts[0] = (after, 1)
+        let_pass(line, 200)
+        assert line.surveys[0].restarted, (before, after)
+
+
+def test_a_counter_that_goes_on_or_wraps_is_no_reset():
+    for step in (1, 2, 3, 31, 0):  # that of each telegram; with those to others; none at all
+        line = runs(0xF000, step)
+        let_pass(line, 5000)
+        assert not line.surveys[0].restarted, step
+
+
+def test_who_asks_anew_does_not_hide_that_the_counter_went_back():
+    line = runs(5000, 1)
+    let_pass(line, 60)
+    line.counts[0] = (0, 1)
+    line.surveys[0].recheck()
+    let_pass(line, 100)
+    assert line.surveys[0].restarted

@@ -1,0 +1,198 @@
+# SPDX-License-Identifier: MIT
+"""Whether every trouble is said: what the line tells of each drive, held against the display.
+
+A drive is in trouble when it runs and is not shown, has tripped, ran when contact was lost, was
+never heard since power-on, or was stopped by something else than STOP. With n of them each is to
+be on the display for a second within 2 n s, again and again, whatever page there is.
+
+    announced = Announced(plan, judge, reader)
+    announced.look(now)             # after every slice: raises Broken
+"""
+
+from tools.soaking.facts import CHOICES, MS, NEVER, ZSW_FAULT, ZSW_RUNNING, S
+from tools.soaking.rules import Broken
+
+RUNS, EXPOSED, TRIPPED, MAY_RUN, NOT_STOPPED, UNHEARD, OFF = (
+    "it runs", "it runs, and its P2014 is longer by now", "it has tripped", "it may run",
+    "STOP unconfirmed", "never heard", "it was stopped",
+)  # fmt: skip
+
+ONE = (  # behind "A" and an address; which troubles that tells. Anything else tells that it is off
+    ("RUN,HOLD=ALL", (RUNS,)),
+    ("RUN, P2014", (RUNS, EXPOSED)),
+    ("P2014 LONG", (RUNS, EXPOSED)),
+    ("BELOW P1080", (RUNS,)),
+    ("FAULT", (TRIPPED, OFF)),
+    ("LOST,MAY RUN", (MAY_RUN,)),
+    ("NOT STOPPED", (NOT_STOPPED, RUNS, EXPOSED, MAY_RUN)),
+    ("MAY RUN", (UNHEARD,)),
+    ("", (OFF,)),
+)
+MANY = (  # in front of their number, where there are more than FEW of them
+    ("RUN,HOLD=ALL:", (RUNS,)),
+    ("RUN, P2014 ?:", (RUNS, EXPOSED)),
+    ("DRIVES FAULT:", (TRIPPED, OFF)),
+    ("LOST,MAY RUN:", (MAY_RUN,)),
+    ("NOT STOPPED:", (NOT_STOPPED, RUNS, EXPOSED, MAY_RUN)),
+    ("MAY RUN:", (UNHEARD,)),
+    ("DRIVES OFF:", (OFF,)),
+)
+UNCONFIRMED, LOST = "STOP UNCONFIRMED", "NO CONTACT, "  # an alarm of the drive shown, a row
+ANY, SHOWN = -1, -2  # in place of an address: all of a kind; the drive shown, whichever it is
+
+LONG_US = 900 * MS  # 1 s, and what is lost of it by drawing and by looking
+TURN_US = 2 * S  # for each drive in trouble
+SPLASH_US = 1_500 * MS  # what is on the display after power-on
+SLACK_US = 500 * MS  # for drawing
+PAGE_US = 700 * MS  # the page of a drive that was just selected has a turn first
+REDRAWN_US, REDRAWN_STEPS = 200 * MS, 10  # what is said may go from one row to the other
+FOUND_US = 1_500 * MS  # until a trouble is noticed, and more for each drive of the list:
+FOUND_STEPS = 20  # of the loop
+UNHEARD_TELEGRAMS = 4  # without a reply since power-on
+LATELY = 4  # turns: what was said in these may have taken the time of what is to be said
+
+
+class Announced:
+    def __init__(self, plan, judge, reader):
+        self.plan = plan
+        self.judge = judge
+        self.reader = reader
+        self._troubles = {}  # address -> (which, since when)
+        self._said = {}  # (address or ANY, which) -> when it was last said, for long enough
+        self._read = ()  # what is being said: (address or ANY, troubles)
+        self._times = {}  # each of these -> since when, and when it was read last
+        self._many = {}  # troubles -> how many drives were told to have them, and when
+        self._rows = None
+        self._alarm = False  # the rows have one of the drive shown
+        self._free_us = 0  # when the display last had nothing else to say
+        self._redrawn_us = REDRAWN_US + REDRAWN_STEPS * plan.loop_us
+        self._found_us = FOUND_US + FOUND_STEPS * plan.loop_us * len(plan.listed)
+
+    def look(self, now):
+        self._read_rows(now)
+        if self._is_taken(now):
+            self._free_us = now
+        self._find_troubles(now)
+        judge = self.judge
+        if not self._troubles or judge.shown is None or now < judge.unsure_us:
+            return
+        patience_us = TURN_US * self._count(now) + SLACK_US
+        selected_us = max(judge.pressed_us["ADDRESS_UP"], judge.pressed_us["ADDRESS_DOWN"])
+        if now - selected_us < patience_us:
+            patience_us += PAGE_US
+        for address, (which, since_us) in self._troubles.items():
+            said_us = max(self._said.get((one, which), NEVER) for one in (address, ANY, SHOWN))
+            waited_us = now - max(since_us + self._found_us, self._free_us, said_us)
+            if waited_us > patience_us:
+                told = (address, which, waited_us // MS, len(self._troubles), now)
+                text = "drive %d, %s: unsaid for %d ms, %d in trouble, at %d"
+                raise Broken("ANNOUNCED", text % told)
+
+    def _read_rows(self, now):
+        rows = self.reader.rows
+        if rows != self._rows:
+            self._rows = rows
+            self._read = tuple(one for one in (said_in(row) for row in rows) if one is not None)
+            self._alarm = UNCONFIRMED in rows or rows[0].startswith(LOST)
+            for address, troubles in self._read:
+                if address == ANY and number_in(rows):  # else it is half drawn
+                    self._many[troubles] = (number_in(rows), now)
+        read = self._read
+        if self._alarm and self.judge.shown is None:  # the page of whichever drive says it
+            read += ((SHOWN, (NOT_STOPPED, RUNS, EXPOSED, MAY_RUN)),)
+        for address, troubles in read:
+            since_us, last_us = self._times.get((address, troubles), (now, NEVER))
+            if now - last_us > self._redrawn_us:
+                since_us = now
+            self._times[address, troubles] = (since_us, now)
+            if now - since_us >= LONG_US:
+                for which in troubles:
+                    self._said[address, which] = now
+
+    def _is_taken(self, now):
+        """Whether the panel starts, hangs, or may do nothing."""
+        judge = self.judge
+        if judge.hung_us is not None or judge.stuck_us is not None:
+            return True
+        if now - max(judge.boot_us, judge.stalled_us) < SPLASH_US:
+            return True
+        return self.reader.reads("LINE IN USE")
+
+    def _count(self, now):
+        """How much the panel may have to say: of drives in trouble, or spoken of in the last round
+        of all that. One whose trouble becomes another is spoken of twice."""
+        many = [count for count, read_us in self._many.values() if now - read_us < 8 * TURN_US]
+        turns, count = 0, LATELY
+        while count > turns:
+            turns = count
+            told = [
+                address for (address, _), (_, last_us) in self._times.items()
+                if now - last_us < turns * TURN_US and address != SHOWN
+            ]  # fmt: skip
+            untold = [address for address in self._troubles if address not in told]
+            count = len(told) + len(untold) + sum(many)
+        return count
+
+    def _find_troubles(self, now):
+        judge = self.judge
+        for address in self.plan.listed:
+            which = None
+            if address not in judge.moved:
+                which = self._trouble_of(address, judge.cases[address], now)
+            before = self._troubles.get(address)
+            if which is None:
+                self._troubles.pop(address, None)
+            elif before is None or before[0] != which:
+                self._troubles[address] = (which, now)
+
+    def _trouble_of(self, address, case, now):
+        judge = self.judge
+        is_shown = address == (self.reader.address if judge.shown is None else judge.shown)
+        if case.answered_us < judge.boot_us:
+            unheard = case.acknowledge_us < judge.boot_us and case.unheard > UNHEARD_TELEGRAMS
+            return UNHEARD if unheard else None
+        if is_shown and not self._hides_state():
+            return None  # its own page says it
+        taken_us = min(case.answered_us, case.heard_us)  # a reply, by the panel, for sure
+        if now - taken_us > judge.lost_us * 9 // 10:
+            if not judge.is_lost(case, now):
+                return None  # it may be, or about to be
+            may_run = case.zsw & ZSW_RUNNING and case.ran_us == case.answered_us
+            return MAY_RUN if may_run else None
+        if case.zsw & ZSW_FAULT:
+            return TRIPPED
+        if case.zsw & ZSW_RUNNING:
+            if is_shown:
+                return None
+            return EXPOSED if judge.is_more_exposed(address, case) else RUNS
+        known_us = max(case.acknowledge_us, case.start_us, judge.boot_us)
+        return OFF if case.off_us > known_us else None
+
+    def _hides_state(self):
+        """Whether the page is one that does not tell what the drive shown does."""
+        row_2 = self.reader.rows[1]
+        return row_2 in CHOICES or row_2[5:6] == ":"
+
+
+def said_in(row):
+    """The address that a whole row speaks of, or ANY, and the troubles that it tells; or None."""
+    for text, troubles in MANY:
+        if row.startswith(text):
+            return ANY, troubles
+    if row[:1] != "A" or not row[1:2].isdigit():
+        return None
+    end = 3 if row[2:3].isdigit() else 2
+    if row[end : end + 1] != " ":
+        return None
+    for text, troubles in ONE:
+        if row[end:].strip().startswith(text):
+            return int(row[1:end]), troubles
+
+
+def number_in(rows):
+    """How many drives a row speaks of that ends in their number."""
+    for row in rows:
+        words = row.split()
+        if len(words) > 1 and words[-2].endswith(":") and words[-1].isdigit():
+            return int(words[-1])
+    return 0

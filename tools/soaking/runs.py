@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: MIT
+"""One START, one run: what a motor that was started must keep to, by the line and the drive.
+
+A reply that shows that a run is over ends it: the drive has tripped, or stands though nobody has
+ordered it. A motor that was started once more, after a moment without mains, is stopped before
+long. While a run goes on, its setpoint rises by nothing but UP.
+
+    if is_over(case, zsw) or is_standstill(case, hiw): ...
+"""
+
+from tools.soaking.facts import MS, NEVER, ON, ON_REVERSE, ZSW_FAULT, ZSW_INHIBIT, ZSW_RUNNING, S
+from tools.soaking.rules import Broken
+
+FULL = 0x4000  # of HSW and HIW
+NEAR = FULL // 50  # 2 %: HIW has reached HSW
+STANDS = FULL // 200  # the panel sees a standstill at 1 %
+TURNS = FULL * 6 // 100  # it looks for one from 5 % on
+ROUNDING = 4  # of HSW: 0.01 Hz
+RAISED_US = 600 * MS  # until what UP has done is on the line
+COUNTED_US = 2 * S  # the telegrams received, r2024, are read as often
+
+
+def begin(case, hsw):
+    """The first ON or JOG of a run is sent."""
+    case.ran = case.reached = False
+    case.run_starts = 0
+    case.again_us = NEVER
+    case.highest_hsw = hsw
+
+
+def judge_rise(judge, case, hsw, now, where):
+    """A setpoint that is above what UP left of it."""
+    raises = "UP" in judge.down and case in judge.candidates()
+    if raises or now - case.raised_us < RAISED_US + 2 * judge.cycle_us:
+        case.highest_hsw = hsw
+    elif hsw > case.highest_hsw + ROUNDING:
+        told = (where, hsw, case.highest_hsw)
+        raise Broken("RISES", "%s, HSW %04X was %04X, and nobody pressed UP" % told)
+    else:
+        case.highest_hsw = min(case.highest_hsw, hsw)
+
+
+def is_over(case, zsw):
+    """Whether a status word shows that a run is over."""
+    return zsw & (ZSW_FAULT | ZSW_INHIBIT) or case.ran and not zsw & ZSW_RUNNING
+
+
+def is_standstill(case, hiw):
+    """Whether a drive that is told to turn, and did, stands by this HIW."""
+    if case.stw not in (ON, ON_REVERSE) or case.hsw < TURNS:
+        return False
+    speed = hiw - 0x10000 if hiw & 0x8000 else hiw
+    wanted = -case.hsw if case.stw == ON_REVERSE else case.hsw
+    if abs(speed - wanted) < NEAR // 2:
+        case.reached = True
+    return case.reached and abs(speed) < STANDS
+
+
+def begin_again(case, now):
+    """The motor of a drive that is told to run was switched on."""
+    case.run_starts += 1
+    if case.run_starts == 2:
+        case.again_us = now
+
+
+def judge_restart(judge, case, where, now):
+    """A motor has started twice by one START: ON is taken back when r2024 has told that."""
+    if not case.telltale or case.again_us < case.on_us:
+        return
+    since_us = now - max(case.again_us, judge.late_us, judge.stalled_us)
+    if since_us > COUNTED_US + S + 4 * judge.cycle_us:
+        raise Broken("TURNS", "%s, its motor started again %d ms ago" % (where, since_us // MS))
