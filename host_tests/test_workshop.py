@@ -442,7 +442,8 @@ def test_an_old_node_or_one_without_npm_is_not_used(machine, installed):
 PICO_FILES = ("version", "folder", "packages", "pytest", "pico")
 
 # Stands in for the compilers: what it "compiles" is the manifest and one Python file.
-PICO_STAND_IN = """
+PICO_STAND_IN = r"""
+    functions=$pico_often
     has_python() { :; }
     has_pico_compiler() { [[ -e $1/versions ]]; }
     has_pico_tools() { has_pico_compiler "$1"; }
@@ -452,7 +453,15 @@ PICO_STAND_IN = """
     make_pico_sources() { echo micropython 2 >"$1/versions"; }
     pico_do() {
         case $1 in
-            ninja) cat "$3/manifest.py" "$top/firmware/app.py" >"$3/firmware.bin" ;;
+            ninja)
+                mkdir -p "$3/CMakeFiles"
+                [[ -e $3/CMakeFiles/py.o ]] ||
+                    printf '.text.%s\n' $functions >"$3/CMakeFiles/py.o"
+                : >"$3/firmware.elf"
+                cat "$3/CMakeFiles/py.o" "$3/manifest.py" "$top/firmware/app.py" \
+                    >"$3/firmware.bin"
+                ;;
+            arm-none-eabi-objcopy) sed -i "s/^${4%=*}\$/${4#*=}/" "$5" ;;
             python) cp "${@: -1}" "${@: -2:1}" ;;
         esac
     }
@@ -513,6 +522,22 @@ def test_the_panel_and_stock_differ_in_what_is_frozen(pico):
     assert manifest in get_firmware(pico, "panel")[1]
     stock = get_firmware(pico, "stock")[1]
     assert manifest not in stock and "freeze('$(PORT_DIR)/modules'" in stock
+
+
+def test_what_runs_most_often_is_kept_in_memory_in_the_panel(pico):
+    own = 'functions="first second"; pico_often="second";'
+    panel = get_firmware(pico, "panel", own)[1]
+    assert panel.startswith(".text.first\n.time_critical.second\n")
+    (pico.top / "firmware" / "app.py").write_text("second\n")  # what is compiled stays
+    assert get_firmware(pico, "panel", own)[1].startswith(".text.first\n.time_critical.second\n")
+    assert get_firmware(pico, "stock", own)[1].startswith(".text.first\n.text.second\n")
+
+
+def test_a_function_that_micropython_has_no_more_is_named(pico):
+    also = "pico_often='nlr_pop gone';"
+    run = pico.shell(f"{PICO_STAND_IN} {also} get_pico_firmware panel", PICO_FILES)
+    assert run.returncode == 1 and "there is no gone to be put into the memory" in run.stderr
+    assert os.listdir(pico.top / "build" / "pico") == []
 
 
 def test_a_firmware_that_cannot_be_built_is_not_there_and_says_why(pico):

@@ -70,9 +70,9 @@ pico_fingerprint() (
 
 # How it is made, in words that change when that changes: bash tells functions without comments.
 pico_recipe() {
-    declare -p top pico_micropython pico_sdk pico_released
+    declare -p top pico_micropython pico_sdk pico_released pico_often
     pico_flags "$1"
-    declare -f pico_manifest compile_pico_firmware prepare_pico_make pico_do
+    declare -f pico_manifest compile_pico_firmware put_into_memory prepare_pico_make pico_do
     cat "$pico_requirements"
 }
 
@@ -99,6 +99,12 @@ pico_flags() {
             -DMICROPY_ALLOC_GC_STACK_SIZE=192 \
             "-DPICO_PROGRAM_DESCRIPTION='\"USS panel $(panel_version)\"'"
 }
+
+# What runs most often is kept in the chip's memory: its cache holds 16 KB of the flash, and of the
+# lines that a running panel misses there every third was one of these functions. They take 1.6 KB,
+# and make a step of the main loop a quarter shorter.
+pico_often="mp_setup_code_state_helper nlr_push nlr_push_tail nlr_pop mp_obj_class_lookup
+    mp_load_method_maybe bound_meth_call mp_cstack_usage mp_cstack_check"
 
 # ---- the compilation --------------------------------------------------------------------------
 
@@ -128,8 +134,26 @@ compile_pico_firmware() {
     local name=$1 place=$pico_make/$1
     rm -rf "$place"/frozen_* &&
         quietly "$place/log" pico_do ninja -C "$place" firmware &&
+        { [[ $name != panel ]] || put_into_memory "$place"; } &&
         quietly "$place/log" pico_do python "$build/pico_sources/micropython/tools/uf2conv.py" \
             -f 0xe48bff56 -b 0x10000000 -c -o "$place/$name.uf2" "$place/firmware.bin"
+}
+
+# The linker's script puts what has this name into the memory, as the SDK's own functions do. A
+# file with another date would be compiled again.
+put_into_memory() {
+    local place=$1 function object
+    for function in $pico_often; do
+        while IFS= read -r object; do
+            pico_do arm-none-eabi-objcopy --preserve-dates \
+                --rename-section ".text.$function=.time_critical.$function" "$object" || return
+        done < <(grep -rlaF --include='*.o' ".text.$function" "$place/CMakeFiles")
+        grep -rqaF --include='*.o' ".time_critical.$function" "$place/CMakeFiles" || {
+            say "Pico: there is no $function to be put into the memory"
+            return 1
+        }
+    done
+    rm "$place/firmware.elf" && quietly "$place/log" pico_do ninja -C "$place" firmware
 }
 
 # The place is good for as long as the recipe stays the same, which names the place of the tree as
