@@ -15,8 +15,8 @@ from micropython import const
 # From the bottom of the house up: an import inside an import inside an import takes stack.
 import uss.fast  # noqa: F401
 from uss.timing import Timing, elapsed
-from uss.survey import Survey, spare_jobs
 from uss.master import CLOSED, Master
+from uss.survey import Survey, spare_jobs
 from hal.pacer import Pacer
 from panel import texts
 import panel.risks  # noqa: F401

@@ -112,7 +112,7 @@ class Control:
 
     def stop(self):
         """OFF, always; acknowledge what was announced about this drive and its fault, if shown."""
-        if self.fault.was_shown:
+        if self.fault.was_shown():
             self.drive.acknowledge()
         self.stop_unseen()
         self.notice = None

@@ -8,7 +8,7 @@
 
     fault = Fault(drive, mask)          # has to be seen before it may be acknowledged
     fault.show(passed_ms)               # it was on the display for so long
-    if fault.was_shown: drive.acknowledge()
+    if fault.was_shown(): drive.acknowledge()
 """
 
 from micropython import const
@@ -91,23 +91,23 @@ class Report:
 
 
 class Fault(Report):
-    """was_shown: it has been on the display for a second since the drive tripped."""
+    """It has to be seen before it may be acknowledged."""
 
     def __init__(self, drive, mask):
         Report.__init__(self, drive, mask, pzd.ZSW_FAULT, profiles.FAULT_NUMBER)
-        self.was_shown = False
         self._shown_ms = 0
 
     def show(self, passed_ms):
         """It was on the display for so long."""
-        if self.active and not self.was_shown:
+        if self.active and self._shown_ms < _SHOWN_MS:
             self._shown_ms += passed_ms
-            if self._shown_ms >= _SHOWN_MS:
-                self.was_shown = True  # until the next one
+
+    def was_shown(self):
+        """Whether it has been on the display for a second since the drive tripped."""
+        return self._shown_ms >= _SHOWN_MS
 
     def _turn(self, active):
         Report._turn(self, active)
-        self.was_shown = False
         self._shown_ms = 0
 
 

@@ -25,6 +25,7 @@ The engine, which may run in interrupts:
 What the panel knows of a drive:
     profiles         the parameters of a MICROMASTER 4 that matter to it: data
     survey           what must be known of a drive before it may be started
+    telegram_count   whether a drive was without its mains
 
 For other programs; the panel imports none of these:
     bus              the master in a few words: floats, calls that wait, plain errors

@@ -23,8 +23,8 @@ from uss.silence import SHARE, SPENT_MASK, Silence
 
 LOOK_US = const(4_000)  # how often drives are looked after
 _SWEEP_US = const(130_000)  # in which each of them has been
-_SLOW_US = const(25_000)  # between two looks: for each time so long one thing more in a look,
-_MORE_MAX = const(3)  # so many at the most: that is all of it
+_SLOW_US = const(50_000)  # between two looks: a loop that is so slow does all of it in each,
+_SLOWISH_US = const(25_000)  # and such a one half of it
 _PRESS_US = const(16_000)  # in which each of those that may run has been
 _MEASURE_US = const(250_000)  # how often the duration of an exchange is measured
 _MEASURED_MAX_US = const(1_000_000)  # nobody measured meanwhile: it tells nothing
@@ -153,8 +153,9 @@ class Care:
         self._sweep_us += passed_us
         self._press_us += passed_us
         self._do_next(now)
-        for _ in range(min(passed_us // _SLOW_US, _MORE_MAX)):  # a slow loop has time for it
-            self._do_next(now)
+        if passed_us >= _SLOWISH_US:
+            for _ in range(3 if passed_us >= _SLOW_US else 1):
+                self._do_next(now)
 
     # --- behind it ------------------------------------------------------------------------------
 

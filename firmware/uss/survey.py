@@ -15,7 +15,7 @@ forgotten when contact is lost. `recheck` has all of it read again soon.
 from micropython import const
 
 from uss import pkw, profiles, pzd
-from uss.drive import COUNTERS, NODES
+from uss.telegram_count import TelegramCount
 from uss.timing import elapsed
 
 REREAD_US = const(100_000)
@@ -24,9 +24,6 @@ _JOBS = const(2)  # on their way at a time: its own, and perhaps
 _SECOND = const(1)  # another one,
 _SPARES = const(4)  # of so many; a list of four is never made smaller, so it takes no memory
 _NOTHING = const(-1)  # no row
-_GOOD = COUNTERS.index("good")
-_COUNTED_BESIDE = const(64)  # telegrams that a drive may count and this master does not,
-_COUNTED_LATE = const(32)  # and that it may count later than it answers them
 
 # Of the frequencies that a drive can have, as floating-point singles: the exponents as they are
 # coded, those that differ from 0.00 and from infinity.
@@ -94,12 +91,7 @@ class Survey:
         self._changed = _NOTHING  # this row is new, and still to be judged
         self._read_at = 0
         self._tells_count = True  # as far as anybody knows
-        self._counts = False  # it has been read since `count_anew`
-        self._counts_all = False  # the telegrams to others as well
-        self._moves = False  # since there is contact
-        self._exchanges = 0  # with the drive, when its counter was read,
-        self._answers = 0  # and those of them that it has answered,
-        self._answers_asked = 0  # and had, when it was asked for the present count
+        self._count = None  # a TelegramCount, made with the first START: most drives need none
         self._contact = 0  # drive.contacts to which the values belong
         self._knows = False  # something has been asked since all was forgotten
 
@@ -123,8 +115,9 @@ class Survey:
     def count_anew(self):
         """From the next count of telegrams on fewer of them mean that the drive was reset."""
         self.restarted = False
-        self._counts = False
         self._tells_count = True
+        self._count = self._count or TelegramCount(self.drive)
+        self._count.begin()
 
     def take_restart(self):
         """`restarted`, which is forgotten by this."""
@@ -178,11 +171,13 @@ class Survey:
 
     def _forget(self):
         self._knows = False
-        self._counts_all = self._moves = False
         self.unchecked = 0
         self._changed = _NOTHING
         self._row = profiles.FIRST
-        self.count_anew()
+        self.restarted = False
+        self._tells_count = True
+        if self._count:
+            self._count.forget()
         known = self.unreadable
         for row in range(len(self.values)):
             self._unanswered[row] = 0
@@ -226,8 +221,8 @@ class Survey:
             job = self._second = self._spares.pop()
         job.aim(pkw.READ, number, index)
         self._asked[place] = row
-        if row == profiles.COUNTER:
-            self._answers_asked = self.drive.counters[_GOOD]
+        if row == profiles.COUNTER and self._count:
+            self._count.asked()
         self._knows = True
         channel.ask(job)
         self._waiting += 1
@@ -306,27 +301,8 @@ class Survey:
             self._put(row, value)
 
     def _take_count(self, count):
-        """Telegrams that the drive has counted: it was without power when it has gone back, or
-        when it lacks some that it has answered. One that never moved does not count at all.
-        """
-        before, exchanges = self.values[profiles.COUNTER], 0
-        for counted in self.drive.counters:
-            exchanges += counted
-        # The loop may be late: what was answered since the question is none of this count's.
-        since = (exchanges - self._exchanges) & 0xFFFF
-        answered = (self._answers_asked - self._answers) & 0xFFFF
-        self._exchanges, self._answers = exchanges, self.drive.counters[_GOOD]
-        self.values[profiles.COUNTER] = count
-        grown = (count - before) & 0xFFFF
-        self._moves = self._moves or before > 0 and grown > 0
-        counted, self._counts = self._counts, True
-        if not counted:
-            return
-        if count >= before and grown > since + (_COUNTED_BESIDE >> 2):
-            self._counts_all = True
-        most = (since * NODES if self._counts_all else since) + _COUNTED_BESIDE
-        least = answered - (answered >> 3) - _COUNTED_LATE
-        if count < before and grown > most or self._moves and grown < least:
+        before, self.values[profiles.COUNTER] = self.values[profiles.COUNTER], count
+        if self._count and self._count.tells_reset(before, count):
             self.restarted = self.drive.wanted != 0
 
     def _put(self, row, value):

@@ -33,9 +33,23 @@ STOP_HZ = 0.3  # the motor turns
 ON, JOGS = 0x0001, 0x0300  # bits of STW
 STW_AT = 11  # in a telegram with a PKW area of 4 words
 
+REFERENCE_CENTIHERTZ = 5_000  # P2000 of a simulated drive
+ACTUAL_AT = 10  # column of the actual frequency, in the first row
+KEY_MS = 200
+CHANGES = 20  # of the display, then the other key
+
 BOOT_MS = 600
 ON_CHIP = "tools/benching/on_chip.py"
 MASTER_ON_CHIP = "tools/benching/master_on_chip.py"
+TELLS_FREE_MS = 8_000
+TELLS_FREE = b"""
+import gc
+from machine import Timer
+def tell(_):
+    gc.collect()
+    print(gc.mem_free(), "bytes free")
+Timer(period=%d, mode=Timer.ONE_SHOT, callback=tell)
+""" % TELLS_FREE_MS
 
 
 # --- the chip and what is around it -------------------------------------------------------------
@@ -412,12 +426,61 @@ def boot(quick, display):
 
 
 def heap(quick, drives):
-    """Free heap with so many drives in the settings."""
-    addresses = [address % 32 for address in range(1, int(drives) + 1)]
-    world = world_at(19200, 0, settings={"drives": addresses})
+    """Free heap with so many drives in the settings, of the panel as it runs: a timer tells it."""
+    settings = {"drives": [address % 32 for address in range(1, int(drives) + 1)]}
+    world = world_at(19200, 0, settings=settings, files={"boot.py": TELLS_FREE})
+    if not world.run_until(lambda: b" bytes free" in world.usb, 2 * TELLS_FREE_MS):
+        raise RuntimeError("the chip tells no free heap: %r" % bytes(world.usb[-500:]))
+    return checked(world, {"free": int(bytes(world.usb).split(b" bytes free")[0].split()[-1])})
+
+
+def picture(quick, baud, drives):
+    """How old the frequency on the display is: from the end of the first reply with another one
+    until the display changes, while the motor follows a setpoint that goes up and down.
+    """
+    from uss.pzd import Scaling
+
+    ms = 5_000 if quick else 30_000
+    drives = int(drives)
+    world = world_at(int(baud), drives)
+    scaling = Scaling(REFERENCE_CENTIHERTZ, False)
     at_the_prompt(world)
-    world.repl.begin("heap()")
-    return checked(world, result(world, 5_000))
+    world.repl.begin("collecting(%d, %d)" % (ms + 30_000 + 1_000 * drives, COLLECT_MS))
+    start_the_motor(world)
+    until_us = world.clock.now_us + ms * 1000
+    log, seen = world.wire.log, world.wire.log.count
+    told = []  # (when, what the display is to show), from what it shows on
+    ages_us = []
+    while world.clock.now_us < until_us:
+        key = ("UP", "DOWN")[len(ages_us) // CHANGES % 2]
+        world.down(key)
+        for _ in range(KEY_MS):
+            world.run(1)
+            for start_us, from_panel, telegram in log.last(log.count - seen):
+                if not from_panel and telegram[2] == 1:
+                    hiw = telegram[STW_AT + 2] << 8 | telegram[STW_AT + 3]
+                    characters_us = len(telegram) * CHARACTER_BITS * 1_000_000 // int(baud)
+                    text = "%.2f" % (scaling.centihertz(hiw) / 100)
+                    told.append((start_us + characters_us, text))
+            seen = log.count
+            age_us = take_shown(told, world.lcd()[0][ACTUAL_AT:].strip(), world.clock.now_us)
+            if age_us is not None:
+                ages_us.append(age_us)
+        world.up(key)
+    return checked(world, {"ages_us": spread(ages_us)})
+
+
+def take_shown(told, shown, now_us):
+    """Drop what is older than what is shown. How long the display had been out of date, when it
+    shows something else than before.
+    """
+    places = [place for place, (_, text) in enumerate(told) if text == shown]
+    if not places:
+        return None
+    changed = [at_us for at_us, text in told if text != told[0][1]]
+    is_new = told[0][1] != shown
+    del told[: places[-1]]
+    return now_us - changed[0] if is_new else None
 
 
 # --- on the host, by the processor's time: others may be using it as well ------------------------
@@ -509,7 +572,8 @@ def checked_host(world, figures):
 MEASUREMENTS = {
     function.__name__: function
     for function in (
-        line, asking, mixed, saving, cuts, memory, stop, hang, steps, boot, heap, codec, simulation
+        line, asking, mixed, saving, cuts, memory, stop, hang, steps, picture, boot, heap, codec,
+        simulation
     )
 }
 

@@ -148,12 +148,3 @@ def saving(settle_ms, times, every_ms):
     finally:
         app.close()
     print(json.dumps({"unsaved": dirty}))
-
-
-def heap():
-    """Free heap once the panel is up."""
-    app = main.start(board)
-    step_for(app, 1_000)
-    gc.collect()
-    print(json.dumps({"free": gc.mem_free(), "used": gc.mem_alloc()}))
-    app.close()

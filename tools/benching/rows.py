@@ -53,6 +53,7 @@ START_US = {(19200, 1): 1_000_000, (19200, 31): 3_000_000}
 HANG_US = 400_000
 STEP_US = 4_000
 FIRST_TELEGRAM_US = 500_000
+PICTURE_US = 100_000
 FREE_BYTES = 118 * 1024
 SIMULATION_TIMES = 100
 
@@ -80,6 +81,7 @@ HANGING = {which: Task(("hang", *which)) for which in HANGS}
 STEPS = Task(("steps", "19200", "1"))
 FULL_STEPS = Task(("steps", "115200", "31"))
 BOOTS = {display: Task(("boot", display)) for display in ("wires", "backpack")}
+PICTURES = {drives: Task(("picture", "19200", str(drives))) for drives in (1, 31)}
 HEAPS = {drives: Task(("heap", str(drives))) for drives in (1, 31)}
 CODEC = Task(("codec",), on_chip=False)
 SIMULATION = Task(("simulation",), on_chip=False)
@@ -89,7 +91,7 @@ TASKS = (
     LINES[115200], LINES[187500], *MEMORIES.values(), *FULL_LINES.values(),
     *ASKING_LINES.values(), *STOPS.values(),
     FULL_STEPS, STEPS, *HANGING.values(), SAVING, CUTS, *MIXED.values(), LINES[9600], LINES[19200],
-    LINES[38400], *BOOTS.values(), *HEAPS.values(), CODEC, SIMULATION,
+    LINES[38400], *PICTURES.values(), *BOOTS.values(), *HEAPS.values(), CODEC, SIMULATION,
 )  # fmt: skip
 
 
@@ -353,10 +355,25 @@ def boot_rows(display):
     )
 
 
+def picture_row(drives):
+    def show(figures):
+        _, median, p99, most, count = figures["ages_us"]
+        return "%.0f / %.0f / %.0f ms of %d" % (median / 1000, p99 / 1000, most / 1000, count)
+
+    return Row(
+        PICTURES[drives],
+        "a reply brings another frequency, the display shows it, %s, 19200 baud: "
+        "median / p99 / max" % of_drives(drives),
+        "max <= %d ms" % (PICTURE_US // 1000),
+        show,
+        lambda figures: figures["ages_us"][4] > 0 and figures["ages_us"][3] <= PICTURE_US,
+    )
+
+
 def heap_row(drives):
     return Row(
         HEAPS[drives],
-        "free heap after boot, frozen, %s in the settings" % of_drives(drives),
+        "free heap of the running panel, frozen, %s in the settings" % of_drives(drives),
         ">= %d KB" % (FREE_BYTES // 1024) if drives == 31 else "",
         lambda figures: "%.1f KB" % (figures["free"] / 1024),
         (lambda figures: figures["free"] >= FREE_BYTES) if drives == 31 else None,
@@ -414,6 +431,7 @@ ROWS = (
         for at, task in ASKING_LINES.items()
     ),
     collection_row(),
+    *(picture_row(drives) for drives in PICTURES),
     *(row for display in BOOTS for row in boot_rows(display)),
     *(heap_row(drives) for drives in HEAPS),
     cuts_row(),

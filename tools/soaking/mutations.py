@@ -269,8 +269,10 @@ MUTATIONS = (
         ("ACKNOWLEDGE",), 11,
         (
             "panel/fault.py",
-            "                self.was_shown = True  #",
-            "                self._drive.acknowledge()  #",
+            "            self._shown_ms += passed_ms\n",
+            "            self._shown_ms += passed_ms\n"
+            "            if self.was_shown():\n"
+            "                self._drive.acknowledge()\n",
         ),
     ),
     Mutation(
