@@ -635,7 +635,9 @@ class Wire:
         if now - heard_us >= self.start_interval_us - ROUNDING_US:
             return True
         quiet_us = now - self._babbled_until_us(now)
-        return quiet_us < self._babble_pause_us and now - self._babble_since_us >= BABBLE_US
+        # It counts from when it last found the line silent, and a shorter pause than that is none.
+        babble_us = now - self._babble_since_us + BABBLE_PAUSE_US
+        return quiet_us < self._babble_pause_us and babble_us >= BABBLE_US
 
     def _babbled_until_us(self, now):
         """When the weather was heard last."""

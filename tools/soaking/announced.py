@@ -66,6 +66,7 @@ class Announced:
         self._alarm = False  # the rows have one of the drive shown
         self._free_us = 0  # when the display last had nothing else to say
         self._redrawn_us = REDRAWN_US + REDRAWN_STEPS * plan.loop_us
+        self._stops_us = plan.loop_us * len(plan.listed)  # a STOP of all: nothing is drawn
         self._found_us = FOUND_US + FOUND_STEPS * plan.loop_us * len(plan.listed)
 
     def look(self, now):
@@ -80,6 +81,8 @@ class Announced:
         selected_us = max(judge.pressed_us["ADDRESS_UP"], judge.pressed_us["ADDRESS_DOWN"])
         if now - selected_us < patience_us:
             patience_us += PAGE_US
+        if self._stops_us > SLACK_US // 5 and now - judge.pressed_us["STOP"] < 2 * patience_us:
+            patience_us *= 2  # what is said during a STOP of all is short, and said again
         for address, (which, since_us) in self._troubles.items():
             said_us = max(self._said.get((one, which), NEVER) for one in (address, ANY, SHOWN))
             waited_us = now - max(since_us + self._found_us, self._free_us, said_us)

@@ -28,7 +28,7 @@ from tools.soaking.rules import Broken
 SCREENS = 12
 EXPOSED = ("RUN, P2014", "P2014 LONG")
 EXPOSED_US = 6 * S
-NUMBERS = 2110  # r2110: the warnings that are present
+NUMBERS, PRESENT = 2110, 2  # r2110: so many of its warnings are present, the others are gone
 WARNED_US = 5_500 * MS
 DRAWN_STEPS = 25  # of the loop: a row that is the same for so long is drawn to its end
 VALUES = ("P0700:", "P1000:", "P2011:")
@@ -162,7 +162,7 @@ class Reader:
         if drive is None or not self.is_able(self.judge.shown):
             self._unwarned_us = now
             return
-        present = [drive.read(NUMBERS, index) for index in range(4)]
+        present = [drive.read(NUMBERS, index) for index in range(PRESENT)]
         for number in present:
             if number and row_2.startswith("WARN A%04d" % number):
                 self._warned_us = now
