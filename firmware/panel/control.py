@@ -15,14 +15,15 @@ The rules that keep a motor from starting by surprise and a STOP from getting lo
 
 from micropython import const
 
+# From the bottom of the house up: an import inside an import inside an import takes stack.
+from uss.timing import elapsed
+from uss import profiles, pzd
+from uss.survey import REREAD_US
 from panel import permits, risks, texts
 from panel.command import Command
 from panel.fault import Fault
 from panel.setpoint import Setpoint
 from panel.stop_watch import StopWatch
-from uss import profiles, pzd
-from uss.survey import REREAD_US
-from uss.timing import elapsed
 
 _UNKNOWN = const(-1)  # no status word
 _SILENT_MAX = const(3)  # telegrams without an answer after which the speed is not known any more

@@ -14,9 +14,11 @@ forgotten when contact is lost. `recheck` has all of it read again soon.
 
 from micropython import const
 
-from uss import pkw, profiles, pzd
-from uss.telegram_count import TelegramCount
+# From the bottom of the house up: an import inside an import inside an import takes stack.
 from uss.timing import elapsed
+from uss import pkw, profiles, pzd
+import uss.drive  # noqa: F401
+from uss.telegram_count import TelegramCount
 
 REREAD_US = const(100_000)
 _UNKNOWN = const(-1)
