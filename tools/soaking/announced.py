@@ -44,6 +44,7 @@ LONG_US = 900 * MS  # 1 s, and what is lost of it by drawing and by looking
 TURN_US = 2 * S  # for each drive in trouble
 SPLASH_US = 1_500 * MS  # what is on the display after power-on
 SLACK_US = 500 * MS  # for drawing
+STOPS_US = 100 * MS  # a STOP of all that takes longer shortens what is said meanwhile
 PAGE_US = 700 * MS  # the page of a drive that was just selected has a turn first
 REDRAWN_US, REDRAWN_STEPS = 200 * MS, 10  # what is said may go from one row to the other
 FOUND_US = 1_500 * MS  # until a trouble is noticed, and more for each drive of the list:
@@ -81,7 +82,7 @@ class Announced:
         selected_us = max(judge.pressed_us["ADDRESS_UP"], judge.pressed_us["ADDRESS_DOWN"])
         if now - selected_us < patience_us:
             patience_us += PAGE_US
-        if self._stops_us > SLACK_US // 5 and now - judge.pressed_us["STOP"] < 2 * patience_us:
+        if self._stops_us > STOPS_US and now - judge.pressed_us["STOP"] < 2 * patience_us:
             patience_us *= 2  # what is said during a STOP of all is short, and said again
         for address, (which, since_us) in self._troubles.items():
             said_us = max(self._said.get((one, which), NEVER) for one in (address, ANY, SHOWN))
