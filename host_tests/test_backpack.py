@@ -256,3 +256,40 @@ def test_a_refresh_is_not_seen():
         assert bench.turn(bytearray(RUNNING)) and bench.text() == shown(RUNNING)
     assert bench.lcd.homes >= homes + 2 and bench.lcd.clears == 0
     bench.check()
+
+
+def test_a_change_does_not_wait_for_the_refresh():
+    for turns in range(0, 100, 7):
+        bench = running(HOURGLASS + UP_AND_DOWN)
+        picture, homes = bytearray(RUNNING), bench.lcd.homes
+        while bench.lcd.homes == homes:
+            bench.turn(picture)
+        for _ in range(turns):
+            bench.turn(picture)
+        picture[14] ^= 0x01
+        claimed = any([bench.turn(picture) for _ in range(3)])  # "home" takes one of these
+        assert claimed and bench.text() == shown(picture), turns
+        bench.run(picture, START_MS)
+        assert bench.text() == shown(picture)
+        assert bench.lcd.cgram[:16] == HOURGLASS + UP_AND_DOWN
+        bench.check()
+
+
+def test_a_picture_that_never_rests_is_refreshed_as_well():
+    """A character that changes in each turn takes all that a piece can write."""
+    bench = running(HOURGLASS + UP_AND_DOWN)
+    lcd, picture, homes = bench.lcd, bytearray(RUNNING), bench.lcd.homes
+    while lcd.homes == homes:
+        bench.turn(picture)
+    for cell in range(80):
+        lcd.ddram[cell] ^= 0x55
+    for index in range(16):
+        lcd.cgram[index] ^= 0x1F
+    lcd.is_on = False
+    until_us = bench.clock.now_us + 3 * START_MS * 1000
+    while bench.clock.now_us < until_us:
+        picture[14] ^= 0x01
+        bench.turn(picture)
+    assert bench.text()[:14] == shown(RUNNING[:14]) and bench.text()[15:] == shown(RUNNING[15:])
+    assert lcd.cgram[:16] == HOURGLASS + UP_AND_DOWN
+    bench.check()

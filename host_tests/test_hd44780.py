@@ -41,6 +41,15 @@ def test_the_first_picture_after_power_on():
     assert bench.lcd.complaints == [] and bench.lcd.clears == 0
 
 
+def test_the_first_picture_is_written_once():
+    """The sequence, what leads to the dots and to either row, and the display on."""
+    bench = LcdBench()
+    bench.boot(HOURGLASS + UP_AND_DOWN)
+    assert bench.run(bytearray(RUNNING), START_MS)
+    assert bench.lcd.dots == 16 and bench.lcd.characters == 32
+    assert bench.lcd.instructions == 7 + 1 + 2 + 1
+
+
 def test_a_picture_that_is_all_zeros_is_not_shown_before_it_is_written():
     bench = LcdBench()
     bench.boot(HOURGLASS)
@@ -366,3 +375,70 @@ def test_a_change_during_a_refresh_is_seen_soon_and_claimed_only_then():
             turns += 1
             assert turns < 20 and bench.text() != shown(READY)
         assert bench.text() == shown(READY) and bench.lcd.complaints == []
+
+
+def in_a_refresh(turns):
+    """A display in the middle of a refresh: so many turns after it was sent home."""
+    bench = LcdBench()
+    bench.boot(HOURGLASS + UP_AND_DOWN)
+    picture = bytearray(RUNNING)
+    assert bench.run(picture, START_MS)
+    homes = bench.lcd.homes
+    while bench.lcd.homes == homes:
+        bench.turn(picture)
+    for _ in range(turns):
+        bench.turn(picture)
+    return bench
+
+
+def test_a_change_does_not_wait_for_the_refresh():
+    """It is seen with the first piece that can be written, wherever the refresh is."""
+    for turns in range(12):
+        for place in (0, 10, 11, 16, 27):
+            bench = in_a_refresh(turns)
+            picture = bytearray(RUNNING)
+            for cell in range(place, place + 5):
+                picture[cell] ^= 0x01
+            claimed = any([bench.turn(picture) for _ in range(3)])  # "home" takes one of these
+            assert claimed and bench.text() == shown(picture), (turns, place)
+            assert bench.run(picture, 100) and bench.text() == shown(picture)
+            assert bench.lcd.cgram[:16] == HOURGLASS + UP_AND_DOWN
+            assert bench.lcd.complaints == []
+
+
+def test_a_picture_that_never_rests_is_refreshed_as_well():
+    """All of it differs in each turn: each code is now even, now odd."""
+    bench = LcdBench()
+    bench.boot(HOURGLASS + UP_AND_DOWN)
+    picture = bytearray(RUNNING)
+    assert bench.run(picture, START_MS)
+    lcd = bench.lcd
+    for cell in range(80):
+        lcd.ddram[cell] ^= 0x55
+    for index in range(16):
+        lcd.cgram[index] ^= 0x1F
+    bench.command(0x08)
+    until_us = bench.clock.now_us + HEALED_MS * 1000
+    while bench.clock.now_us < until_us:
+        for cell in range(32):
+            picture[cell] ^= 0x01
+        bench.turn(picture)
+    assert [ord(letter) | 1 for letter in bench.text()] == [code | 1 for code in RUNNING]
+    assert lcd.cgram[:16] == HOURGLASS + UP_AND_DOWN
+    assert lcd.complaints == []
+
+
+def test_garbled_dots_heal_while_the_picture_changes():
+    for every in range(1, 30):
+        bench = in_a_refresh(0)
+        for index in range(16):
+            bench.lcd.cgram[index] ^= 0x1F
+        picture = bytearray(RUNNING)
+        for turn in range(60):
+            if turn % every == 0:
+                picture[14] = 0x30 + turn % 10
+                picture[27] ^= 0x01
+            bench.turn(picture)
+        assert bench.lcd.cgram[:16] == HOURGLASS + UP_AND_DOWN, every
+        assert bench.run(picture, 20) and bench.text() == shown(picture)
+        assert bench.lcd.complaints == []

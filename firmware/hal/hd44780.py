@@ -86,7 +86,7 @@ class CharacterDisplay:
         """Bring the display a piece nearer to `picture`, 32 codes; whether it shows it all."""
         if (self._ticks_us() - self._since) & self._mask > self._wait_us:
             self._put_in_order()
-        elif self._in_order and (self._unsure or self._shown != picture):
+        if self._in_order and (self._unsure or self._shown != picture):
             self._write(picture)
         return self._is_on and self._shown == picture
 
@@ -95,8 +95,9 @@ class CharacterDisplay:
         self._step = 0  # of _SEQUENCE
         self._in_order = False  # the sequence is over: bytes can be written
         self._unsure = 0  # bytes that must be written whatever the display seems to show
-        self._leads_to = -1  # the cell to which the controller's address leads
+        self._leads_to = -1  # the controller's address: a cell, or _CELLS + index of dots
         self._is_on = False
+        self._ahead = 0  # how many pieces in a row went ahead of a refresh
         self._come_back_after(after_us)
 
     def _put_in_order(self):
@@ -126,27 +127,53 @@ class CharacterDisplay:
         self._wait_us = wait_us
 
     def _write(self, picture):
-        """A piece of the dots, then of the cells, going round from where it stopped."""
+        """A piece of what differs; in a refresh, of the dots, then of all cells.
+
+        What differs goes ahead of a refresh. It takes two of three pieces at the most, so that a
+        picture that never rests is refreshed as well.
+        """
         left = self.bytes_per_piece
-        while left and self._unsure > _CELLS + 1:
-            left -= self._write_dots(len(self._glyphs) + _CELLS + 1 - self._unsure)
-            self._unsure -= 1
-        left = self._write_cells(picture, left)
-        if left and self._unsure == 1:
-            self._byte(0, _DISPLAY_ON)
-            self._unsure = 0
-            self._is_on = True
+        if self._unsure > 1 and self._is_on and self._ahead < 2 and self._shown != picture:
+            self._ahead += 1
+            self._write_ahead(picture, left)
+        else:
+            self._ahead = 0
+            while left and self._unsure > _CELLS + 1:
+                left -= self._write_dots(len(self._glyphs) + _CELLS + 1 - self._unsure)
+                self._unsure -= 1
+            if self._unsure == 1:  # before what differs, which may leave nothing for it
+                self._byte(0, _DISPLAY_ON)
+                self._unsure = 0
+                self._is_on = True
+                left -= 1
+            self._write_cells(picture, left)
         self._end_piece()
 
+    def _write_ahead(self, picture, left):
+        """What differs, from the first cell on. The refresh writes these cells once more."""
+        shown = self._shown
+        for at in range(_CELLS):
+            if shown[at] != picture[at]:
+                cost = 1 if at == self._leads_to else 2
+                if left < cost:
+                    break
+                left -= cost
+                self._write_cell(at, picture[at], cost == 2)
+
     def _write_dots(self, index):
-        """Answers how many bytes that took, as the next one does."""
-        if index == 0:
-            self._byte(0, _GLYPHS)
+        """Answers how many bytes that took: one, if the address leads there already."""
+        cost = 1 if self._leads_to == _CELLS + index else 2
+        if cost == 2:
+            self._byte(0, _GLYPHS | index)
         self._byte(1, self._glyphs[index])
-        return 2 if index == 0 else 1
+        self._leads_to = _CELLS + index + 1
+        return cost
 
     def _write_cells(self, picture, left):
-        """What differs in the next cells, with `left` bytes at the most; answers what is left."""
+        """What differs in the next cells, in a refresh all of them, with `left` bytes at the most.
+
+        It goes round from where it stopped.
+        """
         shown, at = self._shown, self._cell
         for _ in range(self.cells_per_piece):
             if shown[at] != picture[at] or self._unsure > 1:
@@ -161,7 +188,6 @@ class CharacterDisplay:
                     break  # looking at the rest of the cells takes longer than this comparison
             at = at + 1 if at + 1 < _CELLS else 0
         self._cell = at
-        return left
 
     def _write_cell(self, at, code, go_there):
         if go_there:
