@@ -145,6 +145,19 @@ def test_a_piece_is_small_and_takes_less_than_a_millisecond():
     assert bench.lcd.complaints == [] and bench.lcd.clears == 0
 
 
+def test_a_change_in_the_first_row_is_seen_with_the_next_piece():
+    """Wherever the last one was, and however few cells a piece looks at."""
+    bench = running()
+    bench.display.cells_per_piece = 16
+    picture = bytearray(RUNNING)
+    for last in range(32):
+        for cell in range(16):
+            picture[last] ^= 0x01
+            assert bench.run(picture, 20)
+            picture[cell] ^= 0x02
+            assert bench.turn(picture) and bench.text() == shown(picture), (last, cell)
+
+
 def test_a_first_row_that_never_rests_does_not_starve_the_second():
     bench = running()
     picture = bytearray(RUNNING)

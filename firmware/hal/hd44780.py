@@ -185,6 +185,7 @@ class CharacterDisplay:
                 if self._unsure > 1:
                     self._unsure -= 1
                 elif shown == picture:
+                    at = 0  # what changes next is most likely in the first row
                     break  # looking at the rest of the cells takes longer than this comparison
             at = at + 1 if at + 1 < _CELLS else 0
         self._cell = at
