@@ -13,8 +13,8 @@ sets the file aside. What a newer firmware stored and this one does not know is 
 """
 
 import json
+import sys
 
-from strict_json import fields
 from uss.telegram import NODE_MAX
 from uss.timing import BAUD_RATES
 
@@ -176,6 +176,18 @@ def _words(choices):
     return " ".join(str(choice) for choice in choices)
 
 
+def _fields(data):
+    """What stands in the file. The module that reads it is needed once: it gives 3 KB back, which
+    a chip lacks that has the firmware as files.
+    """
+    from strict_json import fields
+
+    try:
+        return fields(data)
+    finally:
+        sys.modules.pop("strict_json", None)
+
+
 def load(store):
     """The settings that a store keeps; the defaults where it keeps none."""
     settings = Settings()
@@ -190,7 +202,7 @@ def load(store):
         settings.complain(TOO_BIG, "the settings file has more than %d bytes" % SIZE_MAX)
         return settings
     try:
-        found = fields(data)
+        found = _fields(data)
     except ValueError as error:
         settings.complain(NO_JSON, "the settings file is damaged (%s)" % error)
     else:

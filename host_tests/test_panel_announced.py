@@ -559,10 +559,10 @@ def test_stop_acknowledges_what_has_been_on_the_display_for_a_second():
 def test_drawing_changes_nothing_but_the_picture():
     world = panel(addresses=(1, 2))
     shown = world.app.panel
-    fault = shown.selected.fault
     world.drives[1].fault(3)
-    while not fault.active:
+    while not shown.selected.fault.active:
         world.run(1)
+    fault = shown.selected.fault
     before = dict(fault.__dict__)
     for now_ms in range(0, 10_000, 100):
         shown._home.draw(shown.screen, now_ms)

@@ -4,7 +4,7 @@
 How tasks are repeated, and told apart, is in test_channel.py; arrays and texts have their own.
 """
 
-from uss import pkw
+from uss import pkw, pkw_errors
 
 THREE, FOUR, VARIABLE = pkw.THREE_WORDS, pkw.FOUR_WORDS, pkw.VARIABLE_LENGTH | 20
 
@@ -212,12 +212,12 @@ def test_refusals_say_why_in_words():
     job = pkw.write_word(1082, 40)
     assert answered(job, (0x743A, 0, 0, 5))
     assert job.state == pkw.REFUSED
-    assert pkw.error_text(job.error) == "wrong data type"
+    assert pkw_errors.error_text(job.error) == "wrong data type"
     job = pkw.write_word(700, 5)
     assert answered(job, (0x82BC, 0, 0, 0))
-    assert pkw.error_text(job.error) == "no change rights"
-    assert pkw.error_text(17) == "not in this operating state"
-    assert pkw.error_text(999) == "error 999"
+    assert pkw_errors.error_text(job.error) == "no change rights"
+    assert pkw_errors.error_text(17) == "not in this operating state"
+    assert pkw_errors.error_text(999) == "error 999"
 
 
 def test_the_error_number_stands_where_a_word_does():
@@ -253,13 +253,13 @@ def test_a_drive_with_variable_length_says_what_there_is_instead():
 
 
 def test_every_error_number_of_the_documents_has_a_text():
-    numbers = [number for number, _ in pkw.ERRORS]
+    numbers = [number for number, _ in pkw_errors.ERRORS]
     assert numbers == sorted(set(numbers))
     for number in (
         tuple(range(19)) + (20, 21, 22, 23, 24) + tuple(range(101, 109)) + (200, 201, 204)
     ):
-        assert pkw.error_text(number) != "error %d" % number, number
-    for _, text in pkw.ERRORS:
+        assert pkw_errors.error_text(number) != "error %d" % number, number
+    for _, text in pkw_errors.ERRORS:
         assert 5 < len(text) <= 36, text
 
 

@@ -2,7 +2,7 @@
 """Arrays: an element, all elements, how many there are (specification C-4.2.2, tasks 6...12)."""
 
 from test_pkw import FOUR, THREE, VARIABLE, answered, asked, refused
-from uss import pkw, pkw_array
+from uss import pkw, pkw_array, pkw_errors
 from uss.channel import Channel
 from uss.layout import VARIABLE as VARIABLE_WORDS
 
@@ -74,7 +74,7 @@ def test_the_longest_answer_has_124_words():
 def test_an_answer_longer_than_its_room_is_an_error():
     job = pkw_array.read_all(304, words=4)
     assert answered(job, (0x4130, 0xFF, 1, 2, 3, 4, 5), VARIABLE)
-    assert job.state == pkw.REFUSED and pkw.error_text(job.error) == "answer too long"
+    assert job.state == pkw.REFUSED and pkw_errors.error_text(job.error) == "answer too long"
 
 
 def test_half_a_double_word_is_no_answer():
@@ -104,7 +104,7 @@ def test_all_elements_need_variable_length():
             channel = Channel(MASK, pkw_words)
             channel.ask(job)
             assert job.state == pkw.REFUSED and job.error == 102, job
-            assert pkw.error_text(job.error) == "channel too small"
+            assert pkw_errors.error_text(job.error) == "channel too small"
 
 
 def test_more_values_than_the_telegram_has_room_for_are_not_sent():

@@ -4,7 +4,7 @@
 from test_channel import Line
 from test_pkw import FOUR, THREE, VARIABLE, answered, refused
 from test_pkw_text import text_words
-from uss import pkw
+from uss import pkw, pkw_errors
 from uss.layout import VARIABLE as VARIABLE_WORDS
 from uss.pkw_description import (
     ACCESS,
@@ -116,7 +116,7 @@ def test_a_description_is_written():
     job = line.ask(write_description(1120, LOWER_LIMIT, b"\x00\x07"))
     assert line.send() == (0x5460, LOWER_LIMIT, 0, 7)
     line.answer(0x7460, LOWER_LIMIT, 0, 106)
-    assert pkw.error_text(job.error) == "task not implemented"
+    assert pkw_errors.error_text(job.error) == "task not implemented"
     for pkw_words, characters in ((3, bytes(4)), (4, bytes(16))):
         element = FACTOR if len(characters) == 4 else NAME
         job = Line(pkw_words).ask(write_description(1120, element, characters))

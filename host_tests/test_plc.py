@@ -4,7 +4,7 @@
 from boards.sim import g120, generic, mm3
 from boards.sim.clock import Clock, Event
 from plc_bench import BAUD, Plc
-from uss import families, pkw, status
+from uss import families, pkw, pkw_errors, status
 from uss.layout import Layout
 from uss.master import LISTENING
 from uss.plc import (
@@ -432,7 +432,7 @@ def test_the_words_of_a_refusal_come_beside_the_code():
     plc.run(300)
     write = until_done(plc, USS_WPM_R(plc.port), DRIVE=1, PARAM=1120, VALUE=1e6)
     assert (write.ERROR, write.STATUS_WORD) == (status.PARAMETER_REPLY, 0x818C)
-    assert write.PKW_ERROR == 2 and pkw.error_text(write.PKW_ERROR) == "beyond the limits"
+    assert write.PKW_ERROR == 2 and pkw_errors.error_text(write.PKW_ERROR) == "beyond the limits"
 
 
 # --- drives of other kinds ----------------------------------------------------------------------

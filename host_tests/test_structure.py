@@ -14,7 +14,7 @@ TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 RULES = (
     ("firmware/main.py", ("app",), ("board",)),
     ("firmware/app.py", ("panel", "settings", "uss", "hal"), ("micropython",)),
-    ("firmware/settings.py", ("strict_json", "uss"), ("json",)),
+    ("firmware/settings.py", ("strict_json", "uss"), ("json", "sys")),
     ("firmware/strict_json.py", (), ("json",)),
     ("firmware/version.py", (), ()),
     ("firmware/uss", ("uss",), ("struct", "array", "micropython")),

@@ -10,17 +10,28 @@
 
 from micropython import const
 
-from panel import permits, texts
+from panel import permits, risks, texts
 from uss import profiles, pzd
 from uss.timing import elapsed
 
+_NONE = const(-1)  # no version
 _START_US = const(5_000_000)  # a drive that does not run by then is told to stop again
 
 
 class Command:
-    """drive: `uss.drive.Drive`. survey: its `Survey`. bus: the `Master`. mask: of the clock."""
+    """drive: `uss.drive.Drive`. survey: its `Survey`. bus: the `Master`. mask: of the clock.
+
+    For `Control`: risk, the row of risks.RISKS that a START is to be asked about next; accepted,
+    by row the value with which the operator takes that risk; exposure_ms, how long the motor
+    would run on too long, when it was started; exposure_version, of the survey when that was
+    looked at last.
+    """
 
     def __init__(self, drive, survey, bus, mask):
+        self.risk = 0
+        self.accepted = [risks.NONE] * len(risks.RISKS)
+        self.exposure_ms = 0
+        self.exposure_version = _NONE
         self._drive = drive
         self._survey = survey
         self._bus = bus
@@ -30,11 +41,12 @@ class Command:
         self._contacts = 0  # drive.contacts, bus.dead_man_trips and bus.failures when it was given
         self._dead_man_trips = 0
         self._failures = 0
-        self._version = -1  # of the survey, as judged last; none
+        self._version = _NONE  # of the survey, as judged last
         self._is_local = False  # commands, and setpoints, come from elsewhere
         self._is_foreign = False
 
     def give(self, now):
+        self.risk = 0
         self._contacts = self._drive.contacts
         self._dead_man_trips = self._bus.dead_man_trips
         self._failures = self._bus.failures

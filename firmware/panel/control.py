@@ -21,9 +21,9 @@ from uss import profiles, pzd
 from uss.survey import REREAD_US
 from panel import permits, risks, texts
 from panel.command import Command
-from panel.fault import Fault
+from panel.fault import NO_FAULT, Fault
 from panel.setpoint import Setpoint
-from panel.stop_watch import StopWatch
+from panel.stop_watch import NO_WATCH, StopWatch
 
 _UNKNOWN = const(-1)  # no status word
 _SILENT_MAX = const(3)  # telegrams without an answer after which the speed is not known any more
@@ -56,10 +56,9 @@ class Control:
         self.survey = survey
         self.bus = bus
         self.longest_off_time_ms = 0  # a longer P2014 is a risk: the panel sets it
-        self.accepted = [risks.NONE] * len(risks.RISKS)  # by row, its value
         self.setpoint = Setpoint(drive, survey, settings)
-        self.stop_watch = StopWatch(drive, mask)
-        self.fault = Fault(drive, mask)
+        self.stop_watch = NO_WATCH
+        self.fault = NO_FAULT
         self.moving = False
         self.moved = False
         self.reversed = False
@@ -71,15 +70,12 @@ class Control:
         self.remark = None
         self.lost_running = False
         self.absence_known = False
-        self._command = Command(drive, survey, bus, mask)
+        self._command = None  # that was obeyed last: a drive that is never started needs none
         self._settings = settings
         self._mask = mask
         self._now = 0
         self._contact = False  # as last seen
         self._quiet_zsw = _UNKNOWN  # drive.zsw when there was nothing to watch
-        self._risk = 0  # the row of risks.RISKS that a START is to be asked about next
-        self._exposure_ms = 0  # how long the motor would run on too long, when it was started
-        self._version = -1  # of the survey, when that was looked at last
         self._jogged = False  # what turns, or ramps down, is a jog of this panel
         self._judged = -1  # version of the survey when its status word was judged
         self._stirred = False  # it ran, or may have: its rest is still to be known for sure,
@@ -97,7 +93,6 @@ class Control:
             self._obey()
             self.notice = None
             self.checking = True
-            self._risk = 0
             self.survey.count_anew()
             self.survey.recheck()
 
@@ -141,7 +136,7 @@ class Control:
             self.jogging = stw
             self._jogged = True
             self.survey.count_anew()
-            self._exposure_ms = risks.exposure_ms(self)
+            self._command.exposure_ms = risks.exposure_ms(self)
             self.drive.start(self.drive.hsw, stw)
 
     def end_jog(self):
@@ -228,6 +223,14 @@ class Control:
         """Whether it turns because a jog of this panel is still ramping down."""
         return self._jogged and self.stop_watch.active
 
+    def accepts(self, row, value):
+        """Whether the operator has taken this risk, a row of risks.RISKS, with this value."""
+        return self._command is not None and self._command.accepted[row] == value
+
+    def accept(self, row, value):
+        """The operator takes a risk that a START has asked about."""
+        self._command.accepted[row] = value
+
     def accepts_unsupervised(self):
         return self.drive.address in self._settings.unsupervised
 
@@ -269,7 +272,10 @@ class Control:
         drive = self.drive
         if self.survey.version != self._judged:
             self._judge_status()
-        self.fault.step(now)
+        if self.fault is not NO_FAULT:
+            self.fault.step(now)
+        elif drive.zsw & pzd.ZSW_FAULT:
+            self.fault = Fault(drive, self._mask)
         if drive.contact != self._contact:
             self._contact = drive.contact
             self.lost_running = drive.was_running and not drive.contact
@@ -303,7 +309,7 @@ class Control:
         self._quiet_zsw = _UNKNOWN
         self.survey.drop_recheck()
         if not self.stop_watch.active:  # pressing again does not put the alarm off
-            self.stop_watch.begin()
+            self._begin_stop_watch()
 
     def _on(self):
         return pzd.ON_REVERSE if self.reversed else pzd.ON
@@ -313,57 +319,61 @@ class Control:
         self.remark = None
         self.question = None
         self._quiet_zsw = _UNKNOWN
+        if self._command is None:
+            self._command = Command(self.drive, self.survey, self.bus, self._mask)
         self._command.give(self._now)
 
     def _finish_check(self, now):
         """ON, if the drive has told its settings and there is nothing against it."""
         if self.setpoint.has_news():
             return  # HSW may be another once `ask` has taken them
+        command = self._command
         refusal = permits.why_not_start(self)
         if refusal is None and (self.survey.unchecked or not self.survey.is_settled()):
-            if not self._command.is_overdue(now):
+            if not command.is_overdue(now):
                 return
             refusal = texts.REFUSED_CHECKING
-        if refusal is None and self._risk < len(risks.RISKS):  # one in a turn: each takes long
-            if risks.is_open(self, self._risk):
+        if refusal is None and command.risk < len(risks.RISKS):  # one in a turn: each takes long
+            if risks.is_open(self, command.risk):
                 self.checking = False
                 self.survey.drop_recheck()
-                self.question = self._risk
+                self.question = command.risk
                 self.notice = texts.DID_NOT_START
-            self._risk += 1
+            command.risk += 1
             return
         self.checking = False
         self.survey.drop_recheck()
-        if self._command.is_stale():
+        if command.is_stale():
             self.notice = texts.PANEL_HUNG
         elif refusal is not None:
             self.refusal = refusal
             self.notice = texts.DID_NOT_START  # the operator may look at another drive by now
         else:
-            self._command.send(now)
-            self._exposure_ms = risks.exposure_ms(self)
+            command.send(now)
+            command.exposure_ms = risks.exposure_ms(self)
             self.stop_watch.end()
             self._jogged = False
             self.drive.start(self.drive.hsw, self._on())
 
     def _watch_command(self, now):
         """ON, or JOG, is taken back here when the engine did so or when it leads to nothing."""
+        command = self._command
         if self.drive.stopped_by_engine():
-            self._take_back(self._command.why_stopped())
+            self._take_back(command.why_stopped())
         elif not self.drive.is_on():
             return
-        elif self._command.has_judged() and self.survey.version != self._version:
-            self._version = self.survey.version  # in a turn of its own
+        elif command.has_judged() and command.exposure_version != self.survey.version:
+            command.exposure_version = self.survey.version  # in a turn of its own
             self._look_at_supervision()
         else:
-            notice = self._command.why_in_vain(self.jogging, now)
+            notice = command.why_in_vain(self.jogging, now)
             if notice is not None:
                 self._take_back(notice)
 
     def _look_at_supervision(self):
         """Whether it would run on longer without this panel than when it was started."""
         self.remark = None
-        if risks.exposure_ms(self) > self._exposure_ms:
+        if risks.exposure_ms(self) > self._command.exposure_ms:
             is_long = self.survey.values[profiles.SUPERVISION] > 0
             if self.jogging:  # that is refused
                 self._take_back(texts.RUNS_LONG if is_long else texts.UNSUPERVISED)
@@ -377,7 +387,7 @@ class Control:
         if watch.active:
             watch.step(now)
         elif not self.drive.wanted and (self._runs_against_off() or self._is_in_doubt()):
-            watch.begin()
+            watch = self._begin_stop_watch()
         if watch.active or self.drive.wanted:
             self._stirred = True
             self._stirred_at = now
@@ -385,6 +395,12 @@ class Control:
             self._stirred = False
         if self._jogged and not (self.jogging or watch.active):
             self._jogged = False
+
+    def _begin_stop_watch(self):
+        if self.stop_watch is NO_WATCH:
+            self.stop_watch = StopWatch(self.drive, self._mask)
+        self.stop_watch.begin()
+        return self.stop_watch
 
     def _judge_status(self):
         """Whether ZSW is its status word. What was known stays true until that is read again."""

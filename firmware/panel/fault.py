@@ -6,6 +6,7 @@
     warning.number                      # 501 for A0501; 0 while it is not known
     warning.turn_to(other)              # another drive is shown
 
+    fault = NO_FAULT                    # of a drive that has not tripped yet
     fault = Fault(drive, mask)          # has to be seen before it may be acknowledged
     fault.show(passed_ms)               # it was on the display for so long
     if fault.was_shown(): drive.acknowledge()
@@ -109,6 +110,24 @@ class Fault(Report):
     def _turn(self, active):
         Report._turn(self, active)
         self._shown_ms = 0
+
+
+class NoFault:
+    """Stands for the `Fault` of a drive that has not tripped since the panel started. Most never do:
+    with 31 drives that saves 3 KB.
+    """
+
+    active = False
+    number = 0
+
+    def show(self, passed_ms):
+        pass
+
+    def was_shown(self):
+        return False
+
+
+NO_FAULT = NoFault()
 
 
 def draw_number(screen, row, column, letter, report):

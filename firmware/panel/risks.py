@@ -78,7 +78,7 @@ def measure(control, row):
 def is_open(control, row):
     """Whether there is this risk, and nobody has accepted it."""
     value = measure(control, row)
-    if value == NONE or control.accepted[row] == value:
+    if value == NONE or control.accepts(row, value):
         return False
     return row != SUPERVISION or not control.accepts_unsupervised()
 
@@ -95,7 +95,7 @@ def accept(control, row, value):
     if row == SUPERVISION and not value:
         control.accept_unsupervised()
     else:
-        control.accepted[row] = value
+        control.accept(row, value)
 
 
 def exposure_ms(control):

@@ -34,6 +34,7 @@ For other programs; the panel imports none of these:
     families         what differs between the drive families: data
     words            the bits of control and status words by name
     scaling          PZD2 in percent, Hz and 1/min, floating point
+    pkw_errors       words for the numbers of refusals
     pkw_array        jobs for arrays: an element, all of them, their number
     pkw_description  jobs for descriptions: limits, name, unit
     pkw_text         jobs for texts

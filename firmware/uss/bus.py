@@ -15,7 +15,7 @@ takes heap, so nothing of it belongs into an interrupt. The panel does not impor
 Whoever does not wait calls `step` again and again: without it for 300 ms every motor is stopped.
 """
 
-from uss import families, master, pkw, pzd, single, words
+from uss import families, master, pkw, pkw_errors, pzd, single, words
 from uss.errors import FallsSilent, NoContact, NotStarted, Refused, TimedOut, UssError
 from uss.layout import Layout
 from uss.particulars import Particulars
@@ -293,7 +293,7 @@ class Drive:
             return
         name = pkw.name(job.number, job.index)
         if job.state == pkw.REFUSED:
-            text = pkw.error_text(job.error)
+            text = pkw_errors.error_text(job.error)
             raise Refused("drive %d refuses %s: %s" % (self.engine.address, name, text), job)
         if job.state == pkw.UNANSWERED:
             raise FallsSilent(

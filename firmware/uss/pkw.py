@@ -95,61 +95,13 @@ _WIDTHS = (0, 1, 2, 0, 1, 2, 1)  # by reply: words of its value, WORD or DOUBLE
 
 # --- errors -------------------------------------------------------------------------------------
 
-# Error numbers of reply 7: up to 7 from the specification (table 4.9), up to 100 the PROFIBUS
-# profile, beyond what each drive makes of them (MICROMASTER, V20, MASTERDRIVES, SIMOREG).
-ERRORS = (
-    (0, "no such parameter"),
-    (1, "read-only parameter"),
-    (2, "beyond the limits"),
-    (3, "no such index"),
-    (4, "not an array"),
-    (5, "wrong data type"),
-    (6, "may only be reset"),
-    (7, "description not changeable"),
-    (8, "not to be written in this telegram"),
-    (9, "no description"),
-    (10, "wrong access group"),
-    (11, "no change rights"),
-    (12, "key word missing"),
-    (13, "text not readable here"),
-    (14, "name not readable here"),
-    (15, "no text array"),
-    (16, "telegram cannot write"),
-    (17, "not in this operating state"),
-    (18, "other error"),
-    (20, "value not allowed"),
-    (21, "answer too long"),
-    (22, "parameter address invalid"),
-    (23, "format invalid"),
-    (24, "number of values inconsistent"),
-    (101, "parameter inactive"),
-    (102, "channel too small"),
-    (103, "wrong number of PKW words"),
-    (104, "value not permitted"),
-    (105, "parameter is indexed"),
-    (106, "task not implemented"),
-    (107, "text not changeable"),
-    (108, "wrong number of values"),
-    (200, "below the limit in operation"),
-    (201, "above the limit in operation"),
-    (204, "access level too low"),
-)
-
+# Error numbers of reply 7 that the code knows; all of them in words: `pkw_errors`.
 NO_CHANGE_RIGHTS = const(-1)  # what `Job.error` holds after reply 8, which carries no number
 NO_PARAMETER = const(0)
 BEYOND_LIMITS = const(2)
 NO_INDEX = const(3)
 TOO_LONG = const(21)
 TOO_SMALL = const(102)
-
-
-def error_text(number):
-    """Words for an error number of reply 7, or for NO_CHANGE_RIGHTS."""
-    for row, text in ERRORS:
-        if row == number:
-            return text
-    return "no change rights" if number == NO_CHANGE_RIGHTS else "error %d" % number
-
 
 # --- numbers ------------------------------------------------------------------------------------
 
@@ -206,7 +158,7 @@ class Job:
     is one for a `pkw_long.LongJob`.
 
     After it left PENDING: `state`. When DONE `width` (WORD or DOUBLE) and the words `high` and
-    `low`, which for a write are what the drive confirmed. When REFUSED `error` (see error_text)
+    `low`, which for a write are what the drive confirmed. When REFUSED `error` (see `pkw_errors`)
     and what a drive with variable length offers instead, else None: `next` and `previous`, after
     error 0 a parameter that exists, after error 2 a legal value of 16 bits. It may be asked again,
     with the same value, when it is not PENDING.
@@ -219,6 +171,7 @@ class Job:
         self.since = 0  # for the engine: when it was begun,
         self.tries = 0  # how often it was sent, as far as that matters,
         self.silences = 0  # how often in a row the drive was silent on it, see `channel`
+        self.tag = 0  # for whoever asks: which of its questions this is
         self.aim(task, number, index, high, low)
 
     def aim(self, task, number, index=0, high=0, low=0):

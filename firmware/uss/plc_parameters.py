@@ -22,7 +22,7 @@ class Parameter:
 
     DONE: it is over; until the next request. ERROR: a code of `status`; STATUS_WORD: that of the
     S7-1200. PKW_ERROR: with PARAMETER_REPLY the number with which the drive refused, see
-    `pkw.error_text`; else None.
+    `pkw_errors.error_text`; else None.
     """
 
     width = pkw.WORD

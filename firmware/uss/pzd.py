@@ -135,6 +135,10 @@ class Scaling:
         self.reference_centihertz = reference_centihertz
         self.absolute = absolute
 
+    def is_of(self, reference_centihertz, absolute):
+        """Whether it was made of these."""
+        return self.reference_centihertz == reference_centihertz and self.absolute == absolute
+
     def full_scale(self):
         """The count that stands for the reference."""
         return self.reference_centihertz if self.absolute else FULL_SCALE

@@ -38,6 +38,7 @@ _CENTIHERTZ_MAX = const(65_000)
 _UNANSWERED_MAX = const(2)  # then it is taken to be missing, and asked for before a START alone
 _ABSENT = (pkw.NO_PARAMETER, pkw.NO_INDEX)  # the drive has no such parameter
 RIGHT = const(-1)  # no row is wrong
+NOTHING_WRONG = (RIGHT,) * profiles.SUBJECTS
 SOURCES = tuple(row for _, row, _, _, _ in profiles.MEANING)
 
 
@@ -66,6 +67,8 @@ class Survey:
     to run: it was without its mains.
     """
 
+    latest_scaling = None  # of any drive: most drives of a bus have the same, and share it
+
     def __init__(self, drive, mask, spares):
         rows = len(profiles.ROWS)
         self.drive = drive
@@ -73,7 +76,7 @@ class Survey:
         self.complete = False
         self.scaling = None
         self.actual = None
-        self.wrong = [RIGHT] * profiles.SUBJECTS
+        self.wrong = NOTHING_WRONG
         self.unreadable = False
         self.version = 0
         self.unchecked = 0
@@ -82,11 +85,10 @@ class Survey:
         self._job = pkw.read(0)
         self._second = None  # of its jobs, while it has one of the spares
         self._spares = spares
-        self._asked = bytearray(_JOBS)  # the row that each of the two reads
         self._first = 0  # which was asked first of those on their way
         self._waiting = 0  # so many are on their way
         self._stale = 0  # so many of them were asked too early to count
-        self._unanswered = bytearray(rows)  # so often the drive fell silent on it
+        self._unanswered = None  # by row, so often the drive fell silent on it: most never do
         self._row = profiles.FIRST  # that is next in the round
         self._watched = 0  # of profiles.WATCHED
         self._round_is_next = False  # and not one of profiles.WATCHED
@@ -180,9 +182,9 @@ class Survey:
         self._tells_count = True
         if self._count:
             self._count.forget()
+        self._unanswered = None
         known = self.unreadable
         for row in range(len(self.values)):
-            self._unanswered[row] = 0
             if row in profiles.LATER:
                 self.values[row] = 0
             else:
@@ -222,7 +224,7 @@ class Survey:
         if place == _SECOND:
             job = self._second = self._spares.pop()
         job.aim(pkw.READ, number, index)
-        self._asked[place] = row
+        job.tag = row
         if row == profiles.COUNTER and self._count:
             self._count.asked()
         self._knows = True
@@ -247,18 +249,23 @@ class Survey:
     def _is_left_out(self, row):
         """Whether the round goes on without it: START alone asks for it, or it is watched."""
         missing = profiles.ROWS[row][3]
-        if self._unanswered[row] == _UNANSWERED_MAX and self.values[row] == missing:
+        if self._is_unanswered(row) and self.values[row] == missing:
             return True
         if row in profiles.LATER:
             return self.values[row] != _UNKNOWN
         return self.drive.wanted != 0 and self.complete and row in profiles.WATCHED
+
+    def _is_unanswered(self, row):
+        """Whether the drive has fallen silent on it so often that it seems to lack it."""
+        return self._unanswered is not None and self._unanswered[row] == _UNANSWERED_MAX
 
     def _oldest(self):
         return self._second if self._first == _SECOND else self._job
 
     def _take(self):
         """The answer to the question that was asked first."""
-        job, row = self._oldest(), self._asked[self._first]
+        job = self._oldest()
+        row = job.tag
         if self._first == _SECOND:
             self._spares.append(job)
         self._first = (self._first + 1) % _JOBS
@@ -271,7 +278,8 @@ class Survey:
         if job.state != pkw.DONE:
             self._take_refusal(job, row)
             return
-        self._unanswered[row] = 0
+        if self._unanswered:
+            self._unanswered[row] = 0
         kind = profiles.ROWS[row][2]
         if kind == profiles.COUNT:
             self._take_count(job.low)
@@ -292,8 +300,9 @@ class Survey:
             self._tells_count = False
         is_absent = job.state == pkw.REFUSED and job.error in _ABSENT
         if job.state == pkw.UNANSWERED:
+            self._unanswered = self._unanswered or bytearray(len(self.values))
             self._unanswered[row] = min(self._unanswered[row] + 1, _UNANSWERED_MAX)
-            is_absent = self._unanswered[row] == _UNANSWERED_MAX
+            is_absent = self._is_unanswered(row)
         if is_absent or row in profiles.LATER and job.state != pkw.TIMED_OUT:
             value = profiles.ROWS[row][3]
         if value is None or value == _UNKNOWN:
@@ -335,18 +344,15 @@ class Survey:
         reference, absolute = self.values[profiles.REFERENCE], self.values[profiles.ABSOLUTE]
         if reference < pzd.REFERENCE_MIN or absolute == _UNKNOWN:
             self.scaling = None
-        elif (
-            self.scaling is None
-            or self.scaling.reference_centihertz != reference
-            or self.scaling.absolute != bool(absolute)
-        ):
-            self.scaling = pzd.Scaling(reference, bool(absolute))
+        elif self.scaling is None or not self.scaling.is_of(reference, bool(absolute)):
+            latest = Survey.latest_scaling
+            if latest is None or not latest.is_of(reference, bool(absolute)):
+                Survey.latest_scaling = latest = pzd.Scaling(reference, bool(absolute))
+            self.scaling = latest
 
     def _judge_meaning(self):
         """Which row gives a word another meaning than this panel takes it for."""
-        values, wrong = self.values, self.wrong
-        for subject in range(profiles.SUBJECTS):
-            wrong[subject] = RIGHT
+        values, wrong = self.values, NOTHING_WRONG
         selection = max(values[profiles.SELECTION], 0)
         for subject, row, place, right, digit in profiles.MEANING:
             if digit is not None and selection // digit % 10:
@@ -355,7 +361,10 @@ class Survey:
             if value == _UNKNOWN or wrong[subject] != RIGHT:
                 continue
             if (value // place % 10 if place else value) not in right:
+                if wrong is NOTHING_WRONG:
+                    wrong = list(NOTHING_WRONG)
                 wrong[subject] = row
+        self.wrong = wrong
 
 
 def centihertz(high, low):

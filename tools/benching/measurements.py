@@ -10,6 +10,7 @@ is none of its business (rows.py). Runs on the Unix port, started by __main__.py
 
 import gc
 import json
+import os
 import sys
 import time
 
@@ -41,14 +42,17 @@ CHANGES = 20  # of the display, then the other key
 BOOT_MS = 600
 ON_CHIP = "tools/benching/on_chip.py"
 MASTER_ON_CHIP = "tools/benching/master_on_chip.py"
-TELLS_FREE_MS = 8_000
+DEPLOYED = "build/deployed"  # the firmware as tools/deploy copies it onto a chip
+FOLDER = 0x4000  # kind of an entry of ilistdir
+LEARN_MS_A_DRIVE = 1_000  # for a drive that is not shown to tell its settings
+TELLS_FREE_MS = 2_000
 TELLS_FREE = b"""
 import gc
 from machine import Timer
 def tell(_):
     gc.collect()
     print(gc.mem_free(), "bytes free")
-Timer(period=%d, mode=Timer.ONE_SHOT, callback=tell)
+timer = Timer(period=%d, mode=Timer.PERIODIC, callback=tell)
 """ % TELLS_FREE_MS
 
 
@@ -68,7 +72,8 @@ def world_of(kinds, baud, seed=0, **more):
 
     settings = {"drives": sorted(kinds)}
     settings.update(more.pop("settings", {}))
-    world = PicoWorld("panel", addresses=(), baud=baud, settings=settings, seed=seed, **more)
+    program = more.pop("program", "panel")
+    world = PicoWorld(program, addresses=(), baud=baud, settings=settings, seed=seed, **more)
     for address, kind in kinds.items():
         kind["reply_delay_us"] = -(-REPLY_CHARACTERS * CHARACTER_BITS * 1_000_000 // baud)
         world.drives[address] = Drive(world.clock, world.wire, address, any_baud=True, **kind)
@@ -425,13 +430,35 @@ def boot(quick, display):
     return checked(world, found)
 
 
-def heap(quick, drives):
-    """Free heap with so many drives in the settings, of the panel as it runs: a timer tells it."""
-    settings = {"drives": [address % 32 for address in range(1, int(drives) + 1)]}
-    world = world_at(19200, 0, settings=settings, files={"boot.py": TELLS_FREE})
-    if not world.run_until(lambda: b" bytes free" in world.usb, 2 * TELLS_FREE_MS):
+def heap(quick, how, drives):
+    """Free heap of the panel as it runs, once it knows so many drives: a timer tells it.
+
+    how: "frozen", or "files", compiled by __main__.py, on a MicroPython without the panel.
+    """
+    files = {"boot.py": TELLS_FREE}
+    if how == "files":
+        files.update(files_in(DEPLOYED))
+    program = "panel" if how == "frozen" else "stock"
+    world = world_at(19200, int(drives), program=program, files=files)
+    settle(world)
+    world.run(LEARN_MS_A_DRIVE * int(drives))
+    told = world.usb.count(b" bytes free")
+    if not world.run_until(lambda: world.usb.count(b" bytes free") > told, 2 * TELLS_FREE_MS):
         raise RuntimeError("the chip tells no free heap: %r" % bytes(world.usb[-500:]))
-    return checked(world, {"free": int(bytes(world.usb).split(b" bytes free")[0].split()[-1])})
+    free = int(bytes(world.usb).rpartition(b" bytes free")[0].split()[-1])
+    return checked(world, {"free": free})
+
+
+def files_in(folder, within=""):
+    """{path: content} of all that is in a folder."""
+    files = {}
+    for name, kind, *_ in os.ilistdir(folder):
+        if kind == FOLDER:
+            files.update(files_in(folder + "/" + name, within + name + "/"))
+        else:
+            with open(folder + "/" + name, "rb") as file:
+                files[within + name] = file.read()
+    return files
 
 
 def picture(quick, baud, drives):

@@ -53,6 +53,10 @@ class Firmware:
         """{path: bytes} for a chip whose `sys.implementation._mpy` is this (0: takes none)."""
         if not self.compiled or not self.suits(chip_mpy):
             return dict(self.sources)
+        return self.compiled_files()
+
+    def compiled_files(self):
+        """{path: bytes} for a chip that takes the compiled files."""
         return {path: self.sources[path] for path in STAY_SOURCE} | self.compiled
 
     def suits(self, chip_mpy):

@@ -564,7 +564,7 @@ MUTATIONS = (
         ("SHOWN", "ANNOUNCED"), 3,
         (
             "panel/control.py",
-            "        if risks.exposure_ms(self) > self._exposure_ms:\n",
+            "        if risks.exposure_ms(self) > self._command.exposure_ms:\n",
             "        if risks.exposure_ms(self) < 0:\n",
         ),
     ),
