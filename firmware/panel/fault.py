@@ -113,8 +113,9 @@ class Fault(Report):
 
 
 class NoFault:
-    """Stands for the `Fault` of a drive that has not tripped since the panel started. Most never do:
-    with 31 drives that saves 3 KB.
+    """Stands for the `Fault` of a drive that has not tripped since the panel started.
+
+    Most never do: with 31 drives that saves 3 KB.
     """
 
     active = False

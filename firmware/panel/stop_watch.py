@@ -96,8 +96,9 @@ class StopWatch:
 
 
 class NoWatch:
-    """Stands for the `StopWatch` of a drive that nobody has stopped since the panel started: with 31
-    drives that saves 3 KB.
+    """Stands for the `StopWatch` of a drive that nobody has stopped since the panel started.
+
+    With 31 drives that saves 3 KB.
     """
 
     active = False

@@ -41,8 +41,11 @@ class NotStarted(UssError):
 
 
 class Refused(UssError):
-    """The drive refused a parameter task. number: see `pkw_errors`; -1 when others have the right to
-    change parameters. job: the task, with what the drive offers instead."""
+    """The drive refused a parameter task.
+
+    number: see `pkw_errors`; -1 when others have the right to change parameters. job: the task,
+    with what the drive offers instead.
+    """
 
     def __init__(self, text, job):
         super().__init__(text)
