@@ -24,6 +24,7 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from types import SimpleNamespace
 
 import pytest
+
 from line_coverage import LineCoverage
 from tiers import TIERS, TOP, FileRun, survey
 

@@ -16,8 +16,8 @@ from boards.sim.chip import UART, Chip, Pin
 from boards.sim.clock import Clock
 from boards.sim.drive import Drive
 from boards.sim.wire import Transceiver, Wire
-from hal.pacer import Pacer
 from hal.bursts import IDLE_BITS
+from hal.pacer import Pacer
 from hal.rs485 import Rs485Link
 from uss import families
 from uss.layout import Layout

@@ -404,7 +404,7 @@ def test_a_source_that_was_written_away_is_said_and_start_is_refused():
 
 def test_a_tap_on_set_writes_the_ram_and_held_the_eeprom():
     """Defect 19: nothing outlived the drive's power."""
-    for held_ms, said, kept in ((100, "WRITTEN (RAM)", 5), (2000, "WRITTEN (EEPROM)", 6)):
+    for held_ms, outcome, kept in ((100, "WRITTEN (RAM)", 5), (2000, "WRITTEN (EEPROM)", 6)):
         world = parameter_mode(P1000)
         drive = world.drives[1]
         world.press("EDIT")
@@ -412,7 +412,7 @@ def test_a_tap_on_set_writes_the_ram_and_held_the_eeprom():
         world.press("SET")
         world.press("SET", held_ms)
         world.run(500)
-        assert row_2(world) == said and drive.read(1000) == 6
+        assert row_2(world) == outcome and drive.read(1000) == 6
         drive.power_off()
         world.run(2000)
         drive.power_on()

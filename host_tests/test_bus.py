@@ -1260,13 +1260,13 @@ def test_the_link_has_a_clock_and_the_rate_is_one_of_uss():
 
 
 def test_each_trouble_has_an_exception_that_says_so():
-    for how, trouble, _, words in TROUBLES:
+    for how, trouble, _, told in TROUBLES:
         bench = Bench()
         bench.bus.wait(1)
         spoil(bench.wire, bench.motor(), how)
         bench.bus.wait(2)
         text = refusal(NoContact, bench.drive.read, 700)
-        assert words in text, (how.__name__, text)
+        assert told in text, (how.__name__, text)
         try:
             bench.drive.read(700)
         except NoContact as reason:

@@ -5,6 +5,7 @@ import gc
 import sys
 
 import micropython
+
 from test_pkw import characters
 from uss import pkw, pkw_array, pkw_description, pkw_text
 from uss.change_reports import Reports

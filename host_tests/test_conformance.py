@@ -11,6 +11,7 @@ import ast
 import pathlib
 
 import pytest
+
 from conformance.kinds import KINDS
 from conformance.master import VARIABLE
 from conformance.program import Drives
@@ -46,8 +47,7 @@ def on(*names):
 
 def counters(node):
     """r2024 ... r2031, before the telegram that asks for the first one was counted."""
-    values = [node.task(1, number)[1][0] for number in range(2024, 2032)]
-    return values
+    return [node.task(1, number)[1][0] for number in range(2024, 2032)]
 
 
 def counted(node, *kinds):

@@ -6,6 +6,7 @@ the USS specification (E20125-D0001-S302-A1-7600).
 """
 
 import pytest
+
 from conformance.kinds import EVERYBODY, KINDS, VALUES
 from conformance.master import VARIABLE, Node
 from conformance.program import Drives

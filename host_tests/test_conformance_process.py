@@ -8,6 +8,7 @@ what the words mean. Sections are those of the USS specification.
 import time
 
 import pytest
+
 from conformance.kinds import KINDS
 from conformance.master import REPLY_S, Node
 from conformance.program import Drives

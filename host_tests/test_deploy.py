@@ -5,10 +5,17 @@ import json
 from types import SimpleNamespace
 
 import pytest
+
+import arrival
+import deployment
+import image
+import main
+import plan
+import ports
 from deploy_bench import (
+    FLASH,
     FROZEN,
     MPY,
-    FLASH,
     NEWER,
     OLD,
     RP2040,
@@ -19,13 +26,6 @@ from deploy_bench import (
     firmware,
     running,
 )
-
-import arrival
-import deployment
-import image
-import main
-import plan
-import ports
 from errors import DeployError
 
 INTERPRETERS = "host"

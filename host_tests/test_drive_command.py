@@ -16,6 +16,7 @@ import tty
 from types import SimpleNamespace
 
 import pytest
+
 from test_port_panel import (  # noqa: F401
     DRIVE,
     PATIENCE_S,

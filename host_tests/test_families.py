@@ -6,8 +6,24 @@ Numbers of chapters are those of the protocol notes, USS.md.
 
 from uss import pkw, profiles, pzd, words
 from uss.families import (
-    CU240S, FAMILIES, G110, G120, GENERIC, MM3, MM4, MM410, MM420, MM430, MM440, RPM, STEPS, V20,
-    baud_code, can_be_set_to, is_float, value,
+    CU240S,
+    FAMILIES,
+    G110,
+    G120,
+    GENERIC,
+    MM3,
+    MM4,
+    MM410,
+    MM420,
+    MM430,
+    MM440,
+    RPM,
+    STEPS,
+    V20,
+    baud_code,
+    can_be_set_to,
+    is_float,
+    value,
 )  # fmt: skip
 from uss.layout import VARIABLE, Layout
 from uss.timing import BAUD_RATES

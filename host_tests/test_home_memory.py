@@ -7,6 +7,7 @@ chips.
 """
 
 from micropython import heap_lock, heap_unlock
+
 from panel_bench import panel, row_2
 
 INTERPRETERS = "unix64 unix32"

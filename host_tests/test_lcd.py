@@ -3,8 +3,16 @@
 
 from boards.sim.chip import Pin
 from boards.sim.lcd import (
-    BUSY, NO_CELL, NO_FUNCTION_SET, SHORT_CYCLE, SHORT_PULSE, TOO_SOON, UNKNOWN, UNSTEADY,
-    POWER_ON_US, Lcd,
+    BUSY,
+    NO_CELL,
+    NO_FUNCTION_SET,
+    POWER_ON_US,
+    SHORT_CYCLE,
+    SHORT_PULSE,
+    TOO_SOON,
+    UNKNOWN,
+    UNSTEADY,
+    Lcd,
 )  # fmt: skip
 from boards.sim.world import World
 from lcd_bench import HOURGLASS, UP_AND_DOWN, LcdBench

@@ -10,6 +10,7 @@ import subprocess
 from types import ModuleType
 
 import pytest
+
 import settings
 import version
 from boards.sim.script import COMMANDS

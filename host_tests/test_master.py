@@ -8,7 +8,6 @@ from uss.layout import VARIABLE, Layout
 from uss.master import CLOSED, DEAD_MAN_US, LISTENING, LOST_US, Master
 from uss.timing import BAUD_RATES, Timing
 
-
 # --- who talks when -----------------------------------------------------------------------------
 
 

@@ -397,7 +397,7 @@ def test_drives_that_were_never_heard_share_one_text_and_are_no_alarm_each():
 
 
 def test_a_drive_that_was_not_heard_since_a_reset_may_run():
-    world = panel(addresses=(1, 2), **{"parameters": {2014: 0}, "settings": {"unsupervised": [2]}})
+    world = panel(addresses=(1, 2), parameters={2014: 0}, settings={"unsupervised": [2]})
     start(world, 2)
     world.drives[2].unplug()
     world.run(100)
@@ -514,7 +514,7 @@ def test_a_question_hides_no_trip_of_the_drive_that_it_is_about():
 
 
 def test_nor_what_another_drive_does():
-    world = panel(addresses=(1, 2), **{"parameters": {2014: 0}, "settings": {"unsupervised": [2]}})
+    world = panel(addresses=(1, 2), parameters={2014: 0}, settings={"unsupervised": [2]})
     start(world, 2)
     show(world, 1)
     world.press("START")

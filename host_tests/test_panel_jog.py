@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The operator's manual, JOG, REVERSE, a held STOP: a motor turns only as long as it should."""
 
+from panel.fault import Fault
 from panel_bench import (
     all_running,
     panel,
@@ -11,7 +12,6 @@ from panel_bench import (
     telegrams,
     unsupervised,
 )
-from panel.fault import Fault
 from uss import pkw
 from uss.drive import Drive
 
@@ -225,7 +225,7 @@ def test_a_jog_key_that_is_jammed_at_power_on_turns_nothing():
     world.down("JOG_RIGHT")
     world.reset()
     world.run(4000)
-    assert set(stw for _, stw in telegrams(world, 0)) == {OFF1}
+    assert {stw for _, stw in telegrams(world, 0)} == {OFF1}
     world.check()
 
 

@@ -4,7 +4,16 @@
 import main
 from boards.sim.world import World
 from panel_bench import (
-    OFF1, all_running, panel, row_2, running, said, settled, settled_row_2, starts, telegrams,
+    OFF1,
+    all_running,
+    panel,
+    row_2,
+    running,
+    said,
+    settled,
+    settled_row_2,
+    starts,
+    telegrams,
     wait_until_known,
 )  # fmt: skip
 

@@ -502,19 +502,19 @@ def test_a_long_time_is_asked_about_with_its_seconds():
 
 def test_which_times_are_long():
     """More than 2 s, or than four rounds of the bus in which every answer comes late."""
-    for drives, baud, off_time_ms, is_long in (
+    for drives, baud, p2014_ms, is_long in (
         (1, 19200, 2000, False),
         (1, 19200, 2001, True),
         (8, 4800, 2001, False),
         (8, 4800, 60_000, True),
     ):
         world = panel(
-            addresses=tuple(range(1, drives + 1)), baud=baud, parameters={2014: off_time_ms}
+            addresses=tuple(range(1, drives + 1)), baud=baud, parameters={2014: p2014_ms}
         )
         wait_until_known(world)
         world.press("START")
         world.run(8000)
-        assert (row_2(world) == ASKED) == is_long, (drives, off_time_ms, world.lcd())
+        assert (row_2(world) == ASKED) == is_long, (drives, p2014_ms, world.lcd())
         assert starts(world) == (0 if is_long else 1)
         world.check()
 
@@ -535,8 +535,8 @@ def test_a_long_time_is_accepted_as_it_is_and_until_the_panel_restarts():
     assert row_2(world) == "RUNNING      A1"
     world.press("STOP")
     world.run(5000)
-    for off_time_ms in (10_001, 0):
-        world.drives[1].write(2014, 0, off_time_ms)
+    for p2014_ms in (10_001, 0):
+        world.drives[1].write(2014, 0, p2014_ms)
         world.press("START")
         wait_for(world, ASKED)
         world.press("UP")
@@ -558,12 +558,12 @@ def test_who_accepted_that_it_runs_on_for_ever_accepts_any_time():
 
 
 def test_a_time_that_changes_while_it_runs_is_said():
-    for off_time_ms, text in ((0, "RUN, P2014=0 A1"), (65_535, "P2014 LONG   A1")):
+    for p2014_ms, text in ((0, "RUN, P2014=0 A1"), (65_535, "P2014 LONG   A1")):
         world = panel(parameters={2014: 1000})
         wait_until_known(world)
         world.press("START")
         world.run(4000)
-        world.drives[1].write(2014, 0, off_time_ms)
+        world.drives[1].write(2014, 0, p2014_ms)
         world.run(6500)
         assert settled_row_2(world) == text and world.drives[1].state == "running"
         world.drives[1].write(2014, 0, 1500)
@@ -634,14 +634,14 @@ def test_a_p2014_that_only_start_has_read_is_known_to_the_bus():
     """It decides how soon the drive is asked again while it runs."""
     world = panel(parameters={2014: 2000})
     wait_until_known(world)
-    for off_time_ms in (1500, 1200, 1600, 1300):
+    for p2014_ms in (1500, 1200, 1600, 1300):
         world.run(3000)
-        world.drives[1].write(2014, 0, off_time_ms)
+        world.drives[1].write(2014, 0, p2014_ms)
         world.press("START")
         world.run(3000)
         assert starts(world) and world.drives[1].state == "running"
         bus = world.app.bus
-        assert bus._care.bound_us(bus.drives[0]) == off_time_ms * 1000 // 3, off_time_ms
+        assert bus._care.bound_us(bus.drives[0]) == p2014_ms * 1000 // 3, p2014_ms
         world.press("STOP")
         world.run(6000)
     world.check()

@@ -8,10 +8,17 @@ from uss import families, pkw, pkw_errors, status
 from uss.layout import Layout
 from uss.master import LISTENING
 from uss.plc import (
-    TYPES, USS_CTRL, USS_INIT, USS_RPM_D, USS_RPM_R, USS_RPM_W, USS_WPM_D, USS_WPM_R, USS_WPM_W,
+    TYPES,
+    USS_CTRL,
+    USS_INIT,
+    USS_RPM_D,
+    USS_RPM_R,
+    USS_RPM_W,
+    USS_WPM_D,
+    USS_WPM_R,
+    USS_WPM_W,
     Port,
 )  # fmt: skip
-
 
 # --- RUN, and what a motor does on it -----------------------------------------------------------
 

@@ -7,10 +7,18 @@ A line on which one drive, node 3, answers what the test says, to the character.
 from boards.sim.clock import Clock
 from line_bench import MASK, Line, of_words, words_of
 from uss import status
-from uss.layout import VARIABLE, Layout
 from uss.families import MM4
+from uss.layout import VARIABLE, Layout
 from uss.plc import (
-    TYPES, USS_CTRL, USS_INIT, USS_RPM_D, USS_RPM_R, USS_RPM_W, USS_WPM_D, USS_WPM_R, USS_WPM_W,
+    TYPES,
+    USS_CTRL,
+    USS_INIT,
+    USS_RPM_D,
+    USS_RPM_R,
+    USS_RPM_W,
+    USS_WPM_D,
+    USS_WPM_R,
+    USS_WPM_W,
     Port,
 )  # fmt: skip
 

@@ -14,8 +14,20 @@ from hal.rs485 import Rs485Link
 from plc_bench import SCAN_US
 from test_plc_codes import NEVER
 from uss import (
-    drive, families, layout, master, pkw, plc, pzd, receiver, scaling, single, status, telegram,
-    timing, words,
+    drive,
+    families,
+    layout,
+    master,
+    pkw,
+    plc,
+    pzd,
+    receiver,
+    scaling,
+    single,
+    status,
+    telegram,
+    timing,
+    words,
 )  # fmt: skip
 
 MANUAL = "firmware/uss/plc.md"

@@ -14,6 +14,7 @@ import sys
 import time
 
 import pytest
+
 from test_terminal import Terminal
 
 TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))

@@ -76,8 +76,7 @@ def all_texts(value):
         yield value
     elif isinstance(value, (tuple, dict)):
         for part in value.values() if isinstance(value, dict) else value:
-            for text in all_texts(part):
-                yield text
+            yield from all_texts(part)
 
 
 def test_no_text_is_wider_than_its_place():

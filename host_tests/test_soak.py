@@ -128,7 +128,7 @@ def test_a_world_may_have_every_switch_of_the_drive_set():
     drawn = {}
     for seed in range(400):
         drawn.update(switched(Dice(seed)))
-    assert set(drawn) == set(row[0] for row in SWITCHES)
+    assert set(drawn) == {row[0] for row in SWITCHES}
 
 
 def test_a_drive_that_stands_though_nobody_ordered_it_is_told_from_one_that_turns_round():

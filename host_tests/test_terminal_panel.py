@@ -8,11 +8,19 @@ import main
 from boards.sim.script import ORDER
 from boards.sim.world import World
 from tools.hand import FIRST_REPEAT_MS, REPEAT_MS, WAITING_MAX, Hand
-from tools.panel_picture import COLUMNS, ROWS, SAID_ROWS, SHAFT
-from tools.panel_picture import Picture, fitted, seen, shows_display, telegram_line
+from tools.panel_picture import (
+    COLUMNS,
+    ROWS,
+    SAID_ROWS,
+    SHAFT,
+    Picture,
+    fitted,
+    seen,
+    shows_display,
+    telegram_line,
+)
 from tools.terminal import ESCAPE, OTHER, Strokes
-from tools.terminal_panel import WORK_MS, Pace, RealPace, Session
-from tools.terminal_panel import farewell, shows_boxes, turning
+from tools.terminal_panel import WORK_MS, Pace, RealPace, Session, farewell, shows_boxes, turning
 
 NOT_TRACED = "test_stop_ends_every_command_at_once_and_stops"
 

@@ -15,8 +15,9 @@ import subprocess
 import sys
 import tarfile
 
-import line_coverage
 import pytest
+
+import line_coverage
 import tiers
 from version import VERSION
 

@@ -92,8 +92,7 @@ def survey() -> Survey:
                 [*tier.command, RUNNER, tier.name],
                 cwd=TOP,
                 stdin=subprocess.DEVNULL,
-                stdout=subprocess.PIPE,
-                stderr=subprocess.PIPE,
+                capture_output=True,
                 text=True,
                 timeout=SURVEY_TIMEOUT_S,
             )

@@ -17,8 +17,8 @@ import time
 
 import main
 from boards.sim import mm420
-from boards.sim.script import LINE_MAX, ExpectationFailed, Script, ScriptError
 from boards.sim.board import WIRINGS
+from boards.sim.script import LINE_MAX, ExpectationFailed, Script, ScriptError
 from boards.sim.world import World
 from hal.store import FileStore
 from settings import load, save
@@ -460,8 +460,7 @@ def pieces(stream):
 
 def standard_input():
     try:
-        for line in pieces(sys.stdin):
-            yield line
+        yield from pieces(sys.stdin)
     except UnicodeError:
         raise UsageError("standard input is no text")
     except OSError as error:

@@ -23,7 +23,6 @@ from uss.drive import ANY, ATTENTION, COMMANDS, COUNTERS, NODES, OVERDUE, WANTS,
 from uss.care import Care
 from uss.fast import calling, greatest
 from uss.layout import STANDARD
-from uss.silence import SPENT_MASK
 
 _LIST_MAX = const(255)  # entries of the circulating list
 _SINGLES_MAX = const(8)  # telegrams outside the list that wait

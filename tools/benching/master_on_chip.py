@@ -5,6 +5,7 @@ import json
 import time
 
 import board
+
 from hal.pacer import Pacer
 from uss.layout import Layout
 from uss.master import CLOSED, Master

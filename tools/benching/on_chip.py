@@ -11,6 +11,7 @@ import time
 from array import array
 
 import board
+
 import main
 from uss import pkw
 

@@ -5,7 +5,8 @@ The bars are facts and stand here; the figures come from measurements.py, whose 
 arguments are the tasks. Nothing here measures.
 """
 
-from typing import Callable, NamedTuple
+from collections.abc import Callable
+from typing import NamedTuple
 
 
 class Task(NamedTuple):

@@ -10,13 +10,14 @@ import argparse
 import sys
 from pathlib import Path
 
+from serial.tools.list_ports import comports
+
 from arrival import wait_for_panel
 from chip import Chip
 from deployment import Deployment, Options
 from errors import DeployError
 from image import BOARD, Firmware, mpy_cross
 from ports import choose, waits_for_uf2
-from serial.tools.list_ports import comports
 
 TOP = Path(__file__).resolve().parents[2]
 VIRTUAL = "sim"

@@ -184,7 +184,7 @@ class Reader:
         takes turns with announcements and warnings."""
         judge = self.judge
         row_2 = self.rows[1]
-        hides = row_2.startswith("RUNNING") or row_2.startswith("WARN") or said_in(row_2)
+        hides = row_2.startswith(("RUNNING", "WARN")) or said_in(row_2)
         if not hides or self.reads(EXPOSED[0]) or self.reads(EXPOSED[1]):
             self._exposed_us = now
         elif not judge.is_more_exposed(judge.shown, case):

@@ -6,13 +6,12 @@
     soak.broken                     # None, or what ended it
 """
 
-import main
-
 # From the bottom of the house up, or the 32-bit build runs out of stack.
 import boards.sim.drive_parameters
 import boards.sim.mm420
 import boards.sim.parameter_channel
 import boards.sim.world  # noqa: F401
+import main
 from tools.soaking.hand import Hand
 from tools.soaking.judge import Judge
 from tools.soaking.reader import Reader
