@@ -272,10 +272,9 @@ class Control:
         drive = self.drive
         if self.survey.version != self._judged:
             self._judge_status()
-        if self.fault is not NO_FAULT:
-            self.fault.step(now)
-        elif drive.zsw & pzd.ZSW_FAULT:
+        if drive.zsw & pzd.ZSW_FAULT and self.fault is NO_FAULT:
             self.fault = Fault(drive, self._mask)
+        self.fault.step(now)
         if drive.contact != self._contact:
             self._contact = drive.contact
             self.lost_running = drive.was_running and not drive.contact

@@ -121,6 +121,9 @@ class NoFault:
     active = False
     number = 0
 
+    def step(self, now):
+        pass
+
     def show(self, passed_ms):
         pass
 
