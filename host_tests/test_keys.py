@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Keys: debounced, repeated, and deaf to what was down when the panel was switched on."""
 
-from panel.keys import Acts, Keys
+from boards.sim.board import KEYS
+from panel.keys import NAMES as ALL
+from panel.keys import Acts, Keys, unknown
 
 NAMES = ("START", "STOP", "UP")
 START, STOP, UP = 1, 2, 4
@@ -33,6 +35,11 @@ def test_keys_have_the_bits_of_their_names():
     keys = Keys(NAMES, MASK)
     assert (keys.bit("START"), keys.bit("STOP"), keys.bit("UP")) == (START, STOP, UP)
     assert keys.bit("JOG_LEFT") == 0  # not on this board
+
+
+def test_the_names_of_keys_are_those_of_one_table():
+    assert set(KEYS) == set(ALL) and not unknown(ALL)
+    assert unknown(("STOP", "ADRESS_UP")) == ["ADRESS_UP"]
 
 
 def test_a_key_counts_after_twenty_milliseconds_and_once():

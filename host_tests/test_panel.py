@@ -438,6 +438,24 @@ def test_what_is_wrong_with_the_settings_file_is_named():
     }  # fmt: skip
 
 
+def test_a_key_that_the_panel_does_not_know_is_named():
+    """A board file with a slip of the pen had a dead key, and nobody was told."""
+
+    def start(board):
+        names = board.keypad.names
+        board.keypad.names = tuple("ADRESS_UP" if name == "ADDRESS_UP" else name for name in names)
+        return main.start(board)
+
+    world = World(start)
+    world.run(1000)
+    assert row_2(world) == "UNKNOWN KEY"
+    world.run(3000)
+    assert row_2(world) == "ADRESS_UP"
+    world.run(3000)
+    assert row_2(world) == "READY        A1"
+    world.check()
+
+
 # --- other worlds --------------------------------------------------------------------------------
 
 

@@ -13,12 +13,23 @@ starts nothing, while a STOP that is down, or whose wire is broken, is down from
 
 from micropython import const
 
+# All keys that the panel knows; a board has STOP and any others of them.
+NAMES = (
+    "START", "STOP", "REVERSE", "JOG_RIGHT", "JOG_LEFT", "UP", "DOWN", "ADDRESS_UP",
+    "ADDRESS_DOWN", "PARAM", "NEXT", "PREVIOUS", "EDIT", "SET",
+)  # fmt: skip
+
 _DEBOUNCE_MS = const(20)
 _REPEAT_DELAY_MS = const(400)
 _REPEAT_MS = const(120)
 
 # How a value moves while its key is held: repeats, then steps for each of them.
 PACES = ((16, 100), (8, 10), (0, 1))
+
+
+def unknown(names):
+    """Those of a board's keys that the panel does not know: each would be dead."""
+    return [name for name in names if name not in NAMES]
 
 
 class Acts:

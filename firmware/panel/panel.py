@@ -15,7 +15,7 @@ from panel import risks, texts
 from panel.announcer import Announcer
 from panel.fault import Report
 from panel.jog_keys import JogKeys
-from panel.keys import Acts, Keys
+from panel.keys import Acts, Keys, unknown
 from panel.pages.home import Home
 from panel.pages.parameters import Parameters
 from panel.pages.question import Question
@@ -86,7 +86,8 @@ class Panel:
         self._risk_value = None  # and as it was then
         self._over = self._splash  # what hides the page: the splash, a question, or None
         self._began_at = None
-        self._notices = _about(settings) or ([notice] if notice else [])
+        self._notices = _about_keys(key_names)
+        self._notices += _about(settings) or ([notice] if notice else [])
         self._message_at = 0
         self._view = View(self, screen)
         self._view.begin(self._splash)
@@ -399,6 +400,14 @@ class Panel:
             self.say(self._notices.pop(0), now_ms)
         elif self._acts.pressed & self._start_key:
             self.say(texts.REFUSED_EARLY, now_ms)
+
+
+def _about_keys(names):
+    """Which keys of the board the panel does not know: rows that are said one after the other."""
+    rows = []
+    for name in unknown(names):
+        rows += [texts.KEY_UNKNOWN, name[: texts.ROW_WIDTH].encode()]
+    return rows
 
 
 def _about(settings):
