@@ -86,8 +86,10 @@ class Silence:
             rests = self.rests[drive.address] or drive.silent or self.wait_us > 0
             rests = 1 if rests and self._is_anyone_there() else 0
         if rests != self.rests[drive.address]:
-            self._set(drive.address, rests)
-            self._fill_round()
+            if rests:
+                self._leave_round(drive)
+            else:
+                self._join_round(drive)
 
     def give_turn(self):
         """One that rests has a turn, if none of them has."""
@@ -120,6 +122,30 @@ class Silence:
     def _set(self, address, rests):
         self.rests[address] = rests
         self.resting += 1 if rests else -1
+
+    # Where the round goes on moves with the round, or the next drive would have no turn: that of
+    # a drive behind one that answers every second telegram would never come. An interrupt that
+    # takes a turn between the two steps asks one drive twice, and leaves none out.
+
+    def _leave_round(self, drive):
+        turns = self._turns
+        places = 0  # of this drive, among those that have had their turn
+        for place in range(min(turns.following, turns.round_count)):
+            if turns.round[place] is drive:
+                places += 1
+        turns.following = max(turns.following - places, 0)
+        self._set(drive.address, 1)
+        self._fill_round()
+
+    def _join_round(self, drive):
+        self._set(drive.address, 0)
+        self._fill_round()
+        turns = self._turns
+        place = 0
+        while place < turns.round_count and place < turns.following:
+            if turns.round[place] is drive:
+                turns.following += 1
+            place += 1
 
     def _fill_round(self):
         """The list without those that rest. In place: it takes no heap, and an interrupt that

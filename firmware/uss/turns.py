@@ -55,7 +55,7 @@ class Turns:
         self._attention = bytearray(ATTENTION)
         self.round = []  # the list without those that rest, which the engine walks:
         self.round_count = 0  # so many of these
-        self._next = _LIST_MAX  # place in it; behind its end a round begins
+        self.following = _LIST_MAX  # place in it of the next one; behind its end a round begins
         self._round_began_at = None
         self._round_left_us = 0  # of the cycle time, when the round was over before it
         self._again = None  # whose exchange is to be repeated
@@ -132,7 +132,7 @@ class Turns:
             if drive not in entries:
                 raise ValueError("drive %d would have no turn" % drive.address)
         self._set_list(entries)
-        self._next = _LIST_MAX
+        self.following = _LIST_MAX
 
     def readdress(self, drive, address):
         """From the next telegram on, `drive` answers at another address.
@@ -259,12 +259,12 @@ class Turns:
             drive = self._most_urgent()
             if drive is not None:
                 return drive
-        position = self._next
+        position = self.following
         if position >= self.round_count:
             if not self.round_count or self.cycle_us and not self._begin_round(now):
                 return None
             position = 0
-        self._next = position + 1
+        self.following = position + 1
         return self.round[position]
 
     def _begin_round(self, now):
