@@ -391,6 +391,17 @@ MUTATIONS = (
         ("uss/silence.py", "            asked.ask_soon()\n", "            pass\n"),
     ),
     Mutation(
+        "the next one's turn is lost",
+        "a drive behind one that answers now and then is never asked",
+        ("NEGLECTED",), 23,
+        (
+            "uss/silence.py",
+            "        turns.following = max(turns.following - places, 0)\n",
+            "",
+        ),
+        ("uss/silence.py", "                turns.following += 1\n", "                pass\n"),
+    ),
+    Mutation(
         "a running drive backs off",
         "a drive that runs, and is lost, is asked as seldom as one that stands",
         ("NEGLECTED",), 93,
