@@ -7,8 +7,9 @@ from boards.sim.chip import Chip, Pin
 from boards.sim.clock import Clock
 from boards.sim.lcd import POWER_ON_US, Lcd
 from boards.sim.wire import Wire
-from hal.backpack import Backpack, answers
+from hal.backpack import Backpack
 from hal.hd44780 import Hd44780
+from hal.probe import answers
 
 LOOP_US = 2_000  # from one call of show to the next
 

@@ -448,9 +448,7 @@ def test_a_key_that_the_panel_does_not_know_is_named():
 
     world = World(start)
     world.run(1000)
-    assert row_2(world) == "UNKNOWN KEY"
-    world.run(3000)
-    assert row_2(world) == "ADRESS_UP"
+    assert row_2(world) == "NO KEY ADRESS_UP"
     world.run(3000)
     assert row_2(world) == "READY        A1"
     world.check()

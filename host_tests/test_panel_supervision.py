@@ -645,3 +645,31 @@ def test_a_p2014_that_only_start_has_read_is_known_to_the_bus():
         world.press("STOP")
         world.run(6000)
     world.check()
+
+
+def test_a_start_is_asked_about_behind_the_question_of_a_parameter():
+    """SET in the moment of START ended the panel: the risk of a START was looked up for a question
+    that was not about it."""
+    world = panel(addresses=(1, 2))
+    wait_until_known(world)
+    world.drives[2].write(2014, 0, 0)
+    world.press("START")
+    world.run(3000)
+    world.press("ADDRESS_UP")
+    world.run(1500)
+    world.press("PARAM")
+    world.run(800)
+    for key, ms in (("EDIT", 200), ("UP", 200), ("START", 20), ("SET", 300)):
+        world.press(key)
+        world.run(ms)
+    assert row_2(world) == "SET=DO  PARAM=NO"
+    world.run(3000)
+    assert row_2(world) == "SET=DO  PARAM=NO"  # nobody has answered it
+    world.press("PARAM")
+    world.run(500)
+    assert row_2(world) == ASKED
+    world.run(1000)
+    world.press("START")
+    world.run(3000)
+    assert world.drives[2].state == "running"
+    world.check()

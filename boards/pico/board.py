@@ -17,8 +17,8 @@ import micropython
 import rp2
 from machine import I2C, UART, WDT, Pin, Timer
 
-from hal.backpack import Backpack, answers
 from hal.keypad import Keypad
+from hal.probe import answers
 from hal.rp2_link import Rp2Link
 from hal.store import FileStore
 
@@ -166,6 +166,8 @@ def make_display():
     i2c = make_i2c()
     for address in BACKPACK_ADDRESSES:
         if answers(i2c, address):
+            from hal.backpack import Backpack
+
             return Backpack(make_posted_i2c, address, clock)
     from hal.rp2_lcd import PioHd44780
 

@@ -5,7 +5,6 @@ Fulfils the contract `display` of `hal`; what is written when is `hal.hd44780`. 
 unplugged, or whose wires a pulse has upset, is tried again every AGAIN_US and set up anew when it
 answers; the panel goes on meanwhile.
 
-    answers(i2c, 0x27)                  # whether one is there
     display = Backpack(make_i2c, 0x27, clock)
     display.show(picture)               # each step of the loop, until it answers True
     display.failures                    # transfers that were not acknowledged
@@ -14,27 +13,18 @@ answers; the panel goes on meanwhile.
 from micropython import const
 
 from hal.hd44780 import POWER_ON_US, CharacterDisplay
+from hal.probe import BACKLIGHT
 
 AGAIN_US = const(500_000)
 
 # What the outputs P0...P7 lead to on every backpack of this kind. R/W, P1, stays low.
 _REGISTER_SELECT = const(0x01)
 _ENABLE = const(0x04)
-_BACKLIGHT = const(0x08)
 _DATA = const(0xF0)  # D4...D7
 
 # Two bytes for the controller, each 4 on the bus, and one before them when the register changes.
 # With the address that is 1 ms at 100 kHz.
 _LONGEST = const(10)
-
-
-def answers(i2c, address):
-    """Whether a backpack is there. Switches its backlight on and writes nothing."""
-    try:
-        i2c.writeto(address, bytes((_BACKLIGHT,)))
-    except OSError:
-        return False
-    return True
 
 
 class Backpack(CharacterDisplay):
@@ -58,7 +48,7 @@ class Backpack(CharacterDisplay):
         CharacterDisplay.__init__(self, clock)
 
     def _nibble(self, register, code):
-        lines = code & _DATA | _BACKLIGHT | (_REGISTER_SELECT if register else 0)
+        lines = code & _DATA | BACKLIGHT | (_REGISTER_SELECT if register else 0)
         buffer, count = self._buffer, self._count
         if register != self._register:
             # The register must stand 40 ns before E rises; data need not before E falls.
@@ -75,7 +65,7 @@ class Backpack(CharacterDisplay):
     def _end_piece(self):
         count, self._count = self._count, 0
         if self._lost:  # only a look whether it is there again: the display may just get power
-            self._buffer[0] = _BACKLIGHT
+            self._buffer[0] = BACKLIGHT
             count = 1
         try:
             self._write_to(self._i2c_address, self._pieces[count])

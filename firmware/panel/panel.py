@@ -82,12 +82,13 @@ class Panel:
         self._parameters = Parameters(self, keys, self._writer, mask)
         self._page = self._home
         self._splash = Splash()
-        self._risk = None  # that is asked about,
+        self._risk_question = None  # the `Question` about a risk that was asked last,
+        self._risk = None  # which risk that is,
         self._risk_value = None  # and as it was then
         self._over = self._splash  # what hides the page: the splash, a question, or None
         self._began_at = None
-        self._notices = _about_keys(key_names)
-        self._notices += _about(settings) or ([notice] if notice else [])
+        self._notices = _about(settings) or ([notice] if notice else [])
+        self._notices += [_about_key(name) for name in unknown(key_names)]
         self._message_at = 0
         self._view = View(self, screen)
         self._view.begin(self._splash)
@@ -154,8 +155,9 @@ class Panel:
         self._over = question
 
     def close_question(self):
+        if self._over is self._risk_question:  # another one leaves a START still to be asked about
+            self.selected.question = None
         self._over = None
-        self.selected.question = None
 
     def is_taken(self, address):
         """Whether another drive of this panel than the selected one has this address."""
@@ -349,26 +351,30 @@ class Panel:
             self.say(result, now_ms)
         if selected.question is not None and self._over is None:
             self._ask_risk(selected.question)
-        if self._over is not None and self._over is not self._splash:
-            if selected.question is not None and self._asks_what_was():
+        over = self._over
+        if over is not None and over is not self._splash:
+            asks_risk = over is self._risk_question and selected.question is not None
+            if asks_risk and self._asks_what_was():
                 self._ask_risk(self._risk)
-            elif self._over.step(now_ms) or selected.needs_attention():
+            elif over.step(now_ms) or selected.needs_attention():
                 self.close_question()  # an alarm is not to be hidden
         if self.message and elapsed(now_ms, self._message_at, self._mask) >= _MESSAGE_MS:
             self.message = None
-            if self._notices:
-                self.say(self._notices.pop(0), now_ms)
+        if self._notices and self.message is None and self._over is None:
+            self.say(self._notices.pop(0), now_ms)  # also when a key has ended the one before
 
     def _ask_risk(self, row):
         if not risks.is_open(self.selected, row):  # not any more
-            self.close_question()
+            self.selected.question = None
+            self._over = None
             return
         self._risk = row
         text, can_fix, self._risk_value = risks.ask(self.selected, row)
         answers = {"START": self._accept_risk}
         if can_fix:
             answers["SET"] = self._supervise
-        self.ask(Question(self, text, answers, self._mask, _READING_MS))
+        self._risk_question = Question(self, text, answers, self._mask, _READING_MS)
+        self.ask(self._risk_question)
 
     def _asks_what_was(self):
         """Whether the risk that is asked about is another one by now."""
@@ -402,12 +408,9 @@ class Panel:
             self.say(texts.REFUSED_EARLY, now_ms)
 
 
-def _about_keys(names):
-    """Which keys of the board the panel does not know: rows that are said one after the other."""
-    rows = []
-    for name in unknown(names):
-        rows += [texts.KEY_UNKNOWN, name[: texts.ROW_WIDTH].encode()]
-    return rows
+def _about_key(name):
+    """A row about a key of the board that the panel does not know."""
+    return texts.KEY_UNKNOWN + str(name)[: texts.ROW_WIDTH - len(texts.KEY_UNKNOWN)].encode()
 
 
 def _about(settings):

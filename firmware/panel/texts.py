@@ -62,7 +62,7 @@ SETTINGS_SUSPECTS = {
     "too big": b"FILE TOO BIG",
     "no JSON": b"FILE IS NO JSON",
 }
-KEY_UNKNOWN = b"UNKNOWN KEY"  # the board file names one that there is not; its name follows
+KEY_UNKNOWN = b"NO KEY "  # the board file names one that there is not: it follows
 NOT_SAVED = b"SETTINGS UNSAVED"  # the flash is full or broken
 WATCHDOG_RESTART = b"WATCHDOG RESTART"  # after the splash: the panel hung, and was restarted
 FAREWELL = (b"PANEL STOPPED", b"NO CONTROL")  # left behind by a panel that was ended

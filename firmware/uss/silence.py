@@ -129,9 +129,10 @@ class Silence:
 
     def _leave_round(self, drive):
         turns = self._turns
+        drives = turns.round
         places = 0  # of this drive, among those that have had their turn
         for place in range(min(turns.following, turns.round_count)):
-            if turns.round[place] is drive:
+            if drives[place] is drive:
                 places += 1
         turns.following = max(turns.following - places, 0)
         self._set(drive.address, 1)
@@ -141,10 +142,13 @@ class Silence:
         self._set(drive.address, 0)
         self._fill_round()
         turns = self._turns
+        drives = turns.round
+        passed = min(turns.following, turns.round_count)
         place = 0
-        while place < turns.round_count and place < turns.following:
-            if turns.round[place] is drive:
+        while place < passed:
+            if drives[place] is drive:
                 turns.following += 1
+                passed += passed < turns.round_count
             place += 1
 
     def _fill_round(self):
@@ -153,9 +157,10 @@ class Silence:
         """
         turns = self._turns
         rests = self.rests
+        drives = turns.round
         count = 0
         for drive in turns.list:
             if not rests[drive.address]:
-                turns.round[count] = drive
+                drives[count] = drive
                 count += 1
         turns.round_count = count

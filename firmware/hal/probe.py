@@ -1,0 +1,18 @@
+# SPDX-License-Identifier: MIT
+"""Whether a display's backpack is there: asked before its driver takes memory.
+
+    answers(i2c, 0x27)
+"""
+
+from micropython import const
+
+BACKLIGHT = const(0x08)  # the output P3 of every backpack
+
+
+def answers(i2c, address):
+    """Whether a backpack is there. Switches its backlight on and writes nothing."""
+    try:
+        i2c.writeto(address, bytes((BACKLIGHT,)))
+    except OSError:
+        return False
+    return True
