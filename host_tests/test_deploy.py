@@ -5,13 +5,6 @@ import json
 from types import SimpleNamespace
 
 import pytest
-
-import arrival
-import deployment
-import image
-import main
-import plan
-import ports
 from deploy_bench import (
     FLASH,
     FROZEN,
@@ -26,6 +19,13 @@ from deploy_bench import (
     firmware,
     running,
 )
+
+import arrival
+import deployment
+import image
+import main
+import plan
+import ports
 from errors import DeployError
 
 INTERPRETERS = "host"

@@ -570,6 +570,27 @@ def test_drawing_changes_nothing_but_the_picture():
     world.check()
 
 
+def test_with_one_drive_more_they_are_said_together_at_once():
+    """Four that run are said one after the other, five together, and then the page has long turns.
+    The first of those turns came before anything was said: the drive that had just missed its own
+    turn was unsaid for longer than two seconds for each of them.
+    """
+    for delay_ms in (0, 700, 1400):
+        world = panel(addresses=(1, 2, 3, 4, 5, 6))
+        for _ in range(5):
+            wait_until_known(world)
+            world.press("START")
+            world.run(4000 + delay_ms)
+            world.press("ADDRESS_UP")
+            world.run(200)
+        rows = said(world, 2_600)
+        assert rows.get("RUN,HOLD=ALL: 5", 0) >= 600, (delay_ms, rows)
+        world.press("PARAM")  # nor does a page that is new put it off
+        together = said(world, 5_400)
+        assert "RUN,HOLD=ALL: 5" in together, (delay_ms, together)
+        world.check()
+
+
 # --- warnings ------------------------------------------------------------------------------------
 
 

@@ -87,7 +87,7 @@ class Announcer:
             self._page = page
             self._shown = position
             self.look(before)
-            self._page_ms = self._find_page_ms()
+            self._page_ms = min(self._page_ms, self._find_page_ms())
             self._favour(now_ms)
         self._step(now_ms)
         if self.kind == NOTHING:
@@ -109,7 +109,8 @@ class Announcer:
             self._kinds[position] = kind
             self._counts[before] -= 1
             self._counts[kind] += 1
-            self._page_ms = self._find_page_ms()
+            # A longer page begins behind the next announcement: nobody waits longer for this one.
+            self._page_ms = min(self._page_ms, self._find_page_ms())
 
     def draw(self, screen, row):
         """Write into all of `row` what is said now."""
@@ -132,13 +133,15 @@ class Announcer:
             draw_number(screen, row, column + len(one) + 1, texts.FAULT_LETTER, control.fault)
 
     def _favour(self, now_ms):
-        """A page that is new has its turn at once, but keys that are pressed again and again put
-        nothing off."""
+        """A page that is new has a short turn at once, but keys that are pressed again and again
+        put nothing off."""
         self.page_turns = 0
         self._turned_ms = now_ms
         if self.kind == NOTHING and not self._favoured:
             self._favoured = True
-            self._since_ms = now_ms
+            spared_ms = self._page_ms - _PAGE_MS
+            if (now_ms - self._since_ms) & self._mask > spared_ms:
+                self._since_ms = (now_ms - spared_ms) & self._mask
 
     def _step(self, now_ms):
         """Go on to the next announcement, or to the page, when it is time to."""
@@ -214,6 +217,7 @@ class Announcer:
         self._favoured = False
         place = self._shown if position > count else position
         self.control = None if position == count else self._controls[place]
+        self._page_ms = self._find_page_ms()
         if not self._holds():
             self.kind = NOTHING  # it was over before it was said: the next one, next time
 
