@@ -19,6 +19,7 @@ from uss import (
     layout,
     master,
     pkw,
+    pkw_errors,
     plc,
     pzd,
     receiver,
@@ -71,8 +72,8 @@ def roots():
     clock = Clock()
     port = plc.Port(None, clock)
     modules = (
-        drive, families, layout, master, pkw, plc, pzd, receiver, scaling, single, status,
-        telegram, timing, words,
+        drive, families, layout, master, pkw, pkw_errors, plc, pzd, receiver, scaling, single,
+        status, telegram, timing, words,
     )  # fmt: skip
     found = {module.__name__.split(".")[-1]: module for module in modules}
     found["Drive"] = drive.Drive(1, clock.ticks_mask)
