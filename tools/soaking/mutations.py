@@ -152,6 +152,7 @@ MUTATIONS = (
             "panel/control.py",
             "            self._contact = drive.contact\n            self.lost_running",
             "            self._contact = drive.contact\n            if self.runs():\n"
+            "                self._obey()\n"
             "                self.drive.start(self.drive.hsw, self._on())\n"
             "            self.lost_running",
         ),
