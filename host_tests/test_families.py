@@ -24,7 +24,7 @@ from uss.families import (
     can_be_set_to,
     is_float,
     value,
-)  # fmt: skip
+)
 from uss.layout import VARIABLE, Layout
 from uss.timing import BAUD_RATES
 

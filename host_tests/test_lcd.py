@@ -13,7 +13,7 @@ from boards.sim.lcd import (
     UNKNOWN,
     UNSTEADY,
     Lcd,
-)  # fmt: skip
+)
 from boards.sim.world import World
 from lcd_bench import HOURGLASS, UP_AND_DOWN, LcdBench
 

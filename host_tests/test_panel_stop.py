@@ -15,7 +15,7 @@ from panel_bench import (
     starts,
     telegrams,
     wait_until_known,
-)  # fmt: skip
+)
 
 NOT_TRACED = (
     "test_a_long_list_is_no_reason_for_an_alarm test_the_slowest_ramp_of_a_drive_is_no_alarm"

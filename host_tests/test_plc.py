@@ -18,7 +18,7 @@ from uss.plc import (
     USS_WPM_R,
     USS_WPM_W,
     Port,
-)  # fmt: skip
+)
 
 # --- RUN, and what a motor does on it -----------------------------------------------------------
 

@@ -20,7 +20,7 @@ from uss.plc import (
     USS_WPM_R,
     USS_WPM_W,
     Port,
-)  # fmt: skip
+)
 
 NODE = 3
 READY, RUNNING = 0xFB31, 0xFB34

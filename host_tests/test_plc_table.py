@@ -29,7 +29,7 @@ from uss import (
     telegram,
     timing,
     words,
-)  # fmt: skip
+)
 
 MANUAL = "firmware/uss/plc.md"
 

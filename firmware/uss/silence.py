@@ -148,7 +148,7 @@ class Silence:
         while place < passed:
             if drives[place] is drive:
                 turns.following += 1
-                passed += passed < turns.round_count
+                passed = min(passed + 1, turns.round_count)
             place += 1
 
     def _fill_round(self):
