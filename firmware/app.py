@@ -56,6 +56,8 @@ class App:
         self._mask = mask
         self._ticks_us = board.clock.ticks_us
         self._ticks_ms = board.clock.ticks_ms
+        # A method that is found once is not looked for in every step.
+        self.step_panel = self.panel.step
         self._refresh = self.bus.refresh
         self._tend = self.pacer.tend
         self._polled = board.timer is None  # then each step drives the bus
@@ -79,7 +81,7 @@ class App:
         now_ms = self._ticks_ms()
         now_us = self._ticks_us()
         self._refresh(now_us, False)
-        if self.panel.step(keypad.read(), now_ms, now_us, keypad.unclear):
+        if self.step_panel(keypad.read(), now_ms, now_us, keypad.unclear):
             self._look_or_show(now_us)
         elif (now_ms - self._fed_at_ms) & self._mask >= _FEED_MS:
             self._feed(now_ms)

@@ -65,8 +65,8 @@ def test_nor_do_frequencies_that_change_or_three_drives_of_which_one_is_announce
 
 def test_a_page_that_takes_memory_would_be_noticed():
     world = panel()
-    step = world.app.panel.step
-    world.app.panel.step = lambda *arguments: (step(*arguments), bytearray(16))
+    step = world.app.step_panel
+    world.app.step_panel = lambda *arguments: (step(*arguments), bytearray(16))
     try:
         lock(world, 10)
     except MemoryError:

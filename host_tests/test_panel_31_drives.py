@@ -20,12 +20,12 @@ class Counted:
 
     def __init__(self, world):
         self.most = 0
-        self._step = world.app.panel.step
+        self._step = world.app.step_panel
         self._seen = set()
         self._methods = [getattr(Control, name) for name in self.NAMES]
         for name, method in zip(self.NAMES, self._methods):
             setattr(Control, name, self._counting(method))
-        world.app.panel.step = self._count
+        world.app.step_panel = self._count
 
     def _counting(self, method):
         def counted(control, *arguments):

@@ -56,6 +56,8 @@ class Panel:
     """
 
     def __init__(self, controls, bus, key_names, settings, mask, notice=None):
+        self._turn = 0  # asked for in every step, so it is first: as in `Master`
+        self._acting = False  # keys that were pressed are still to do what they do
         self.controls = controls
         self.selected = controls[0]
         self.announcer = Announcer(controls, mask)
@@ -105,7 +107,6 @@ class Panel:
             self._draw, self._ask, self._leave, self._watch,
             self._draw, self._follow, self._leave, around,
         )  # fmt: skip
-        self._turn = 0
 
     def _name_keys(self, keys):
         """The bits of keys, because names take long to look up."""
@@ -120,7 +121,6 @@ class Panel:
         self._command_keys = keys.bits(COMMAND_KEYS)
         self._were_down = 0  # the keys that were down in the last step, as bits
         self._acts = Acts(keys)
-        self._acting = False  # they are still to be done
 
     def step(self, raw_keys, now_ms, now_us, unclear_keys=0):
         """raw_keys: the keys down now, as bits; unclear_keys: those that cannot be told.

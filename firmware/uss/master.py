@@ -67,8 +67,12 @@ class Master(Turns):
     """
 
     def __init__(self, link, timing, mask, lost_us=LOST_US):
-        Turns.__init__(self, timing, mask, lost_us)
+        # What every step of the loop asks for comes first: an object with many fields finds those
+        # soonest that it had when it was small.
+        self._refreshed_at = 0
+        self._dead_man = True  # tripped until the loop refreshes for the first time
         self.phase = LISTENING
+        Turns.__init__(self, timing, mask, lost_us)
         self.progress = 0
         self.patience_us = _BABBLE_US + _STUCK_US
         self.dead_man_trips = 0
@@ -92,8 +96,6 @@ class Master(Turns):
         self._start_interval_us = timing.start_interval_us
         self._rest_us = timing.start_interval_us
         self._sending_since = 0
-        self._refreshed_at = 0
-        self._dead_man = True  # tripped until the loop refreshes for the first time
 
     # --- for the loop ---------------------------------------------------------------------------
 
