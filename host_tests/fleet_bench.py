@@ -118,6 +118,6 @@ class Fleet:
 
     def check(self):
         """AssertionError: a rule of the line was broken, or an interrupt handler failed."""
-        assert not self.wire.violations, self.wire.violations[:3]
+        assert not self.wire.violations(), self.wire.violations()[:3]
         assert not self.chip.handler_errors and self.pacer.failure is None, self.pacer.failure
         assert self.master.failures == 0

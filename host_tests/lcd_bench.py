@@ -126,4 +126,4 @@ class BackpackBench(LcdBench):
         self.clock.advance(10_000)
 
     def check(self):
-        assert self.lcd.complaints == [] and self.chip_of_backpack.complaints == []
+        assert self.lcd.complaints() == [] and self.chip_of_backpack.complaints == []

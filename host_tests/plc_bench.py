@@ -128,5 +128,5 @@ class Plc:
 
     def check(self):
         """The rules of the line were kept."""
-        assert not self.wire.violations, self.wire.violations
+        assert not self.wire.violations(), self.wire.violations()
         assert not self.chip.handler_errors, self.chip.handler_errors

@@ -1221,7 +1221,7 @@ def test_an_exception_and_ctrl_c_stop_them_too_wherever_they_strike():
         else:
             raise AssertionError("Ctrl-C was swallowed")
         assert bench.stws(1)[-1] == pzd.OFF1 and bench.bus.phase == CLOSED
-        assert not bench.wire.violations
+        assert not bench.wire.violations()
 
 
 def test_a_drive_that_does_not_answer_its_off_does_not_keep_the_program():

@@ -83,7 +83,7 @@ def test_a_written_telegram_goes_out_at_once_and_back_to_back():
     assert board.uart.txdone()
     board.enable(0)
     assert board.heard == [(TELEGRAM_US, TELEGRAM)]
-    assert board.wire.violations == []
+    assert board.wire.violations() == []
     assert board.wire.log.last(1) == [(0, True, TELEGRAM)]
 
 
@@ -136,7 +136,7 @@ def test_the_uart_is_done_in_its_time_even_if_the_driver_is_off():
     assert not board.uart.txdone()
     board.clock.advance(1)
     assert board.uart.txdone()
-    assert board.heard == [] and board.wire.violation_count == 1
+    assert board.heard == [] and board.wire.violation_count() == 1
 
 
 def test_the_uart_is_done_in_its_time_even_if_the_driver_cuts_it_short():
@@ -400,7 +400,7 @@ def test_a_uart_after_deinit_is_silent_and_deaf():
     board.reply()
     board.clock.advance(20_000)
     assert board.uart.any() == 0 and board.interrupts == []
-    assert board.wire.violations == [
+    assert board.wire.violations() == [
         "at 1000: drive talks after 0 us of silence, the start interval is 1146 us"
     ]
 
@@ -436,7 +436,7 @@ def test_the_receiver_is_off_while_the_driver_is_on():
         assert board.waiting() == TELEGRAM[:4] + garbled[first_heard:]
         ends_us = (start_us + ends[3], start_us + TELEGRAM_US)
         assert board.interrupts == [end_us + RXIDLE_US for end_us in ends_us]
-        assert board.wire.violation_count == 2  # a collision, and a driver on for nothing
+        assert board.wire.violation_count() == 2  # a collision, and a driver on for nothing
 
 
 def test_a_pin_that_is_high_from_the_start_enables_the_driver():
@@ -445,7 +445,7 @@ def test_a_pin_that_is_high_from_the_start_enables_the_driver():
     Transceiver(board.wire, UART(board.chip, 19200), pin, "other")
     board.clock.advance(1000)
     pin(0)
-    assert board.wire.violations == [
+    assert board.wire.violations() == [
         "at 1000: other has its driver enabled for 1000 us without sending"
     ]
 
@@ -812,7 +812,7 @@ def test_a_reset_cuts_the_telegram_lowers_the_pins_and_calls_nobody():
     board.reply()
     board.clock.advance(1_000_000)
     assert board.interrupts == [] and levels == [1, 0]
-    assert board.wire.violations == []
+    assert board.wire.violations() == []
     # What was made before the reset is dead.
     lamp(1)
     watchdog.feed()
@@ -835,7 +835,7 @@ def test_after_a_reset_new_peripherals_work_on_the_same_line():
         assert board.waiting() == TELEGRAM
         board.chip.reset()
         board.boot()
-    assert len(board.heard) == 5 and board.wire.violations == []
+    assert len(board.heard) == 5 and board.wire.violations() == []
 
 
 def test_a_reset_drops_the_interrupts_that_wait():
@@ -901,7 +901,7 @@ def ping_pong(clock, seconds, baud=115200):
     finally:
         heap_unlock()
     assert one.chip.handler_errors == [] and two.chip.handler_errors == []
-    assert wire.violations == []
+    assert wire.violations() == []
     return one.count
 
 
@@ -944,4 +944,4 @@ def test_exchanges_go_on_past_the_small_integers_of_the_32_bit_build():
     one.send()
     clock.advance(40_000_000)
     assert one.count == 40_000_000 // (2 * (18333 + 3334))
-    assert one.chip.handler_errors == [] and wire.violations == []
+    assert one.chip.handler_errors == [] and wire.violations() == []

@@ -533,7 +533,7 @@ def test_a_reply_begins_after_the_start_interval_and_within_20_ms():
             line.clock.advance(1_000_000)
             delay_us, _ = line.replies[-1]
             assert 22_000_000 // baud <= delay_us <= 20_000, (baud, delay_us)
-        assert line.wire.violations == []
+        assert line.wire.violations() == []
 
 
 def test_a_reply_has_no_gaps():

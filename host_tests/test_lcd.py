@@ -23,13 +23,13 @@ BLANK = " " * 16
 def started():
     bench = LcdBench()
     bench.start()
-    assert bench.lcd.complaints == [] and bench.lcd.text() == (BLANK, BLANK)
+    assert bench.lcd.complaints() == [] and bench.lcd.text() == (BLANK, BLANK)
     return bench
 
 
 def rules(bench):
     """What was complained about, without the instants."""
-    return [complaint.split(" us: ")[1] for complaint in bench.lcd.complaints]
+    return [complaint.split(" us: ")[1] for complaint in bench.lcd.complaints()]
 
 
 def refused(error, function, *arguments):
@@ -56,7 +56,7 @@ def test_initialised_by_the_book_it_shows_what_is_written():
     bench.letters(b"RUNNING")
     assert bench.lcd.text() == ("S: 10.0 F: 10.00", "RUNNING         ")
     assert bench.lcd.characters == 23 and bench.lcd.clears == 1
-    assert bench.lcd.complaints == []
+    assert bench.lcd.complaints() == []
 
 
 def test_the_rows_have_40_characters_and_follow_each_other():
@@ -83,7 +83,7 @@ def test_a_character_of_ones_own_is_known_by_its_dots():
     assert bench.lcd.text()[0][0] == "⧗"
     bench.lcd.cgram[8] = 0x1E
     assert bench.lcd.text()[0][0] == "▒"
-    assert bench.lcd.dots == 16 and bench.lcd.complaints == []
+    assert bench.lcd.dots == 16 and bench.lcd.complaints() == []
 
 
 def test_dark_it_keeps_what_it_shows():
@@ -145,7 +145,7 @@ def test_the_number_of_lines_can_be_set_only_after_a_change_of_the_width():
     assert not bench.lcd.two_lines and bench.lcd.text()[1] == BLANK
     bench.letters(b"1" + 78 * b"-" + b"2" + b"0")
     assert bench.lcd.text()[0] == "0" + 15 * "-" and bench.lcd.ddram[79] == ord("2")
-    assert bench.lcd.complaints == []
+    assert bench.lcd.complaints() == []
 
 
 def test_it_keeps_everything_while_the_microcontroller_resets():
@@ -155,11 +155,11 @@ def test_it_keeps_everything_while_the_microcontroller_resets():
     bench.enable(1)  # reset in the middle of a pulse: E falls, that counts
     bench.restart()
     assert bench.lcd.half >= 0 and bench.lcd.text()[0] == "HELLO" + " " * 11
-    assert bench.lcd.complaints == []
+    assert bench.lcd.complaints() == []
     bench.lcd.let_go()
     bench.lcd.let_go()
     bench.enable(1)  # nobody is there to see it
-    assert bench.lcd.complaints == []
+    assert bench.lcd.complaints() == []
 
 
 def test_without_power_it_forgets():
@@ -168,7 +168,7 @@ def test_without_power_it_forgets():
     bench.lcd.power_on()
     assert bench.lcd.eight_bits and bench.lcd.text() == (BLANK, BLANK)
     bench.start()
-    assert bench.lcd.complaints == []
+    assert bench.lcd.complaints() == []
 
 
 # --- what it complains about ---------------------------------------------------------------------
@@ -178,7 +178,7 @@ def test_a_write_before_its_power_on_time_is_over():
     bench = LcdBench()
     bench.clock.advance(POWER_ON_US - 2)
     bench.nibble(0, 3)
-    assert bench.lcd.complaints == ["at %d us: %s" % (POWER_ON_US - 1, TOO_SOON)]
+    assert bench.lcd.complaints() == ["at %d us: %s" % (POWER_ON_US - 1, TOO_SOON)]
     assert bench.lcd.instructions == 0
 
 
@@ -255,7 +255,7 @@ def test_a_character_where_there_is_no_memory():
         bench.letters(b"A")
         assert rules(bench) == [NO_CELL], address
         bench.letters(b"A")  # it goes on counting
-        assert bench.lcd.complaints
+        assert bench.lcd.complaints()
 
 
 def test_complaints_are_bounded_and_tell_the_first():
@@ -264,7 +264,7 @@ def test_complaints_are_bounded_and_tell_the_first():
     for _ in range(50):
         bench.enable(1)
         bench.enable(0)
-    assert len(bench.lcd.complaints) == 16 and rules(bench)[0] == UNKNOWN
+    assert len(bench.lcd.complaints()) == 16 and rules(bench)[0] == UNKNOWN
 
 
 # --- in the world --------------------------------------------------------------------------------

@@ -288,7 +288,7 @@ def test_behind_a_cut_wire_nobody_is_disturbed():
     line.clock.advance(3_000)
     line.wire.talk(three, SIXTEEN, 16)
     line.clock.advance(50_000)
-    assert line.listener.heard == [(SIXTEEN, None)] and line.wire.weather == []
+    assert line.listener.heard == [(SIXTEEN, None)] and line.wire.weather() == []
 
 
 def test_echo_is_a_switch():
@@ -338,7 +338,7 @@ def test_what_took_place_on_a_real_line_is_heard_and_not_judged():
     line.wire.took_place(line.drive, burst)
     assert line.listener.heard == [(SIXTEEN, None)] and line.drive.heard == []
     assert line.wire.log.last(9) == [(0, False, SIXTEEN)]
-    assert line.wire.violations == line.wire.weather == []
+    assert line.wire.violations() == line.wire.weather() == []
 
 
 # --- chance -----------------------------------------------------------------------------------
@@ -441,7 +441,7 @@ class Judged:
         self.wire.drive(self.panel, False)
 
     def blamed(self):
-        return self.wire.violation_count, self.wire.weather_count > 0
+        return self.wire.violation_count(), self.wire.weather_count() > 0
 
 
 def test_the_panel_is_blamed_for_talking_into_what_it_heard():
@@ -450,7 +450,7 @@ def test_the_panel_is_blamed_for_talking_into_what_it_heard():
     judged.clock.advance(5 * judged.wire.character_us)  # some characters are over
     judged.talk()
     assert judged.blamed() == (2, False)  # for its driver and for its telegram
-    assert "panel enables its driver while noise talks" in judged.wire.violations[0]
+    assert "panel enables its driver while noise talks" in judged.wire.violations()[0]
 
 
 def test_what_it_could_not_hear_yet_is_the_weathers():
@@ -460,7 +460,7 @@ def test_what_it_could_not_hear_yet_is_the_weathers():
     judged.clock.advance(400)  # not one character is over
     judged.talk()
     assert judged.blamed() == (0, True)
-    assert "panel talks while noise talks" in judged.wire.weather[-1]
+    assert "panel talks while noise talks" in judged.wire.weather()[-1]
 
 
 def test_a_short_silence_is_blamed_if_it_could_be_heard():
@@ -493,7 +493,7 @@ def test_its_driver_is_the_panels_in_any_weather():
     judged.wire.drive(judged.panel, True)
     judged.clock.advance(5_000)
     judged.wire.drive(judged.panel, False)
-    assert "enabled for 5000 us without sending" in judged.wire.violations[-1]
+    assert "enabled for 5000 us without sending" in judged.wire.violations()[-1]
 
 
 def test_into_a_node_that_never_stops_it_may_talk_after_half_a_second():
@@ -505,7 +505,7 @@ def test_into_a_node_that_never_stops_it_may_talk_after_half_a_second():
             judged.clock.advance(100)
         judged.clock.advance(1_200)
         judged.talk()
-        assert (judged.wire.violation_count > 0) == blamed, waited_us
+        assert (judged.wire.violation_count() > 0) == blamed, waited_us
 
 
 def test_without_faults_everybody_is_judged():
@@ -516,7 +516,7 @@ def test_without_faults_everybody_is_judged():
     judged.wire.talk(judged.line.listener, SIXTEEN, 16)
     assert judged.blamed() == (1, False)
     judged.wire.forgive()
-    assert judged.blamed() == (0, False) and judged.wire.violations == []
+    assert judged.blamed() == (0, False) and judged.wire.violations() == []
 
 
 # --- the whole panel --------------------------------------------------------------------------
@@ -537,7 +537,7 @@ def test_the_panel_keeps_the_rules_in_any_weather():
         world.press("START")
         world.run(20_000)
         world.check()
-        assert world.wire.weather_count and sum(faults.count.values()) > 10
+        assert world.wire.weather_count() and sum(faults.count.values()) > 10
         faults.calm()
         world.run(6_000)
         assert "NO CONTACT" not in world.lcd()[1] and "-----" not in world.lcd()[0], world.lcd()

@@ -50,7 +50,7 @@ class Bench:
         self.activities.append(self.clock.now_us)
 
     def check(self):
-        assert self.wire.violations == [] and self.chip.handler_errors == []
+        assert self.wire.violations() == [] and self.chip.handler_errors == []
 
 
 def test_what_is_sent_arrives_at_every_rate_and_the_line_is_free_in_time():

@@ -367,7 +367,7 @@ def test_a_reset_in_the_middle_of_a_telegram_blocks_nothing():
         world.reset()
         world.run(8000)
         assert row_2(world) == "READY        A1" and starts(world) == 1
-        cut = [text for text in world.wire.violations if "driver" not in text]
+        cut = [text for text in world.wire.violations() if "driver" not in text]
         assert not cut, cut
 
 

@@ -247,7 +247,7 @@ def test_the_example_works_and_its_end_stops_the_motor():
     names = play(switch, board)
     assert simulated.state == "stopping"
     assert names["motor"].RUN_EN and names["frequency"].DONE and names["frequency"].ERROR == 0
-    assert not board.wire.violations
+    assert not board.wire.violations()
 
 
 def test_an_exception_in_the_example_stops_the_motor():

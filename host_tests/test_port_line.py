@@ -138,7 +138,7 @@ def test_a_master_that_is_too_fast_behind_a_reply_is_waited_for():
             line.clock.advance(100)
         line.answers()
     assert line.counts(GOOD, REJECTED) == [5, 0]
-    assert not line.wire.violations
+    assert not line.wire.violations()
 
 
 def test_who_talks_into_a_reply_loses_both_and_hears_nothing_that_was_not_said():

@@ -164,7 +164,7 @@ def test_golden_exchanges_come_out_byte_for_byte():
         commanded(bench, before)
         answer = bench.ask(from_hex(request))
         assert answer == from_hex(reply), (ids, origin, answer)
-        assert bench.wire.violations == [], (ids, bench.wire.violations)
+        assert bench.wire.violations() == [], (ids, bench.wire.violations())
 
 
 def test_golden_parameter_words_come_out():

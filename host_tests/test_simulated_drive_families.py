@@ -81,7 +81,7 @@ def test_each_runs_stops_and_is_read_as_it_is_delivered():
         bench.exchange(*pkw + [OFF1, 0])
         bench.wait(20)
         assert bench.drive.state == "ready", family.NAME
-        assert bench.drive.starts == 1 and bench.wire.violations == []
+        assert bench.drive.starts == 1 and bench.wire.violations() == []
 
 
 def test_baud_codes():

@@ -211,7 +211,7 @@ def test_the_reply_comes_after_three_characters():
         bench.wait(1)
         delay_us = bench.heard[0][0] - asked_us
         assert 33_000_000 / baud <= delay_us <= 33_000_000 / baud + 1
-        assert bench.wire.violations == []
+        assert bench.wire.violations() == []
 
 
 def test_the_reply_delay_can_be_set():

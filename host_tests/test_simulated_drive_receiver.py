@@ -233,10 +233,10 @@ class Both:
     def agree(self, now_us):
         self._pass_inside(now_us)
         self.machine.pass_time(now_us, now_us)
-        counted = dict(zip(COUNTERS, self.slave.counters))
+        counted = dict(zip(COUNTERS, self.slave.counters()))
         assert self.delivered == self.machine.delivered, self.heard[-60:]
         assert counted == self.machine.count, (counted, self.machine.count, self.heard[-60:])
-        assert self.slave.error_status == self.machine.status
+        assert self.slave.error_status() == self.machine.status
 
 
 def said(random, words):

@@ -52,7 +52,7 @@ def test_without_an_echo_only_the_reply_is_heard():
     panel = Panel(echo=False)
     assert panel.exchange() == [REPLY]
     assert panel.exchange() == [REPLY]
-    assert panel.wire.violations == []
+    assert panel.wire.violations() == []
 
 
 def test_with_an_echo_the_own_telegram_is_heard_before_the_reply():
@@ -70,7 +70,7 @@ def test_the_echo_may_come_and_go():
     assert panel.exchange() == [REPLY]
     panel.wire.echo = True
     assert panel.exchange() == [REQUEST, REPLY]
-    assert panel.wire.violations == [] and panel.chip.handler_errors == []
+    assert panel.wire.violations() == [] and panel.chip.handler_errors == []
 
 
 def test_the_echo_comes_in_character_by_character():
@@ -96,12 +96,12 @@ def test_a_second_master_talks_now_and_then():
     assert intruder.sent == 10 and [data for _, data in bench.heard] == [foreign] * 10
     intruder.end()
     bench.wait(1)
-    assert intruder.sent == 10 and bench.wire.violations == []
+    assert intruder.sent == 10 and bench.wire.violations() == []
     # It does not care who is talking: that is a breach of the rules, and the drive hears nothing.
     intruder.begin()
     bench.wait(0.095)
     assert bench.ask(REQUEST) != REPLY
-    assert "intruder talks while master talks" in bench.wire.violations[0]
+    assert "intruder talks while master talks" in bench.wire.violations()[0]
 
 
 # --- many drives ------------------------------------------------------------------------------
@@ -130,7 +130,7 @@ def test_a_fleet_of_all_families_and_layouts():
         expected_us = bench.wire.start_interval_us + bench.wire.ends[len(reply) - 1]
         assert abs(took_us - expected_us - drive.reply_delay_us) <= 1
         assert drive.state == "ready"
-    assert bench.wire.violations == []
+    assert bench.wire.violations() == []
 
 
 def test_a_world_has_drives_of_different_kinds():

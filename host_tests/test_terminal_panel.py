@@ -823,7 +823,7 @@ def test_a_broken_rule_of_the_line_is_shown_and_ends_nothing():
     seat = Seat()
     noise = Noise()
     seat.world.wire.attach(noise)
-    while not seat.world.wire.violation_count:
+    while not seat.world.wire.violation_count():
         seat.world.wire.talk(noise, b"\x55", 1)
         seat.wait(20)
     seat.wait(1000)

@@ -109,7 +109,8 @@ class Board:
         )
 
     def idle(self):
-        self.clock.advance(self._loop_us())
+        clock = self.clock
+        clock.advance_to(clock.now_us + self._loop_us())
         if self._chip.storms:
             self._chip.wait_out_storm()
 

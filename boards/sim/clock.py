@@ -46,13 +46,15 @@ class Clock:
         self._start_us = ticks_start & ticks_mask
         self._until_wrap_us = ticks_mask - self._start_us
         self._start_ms = (ticks_start // 1000) & ticks_mask
+        self._until_wrap_ms = ticks_mask - self._start_ms
         self._start_rest_us = ticks_start % 1000
         self._head = Event(None)  # the list hangs on an event that never happens
         self._advancing = False
 
     def ticks_us(self):
         """Microseconds as the chip counts them."""
-        # As in _wrapped, which costs another call: nothing is asked more often.
+        # (elapsed + start) & mask, without the sum: two 30-bit numbers make 31 bits, which is
+        # more than a small integer of the 32-bit build holds.
         elapsed = self.now_us & self.ticks_mask
         until_wrap = self._until_wrap_us
         if elapsed > until_wrap:
@@ -61,17 +63,11 @@ class Clock:
 
     def ticks_ms(self):
         """Milliseconds as the chip counts them: the same wrap, a thousand times later."""
-        return self._wrapped((self.now_us + self._start_rest_us) // 1000, self._start_ms)
-
-    def _wrapped(self, elapsed, start):
-        # (elapsed + start) & mask, without the sum: two 30-bit numbers make 31 bits, which is
-        # more than a small integer of the 32-bit build holds.
-        mask = self.ticks_mask
-        elapsed &= mask
-        until_wrap = mask - start
+        elapsed = (self.now_us + self._start_rest_us) // 1000 & self.ticks_mask
+        until_wrap = self._until_wrap_ms
         if elapsed > until_wrap:
             return elapsed - until_wrap - 1
-        return elapsed + start
+        return elapsed + self._start_ms
 
     def schedule(self, event, at_us):
         """Let `event` happen at `at_us`; an armed event moves. An instant gone by means now.

@@ -183,17 +183,17 @@ class Drive:
     @property
     def error_status(self):
         """The error status word of the specification, A-5.2.3: since the last good telegram."""
-        return self._slave.error_status
+        return self._slave.error_status()
 
     @property
     def residual_time_errors(self):
         """Telegrams that were not over in time; no parameter shows it, nor the next."""
-        return self._slave.counters[RESIDUAL_TIME]
+        return self._slave.counters()[RESIDUAL_TIME]
 
     @property
     def watchdog_errors(self):
         """How often the telegram failure time has expired."""
-        return self._slave.counters[WATCHDOG]
+        return self._slave.counters()[WATCHDOG]
 
     def hz(self):
         """The frequency of the motor, negative to the left."""
@@ -202,7 +202,7 @@ class Drive:
     def report(self):
         """One line of key=value, for people and for scripts."""
         process = self._process
-        counters = self._slave.counters
+        counters = self._slave.counters()
         fault = process.faults[0]
         hiw = process.words(2)[1] if self._supply.booted else 0
         return (

@@ -56,7 +56,7 @@ class Readings:
             place = detail + index
             return process.faults[place] if place < len(process.faults) else 0
         if what == COUNTERS:
-            return 0 if index else self._slave.counters[detail]  # [1] is the BOP link
+            return 0 if index else self._slave.counters()[detail]  # [1] is the BOP link
         if what is None:
             return self._constant(number, index)
         if what in (NUMBERS, OUTPUTS, POLE_PAIRS, SLIP):

@@ -10,7 +10,7 @@ lost.
     lcd = Lcd(clock)
     lcd.wire(register_select, enable, (d4, d5, d6, d7))
     lcd.text()                          # ("S: 10.0 F: 10.00", "RUNNING      A1 ")
-    lcd.complaints                      # ["at 1146 us: ..."] when somebody broke a rule
+    lcd.complaints()                    # ["at 1146 us: ..."] when somebody broke a rule
 """
 
 COLUMNS = 16
@@ -314,7 +314,6 @@ class Lcd:
             return LOOKS.get(dots, UNREADABLE)
         return UNREADABLE
 
-    @property
     def complaints(self):
         """The first 16 broken rules, as texts with their instants."""
         return ["at %d us: %s" % (at_us, rule) for at_us, rule in self._book[: self._complained]]

@@ -102,12 +102,10 @@ class Slave:
         self._last_us = 0  # the end of the last of them
         self._skipping = False  # until the line has been idle for the start interval
 
-    @property
     def counters(self):
         self._settle()
         return self._counters
 
-    @property
     def error_status(self):
         self._settle()
         return self._error_status

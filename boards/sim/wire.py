@@ -10,7 +10,7 @@ looks for a hole in all of it.
     wire = Wire(clock, 19200)
     wire.attach(drive)
     wire.talk(drive, reply, 16)
-    wire.violations                     # ["at 1146: ..."] when somebody broke a rule
+    wire.violations()                   # ["at 1146: ..."] when somebody broke a rule
 
 A station has these attributes, all but the first optional:
     hear(burst)         called when somebody else's burst has ended
@@ -282,8 +282,9 @@ class Wire:
     log                 the last 1000 telegrams, as they left their talkers
     faults              None, or what has `talk(station, data, count)`, which every telegram passes
                         through, and `append(burst, data, count)`: see `line_faults`
-    violation_count     how many breaches were noted; `violations` tells the first 100
-    weather_count       as many times faults of the line made somebody break a rule; `weather`
+
+    It has methods where others have properties: a class with one property makes every assignment
+    to its objects' fields a search for `__setattr__`, and these are set in each telegram.
     """
 
     def __init__(self, clock, baud):
@@ -651,15 +652,14 @@ class Wire:
         self._violations = Book()
         self._weather = Book()
 
-    @property
     def violation_count(self):
+        """How many breaches were noted."""
         return self._violations.count
 
-    @property
     def weather_count(self):
+        """How many times faults of the line made somebody break a rule."""
         return self._weather.count
 
-    @property
     def violations(self):
         """Texts "at <us>: <who> <what, figure>" of the rules broken, the first 100.
 
@@ -670,7 +670,6 @@ class Wire:
                 self._judge_driver(tap, DRIVER_LATE, self.clock.now_us)
         return self._violations.texts(self.start_interval_us, self.character_us)
 
-    @property
     def weather(self):
         """Texts as those of `violations`: what faults of the line made somebody do."""
         return self._weather.texts(self.start_interval_us, self.character_us)

@@ -137,8 +137,8 @@ class Surroundings:
 
     def complaints(self):
         """What was done against the rules, as texts."""
-        complaints = list(self.wire.violations)
-        for complaint in self.lcd_chip.complaints:
+        complaints = list(self.wire.violations())
+        for complaint in self.lcd_chip.complaints():
             complaints.append("display: " + complaint)
         return complaints
 
@@ -190,8 +190,9 @@ class World(Surroundings):
 
     def run(self, ms):
         """Let so many milliseconds pass, the firmware stepping."""
-        until_us = self.clock.now_us + ms * 1000
-        while self.clock.now_us < until_us:
+        clock = self.clock
+        until_us = clock.now_us + ms * 1000
+        while clock.now_us < until_us:
             try:
                 self.app.step()
             except PowerCut:  # `flash.cut_at` was reached; power is back at once

@@ -81,10 +81,10 @@ class Judge(Witness):
         chip = world.chip
         if chip.handler_errors:
             raise Broken("EXCEPTION", "interrupt handler: %r" % chip.handler_errors[0])
-        if world.wire.violation_count:
+        if world.wire.violation_count():
             self._judge_line()
-        if world.lcd_chip.complaints:
-            raise Broken("DISPLAY", world.lcd_chip.complaints[0])
+        if world.lcd_chip.complaints():
+            raise Broken("DISPLAY", world.lcd_chip.complaints()[0])
         if self.tape.sent_us > self.spoken_us:
             self.spoken_us = self.tape.sent_us
         if self.stuck_us is not None:
@@ -480,5 +480,5 @@ class Judge(Witness):
         # A plug that is pulled within a character: nobody hears that one, so it is no silence.
         pulled = self.clock.now_us - self.pulled_us < 100 * MS
         if not helpless and not pulled:
-            raise Broken("LINE", wire.violations[0])
+            raise Broken("LINE", wire.violations()[0])
         wire.forgive()
