@@ -12,8 +12,8 @@ specification.
 import struct
 
 from boards.sim.clock import Clock
-from boards.sim.drive import Drive
-from boards.sim.wire import Wire
+from boards.sim.drives.drive import Drive
+from boards.sim.line.wire import Wire
 
 # Control words.
 OFF1, RUN = 0x047E, 0x047F

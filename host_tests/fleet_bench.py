@@ -10,12 +10,12 @@ The master alone, without a panel: the engine works by interrupts, `run` is the 
     fleet.cycle_us(20)                  # measured, over so many rounds
 """
 
-from boards.sim import fleet
 from boards.sim.board import HardTimer
-from boards.sim.chip import UART, Chip, Pin
+from boards.sim.chip.machine import UART, Chip, Pin
 from boards.sim.clock import Clock
-from boards.sim.drive import Drive
-from boards.sim.wire import Transceiver, Wire
+from boards.sim.drives import fleet
+from boards.sim.drives.drive import Drive
+from boards.sim.line.wire import Transceiver, Wire
 from hal.bursts import IDLE_BITS
 from hal.pacer import Pacer
 from hal.rs485 import Rs485Link

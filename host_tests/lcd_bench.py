@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
 """What the tests of the displays share: the simulated controller, and a driver wired to it."""
 
-from boards.sim.backpack import I2C
-from boards.sim.backpack import Backpack as BackpackChip
-from boards.sim.chip import Chip, Pin
+from boards.sim.chip.backpack import I2C
+from boards.sim.chip.backpack import Backpack as BackpackChip
+from boards.sim.chip.lcd import POWER_ON_US, Lcd
+from boards.sim.chip.machine import Chip, Pin
 from boards.sim.clock import Clock
-from boards.sim.lcd import POWER_ON_US, Lcd
-from boards.sim.wire import Wire
+from boards.sim.line.wire import Wire
 from hal.backpack import Backpack
 from hal.hd44780 import Hd44780
 from hal.probe import answers

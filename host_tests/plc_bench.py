@@ -8,10 +8,10 @@
 """
 
 from boards.sim.board import HardTimer
-from boards.sim.chip import UART, Chip, Pin
+from boards.sim.chip.machine import UART, Chip, Pin
 from boards.sim.clock import Clock
-from boards.sim.drive import Drive
-from boards.sim.wire import Transceiver, Wire
+from boards.sim.drives.drive import Drive
+from boards.sim.line.wire import Transceiver, Wire
 from hal.pacer import Pacer
 from hal.rs485 import Rs485Link
 from uss.master import Master

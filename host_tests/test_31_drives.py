@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """31 simulated drives of mixed families and layouts on one line, all controlled and read."""
 
-from boards.sim.intruder import Intruder
+from boards.sim.line.intruder import Intruder
 from fleet_bench import Fleet
 from round_bench import framed
 from uss import pkw

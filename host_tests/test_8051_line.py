@@ -10,7 +10,7 @@ character with wrong parity over as if it were good, so that a character is neve
 """
 
 import main
-from boards.sim import mm420
+from boards.sim.drives.families import mm420
 from boards.sim.world import World
 from panel_bench import OFF1, ON, panel, row_1, row_2, running, telegrams
 from settings import load

@@ -3,7 +3,7 @@
 
 import random
 
-from boards.sim.chip import heap_lock, heap_unlock
+from boards.sim.chip.machine import heap_lock, heap_unlock
 from hal.backpack import AGAIN_US
 from hal.hd44780 import REFRESH_US
 from hal.probe import answers

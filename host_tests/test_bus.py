@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The bus for a program of one's own: what a maker writes, and what becomes of the motor."""
 
-from boards.sim import g110, g120, generic, mm3, mm420, mm440, v20
+from boards.sim.drives.families import g110, g120, generic, mm3, mm420, mm440, v20
 from bus_bench import QUICK, Bench, refusal
 from spoilt_bench import TROUBLES, spoil
 from tools.examples.simulation import Stage

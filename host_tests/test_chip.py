@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Data sheet of the simulated chip: UART, pin, timer, watchdog and interrupts as on the RP2040."""
 
-from boards.sim.chip import UART, WDT, Chip, Pin, Timer, heap_lock, heap_unlock
+from boards.sim.chip.machine import UART, WDT, Chip, Pin, Timer, heap_lock, heap_unlock
 from boards.sim.clock import Clock, Event
-from boards.sim.wire import GARBLE, Transceiver, Wire
+from boards.sim.line.wire import GARBLE, Transceiver, Wire
 
 TELEGRAM = bytes(range(0x20, 0x30))  # 16 characters
 TELEGRAM_US = 9166  # at 19200 baud

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """The simulated chip locks the heap while a hard interrupt runs, as MicroPython does."""
 
-from boards.sim.chip import UART, Chip, Pin, Timer
+from boards.sim.chip.machine import UART, Chip, Pin, Timer
 from boards.sim.clock import Clock
-from boards.sim.wire import Transceiver, Wire
+from boards.sim.line.wire import Transceiver, Wire
 
 INTERPRETERS = "unix64 unix32"
 

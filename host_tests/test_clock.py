@@ -3,7 +3,7 @@
 
 import random
 
-from boards.sim.chip import heap_lock, heap_unlock
+from boards.sim.chip.machine import heap_lock, heap_unlock
 from boards.sim.clock import Clock, Event
 
 

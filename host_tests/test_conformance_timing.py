@@ -8,10 +8,10 @@ algorithm that follows from the USS specification (A-5, A-6); which test tries i
 
 import random
 
-from boards.sim import mm440
 from boards.sim.clock import Clock
-from boards.sim.drive import Drive
-from boards.sim.wire import FRAME, OVERRUN, PARITY, Wire
+from boards.sim.drives.drive import Drive
+from boards.sim.drives.families import mm440
+from boards.sim.line.wire import FRAME, OVERRUN, PARITY, Wire
 
 NOT_TRACED = "test_no_partial_state_survives_whatever_was_said"
 

@@ -29,7 +29,7 @@ from test_port_panel import (  # noqa: F401
 TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 sys.path.insert(0, TOP)
 
-from boards.sim.wire import Burst  # noqa: E402
+from boards.sim.line.wire import Burst  # noqa: E402
 from tools.driving import decoding  # noqa: E402
 from tools.serial_port import FRAME, PARITY, LineCut, Pty, SerialPort  # noqa: E402
 

@@ -9,7 +9,7 @@ import gc
 import sys
 
 import main
-from boards.sim import generic
+from boards.sim.drives.families import generic
 from boards.sim.world import World
 from fleet_bench import Fleet
 from uss import pkw, pzd

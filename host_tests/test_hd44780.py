@@ -3,7 +3,7 @@
 
 import random
 
-from boards.sim.chip import heap_lock, heap_unlock
+from boards.sim.chip.machine import heap_lock, heap_unlock
 from hal.hd44780 import REFRESH_US, Hd44780
 from lcd_bench import HOURGLASS, LOOP_US, READY, RUNNING, UP_AND_DOWN, LcdBench
 

@@ -3,9 +3,9 @@
 
 import main
 from boards.sim.board import KEYS, NORMALLY_CLOSED, WIRINGS, make_keypad
-from boards.sim.chip import Chip, Pin
+from boards.sim.chip.machine import Chip, Pin
+from boards.sim.chip.switches import Switches
 from boards.sim.clock import Clock
-from boards.sim.switches import Switches
 from boards.sim.world import World
 from hal.keypad import Keypad, Matrix
 from panel.keys import Keys

@@ -8,7 +8,7 @@ Specification A-4 (the frame), C-3.1 and C-7 (layouts).
 
 import random
 
-from boards.sim import generic
+from boards.sim.drives.families import generic
 from drive_bench import Bench
 from line_bench import MASK, TIMING, Line, of_words, sealed, words_of
 from uss import pkw, pzd, telegram

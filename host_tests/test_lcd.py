@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Data sheet of the simulated display controller: what it does, and what it complains about."""
 
-from boards.sim.chip import Pin
-from boards.sim.lcd import (
+from boards.sim.chip.lcd import (
     BUSY,
     NO_CELL,
     NO_FUNCTION_SET,
@@ -14,6 +13,7 @@ from boards.sim.lcd import (
     UNSTEADY,
     Lcd,
 )
+from boards.sim.chip.machine import Pin
 from boards.sim.world import World
 from lcd_bench import HOURGLASS, UP_AND_DOWN, LcdBench
 

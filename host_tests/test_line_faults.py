@@ -5,11 +5,11 @@ And who is to blame: the panel answers for what it could have heard, the weather
 """
 
 import main
-from boards.sim.chip import UART, Chip, Pin
+from boards.sim.chip.machine import UART, Chip, Pin
 from boards.sim.clock import Clock
 from boards.sim.dice import Dice
-from boards.sim.line_faults import KINDS, LOG_LIMIT, SUPPLIES, LineFaults
-from boards.sim.wire import FRAME, PARITY, Burst, Transceiver, Wire
+from boards.sim.line.faults import KINDS, LOG_LIMIT, SUPPLIES, LineFaults
+from boards.sim.line.wire import FRAME, PARITY, Burst, Transceiver, Wire
 from boards.sim.world import World
 from drive_bench import OFF1, Bench, telegram
 

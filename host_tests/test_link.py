@@ -2,9 +2,9 @@
 """The RS-485 link on the simulated chip: sends, hears, and lets go of the line in time."""
 
 from boards.sim.board import HardTimer, clear_fifo
-from boards.sim.chip import UART, Chip, Pin
+from boards.sim.chip.machine import UART, Chip, Pin
 from boards.sim.clock import Clock
-from boards.sim.wire import Transceiver, Wire
+from boards.sim.line.wire import Transceiver, Wire
 from hal.rs485 import Rs485Link
 
 COMING = -1

@@ -4,7 +4,7 @@
 Parameters are changed behind the bus's back, as somebody at the drive does.
 """
 
-from boards.sim import mm440
+from boards.sim.drives.families import mm440
 from panel_bench import (
     OFF1,
     ON,

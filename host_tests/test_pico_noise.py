@@ -2,7 +2,7 @@
 """Noise on the line of an emulated Pico, above all while its panel starts: it waits until that is
 over, and then finds its drives. In both ways in which the receive time-out may behave."""
 
-from boards.sim.line_faults import LineFaults
+from boards.sim.line.faults import LineFaults
 from pico_bench import QUICK, panel, row_2, running, says, stands
 from tools.emulator.world import PicoWorld
 

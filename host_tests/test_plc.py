@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """The blocks of the S7-200's USS library, used as a PLC program uses them, on simulated drives."""
 
-from boards.sim import g120, generic, mm3
 from boards.sim.clock import Clock, Event
+from boards.sim.drives.families import g120, generic, mm3
 from plc_bench import BAUD, Plc
 from uss import families, pkw, pkw_errors, status
 from uss.layout import Layout

@@ -5,10 +5,10 @@ one of the library, and its example runs."""
 import re
 
 from boards.sim.board import HardTimer
-from boards.sim.chip import UART, Chip, Pin
+from boards.sim.chip.machine import UART, Chip, Pin
 from boards.sim.clock import Clock
-from boards.sim.drive import Drive as SimulatedDrive
-from boards.sim.wire import Transceiver, Wire
+from boards.sim.drives.drive import Drive as SimulatedDrive
+from boards.sim.line.wire import Transceiver, Wire
 from hal import pacer
 from hal.rs485 import Rs485Link
 from plc_bench import SCAN_US

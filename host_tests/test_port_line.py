@@ -4,13 +4,13 @@
 At 19200 baud a character takes 573 us, a telegram of 16 characters 9.2 ms.
 """
 
+from boards.port.clock import RealClock
+from boards.port.line import PortMaster, PtyMaster
 from boards.sim.clock import Clock
 from boards.sim.dice import Dice
-from boards.sim.drive import Drive
-from boards.sim.line_faults import LineFaults
-from boards.sim.port_line import PortMaster, PtyMaster
-from boards.sim.real_clock import RealClock
-from boards.sim.wire import Wire
+from boards.sim.drives.drive import Drive
+from boards.sim.line.faults import LineFaults
+from boards.sim.line.wire import Wire
 
 READ_P0700 = b"\x02\x0e\x01\x12\xbc\x00\x00\x00\x00\x00\x00\x04\x7e\x00\x00\xd9"
 WRITE_P2011 = b"\x02\x0e\x01\x20\x0b\x80\x00\x00\x00\x00\x07\x04\x7e\x00\x00\xdb"  # address 7

@@ -5,12 +5,12 @@ The two have clocks of their own, as two computers have. An adapter may keep cha
 """
 
 import main
+from boards.port.clock import RealClock
+from boards.port.line import PtyMaster
+from boards.port.world import PortWorld
 from boards.sim.clock import Clock, Event
-from boards.sim.drive import Drive
-from boards.sim.port_line import PtyMaster
-from boards.sim.port_world import PortWorld
-from boards.sim.real_clock import RealClock
-from boards.sim.wire import Wire
+from boards.sim.drives.drive import Drive
+from boards.sim.line.wire import Wire
 
 STEP_US = 250  # of the machine, for one look at the clock
 

@@ -6,7 +6,7 @@ and the test that holds it, here or elsewhere. Section numbers are those of the 
 E20125-D0001-S302-A1-7600.
 """
 
-from boards.sim.wire import BURST_LIMIT
+from boards.sim.line.wire import BURST_LIMIT
 from drive_bench import HALF, OFF1, RUN, Bench, telegram
 from line_bench import TIMING, Line
 from uss import pkw

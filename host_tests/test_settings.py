@@ -4,7 +4,7 @@
 import json
 
 import settings
-from boards.sim.flash import Flash
+from boards.sim.chip.flash import Flash
 from hal.store import FileStore
 
 

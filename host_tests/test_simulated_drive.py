@@ -9,8 +9,8 @@ called derived was worked out from these.
 import struct
 
 from boards.sim.clock import Clock
-from boards.sim.drive import Drive
-from boards.sim.wire import Wire
+from boards.sim.drives.drive import Drive
+from boards.sim.line.wire import Wire
 from drive_bench import HALF, OFF1, RUN, Bench, from_hex, telegram
 
 # --- golden telegrams -------------------------------------------------------------------------

@@ -5,8 +5,8 @@ S1, S2 are recordings of real drives, OI440, CU240, G120 and V20 the manuals of 
 is general knowledge alone is said in the files of the families.
 """
 
-from boards.sim import g110, g120, generic, mm3, mm420, mm440, v20
-from boards.sim.drive_parameters import (
+from boards.sim.drives.families import g110, g120, generic, mm3, mm420, mm440, v20
+from boards.sim.drives.parameters import (
     CHANGE,
     DEFAULT,
     INDICES,
@@ -16,7 +16,7 @@ from boards.sim.drive_parameters import (
     TYPE,
     default_values,
 )
-from boards.sim.process import ACTUAL, STATUS_1
+from boards.sim.drives.process import ACTUAL, STATUS_1
 from drive_bench import (
     ACKNOWLEDGE,
     HALF,

@@ -4,7 +4,7 @@
 P and r numbers are those of the MICROMASTER 4 lists; "SPEC" is the USS specification.
 """
 
-from boards.sim import g120, mm3, mm420, mm440, v20
+from boards.sim.drives.families import g120, mm3, mm420, mm440, v20
 from drive_bench import ACKNOWLEDGE, HALF, JOG_LEFT, JOG_RIGHT, OFF1, RUN, Bench, telegram
 
 READ, WRITE, WORD = 0x1000, 0x2000, 0x1000

@@ -5,7 +5,7 @@ It is the drive of the specification (generic.py), which can be set to all of th
 are those of the USS specification ("SPEC").
 """
 
-from boards.sim import generic, mm440
+from boards.sim.drives.families import generic, mm440
 from drive_bench import HALF, OFF1, RUN, Bench, float_words, telegram
 
 VARIABLE = 127

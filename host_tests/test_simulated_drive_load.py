@@ -6,9 +6,9 @@ plate or a parameter tells. The drive is a MICROMASTER 440, which shows most; th
 the delivered parameters, 0.75 kW, 3.25 A.
 """
 
-from boards.sim import g110, g120, mm3, mm420, mm440, v20
-from boards.sim.drive_parameters import MAXIMUM, MINIMUM, NUMBER
-from boards.sim.plant import CONSTANT, FAN, LINEAR
+from boards.sim.drives.families import g110, g120, mm3, mm420, mm440, v20
+from boards.sim.drives.parameters import MAXIMUM, MINIMUM, NUMBER
+from boards.sim.drives.power.plant import CONSTANT, FAN, LINEAR
 from drive_bench import ACKNOWLEDGE, HALF, OFF1, RUN
 from drive_bench import Bench as AnyBench
 

@@ -4,7 +4,7 @@
 What P1210 does is that of the MM420 and MM440 operating instructions, "automatic restart".
 """
 
-from boards.sim import g120, mm3, mm440
+from boards.sim.drives.families import g120, mm3, mm440
 from drive_bench import HALF, OFF1, RUN, Bench, telegram, with_more
 
 FAST = {1120: 0.0}

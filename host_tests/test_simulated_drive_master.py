@@ -4,7 +4,7 @@
 What one of them has misread of the specification shows here against the other.
 """
 
-from boards.sim import g110, g120, generic, mm3, mm420, mm440, v20
+from boards.sim.drives.families import g110, g120, generic, mm3, mm420, mm440, v20
 from fleet_bench import Fleet
 from uss import pkw, pkw_array, pkw_text
 from uss.change_reports import Reports

@@ -5,7 +5,7 @@ Section numbers are those of the USS specification (E20125-D0001-S302-A1-7600, "
 the MICROMASTER 420 Reference Manual, OI440 the MICROMASTER 440 Operating Instructions.
 """
 
-from boards.sim import generic
+from boards.sim.drives.families import generic
 from drive_bench import HALF, OFF1, RUN, Bench, float_words, from_hex, telegram
 
 # What, PKE, IND, PWE1, PWE2, reply PKE, PWE2

@@ -6,7 +6,7 @@ MICROMASTER 440 Operating Instructions, V20 those of the SINAMICS V20; V44 to V4
 vectors. How long it takes, what is calculated and what P3900 resets is general knowledge.
 """
 
-from boards.sim import g120, mm3, mm420, mm440, v20
+from boards.sim.drives.families import g120, mm3, mm420, mm440, v20
 from drive_bench import HALF, OFF1, RUN, Bench, float_words, from_hex, telegram
 
 P0010_IS_30 = from_hex("02 0E 01 20 0A 00 00 00 00 00 1E 04 7E 00 00 43")  # V45

@@ -6,8 +6,8 @@ manuals of the drives beyond. Which error wins where several would fit no docume
 is that of parameter_channel.py.
 """
 
-from boards.sim import g110, g120, generic, mm3, mm420, mm440, v20
-from boards.sim.drive_switches import SWITCHES, Switches
+from boards.sim.drives.families import g110, g120, generic, mm3, mm420, mm440, v20
+from boards.sim.drives.switches import SWITCHES, Switches
 from drive_bench import HALF, OFF1, RUN, Bench, float_words
 
 VARIABLE = 127

@@ -8,8 +8,8 @@ the commissioning step the one that the number needs.
 
 import random
 
-from boards.sim import g110, g120, generic, mm3, mm420, mm440, v20
-from boards.sim.drive_parameters import (
+from boards.sim.drives.families import g110, g120, generic, mm3, mm420, mm440, v20
+from boards.sim.drives.parameters import (
     CHANGE,
     INDICES,
     MAXIMUM,

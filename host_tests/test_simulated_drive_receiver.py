@@ -8,10 +8,10 @@ both must deliver the same telegrams, count the same errors and show the same er
 
 from boards.sim.clock import Clock
 from boards.sim.dice import Dice
-from boards.sim.drive_switches import Switches
-from boards.sim.line_faults import LineFaults
-from boards.sim.slave import BROADCAST, MIRROR, STANDARD, VARIABLE, Slave
-from boards.sim.wire import FRAME, OVERRUN, Wire
+from boards.sim.drives.slave import BROADCAST, MIRROR, STANDARD, VARIABLE, Slave
+from boards.sim.drives.switches import Switches
+from boards.sim.line.faults import LineFaults
+from boards.sim.line.wire import FRAME, OVERRUN, Wire
 from drive_bench import OFF1, telegram
 
 ADDRESS = 3

@@ -5,7 +5,7 @@ P and r numbers are those of the MICROMASTER 4 lists. Limits, ramps, reversal an
 test_simulated_drive_motor.py.
 """
 
-from boards.sim import mm440
+from boards.sim.drives.families import mm440
 from drive_bench import HALF, JOG_LEFT, OFF1, RUN, Bench, telegram
 
 UP, DOWN = 0x2000, 0x4000  # bits of STW

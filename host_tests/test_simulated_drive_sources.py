@@ -4,7 +4,7 @@
 P and r numbers are those of the MICROMASTER 4; a connector is number << 16 | index.
 """
 
-from boards.sim import g110, g120, mm420, mm440, v20
+from boards.sim.drives.families import g110, g120, mm420, mm440, v20
 from drive_bench import HALF, OFF1, RUN, Bench, with_more
 
 COM_ON, COM_SETPOINT = 2036 << 16, 2018 << 16 | 1

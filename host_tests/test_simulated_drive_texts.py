@@ -5,7 +5,7 @@ Only the drive of the specification has them all. Section numbers are those of t
 specification ("SPEC"); the vectors SP7 and SP8 are its own examples.
 """
 
-from boards.sim import g110, generic, mm3, mm420, mm440, v20
+from boards.sim.drives.families import g110, generic, mm3, mm420, mm440, v20
 from drive_bench import OFF1, Bench, float_words, from_hex, telegram
 
 VARIABLE = 127

@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: MIT
 """What may be on the simulated line besides one drive: an echo, a second master, many drives."""
 
-from boards.sim import fleet, g110, mm3
-from boards.sim.chip import UART, Chip, Pin
+from boards.sim.chip.machine import UART, Chip, Pin
 from boards.sim.clock import Clock
-from boards.sim.drive import Drive
-from boards.sim.intruder import Intruder
-from boards.sim.wire import Transceiver, Wire
+from boards.sim.drives import fleet
+from boards.sim.drives.drive import Drive
+from boards.sim.drives.families import g110, mm3
+from boards.sim.line.intruder import Intruder
+from boards.sim.line.wire import Transceiver, Wire
 from boards.sim.world import Surroundings
 from drive_bench import OFF1, Bench, telegram
 

@@ -6,8 +6,8 @@ a judge who sees keys, line and display, and asks the firmware nothing (tools/so
 """
 
 from boards.sim.clock import Clock
-from boards.sim.drive_switches import SWITCHES
-from boards.sim.wire import Wire
+from boards.sim.drives.switches import SWITCHES
+from boards.sim.line.wire import Wire
 from tools.soaking.announced import ANY, MAY_RUN, OFF, RUNS, TRIPPED, number_in, said_in
 from tools.soaking.case import Case
 from tools.soaking.dice import Dice

@@ -9,7 +9,7 @@ import os
 
 import main
 import settings
-from boards.sim.flash import BLOCK_BYTES, ENOSPC, Flash, PowerCut
+from boards.sim.chip.flash import BLOCK_BYTES, ENOSPC, Flash, PowerCut
 from boards.sim.world import SETTINGS_FILE, World
 from hal.store import FileStore
 

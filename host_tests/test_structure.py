@@ -24,6 +24,9 @@ RULES = (
     ("firmware/hal", ("hal",), ("micropython",)),
     ("firmware/hal/rp2_", ("hal",), ("micropython", "array", "rp2")),  # only this chip has it
     ("boards/sim", ("boards.sim", "hal"), None),
+    ("boards/sim/drives", ("boards.sim",), None),
+    ("boards/sim/line", ("boards.sim",), None),
+    ("boards/port", ("boards.port", "boards.sim"), None),
     ("boards", ("hal",), ("machine", "micropython", "os", "time", "rp2", "esp32")),
 )
 PROJECT = (
@@ -97,7 +100,9 @@ def test_the_rule_would_notice():
         ("firmware/hal/rs485.py", "uss.timing.elapsed"),
         ("firmware/hal/rp2_lcd.py", "machine.Pin"),
         ("firmware/hal/rp2_lcd.py", "board"),
-        ("boards/sim/drive.py", "uss.telegram"),
+        ("boards/sim/drives/drive.py", "uss.telegram"),
+        ("boards/sim/line/wire.py", "hal.rs485"),
+        ("boards/sim/world.py", "boards.port.line"),
         ("boards/sim/world.py", "app.App"),
         ("firmware/app.py", "boards.sim.board"),
         ("firmware/main.py", "uss.master"),

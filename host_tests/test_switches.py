@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """The simulated keys: a hand, contacts that bounce, wires that break, and a matrix with ghosts."""
 
-from boards.sim.chip import Chip, Pin
+from boards.sim.chip.machine import Chip, Pin
+from boards.sim.chip.switches import RISE_US, Switches
 from boards.sim.clock import Clock
-from boards.sim.switches import RISE_US, Switches
 
 NAMES = ("START", "STOP", "UP", "DOWN", "EDIT", "SET")
 GRID = (("UP", "DOWN"), ("EDIT", None), (None, "SET"))

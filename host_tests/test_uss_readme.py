@@ -7,7 +7,7 @@ Each block of Python is a program: with a `board`, and, unless it makes its own,
 
 import sys
 
-from boards.sim import g110, mm440
+from boards.sim.drives.families import g110, mm440
 from tools.examples.simulation import Stage, names
 from uss import families
 from uss.bus import Master

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Data sheet of the simulated line: characters to the microsecond, and the rules of the line."""
 
-from boards.sim.chip import heap_lock, heap_unlock
+from boards.sim.chip.machine import heap_lock, heap_unlock
 from boards.sim.clock import Clock, Event
-from boards.sim.wire import GARBLE, LOG_CHARACTERS, LOG_TELEGRAMS, VIOLATION_LIMIT, Wire
+from boards.sim.line.wire import GARBLE, LOG_CHARACTERS, LOG_TELEGRAMS, VIOLATION_LIMIT, Wire
 
 TELEGRAM = bytes(range(0x10, 0x20))  # 16 characters
 BAUD_RATES = (1200, 2400, 4800, 9600, 19200, 38400, 57600, 76800, 93750, 115200, 187500)

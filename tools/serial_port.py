@@ -23,7 +23,7 @@ import termios
 import time
 import tty
 
-PARITY, FRAME = 1, 2  # of a character, as in boards.sim.wire
+PARITY, FRAME = 1, 2  # of a character, as in boards.sim.line.wire
 PTY_MAJORS = range(136, 144)  # of the device number of a pty's slave, on Linux
 READ_MAX = 4096
 MARK = 0xFF  # with PARMRK: before 00 and a character with a wrong parity, or before itself

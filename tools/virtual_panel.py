@@ -16,8 +16,8 @@ import sys
 import time
 
 import main
-from boards.sim import mm420
 from boards.sim.board import WIRINGS
+from boards.sim.drives.families import mm420
 from boards.sim.script import LINE_MAX, ExpectationFailed, Script, ScriptError
 from boards.sim.world import World
 from hal.store import FileStore
@@ -272,8 +272,8 @@ def kept_settings(chosen):
 
 def port_world(chosen, store, kept):
     """As `world_of`: a real line."""
-    from boards.sim.port_world import PortWorld
-    from boards.sim.real_clock import RealClock
+    from boards.port.clock import RealClock
+    from boards.port.world import PortWorld
     from tools.port_client import Port, PortError
 
     if kept:

@@ -5,8 +5,8 @@ The display's controller, switches and flash are things of the panel that outliv
 chip; the board itself is made anew by every restart, as on the chip.
 """
 
-from boards.sim.chip import UART, WDT, Pin, Timer
-from boards.sim.wire import Transceiver
+from boards.sim.chip.machine import UART, WDT, Pin, Timer
+from boards.sim.line.wire import Transceiver
 from hal.hd44780 import Hd44780
 from hal.keypad import Keypad, Matrix
 from hal.rs485 import Rs485Link

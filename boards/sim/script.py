@@ -12,10 +12,10 @@ firmware raises while a command lets time pass goes through as it is.
 """
 
 from boards.sim.dice import Dice
-from boards.sim.drive_switches import switch_value
-from boards.sim.line_faults import KINDS, SUPPLIES, WAYS, LineFaults
-from boards.sim.mains import Mains
-from boards.sim.plant import EXPONENTS, FAN
+from boards.sim.drives.switches import switch_value
+from boards.sim.line.faults import KINDS, SUPPLIES, WAYS, LineFaults
+from boards.sim.drives.mains import Mains
+from boards.sim.drives.power.plant import EXPONENTS, FAN
 
 FAULT_MAX = 9999
 DAYS_MAX = 100

@@ -14,17 +14,17 @@ The world knows nothing of the firmware: `start(board)` makes it and answers an 
 import json
 from collections import OrderedDict
 
-from boards.sim import mm420
 from boards.sim.board import KEYS, LOOP_US, NORMALLY_CLOSED, WIRINGS, Board
-from boards.sim.chip import Chip
+from boards.sim.chip.machine import Chip
 from boards.sim.clock import Clock
 from boards.sim.dice import Dice
-from boards.sim.drive import Drive
-from boards.sim.flash import Flash, PowerCut
-from boards.sim.lcd import Lcd
-from boards.sim.mains import Mains
-from boards.sim.switches import Switches
-from boards.sim.wire import Wire
+from boards.sim.chip.flash import Flash, PowerCut
+from boards.sim.chip.lcd import Lcd
+from boards.sim.chip.switches import Switches
+from boards.sim.line.wire import Wire
+from boards.sim.drives.families import mm420
+from boards.sim.drives.drive import Drive
+from boards.sim.drives.mains import Mains
 from hal.store import FileStore
 
 BOOT_US = 100_000  # from reset to the first step of the firmware

@@ -67,7 +67,7 @@ def world_at(baud, drives=1, seed=0, **more):
 
 def world_of(kinds, baud, seed=0, **more):
     """kinds: {address: what a simulated drive is given}."""
-    from boards.sim.drive import Drive
+    from boards.sim.drives.drive import Drive
     from tools.emulator.world import PicoWorld
 
     settings = {"drives": sorted(kinds)}
@@ -221,7 +221,7 @@ def rate_limit(baud, net_count=TELEGRAM_CHARACTERS - 4):
 
 def mixed(quick, baud):
     """31 drives of all families and layouts, with the master alone, without a task."""
-    from boards.sim.fleet import kinds
+    from boards.sim.drives.fleet import kinds
     from uss.layout import Layout
 
     baud = int(baud)

@@ -14,7 +14,7 @@ import sys
 import textwrap
 from functools import partial
 
-from boards.sim.drive_switches import SWITCHES, switch_value
+from boards.sim.drives.switches import SWITCHES, switch_value
 from boards.sim.script import (
     LINE_MAX,
     ORDER,
@@ -158,7 +158,7 @@ def kinds(chosen):
 
 
 def family_of(name):
-    return getattr(__import__("boards.sim." + name).sim, name)
+    return getattr(__import__("boards.sim.drives.families." + name).sim.drives.families, name)
 
 
 def assignment(option, example, entry, found):

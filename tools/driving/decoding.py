@@ -11,9 +11,9 @@ A telegram that no drive would take is shown as characters, with what is wrong.
 
 import struct
 
-from boards.sim.drive_texts import SECOND_FIELD, TEXT_CHARACTERS, WRITES
-from boards.sim.parameter_channel import ALL_ELEMENTS, PAGE_BITS, number_of, sent_value
-from boards.sim.slave import BROADCAST_BIT, MIRROR_BIT, SPECIAL_BIT, STX, VARIABLE, xor_of
+from boards.sim.drives.families.texts import SECOND_FIELD, TEXT_CHARACTERS, WRITES
+from boards.sim.drives.parameter_channel import ALL_ELEMENTS, PAGE_BITS, number_of, sent_value
+from boards.sim.drives.slave import BROADCAST_BIT, MIRROR_BIT, SPECIAL_BIT, STX, VARIABLE, xor_of
 
 NODE = 0x1F
 SHOWN = 24  # characters of something that is no telegram

@@ -13,10 +13,10 @@ the same commands work on it, those of the panel apart.
 import select
 import time
 
-from boards.sim.drive import Drive
-from boards.sim.port_line import PortMaster, PtyMaster
-from boards.sim.real_clock import RealClock
-from boards.sim.wire import Wire
+from boards.port.clock import RealClock
+from boards.port.line import PortMaster, PtyMaster
+from boards.sim.drives.drive import Drive
+from boards.sim.line.wire import Wire
 from tools.driving import decoding
 from tools.serial_port import LineCut, PortError
 

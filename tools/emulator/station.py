@@ -4,8 +4,9 @@
 What the chip sends comes as characters with the instant of their start bits, known when they are
 over; the world runs so far behind that they can still begin on the wire when they did. What others
 send goes to the chip character by character, each as late as it can be told in time, so that a
-collision garbles it and a cut ends it. As on `boards.sim.wire.Transceiver`, the receiver is off
-while the driver is on. It keeps the figures of the line, in nanoseconds of the chip's clock.
+collision garbles it and a cut ends it. As on the `Transceiver` of boards.sim.line.wire, the
+receiver is off while the driver is on. It keeps the figures of the line, in nanoseconds of the
+chip's clock.
 """
 
 from array import array

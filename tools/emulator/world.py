@@ -16,8 +16,8 @@ whatever it receives still lies before it.
 import json
 import os
 
-from boards.sim.backpack import Backpack
 from boards.sim.board import KEYS
+from boards.sim.chip.backpack import Backpack
 from boards.sim.clock import Clock, Event
 from boards.sim.world import SETTINGS_FILE, Surroundings
 from tools.emulator.chip import connection

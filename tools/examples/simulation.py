@@ -18,9 +18,9 @@ import sys
 from errno import errorcode
 
 # From the bottom of the house up, or the 32-bit build runs out of stack.
-import boards.sim.drive_parameters  # noqa: F401
-from boards.sim import g110, g120, generic, mm3, mm420, mm440, v20
+import boards.sim.drives.parameters  # noqa: F401
 from boards.sim.clock import Event
+from boards.sim.drives.families import g110, g120, generic, mm3, mm420, mm440, v20
 from boards.sim.world import World
 
 FOLDER = "tools/examples"

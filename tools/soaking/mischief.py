@@ -4,7 +4,7 @@
 Judge and reader are told of it before it happens.
 """
 
-from boards.sim.chip import Timer
+from boards.sim.chip.machine import Timer
 from tools.soaking.drive_settings import ACTUAL_HZ
 from tools.soaking.facts import GOES
 from tools.soaking.fingers import JOGS, SLICE_MS, Fingers, weights

@@ -7,9 +7,9 @@
 """
 
 # From the bottom of the house up, or the 32-bit build runs out of stack.
-import boards.sim.drive_parameters
-import boards.sim.mm420
-import boards.sim.parameter_channel
+import boards.sim.drives.families.mm420
+import boards.sim.drives.parameter_channel
+import boards.sim.drives.parameters
 import boards.sim.world  # noqa: F401
 import main
 from tools.soaking.hand import Hand

@@ -8,7 +8,7 @@
 """
 
 from boards.sim.dice import Dice
-from boards.sim.line_faults import BABBLE_MS, WIRE_CUT_MS, LineFaults
+from boards.sim.line.faults import BABBLE_MS, WIRE_CUT_MS, LineFaults
 from tools.soaking.worlds import CLEAN, WILD
 
 # Kind: the highest rate of a rough line, of a wild one.

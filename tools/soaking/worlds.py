@@ -7,9 +7,9 @@ The same seed gives the same world, whatever else is asked of the soak.
     world = SoakWorld(main.start, plan)
 """
 
-from boards.sim import g110, mm420, mm440, v20
 from boards.sim.board import LOOP_US
-from boards.sim.drive_switches import SWITCHES
+from boards.sim.drives.families import g110, mm420, mm440, v20
+from boards.sim.drives.switches import SWITCHES
 from boards.sim.world import World, supervision, supervision_ms
 from tools.soaking.dice import Dice
 from tools.soaking.digest import Digest

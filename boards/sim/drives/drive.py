@@ -1,0 +1,492 @@
+# SPDX-License-Identifier: MIT
+"""A simulated drive on the line: the electronics, the inverter and the motor behind them.
+
+It behaves as the manuals and the USS specification say a drive of its family does, a MICROMASTER
+420 unless told otherwise, written from those documents alone: it shares no code with the panel's
+protocol. Currents, voltages and torque are plausible, no more. Everything happens at the instant
+it would, in virtual time.
+
+    drive = Drive(clock, wire, 1)           # set up for USS on its RS-485 terminals, address 1
+    drive.read(1082)                        # 50.0
+    drive.write(1120, 0, 5.0)               # as from its keypad: RAM and EEPROM
+    drive.fault(1)                          # trips with F0001
+    drive.load(80)                          # percent; r0027 and the like go by it
+    drive.plant.coast_s = 20.0              # a flywheel: pulses off, 50...0 Hz
+    drive.report()                          # "address=1 state=fault hz=0.00 stw=047E ..."
+    Drive(clock, wire, 2, family=g110)      # another family: a module such as mm420
+"""
+
+from boards.sim.drives.words import RUNNING, STOPPING
+from boards.sim.clock import Event
+from boards.sim.drives.switches import Switches
+from boards.sim.drives.power.plant import FAN, INERTIA_S
+from boards.sim.drives.power.inverter import Inverter  # noqa: F401  or `process` does, too deep
+from boards.sim.drives.parameters import Parameters
+from boards.sim.drives.operations import Operations
+from boards.sim.drives.families import mm420
+from boards.sim.drives.readings import Readings
+from boards.sim.drives.supply import Supply
+from boards.sim.drives.parameter_channel import ALL_ELEMENTS, ParameterChannel
+from boards.sim.drives.process import Process
+from boards.sim.drives.slave import (
+    BROADCAST,
+    MIRROR,
+    RESIDUAL_TIME,
+    WATCHDOG,
+    Slave,
+    words_of,
+)
+
+REPLY_DELAY_CHARACTERS = 3  # measured on a MICROMASTER 420 at 2400 baud
+
+USS = 1  # the protocol, where a family has the choice
+
+# Settings of the link that take effect when the reply to the write is out.
+LATE = ("baud", "address", "pzd words", "pkw words")
+
+
+class Drive:
+    """One drive. `parameters` are further settings of its commissioning, {number: value} or
+    {(number, index): value}; the wire tells the baud rate. ValueError where a value does not fit,
+    KeyError where there is no such parameter.
+
+    family          what it is: the module of a family, mm420, mm440, mm3, g110, v20, g120, generic
+    reports         it sends change reports, which none of the listed families does
+    reply_delay_us  from the last character heard to the reply, 3 characters if None; any value may
+                    be set, illegal ones too
+    any_baud        True: it talks at the line's rate whatever its P2010 says, for lines that this
+                    family does not know
+    switches        {name: value} of what the documents leave open, see switches.py; then
+                    an object with an attribute for each
+    eeprom_writes   how often something was written into its EEPROM, P0971 counts once
+    plugged         whether the RS-485 connector is in
+    silent          whether it is busy with P0970 or the like, and deaf
+    plant           what hangs on it, mains, motor and load: plant.py
+    """
+
+    def __init__(
+        self,
+        clock,
+        wire,
+        address,
+        parameters=None,
+        reply_delay_us=None,
+        any_baud=False,
+        family=mm420,
+        reports=False,
+        switches=None,
+    ):
+        self.family = family
+        self.switches = Switches(switches)
+        self._clock = clock
+        self._wire = wire
+        self.name = "drive %d" % address
+        if reply_delay_us is None:
+            reply_delay_us = -(-REPLY_DELAY_CHARACTERS * 11_000_000 // wire.baud)
+        self.reply_delay_us = reply_delay_us
+        self._any_baud = any_baud
+        self.plugged = True
+        self._connected = False
+        link = family.LINK
+        self._parameters = Parameters(family, self._reading)
+        self._process = Process(clock, self._parameters, family, self.switches)
+        self._slave = Slave(wire, self.switches)
+        self._slave.takes_broadcast = link["broadcast"]
+        self._channel = ParameterChannel(
+            self._parameters, family, self._change_state, self._changed, self.switches, reports
+        )
+        self._readings = Readings(family, self._parameters, self._process, self._slave)
+        self._operations = Operations(family, self._parameters, self._process, self.switches)
+        self._off_time = self._parameters.ram[link["off time"]]
+        self._off_time_unit_us = link["unit us"]
+        self._needs_process_data = link["from process data"]
+        self._reply = Event(self._send_reply)
+        self._failure = Event(self._telegram_failure)
+        self._end_of_silence = Event(self._speak_again)
+        self._heard_us = None  # the last telegram, None before the first one
+        self._mirrored = None  # what to send back unchanged
+        self._with_pkw = True  # variable length: whether the request had PKW words
+        self._speaks_uss = True  # what the connector does is chosen at power-up
+        self._silent = False  # busy with something that a parameter started
+        self._unsettled = False  # writes wait for the end of the exchange to take effect
+        self._buffer = bytearray(256)
+        self._supply = Supply(clock, self.switches, self._process, self._start_up, self._go_dark)
+        self._commission(address, parameters or {})
+        self._supply.begin()
+
+    # Looking at it
+
+    @property
+    def address(self):
+        """The address it answers to now."""
+        return self._slave.address
+
+    @property
+    def state(self):
+        """inhibited, ready, ready to run, running, stopping, fault or off."""
+        self._process.hz()  # what time has done meanwhile
+        return self._process.state
+
+    @property
+    def powered(self):
+        """Whether its electronics live. They may boot still: it is "off" until they have."""
+        return self._supply.powered
+
+    @property
+    def mains(self):
+        """Whether its mains are there."""
+        return self._supply.mains
+
+    @property
+    def stw(self):
+        """The control word that came last."""
+        return self._process.image[0]
+
+    @property
+    def starts(self):
+        """How often the motor went from not being driven to being driven."""
+        return self._process.starts
+
+    @property
+    def plant(self):
+        return self._process.plant
+
+    @property
+    def silent(self):
+        return self._silent
+
+    @property
+    def stale_replies(self):
+        return self.switches.stale_replies
+
+    @stale_replies.setter
+    def stale_replies(self, count):
+        self.switches.stale_replies = count
+
+    @property
+    def reexecute(self):
+        return self.switches.reexecute
+
+    @reexecute.setter
+    def reexecute(self, on):
+        self.switches.reexecute = on
+
+    @property
+    def eeprom_writes(self):
+        return self._parameters.eeprom_writes
+
+    @property
+    def layout(self):
+        """PKW words (0, 3, 4 or 127, variable) and PZD words, as it is set up now."""
+        return self._slave.pkw_words, self._slave.pzd_words
+
+    @property
+    def error_status(self):
+        """The error status word of the specification, A-5.2.3: since the last good telegram."""
+        return self._slave.error_status()
+
+    @property
+    def residual_time_errors(self):
+        """Telegrams that were not over in time; no parameter shows it, nor the next."""
+        return self._slave.counters()[RESIDUAL_TIME]
+
+    @property
+    def watchdog_errors(self):
+        """How often the telegram failure time has expired."""
+        return self._slave.counters()[WATCHDOG]
+
+    def hz(self):
+        """The frequency of the motor, negative to the left."""
+        return self._process.hz()
+
+    def report(self):
+        """One line of key=value, for people and for scripts."""
+        process = self._process
+        counters = self._slave.counters()
+        fault = process.faults[0]
+        hiw = process.words(2)[1] if self._supply.booted else 0
+        return (
+            "address=%d state=%s hz=%.2f stw=%04X zsw=%04X hsw=%04X hiw=%04X good=%d rejected=%d "
+            "fault=%s starts=%d"
+        ) % (
+            self.address, self.state, round(self.hz(), 2) + 0.0, self.stw, process.zsw(),
+            process.image[1], hiw, counters[0], counters[1], "F%04d" % fault if fault else "-",
+            self.starts,
+        )  # fmt: skip
+
+    # What people do to it
+
+    def read(self, number, index=0):
+        """A parameter's value: an int, or a float. KeyError: no such number or index."""
+        return self._parameters.get(number, index)
+
+    def write(self, number, index, value):
+        """Change a parameter at the drive's own keypad: RAM and EEPROM, in any state, at once.
+
+        index ALL_ELEMENTS: `value` has one for each. KeyError: no such number or index.
+        ValueError: read-only, or not a value for it.
+        """
+        if index == ALL_ELEMENTS:
+            for i, one in enumerate(value):
+                self._parameters.set(number, i, one)
+        else:
+            self._parameters.set(number, index, value)
+        self._channel.report(number, index)
+        self._changed(number)
+        self._settle()
+
+    def fault(self, number, value=0, lasting=False):
+        """Trip with this fault number. ValueError: the drive is off.
+
+        value: r0949. lasting: its cause stays until `clear_cause`, and so does the fault: neither
+        an acknowledgement nor the power helps. Otherwise it is gone at once.
+        """
+        if not self._supply.booted:
+            raise ValueError(self.name + " is off")
+        self._process.trip(number, value, lasting)
+
+    def clear_cause(self, number=None):
+        """The cause of a lasting fault is gone, of all of them without a number."""
+        self._process.clear_cause(number)
+
+    def warn(self, number, on=True):
+        """A warning with this number comes, or goes."""
+        self._process.memory.warn(number, on)
+
+    def load(self, percent, kind=FAN, inertia_s=INERTIA_S):
+        """What the motor has to do from now on, in percent of its rated torque.
+
+        kind: CONSTANT, LINEAR or FAN (plant.py): how it depends on the frequency; `percent` is
+        that at the rated one. inertia_s: how long rated torque takes to the rated frequency.
+        More than the drive can give makes it warn, and trip in the end.
+        """
+        self._process.load(percent, kind, inertia_s)
+
+    def supply(self, volts):
+        """The mains have so many volts from now on; 400 before. Below 248 it cannot run. Nothing
+        at all is `power_off`.
+        """
+        self._supply.set_volts(volts)
+
+    def plug(self):
+        """Put the RS-485 connector in."""
+        self.plugged = True
+        self._connect()
+
+    def unplug(self):
+        """Pull the RS-485 connector. The drive goes on as it was told last; P2014 applies."""
+        self.plugged = False
+        self._connect()
+
+    def power_off(self):
+        """Mains off. Sooner or later (supply.py) the motor coasts, and RAM is lost: its
+        parameters are those of the EEPROM again.
+        """
+        self._supply.off()
+
+    def power_on(self):
+        """Mains on. Where its electronics were off they boot: no process data yet, inhibited."""
+        self._supply.on()
+
+    def _go_dark(self):
+        self._clock.cancel(self._reply)
+        self._clock.cancel(self._failure)
+        self._clock.cancel(self._end_of_silence)
+        self._silent = False
+        self._process.power_off()
+        self._parameters.load()
+        self._connect()
+
+    def _start_up(self):
+        self._operations.forget()
+        self._unsettled = False
+        self._slave.reset()
+        self._channel.reset()
+        self._heard_us = None
+        protocol = self.family.LINK["protocol"]
+        self._speaks_uss = protocol is None or self._parameters.ram[protocol][0] == USS
+        self._process.power_on()
+        self._configure_link()
+        self._connect()
+
+    # The line
+
+    def hear(self, burst):
+        """The end of a burst on the line: called by the wire."""
+        if self._silent:
+            return
+        form = self._slave.hear(burst)
+        if form is None:
+            return
+        if self._retriggers(form):
+            self._heard_us = self._clock.now_us
+            self._supervise()
+        if form == BROADCAST:
+            self._take_broadcast()
+            return
+        self._mirrored = None
+        if form == MIRROR:
+            self._mirrored = self._slave.telegram[: self._slave.length]
+        else:
+            self._take_request()
+            if self._silent or self.switches.silent_refusals and self._channel.refuses():
+                return
+        self._clock.schedule(self._reply, burst.end_us + self.reply_delay_us)
+
+    def _retriggers(self, form):
+        """Whether the telegram failure time starts anew with this telegram."""
+        if form == BROADCAST and not self.switches.broadcast_retriggers:
+            return False
+        # A telegram that is mirrored carries process data for nobody.
+        return not self._needs_process_data or form != MIRROR and self._slave.pzd_words > 0
+
+    def _net_words(self):
+        """The PKW and the PZD words of the telegram received."""
+        telegram = self._slave.telegram
+        end = self._slave.length - 1
+        pzd_at = end - 2 * self._slave.pzd_words
+        return words_of(telegram, 3, pzd_at), words_of(telegram, pzd_at, end)
+
+    def _take_request(self):
+        pkw, pzd = self._net_words()
+        self._process.accept(pzd)  # process data have priority
+        self._with_pkw = bool(pkw)
+        if pkw:
+            self._channel.accept(pkw, self._slave.pkw_words)
+
+    def _take_broadcast(self):
+        enable, pzd = self._net_words()
+        if len(enable) == 4:  # a broadcast exists only with a PKW area of 4 words
+            self._process.accept_broadcast(enable, pzd)
+
+    def _send_reply(self):
+        """Build the reply when it is sent, so that it carries the newest values."""
+        if self._mirrored is not None:
+            self._wire.talk(self, self._mirrored, len(self._mirrored))
+        else:
+            slave = self._slave
+            words = self._process.words(slave.pzd_words)
+            if self._with_pkw and slave.pkw_words:  # somebody may have changed it meanwhile
+                words = self._channel.reply(slave.pkw_words, slave.pzd_words) + words
+            self._wire.talk(self, self._buffer, self._slave.frame(self._buffer, words))
+        self._settle()
+
+    def _connect(self):
+        """Be on the line while plugged and powered. What it is sending when it leaves is cut."""
+        connected = self.plugged and self._supply.booted and self._speaks_uss
+        if connected and not self._connected:
+            self._wire.attach(self)
+        elif self._connected and not connected:
+            self._wire.detach(self)
+        self._connected = connected
+
+    def _supervise(self):
+        """Start the telegram failure time anew; it runs from the first telegram on."""
+        limit = self._off_time[0]
+        if limit and self._heard_us is not None:
+            limit_us = limit * self._off_time_unit_us
+            self._clock.schedule(self._failure, self._heard_us + limit_us)
+        else:
+            self._clock.cancel(self._failure)
+
+    def _telegram_failure(self):
+        self._slave.watchdog_expired()
+        self._process.trip(self.family.LINK["fault"])
+
+    # Parameters
+
+    def _commission(self, address, parameters):
+        """Set it up as delivered, then for USS at the line's baud rate, then as asked for."""
+        family = self.family
+        link = family.LINK
+        codes = [code for code, baud in family.BAUD_CODES.items() if baud == self._wire.baud]
+        if not codes and not self._any_baud:
+            raise ValueError("a %s has no code for %d baud" % (family.NAME, self._wire.baud))
+        settings = dict(family.COMMISSIONED)
+        if codes:
+            settings[link["baud"]] = codes[0]
+        settings[link["address"]] = address
+        settings.update(parameters)
+        for connects in (True, False):  # P0700 before P0840, which it sets
+            for key in settings:
+                number, index = key if isinstance(key, tuple) else (key, 0)
+                if (number in family.SOURCES["sets"]) == connects:
+                    self._parameters.set(number, index, settings[key])
+        self._parameters.eeprom_writes = 0
+
+    def _reading(self, number, index):
+        return self._readings.value(number, index)
+
+    def _change_state(self):
+        """C, U or T: what the parameter lists call commissioning, running and ready."""
+        if self.state in (RUNNING, STOPPING):
+            return "U"
+        return "C" if self._process.commissioning else "T"
+
+    def _changed(self, number):
+        """A parameter was written: most take effect at once, some when the reply is out."""
+        link = self.family.LINK
+        if number in [link[name] for name in LATE]:
+            self._unsettled = True
+            if self.switches.layout_at_once:
+                self._configure_layout()
+        elif number == link["off time"]:
+            self._supervise()
+        elif self._operations.note(number):
+            self._unsettled = True
+            if self.switches.silent_at_once and self._operations.seconds():
+                self._settle()
+        self._process.refresh()
+
+    def _settle(self):
+        """What had to wait for the end of the exchange: settings of the link, operations."""
+        if self._unsettled:
+            self._unsettled = False
+            self._configure_link()
+            self._operate()
+
+    def _operate(self):
+        """Carry out what parameters have started. What takes its time makes the drive silent."""
+        operations = self._operations
+        while not self._silent and operations.seconds() is not None:
+            seconds = operations.seconds()
+            if seconds:
+                self._silent = True
+                self._clock.cancel(self._reply)
+                self._clock.cancel(self._failure)  # it waits as well: a choice
+                end_us = self._clock.now_us + round(seconds * 1_000_000)
+                self._clock.schedule(self._end_of_silence, end_us)
+            else:
+                self._complete()
+
+    def _speak_again(self):
+        self._silent = False
+        if self._heard_us is not None:
+            self._heard_us = self._clock.now_us
+        self._complete()
+        self._operate()
+
+    def _complete(self):
+        self._operations.carry_out()
+        self._process.refresh()
+        self._configure_link()
+        self._supervise()
+
+    def _configure_link(self):
+        slave = self._slave
+        link = self.family.LINK
+        ram = self._parameters.ram
+        codes = self.family.BAUD_CODES
+        slave.baud = self._wire.baud if self._any_baud else codes[ram[link["baud"]][0]]
+        slave.address = ram[link["address"]][0]
+        self._configure_layout()
+
+    def _configure_layout(self):
+        slave = self._slave
+        link = self.family.LINK
+        ram = self._parameters.ram
+        if link["layout"] is None:
+            slave.pkw_words = ram[link["pkw words"]][0]
+            slave.pzd_words = ram[link["pzd words"]][0]
+        else:
+            slave.pkw_words, slave.pzd_words = link["layout"]

@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: MIT
+"""Where a simulated drive takes its commands and its setpoint from: P0700, P1000 and their like.
+
+P0700 and P1000 choose a source by a digit. On the drive each sets a connector that says the same
+as number and index, P0840 for ON and P1070 for the main setpoint; what is connected counts, and
+may be connected anew. P0719 overrides both. All of it is general knowledge, from the MM4 function
+diagrams; the USS specification knows no sources.
+
+    sources = Sources(family)
+    sources.take(process)               # its settings have changed
+    sources.command(image)              # the control word that is obeyed
+    sources.main, sources.place         # COM_LINK, 1: the setpoint is PZD2
+    family.SOURCES["sets"][700]         # (840, {5: 0x07F40000, ...}): what a write of P0700 sets
+"""
+
+from boards.sim.drives.words import ALWAYS, COM_LINK, CONTROL_WORD_2, FIXED_FREQUENCY, MOP, ON
+
+NONE = 0
+
+# Connectors: number << 16 | index.
+TERMINAL_1, KEYPAD, ANALOG = 722 << 16, 19 << 16, 755 << 16
+MOP_OUTPUT, FIXED_OUTPUT = 1050 << 16, 1024 << 16
+
+# Numbers that are a setpoint source by themselves.
+OUTPUTS = {1050: MOP, 1024: FIXED_FREQUENCY}
+
+# What a family says of it: `words`, its numbers for the control words received, by their place in
+# the image; `received`, the list of all words received; `sets`, a number that sets a connector:
+# which one, and to what by its value, of P1000 by the units of it.
+MM4 = {
+    "words": {2036: 0, 2037: CONTROL_WORD_2},
+    "received": 2018,
+    "sets": {
+        700: (
+            (840, {0: TERMINAL_1, 1: KEYPAD, 2: TERMINAL_1, 4: 2032 << 16, 5: 2036 << 16,
+                   6: 2090 << 16}),
+        ),
+        1000: (
+            (1070, {0: NONE, 1: MOP_OUTPUT, 2: ANALOG, 3: FIXED_OUTPUT, 4: 2015 << 16 | 1,
+                    5: 2018 << 16 | 1, 6: 2050 << 16 | 1, 7: 755 << 16 | 1}),
+        ),
+    },
+}  # fmt: skip
+
+# A family that connects nothing: only a digit.
+FIXED = {"words": {}, "received": None, "sets": {}}
+
+# The second generation of the G120 connects what its macro p0015 says, USS with 21.
+G120 = {
+    "words": {2090: 0, 2091: 1, 2092: 2, 2093: 3},
+    "received": 2050,
+    "sets": {
+        15: (
+            (840, {12: TERMINAL_1, 17: TERMINAL_1, 18: TERMINAL_1, 19: TERMINAL_1,
+                   20: TERMINAL_1, 21: 2090 << 16}),
+            (1070, {12: ANALOG, 17: ANALOG, 18: ANALOG, 19: ANALOG, 20: ANALOG,
+                    21: 2050 << 16 | 1}),
+        ),
+    },
+}  # fmt: skip
+
+# P0719: tens as P0700, units as P1000; 0 leaves it to these.
+SELECTIONS = tuple(10 * tens + units for tens in (0, 1, 4, 5, 6) for units in range(7))
+
+
+def connected(family, number, value):
+    """What a write of `value` to `number` connects: (number, connector) of each."""
+    for target, by_value in family.SOURCES["sets"].get(number, ()):
+        yield target, by_value[value % 10 if number == 1000 else value]
+
+
+class Sources:
+    """family: a module such as mm420.
+
+    main        the source of the main setpoint, a digit as of P1000
+    place       of the word that COM_LINK means
+    additional  the source of the additional setpoint
+    """
+
+    def __init__(self, family):
+        self._words = family.SOURCES["words"]
+        self._received = family.SOURCES["received"]
+        self._others = family.OTHER_COMMANDS
+        self._digits = family.SETPOINT_SOURCES
+        self._command = None  # a control word that no bus sets, None: that of the image
+        self._on = None  # the connector of ON, None: as the rest
+        self.main, self.place, self.additional = COM_LINK, 1, 0
+
+    def take(self, settings):
+        """Go by command_source, setpoint_source, selection, on_source and main_source."""
+        commands, setpoint = settings.selection // 10, settings.selection % 10
+        self._on = None if commands else settings.on_source
+        self._command = self._others.get(commands or settings.command_source)
+        self.place = 1
+        if setpoint:
+            self.main, self.additional = setpoint, 0
+            return
+        digits = self._digits.get(settings.setpoint_source, settings.setpoint_source)
+        self.main, self.additional = digits % 10, digits // 10
+        if settings.main_source is not None:
+            self.main, self.place = self.setpoint(settings.main_source)
+
+    def setpoint(self, connector):
+        """What a connector of a setpoint means: source, and place of the word."""
+        number, index = connector >> 16, connector & 0xFFFF
+        if number == self._received:
+            return COM_LINK, index
+        return OUTPUTS.get(number, NONE), 1
+
+    def command(self, image, obeyed_bits):
+        """The control word in force."""
+        word = image[0] & obeyed_bits if self._command is None else self._command
+        if self._on is not None:
+            word = word | ON if self.bit(self._on, image) else word & ~ON
+        return word
+
+    def bit(self, connector, image):
+        """What a binary connector says now: 0 or 1. Terminals and other links say 0."""
+        if connector == ALWAYS:
+            return 1
+        place = self._words.get(connector >> 16)
+        return 0 if place is None else image[place] >> (connector & 0x0F) & 1
+
+    def is_word(self, connector):
+        """Whether a binary connector is a bit of this bus."""
+        return connector >> 16 in self._words

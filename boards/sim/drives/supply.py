@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: MIT
+"""What feeds a simulated drive: the mains, the DC link behind them, and electronics that boot.
+
+    supply = Supply(clock, switches, process, start=drive.start, stop=drive.stop)
+    supply.off()            # the mains go
+    supply.on()             # they are back
+
+When the mains go the DC link carries everything on for `buffered_ms`. Then it has collapsed: a
+motor that is driven loses its pulses (undervoltage, F0003 on a MICROMASTER 4). The electronics
+live on for `dark_ms` more. Mains that are back by then were a brownout, later ones a blackout:
+so the MM420 and MM440 operating instructions tell these apart (3.15, 3.16), by a display that has
+gone dark. After a blackout the drive boots, and says nothing for `boot_ms`. The instructions tell
+no times: these are switches (switches.py).
+"""
+
+from boards.sim.clock import Event
+from boards.sim.drives.power.plant import SUPPLY_V
+
+# From mains that are back to a restart after a brownout (V20 parameter list, P1210: the first
+# attempt; general knowledge).
+RESTART_US = 1_000_000
+
+
+class Supply:
+    """start, stop: called when the electronics have booted, and when they go dark.
+
+    mains    whether the mains are there
+    powered  whether the electronics live, booted or not
+    booted   whether they have started too
+    """
+
+    def __init__(self, clock, switches, process, start, stop):
+        self._clock = clock
+        self._switches = switches
+        self._process = process
+        self._start = start
+        self._stop = stop
+        self._volts = SUPPLY_V
+        self._sagged = False  # the DC link has collapsed
+        self._sag = Event(self._collapse)
+        self._dark = Event(self._go_dark)
+        self._boot = Event(self._have_booted)
+        self._restart = Event(process.after_brownout)
+        self.mains = self.powered = self.booted = False
+
+    def begin(self):
+        """It was switched on long ago."""
+        self.mains = self.powered = True
+        self._have_booted()
+
+    def off(self):
+        """The mains go."""
+        if self.mains:
+            self.mains = False
+            self._clock.cancel(self._restart)
+            self._after(self._sag, self._switches.buffered_ms)
+
+    def on(self):
+        """The mains are back."""
+        if self.mains:
+            return
+        self.mains = True
+        self._clock.cancel(self._sag)
+        self._clock.cancel(self._dark)
+        if not self._sagged:
+            return
+        self._sagged = False
+        self._process.supply(self._volts)
+        if not self.powered:
+            self.powered = True
+            self._after(self._boot, self._switches.boot_ms)
+        elif self.booted:
+            self._clock.schedule(self._restart, self._clock.now_us + RESTART_US)
+
+    def set_volts(self, volts):
+        self._volts = volts
+        if not self._sagged:
+            self._process.supply(volts)
+
+    def _after(self, event, ms):
+        """At once where that is 0: whoever switched it sees it done."""
+        if ms:
+            self._clock.schedule(event, self._clock.now_us + ms * 1000)
+        else:
+            event.callback()
+
+    def _collapse(self):
+        self._sagged = True
+        self._process.supply(0)
+        self._after(self._dark, self._switches.dark_ms)
+
+    def _go_dark(self):
+        self.powered = self.booted = False
+        self._clock.cancel(self._boot)
+        self._stop()
+
+    def _have_booted(self):
+        self.booted = True
+        self._start()
