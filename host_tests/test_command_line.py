@@ -333,7 +333,7 @@ def start(board):
 def test_a_crash_of_the_firmware_shows_where_and_has_a_status_of_its_own(tmp_path, error, steps):
     (tmp_path / "main.py").write_text(FAILING % (steps, error, steps))
     ended = subprocess.run(
-        [MICROPYTHON, "-X", "heapsize=16M", os.path.join(TOP, "tools", "virtual_panel.py")]
+        [MICROPYTHON, "-X", "heapsize=16M", os.path.join(TOP, "tools", "live", "virtual_panel.py")]
         + ["--script", "-"],
         input="wait 1000\nlcd\n", capture_output=True, text=True, timeout=60, check=False,
         env={**os.environ, "MICROPYPATH": "%s:%s:%s/firmware:.frozen" % (tmp_path, TOP, TOP)},

@@ -31,7 +31,7 @@ sys.path.insert(0, TOP)
 
 from boards.sim.line.wire import Burst  # noqa: E402
 from tools.driving import decoding  # noqa: E402
-from tools.serial_port import FRAME, PARITY, LineCut, Pty, SerialPort  # noqa: E402
+from tools.port.serial_port import FRAME, PARITY, LineCut, Pty, SerialPort  # noqa: E402
 
 INTERPRETERS = "host"
 

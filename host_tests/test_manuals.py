@@ -16,7 +16,7 @@ import version
 from boards.sim.script import COMMANDS
 from panel import texts
 from tiers import TOP
-from tools import virtual_panel
+from tools.live import virtual_panel
 
 INTERPRETERS = "host"
 

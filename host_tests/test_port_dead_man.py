@@ -6,7 +6,7 @@ import sys
 
 sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 
-from tools.port_dead_man import ROUNDS, DeadMan, off1, telegrams  # noqa: E402
+from tools.port.dead_man import ROUNDS, DeadMan, off1, telegrams  # noqa: E402
 
 INTERPRETERS = "host"
 

@@ -20,8 +20,8 @@ from test_terminal import Terminal
 TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 sys.path.insert(0, TOP)
 
-from tools.port_launch import Relay  # noqa: E402
-from tools.serial_port import Pty  # noqa: E402
+from tools.port.launch import Relay  # noqa: E402
+from tools.port.serial_port import Pty  # noqa: E402
 
 INTERPRETERS = "host"
 

@@ -21,7 +21,7 @@ LEFT_OVER = "%s is left over: the terminal that it leads to was made after it, b
 BEGIN = """
 import fcntl, os, signal, struct, sys, termios, time
 sys.path.insert(0, %r)
-from tools.serial_port import PortError, Pty, SerialPort
+from tools.port.serial_port import PortError, Pty, SerialPort
 
 def become_nobody():
     if os.getuid() == 0:

@@ -420,7 +420,7 @@ def test_a_terminal_that_is_closed_ends_it():
 FAILING = """
 import main
 from boards.sim.world import World
-from tools.terminal_panel import live
+from tools.live.terminal_panel import live
 
 world = World(main.start)
 world.run(1000)

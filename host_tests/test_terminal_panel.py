@@ -7,8 +7,8 @@ The terminal itself is in test_terminal.py.
 import main
 from boards.sim.script import ORDER
 from boards.sim.world import World
-from tools.hand import FIRST_REPEAT_MS, REPEAT_MS, WAITING_MAX, Hand
-from tools.panel_picture import (
+from tools.live.hand import FIRST_REPEAT_MS, REPEAT_MS, WAITING_MAX, Hand
+from tools.live.picture import (
     COLUMNS,
     ROWS,
     SAID_ROWS,
@@ -19,8 +19,16 @@ from tools.panel_picture import (
     shows_display,
     telegram_line,
 )
-from tools.terminal import ESCAPE, OTHER, Strokes
-from tools.terminal_panel import WORK_MS, Pace, RealPace, Session, farewell, shows_boxes, turning
+from tools.live.terminal import ESCAPE, OTHER, Strokes
+from tools.live.terminal_panel import (
+    WORK_MS,
+    Pace,
+    RealPace,
+    Session,
+    farewell,
+    shows_boxes,
+    turning,
+)
 
 NOT_TRACED = "test_stop_ends_every_command_at_once_and_stops"
 

@@ -25,8 +25,8 @@ from boards.sim.script import (
     value,
 )
 from tools.driving.line import OF_THE_PANEL, DriveLine
-from tools.serial_port import PortError, Pty, SerialPort
-from tools.standard_streams import Output, is_ours, open_missing
+from tools.port.serial_port import PortError, Pty, SerialPort
+from tools.port.standard_streams import Output, is_ours, open_missing
 
 FAMILIES = ("mm420", "mm440", "mm3", "g110", "v20", "g120", "generic")
 USUAL = "mm420"

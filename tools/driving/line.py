@@ -18,7 +18,7 @@ from boards.port.line import PortMaster, PtyMaster
 from boards.sim.drives.drive import Drive
 from boards.sim.line.wire import Wire
 from tools.driving import decoding
-from tools.serial_port import LineCut, PortError
+from tools.port.serial_port import LineCut, PortError
 
 AGAIN_S = 1.0  # a port that has gone is looked for so often
 LONGEST_WAIT_US = 1_000_000

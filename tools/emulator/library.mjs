@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// rp2040js and the boot ROM, from build/emulator (see tools/workshop/emulator.sh).
+// rp2040js and the boot ROM, from build/emulator (see tools/fetch/emulator.sh).
 //
 // The environment variable USS_EMULATOR names another folder that holds the two. Some classes that
 // are extended here are not on rp2040js's list of exports; they are taken from its files, which is

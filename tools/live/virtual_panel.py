@@ -3,7 +3,7 @@
 
 With --board pico it is the firmware file for the Raspberry Pi Pico on an emulated one: then this
 runs under emulator/launch.py. With --port it talks on a real line, in real time, and runs under
-port_launch.py. Runs on MicroPython. Exit status: 0, 1 when an expectation failed or a rule of the
+port/launch.py. Runs on MicroPython. Exit status: 0, 1 when an expectation failed or a rule of the
 RS-485 line was broken, 2 when the command line or a script cannot be understood, 4 with a
 traceback when the firmware or the simulation failed, 5 when the serial port cannot be had, 130
 after Ctrl-C.
@@ -22,7 +22,7 @@ from boards.sim.script import LINE_MAX, ExpectationFailed, Script, ScriptError
 from boards.sim.world import World
 from hal.store import FileStore
 from settings import load, save
-from tools.terminal_panel import live
+from tools.live.terminal_panel import live
 from uss.telegram import NODE_MAX
 from uss.timing import BAUD_RATES
 
@@ -274,7 +274,7 @@ def port_world(chosen, store, kept):
     """As `world_of`: a real line."""
     from boards.port.clock import RealClock
     from boards.port.world import PortWorld
-    from tools.port_client import Port, PortError
+    from tools.port.client import Port, PortError
 
     if kept:
         for option, given, named in (

@@ -15,7 +15,7 @@
 pico_micropython=1.25.0
 pico_sdk=2.1.1              # the one that this MicroPython was tried with
 pico_released=2025-04-15    # the date that MicroPython says it is of
-pico_requirements=$top/tools/workshop/pico_requirements.txt
+pico_requirements=$top/tools/fetch/pico_requirements.txt
 pico_make=$build/pico_make
 
 # get_pico_firmware panel|stock: sees to it that build/pico/NAME.uf2 is there and made of what the

@@ -4,7 +4,7 @@
     live(world, speed=1)        # until q, Ctrl-C or the terminal's end
 
 It joins the pieces: `terminal` (bytes and lines), `hand` (keys), `errand` (commands that take
-time), `panel_picture` (what is shown).
+time), `picture` (what is shown).
 Whatever ends it, the drives are stopped and the terminal is as it was before.
 
 A person is at the keys, and may mistype. Text is never keys: a command line stays open until it
@@ -16,10 +16,10 @@ import os
 import time
 
 from boards.sim.script import ORDER, ExpectationFailed, Script, ScriptError
-from tools.errand import ERRANDS, Errand
-from tools.hand import ARM, LETTERS, STARTERS, STOP, Hand
-from tools.panel_picture import COLUMNS, SAID_ROWS, Picture, fitted, shows_display
-from tools.terminal import ESCAPE, Strokes, Terminal
+from tools.live.errand import ERRANDS, Errand
+from tools.live.hand import ARM, LETTERS, STARTERS, STOP, Hand
+from tools.live.picture import COLUMNS, SAID_ROWS, Picture, fitted, shows_display
+from tools.live.terminal import ESCAPE, Strokes, Terminal
 
 FRAME_MS = 20
 SLICE_MS = 10  # of the world's time, between two movements of the hand

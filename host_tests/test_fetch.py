@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""The workshop itself: how tests are collected and judged, and how MicroPython, node and the
-firmware for the Pico are obtained.
+"""How tests are collected and judged, and how MicroPython, node and the firmware for the Pico are
+fetched.
 
-What it does when all is well, every run of the tests shows; here stands what goes wrong.
+What that does when all is well, every run of the tests shows; here stands what goes wrong.
 """
 
 import bz2
@@ -266,7 +266,7 @@ class Machine:
         return self.run(self.top / "tools" / "panel", *arguments, input="standard input", cwd="/")
 
     def shell(self, commands, files=("folder", "packages", "micropython")):
-        sourced = " ".join(f'. "$top/tools/workshop/{file}.sh";' for file in files)
+        sourced = " ".join(f'. "$top/tools/fetch/{file}.sh";' for file in files)
         return self.run("bash", "-c", f'set -euo pipefail; top=$0; {sourced} {commands}', self.top)
 
 
@@ -281,8 +281,8 @@ def test_an_installed_micropython_gets_all_arguments_and_the_paths(machine):
     top = machine.top
     assert run.returncode == 7
     assert run.stdout.splitlines() == (
-        [f"{top}:{top}/firmware:.frozen", "-X", "heapsize=16M", f"{top}/tools/virtual_panel.py"]
-        + ["--script", "a file", "standard input"]
+        [f"{top}:{top}/firmware:.frozen", "-X", "heapsize=16M"]
+        + [f"{top}/tools/live/virtual_panel.py", "--script", "a file", "standard input"]
     )
     assert "using" in run.stderr
     assert machine.panel().stderr == ""  # it remembers
@@ -496,7 +496,7 @@ def test_a_firmware_is_built_anew_when_something_in_it_has_changed(pico):
         lambda: (firmware / "uss" / "new.py").rename(firmware / "new.py"),
         lambda: (firmware / "new.py").unlink(),
         lambda: (pico.top / "boards" / "pico" / "board.py").write_text(""),
-        lambda: (pico.top / "tools" / "workshop" / "pico_requirements.txt").write_text("cmake\n"),
+        lambda: (pico.top / "tools" / "fetch" / "pico_requirements.txt").write_text("cmake\n"),
     ]
     for number, change in enumerate(changes):
         change()
@@ -510,7 +510,7 @@ def test_what_is_not_in_a_firmware_does_not_have_it_built_anew(pico):
     get_firmware(pico, "stock")
     (pico.top / "firmware" / "app.py").write_text("first\n")  # the same, at another time
     (pico.top / "firmware" / "notes.txt").write_text("")
-    with (pico.top / "tools" / "workshop" / "pico.sh").open("a") as script:
+    with (pico.top / "tools" / "fetch" / "pico.sh").open("a") as script:
         script.write("# a comment\n")
     assert not get_firmware(pico, "panel")[0]
     (pico.top / "firmware" / "app.py").write_text("second\n")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-# build/, the one folder that the workshop fills. To be sourced, with $top set to the top of the
+# build/, the one folder that tools/fetch fills. To be sourced, with $top set to the top of the
 # tree.
 #
 # Each subfolder of build/ is made aside and then renamed, so that it is either absent or whole,

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 # The version of the panel: one number, that of firmware/version.py. To be sourced, with $top set to
-# the top of the tree, before anything else of the workshop: a command that was called with
+# the top of the tree, before anything else of this folder: a command that was called with
 # --version alone answers and ends here, and fetches nothing for it.
 
 panel_version() {

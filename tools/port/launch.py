@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: MIT
 """Holds a serial port, or a pty, for a program on MicroPython, which cannot set one up itself.
 
-    python3 tools/port_launch.py PROGRAM ARGUMENTS...
+    python3 tools/port/launch.py PROGRAM ARGUMENTS...
 
 PROGRAM finds in its environment USS_PORT_DATA and USS_PORT_CONTROL, the numbers of two sockets:
 the characters of the port, and lines. It says "open BAUD PATH" and is told "opened" or "error
@@ -19,12 +19,13 @@ import socket
 import subprocess
 import sys
 import time
+from pathlib import Path
 
-sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
+sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
-from tools.port_dead_man import DeadMan, telegrams  # noqa: E402
-from tools.serial_port import LineCut, PortError, SerialPort  # noqa: E402
-from tools.standard_streams import open_missing  # noqa: E402
+from tools.port.dead_man import DeadMan, telegrams  # noqa: E402
+from tools.port.serial_port import LineCut, PortError, SerialPort  # noqa: E402
+from tools.port.standard_streams import open_missing  # noqa: E402
 
 LEAVE = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT)
 SUSPEND = (signal.SIGTSTP, signal.SIGTTIN, signal.SIGTTOU)
@@ -217,7 +218,7 @@ def start(command, data, control):
 
 def main(command):
     if not command:
-        print("port_launch.py: what is to be started?", file=sys.stderr)
+        print("launch.py: what is to be started?", file=sys.stderr)
         return 2
     open_missing()
     data, their_data = socket.socketpair()
@@ -235,7 +236,7 @@ def main(command):
     try:
         program = start(command, their_data, their_control)
     except OSError as error:
-        print("port_launch.py: %s: %s" % (command[0], error.strerror), file=sys.stderr)
+        print("launch.py: %s: %s" % (command[0], error.strerror), file=sys.stderr)
         return NOT_FOUND
     their_data.close()
     their_control.close()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The port of the computer, as a program on MicroPython has it beside tools/port_launch.py.
+"""The port of the computer, as a program on MicroPython has it beside tools/port/launch.py.
 
     port = Port()
     port.open("/dev/ttyUSB0", 19200)    # PortError: says in words what is wrong
@@ -14,7 +14,7 @@ whoever wants the program to end.
 import os
 import select
 
-ALONE = "--port wants tools/port_launch.py around this program: start ./tools/panel"
+ALONE = "--port wants tools/port/launch.py around this program: start ./tools/panel"
 OPENING_MS = 5_000
 LINE_MAX = 200
 
@@ -84,7 +84,7 @@ class Port:
         told = self._control.read(LINE_MAX)
         if told == b"":  # it was killed: nothing reaches the line any more
             self._poller.unregister(self._control)
-            return [("cut", "tools/port_launch.py is no more"), ("leave", "")]
+            return [("cut", "tools/port/launch.py is no more"), ("leave", "")]
         *lines, self._line = (self._line + (told or b"")).split(b"\n")
         found = []
         for line in lines:

@@ -9,8 +9,8 @@ It looks at a `World` and a `Hand`, changes nothing, and knows no terminal: test
 lit (the display, keys that are down) stands between the marks HIGHLIGHT and PLAIN.
 """
 
-from tools.hand import ARM, LETTERS, STARTERS
-from tools.terminal import HIGHLIGHT, PLAIN
+from tools.live.hand import ARM, LETTERS, STARTERS
+from tools.live.terminal import HIGHLIGHT, PLAIN
 
 ROWS = 24
 COLUMNS = 79  # nothing in the last one: some terminals begin a new line then
