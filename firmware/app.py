@@ -54,11 +54,11 @@ class App:
         notice = texts.WATCHDOG_RESTART if board.reset_cause else None
         self.panel = Panel(controls, self.bus, board.keypad.names, settings, mask, notice)
         self._mask = mask
-        self._ticks_us = board.clock.ticks_us
+        self.ticks_us = board.clock.ticks_us
         self._ticks_ms = board.clock.ticks_ms
         # A method that is found once is not looked for in every step.
         self.step_panel = self.panel.step
-        self._refresh = self.bus.refresh
+        self.refresh_bus = self.bus.refresh
         self._tend = self.pacer.tend
         self._polled = board.timer is None  # then each step drives the bus
         self._progress = 0  # of the bus as last seen, and when it moved
@@ -71,7 +71,7 @@ class App:
     def start(self):
         self._progress_at_ms = self._fed_at_ms = self._ticks_ms()
         self.board.watchdog.feed()
-        self.bus.refresh(self._ticks_us())
+        self.bus.refresh(self.ticks_us())
         self.pacer.start()
 
     def step(self):
@@ -79,8 +79,8 @@ class App:
         board = self.board
         keypad = board.keypad
         now_ms = self._ticks_ms()
-        now_us = self._ticks_us()
-        self._refresh(now_us, False)
+        now_us = self.ticks_us()
+        self.refresh_bus(now_us, False)
         if self.step_panel(keypad.read(), now_ms, now_us, keypad.unclear):
             self._look_or_show(now_us)
         elif (now_ms - self._fed_at_ms) & self._mask >= _FEED_MS:
@@ -96,8 +96,8 @@ class App:
         of these, or one where the step has taken long already, and next time the other one.
         """
         if not self._shows_next:
-            self._refresh(now_us)
-            if (self._ticks_us() - now_us) & self._mask > _LONG_US:
+            self.refresh_bus(now_us)
+            if (self.ticks_us() - now_us) & self._mask > _LONG_US:
                 self._shows_next = True
                 return
         self._shows_next = False

@@ -79,7 +79,7 @@ class Line:
             return self._sending_until - self.now
         self.sent_at = self._sending_until & MASK
         self.asked = self.requests[-1]
-        self._hear(self._sending_until, self.answer and self.answer(self.asked))
+        self.hear(self._sending_until, self.answer and self.answer(self.asked))
         self._sending_until = None
         return 0
 
@@ -114,7 +114,7 @@ class Line:
         self.received_at = self.now & MASK
         return at - first
 
-    def _hear(self, since, pieces):
+    def hear(self, since, pieces):
         if pieces is None:
             return
         if not isinstance(pieces, list):

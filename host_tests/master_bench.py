@@ -30,8 +30,8 @@ class Bus:
         self.sent_at = 0
         self.received_at = 0
         self._sending_until = None
-        self._reply = b""
-        self._reply_at = 0
+        self.reply = b""
+        self.reply_at = 0
         self.master = Master(self, TIMING, MASK)
         self.drives = [self.master.add(address) for address in addresses]
 
@@ -41,10 +41,10 @@ class Bus:
         characters = bytes(buffer[:count])
         self.sent.append((self.now, characters))
         self._sending_until = self.now + TIMING.telegram_us(count - 4)
-        self._reply = b""
+        self.reply = b""
         address = characters[2]
         if address in self.zsw and address not in self.silent:
-            self._answer(address, characters)
+            self.answer(address, characters)
 
     def sending_us(self, now):
         if self._sending_until is None:
@@ -56,14 +56,14 @@ class Bus:
         return 0
 
     def receive(self, buffer, at):
-        if not self._reply or self.now < self._reply_at:
+        if not self.reply or self.now < self.reply_at:
             return 0
-        reply, self._reply = self._reply, b""
+        reply, self.reply = self.reply, b""
         buffer[at : at + len(reply)] = reply
-        self.received_at = self._reply_at & MASK
+        self.received_at = self.reply_at & MASK
         return len(reply)
 
-    def _answer(self, address, request):
+    def answer(self, address, request):
         net = bytearray(12)
         take_pkw = self.pkw[address]
         net[:8] = take_pkw(request[3:11]) if take_pkw else bytes(8)
@@ -72,8 +72,8 @@ class Bus:
         reply = bytearray(20)
         reply[3:15] = net
         count = telegram.seal(reply, address, 12)
-        self._reply = bytes(reply[:count])
-        self._reply_at = self._sending_until + REPLY_DELAY_US + TIMING.telegram_us(12)
+        self.reply = bytes(reply[:count])
+        self.reply_at = self._sending_until + REPLY_DELAY_US + TIMING.telegram_us(12)
 
     # Time.
 
@@ -84,8 +84,8 @@ class Bus:
                 self.master.refresh(self.now & MASK)
             wait_us = self.master.poll(self.now & MASK)
             assert wait_us >= 1
-            if self._reply:
-                wait_us = min(wait_us, max(1, self._reply_at - self.now))
+            if self.reply:
+                wait_us = min(wait_us, max(1, self.reply_at - self.now))
             self.now += min(wait_us, 5_000)
 
     def addresses(self, since=0):

@@ -50,7 +50,7 @@ def all_running(addresses):
 
 def late(world, number, address=1):
     """Until a question about this parameter is given up, the drive goes on with its old answer."""
-    channel, drive = world.drives[address]._channel, world.drives[address]
+    channel, drive = world.drives[address].channel, world.drives[address]
     asked = (0x1000 | number % 2000, 0x8000 if number >= 2000 else 0)
     accept = channel.accept
     when = []  # it was asked

@@ -57,7 +57,7 @@ class Plc:
         self.chip = Chip(self.clock, self.wire)
         self.paced = paced
         self.pacer = None
-        self.port = Port(self.open_bus, self.clock, types, polled=not paced)
+        self.port = Port(lambda baud: self.open_bus(baud), self.clock, types, polled=not paced)
         self.init = USS_INIT(self.port)
         self.inputs = {address: Inputs(address) for address in addresses}
         self.controls = {address: USS_CTRL(self.port) for address in addresses}

@@ -145,9 +145,9 @@ class Bench:
         self._idle_us = idle_us
         self._sending_until = None
         self._end_awaited = False
-        self._bursts = []  # [start, end, characters] that were not handed over
+        self.bursts = []  # [start, end, characters] that were not handed over
         self._taken = 0  # characters of the first one that were
-        self._due = 0
+        self.due = 0
         self._loop_at = 0
         self.master = Master(self, self.timing, mask)
         self.drives = {}
@@ -198,8 +198,8 @@ class Bench:
 
     def receive(self, buffer, at):
         count = 0
-        while self._bursts:
-            start, end, characters = self._bursts[0]
+        while self.bursts:
+            start, end, characters = self.bursts[0]
             arrived = len(characters)
             if self.interrupts:
                 if self.now < self._announced_at() and not count:
@@ -216,9 +216,9 @@ class Bench:
             self._taken = max(arrived, self._taken)
             if arrived < len(characters):
                 break
-            self._bursts.pop(0)
+            self.bursts.pop(0)
             self._taken = 0
-            if self.interrupts and self._bursts and self._bursts[0][0] - end >= self._idle_us:
+            if self.interrupts and self.bursts and self.bursts[0][0] - end >= self._idle_us:
                 break
         return count
 
@@ -226,14 +226,14 @@ class Bench:
         """Characters of somebody else on the line, from now on or from the instant `start`."""
         start = self.now if start is None else start
         end = start + self.timing.telegram_us(len(characters) - 4)
-        self._bursts.append((start, end, bytes(characters)))
+        self.bursts.append((start, end, bytes(characters)))
 
     def _announced_at(self):
         """When what is on the line is over, and seen to be."""
-        if not self._bursts:
+        if not self.bursts:
             return NEVER
-        end = self._bursts[0][1]
-        for start, this_end, _ in self._bursts[1:]:
+        end = self.bursts[0][1]
+        for start, this_end, _ in self.bursts[1:]:
             if start - end >= self._idle_us:
                 break
             end = max(end, this_end)
@@ -254,7 +254,7 @@ class Bench:
                     self.master.refresh(self.now & self.mask)
                 if self.loop:
                     self.loop()
-            due = min(self._due, self._reports_at())
+            due = min(self.due, self._reports_at())
             if self.now >= due:
                 self._enter()
                 continue
@@ -267,21 +267,21 @@ class Bench:
             self._end_awaited = False
         ended = None
         if self.interrupts and self.now >= self._announced_at():
-            ended = self._bursts[0]
+            ended = self.bursts[0]
         wait_us = self.master.poll(self.now & self.mask)
         assert wait_us >= 1
         self.entries.append(self.now)
-        if ended and self._bursts and self._bursts[0] is ended:  # it is not announced again
-            self._bursts.pop(0)
+        if ended and self.bursts and self.bursts[0] is ended:  # it is not announced again
+            self.bursts.pop(0)
             self._taken = 0
-        self._due = self.now + wait_us
+        self.due = self.now + wait_us
 
     def run_until(self, condition, limit_us=10_000_000):
         """Let time pass until `condition()`; AssertionError when that takes too long."""
         until = self.now + limit_us
         while not condition():
             assert self.now < until, "it did not come so far"
-            self.run_to(min(self._due, self.now + 500))
+            self.run_to(min(self.due, self.now + 500))
 
     def contact(self):
         """Let the master find everybody who is plugged in."""

@@ -38,8 +38,8 @@ class Spoiler:
         self.spoiled = 0
         self._change = change
         self._drive = drive
-        self._wire = drive._wire
-        drive._wire = self
+        self._wire = drive.wire
+        drive.wire = self
 
     def talk(self, station, data, count):
         reply = bytes(data[:count])
@@ -49,7 +49,7 @@ class Spoiler:
         return self._wire.talk(station, changed, len(changed)) if changed else None
 
     def remove(self):
-        self._drive._wire = self._wire
+        self._drive.wire = self._wire
 
 
 def sealed(characters):
@@ -485,6 +485,6 @@ def test_the_line_runs_at_the_rate_that_was_set():
     for baud in (2400, 9600, 38400, 115200):
         world = World(main.start, baud=baud)
         world.run(4000)
-        assert world.app.link._uart.baud == baud
+        assert world.chip.uarts[0].baud == baud
         assert row_2(world) == "READY        A1" and failures(world) == 0
         world.check()

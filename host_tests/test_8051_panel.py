@@ -223,8 +223,8 @@ def test_a_fault_is_shown_with_its_number_and_stop_acknowledges_it():
 def test_a_warning_is_shown():
     """Defect 6: a warning was not shown."""
     world = running()
-    zsw = world.drives[1]._process.zsw
-    world.drives[1]._process.zsw = lambda: zsw() | 0x80
+    zsw = world.drives[1].process.zsw
+    world.drives[1].process.zsw = lambda: zsw() | 0x80
     assert {row[:8].rstrip() for row in said(world, 3_500)} == {"RUNNING", "WARN"}
     world.check()
 
@@ -284,7 +284,7 @@ def test_the_drives_error_is_said_in_words_and_its_number_is_no_value():
 def test_a_parameter_that_the_drive_does_not_know_has_no_value():
     """Defect 11, of a read: error 0 is not the value 0."""
     world = panel()
-    del world.drives[1]._parameters.rows[2024]
+    del world.drives[1].parameters.rows[2024]
     world.press("PARAM")
     tap(world, "NEXT", R2024)
     world.run(500)

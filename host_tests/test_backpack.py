@@ -133,7 +133,7 @@ def test_whatever_is_shown_arrives():
 
 def test_showing_takes_no_heap():
     bench = running(HOURGLASS)
-    write_to = bench.display._write_to
+    write_to = bench.write_to
 
     def unlocked(address, data):
         heap_unlock()  # the simulated bus may take some
@@ -142,7 +142,7 @@ def test_showing_takes_no_heap():
         finally:
             heap_lock()
 
-    bench.display._write_to = unlocked
+    bench.write_to = unlocked
     picture, turns = bytearray(RUNNING), 0
     until_us = bench.clock.now_us + REFRESH_US + 200_000
     heap_lock()
@@ -165,7 +165,7 @@ class Reset(Exception):
 
 def reset_after(bench, count):
     """The microcontroller resets when the backpack has acknowledged `count` bytes more."""
-    i2c = bench.make_i2c()
+    write = bench.write_to
     left = [count]
 
     def write_to(address, data):
@@ -173,9 +173,9 @@ def reset_after(bench, count):
             if not left[0]:
                 raise Reset
             left[0] -= 1
-            i2c.writeto(address, bytes((code,)))
+            write(address, bytes((code,)))
 
-    bench.display._write_to = write_to
+    bench.write_to = write_to
 
 
 def test_a_reset_after_every_single_byte():

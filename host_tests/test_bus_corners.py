@@ -470,7 +470,7 @@ def test_a_reply_that_comes_too_late_is_no_other_master():
         bench.run_until(lambda: len(bench.sent) > sent)
         begin = bench.now + bench.timing.telegram_us(12) + 21_000 + offset_us
         bench.talk(framed(1, bytes(12)), begin)
-        bench.run_until(lambda: not bench._bursts)
+        bench.run_until(lambda: not bench.bursts)
     assert bench.master.foreign == 0
 
 
@@ -510,7 +510,7 @@ def test_after_an_exception_the_exchange_may_come_to_its_end():
         bench.run_until(lambda: len(bench.sent) > sent)
         bench.run(offset_us)
         bench.master.recover(bench.now & bench.mask)
-        over = max([bench.now] + [end for _, end, _ in bench._bursts])
+        over = max([bench.now] + [end for _, end, _ in bench.bursts])
         sent = len(bench.sent)
         bench.run_until(lambda: len(bench.sent) > sent)
         assert bench.sent[-1].at >= over + bench.timing.start_interval_us
@@ -547,7 +547,7 @@ def test_on_listens_although_the_line_was_silent_for_long():
     bench.run(2_000_000)
     sent = len(bench.sent)
     bench.master.on()
-    bench._due = switched_at = bench.now
+    bench.due = switched_at = bench.now
     bench.run(300_000)
     assert bench.sent[sent].at - switched_at >= 100_000
 

@@ -447,9 +447,9 @@ def processor_s(process):
 
 def test_what_parmrk_marks_becomes_flags():
     port = SerialPort("/dev/none", 19200)
-    data, flags = port._unmarked(b"\x02\xff\xff\xff\x00\x41\x10\xff")
+    data, flags = port.unmarked(b"\x02\xff\xff\xff\x00\x41\x10\xff")
     assert data == b"\x02\xff\x41\x10" and flags == bytes((0, 0, PARITY, 0))
-    data, flags = port._unmarked(b"\x00\x00\x03")  # a break, whose mark came in two pieces
+    data, flags = port.unmarked(b"\x00\x00\x03")  # a break, whose mark came in two pieces
     assert data == b"\x00\x03" and flags == bytes((FRAME, 0))
 
 
@@ -459,7 +459,7 @@ def test_a_rate_without_a_name_can_be_set():
     port = SerialPort(os.ttyname(slave), 187500)
     port._descriptor = slave
     tty.setraw(slave)
-    port._set_other_rate()  # reads back what it has set
+    port.set_other_rate()  # reads back what it has set
     os.close(slave)
     os.close(master)
 

@@ -152,7 +152,7 @@ def test_an_echo_that_is_spoilt_is_no_reply():
         characters[5] ^= 0x10
         characters[-1] ^= 0x10
         bench.talk(bytes(characters), bench.now)
-        bench._bursts.sort()
+        bench.bursts.sort()
 
     good = bench.drives[1].counters[0]
     bench.send = spoilt

@@ -26,11 +26,22 @@ DIRECT = ("START", "STOP")
 IN_MATRIX = tuple(key for row in WIRINGS["matrix"] for key in row)
 
 
-class Bench:
-    """A keypad on a chip, and a hand."""
+class Interrupted(Clock):
+    def __init__(self, interrupts):
+        Clock.__init__(self)
+        self._interrupts = interrupts
 
-    def __init__(self, wiring="matrix", random=None):
-        self.clock = Clock()
+    def sleep_us(self, us):
+        if self._interrupts:
+            raise self._interrupts.pop()
+        Clock.sleep_us(self, us)
+
+
+class Bench:
+    """A keypad on a chip, and a hand. interrupts: what the next waits of the keypad raise."""
+
+    def __init__(self, wiring="matrix", random=None, interrupts=()):
+        self.clock = Interrupted(interrupts)
         self.chip = Chip(self.clock, None)
         self.switches = Switches(self.clock, KEYS, NORMALLY_CLOSED, WIRINGS[wiring], random)
         self.keypad = make_keypad(self.chip, self.switches)
@@ -182,19 +193,15 @@ def test_a_cut_wire_in_the_matrix_costs_one_key():
 
 def test_a_reading_that_was_broken_off_is_made_good():
     """Ctrl-C while a row is driven: the next reading but one is right again."""
-    bench = Bench()
-    matrix = bench.keypad._matrix
-    sleep_us = matrix._sleep_us
+    interrupts = []
+    bench = Bench(interrupts=interrupts)
     bench.hold("UP")
-
-    def interrupted(us):
-        raise KeyboardInterrupt
-
-    matrix._sleep_us = interrupted
+    interrupts.append(KeyboardInterrupt)
     try:
         bench.keypad.read()
     except KeyboardInterrupt:
-        matrix._sleep_us = sleep_us
+        pass
+    assert not interrupts
     bench.down()
     assert bench.down() == {"UP"}
 

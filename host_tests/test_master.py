@@ -22,7 +22,7 @@ def test_it_listens_for_100_ms_before_its_first_telegram():
 def test_another_master_is_noticed_and_not_fought():
     bus = Bus()
     for _ in range(50):
-        bus._reply, bus._reply_at = b"\x02\x06\x01", bus.now
+        bus.reply, bus.reply_at = b"\x02\x06\x01", bus.now
         bus.run(50_000)
     assert bus.sent == [] and bus.master.foreign >= 50
     bus.run(120_000)
@@ -552,13 +552,13 @@ def test_a_bad_reply_changes_nothing_in_the_image():
     drive = bus.drives[0]
     good, zsw = drive.counters[0], drive.zsw
     bus.zsw[1] = 0x1234
-    answer = bus._answer
+    answer = bus.answer
 
     def spoil(address, request):
         answer(address, request)
-        bus._reply = bus._reply[:-1] + bytes((bus._reply[-1] ^ 1,))
+        bus.reply = bus.reply[:-1] + bytes((bus.reply[-1] ^ 1,))
 
-    bus._answer = spoil
+    bus.answer = spoil
     bus.run(300_000)
     assert drive.zsw == zsw and drive.counters[0] <= good + 1
     assert drive.counters[3] > 5  # wrong BCC
@@ -657,7 +657,7 @@ def test_while_it_listens_a_pause_is_in_force_at_once():
     bus = Bus()
     bus.master.pause()
     for _ in range(50):
-        bus._reply, bus._reply_at = b"\x02\x06\x01", bus.now
+        bus.reply, bus.reply_at = b"\x02\x06\x01", bus.now
         bus.run(50_000)
         assert bus.master.paused
     bus.run(900_000)

@@ -319,9 +319,18 @@ class PendingCtrlC:
         return self._value
 
 
+def interrupt(pacer, inside):
+    """Ctrl-C comes in the moment in which the pacer asks whether somebody is inside the engine."""
+    pacer._inside = PendingCtrlC(inside)
+
+
+def is_inside(pacer):
+    return pacer._inside
+
+
 def test_ctrl_c_at_the_first_jump_of_a_handler_reaches_the_main_loop():
     bench = Bench()
-    bench.pacer._inside = PendingCtrlC(False)
+    interrupt(bench.pacer, False)
     bench.let_timer_fire()
     assert bench.engine.recovered == 1
     assert hears_ctrl_c(bench)
@@ -335,9 +344,9 @@ def test_ctrl_c_at_the_first_jump_of_a_handler_that_has_to_wait_reaches_the_main
 
     def interrupted():
         bench.engine.meanwhile = None
-        bench.pacer._inside = PendingCtrlC(True)
+        interrupt(bench.pacer, True)
         bench.link.on_activity()
-        assert bench.pacer._inside, "the engine was open to others while somebody was inside"
+        assert is_inside(bench.pacer), "the engine was open to others while somebody was inside"
 
     bench.engine.meanwhile = interrupted
     bench.pacer.run()

@@ -486,7 +486,7 @@ def test_a_step_that_takes_long_leaves_the_display_or_the_silent_drives_to_the_n
         app = panel().app
         done = []
         app.board.display = Counted(done)
-        refresh, ticks_us = app._refresh, app._ticks_us
+        refresh, ticks_us = app.refresh_bus, app.ticks_us
         looked = []
 
         def look(now, looks=True):
@@ -495,8 +495,8 @@ def test_a_step_that_takes_long_leaves_the_display_or_the_silent_drives_to_the_n
                 done.append("look")
                 looked.append(look_us)
 
-        app._refresh = look
-        app._ticks_us = lambda: ticks_us() + (looked.pop() if looked else 0)
+        app.refresh_bus = look
+        app.ticks_us = lambda: ticks_us() + (looked.pop() if looked else 0)
         for _ in range(240):
             before = len(done)
             app.step()

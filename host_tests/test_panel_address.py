@@ -145,7 +145,7 @@ def test_an_address_is_not_changed_when_the_drive_has_started_meanwhile():
     world = edit(parameter("P2011"), 4)
     world.press("SET")
     world.drives[1].write(700, 0, 2)
-    world.drives[1]._process.zsw = lambda: 0xFB34
+    world.drives[1].process.zsw = lambda: 0xFB34
     world.run(500)
     world.press("SET")
     world.run(500)

@@ -628,7 +628,7 @@ def test_the_number_of_a_warning_that_is_followed_by_another_is_that_of_the_one_
 
 def test_a_drive_that_falls_silent_on_the_number_of_its_warning_is_not_asked_all_the_time():
     world = running()
-    slave, asked = world.drives[1]._slave, []
+    slave, asked = world.drives[1].slave, []
     hear = slave.hear
 
     def hear_selectively(burst):

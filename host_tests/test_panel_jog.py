@@ -524,7 +524,7 @@ def test_a_fault_that_took_the_place_of_another_is_shown():
     world.drives[1].fault(12)
     world.run(1500)
     assert row_2(world) == "FAULT F0012  A1"
-    world.drives[1]._process.faults[0] = 30
+    world.drives[1].process.faults[0] = 30
     world.run(1000)
     assert row_2(world) == "FAULT F0030  A1"
     world.check()

@@ -168,8 +168,8 @@ def test_a_drive_with_data_sets_is_asked_for_the_active_one():
     world = panel(kinds={1: {"family": mm440}})
     wait_until_known(world)
     drive = world.drives[1]
-    readings = drive._readings.value
-    drive._parameters._reading = lambda *place: 1 if place[0] == 50 else readings(*place)
+    readings = drive.readings.value
+    drive.parameters.reading = lambda *place: 1 if place[0] == 50 else readings(*place)
     drive.write(700, 1, 2)
     world.run(5000)
     assert settled_row_2(world) == "LOCAL        A1"

@@ -88,7 +88,7 @@ def test_the_counter_is_read_again_after_an_answer_that_came_too_late():
 def test_the_counter_of_the_drive_may_wrap():
     """r2024 has 16 bits: after 65535 comes 0, and the motor runs on."""
     world = running()
-    counters = world.drives[1]._slave._counters
+    counters = world.drives[1].slave.counters()
     counters[0] = 65_400
     world.run(1500)
     assert counters[0] > 65_400
@@ -109,12 +109,13 @@ def test_a_count_that_the_loop_takes_late_lacks_no_telegram():
     is_new = [True]
 
     def step_late(now, *more):
-        job = survey._job
-        is_there = survey._waiting and job.number == 2024 and job.state == DONE
+        waiting, job = survey._waiting, survey._job
+        is_there = waiting and job.number == 2024 and job.state == DONE
         if is_there and is_new[0]:
             counts.append(now)
         is_new[0] = not is_there
-        if is_there and len(counts) % 2 == 0 and (now - counts[-1]) & world.app._mask < 1_500_000:
+        is_second = is_there and len(counts) % 2 == 0
+        if is_second and (now - counts[-1]) & world.clock.ticks_mask < 1_500_000:
             return  # every second one waits
         step(now, *more)
 

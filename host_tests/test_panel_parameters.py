@@ -63,7 +63,7 @@ def test_a_parameter_on_which_the_drive_falls_silent_stops_no_motor():
     drive = world.drives[1]
     world.press("START")
     world.run(4000)
-    hear = drive._slave.hear
+    hear = drive.slave.hear
     silent_on = []
 
     def hear_selectively(burst):
@@ -73,7 +73,7 @@ def test_a_parameter_on_which_the_drive_falls_silent_stops_no_motor():
             return None
         return hear(burst)
 
-    drive._slave.hear = hear_selectively
+    drive.slave.hear = hear_selectively
     show(world, "r2025")
     wait_for(world, "NO REPLY TO THIS")
     assert len(silent_on) == 3
@@ -88,13 +88,13 @@ def test_a_parameter_on_which_the_drive_falls_silent_stops_no_motor():
 def test_a_write_on_which_the_drive_falls_silent_says_so():
     world = parameter("P1000")
     drive = world.drives[1]
-    hear = drive._slave.hear
+    hear = drive.slave.hear
 
     def hear_selectively(burst):
         task = bytes(burst.data[: burst.count])[3:4]
         return None if task and task[0] >> 4 == 2 else hear(burst)
 
-    drive._slave.hear = hear_selectively
+    drive.slave.hear = hear_selectively
     write(world, 6)
     wait_for(world, "NO REPLY TO THIS", 900)
     assert drive.read(1000) == 5
@@ -163,7 +163,7 @@ def test_a_stale_answer_is_never_shown_as_another_parameter():
 
 def test_a_parameter_that_the_drive_does_not_have_is_told():
     world = panel()
-    parameters = world.drives[1]._parameters
+    parameters = world.drives[1].parameters
     parameters.rows = {row: parameters.rows[row] for row in parameters.rows if row != 2024}
     show(world, "P2011")
     world.press("NEXT")
@@ -702,7 +702,7 @@ def test_a_fault_of_this_drive_is_shown_in_turn_and_acknowledged_by_stop():
 
 def test_a_fault_whose_number_is_not_told_is_seen_in_parameter_mode_too():
     world = parameter("P1000")
-    parameters = world.drives[1]._parameters
+    parameters = world.drives[1].parameters
     parameters.rows = {row: parameters.rows[row] for row in parameters.rows if row != 947}
     world.drives[1].fault(1)
     world.run(1000)
@@ -719,7 +719,7 @@ def test_another_drive_that_runs_is_announced_in_parameter_mode():
 
 def test_a_stop_that_is_not_obeyed_is_seen_in_parameter_mode():
     world = show(running(), "P1000")
-    world.drives[1]._process.words = lambda count: [0xFB34, 0x0CCD]
+    world.drives[1].process.words = lambda count: [0xFB34, 0x0CCD]
     world.press("STOP")
     world.run(2000)
     assert rows_in_turn(world) == {"STOP UNCONFIRMED"}

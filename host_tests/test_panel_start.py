@@ -68,7 +68,7 @@ def test_start_of_a_drive_whose_scaling_is_still_unknown_is_refused():
 def test_start_of_a_drive_that_keeps_its_scaling_to_itself_is_refused():
     """It refuses to tell P2009: what a setpoint would mean is unknown."""
     world = World(main.start)
-    parameters = world.drives[1]._parameters
+    parameters = world.drives[1].parameters
     parameters.rows = {row: parameters.rows[row] for row in parameters.rows if row != 2009}
     world.run(2000)
     assert row_2(world) == "CHECKING     A1"
@@ -78,12 +78,12 @@ def test_start_of_a_drive_that_keeps_its_scaling_to_itself_is_refused():
 def test_start_of_an_inhibited_drive_is_refused():
     """OFF2 at the drive's own terminal, say: its inhibit stays while the cause does."""
     world = panel()
-    world.drives[1]._process.zsw = lambda: 0xFB71
+    world.drives[1].process.zsw = lambda: 0xFB71
     world.run(300)
     assert row_2(world) == "INHIBITED    A1"
     refused(world, "NO: INHIBITED")
     world = panel()
-    world.drives[1]._process.zsw = lambda: 0xFB30
+    world.drives[1].process.zsw = lambda: 0xFB30
     world.run(300)
     assert row_2(world) == "NOT READY    A1"
     refused(world, "NO: NOT READY")
@@ -218,7 +218,7 @@ def test_the_settings_of_a_drive_that_was_away_are_read_anew():
 def test_a_drive_that_runs_on_other_commands_is_said_to():
     world = running()
     world.drives[1].write(700, 0, 2)
-    world.drives[1]._process.words = lambda count: [0xFB34, 0x0CCD]
+    world.drives[1].process.words = lambda count: [0xFB34, 0x0CCD]
     world.reset()
     world.run(4000)
     assert row_2(world) == "RUNS LOCALLY A1"
@@ -248,7 +248,7 @@ def test_the_setpoint_stays_within_the_limits_of_the_settings():
 def test_the_setpoint_does_not_move_while_it_cannot_be_sent():
     """A drive that stops telling its settings while it runs: what is shown is what is sent."""
     world = running()
-    parameters = world.drives[1]._parameters
+    parameters = world.drives[1].parameters
     parameters.rows = {row: parameters.rows[row] for row in parameters.rows if row != 1080}
     world.run(3000)
     world.press("UP")
@@ -359,9 +359,9 @@ def test_start_of_a_drive_too_fast_to_be_told_is_refused():
 
 def test_a_frequency_that_the_word_cannot_say_is_not_shown_as_one_it_can():
     world = running()
-    words = world.drives[1]._process.words
+    words = world.drives[1].process.words
     for hiw in (0x7FFF, 0x8000):
-        world.drives[1]._process.words = lambda wanted: [words(wanted)[0], hiw]
+        world.drives[1].process.words = lambda wanted: [words(wanted)[0], hiw]
         world.run(300)
         assert row_1(world) == "S: 10.0 F: >>>>>"
 

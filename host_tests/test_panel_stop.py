@@ -41,14 +41,14 @@ def test_a_stop_that_nobody_confirms_is_an_alarm():
 def test_a_stop_that_the_drive_does_not_obey_is_an_alarm():
     """Somebody has taken the drive away from this bus while it ran."""
     world = running()
-    words = world.drives[1]._process.words
-    world.drives[1]._process.words = lambda count: [0xFB34, 0x0CCD]  # it runs on and says so
+    words = world.drives[1].process.words
+    world.drives[1].process.words = lambda count: [0xFB34, 0x0CCD]  # it runs on and says so
     world.press("STOP")
     world.run(800)
     assert row_2(world) == "STOPPING     A1"
     world.run(300)
     assert row_2(world) == "STOP UNCONFIRMED"
-    world.drives[1]._process.words = words
+    world.drives[1].process.words = words
     world.run(5000)
     assert row_2(world) == "READY        A1"
     world.check()
@@ -57,7 +57,7 @@ def test_a_stop_that_the_drive_does_not_obey_is_an_alarm():
 def test_an_off1_that_nobody_pressed_is_watched_as_well():
     """The dead man has sent it, and the drive does not obey."""
     world = running()
-    world.drives[1]._process.words = lambda count: [0xFB34, 0x0CCD]
+    world.drives[1].process.words = lambda count: [0xFB34, 0x0CCD]
     world.hang(1000)
     world.run(2500)
     assert row_2(world) == "STOP UNCONFIRMED"
@@ -122,7 +122,7 @@ def test_a_word_that_trembles_is_not_taken_for_a_motor_that_slows_down():
         count[0] += 1
         return [0xFB34, 0x0CCD - count[0] % 3]
 
-    world.drives[1]._process.words = trembling
+    world.drives[1].process.words = trembling
     world.press("STOP")
     world.run(3500)
     assert row_2(world) == "STOP UNCONFIRMED"
@@ -135,9 +135,9 @@ def test_a_motor_that_slows_down_and_then_does_not_is_an_alarm():
     world.run(500)
     assert row_2(world) == "STOPPING     A1"
     drive = world.drives[1]
-    words = drive._process.words
+    words = drive.process.words
     hiw = words(2)[1]
-    drive._process.words = lambda wanted: [words(wanted)[0] | 4, hiw]
+    drive.process.words = lambda wanted: [words(wanted)[0] | 4, hiw]
     world.run(2500)
     assert row_2(world) == "STOPPING     A1"
     world.run(1000)

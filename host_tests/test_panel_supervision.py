@@ -376,7 +376,7 @@ def test_a_drive_that_was_started_after_another_is_the_one_that_is_asked_about()
 
 def test_an_alarm_takes_the_question_away():
     world = asked()
-    world.drives[1]._process.words = lambda count: [0xFB34, 0x0CCD]
+    world.drives[1].process.words = lambda count: [0xFB34, 0x0CCD]
     for _ in range(300):
         world.run(20)
         if row_2(world) == "STOP UNCONFIRMED":

@@ -614,7 +614,7 @@ def test_another_rate_opens_the_line_anew():
         opened.append(baud)
         return open_bus(19200)
 
-    plc.port._open_bus = note
+    plc.open_bus = note
     give(plc.init, MODE=1, BAUD=38400, ACTIVE=0b10)
     assert not plc.init.DONE  # an exchange is under way
     plc.run(10)

@@ -247,7 +247,7 @@ def test_code_8_a_parameter_block_is_at_work():
 def babble(plant):
     """Another master is heard, for a second."""
     for _ in range(20):
-        plant.line._hear(plant.line.now, b"\x02\x06\x01")
+        plant.line.hear(plant.line.now, b"\x02\x06\x01")
         plant.run(50)
 
 
@@ -266,7 +266,7 @@ def test_the_line_can_be_left_to_another_master_whatever_waits():
     read(XMT_REQ=True, DRIVE=NODE, PARAM=700)
     init = USS_INIT(plant.port)
     init(EN=True, MODE=0)
-    plant.line._hear(plant.line.now, b"\x02\x06\x01")
+    plant.line.hear(plant.line.now, b"\x02\x06\x01")
     plant.run(50)
     init()
     assert init.DONE and init.ERROR == 0 and plant.motor.ERROR == 7

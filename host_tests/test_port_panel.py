@@ -276,11 +276,11 @@ def test_what_could_not_be_sent_in_its_time_is_not_sent_at_all():
     relay = Relay(data, control)
     port = Pty()
     port.open()
-    relay._open(port.path, 19200)
+    relay.open(port.path, 19200)
     for written, sent in ((2 * [RUN], b""), ([RUN], RUN), (100 * [RUN] + [STOP], b"")):
         for telegram in written:
             ours.send(telegram)
-        relay._send()
+        relay.send()
         assert port.read()[0] == sent
     port.close()
 

@@ -156,7 +156,7 @@ link = %r
 killed = Pty(link)
 killed.open()
 was = killed.path
-killed._link = None         # which is left behind
+killed.link = None         # which is left behind
 killed.close()
 time.sleep(0.1)
 other = Pty()
@@ -241,6 +241,6 @@ def test_and_files(tmp_path):
 
 def test_a_link_that_somebody_else_has_put_there_meanwhile_stays(tmp_path):
     link = tmp_path / "line"
-    replaced = "os.remove(pty._link); os.symlink('/dev/null', pty._link)"
+    replaced = "os.remove(pty.link); os.symlink('/dev/null', pty.link)"
     assert linked(link, replaced) == []
     assert os.readlink(link) == "/dev/null"

@@ -35,7 +35,7 @@ class Referee:
 
     def send(self, buffer, count):
         bench = self.bench
-        for start, end, _ in bench._bursts:
+        for start, end, _ in bench.bursts:
             if start <= bench.now:
                 self._quiet_at = max(self._quiet_at, end)
         self.demand(

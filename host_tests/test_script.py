@@ -273,7 +273,7 @@ def test_what_the_firmware_raises_is_no_mistake_of_the_script():
                 raise error
 
             session.world.app.step = fail
-            session.world._start = lambda board: fail()
+            session.world.start = lambda board: fail()
             try:
                 session.do(line)
             except Exception as raised:

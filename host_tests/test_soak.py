@@ -118,7 +118,7 @@ def test_a_motor_is_the_panels_unless_garbage_started_it():
         judge.drives = [Motor(soak.plan.addresses[0], stw)]
         judge.starts = [0]
         try:
-            judge._judge_motors(20_000_000)
+            judge.judge_motors(20_000_000)
             blamed = False
         except Broken as broken:
             blamed = broken.args[0] == "TURNS"

@@ -3,6 +3,7 @@
 
 import ast
 import os
+import re
 import subprocess
 import sys
 
@@ -32,6 +33,25 @@ RULES = (
 PROJECT = (
     "app", "panel", "settings", "strict_json", "version", "uss", "hal", "boards", "main",
 )  # fmt: skip
+
+# Private names that tests reach: place, and why there is no other way.
+PRIVATE = {
+    ("test_bus.py", "_may_start"): "what a terminal of the drive does to its status word",
+    ("test_bus.py", "_idle"): "a board's `idle` fails while the program runs, not at the start",
+    ("test_bus.py", "_choose"): "the engine fails",
+    ("test_bus.py", "_rest"): "the same",
+    ("test_drive_command.py", "_descriptor"): "a pty has no rate of its own to be set",
+    ("test_pacer.py", "_inside"): "Ctrl-C comes in one certain jump of the interpreter",
+    ("test_panel_announced.py", "_home"): "the page is drawn without a step of the panel",
+    ("test_panel_failures.py", "_link"): "the link fails in the middle of a run",
+    ("test_panel_failures.py", "_receiver"): "the engine fails in the middle of a run",
+    ("test_panel_one_run.py", "_job"): "an answer is there that the loop has not taken",
+    ("test_panel_one_run.py", "_waiting"): "the same",
+    ("test_panel_supervision.py", "_care"): "a bound on the line, which no telegram shows",
+    ("test_pico_failures.py", "_receiver"): "the engine fails on the chip",
+    ("test_request.py", "_sent_stw"): "a request is made anew, to compare it with one made ready",
+    ("test_soak.py", "_obey"): "a start that no key asked for",
+}
 
 
 def python_files(folder):
@@ -108,6 +128,45 @@ def test_the_rule_would_notice():
         ("firmware/main.py", "uss.master"),
     ):
         assert list(breaches(path, [module])), (path, module)
+
+
+def test_no_import_goes_round():
+    """Not even one that a function makes: each module can be understood with those below it."""
+    paths = {module_of(path): path for path in python_files("firmware") + python_files("boards")}
+    below = {}
+    for module, path in paths.items():
+        names = [name for found in imports_of(path) for name in (found, found.rpartition(".")[0])]
+        below[module] = {name for name in names if name in paths and name != module}
+    while below:
+        bottom = {module for module, names in below.items() if not names & below.keys()}
+        assert bottom, sorted(below)
+        for module in bottom:
+            del below[module]
+
+
+def module_of(path):
+    names = path[: -len(".py")].split("/")
+    if names[0] == "firmware":
+        del names[0]
+    if names[-1] == "__init__":
+        del names[-1]
+    return ".".join(names)
+
+
+def test_tests_reach_private_names_for_a_reason():
+    own = ("self", "cls", "os", "sys", "verdict", "TIERS['coverage']")  # these two: named tuples
+    reached = re.compile(r"(?<![\w.])((?:\w+(?:\[[^]]*\]|\([^)]*\))?\.)+)(_[a-z]\w*)")
+    places = set()
+    for path in python_files("host_tests"):
+        with open(os.path.join(TOP, path), encoding="utf-8") as source:
+            for number, line in enumerate(source, 1):
+                for owner, name in reached.findall(line.split("  # ")[0]):
+                    if owner[:-1] not in own:
+                        places.add((os.path.basename(path), name, number))
+    unfounded = {place for place in places if place[:2] not in PRIVATE}
+    assert not unfounded, sorted(unfounded)
+    assert {place[:2] for place in places} == PRIVATE.keys()
+    assert len({(file, number) for file, _, number in places}) <= 15, sorted(places)
 
 
 def test_ruff_finds_nothing():

@@ -856,7 +856,7 @@ def test_everything_fits_24_rows_of_79_columns():
     for addresses in ((1,), tuple(range(6)), tuple(range(31))):
         seat = Seat(addresses=addresses)
         seat.type(*":" + "x" * 200)
-        seat.session._broken = "y" * 300
+        seat.session.broken = "y" * 300
         lines = seat.screen()
         assert len(lines) == ROWS
         assert max(len(line) for line in lines) <= COLUMNS
@@ -932,7 +932,7 @@ def positions(hz, frame_us, frames):
     found = []
     for _ in range(frames):
         picture.turn(frame_us)
-        found.append(picture._positions[1])
+        found.append(picture.positions[1])
     return found
 
 

@@ -57,7 +57,7 @@ def thrown(prepare, us):
                 bench.run(us)
         except Thrown:
             bench.master.recover(bench.now & bench.mask)
-            bench._due = bench.now
+            bench.due = bench.now
             yield bench
             count += 1
             continue

@@ -179,7 +179,7 @@ class World(Surroundings):
         elif store.read(0) is None:
             store.replace(stored)
         self.app = None
-        self._start = start
+        self.start = start
         self._polled = polled
         self._bitten = False
         self._dipped = False
@@ -259,7 +259,7 @@ class World(Surroundings):
         self.chips.append(self.chip)
         self.clock.advance(BOOT_US)
         loop_us = self._uneven_loop_us if self.seed else None
-        self.app = self._start(self.make_board(loop_us, cause))
+        self.app = self.start(self.make_board(loop_us, cause))
 
     def make_board(self, loop_us, cause):
         """The board around the chip that has just booted. As `Board`."""

@@ -56,7 +56,7 @@ class Picture:
         self._hand = hand
         self._boxes = boxes
         self._angles = {address: 0.0 for address in world.drives}  # Hz times microseconds
-        self._positions = {address: 0 for address in world.drives}
+        self.positions = {address: 0 for address in world.drives}
 
     def turn(self, passed_us):
         """So much of the world's time has passed since the last picture: the shafts turn."""
@@ -64,7 +64,7 @@ class Picture:
             angle = self._angles[address] + drive.hz() * passed_us
             if abs(angle) >= STEP:
                 step = 1 if angle > 0 else -1
-                self._positions[address] += step
+                self.positions[address] += step
                 angle = max(-STEP, min(STEP, angle - step * STEP))
             self._angles[address] = angle
 
@@ -154,7 +154,7 @@ class Picture:
         return "%s%-6s (%s) %7.2f Hz %-6s %-13s %s%s" % (
             "*" if address == self._selected() else " ",
             "A%d" % address,
-            SHAFT[self._positions[address] % len(SHAFT)],
+            SHAFT[self.positions[address] % len(SHAFT)],
             abs(hz),
             "right" if hz > 0 else "left" if hz < 0 else "",
             drive.state,

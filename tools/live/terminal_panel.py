@@ -214,7 +214,7 @@ class Session:
         self._drawn_us = world.clock.now_us
         self._telegrams = ()
         self._telegrams_ms = -TELEGRAMS_MS
-        self._broken = ""
+        self.broken = ""
         self._checked_ms = 0
         for line in said:
             self._print(line)
@@ -289,7 +289,7 @@ class Session:
             self._check()
         command = None if self.errand else self.command  # which waits for the errand
         return self._picture.lines(
-            self._telegrams, self._bottom(), self._broken, speed, command
+            self._telegrams, self._bottom(), self.broken, speed, command
         )
 
     def _bottom(self):
@@ -409,7 +409,7 @@ class Session:
         try:
             self._world.check()
         except AssertionError as error:
-            self._broken = str(error)
+            self.broken = str(error)
 
 
 def shows_boxes(getenv):

@@ -63,7 +63,7 @@ class Relay:
             if self._control in ready:
                 self._listen()
             if self._data in ready:
-                self._send()
+                self.send()
             if self._is_open and self._port in ready:
                 self._receive()
             if self._port is not None and not self._is_open:
@@ -87,9 +87,10 @@ class Relay:
         *lines, self._typed = (self._typed + said).split(b"\n")
         for line in lines:
             _, baud, path = os.fsdecode(line).split(" ", 2)
-            self._open(path, int(baud))
+            self.open(path, int(baud))
 
-    def _open(self, path, baud):
+    def open(self, path, baud):
+        """What the program has asked for."""
         port = SerialPort(path, baud)
         try:
             port.open()
@@ -104,7 +105,7 @@ class Relay:
     def _wait_s(self):
         return self._dead_man.wait_s(time.monotonic(), AGAIN_S) if self._dead_man else AGAIN_S
 
-    def _send(self):
+    def send(self):
         """Hand on the telegram that the program has said. Where there are more, we have been too
         slow: how old they are nobody knows, and the program will repeat what matters.
         """

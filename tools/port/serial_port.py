@@ -103,7 +103,7 @@ class SerialPort:
             raise LineCut(error.strerror) from None
         if not data:
             raise LineCut("end of file")
-        return self._unmarked(data) if self._marking else (data, bytes(len(data)))
+        return self.unmarked(data) if self._marking else (data, bytes(len(data)))
 
     def write(self, data):
         """What has no room is lost, as on a line that nobody reads. LineCut."""
@@ -171,11 +171,11 @@ class SerialPort:
         termios.tcsetattr(self._descriptor, termios.TCSANOW, settings)
         self._marking = True
         if rate is None:
-            self._set_other_rate()
+            self.set_other_rate()
         if termios.tcgetattr(self._descriptor)[2] & termios.PARENB == 0:
             raise PortError(f"{self.path} has no even parity")
 
-    def _set_other_rate(self):
+    def set_other_rate(self):
         if not sys.platform.startswith("linux"):
             raise PortError(NO_RATE % (self.path, self.baud))
         try:
@@ -191,7 +191,7 @@ class SerialPort:
         except OSError:
             raise PortError(NO_RATE % (self.path, self.baud)) from None
 
-    def _unmarked(self, marked):
+    def unmarked(self, marked):
         """What PARMRK has marked: FF FF is FF, FF 00 xx is xx with a wrong parity or stop bit."""
         marked = self._rest + marked
         data, flags = bytearray(), bytearray()
@@ -259,7 +259,7 @@ class Pty(SerialPort):
     def __init__(self, link=None):
         SerialPort.__init__(self, None, None)
         self.is_pty = True
-        self._link = link
+        self.link = link
         self._theirs = None
 
     def open(self):
@@ -269,7 +269,7 @@ class Pty(SerialPort):
         tty.setraw(self._theirs)
         self.path = os.ttyname(self._theirs)
         try:
-            if self._link:
+            if self.link:
                 self._make_link()
         except PortError:
             self.close()
@@ -277,23 +277,23 @@ class Pty(SerialPort):
 
     def close(self):
         # First of all: a pty that is closed gives its path to the next one.
-        if self._link and self.path and target(self._link) == self.path:
-            os.remove(self._link)
+        if self.link and self.path and target(self.link) == self.path:
+            os.remove(self.link)
         SerialPort.close(self)
         if self._theirs is not None:
             os.close(self._theirs)
             self._theirs = None
 
     def _make_link(self):
-        there = target(self._link)
+        there = target(self.link)
         try:
             if there is not None:
                 if not self._is_left_over(there):
-                    raise PortError(LINK_TAKEN % (self._link, there))
-                os.remove(self._link)
-            os.symlink(self.path, self._link)
+                    raise PortError(LINK_TAKEN % (self.link, there))
+                os.remove(self.link)
+            os.symlink(self.path, self.link)
         except OSError as error:
-            raise PortError(f"{self._link}: {error.strerror}") from None
+            raise PortError(f"{self.link}: {error.strerror}") from None
 
     def _is_left_over(self, there):
         """Whether a link that leads there was made by one of us that was killed, and whose pty has
@@ -304,7 +304,7 @@ class Pty(SerialPort):
         if os.path.dirname(there) != os.path.dirname(self.path):
             return False  # it leads to no pty
         try:
-            return os.lstat(self._link).st_mtime_ns < made_ns(os.stat(there))
+            return os.lstat(self.link).st_mtime_ns < made_ns(os.stat(there))
         except FileNotFoundError:
             return True
 

@@ -92,7 +92,7 @@ class Judge(Witness):
                 raise Broken("WATCHDOG", "the bus stands since %d" % self.stuck_us)
         elif self.hung_us is None and now - max(self.spoken_us, self.late_us) > self.patience_us:
             raise Broken("SILENT PANEL", "no telegram for %d ms" % ((now - self.spoken_us) // MS))
-        self._judge_motors(now)
+        self.judge_motors(now)
         if now - self._counted_us > S:
             self._counted_us = now
             self.shares.look(now)
@@ -459,7 +459,7 @@ class Judge(Witness):
                 return True
         return False
 
-    def _judge_motors(self, now):
+    def judge_motors(self, now):
         for index, drive in enumerate(self.drives):
             starts = drive.starts
             if starts != self.starts[index]:

@@ -62,6 +62,8 @@ class Drive:
     plugged         whether the RS-485 connector is in
     silent          whether it is busy with P0970 or the like, and deaf
     plant           what hangs on it, mains, motor and load: plant.py
+    slave, channel, parameters, readings, process
+                    its parts: telegrams, PKW, what it keeps and measures, PZD and the motor
     """
 
     def __init__(
@@ -79,7 +81,7 @@ class Drive:
         self.family = family
         self.switches = Switches(switches)
         self._clock = clock
-        self._wire = wire
+        self.wire = wire
         self.name = "drive %d" % address
         if reply_delay_us is None:
             reply_delay_us = -(-REPLY_DELAY_CHARACTERS * 11_000_000 // wire.baud)
@@ -88,16 +90,16 @@ class Drive:
         self.plugged = True
         self._connected = False
         link = family.LINK
-        self._parameters = Parameters(family, self._reading)
-        self._process = Process(clock, self._parameters, family, self.switches)
-        self._slave = Slave(wire, self.switches)
-        self._slave.takes_broadcast = link["broadcast"]
-        self._channel = ParameterChannel(
-            self._parameters, family, self._change_state, self._changed, self.switches, reports
+        self.parameters = Parameters(family, self._reading)
+        self.process = Process(clock, self.parameters, family, self.switches)
+        self.slave = Slave(wire, self.switches)
+        self.slave.takes_broadcast = link["broadcast"]
+        self.channel = ParameterChannel(
+            self.parameters, family, self._change_state, self._changed, self.switches, reports
         )
-        self._readings = Readings(family, self._parameters, self._process, self._slave)
-        self._operations = Operations(family, self._parameters, self._process, self.switches)
-        self._off_time = self._parameters.ram[link["off time"]]
+        self.readings = Readings(family, self.parameters, self.process, self.slave)
+        self._operations = Operations(family, self.parameters, self.process, self.switches)
+        self._off_time = self.parameters.ram[link["off time"]]
         self._off_time_unit_us = link["unit us"]
         self._needs_process_data = link["from process data"]
         self._reply = Event(self._send_reply)
@@ -110,7 +112,7 @@ class Drive:
         self._silent = False  # busy with something that a parameter started
         self._unsettled = False  # writes wait for the end of the exchange to take effect
         self._buffer = bytearray(256)
-        self._supply = Supply(clock, self.switches, self._process, self._start_up, self._go_dark)
+        self._supply = Supply(clock, self.switches, self.process, self._start_up, self._go_dark)
         self._commission(address, parameters or {})
         self._supply.begin()
 
@@ -119,13 +121,13 @@ class Drive:
     @property
     def address(self):
         """The address it answers to now."""
-        return self._slave.address
+        return self.slave.address
 
     @property
     def state(self):
         """inhibited, ready, ready to run, running, stopping, fault or off."""
-        self._process.hz()  # what time has done meanwhile
-        return self._process.state
+        self.process.hz()  # what time has done meanwhile
+        return self.process.state
 
     @property
     def powered(self):
@@ -140,16 +142,16 @@ class Drive:
     @property
     def stw(self):
         """The control word that came last."""
-        return self._process.image[0]
+        return self.process.image[0]
 
     @property
     def starts(self):
         """How often the motor went from not being driven to being driven."""
-        return self._process.starts
+        return self.process.starts
 
     @property
     def plant(self):
-        return self._process.plant
+        return self.process.plant
 
     @property
     def silent(self):
@@ -173,36 +175,36 @@ class Drive:
 
     @property
     def eeprom_writes(self):
-        return self._parameters.eeprom_writes
+        return self.parameters.eeprom_writes
 
     @property
     def layout(self):
         """PKW words (0, 3, 4 or 127, variable) and PZD words, as it is set up now."""
-        return self._slave.pkw_words, self._slave.pzd_words
+        return self.slave.pkw_words, self.slave.pzd_words
 
     @property
     def error_status(self):
         """The error status word of the specification, A-5.2.3: since the last good telegram."""
-        return self._slave.error_status()
+        return self.slave.error_status()
 
     @property
     def residual_time_errors(self):
         """Telegrams that were not over in time; no parameter shows it, nor the next."""
-        return self._slave.counters()[RESIDUAL_TIME]
+        return self.slave.counters()[RESIDUAL_TIME]
 
     @property
     def watchdog_errors(self):
         """How often the telegram failure time has expired."""
-        return self._slave.counters()[WATCHDOG]
+        return self.slave.counters()[WATCHDOG]
 
     def hz(self):
         """The frequency of the motor, negative to the left."""
-        return self._process.hz()
+        return self.process.hz()
 
     def report(self):
         """One line of key=value, for people and for scripts."""
-        process = self._process
-        counters = self._slave.counters()
+        process = self.process
+        counters = self.slave.counters()
         fault = process.faults[0]
         hiw = process.words(2)[1] if self._supply.booted else 0
         return (
@@ -218,7 +220,7 @@ class Drive:
 
     def read(self, number, index=0):
         """A parameter's value: an int, or a float. KeyError: no such number or index."""
-        return self._parameters.get(number, index)
+        return self.parameters.get(number, index)
 
     def write(self, number, index, value):
         """Change a parameter at the drive's own keypad: RAM and EEPROM, in any state, at once.
@@ -228,10 +230,10 @@ class Drive:
         """
         if index == ALL_ELEMENTS:
             for i, one in enumerate(value):
-                self._parameters.set(number, i, one)
+                self.parameters.set(number, i, one)
         else:
-            self._parameters.set(number, index, value)
-        self._channel.report(number, index)
+            self.parameters.set(number, index, value)
+        self.channel.report(number, index)
         self._changed(number)
         self._settle()
 
@@ -243,15 +245,15 @@ class Drive:
         """
         if not self._supply.booted:
             raise ValueError(self.name + " is off")
-        self._process.trip(number, value, lasting)
+        self.process.trip(number, value, lasting)
 
     def clear_cause(self, number=None):
         """The cause of a lasting fault is gone, of all of them without a number."""
-        self._process.clear_cause(number)
+        self.process.clear_cause(number)
 
     def warn(self, number, on=True):
         """A warning with this number comes, or goes."""
-        self._process.memory.warn(number, on)
+        self.process.memory.warn(number, on)
 
     def load(self, percent, kind=FAN, inertia_s=INERTIA_S):
         """What the motor has to do from now on, in percent of its rated torque.
@@ -260,7 +262,7 @@ class Drive:
         that at the rated one. inertia_s: how long rated torque takes to the rated frequency.
         More than the drive can give makes it warn, and trip in the end.
         """
-        self._process.load(percent, kind, inertia_s)
+        self.process.load(percent, kind, inertia_s)
 
     def supply(self, volts):
         """The mains have so many volts from now on; 400 before. Below 248 it cannot run. Nothing
@@ -293,19 +295,19 @@ class Drive:
         self._clock.cancel(self._failure)
         self._clock.cancel(self._end_of_silence)
         self._silent = False
-        self._process.power_off()
-        self._parameters.load()
+        self.process.power_off()
+        self.parameters.load()
         self._connect()
 
     def _start_up(self):
         self._operations.forget()
         self._unsettled = False
-        self._slave.reset()
-        self._channel.reset()
+        self.slave.reset()
+        self.channel.reset()
         self._heard_us = None
         protocol = self.family.LINK["protocol"]
-        self._speaks_uss = protocol is None or self._parameters.ram[protocol][0] == USS
-        self._process.power_on()
+        self._speaks_uss = protocol is None or self.parameters.ram[protocol][0] == USS
+        self.process.power_on()
         self._configure_link()
         self._connect()
 
@@ -315,7 +317,7 @@ class Drive:
         """The end of a burst on the line: called by the wire."""
         if self._silent:
             return
-        form = self._slave.hear(burst)
+        form = self.slave.hear(burst)
         if form is None:
             return
         if self._retriggers(form):
@@ -326,10 +328,10 @@ class Drive:
             return
         self._mirrored = None
         if form == MIRROR:
-            self._mirrored = self._slave.telegram[: self._slave.length]
+            self._mirrored = self.slave.telegram[: self.slave.length]
         else:
             self._take_request()
-            if self._silent or self.switches.silent_refusals and self._channel.refuses():
+            if self._silent or self.switches.silent_refusals and self.channel.refuses():
                 return
         self._clock.schedule(self._reply, burst.end_us + self.reply_delay_us)
 
@@ -338,46 +340,46 @@ class Drive:
         if form == BROADCAST and not self.switches.broadcast_retriggers:
             return False
         # A telegram that is mirrored carries process data for nobody.
-        return not self._needs_process_data or form != MIRROR and self._slave.pzd_words > 0
+        return not self._needs_process_data or form != MIRROR and self.slave.pzd_words > 0
 
     def _net_words(self):
         """The PKW and the PZD words of the telegram received."""
-        telegram = self._slave.telegram
-        end = self._slave.length - 1
-        pzd_at = end - 2 * self._slave.pzd_words
+        telegram = self.slave.telegram
+        end = self.slave.length - 1
+        pzd_at = end - 2 * self.slave.pzd_words
         return words_of(telegram, 3, pzd_at), words_of(telegram, pzd_at, end)
 
     def _take_request(self):
         pkw, pzd = self._net_words()
-        self._process.accept(pzd)  # process data have priority
+        self.process.accept(pzd)  # process data have priority
         self._with_pkw = bool(pkw)
         if pkw:
-            self._channel.accept(pkw, self._slave.pkw_words)
+            self.channel.accept(pkw, self.slave.pkw_words)
 
     def _take_broadcast(self):
         enable, pzd = self._net_words()
         if len(enable) == 4:  # a broadcast exists only with a PKW area of 4 words
-            self._process.accept_broadcast(enable, pzd)
+            self.process.accept_broadcast(enable, pzd)
 
     def _send_reply(self):
         """Build the reply when it is sent, so that it carries the newest values."""
         if self._mirrored is not None:
-            self._wire.talk(self, self._mirrored, len(self._mirrored))
+            self.wire.talk(self, self._mirrored, len(self._mirrored))
         else:
-            slave = self._slave
-            words = self._process.words(slave.pzd_words)
+            slave = self.slave
+            words = self.process.words(slave.pzd_words)
             if self._with_pkw and slave.pkw_words:  # somebody may have changed it meanwhile
-                words = self._channel.reply(slave.pkw_words, slave.pzd_words) + words
-            self._wire.talk(self, self._buffer, self._slave.frame(self._buffer, words))
+                words = self.channel.reply(slave.pkw_words, slave.pzd_words) + words
+            self.wire.talk(self, self._buffer, self.slave.frame(self._buffer, words))
         self._settle()
 
     def _connect(self):
         """Be on the line while plugged and powered. What it is sending when it leaves is cut."""
         connected = self.plugged and self._supply.booted and self._speaks_uss
         if connected and not self._connected:
-            self._wire.attach(self)
+            self.wire.attach(self)
         elif self._connected and not connected:
-            self._wire.detach(self)
+            self.wire.detach(self)
         self._connected = connected
 
     def _supervise(self):
@@ -390,8 +392,8 @@ class Drive:
             self._clock.cancel(self._failure)
 
     def _telegram_failure(self):
-        self._slave.watchdog_expired()
-        self._process.trip(self.family.LINK["fault"])
+        self.slave.watchdog_expired()
+        self.process.trip(self.family.LINK["fault"])
 
     # Parameters
 
@@ -399,9 +401,9 @@ class Drive:
         """Set it up as delivered, then for USS at the line's baud rate, then as asked for."""
         family = self.family
         link = family.LINK
-        codes = [code for code, baud in family.BAUD_CODES.items() if baud == self._wire.baud]
+        codes = [code for code, baud in family.BAUD_CODES.items() if baud == self.wire.baud]
         if not codes and not self._any_baud:
-            raise ValueError("a %s has no code for %d baud" % (family.NAME, self._wire.baud))
+            raise ValueError("a %s has no code for %d baud" % (family.NAME, self.wire.baud))
         settings = dict(family.COMMISSIONED)
         if codes:
             settings[link["baud"]] = codes[0]
@@ -411,17 +413,17 @@ class Drive:
             for key in settings:
                 number, index = key if isinstance(key, tuple) else (key, 0)
                 if (number in family.SOURCES["sets"]) == connects:
-                    self._parameters.set(number, index, settings[key])
-        self._parameters.eeprom_writes = 0
+                    self.parameters.set(number, index, settings[key])
+        self.parameters.eeprom_writes = 0
 
     def _reading(self, number, index):
-        return self._readings.value(number, index)
+        return self.readings.value(number, index)
 
     def _change_state(self):
         """C, U or T: what the parameter lists call commissioning, running and ready."""
         if self.state in (RUNNING, STOPPING):
             return "U"
-        return "C" if self._process.commissioning else "T"
+        return "C" if self.process.commissioning else "T"
 
     def _changed(self, number):
         """A parameter was written: most take effect at once, some when the reply is out."""
@@ -436,7 +438,7 @@ class Drive:
             self._unsettled = True
             if self.switches.silent_at_once and self._operations.seconds():
                 self._settle()
-        self._process.refresh()
+        self.process.refresh()
 
     def _settle(self):
         """What had to wait for the end of the exchange: settings of the link, operations."""
@@ -468,23 +470,23 @@ class Drive:
 
     def _complete(self):
         self._operations.carry_out()
-        self._process.refresh()
+        self.process.refresh()
         self._configure_link()
         self._supervise()
 
     def _configure_link(self):
-        slave = self._slave
+        slave = self.slave
         link = self.family.LINK
-        ram = self._parameters.ram
+        ram = self.parameters.ram
         codes = self.family.BAUD_CODES
-        slave.baud = self._wire.baud if self._any_baud else codes[ram[link["baud"]][0]]
+        slave.baud = self.wire.baud if self._any_baud else codes[ram[link["baud"]][0]]
         slave.address = ram[link["address"]][0]
         self._configure_layout()
 
     def _configure_layout(self):
-        slave = self._slave
+        slave = self.slave
         link = self.family.LINK
-        ram = self._parameters.ram
+        ram = self.parameters.ram
         if link["layout"] is None:
             slave.pkw_words = ram[link["pkw words"]][0]
             slave.pzd_words = ram[link["pzd words"]][0]

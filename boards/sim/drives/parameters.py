@@ -115,7 +115,7 @@ class Parameters:
         self._eeprom = {}
         self._family = family
         self._permitted = family.PERMITTED
-        self._reading = reading
+        self.reading = reading
         self._retained = family.LINK["retained"]  # other than 0: every change is kept
         self._volatile = family.OPERATIONS  # commands, which no EEPROM keeps
         self._only_zero = family.ONLY_ZERO
@@ -127,7 +127,7 @@ class Parameters:
         """The present value of a number and index that exist."""
         if number in self.ram:
             return self.ram[number][index]
-        return self._reading(number, index)
+        return self.reading(number, index)
 
     def flags(self, number):
         """Bits of the identifier of a description that tell how it is with this number now."""
