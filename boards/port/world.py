@@ -9,7 +9,7 @@ port are real drives, or simulated ones that somebody else serves.
     world.close()                   # OFF1 to every drive, before anything else
     world.unconfirmed()             # addresses of drives that have not answered it
 
-port: as `link` has it, and wait(ms): returns when something has come, or so much later;
+port: as link.py has it, and wait(ms): returns when something has come, or so much later;
 name: for people; is_cut.
 """
 

@@ -20,10 +20,10 @@ A station has these attributes, all but the first optional:
     has_driver_enable   True: its driver is switched by Wire.drive, and judged; any other station's
                         transceiver switches by itself, without fault
     is_panel            True: its telegrams are the panel's in the log
-    is_weather          True: it is no station, but what happens to a line; see `faults`
+    is_weather          True: it is no station, but what happens to a line; see faults.py
 
 Two stations that talk at once are not the only trouble of a line: `Wire.faults` may hold an object
-that every telegram passes through (`faults`). While there is one, only the panel is judged,
+that every telegram passes through (faults.py). While there is one, only the panel is judged,
 and by what it could hear; what the faults force on anybody is noted apart, in `weather`.
 """
 
@@ -281,7 +281,7 @@ class Wire:
                         that is never off
     log                 the last 1000 telegrams, as they left their talkers
     faults              None, or what has `talk(station, data, count)`, which every telegram passes
-                        through, and `append(burst, data, count)`: see `faults`
+                        through, and `append(burst, data, count)`: see faults.py
 
     It has methods where others have properties: a class with one property makes every assignment
     to its objects' fields a search for `__setattr__`, and these are set in each telegram.
