@@ -9,17 +9,14 @@ what MicroPython would start from it.
 import builtins
 import io
 import os
-import sys
 from pathlib import Path
 
+from tools.deploying.deployment import Deployment, Options
+from tools.deploying.errors import DeployError
+from tools.deploying.image import Firmware
+from tools.deploying.plan import GATE_TEXT
+
 TOP = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(TOP / "tools" / "deploying"))
-
-from deployment import Deployment, Options  # noqa: E402  after the path to it
-from errors import DeployError  # noqa: E402
-from image import Firmware  # noqa: E402
-from plan import GATE_TEXT  # noqa: E402
-
 RP2040 = "Raspberry Pi Pico with RP2040"
 MPY = 0x1306  # sys.implementation._mpy of MicroPython 1.25 on an RP2040
 MODULES = "__main__ gc os hashlib machine Plus any modules on the filesystem"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A PLC with the USS blocks, and drives on its line, in virtual time: for the tests of `plc`.
+"""A PLC with the USS blocks, and drives on its line, in virtual time: for the tests of `s7`.
 
     plc = Plc((1, 2))                   # nodes 1 and 2, simulated drives
     plc.motor(1).RUN = True             # the inputs of the USS_CTRL of node 1
@@ -15,7 +15,7 @@ from boards.sim.line.wire import Transceiver, Wire
 from hal.pacer import Pacer
 from hal.rs485 import Rs485Link
 from uss.master import Master
-from uss.plc import TYPES, USS_CTRL, USS_INIT, Port
+from uss.s7 import TYPES, USS_CTRL, USS_INIT, Port
 from uss.timing import Timing
 
 BAUD = 19200

@@ -233,7 +233,8 @@ class Bench:
         if not self.bursts:
             return NEVER
         end = self.bursts[0][1]
-        for start, this_end, _ in self.bursts[1:]:
+        for index in range(1, len(self.bursts)):  # a slice would take heap in each of its calls
+            start, this_end, _ = self.bursts[index]
             if start - end >= self._idle_us:
                 break
             end = max(end, this_end)

@@ -5,28 +5,18 @@ What it measures is measured on the emulated chip, by tools/bench itself: no tes
 """
 
 import ast
-import importlib.util
 import json
 import subprocess
 import sys
 from pathlib import Path
+
+from tools.benching import report, rows
 
 INTERPRETERS = "host"
 
 TOP = Path(__file__).resolve().parent.parent
 BENCH = TOP / "tools" / "benching"
 
-
-def module(name):
-    """A file of tools/benching, under a name that no other test uses."""
-    found = importlib.util.spec_from_file_location("benching_" + name, BENCH / (name + ".py"))
-    loaded = importlib.util.module_from_spec(found)
-    found.loader.exec_module(loaded)
-    return loaded
-
-
-report = module("report")
-rows = module("rows")
 
 ON_CHIP = rows.Task(("line", "9600"))
 ON_HOST = rows.Task(("codec",), on_chip=False)

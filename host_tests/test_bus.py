@@ -7,13 +7,18 @@ from spoilt_bench import TROUBLES, spoil
 from tools.examples.simulation import Stage
 from uss import pkw, pzd, words
 from uss.bus import MAY_RUN, NO_CONTACT, Master
-from uss.errors import FallsSilent, NoContact, NotStarted, Refused, TimedOut, UssError
+from uss.bus.errors import FallsSilent, NoContact, NotStarted, Refused, TimedOut, UssError
+from uss.bus.scan import Scan
 from uss.families import G110, G120, GENERIC, MM3, MM420, MM440, V20
 from uss.layout import VARIABLE, Layout
 from uss.master import CLOSED, OFF
 from uss.profiles import WORD
 from uss.scaling import Scale
-from uss.scan import Scan
+
+NOT_TRACED = """
+    test_a_scan_trips_nobody_and_says_who_will
+    test_a_scan_says_what_it_has_found_in_a_form_that_add_takes
+"""
 
 
 def near(value, wanted, within=0.02):

@@ -4,8 +4,8 @@
 from test_channel import Line
 from test_pkw import refused
 from uss import pkw
-from uss.change_reports import REPORTS_MAX, Reports
 from uss.layout import VARIABLE as VARIABLE_WORDS
+from uss.tasks.change_reports import REPORTS_MAX, Reports
 
 
 def test_the_example_of_the_specification_with_a_lost_reply():

@@ -7,9 +7,10 @@ Specification C-4.2.1.1. Time is in microseconds and only passes when a test say
 import random
 
 from test_pkw import characters, refused
-from uss import pkw, pkw_array
+from uss import pkw
 from uss.channel import JOBS_MAX, REST_MAX, Channel
 from uss.layout import VARIABLE
+from uss.tasks import arrays
 
 MASK = (1 << 30) - 1
 NO_TASK = (0, 0, 0, 0)
@@ -77,11 +78,11 @@ def test_every_task_in_every_layout():
     """Specification C-4.2.3. None: the channel is too small, and nothing is sent."""
     word, double = 0x1234, 0x12345678
     read, write, write_long = (
-        pkw_array.read_element,
-        pkw_array.write_element_word,
+        arrays.read_element,
+        arrays.write_element_word,
         pkw.write_double,
     )
-    write_long_element = pkw_array.write_element_double
+    write_long_element = arrays.write_element_double
     for job, three, four, variable in (
         (pkw.read(2010, 1), "100A 8001 0", "100A 8001 0 0", "100A 8001 0"),
         (pkw.write_word(700, word), "22BC 0 1234", "22BC 0 0 1234", "22BC 0 1234"),
@@ -89,13 +90,13 @@ def test_every_task_in_every_layout():
         (read(304, 2), "6130 2 0", "6130 2 0 0", "6130 2 0"),
         (write(304, 2, word), "7130 2 1234", "7130 2 0 1234", "7130 2 1234"),
         (write_long_element(731, 2, double), None, "82DB 2 1234 5678", "82DB 2 1234 5678"),
-        (pkw_array.count_elements(304), "9130 0 0", "9130 0 0 0", "9130 0 0"),
+        (arrays.count_elements(304), "9130 0 0", "9130 0 0 0", "9130 0 0"),
         (write_long_element(731, 2, double, True), None, "B2DB 2 1234 5678", "B2DB 2 1234 5678"),
         (write(304, 2, word, True), "C130 2 1234", "C130 2 0 1234", "C130 2 1234"),
         (write_long(731, double, 0, True), None, "D2DB 0 1234 5678", "D2DB 0 1234 5678"),
         (pkw.write_word(700, word, 0, True), "E2BC 0 1234", "E2BC 0 0 1234", "E2BC 0 1234"),
-        (pkw_array.read_all(304), None, None, "6130 FF 0"),
-        (pkw_array.write_all_words(304, (1, 2, 3)), None, None, "7130 FF 1 2 3"),
+        (arrays.read_all(304), None, None, "6130 FF 0"),
+        (arrays.write_all_words(304, (1, 2, 3)), None, None, "7130 FF 1 2 3"),
     ):
         for pkw_words, expected in ((3, three), (4, four), (VARIABLE, variable)):
             line = Line(pkw_words)
@@ -127,7 +128,7 @@ def test_with_variable_length_the_task_makes_the_telegram_longer_and_shorter():
     for job, words in (
         (pkw.read(700), (0x12BC, 0, 5)),
         (pkw.write_double(731, 1), (0x22DB, 0, 0, 1)),
-        (pkw_array.write_all_words(304, (1, 2, 3, 4)), (0x4130, 0xFF, 1, 2, 3, 4)),
+        (arrays.write_all_words(304, (1, 2, 3, 4)), (0x4130, 0xFF, 1, 2, 3, 4)),
     ):
         line.ask(job)
         size = len(line.send())
@@ -218,8 +219,8 @@ def test_what_went_into_the_eeprom_is_followed_by_no_task_whatever_comes_next():
     for job in (
         pkw.write_word(700, 5, eeprom=True),
         pkw.write_double(700, 5, eeprom=True),
-        pkw_array.write_element_word(700, 0, 5, eeprom=True),
-        pkw_array.write_element_double(700, 0, 5, eeprom=True),
+        arrays.write_element_word(700, 0, 5, eeprom=True),
+        arrays.write_element_double(700, 0, 5, eeprom=True),
     ):
         line = Line()
         line.ask(job)
@@ -396,7 +397,7 @@ def test_a_slow_drive_has_two_seconds_and_five_for_its_eeprom():
     for job, seconds in (
         (pkw.read(700), 2),
         (pkw.write_word(700, 5, 0, True), 5),
-        (pkw_array.write_element_double(700, 0, 5, True), 5),
+        (arrays.write_element_double(700, 0, 5, True), 5),
     ):
         line = Line()
         line.ask(job)
@@ -428,7 +429,7 @@ def test_a_task_that_silences_the_drive_is_withdrawn_after_three_telegrams():
         pkw.read(999),
         pkw.write_word(999, 5),
         pkw.write_double(999, 5, eeprom=True),
-        pkw_array.read_element(999, 2),
+        arrays.read_element(999, 2),
     ):
         line = Line()
         ask_in_vain(line, job)
@@ -685,18 +686,18 @@ def some_job(drive):
     value |= random.getrandbits(16) << 16 if wide else 0
     eeprom = random.randrange(2) == 1
     writes = (
-        (pkw.write_double, pkw_array.write_element_double, pkw_array.write_all_doubles)
+        (pkw.write_double, arrays.write_element_double, arrays.write_all_doubles)
         if wide
-        else (pkw.write_word, pkw_array.write_element_word, pkw_array.write_all_words)
+        else (pkw.write_word, arrays.write_element_word, arrays.write_all_words)
     )
     return random.choice(
         (
             lambda: pkw.read(number, index),
-            lambda: pkw_array.read_element(number, index),
-            lambda: pkw_array.count_elements(number),
+            lambda: arrays.read_element(number, index),
+            lambda: arrays.count_elements(number),
             lambda: writes[0](number, value, index, eeprom),
             lambda: writes[1](number, index, value, eeprom),
-            lambda: pkw_array.read_all(number),
+            lambda: arrays.read_all(number),
             lambda: writes[2](number, [value] * count, eeprom),
             lambda: pkw.read(random.choice((1, 52, 1999, 4000, 127999))),
             lambda: pkw.write_word(52, 1),
@@ -726,7 +727,7 @@ def expected(drive, reply):
 def result(job):
     if job.state == pkw.REFUSED:
         return job.state, job.error, job.next, job.previous, None
-    values = job.integer_values() if isinstance(job, pkw_array.ArrayJob) else [job.integer_value()]
+    values = job.integer_values() if isinstance(job, arrays.ArrayJob) else [job.integer_value()]
     return job.state, job.error, job.next, job.previous, values
 
 

@@ -7,10 +7,11 @@ import sys
 import micropython
 
 from test_pkw import characters
-from uss import pkw, pkw_array, pkw_description, pkw_text
-from uss.change_reports import Reports
+from uss import pkw
 from uss.channel import Channel
 from uss.layout import VARIABLE
+from uss.tasks import arrays, descriptions, texts
+from uss.tasks.change_reports import Reports
 
 INTERPRETERS = "unix64 unix32"
 
@@ -43,12 +44,12 @@ def test_tasks_of_every_kind_take_no_memory():
         (VARIABLE, pkw.read(2000), ((0x2000, 0x8000, 0xFFFF, 0xFFFF),)),
         (VARIABLE, pkw.read(1), ((0x7001, 0, 0, 0xFFFF, 0xFFFF),)),
         (4, pkw.write_word(700, 5, eeprom=True), ((0x82BC, 0, 0, 0),)),
-        (VARIABLE, pkw_array.read_all(304), ([0x4130, 0xFF] + [0xFFFF] * 124,)),
-        (VARIABLE, pkw_array.read_all(304, 2), ([0x5130, 0xFF] + [0xFFFF] * 4,)),
-        (VARIABLE, pkw_array.write_all_words(304, [0xFFFF] * 9), ([0x4130, 0xFF] + [0xFFFF] * 9,)),
-        (VARIABLE, pkw_text.read_text(7, 3), ([0xF007, 3] + text,)),
-        (VARIABLE, pkw_description.read_description(52), ([0x3034, 0xFF] + [0xFFFF] * 20,)),
-        (4, pkw_description.read_description(52, 7), ((0x3034, 7, 0xFFFF, 0xFFFF),)),
+        (VARIABLE, arrays.read_all(304), ([0x4130, 0xFF] + [0xFFFF] * 124,)),
+        (VARIABLE, arrays.read_all(304, 2), ([0x5130, 0xFF] + [0xFFFF] * 4,)),
+        (VARIABLE, arrays.write_all_words(304, [0xFFFF] * 9), ([0x4130, 0xFF] + [0xFFFF] * 9,)),
+        (VARIABLE, texts.read_text(7, 3), ([0xF007, 3] + text,)),
+        (VARIABLE, descriptions.read_description(52), ([0x3034, 0xFF] + [0xFFFF] * 20,)),
+        (4, descriptions.read_description(52, 7), ((0x3034, 7, 0xFFFF, 0xFFFF),)),
     ):
         channel = Channel(MASK, pkw_words, 20)
         channel.ask(job)

@@ -35,10 +35,10 @@ def drives():
 @pytest.fixture
 def node(request, drives):
     """The drive that the test is parametrized with, after a power-up and two telegrams."""
-    node = drives.node(request.param)
-    drives.power_cycle(node)
+    node = drives.ready(request.param)
     node.exchange(node.no_task())
-    return node
+    yield node
+    drives.leave(node)
 
 
 def on(*names):
@@ -105,7 +105,7 @@ def test_variable_length_needs_all_process_data_words(node):
 
 def test_only_the_address_that_is_meant_answers(drives):
     for name in KINDS:
-        node = drives.node(name)
+        node = drives.ready(name)
         node.exchange(node.no_task())  # words_of() looks at ADR
     free = set(range(32)) - {kind.address for kind in KINDS.values()}
     for master in drives.masters:

@@ -39,10 +39,10 @@ def drives():
 @pytest.fixture
 def node(request, drives):
     """The drive that the test is parametrized with, or asks for by `on`, after a power-up."""
-    node = drives.node(request.param)
-    drives.power_cycle(node)
+    node = drives.ready(request.param)
     node.exchange(node.no_task())
     yield node
+    drives.leave(node)
 
 
 def on(*names, having=None):

@@ -50,11 +50,11 @@ def node(request, drives):
 
     Nothing that counts was sent to it.
     """
-    node = drives.node(request.param)
-    drives.power_cycle(node)
+    node = drives.ready(request.param)
     yield node
     if node.exchange(node.no_task())[1][1]:  # a motor coasts over a power cycle
         until(node, OFF1, lambda zsw, hiw: not hiw)
+    drives.leave(node)
 
 
 def on(*names):

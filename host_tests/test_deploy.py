@@ -5,6 +5,8 @@ import json
 from types import SimpleNamespace
 
 import pytest
+
+import main
 from deploy_bench import (
     FLASH,
     FROZEN,
@@ -19,14 +21,8 @@ from deploy_bench import (
     firmware,
     running,
 )
-
-import arrival
-import deployment
-import image
-import main
-import plan
-import ports
-from errors import DeployError
+from tools.deploying import arrival, deployment, image, plan, ports
+from tools.deploying.errors import DeployError
 
 INTERPRETERS = "host"
 

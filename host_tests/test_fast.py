@@ -4,7 +4,8 @@
 import random
 from array import array
 
-from uss import fast, fast_python
+from uss import fast
+from uss.fast import python
 
 ROUNDS = 3000
 NAMES = (
@@ -24,7 +25,7 @@ def framed(count):
         buffer[0] = 0x02 if random.randrange(8) else buffer[0]
         buffer[1] = count - 2 if random.randrange(8) else buffer[1]
         buffer[2] = 5 if random.randrange(8) else buffer[2]
-        in_python = fast_python.exclusive_or
+        in_python = python.exclusive_or
         if random.randrange(4):
             buffer[count - 1] = in_python(buffer, count - 1)
     return buffer
@@ -32,7 +33,7 @@ def framed(count):
 
 def test_the_exclusive_or_is_the_same():
     random.seed(11)
-    in_python = fast_python.exclusive_or
+    in_python = python.exclusive_or
     for _ in range(ROUNDS):
         count = random.randrange(257)
         buffer = characters(count)
@@ -42,7 +43,7 @@ def test_the_exclusive_or_is_the_same():
 
 def test_the_rows_are_found_in_which_somebody_calls():
     random.seed(18)
-    in_python = fast_python.calling
+    in_python = python.calling
     for _ in range(ROUNDS):
         size = random.randrange(1, 9)
         rows = random.randrange(4)
@@ -59,7 +60,7 @@ def test_the_rows_are_found_in_which_somebody_calls():
 
 def test_a_reply_is_about_the_parameter_and_index_that_were_asked_for():
     random.seed(19)
-    in_python = fast_python.reply_about
+    in_python = python.reply_about
     asked = bytes((0x12, 0xBC, 0x80, 0x01, 0, 0, 0, 0))  # AK 1, P2700[1]
     assert fast.reply_about(b"\x22\xbc\x80\x01", 0, asked) == 2
     assert fast.reply_about(b"\x2a\xbc\x80\x01", 0, asked) == 2  # bit 11 is no part of PNU
@@ -75,7 +76,7 @@ def test_a_reply_is_about_the_parameter_and_index_that_were_asked_for():
 
 def test_net_data_are_framed():
     random.seed(17)
-    in_python = fast_python.frame
+    in_python = python.frame
     for _ in range(ROUNDS // 10):
         size, address = random.randrange(5, 257), random.randrange(256)
         framed_by_both, expected = characters(256), bytearray(256)
@@ -89,7 +90,7 @@ def test_net_data_are_framed():
 
 def test_a_telegram_is_recognised_by_both_or_by_none():
     random.seed(12)
-    in_python = fast_python.is_reply
+    in_python = python.is_reply
     found = 0
     for _ in range(ROUNDS):
         count = random.randrange(0, 40)
@@ -106,7 +107,7 @@ def test_a_telegram_is_recognised_by_both_or_by_none():
 
 def test_what_was_sent_is_no_reply():
     request = b"\x02\x06\x05\x04\x7e\x00\x00\x7b"
-    for is_reply in (fast.is_reply, fast_python.is_reply):
+    for is_reply in (fast.is_reply, python.is_reply):
         assert not is_reply(request, 8, request)
         assert is_reply(b"\x02\x06\x05\xfb\x31\x00\x00\xcb", 8, request)
         assert is_reply(b"\x02\x04\x05\xfb\x31\xc9", 6, request)
@@ -114,7 +115,7 @@ def test_what_was_sent_is_no_reply():
 
 def test_agreeing_characters_are_counted_up_to_the_first_that_differs():
     random.seed(14)
-    in_python = fast_python.agreeing
+    in_python = python.agreeing
     lengths = set()
     for _ in range(ROUNDS // 10):
         buffer = bytes(random.getrandbits(1) for _ in range(20))
@@ -129,7 +130,7 @@ def test_agreeing_characters_are_counted_up_to_the_first_that_differs():
 
 def test_words_are_taken_high_byte_first():
     random.seed(15)
-    in_python = fast_python.get_words
+    in_python = python.get_words
     for _ in range(ROUNDS // 10):
         buffer, at, count = characters(40), random.randrange(9), random.randrange(16)
         taken, expected = array("H", bytes(40)), array("H", bytes(40))
@@ -143,7 +144,7 @@ def test_words_are_taken_high_byte_first():
 
 def test_the_greatest_is_found_going_round():
     random.seed(16)
-    in_python = fast_python.greatest
+    in_python = python.greatest
     found = set()
     for _ in range(ROUNDS):
         values = bytes(random.choice((0, 0, 0, 0, 1, 2, 4)) for _ in range(10))
@@ -158,7 +159,7 @@ def test_the_greatest_is_found_going_round():
 
 def test_characters_are_copied_to_the_same_place():
     random.seed(13)
-    in_python = fast_python.copy
+    in_python = python.copy
     for _ in range(ROUNDS // 10):
         source, before = characters(20), characters(40)
         at, count = random.randrange(20), random.randrange(21)
@@ -174,10 +175,10 @@ def test_micropython_has_the_machine_code():
     """Or the comparisons above would compare a function with itself."""
     has_viper = True
     try:
-        import uss.fast_viper
+        import uss.fast.viper
     except AttributeError:
         has_viper = False  # CPython
     for name in NAMES:
-        assert (getattr(fast, name) is getattr(fast_python, name)) != has_viper
+        assert (getattr(fast, name) is getattr(python, name)) != has_viper
     if has_viper:
-        assert uss.fast_viper.copy is fast.copy
+        assert uss.fast.viper.copy is fast.copy

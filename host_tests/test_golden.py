@@ -8,11 +8,12 @@ What is not valid changes nothing.
 
 import golden
 from line_bench import MASK, Line, of_words, sealed
-from uss import pkw, pkw_array, pkw_description, pkw_text, pzd, single, telegram
-from uss.change_reports import Reports
+from uss import pkw, pzd, single, telegram
 from uss.channel import Channel
 from uss.drive import Drive
 from uss.layout import Layout
+from uss.tasks import arrays, descriptions, texts
+from uss.tasks.change_reports import Reports
 
 # --- the words of a row -------------------------------------------------------------------------
 
@@ -68,12 +69,12 @@ MAKERS = {
     1: lambda asked: pkw.read(asked["number"], asked["index"]),
     2: lambda asked: write(asked, eeprom=False),
     3: lambda asked: write(asked, eeprom=False),
-    4: lambda asked: pkw_description.read_description(asked["number"], asked["index"]),
-    6: lambda asked: pkw_array.read_element(asked["number"], asked["index"]),
-    8: lambda asked: pkw_array.write_element_double(
+    4: lambda asked: descriptions.read_description(asked["number"], asked["index"]),
+    6: lambda asked: arrays.read_element(asked["number"], asked["index"]),
+    8: lambda asked: arrays.write_element_double(
         asked["number"], asked["index"], asked["double"]
     ),
-    9: lambda asked: pkw_array.count_elements(asked["number"]),
+    9: lambda asked: arrays.count_elements(asked["number"]),
     13: lambda asked: write(asked, eeprom=True),
     14: lambda asked: write(asked, eeprom=True),
     15: lambda asked: text_job(asked),
@@ -94,8 +95,8 @@ def text_job(asked):
     """Bit 8 of IND says write, bit 9 the second field (C-4.2.2)."""
     number, element, field = asked["number"], asked["index"], 1 + (asked["field"] >> 1)
     if asked["field"] & 1:
-        return pkw_text.write_text(number, element, asked["text"], field)
-    return pkw_text.read_text(number, element, field)
+        return texts.write_text(number, element, asked["text"], field)
+    return texts.read_text(number, element, field)
 
 
 def job_of(asked):

@@ -8,6 +8,8 @@ from uss.layout import VARIABLE, Layout
 from uss.master import CLOSED, DEAD_MAN_US, LISTENING, LOST_US, Master
 from uss.timing import BAUD_RATES, Timing
 
+NOT_TRACED = "test_while_characters_come_in_nothing_is_sent_into_them"
+
 # --- who talks when -----------------------------------------------------------------------------
 
 

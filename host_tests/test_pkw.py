@@ -4,7 +4,8 @@
 How tasks are repeated, and told apart, is in test_channel.py; arrays and texts have their own.
 """
 
-from uss import pkw, pkw_errors
+from uss import pkw
+from uss.bus import pkw_errors
 
 THREE, FOUR, VARIABLE = pkw.THREE_WORDS, pkw.FOUR_WORDS, pkw.VARIABLE_LENGTH | 20
 
@@ -92,7 +93,7 @@ def test_what_cannot_be_asked_is_refused_at_once():
     for act, arguments in (
         (pkw.read, (-1,)),
         (pkw.read, (128000,)),
-        (pkw.read, (700, 255)),  # all elements: see pkw_array
+        (pkw.read, (700, 255)),  # all elements: see tasks.arrays
         (pkw.read, (700, -1)),
         (pkw.write_word, (700, 65536)),
         (pkw.write_word, (700, -32769)),
@@ -102,7 +103,7 @@ def test_what_cannot_be_asked_is_refused_at_once():
         (pkw.Job, (10, 700)),  # reserved
         (pkw.Job, (16, 700)),
         (pkw.Job, (-1, 700)),
-        (pkw.Job, (4, 700)),  # descriptions and texts: see pkw_long
+        (pkw.Job, (4, 700)),  # descriptions and texts: see tasks.long_jobs
         (pkw.Job, (15, 700)),
     ):
         assert refused(ValueError, act, *arguments), (act, arguments)

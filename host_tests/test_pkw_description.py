@@ -4,9 +4,10 @@
 from test_channel import Line
 from test_pkw import FOUR, THREE, VARIABLE, answered, refused
 from test_pkw_text import text_words
-from uss import pkw, pkw_errors
+from uss import pkw
+from uss.bus import pkw_errors
 from uss.layout import VARIABLE as VARIABLE_WORDS
-from uss.pkw_description import (
+from uss.tasks.descriptions import (
     ACCESS,
     ARRAY,
     CHANGED,

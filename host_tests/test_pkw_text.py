@@ -3,8 +3,9 @@
 
 from test_channel import Line
 from test_pkw import refused
-from uss import pkw, pkw_text
+from uss import pkw
 from uss.layout import VARIABLE as VARIABLE_WORDS
+from uss.tasks import texts
 
 
 def text_words(text):
@@ -17,11 +18,11 @@ def test_the_texts_of_examples_7_and_8():
     """Task 15; bits 9 and 8 of IND say which field, and whether it is written."""
     rate, ss2, baud = "300 BAUD        ", "BAUDRATE FOR SS2", "1200 BAUD       "
     for job, head, text, is_write in (
-        (pkw_text.read_text(7, 3), (0xF007, 0x0003), rate, False),
-        (pkw_text.read_text(9, 2), (0xF009, 0x0002), ss2, False),
-        (pkw_text.write_text(9, 2, ss2), (0xF009, 0x0102), ss2, True),
-        (pkw_text.read_text(9, 4, field=2), (0xF009, 0x0204), baud, False),
-        (pkw_text.write_text(9, 4, "1200 BAUD", field=2), (0xF009, 0x0304), baud, True),
+        (texts.read_text(7, 3), (0xF007, 0x0003), rate, False),
+        (texts.read_text(9, 2), (0xF009, 0x0002), ss2, False),
+        (texts.write_text(9, 2, ss2), (0xF009, 0x0102), ss2, True),
+        (texts.read_text(9, 4, field=2), (0xF009, 0x0204), baud, False),
+        (texts.write_text(9, 4, "1200 BAUD", field=2), (0xF009, 0x0304), baud, True),
     ):
         line = Line(VARIABLE_WORDS, 10)
         line.ask(job)
@@ -37,7 +38,7 @@ def test_the_texts_of_examples_7_and_8():
 def test_a_drive_refuses_a_text():
     for words, error in (((0x7007, 3, 15), 15), ((0x8007, 3, 0), pkw.NO_CHANGE_RIGHTS)):
         line = Line(VARIABLE_WORDS)
-        job = line.ask(pkw_text.read_text(7, 3))
+        job = line.ask(texts.read_text(7, 3))
         line.send()
         line.answer(*words)
         assert job.state == pkw.REFUSED and job.error == error
@@ -45,17 +46,17 @@ def test_a_drive_refuses_a_text():
 
 def test_texts_need_variable_length():
     for pkw_words in (3, 4):
-        job = Line(pkw_words).ask(pkw_text.read_text(7, 3))
+        job = Line(pkw_words).ask(texts.read_text(7, 3))
         assert job.state == pkw.REFUSED and job.error == 102
 
 
 def test_a_text_that_cannot_be_is_refused_at_once():
     for act, arguments in (
-        (pkw_text.read_text, (7, 0)),
-        (pkw_text.read_text, (7, 255)),
-        (pkw_text.read_text, (7, 1, 3)),
-        (pkw_text.write_text, (7, 1, "seventeen letters")),
-        (pkw_text.write_text, (7, 1, "\u0394")),
+        (texts.read_text, (7, 0)),
+        (texts.read_text, (7, 255)),
+        (texts.read_text, (7, 1, 3)),
+        (texts.write_text, (7, 1, "seventeen letters")),
+        (texts.write_text, (7, 1, "\u0394")),
     ):
         assert refused(ValueError, act, *arguments), arguments
-    assert bytes(pkw_text.write_text(7, 1, "\xd6").words[4:6]) == b"\xd6 "
+    assert bytes(texts.write_text(7, 1, "\xd6").words[4:6]) == b"\xd6 "

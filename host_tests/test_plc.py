@@ -4,10 +4,11 @@
 from boards.sim.clock import Clock, Event
 from boards.sim.drives.families import g120, generic, mm3
 from plc_bench import BAUD, Plc
-from uss import families, pkw, pkw_errors, status
+from uss import families, pkw
+from uss.bus import pkw_errors
 from uss.layout import Layout
 from uss.master import LISTENING
-from uss.plc import (
+from uss.s7 import (
     TYPES,
     USS_CTRL,
     USS_INIT,
@@ -18,7 +19,10 @@ from uss.plc import (
     USS_WPM_R,
     USS_WPM_W,
     Port,
+    codes,
 )
+
+NOT_TRACED = "test_all_nodes_at_once"
 
 # --- RUN, and what a motor does on it -----------------------------------------------------------
 
@@ -137,7 +141,7 @@ def test_a_line_that_comes_back_starts_nothing():
     plc.drive().unplug()
     plc.run(2_000)
     motor = plc.outputs()
-    assert motor.ERROR == status.NO_ANSWER and not motor.RESP_R and motor.RUN_VOID
+    assert motor.ERROR == codes.NO_ANSWER and not motor.RESP_R and motor.RUN_VOID
     assert motor.RUN_EN  # what was known last: it may run still
     plc.drive().plug()
     plc.run(3_000)
@@ -178,7 +182,7 @@ def test_a_setpoint_out_of_range_keeps_the_speed_and_starts_nothing():
     for percent in (200.1, -200.1, float("nan"), float("inf")):
         plc.motor().SPEED_SP = percent
         plc.run(100)
-        assert plc.outputs().ERROR == status.SPEED_RANGE
+        assert plc.outputs().ERROR == codes.SPEED_RANGE
         assert abs(plc.drive().hz() - 25.0) < 0.01
     plc.motor().RUN = False
     plc.run(1_500)
@@ -261,8 +265,8 @@ def test_another_drive_at_the_input_stops_the_one_before():
 
 def test_an_input_that_is_refused_stops_the_motor():
     for name, value, error in (
-        ("DRIVE", 32, status.ILLEGAL_ADDRESS), ("DRIVE", 7, status.NOT_ACTIVE),
-        ("TYPE", 2, status.ILLEGAL_COMMAND), ("TYPE", 0, status.CHANGE_NOT_ALLOWED),
+        ("DRIVE", 32, codes.ILLEGAL_ADDRESS), ("DRIVE", 7, codes.NOT_ACTIVE),
+        ("TYPE", 2, codes.ILLEGAL_COMMAND), ("TYPE", 0, codes.CHANGE_NOT_ALLOWED),
     ):  # fmt: skip
         plc = Plc()
         plc.start()
@@ -279,7 +283,7 @@ def test_a_second_uss_ctrl_for_a_drive_is_refused_and_changes_nothing():
     second = USS_CTRL(plc.port)
     plc.others.append(lambda: second(RUN=False, DRIVE=1, TYPE=1))
     plc.run(500)
-    assert second.ERROR == status.INTERFERENCE and plc.outputs().ERROR == 0
+    assert second.ERROR == codes.INTERFERENCE and plc.outputs().ERROR == 0
     assert plc.drive().state == "running"
     # The first one gives up: the second may have it, and starts nothing.
     del plc.controls[1]
@@ -322,7 +326,7 @@ def test_an_element_by_its_index():
         assert (read.ERROR, read.VALUE) == (0, value)
     read(EN=True, XMT_REQ=False)
     until_done(plc, read, DRIVE=1, PARAM=2012, INDEX=9)
-    assert (read.ERROR, read.PKW_ERROR) == (status.PARAMETER_REPLY, 3)
+    assert (read.ERROR, read.PKW_ERROR) == (codes.PARAMETER_REPLY, 3)
 
 
 def test_an_element_goes_by_the_tasks_for_arrays_where_no_others_take_an_index():
@@ -347,7 +351,7 @@ def test_a_full_queue_of_the_drive_is_a_busy_port():
         except RuntimeError:
             break
     read = until_done(plc, USS_RPM_W(plc.port), DRIVE=1, PARAM=700)
-    assert read.ERROR == status.PORT_BUSY
+    assert read.ERROR == codes.PORT_BUSY
 
 
 def test_one_type_is_enough():
@@ -388,7 +392,7 @@ def test_done_goes_off_with_the_next_request_and_errors_with_it():
     plc = Plc()
     plc.run(300)
     read = until_done(plc, USS_RPM_W(plc.port), DRIVE=1, PARAM=1999)
-    assert read.ERROR == status.PARAMETER_REPLY and read.PKW_ERROR == 0
+    assert read.ERROR == codes.PARAMETER_REPLY and read.PKW_ERROR == 0
     read(EN=True, XMT_REQ=False, DRIVE=1, PARAM=700)
     read(EN=True, XMT_REQ=True, DRIVE=1, PARAM=700)
     assert (read.DONE, read.ERROR, read.PKW_ERROR) == (False, 0, None)
@@ -414,7 +418,7 @@ def test_one_parameter_block_at_a_time():
     first(EN=True, XMT_REQ=True, DRIVE=1, PARAM=700)
     second(EN=True, XMT_REQ=True, DRIVE=2, PARAM=1120, VALUE=1)
     assert not first.DONE
-    assert second.DONE and second.ERROR == status.PORT_BUSY and second.STATUS_WORD == 0x818A
+    assert second.DONE and second.ERROR == codes.PORT_BUSY and second.STATUS_WORD == 0x818A
     plc.run(500)
     first(EN=True)
     assert first.DONE and first.ERROR == 0
@@ -438,7 +442,7 @@ def test_the_words_of_a_refusal_come_beside_the_code():
     plc = Plc()
     plc.run(300)
     write = until_done(plc, USS_WPM_R(plc.port), DRIVE=1, PARAM=1120, VALUE=1e6)
-    assert (write.ERROR, write.STATUS_WORD) == (status.PARAMETER_REPLY, 0x818C)
+    assert (write.ERROR, write.STATUS_WORD) == (codes.PARAMETER_REPLY, 0x818C)
     assert write.PKW_ERROR == 2 and pkw_errors.error_text(write.PKW_ERROR) == "beyond the limits"
 
 
@@ -483,13 +487,13 @@ def test_parameters_of_a_micromaster_3():
     assert plc.drive().read(2) == 55
     # It has words alone, and no room for more: the channel says so before anything is sent.
     write = until_done(plc, USS_WPM_R(plc.port), DRIVE=1, PARAM=2, VALUE=5.0)
-    assert (write.ERROR, write.PKW_ERROR) == (status.PARAMETER_REPLY, 102)
+    assert (write.ERROR, write.PKW_ERROR) == (codes.PARAMETER_REPLY, 102)
 
 
 def test_the_wrong_type_is_a_drive_that_does_not_respond():
     plc = Plc(kinds={1: QUICK_MM3})
     plc.run(500)
-    assert plc.outputs().ERROR == status.NO_ANSWER
+    assert plc.outputs().ERROR == codes.NO_ANSWER
     plc.motor().TYPE = 0
     plc.run(300)
     assert plc.outputs().ERROR == 0
@@ -556,7 +560,7 @@ def test_the_active_drives_may_change_while_others_run():
     give(plc.init, MODE=1, BAUD=BAUD, ACTIVE=0b0010)
     plc.run(300)
     assert (plc.init.DONE, plc.init.ERROR) == (True, 0)
-    assert plc.outputs(2).ERROR == status.NOT_ACTIVE
+    assert plc.outputs(2).ERROR == codes.NOT_ACTIVE
     assert plc.drive(1).state == "running" and plc.outputs(1).ERROR == 0
     give(plc.init, MODE=1, BAUD=BAUD, ACTIVE=0b0110)
     plc.run(300)
@@ -570,7 +574,7 @@ def test_no_drive_at_all_may_be_active():
     give(plc.init, MODE=1, BAUD=BAUD, ACTIVE=0)
     assert (plc.init.DONE, plc.init.ERROR) == (True, 0)
     plc.run(100)
-    assert plc.outputs(1).ERROR == status.NOT_ACTIVE
+    assert plc.outputs(1).ERROR == codes.NOT_ACTIVE
 
 
 def test_a_drive_that_runs_cannot_be_dropped():
@@ -582,7 +586,7 @@ def test_a_drive_that_runs_cannot_be_dropped():
             {"MODE": 1, "BAUD": 9600, "ACTIVE": 0b0100 | 1 << node},
         ):  # fmt: skip
             give(plc.init, **inputs)
-            assert plc.init.DONE and plc.init.ERROR == status.CHANGE_NOT_ALLOWED, inputs
+            assert plc.init.DONE and plc.init.ERROR == codes.CHANGE_NOT_ALLOWED, inputs
             plc.run(500)
             assert plc.drive(node).state == "running" and plc.outputs(node).ERROR == 0
 
@@ -597,7 +601,7 @@ def test_mode_0_leaves_the_line_and_mode_1_takes_it_again():
     assert plc.init.DONE and plc.init.ERROR == 0 and plc.port.bus is None
     heard = plc.drive().read(2024)
     plc.run(1_000)
-    assert plc.drive().read(2024) == heard and plc.outputs().ERROR == status.PORT_NOT_USS
+    assert plc.drive().read(2024) == heard and plc.outputs().ERROR == codes.PORT_NOT_USS
     give(plc.init, MODE=1, BAUD=BAUD, ACTIVE=0b10)
     assert plc.init.DONE and plc.port.bus.phase == LISTENING
     plc.run(500)
@@ -619,7 +623,7 @@ def test_another_rate_opens_the_line_anew():
     assert not plc.init.DONE  # an exchange is under way
     plc.run(10)
     plc.init(EN=True)
-    assert plc.outputs().ERROR == status.PORT_NOT_USS
+    assert plc.outputs().ERROR == codes.PORT_NOT_USS
     for _ in range(50):
         plc.run(2)
         plc.init(EN=True)
@@ -637,7 +641,7 @@ def test_before_init_every_block_says_so():
         else:
             block(XMT_REQ=True, DRIVE=1, PARAM=700)
             assert block.DONE
-        assert block.ERROR == status.PORT_NOT_USS and block.STATUS_WORD == 0x818E
+        assert block.ERROR == codes.PORT_NOT_USS and block.STATUS_WORD == 0x818E
     init = USS_INIT(port)
     init(EN=False, MODE=1, BAUD=19200, ACTIVE=1)
     assert init.DONE is False
@@ -664,7 +668,7 @@ def test_close_stops_every_motor_and_leaves_the_line():
         plc.motor(1).RUN = plc.motor(2).RUN = True
         plc.run(2_000)
         assert plc.drive(1).state == "ready" and plc.drive(1).read(2024) == heard
-        assert plc.outputs(1).ERROR == status.PORT_NOT_USS and plc.outputs(1).RUN_VOID
+        assert plc.outputs(1).ERROR == codes.PORT_NOT_USS and plc.outputs(1).RUN_VOID
         plc.check()
 
 
@@ -766,7 +770,7 @@ def test_a_parameter_block_that_close_has_overtaken_says_so():
     read(EN=True, XMT_REQ=True, DRIVE=1, PARAM=700)
     plc.port.close()
     read(EN=True, XMT_REQ=True, DRIVE=1, PARAM=700)
-    assert read.DONE and read.ERROR == status.PORT_NOT_USS
+    assert read.DONE and read.ERROR == codes.PORT_NOT_USS
 
 
 def test_close_after_a_hang_stops_the_motors():

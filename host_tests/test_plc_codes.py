@@ -6,10 +6,9 @@ A line on which one drive, node 3, answers what the test says, to the character.
 
 from boards.sim.clock import Clock
 from line_bench import MASK, Line, of_words, words_of
-from uss import status
 from uss.families import MM4
 from uss.layout import VARIABLE, Layout
-from uss.plc import (
+from uss.s7 import (
     TYPES,
     USS_CTRL,
     USS_INIT,
@@ -20,12 +19,13 @@ from uss.plc import (
     USS_WPM_R,
     USS_WPM_W,
     Port,
+    codes,
 )
 
 NODE = 3
 READY, RUNNING = 0xFB31, 0xFB34
 
-# Codes that nothing on this link leads to, and why; plc.md says so, too.
+# Codes that nothing on this link leads to, and why; s7/README.md says so, too.
 NEVER = {
     3: "parity",  # no UART of MicroPython tells of it: the character is wrong or missing
     14: "DB_PTR",  # the blocks need no memory of the program
@@ -135,7 +135,7 @@ def error_with(change):
     plant = Plant(spoilt(change))
     plant.run()
     assert not plant.motor.RESP_R and plant.motor.STATUS == 0
-    assert plant.motor.STATUS_WORD == status.word(plant.motor.ERROR)
+    assert plant.motor.STATUS_WORD == codes.word(plant.motor.ERROR)
     return plant.motor.ERROR
 
 
@@ -409,12 +409,12 @@ def test_a_parameter_block_says_why_nothing_came():
         plant.line.answer = spoilt(change)
         read = USS_RPM_W(plant.port)
         assert plant.until_done(read, DRIVE=NODE, PARAM=700) == code, code
-        assert read.STATUS_WORD == status.word(code)
+        assert read.STATUS_WORD == codes.word(code)
 
 
 def test_every_code_is_provoked_or_cannot_occur():
     names = list(globals())
-    for code in range(len(status.CODES)):
+    for code in range(len(codes.CODES)):
         provoked = any(name.startswith("test_code_%d_" % code) for name in names)
         assert provoked != (code in NEVER), code
 

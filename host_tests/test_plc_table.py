@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""What firmware/uss/plc.md tells PLC programmers: its tables miss nothing, every name in them is
-one of the library, and its example runs."""
+"""What firmware/uss/s7/README.md tells PLC programmers: its tables miss nothing, every name in
+them is one of the library, and its example runs."""
 
 import re
 
@@ -19,19 +19,19 @@ from uss import (
     layout,
     master,
     pkw,
-    pkw_errors,
-    plc,
     pzd,
     receiver,
+    s7,
     scaling,
     single,
-    status,
     telegram,
     timing,
     words,
 )
+from uss.bus import pkw_errors
+from uss.s7 import codes
 
-MANUAL = "firmware/uss/plc.md"
+MANUAL = "firmware/uss/s7/README.md"
 
 # Codes of the B&R blocks, and all that may stand beside them.
 B_AND_R = (
@@ -70,10 +70,10 @@ class NoLink:
 def roots():
     """What the first part of a name in the tables stands for."""
     clock = Clock()
-    port = plc.Port(None, clock)
+    port = s7.Port(None, clock)
     modules = (
-        drive, families, layout, master, pkw, pkw_errors, plc, pzd, receiver, scaling, single,
-        status, telegram, timing, words,
+        codes, drive, families, layout, master, pkw, pkw_errors, pzd, receiver, s7, scaling,
+        single, telegram, timing, words,
     )  # fmt: skip
     found = {module.__name__.split(".")[-1]: module for module in modules}
     found["Drive"] = drive.Drive(1, clock.ticks_mask)
@@ -83,12 +83,12 @@ def roots():
     found["Pacer"] = pacer.Pacer(found["Master"], NoLink, clock, None)
     found["Scale"] = scaling.Scale(50.0)
     found["Timing"] = timing.Timing(19200)
-    found["plc.Port"] = port
+    found["s7.Port"] = port
     for name in (
         "USS_INIT", "USS_CTRL", "USS_RPM_W", "USS_RPM_D", "USS_RPM_R", "USS_WPM_W", "USS_WPM_D",
         "USS_WPM_R",
     ):  # fmt: skip
-        found["plc." + name] = getattr(plc, name)(port)
+        found["s7." + name] = getattr(s7, name)(port)
     return found
 
 
@@ -127,7 +127,7 @@ def test_every_name_in_the_tables_exists():
     for quoted in text.split("`")[1::2]:
         if "\n" not in quoted and "." in quoted and re.match("^[A-Za-z_0-9.]+$", quoted):
             names.add(quoted)
-    names = {name for name in names if name not in ("uss.plc", "uss.bus", "hal.pacer")}
+    names = {name for name in names if name not in ("uss.s7", "uss.bus", "hal.pacer")}
     assert len(names) > 60
     for name in names:
         parts = name.split(".")
@@ -147,7 +147,7 @@ def test_every_code_of_the_s7_200_has_a_row_that_agrees_with_the_code():
     assert [int(cells[0]) for cells in found] == list(range(23))
     for code, cells in enumerate(found):
         there = cells[1].split(", ") if cells[1] else []
-        word = status.word(code)
+        word = codes.word(code)
         assert (there[:1] == ["%04X" % word]) if word is not None else not there, cells
         assert cells[3].startswith("never") == (code in NEVER), cells
 
@@ -157,13 +157,13 @@ def test_every_word_of_the_s7_1200_has_a_row():
     for cells in rows("The S7-1200's blocks"):
         if len(cells[0]) == 4:
             found[int(cells[0], 16)] = code_numbers(cells[1])
-    assert sorted(found) == sorted(status.WORDS)
-    for word, codes in found.items():
-        for code in codes:
-            assert status.word(code) == word or word in (
-                status.ACCESS_REFUSED, status.WRONG_VALUE_TYPE,
+    assert sorted(found) == sorted(codes.WORDS)
+    for word, numbers in found.items():
+        for code in numbers:
+            assert codes.word(code) == word or word in (
+                codes.ACCESS_REFUSED, codes.WRONG_VALUE_TYPE,
             )  # fmt: skip
-        assert codes or word == 0x8188
+        assert numbers or word == 0x8188
 
 
 def check_pins(title, pins):
@@ -183,15 +183,15 @@ def test_every_pin_of_both_siemens_libraries_has_a_row():
 
 
 def test_the_pins_of_the_s7_200_are_those_of_the_blocks():
-    port = plc.Port(None, Clock())
-    plc.USS_INIT(port)(EN=False, MODE=1, BAUD=9600, ACTIVE=0)
-    plc.USS_CTRL(port)(
+    port = s7.Port(None, Clock())
+    s7.USS_INIT(port)(EN=False, MODE=1, BAUD=9600, ACTIVE=0)
+    s7.USS_CTRL(port)(
         EN=False, RUN=False, OFF2=False, OFF3=False, F_ACK=False, DIR=False, DRIVE=0, TYPE=1,
         SPEED_SP=0.0,
     )  # fmt: skip
-    for kind in (plc.USS_RPM_W, plc.USS_RPM_D, plc.USS_RPM_R):
+    for kind in (s7.USS_RPM_W, s7.USS_RPM_D, s7.USS_RPM_R):
         kind(port)(EN=False, XMT_REQ=False, DRIVE=0, PARAM=0, INDEX=0)
-    for kind in (plc.USS_WPM_W, plc.USS_WPM_D, plc.USS_WPM_R):
+    for kind in (s7.USS_WPM_W, s7.USS_WPM_D, s7.USS_WPM_R):
         kind(port)(EN=False, XMT_REQ=False, EEPROM=False, DRIVE=0, PARAM=0, INDEX=0, VALUE=0)
 
 

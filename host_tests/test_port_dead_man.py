@@ -69,6 +69,27 @@ def test_a_panel_that_comes_back_is_trusted_again():
     assert sent(dead_man, HUNG_S + 0.02, 10.0) == []
 
 
+def test_one_that_comes_back_in_the_middle_of_an_on_starts_nothing():
+    dead_man = DeadMan(19200)
+    assert dead_man.heard(telegram(1, RUN), 0.0)
+    assert len(sent(dead_man, 0.0, 5.0)) == ROUNDS
+    for stw in (RUN, REVERSE, JOG):
+        assert not dead_man.heard(telegram(1, stw), 5.0)
+    assert dead_man.heard(telegram(2, RUN), 5.0), "that one was not stopped here"
+    assert dead_man.heard(telegram(1, STOP), 5.1)
+    assert dead_man.heard(telegram(1, RUN), 5.2)
+
+
+def test_a_drive_that_it_does_not_talk_to_is_owed_its_off1_still():
+    dead_man = DeadMan(19200)
+    dead_man.heard(telegram(1, RUN), 0.0)
+    dead_man.heard(telegram(2, RUN), 0.0)
+    assert [one for _, one in sent(dead_man, 0.0, HUNG_S + 0.01)] == [telegram(1, STOP)]
+    dead_man.heard(telegram(1, RUN), HUNG_S + 0.02)  # it goes on, and hangs again at once
+    rest = [one for _, one in sent(dead_man, HUNG_S + 0.02, 10.0)]
+    assert rest.count(telegram(2, STOP)) == ROUNDS
+
+
 def test_one_that_has_ended_owes_no_patience():
     dead_man = DeadMan(19200)
     dead_man.heard(telegram(1, RUN), 0.0)

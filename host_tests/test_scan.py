@@ -2,10 +2,10 @@
 """Who is on the line, and at which rate: by mirror telegrams, which nobody acts on."""
 
 from round_bench import MASK, MIRROR, Bench, Node, framed
-from uss import scan as scanning
-from uss.errors import UssError
+from uss.bus import scan as scanning
+from uss.bus.errors import UssError
+from uss.bus.scan import EVERY_NET_COUNT, NET_COUNTS, RATES, TRIES, RateScan, Scan
 from uss.master import OFF
-from uss.scan import EVERY_NET_COUNT, NET_COUNTS, RATES, TRIES, RateScan, Scan
 from uss.single import DONE, Mirror
 from uss.timing import BAUD_RATES
 

@@ -5,7 +5,9 @@ S1, S2 are recordings of real drives, OI440, CU240, G120 and V20 the manuals of 
 is general knowledge alone is said in the files of the families.
 """
 
-from boards.sim.drives.families import g110, g120, generic, mm3, mm420, mm440, v20
+import os
+
+from boards.sim.drives.families import NAMES, g110, g120, generic, mm3, mm420, mm440, named, v20
 from boards.sim.drives.parameters import (
     CHANGE,
     DEFAULT,
@@ -33,6 +35,20 @@ FAMILIES = (generic, mm3, mm420, mm440, g110, v20, g120)
 
 
 # --- the tables themselves --------------------------------------------------------------------
+
+
+def test_every_family_is_found_by_its_name():
+    shared = ("__init__", "mm4_parameters", "mm4_readings", "texts")
+    files = os.listdir("boards/sim/drives/families")
+    files = [file[:-3] for file in files if file.endswith(".py") and file[:-3] not in shared]
+    assert sorted(files) == sorted(NAMES)
+    assert [named(name) for name in ("mm3", "v20")] == [mm3, v20]
+    try:
+        named("mm9")
+    except ValueError as error:
+        assert "no family mm9: there are mm420 " in str(error)
+    else:
+        raise AssertionError("there is no mm9")
 
 
 def test_every_table_is_whole():

@@ -6,10 +6,13 @@ What one of them has misread of the specification shows here against the other.
 
 from boards.sim.drives.families import g110, g120, generic, mm3, mm420, mm440, v20
 from fleet_bench import Fleet
-from uss import pkw, pkw_array, pkw_text
-from uss.change_reports import Reports
+from uss import pkw
 from uss.layout import VARIABLE
-from uss.pkw_description import DEFAULT, FLOAT, NAME, UPPER_LIMIT, read_description
+from uss.tasks import arrays, texts
+from uss.tasks.change_reports import Reports
+from uss.tasks.descriptions import DEFAULT, FLOAT, NAME, UPPER_LIMIT, read_description
+
+NOT_TRACED = "test_each_family_is_run_both_ways_as_its_data_say"
 
 FAMILIES = (generic, mm3, mm420, mm440, g110, v20, g120)
 
@@ -123,16 +126,16 @@ def test_arrays():
     for simulated, first in ((mm440, 0), (generic, 1)):
         for pkw_words in (3, 4, VARIABLE):
             line = Line(**kind_of(simulated, pkw_words, 4))
-            assert line.done(pkw_array.count_elements(2010)).integer_value() == 2
-            job = pkw_array.write_element_word(2010, first + 1, 8)
+            assert line.done(arrays.count_elements(2010)).integer_value() == 2
+            job = arrays.write_element_word(2010, first + 1, 8)
             assert line.done(job).integer_value() == 8
-            assert line.done(pkw_array.read_element(2010, first + 1)).integer_value() == 8
-            job = pkw_array.write_element_word(2010, first + 1, 6, eeprom=True)
+            assert line.done(arrays.read_element(2010, first + 1)).integer_value() == 8
+            job = arrays.write_element_word(2010, first + 1, 6, eeprom=True)
             assert line.done(job).integer_value() == 6 and line.motor.eeprom_writes == 1
-            assert line.refused(pkw_array.read_element(2010, first + 2)) == 3
+            assert line.refused(arrays.read_element(2010, first + 2)) == 3
             if pkw_words == 3:
                 continue
-            job = pkw_array.write_element_double(2019, first + 2, 20 << 16)
+            job = arrays.write_element_double(2019, first + 2, 20 << 16)
             assert line.done(job).integer_value() == 20 << 16
             assert line.motor.read(2019, 2) == 20 << 16
             line.check()
@@ -140,13 +143,13 @@ def test_arrays():
 
 def test_all_elements_at_once():
     line = Line(**kind_of(generic, VARIABLE, 4))
-    assert line.done(pkw_array.read_all(9)).integer_values() == [5, 5, 5]
-    assert line.done(pkw_array.write_all_words(9, (1, 2, 3))).integer_values() == [1, 2, 3]
-    assert line.done(pkw_array.read_all(4)).integer_values() == [1, 2, 3, 4]
-    line.done(pkw_array.write_all_doubles(4, (1 << 31, 2, 3, 4), eeprom=True))
+    assert line.done(arrays.read_all(9)).integer_values() == [5, 5, 5]
+    assert line.done(arrays.write_all_words(9, (1, 2, 3))).integer_values() == [1, 2, 3]
+    assert line.done(arrays.read_all(4)).integer_values() == [1, 2, 3, 4]
+    line.done(arrays.write_all_doubles(4, (1 << 31, 2, 3, 4), eeprom=True))
     assert line.motor.read(4) == 1 << 31 and line.motor.eeprom_writes == 4
-    assert len(line.done(pkw_array.read_all(2019)).integer_values()) == 16
-    assert line.refused(pkw_array.write_all_words(9, (1, 2))) == 108
+    assert len(line.done(arrays.read_all(2019)).integer_values()) == 16
+    assert line.refused(arrays.write_all_words(9, (1, 2))) == 108
     line.check()
 
 
@@ -197,11 +200,11 @@ def test_descriptions():
 
 def test_texts():
     line = Line(**kind_of(generic, VARIABLE))
-    assert line.done(pkw_text.read_text(7, 3)).text() == "300 BAUD"
-    assert line.done(pkw_text.read_text(9, 4, field=2)).text() == "1200 BAUD"
-    assert line.done(pkw_text.write_text(9, 2, "THE SECOND ONE")).text() == "THE SECOND ONE"
-    assert line.done(pkw_text.read_text(9, 2)).text() == "THE SECOND ONE"
-    assert line.refused(pkw_text.read_text(18, 1)) == 15
+    assert line.done(texts.read_text(7, 3)).text() == "300 BAUD"
+    assert line.done(texts.read_text(9, 4, field=2)).text() == "1200 BAUD"
+    assert line.done(texts.write_text(9, 2, "THE SECOND ONE")).text() == "THE SECOND ONE"
+    assert line.done(texts.read_text(9, 2)).text() == "THE SECOND ONE"
+    assert line.refused(texts.read_text(18, 1)) == 15
     line.check()
 
 

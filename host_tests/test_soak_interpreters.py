@@ -1,24 +1,19 @@
 # SPDX-License-Identifier: MIT
 """The soak lives a seed alike on every interpreter: the same telegrams, faults and pictures."""
 
-import importlib.util
 import json
 import subprocess
 from pathlib import Path
 
 import pytest
 
+from tools.soaking import interpreters
+
 INTERPRETERS = "host"
 
 TOP = Path(__file__).resolve().parent.parent
 MINUTES = 0.3
 SEEDS = (4, 9, 13, 26, 31)  # clean, rough, wild; one drive and several; direct and matrix; polled
-
-found = importlib.util.spec_from_file_location(
-    "soaking_interpreters", TOP / "tools/soaking/interpreters.py"
-)
-interpreters = importlib.util.module_from_spec(found)
-found.loader.exec_module(interpreters)
 
 
 def lives(name, deed="soak", length=MINUTES, seeds=SEEDS):

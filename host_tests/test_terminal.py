@@ -164,6 +164,10 @@ class Terminal:
     def shows(self, text):
         self.waits(lambda: text in self.screen.text(), text)
 
+    def says(self, text):
+        """As `shows`, also where the text goes on in the next line."""
+        self.waits(lambda: text in " ".join(self.screen.text().split()), text)
+
     def shows_no_more(self, text):
         self.waits(lambda: text not in self.screen.text(), "the end of " + text)
 
@@ -499,7 +503,7 @@ def test_settings_that_name_other_drives_are_pointed_out(terminal, tmp_path):
     kept = tmp_path / "settings.json"
     kept.write_text('{"drives": [5, 6]}')
     panel = terminal("--settings", str(kept), "--drives", "1,2")
-    panel.shows("the panel looks for drives 5,6; there are 1,2")
+    panel.says("the panel looks for drives 5,6; there are 1,2")
     panel.shows("NO CONTACT   A5")
     panel.type("q")
     assert panel.ends() == 0 and panel.is_as_before()

@@ -15,6 +15,7 @@ from tools.live.picture import (
     SHAFT,
     Picture,
     fitted,
+    folded,
     seen,
     shows_display,
     telegram_line,
@@ -30,7 +31,11 @@ from tools.live.terminal_panel import (
     turning,
 )
 
-NOT_TRACED = "test_stop_ends_every_command_at_once_and_stops"
+NOT_TRACED = """
+    test_a_paste_is_no_keys
+    test_stop_in_a_paste_is_stop
+    test_stop_ends_every_command_at_once_and_stops
+"""
 
 FRAME_MS = 20
 
@@ -680,6 +685,16 @@ def test_help_lists_the_commands_and_quit_leaves():
         seat.type(":", *command.strip())
         seat.type("\r")
         assert seat.session.left, command
+
+
+def test_a_line_that_is_too_long_is_broken_between_words():
+    assert folded("the panel looks for drives 5,6; there are 1,2", 20) == [
+        "the panel looks for", "drives 5,6; there", "are 1,2",
+    ]  # fmt: skip
+    assert folded("by /a/path/that/has/no/blank it", 10) == [
+        "by", "/a/path/th", "at/has/no/", "blank it",
+    ]  # fmt: skip
+    assert folded("exactly 10", 10) == ["exactly 10"] and folded("", 10) == [""]
 
 
 def test_what_the_person_should_know_first_is_said_until_a_stroke():

@@ -2,7 +2,7 @@
 """What firmware/uss/README.md shows is run, and what it names is there.
 
 Each block of Python is a program: with a `board`, and, unless it makes its own, a `bus` on which
-`drive` answers at address 1. What is for PLC programmers, plc.md, has a test of its own.
+`drive` answers at address 1. What is for PLC programmers, s7/README.md, has a test of its own.
 """
 
 import sys

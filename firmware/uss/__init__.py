@@ -20,31 +20,23 @@ The engine, which may run in interrupts:
     drive            one slave: commands, process image, counters
     channel          the parameter channel of one drive: jobs wait, one task is on the line
     single           telegrams outside the list: mirror, broadcast, special
-    fast             the loops over characters: `fast_viper`, or else `fast_python`
+    fast             the loops over characters: machine code, or else plain Python
 
 What the panel knows of a drive:
     profiles         the parameters of a MICROMASTER 4 that matter to it: data
     survey           what must be known of a drive before it may be started
     telegram_count   whether a drive was without its mains
 
-For other programs; the panel imports none of these:
-    bus              the master in a few words: floats, calls that wait, plain errors
-    errors           these errors
-    particulars      what a drive tells of itself, for `bus`
+For programs that need more than the panel:
     families         what differs between the drive families: data
     words            the bits of control and status words by name
     scaling          PZD2 in percent, Hz and 1/min, floating point
-    pkw_errors       words for the numbers of refusals
-    pkw_array        jobs for arrays: an element, all of them, their number
-    pkw_description  jobs for descriptions: limits, name, unit
-    pkw_text         jobs for texts
-    pkw_long         what the last three share
-    change_reports   parameters that somebody else has changed
-    scan             who is on the line, and at which baud rate
-    enquiry          what somebody who was found there is
-    plc              the blocks USS_INIT and USS_CTRL of the S7-200's USS library
-    plc_parameters   its blocks USS_RPM and USS_WPM
-    status           its error codes, and the S7-1200's
+
+Wings on top of that. The panel imports none of them, and what is above neither:
+    bus              for people who write Python: the master in a few words, plain errors, a scan
+    s7               for people who write PLC programs: the blocks of the S7-200's USS library
+    tasks            jobs of more than one value, for both: arrays, descriptions, texts; change
+                     reports
 
 Source: Universal Serial Interface, specification E20125-D0001-S302-A1-7600, edition 09.94.
 """

@@ -9,7 +9,7 @@ A request and its reply begin with PKE, IND and the value, whose place depends o
                                                        the word    -           3 words, or variable
 
 A `Job` is one task for one drive and, later, its result. Who carries it there is `channel`; what
-goes beyond one value is in `pkw_array`, `pkw_description` and `pkw_text`.
+goes beyond one value is in `tasks`.
 
     job = read(2000)                     # or write_word(700, 5), write_float(1082, 40.5)
     drive.ask(job)                       # ... later:
@@ -95,7 +95,7 @@ _WIDTHS = (0, 1, 2, 0, 1, 2, 1)  # by reply: words of its value, WORD or DOUBLE
 
 # --- errors -------------------------------------------------------------------------------------
 
-# Error numbers of reply 7 that the code knows; all of them in words: `pkw_errors`.
+# Error numbers of reply 7 that the code knows; all of them in words: `bus.pkw_errors`.
 NO_CHANGE_RIGHTS = const(-1)  # what `Job.error` holds after reply 8, which carries no number
 NO_PARAMETER = const(0)
 BEYOND_LIMITS = const(2)
@@ -155,16 +155,16 @@ class Job:
 
     task: READ, WRITE_... . number: 0...127999. index: 0...254, counted as the drive does. high,
     low: the value to write, as two words. ValueError when one of them is out of range, or the task
-    is one for a `pkw_long.LongJob`.
+    is one for a `tasks.long_jobs.LongJob`.
 
     After it left PENDING: `state`. When DONE `width` (WORD or DOUBLE) and the words `high` and
-    `low`, which for a write are what the drive confirmed. When REFUSED `error` (see `pkw_errors`)
-    and what a drive with variable length offers instead, else None: `next` and `previous`, after
-    error 0 a parameter that exists, after error 2 a legal value of 16 bits. It may be asked again,
-    with the same value, when it is not PENDING.
+    `low`, which for a write are what the drive confirmed. When REFUSED `error` (see
+    `bus.pkw_errors`) and what a drive with variable length offers instead, else None: `next` and
+    `previous`, after error 0 a parameter that exists, after error 2 a legal value of 16 bits. It
+    may be asked again, with the same value, when it is not PENDING.
     """
 
-    data = None  # room for an answer that is longer than a double word: see `pkw_long`
+    data = None  # room for an answer that is longer than a double word: see `tasks.long_jobs`
 
     def __init__(self, task, number, index=0, high=0, low=0):
         self.words = bytearray(8)  # PKE, IND, PWE1, PWE2 as four fixed words have them

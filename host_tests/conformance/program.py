@@ -2,8 +2,11 @@
 """./tools/drive as a process for each rate: the drives to be tried, behind pseudo terminals.
 
     with Drives(KINDS) as drives:
-        node = drives.node("mm420 4+2")
-        drives.power_cycle(node)
+        node = drives.ready("mm420 4+2")
+        ...
+        drives.power_cycle(node)        # and go on with it
+        ...
+        drives.leave(node)              # and go on with another
 
 What somebody who stands beside the drive could do, is done by the commands that the program takes.
 """
@@ -17,6 +20,7 @@ from conformance.master import Master, Node
 
 COMMAND = os.path.join(os.path.dirname(__file__), "..", "..", "tools", "drive")
 PATIENCE_S = 30.0
+BOOT_S = 0.4  # a drive's, and some
 END_OF_HELP = "quit"  # the list of commands ends with it
 
 
@@ -26,6 +30,7 @@ class Drives:
     def __init__(self, kinds):
         self._kinds = kinds
         self._lines = {}
+        self._booted_s = {}  # (baud, address): when the drive will have booted
 
     def __enter__(self):
         try:
@@ -34,6 +39,8 @@ class Drives:
                 self._lines[baud] = DriveProgram(baud, mine)
             for line in self._lines.values():
                 line.open()
+            for kind in self._kinds.values():
+                self._booted_s[kind.baud, kind.address] = time.monotonic() + BOOT_S
         except BaseException:
             self.__exit__()
             raise
@@ -53,9 +60,25 @@ class Drives:
         master = self._lines[kind.baud].master
         return Node(master, kind.address, kind.pkw_words, kind.pzd_words)
 
+    def ready(self, name):
+        """A node that has had a power-up, and nobody has talked to it since."""
+        node = self.node(name)
+        self._wait_until_booted(node)
+        return node
+
+    def leave(self, node):
+        """Take a drive's mains away and give them back: it boots while others are tried."""
+        assert self._command(node, "off {0}\non {0}") == []
+        self._booted_s[self._place(node)] = time.monotonic() + BOOT_S
+
     def power_cycle(self, node):
         """Take a drive's mains away, give them back, and let it boot."""
-        assert self._command(node, "off {0}\non {0}\nwait 400") == []
+        self.leave(node)
+        self._wait_until_booted(node)
+
+    def _wait_until_booted(self, node):
+        left_s = self._booted_s[self._place(node)] - time.monotonic()
+        assert self._command(node, "wait %d" % (1 + 1000 * max(0, left_s))) == []
 
     def fault(self, node, number, lasting=False):
         """Trip a drive, for a reason that is gone at once, or lasts until `clear`."""
@@ -77,9 +100,13 @@ class Drives:
         assert len(said) == 1 and "=" in said[0], said
 
     def _command(self, node, text):
-        for line in self._lines.values():
+        baud, address = self._place(node)
+        return self._lines[baud].command(text.format(address))
+
+    def _place(self, node):
+        for baud, line in self._lines.items():
             if line.master is node.master:
-                return line.command(text.format(node.address))
+                return baud, node.address
 
 
 class DriveProgram:

@@ -18,12 +18,12 @@ import subprocess
 import sys
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))
-
-import report  # noqa: E402
-from rows import ROWS, TASKS, names  # noqa: E402
-
 TOP = Path(__file__).resolve().parents[2]
+sys.path[0] = str(TOP)
+
+from tools.benching import report  # noqa: E402
+from tools.benching.rows import ROWS, TASKS, names  # noqa: E402
+
 LAUNCH = [sys.executable, "-I", "-B", "tools/emulator/launch.py"]
 MICROPYTHON = ["build/unix64/micropython", "-X"]
 HEAPS = {True: "heapsize=64M", False: "heapsize=16M"}  # beside a chip; alone, as tools/panel

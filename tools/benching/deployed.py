@@ -9,9 +9,9 @@ import sys
 from pathlib import Path
 
 TOP = Path(__file__).resolve().parents[2]
-sys.path.insert(0, str(TOP / "tools" / "deploying"))
+sys.path[0] = str(TOP)
 
-from image import Firmware, mpy_cross  # noqa: E402
+from tools.deploying.image import Firmware, mpy_cross  # noqa: E402
 
 
 def write(folder):

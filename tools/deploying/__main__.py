@@ -12,14 +12,16 @@ from pathlib import Path
 
 from serial.tools.list_ports import comports
 
-from arrival import wait_for_panel
-from chip import Chip
-from deployment import Deployment, Options
-from errors import DeployError
-from image import BOARD, Firmware, mpy_cross
-from ports import choose, waits_for_uf2
-
 TOP = Path(__file__).resolve().parents[2]
+sys.path[0] = str(TOP)
+
+from tools.deploying.arrival import wait_for_panel  # noqa: E402
+from tools.deploying.chip import Chip  # noqa: E402
+from tools.deploying.deployment import Deployment, Options  # noqa: E402
+from tools.deploying.errors import DeployError  # noqa: E402
+from tools.deploying.image import BOARD, Firmware, mpy_cross  # noqa: E402
+from tools.deploying.ports import choose, waits_for_uf2  # noqa: E402
+
 VIRTUAL = "sim"
 
 

@@ -7,7 +7,7 @@ in between waits in the chip. An emulated one keeps its port.
 
 import time
 
-from errors import DeployError
+from tools.deploying.errors import DeployError
 
 RUNS = b"USS panel: runs"  # how the line begins that firmware/main.py prints when it has started
 PROMPT = b">>> "

@@ -25,7 +25,7 @@ import serial
 from mpremote.transport import TransportError, TransportExecError
 from mpremote.transport_serial import SerialTransport
 
-from errors import DeployError
+from tools.deploying.errors import DeployError
 
 OPEN_S = 2  # for another program to let go of the line
 ANSWER_S = 10  # for an answer to begin, and between two characters of it

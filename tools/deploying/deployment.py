@@ -11,9 +11,20 @@ away last of all. Each file is written beside the one it replaces, and a rename 
 
 from typing import NamedTuple
 
-from errors import DeployError
-from image import BOARD, MAIN
-from plan import GATE, GATE_TEXT, LIST, NEW, Found, Plan, paths, read_list, sha256, write_list
+from tools.deploying.errors import DeployError
+from tools.deploying.image import BOARD, MAIN
+from tools.deploying.plan import (
+    GATE,
+    GATE_TEXT,
+    LIST,
+    NEW,
+    Found,
+    Plan,
+    paths,
+    read_list,
+    sha256,
+    write_list,
+)
 
 OLDEST = (1, 25)
 CHIP = "RP2040"

@@ -14,7 +14,7 @@ import subprocess
 import tempfile
 from pathlib import Path
 
-from errors import DeployError
+from tools.deploying.errors import DeployError
 
 MAIN = "main.py"
 BOARD = "board.py"

@@ -12,7 +12,7 @@ import hashlib
 import json
 from typing import NamedTuple
 
-from image import BOARD, MAIN
+from tools.deploying.image import BOARD, MAIN
 
 LIST = "deployed.json"
 NEW = ".new"  # the ending of a file that is being written

@@ -7,7 +7,7 @@ for a UF2 file (BOOTSEL) is a mass storage, has no serial port and so is not fou
 
 from pathlib import Path
 
-from errors import DeployError
+from tools.deploying.errors import DeployError
 
 MICROPYTHON_RP2 = (0x2E8A, 0x0005)  # USB: Raspberry Pi, MicroPython
 BOOTSEL = ("2e8a", "0003")  # USB: Raspberry Pi, boot ROM of the RP2040

@@ -14,6 +14,7 @@ import sys
 import textwrap
 from functools import partial
 
+from boards.sim.drives import families
 from boards.sim.drives.switches import SWITCHES, switch_value
 from boards.sim.script import (
     LINE_MAX,
@@ -28,7 +29,6 @@ from tools.driving.line import OF_THE_PANEL, DriveLine
 from tools.port.serial_port import PortError, Pty, SerialPort
 from tools.port.standard_streams import Output, is_ours, open_missing
 
-FAMILIES = ("mm420", "mm440", "mm3", "g110", "v20", "g120", "generic")
 USUAL = "mm420"
 BAUD_RATES = (
     300, 600, 1200, 2400, 4800, 9600, 19200, 38400, 57600, 76800, 93750, 115200, 187500,
@@ -92,7 +92,8 @@ def arguments(words):
     where.add_argument("--port", action=Once, metavar="PATH", help="on a port, as /dev/ttyUSB0")
     once("--link", metavar="PATH", help="with --pty: a symbolic link to it, always the same")
     once("--address", "--drives", default="1", metavar="LIST", help="such as 1,2=g110,3=v20 (1)")
-    once("--family", default=USUAL, choices=FAMILIES, help="of those without one (%(default)s)")
+    once("--family", default=USUAL, choices=families.NAMES,
+         help="of those without one (%(default)s)")  # fmt: skip
     once("--baud", type=int, default=19200, choices=BAUD_RATES, metavar="RATE", help="(19200)")
     add("--set", action="append", default=[], metavar="A:P2014=0",
         help="a parameter of drive A, of all without A:")  # fmt: skip
@@ -133,9 +134,11 @@ def kinds(chosen):
             raise ValueError("--address: %s is no address 0...31" % (address or "nothing"))
         if int(address) in found:
             raise ValueError("--address: %s stands there twice" % address)
-        if family not in FAMILIES:
-            raise ValueError("--address: no family %s: %s" % (family, " ".join(FAMILIES)))
-        found[int(address)] = {"family": family_of(family), "parameters": {}, "switches": {}}
+        try:
+            found[int(address)] = {"family": families.named(family)}
+        except ValueError as error:
+            raise ValueError("--address: %s" % error) from None
+        found[int(address)].update({"parameters": {}, "switches": {}})
         if chosen.reply_delay is not None:
             found[int(address)]["reply_delay_us"] = int(chosen.reply_delay * 1000)
     for entry in chosen.set:
@@ -155,10 +158,6 @@ def kinds(chosen):
         for one in addresses:
             found[one]["switches"][name] = new
     return found
-
-
-def family_of(name):
-    return getattr(__import__("boards.sim.drives.families." + name).sim.drives.families, name)
 
 
 def assignment(option, example, entry, found):

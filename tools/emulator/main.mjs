@@ -6,10 +6,10 @@
 // are the numbers of inherited descriptors: two pipes and the master side of a pty for the chip's
 // USB serial port. launch.py starts it. It ends when the pipe that it reads ends.
 import fs from 'node:fs';
-import { Fault } from './core.mjs';
-import { FLASH_BYTES, layUf2 } from './flash.mjs';
-import { Pico } from './pico.mjs';
-import { practise } from './practice.mjs';
+import { Fault } from './rp2040/core.mjs';
+import { FLASH_BYTES, layUf2 } from './rp2040/flash.mjs';
+import { Pico } from './rp2040/pico.mjs';
+import { practise } from './rp2040/practice.mjs';
 import { Reader, Writer } from './records.mjs';
 import { Terminal } from './terminal.mjs';
 

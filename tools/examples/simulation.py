@@ -20,15 +20,11 @@ from errno import errorcode
 # From the bottom of the house up, or the 32-bit build runs out of stack.
 import boards.sim.drives.parameters  # noqa: F401
 from boards.sim.clock import Event
-from boards.sim.drives.families import g110, g120, generic, mm3, mm420, mm440, v20
+from boards.sim.drives import families
 from boards.sim.world import World
 
 FOLDER = "tools/examples"
 TAP_S = 0.1
-FAMILIES = {
-    "g110": g110, "g120": g120, "generic": generic, "mm3": mm3, "mm420": mm420, "mm440": mm440,
-    "v20": v20,
-}  # fmt: skip
 
 # Example: what a person does meanwhile, seconds of its time and key.
 CTRL_C = "Ctrl-C"
@@ -93,10 +89,10 @@ def kinds(text):
             raise UsageError("--drives: %s is no address 0...31" % (address or "nothing"))
         if int(address) in found:
             raise UsageError("--drives: %s stands there twice" % address)
-        if family not in FAMILIES:
-            there = " ".join(sorted(FAMILIES))
-            raise UsageError("--drives: no family %s: there are %s" % (family, there))
-        found[int(address)] = {"family": FAMILIES[family]}
+        try:
+            found[int(address)] = {"family": families.named(family)}
+        except ValueError as error:
+            raise UsageError("--drives: %s" % error) from None
     return found
 
 

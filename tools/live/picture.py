@@ -217,6 +217,18 @@ def cut(line, width):
     return kept
 
 
+def folded(text, width):
+    """`text` as lines of at most `width`, broken at blanks; a word that is longer is cut."""
+    lines = []
+    while len(text) > width:
+        at = text.rfind(" ", 1, width + 1)
+        if at < 0:
+            at = width
+        lines.append(text[:at])
+        text = text[at:].lstrip()
+    return lines + [text]
+
+
 def fitted(lines, rows, columns):
     """As much of a picture as a terminal has room for: the top, and a row that says so."""
     if rows >= ROWS and columns >= COLUMNS:

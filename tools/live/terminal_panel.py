@@ -18,7 +18,7 @@ import time
 from boards.sim.script import ORDER, ExpectationFailed, Script, ScriptError
 from tools.live.errand import ERRANDS, Errand
 from tools.live.hand import ARM, LETTERS, STARTERS, STOP, Hand
-from tools.live.picture import COLUMNS, SAID_ROWS, Picture, fitted, shows_display
+from tools.live.picture import COLUMNS, SAID_ROWS, Picture, fitted, folded, shows_display
 from tools.live.terminal import ESCAPE, Strokes, Terminal
 
 FRAME_MS = 20
@@ -400,10 +400,7 @@ class Session:
     def _print(self, line):
         """Say a line, on in the next one where it is too long. The last few are kept; of one that
         is longer than that, the beginning."""
-        line = line[: SAID_ROWS * COLUMNS]
-        for start in range(0, len(line), COLUMNS):
-            self.said.append(line[start : start + COLUMNS])
-        self.said = self.said[-SAID_ROWS:]
+        self.said = (self.said + folded(line, COLUMNS)[:SAID_ROWS])[-SAID_ROWS:]
 
     def _check(self):
         try:

@@ -2,10 +2,13 @@
 """Stops the drives of a panel that says nothing any more: it hangs, was killed, or is suspended.
 
 It knows what the panel has sent, and nothing else: a drive whose last control word turns it is
-owed an OFF1, which is that telegram without its commands. Pure: the time is an argument.
+owed an OFF1, which is that telegram without its commands. A panel that hung may go on in the
+middle of sending an ON: a drive that was stopped here gets none before the panel itself has sent
+it a telegram that turns nothing. Pure: the time is an argument.
 
     dead_man = DeadMan(19200)
-    dead_man.heard(data, now_s)         # whatever the panel sends
+    if dead_man.heard(data, now_s):     # whatever the panel sends
+        ...                             # the line may have it
     telegram = dead_man.due(now_s)      # to be sent in its place, or None
     dead_man.over(now_s)                # it has ended, and sends nothing any more
 
@@ -61,20 +64,29 @@ class DeadMan:
         self.stopped = set()
         self._turning = {}  # address: the last telegram to it, one that turns it
         self._owed = []
+        self._barred = set()  # addresses stopped here that the panel has not talked to since
         exchange_s = 2 * SIZE * CHARACTER_BITS / baud
         self._pace_s = exchange_s + REPLY_S
         self._patience_s = exchange_s + PATIENCE_S
         self._next_s = None  # when it is to be taken for dead, or the next OFF1 is due
 
     def heard(self, data, now_s):
-        """The panel is alive, and looks after its drives itself."""
-        for telegram in telegrams(data):
-            if len(telegram) == SIZE and telegram[2] <= NODE_MAX:
-                self._turning.pop(telegram[2], None)
-            if turns(telegram):
-                self._turning[telegram[2]] = telegram
-        self._owed = []
+        """The panel is alive, and looks after the drives that it talks to. Answers whether the
+        line may have that: False where it would turn a drive that was stopped here.
+        """
         self._next_s = now_s + self._patience_s
+        may_pass = True
+        for telegram in telegrams(data):
+            address = telegram[2] if len(telegram) == SIZE else None
+            if address in self._barred and turns(telegram):
+                may_pass = False
+                continue
+            self._barred.discard(address)
+            self._turning.pop(address, None)
+            self._owed = [owed for owed in self._owed if owed[2] != address]
+            if turns(telegram):
+                self._turning[address] = telegram
+        return may_pass
 
     def over(self, now_s):
         """It sends nothing any more; a drive may still be answering."""
@@ -85,13 +97,14 @@ class DeadMan:
         if self._next_s is None or now_s < self._next_s:
             return None
         if self._turning:
-            self._owed = ROUNDS * [off1(telegram) for telegram in self._turning.values()]
+            self._owed += ROUNDS * [off1(telegram) for telegram in self._turning.values()]
             self._turning = {}
         if not self._owed:
             return None
         self._next_s = now_s + self._pace_s
         telegram = self._owed.pop(0)
         self.stopped.add(telegram[2])
+        self._barred.add(telegram[2])
         return telegram
 
     def wait_s(self, now_s, longest_s):

@@ -124,8 +124,8 @@ class Relay:
                 break
             said += data
         if said:
-            self._dead_man.heard(said, self._awake_s if is_stale else now_s)
-            if not is_stale and len(telegrams(said)) == 1:
+            may_pass = self._dead_man.heard(said, self._awake_s if is_stale else now_s)
+            if may_pass and not is_stale and len(telegrams(said)) == 1:
                 self._write(said)
 
     def _write(self, telegram):

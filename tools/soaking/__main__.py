@@ -17,9 +17,12 @@ import sys
 import threading
 import time
 from collections import Counter
+from pathlib import Path
 
-import interpreters
-from interpreters import CPYTHON, NAMES, PYPY, TOP
+sys.path[0] = str(Path(__file__).resolve().parents[2])
+
+from tools.soaking import interpreters  # noqa: E402
+from tools.soaking.interpreters import CPYTHON, NAMES, PYPY, TOP  # noqa: E402
 
 PORTION = 250_000  # bytes of a seed that fuzzes
 PORTION_MINUTES = 1  # of virtual time: about as much work

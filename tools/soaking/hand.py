@@ -11,12 +11,12 @@ which everything is put in order and it looks whether the panel controls its dri
 
 import json
 
-from tools.soaking.drive_settings import ACTUAL_HZ
-from tools.soaking.facts import GOES, MS, S
 from tools.soaking.fingers import SLICE_MS
+from tools.soaking.judging.drive_settings import ACTUAL_HZ
+from tools.soaking.judging.facts import GOES, MS, S
+from tools.soaking.judging.reader import address_in
+from tools.soaking.judging.rules import Broken
 from tools.soaking.mischief import WARNINGS, Mischief
-from tools.soaking.reader import address_in
-from tools.soaking.rules import Broken
 from tools.soaking.worlds import CLEAN
 
 TURN_S = (8, 25)

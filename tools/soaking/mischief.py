@@ -5,9 +5,9 @@ Judge and reader are told of it before it happens.
 """
 
 from boards.sim.chip.machine import Timer
-from tools.soaking.drive_settings import ACTUAL_HZ
-from tools.soaking.facts import GOES
 from tools.soaking.fingers import JOGS, SLICE_MS, Fingers, weights
+from tools.soaking.judging.drive_settings import ACTUAL_HZ
+from tools.soaking.judging.facts import GOES
 from tools.soaking.worlds import bears_silences
 
 PARAMETERS = (  # what somebody sets at the drive itself

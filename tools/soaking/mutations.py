@@ -60,7 +60,7 @@ MUTATIONS = (
             "    if exclusive_or(buffer, count):\n        return BAD_BCC\n",
             "",
         ),
-        ("uss/fast_viper.py", "    if check != 0:\n        return False\n", ""),
+        ("uss/fast/viper.py", "    if check != 0:\n        return False\n", ""),
     ),
     Mutation(
         "ON kept over a loss",

@@ -13,9 +13,9 @@ import boards.sim.drives.parameters
 import boards.sim.world  # noqa: F401
 import main
 from tools.soaking.hand import Hand
-from tools.soaking.judge import Judge
-from tools.soaking.reader import Reader
-from tools.soaking.rules import Broken
+from tools.soaking.judging.judge import Judge
+from tools.soaking.judging.reader import Reader
+from tools.soaking.judging.rules import Broken
 from tools.soaking.weather import Weather
 from tools.soaking.worlds import Plan, SoakWorld
 

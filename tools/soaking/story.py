@@ -7,7 +7,7 @@
 import io
 import sys
 
-from tools.soaking.rules import RULES, Broken
+from tools.soaking.judging.rules import RULES, Broken
 
 EVENTS = 110
 TELEGRAMS = 24

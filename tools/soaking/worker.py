@@ -12,7 +12,7 @@ import json
 import sys
 
 from tools.soaking.fuzz import fuzz
-from tools.soaking.rules import Broken
+from tools.soaking.judging.rules import Broken
 from tools.soaking.soak import Soak
 from tools.soaking.story import story
 

@@ -13,7 +13,7 @@ from boards.sim.drives.switches import SWITCHES
 from boards.sim.world import World, supervision, supervision_ms
 from tools.soaking.dice import Dice
 from tools.soaking.digest import Digest
-from tools.soaking.facts import S, exchange_us, lost_us
+from tools.soaking.judging.facts import S, exchange_us, lost_us
 
 # Families that this panel can control, with the layout that it speaks (4 PKW, 2 PZD), and two that
 # answer it with another one, or not at all.

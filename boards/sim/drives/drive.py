@@ -50,7 +50,7 @@ class Drive:
     {(number, index): value}; the wire tells the baud rate. ValueError where a value does not fit,
     KeyError where there is no such parameter.
 
-    family          what it is: the module of a family, mm420, mm440, mm3, g110, v20, g120, generic
+    family          what it is: the module of a family, see families/__init__.py
     reports         it sends change reports, which none of the listed families does
     reply_delay_us  from the last character heard to the reply, 3 characters if None; any value may
                     be set, illegal ones too

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A line full of drives of all families and layouts: who they are, as data.
+"""A line full of drives of many families and layouts: who they are, as data.
 
     drives = {
         address: Drive(clock, wire, address, **kind)

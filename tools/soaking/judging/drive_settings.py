@@ -9,7 +9,7 @@ of the drive to do it with: old values count until both have passed.
     for values in settings.in_force(since_us, replies): ...     # those that may count
 """
 
-from tools.soaking.facts import ALWAYS, MS
+from tools.soaking.judging.facts import ALWAYS, MS
 
 ACTUAL_HZ = 21 << 16  # P2019[1]: r0021, the actual frequency
 KEPT = 8  # values that were replaced

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The machine code behind `fast`: MicroPython's viper, whose types are those of the processor.
 
-Each function has a twin in plain Python in `fast_python`, and means exactly the same.
+Each function has a twin in plain Python in `python`, and means exactly the same.
 """
 
 import micropython

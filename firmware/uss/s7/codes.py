@@ -2,7 +2,7 @@
 """Status codes 0...22, numbered as in the S7-200's USS library; the S7-1200's words beside them.
 
 For programs that were written for these libraries: where the engine has findings, jobs end and
-arguments are refused, this says which code that is. It decides nothing; `plc` uses it.
+arguments are refused, this says which code that is. It decides nothing; `s7` uses it.
 
     text(NO_ANSWER)                         # "the drive did not respond"
     word(NO_ANSWER)                         # 818Bh

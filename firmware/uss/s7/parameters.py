@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The blocks for parameters of the S7-200's USS library: USS_RPM_W/D/R, USS_WPM_W/D/R.
 
-W: a word; D: a double word; R: floating point. RPM reads, WPM writes. A part of `plc`, which has
+W: a word; D: a double word; R: floating point. RPM reads, WPM writes. A part of `s7`, which has
 the port that they share; one of them at a time is at work there.
 
     frequency = USS_RPM_R(port)
@@ -9,7 +9,9 @@ the port that they share; one of them at a time is at work there.
     if frequency.DONE and not frequency.ERROR: print(frequency.VALUE)
 """
 
-from uss import pkw, pkw_array, status
+from uss import pkw
+from uss.s7 import codes
+from uss.tasks import arrays
 
 FLOAT_MAX = 3.4028235e38  # the largest number of a REAL
 
@@ -20,7 +22,7 @@ class Parameter:
     EN: on until DONE. XMT_REQ: the request, once for each time that it and EN become on. DRIVE:
     0...31. PARAM: 0...127999; INDEX: 0...254. Another edge is no request as long as one goes on.
 
-    DONE: it is over; until the next request. ERROR: a code of `status`; STATUS_WORD: that of the
+    DONE: it is over; until the next request. ERROR: a code of `codes`; STATUS_WORD: that of the
     S7-1200. PKW_ERROR: with PARAMETER_REPLY the number with which the drive refused, see
     `pkw_errors.error_text`; else None.
     """
@@ -29,8 +31,8 @@ class Parameter:
 
     def __init__(self, port):
         self.DONE = False
-        self.ERROR = status.NO_ERROR
-        self.STATUS_WORD = status.word(status.NO_ERROR)
+        self.ERROR = codes.NO_ERROR
+        self.STATUS_WORD = codes.word(codes.NO_ERROR)
         self.PKW_ERROR = None
         self._port = port
         self._was_requested = False
@@ -55,57 +57,57 @@ class Parameter:
         port = self._port
         refusal = port.refusal(address)
         if not refusal and port.is_busy():
-            refusal = status.PORT_BUSY
+            refusal = codes.PORT_BUSY
         if not refusal and not _is_parameter(number, index):
-            refusal = status.PARAMETER_NUMBER
+            refusal = codes.PARAMETER_NUMBER
         if refusal:
             self._end(refusal)
             return
         drive = port.drives[address]
         has_task = port.family(address).has_eeprom_tasks or not eeprom
         if drive.layout.pkw_words == 0 or not has_task:
-            self._end(status.ILLEGAL_COMMAND)
+            self._end(codes.ILLEGAL_COMMAND)
         else:
             self._ask(drive, number, index, value, eeprom)
 
     def _ask(self, drive, number, index, value, eeprom):
         try:
             job = self._make_job(number, index, value, eeprom)
-            pkw_array.with_array_task(job, self._port.family(drive.address))
+            arrays.with_array_task(job, self._port.family(drive.address))
         except (ValueError, TypeError, OverflowError):
-            self._end(status.ILLEGAL_COMMAND, status.WRONG_VALUE_TYPE)
+            self._end(codes.ILLEGAL_COMMAND, codes.WRONG_VALUE_TYPE)
             return
         try:
             self._port.ask(drive, job)
         except RuntimeError:  # others than these blocks have filled its queue
-            self._end(status.PORT_BUSY)
+            self._end(codes.PORT_BUSY)
             return
         self._job = job
         self._drive = drive
         self._counters = list(drive.counters)
-        self.ERROR = status.NO_ERROR
-        self.STATUS_WORD = status.word(status.NO_ERROR)
+        self.ERROR = codes.NO_ERROR
+        self.STATUS_WORD = codes.word(codes.NO_ERROR)
 
     def _finish(self):
         job = self._job
         drive = self._drive
         self._job = self._drive = None
-        reply_code = status.NO_ERROR
+        reply_code = codes.NO_ERROR
         if job.state == pkw.PENDING:
-            self._end(status.PORT_NOT_USS)
+            self._end(codes.PORT_NOT_USS)
             return
         if drive.silent:
-            reply_code = status.of_reply(drive.counters, self._counters)
-        code = status.of_job(job, self.width, reply_code)
+            reply_code = codes.of_reply(drive.counters, self._counters)
+        code = codes.of_job(job, self.width, reply_code)
         if job.state == pkw.REFUSED:
             self.PKW_ERROR = job.error
-        if code == status.NO_ERROR:
+        if code == codes.NO_ERROR:
             self._take(job)
-        self._end(code, status.word_of_job(job, code))
+        self._end(code, codes.word_of_job(job, code))
 
     def _end(self, code, word=None):
         self.ERROR = code
-        self.STATUS_WORD = word or status.word(code)
+        self.STATUS_WORD = word or codes.word(code)
         self.DONE = True
 
     def _make_job(self, number, index, value, eeprom):

@@ -3,7 +3,7 @@
 
 The panel does without: a MICROMASTER 4 gives one element to `pkw.read(number, index)` as well. By
 the specification (C-4.2.2) an index belongs to these tasks alone, and a G120 prefers them: what
-`families` says of a drive decides in `bus` and `plc`, by `with_array_task`. All elements at once
+`families` says of a drive decides in `bus` and `s7`, by `with_array_task`. All elements at once
 need variable length (P2013 = 127). Their index counts as the drive does, from 0 or from 1.
 
     job = read_all(304)                         # or write_element_word(304, 2, 230)
@@ -14,7 +14,7 @@ need variable length (P2013 = 127). Their index counts as the drive does, from 0
 from micropython import const
 
 from uss import pkw
-from uss.pkw_long import LongJob
+from uss.tasks.long_jobs import LongJob
 
 WORDS_MAX = const(124)  # of an answer, behind PKE and IND
 

@@ -8,8 +8,17 @@ long. While a run goes on, its setpoint rises by nothing but UP.
     if is_over(case, zsw) or is_standstill(case, hiw): ...
 """
 
-from tools.soaking.facts import MS, NEVER, ON, ON_REVERSE, ZSW_FAULT, ZSW_INHIBIT, ZSW_RUNNING, S
-from tools.soaking.rules import Broken
+from tools.soaking.judging.facts import (
+    MS,
+    NEVER,
+    ON,
+    ON_REVERSE,
+    ZSW_FAULT,
+    ZSW_INHIBIT,
+    ZSW_RUNNING,
+    S,
+)
+from tools.soaking.judging.rules import Broken
 
 FULL = 0x4000  # of HSW and HIW
 NEAR = FULL // 50  # 2 %: HIW has reached HSW

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """What the judge knows of one address on the line."""
 
-from tools.soaking.facts import ALWAYS, NEVER, OFF1
+from tools.soaking.judging.facts import ALWAYS, NEVER, OFF1
 
 
 class Case:

@@ -14,7 +14,7 @@ import struct
 from micropython import const
 
 from uss import pkw
-from uss.pkw_long import LongJob, characters_of, number_of, text_of, words_of
+from uss.tasks.long_jobs import LongJob, characters_of, number_of, text_of, words_of
 
 IDENTIFIER, ELEMENTS, FACTOR, QUANTITY, ACCESS, NAME = range(1, 7)
 LOWER_LIMIT, UPPER_LIMIT, DEFAULT, EXTENSION = range(7, 11)

@@ -7,9 +7,9 @@ keys move) either way is allowed.
 """
 
 from boards.sim.board import KEYS
-from tools.soaking.case import Case, drive_at
-from tools.soaking.drive_settings import Settings
-from tools.soaking.facts import (
+from tools.soaking.judging.case import Case, drive_at
+from tools.soaking.judging.drive_settings import Settings
+from tools.soaking.judging.facts import (
     ALL_STOP_US,
     ALWAYS,
     DEAD_MAN_US,
@@ -41,8 +41,8 @@ from tools.soaking.facts import (
     exchange_us,
     lost_us,
 )
-from tools.soaking.rules import Broken
-from tools.soaking.tape import Tape
+from tools.soaking.judging.rules import Broken
+from tools.soaking.judging.tape import Tape
 
 
 class Witness:

@@ -8,7 +8,7 @@ import fs from 'node:fs';
 import { fileURLToPath, pathToFileURL } from 'node:url';
 
 const FOLDER = process.env.USS_EMULATOR
-  ?? fileURLToPath(new URL('../../build/emulator', import.meta.url));
+  ?? fileURLToPath(new URL('../../../build/emulator', import.meta.url));
 
 async function library(file) {
   return import(pathToFileURL(`${FOLDER}/node_modules/rp2040js/dist/esm/${file}`).href);

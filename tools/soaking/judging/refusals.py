@@ -4,8 +4,8 @@
     reason = reason_against(judge, case, address, pressed_us, jogs)     # a text, or None
 """
 
-from tools.soaking.case import drive_at
-from tools.soaking.facts import CONTROLLED, LONG_US, MS, S
+from tools.soaking.judging.case import drive_at
+from tools.soaking.judging.facts import CONTROLLED, LONG_US, MS, S
 
 USS = 5  # P0700, P1000, a digit of P0719
 COMMAND = ((700, USS), (840, 2036 << 16))  # with what connects the words received

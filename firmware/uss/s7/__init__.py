@@ -3,7 +3,7 @@
 
 For people who know them: each block is an object that is called once a scan, with its inputs by
 name; its outputs are its attributes. On top of the engine, which goes on by itself between the
-calls. Never imported by the panel. plc.md says where each pin and code went.
+calls. Never imported by the panel. README.md says where each pin and code went.
 
     with Port(open_bus, board.clock) as port:   # open_bus(baud) answers a `master.Master`
         init, motor, frequency = USS_INIT(port), USS_CTRL(port), USS_RPM_R(port)
@@ -12,7 +12,7 @@ calls. Never imported by the panel. plc.md says where each pin and code went.
             init(EN=True, MODE=1, BAUD=19200, ACTIVE=0b10)
             motor(EN=True, RUN=switch(), DRIVE=1, TYPE=1, SPEED_SP=50.0)
             frequency(EN=True, XMT_REQ=button(), DRIVE=1, PARAM=21)
-            if motor.ERROR: print(status.text(motor.ERROR))
+            if motor.ERROR: print(codes.text(motor.ERROR))
 
 RUN makes a motor run by its rising edge only, and only a drive that could run at that moment.
 Power that comes back, a drive that answers again, a fault that is acknowledged or a scan that goes
@@ -22,10 +22,11 @@ code in ERROR. Source: S7-200 system manual, USS library.
 
 from micropython import const
 
-from uss import pkw, pzd, status
+from uss import pkw, pzd
+from uss.s7 import codes
 from uss.families import MM3, MM4
 from uss.master import DEAD_MAN_US, OFF
-from uss.plc_parameters import (  # noqa: F401  (also blocks of this library)
+from uss.s7.parameters import (  # noqa: F401  (also blocks of this library)
     USS_RPM_D,
     USS_RPM_R,
     USS_RPM_W,
@@ -122,12 +123,12 @@ class Port:
     def refusal(self, address):
         """Why no block may use the drive at this address: a status code, or NO_ERROR."""
         if self.bus is None:
-            return status.PORT_NOT_USS
+            return codes.PORT_NOT_USS
         if not isinstance(address, int) or not 0 <= address <= NODE_MAX:
-            return status.ILLEGAL_ADDRESS
+            return codes.ILLEGAL_ADDRESS
         if self.drives[address] is None:
-            return status.NOT_ACTIVE
-        return status.NO_ERROR
+            return codes.NOT_ACTIVE
+        return codes.NO_ERROR
 
     def family(self, address):
         """What the drive at this address is, see `families`."""
@@ -139,7 +140,7 @@ class Port:
         if refusal:
             return refusal
         if self._controls[address] not in (None, control):
-            return status.INTERFERENCE
+            return codes.INTERFERENCE
         return self._set_type(address, type_number)
 
     def hand_over(self, address, control):
@@ -177,7 +178,7 @@ class Port:
             self._leaving = self.bus
             self._following = (baud, active)
             self.bus = self.job = None
-        return status.NO_ERROR
+        return codes.NO_ERROR
 
     def is_set_up(self):
         """Whether the change that was begun is complete."""
@@ -218,34 +219,34 @@ class Port:
 
     def _set_type(self, address, type_number):
         if not isinstance(type_number, int) or not 0 <= type_number < len(self._types):
-            return status.ILLEGAL_COMMAND
+            return codes.ILLEGAL_COMMAND
         if not self._types[type_number].layout.pzd_words:
-            return status.ILLEGAL_COMMAND
+            return codes.ILLEGAL_COMMAND
         if self._type_of[address] == type_number:
-            return status.NO_ERROR
+            return codes.NO_ERROR
         if self.is_busy():
-            return status.PORT_BUSY
+            return codes.PORT_BUSY
         if self.drives[address].may_run():
-            return status.CHANGE_NOT_ALLOWED
+            return codes.CHANGE_NOT_ALLOWED
         self._remove(address)
         self._type_of[address] = type_number
         self._add(address)
-        return status.NO_ERROR
+        return codes.NO_ERROR
 
     def _refuses(self, mode, baud, active):
         if not isinstance(mode, int) or mode not in (PPI, USS):
-            return status.PROTOCOL
+            return codes.PROTOCOL
         if mode == USS and (not isinstance(baud, int) or baud not in BAUD_RATES):
-            return status.BAUD_RATE
+            return codes.BAUD_RATE
         if mode == USS and (not isinstance(active, int) or active < 0 or active >> NODE_MAX + 1):
-            return status.ILLEGAL_ADDRESS
+            return codes.ILLEGAL_ADDRESS
         if self._leaving is not None or (self.is_busy() and not self.bus.is_line_in_use()):
-            return status.PORT_BUSY
+            return codes.PORT_BUSY
         keeps = active if mode == USS and baud == self._baud else 0
         for drive in self.drives:
             if drive is not None and not keeps >> drive.address & 1 and drive.may_run():
-                return status.CHANGE_NOT_ALLOWED
-        return status.NO_ERROR
+                return codes.CHANGE_NOT_ALLOWED
+        return codes.NO_ERROR
 
     def _open(self, baud, active):
         self.bus = self._open_bus(baud)
@@ -273,14 +274,14 @@ class USS_INIT:
     """Sets up the port; once for each change, by the rising edge of EN.
 
     MODE: 1 USS, 0 the port is for something else. BAUD: bits per second. ACTIVE: bit n is drive n.
-    DONE: what was asked for last is over; it may take a scan or more. ERROR: a code of `status`;
+    DONE: what was asked for last is over; it may take a scan or more. ERROR: a code of `codes`;
     STATUS_WORD: that of the S7-1200. With an error nothing has changed.
     """
 
     def __init__(self, port):
         self.DONE = False
-        self.ERROR = status.NO_ERROR
-        self.STATUS_WORD = status.word(status.NO_ERROR)
+        self.ERROR = codes.NO_ERROR
+        self.STATUS_WORD = codes.word(codes.NO_ERROR)
         self._port = port
         self._was_enabled = False
         self._is_at_work = False
@@ -288,8 +289,8 @@ class USS_INIT:
     def __call__(self, EN=False, MODE=USS, BAUD=9600, ACTIVE=0):
         if EN and not self._was_enabled:
             self.ERROR = self._port.set_up(MODE, BAUD, ACTIVE)
-            self.STATUS_WORD = status.word(self.ERROR)
-            self._is_at_work = self.ERROR == status.NO_ERROR
+            self.STATUS_WORD = codes.word(self.ERROR)
+            self._is_at_work = self.ERROR == codes.NO_ERROR
             self.DONE = not self._is_at_work
         self._was_enabled = bool(EN)
         if self._is_at_work and self._port.is_set_up():
@@ -308,15 +309,15 @@ class USS_CTRL:
 
     RESP_R: on for one scan when the drive has answered; only then do the following change. STATUS:
     ZSW. SPEED: percent. RUN_EN, INHIBIT, FAULT: bits of it; D_DIR: its bit 14, runs right.
-    ERROR: a code of `status`, of the inputs or of the last telegram; STATUS_WORD: the S7-1200's.
+    ERROR: a code of `codes`, of the inputs or of the last telegram; STATUS_WORD: the S7-1200's.
     An error of the inputs stops the motor, but for SPEED_RANGE: it keeps its speed and direction.
     RUN_VOID, which Siemens has not: RUN is on and makes nothing run; it has to go off and on.
     """
 
     def __init__(self, port):
         self.RESP_R = False
-        self.ERROR = status.NO_ERROR
-        self.STATUS_WORD = status.word(status.NO_ERROR)
+        self.ERROR = codes.NO_ERROR
+        self.STATUS_WORD = codes.word(codes.NO_ERROR)
         self.STATUS = 0
         self.SPEED = 0.0
         self.RUN_EN = False
@@ -330,8 +331,8 @@ class USS_CTRL:
         self._called_at = 0
         self._run = True  # as of the last scan
         self._f_ack = True
-        self._counters = [0] * len(status.COUNTER_CODES)  # of the drive, as of the last scan
-        self._reply_code = status.NO_ERROR
+        self._counters = [0] * len(codes.COUNTER_CODES)  # of the drive, as of the last scan
+        self._reply_code = codes.NO_ERROR
 
     def __call__(
         self, EN=True, RUN=False, OFF2=False, OFF3=False, F_ACK=False, DIR=False, DRIVE=0, TYPE=1,
@@ -349,7 +350,7 @@ class USS_CTRL:
             self._acknowledge(F_ACK)
             self._report()
         self.ERROR = error or self._reply_code
-        self.STATUS_WORD = status.word(self.ERROR)
+        self.STATUS_WORD = codes.word(self.ERROR)
 
     def is_overdue(self):
         """Whether it was not called for so long that its motor is to be stopped."""
@@ -384,7 +385,7 @@ class USS_CTRL:
         # An input that is on already has no rising edge: it may have been on before power came.
         self._run = True
         self._f_ack = True
-        self._reply_code = status.NO_ERROR
+        self._reply_code = codes.NO_ERROR
         self._note_counters()
 
     def _command(self, run, off, reverse, speed):
@@ -406,7 +407,7 @@ class USS_CTRL:
             elif rises and drive.contact and may_start(drive.zsw):
                 drive.start(hsw, stw)
         self.RUN_VOID = bool(run) and not self._is_followed()
-        return status.NO_ERROR if in_range else status.SPEED_RANGE
+        return codes.NO_ERROR if in_range else codes.SPEED_RANGE
 
     def _is_followed(self):
         """Whether the drive is being told to run."""
@@ -422,12 +423,12 @@ class USS_CTRL:
         drive = self._drive
         answers = drive.counters[0]
         if drive.silent:
-            code = status.of_reply(drive.counters, self._counters)
+            code = codes.of_reply(drive.counters, self._counters)
             self._reply_code = code or self._reply_code
         elif self._port.bus.is_line_in_use():
-            self._reply_code = status.PORT_BUSY
+            self._reply_code = codes.PORT_BUSY
         else:
-            self._reply_code = status.NO_ERROR
+            self._reply_code = codes.NO_ERROR
         self.RESP_R = answers != self._counters[0]
         self._note_counters()
         self._counters[0] = answers  # one that came meanwhile is for the next scan

@@ -15,10 +15,11 @@ takes heap, so nothing of it belongs into an interrupt. The panel does not impor
 Whoever does not wait calls `step` again and again: without it for 300 ms every motor is stopped.
 """
 
-from uss import families, master, pkw, pkw_errors, pzd, single, words
-from uss.errors import FallsSilent, NoContact, NotStarted, Refused, TimedOut, UssError
+from uss import families, master, pkw, pzd, single, words
+from uss.bus import pkw_errors
+from uss.bus.errors import FallsSilent, NoContact, NotStarted, Refused, TimedOut, UssError
 from uss.layout import Layout
-from uss.particulars import Particulars
+from uss.bus.particulars import Particulars
 from uss.scaling import Scale, run_words, with_direction
 from uss.timing import Timing, elapsed
 
@@ -309,9 +310,9 @@ class Drive:
     def _addressed(self, job):
         if not job.index or not self.family.has_array_tasks:
             return job
-        from uss import pkw_array  # here, because most programs need the room that it takes
+        from uss.tasks import arrays  # here, because most programs need the room that it takes
 
-        return pkw_array.with_array_task(job, self.family)
+        return arrays.with_array_task(job, self.family)
 
     def _agreed(self, job, kind):
         """What a parameter is that a finished job has read: None, a word; else float or int.
@@ -339,13 +340,13 @@ class Drive:
         contacts = self.engine.contacts  # behind a loss it may be another drive
         known, kind = self._kinds.get(number, (None, None))
         if known != contacts:
-            from uss import pkw_description  # as above
+            from uss.tasks import descriptions  # as above
 
-            job = pkw_description.read_description(number, pkw_description.IDENTIFIER)
+            job = descriptions.read_description(number, descriptions.IDENTIFIER)
             self.carry_out(job)
             told = job.description().data_type() if job.state == pkw.DONE else None
-            kind = float if told == pkw_description.FLOAT else None
-            if told in (pkw_description.I32, pkw_description.U32):
+            kind = float if told == descriptions.FLOAT else None
+            if told in (descriptions.I32, descriptions.U32):
                 kind = int
             self._kinds[number] = (contacts, kind)
         return kind

@@ -11,9 +11,9 @@ silence is taken back.
     shares.look(now)                        # now and then: both raise Broken
 """
 
-from tools.soaking.case import drive_at
-from tools.soaking.facts import CONTROLLED, MS, NEVER, RUN, ZSW_RUNNING, S
-from tools.soaking.rules import Broken
+from tools.soaking.judging.case import drive_at
+from tools.soaking.judging.facts import CONTROLLED, MS, NEVER, RUN, ZSW_RUNNING, S
+from tools.soaking.judging.rules import Broken
 
 FOUND_US = 5 * S  # a drive that is switched on is asked within, or as soon as its share allows
 SHARE = 5  # the part of the line that all silent drives together have

@@ -12,7 +12,7 @@ Source: specification C-4.2.2, examples 7 and 8.
 from micropython import const
 
 from uss import pkw
-from uss.pkw_long import LongJob, characters_of, text_of, words_of
+from uss.tasks.long_jobs import LongJob, characters_of, text_of, words_of
 
 TEXT_SIZE = const(16)  # characters
 _WRITE = const(1 << 8)  # bits of IND

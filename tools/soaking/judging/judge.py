@@ -11,8 +11,8 @@ telegram is judged by the keys as they were when it began.
     judge.hangs(True)
 """
 
-from tools.soaking.drive_settings import scalings
-from tools.soaking.facts import (
+from tools.soaking.judging.drive_settings import scalings
+from tools.soaking.judging.facts import (
     ACKNOWLEDGE,
     ALL_STOP_US,
     ALWAYS,
@@ -41,9 +41,9 @@ from tools.soaking.facts import (
     ZSW_RUNNING,
     S,
 )
-from tools.soaking.refusals import reason_against, runs_on_unasked
-from tools.soaking.rules import Broken
-from tools.soaking.runs import (
+from tools.soaking.judging.refusals import reason_against, runs_on_unasked
+from tools.soaking.judging.rules import Broken
+from tools.soaking.judging.runs import (
     begin,
     begin_again,
     is_over,
@@ -51,9 +51,9 @@ from tools.soaking.runs import (
     judge_restart,
     judge_rise,
 )
-from tools.soaking.shares import Shares
-from tools.soaking.tape import MALFORMED, REQUEST
-from tools.soaking.witness import Witness
+from tools.soaking.judging.shares import Shares
+from tools.soaking.judging.tape import MALFORMED, REQUEST
+from tools.soaking.judging.witness import Witness
 
 LISTEN_US = 95 * MS  # 100 ms, and what the panel's clocks may be short of
 SILENT_US = 3_500 * MS  # a panel that listens, and then one exchange

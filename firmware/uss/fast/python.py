@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The loops behind `fast` in plain Python: what they mean, and what runs where no viper is.
 
-Each has a twin in machine code in `fast_viper`.
+Each has a twin in machine code in `viper`.
 """
 
 

@@ -6,10 +6,10 @@
     reader.screens                  # the last pictures, (instant, row 1, row 2)
 """
 
-from tools.soaking.announced import Announced, said_in
-from tools.soaking.case import drive_at
-from tools.soaking.drive_settings import scalings
-from tools.soaking.facts import (
+from tools.soaking.judging.announced import Announced, said_in
+from tools.soaking.judging.case import drive_at
+from tools.soaking.judging.drive_settings import scalings
+from tools.soaking.judging.facts import (
     CHOICES,
     CONTROLLED,
     MS,
@@ -23,7 +23,7 @@ from tools.soaking.facts import (
     ZSW_WARNING,
     S,
 )
-from tools.soaking.rules import Broken
+from tools.soaking.judging.rules import Broken
 
 SCREENS = 12
 EXPOSED = ("RUN, P2014", "P2014 LONG")

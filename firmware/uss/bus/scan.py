@@ -21,8 +21,8 @@ address. Whoever is silent costs a reply time-out each time; `longest_ms` says i
 
 from micropython import const
 
-from uss.enquiry import Node, Question, enquiry
-from uss.errors import NoContact, UssError
+from uss.bus.enquiry import Node, Question, enquiry
+from uss.bus.errors import NoContact, UssError
 from uss.master import CLOSED, LISTENING, OFF, PAUSE_LOOK_US
 from uss.pzd import ZSW_RUNNING
 from uss.receiver import SILENT

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Jobs whose task or answer is longer than a double word, and words as the characters they are.
 
-What they are about is in `pkw_array`, `pkw_description` and `pkw_text`, each a kind of `LongJob`;
+What they are about is in `arrays`, `descriptions` and `texts`, each a kind of `LongJob`;
 here is what these share. The panel needs none of them and imports none.
 
     words_of(b"AB")                     # [0x4142]

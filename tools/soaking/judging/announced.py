@@ -9,8 +9,8 @@ be on the display for a second within 2 n s, again and again, whatever page ther
     announced.look(now)             # after every slice: raises Broken
 """
 
-from tools.soaking.facts import CHOICES, MS, NEVER, ZSW_FAULT, ZSW_RUNNING, S
-from tools.soaking.rules import Broken
+from tools.soaking.judging.facts import CHOICES, MS, NEVER, ZSW_FAULT, ZSW_RUNNING, S
+from tools.soaking.judging.rules import Broken
 
 RUNS, EXPOSED, TRIPPED, MAY_RUN, NOT_STOPPED, UNHEARD, OFF = (
     "it runs", "it runs, and its P2014 is longer by now", "it has tripped", "it may run",
