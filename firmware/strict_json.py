@@ -17,7 +17,7 @@ ENDS = BLANKS + b',:[]{}"'  # behind a number
 WORDS = (b"true", b"false", b"null")
 ESCAPED = b'"\\/bfnrtu'
 HEXADECIMAL = b"0123456789abcdefABCDEF"
-BACKSLASH, COLON, COMMA, LETTER_U, QUOTE = b"\\:,u\""
+BACKSLASH, COLON, COMMA, LETTER_U, QUOTE = b'\\:,u"'
 BRACE, BRACE_END, BRACKET, BRACKET_END = b"{}[]"
 
 

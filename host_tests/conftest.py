@@ -91,7 +91,8 @@ def pytest_runtest_call(item):
         raise TestFailed(f"The test hung and was given up after {timeout_s:g} s.")
 
     previous = signal.signal(signal.SIGALRM, give_up)
-    signal.setitimer(signal.ITIMER_REAL, timeout_s)
+    # Again and again: what a `__del__` raises is lost, and so is a signal just before a wait.
+    signal.setitimer(signal.ITIMER_REAL, timeout_s, 1)
     try:
         return (yield)
     finally:

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """A PLC with the USS blocks, and drives on its line, in virtual time: for the tests of `s7`.
 
+In use:
+
     plc = Plc((1, 2))                   # nodes 1 and 2, simulated drives
     plc.motor(1).RUN = True             # the inputs of the USS_CTRL of node 1
     plc.run(500)                        # scans, for so many milliseconds

@@ -141,6 +141,19 @@ def test_an_ordinary_pytest_test_that_hangs_is_given_up(run_pytest):
     assert "1 failed, 1 passed" in run.stdout.splitlines()[-1]
 
 
+def test_a_test_that_swallows_the_first_time_limit_is_given_up_at_the_next(run_pytest):
+    run = run_pytest(
+        'INTERPRETERS = "host"\n'
+        "import os, time\n"
+        "class Slow:\n"
+        "    def __del__(self): time.sleep(60)  # Python ignores what is raised in here\n"
+        "def test_hang(): Slow(); os.read(os.pipe()[0], 1)\n",
+        *("-o", "function_timeout_s=1"),
+    )
+    assert "The test hung and was given up after 1 s." in run.stdout
+    assert "1 failed" in run.stdout.splitlines()[-1]
+
+
 def test_a_file_that_cannot_be_imported_fails_all_its_functions(run_pytest):
     run = run_pytest(here("cpython") + "import nothing_of_that_name\ndef test_a(): pass\n")
     assert "No module named 'nothing_of_that_name'" in run.stdout
@@ -267,7 +280,7 @@ class Machine:
 
     def shell(self, commands, files=("folder", "packages", "micropython")):
         sourced = " ".join(f'. "$top/tools/fetch/{file}.sh";' for file in files)
-        return self.run("bash", "-c", f'set -euo pipefail; top=$0; {sourced} {commands}', self.top)
+        return self.run("bash", "-c", f"set -euo pipefail; top=$0; {sourced} {commands}", self.top)
 
 
 @pytest.fixture
@@ -387,7 +400,7 @@ def test_the_releases_to_look_into(machine, tmp_path, system, expected):
 
 def test_a_folder_of_build_is_made_once_however_many_want_it(machine):
     commands = (
-        "there() { [[ -e $1/it ]]; }; make() { echo made; sleep 0.2; : >\"$1/it\"; };"
+        'there() { [[ -e $1/it ]]; }; make() { echo made; sleep 0.2; : >"$1/it"; };'
         "fill thing there make & fill thing there make & wait; fill thing there make"
     )
     assert machine.shell(commands).stdout == "made\n"
@@ -396,7 +409,7 @@ def test_a_folder_of_build_is_made_once_however_many_want_it(machine):
 
 def test_what_could_not_be_made_leaves_nothing_behind(machine):
     commands = (
-        "there() { [[ -e $1/it ]]; }; make() { : >\"$1/half\"; return 1; };"
+        'there() { [[ -e $1/it ]]; }; make() { : >"$1/half"; return 1; };'
         "fill thing there make || echo failed"
     )
     assert machine.shell(commands).stdout == "failed\n"

@@ -71,9 +71,7 @@ MAKERS = {
     3: lambda asked: write(asked, eeprom=False),
     4: lambda asked: descriptions.read_description(asked["number"], asked["index"]),
     6: lambda asked: arrays.read_element(asked["number"], asked["index"]),
-    8: lambda asked: arrays.write_element_double(
-        asked["number"], asked["index"], asked["double"]
-    ),
+    8: lambda asked: arrays.write_element_double(asked["number"], asked["index"], asked["double"]),
     9: lambda asked: arrays.count_elements(asked["number"]),
     13: lambda asked: write(asked, eeprom=True),
     14: lambda asked: write(asked, eeprom=True),

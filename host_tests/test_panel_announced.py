@@ -213,7 +213,7 @@ def test_the_most_dangerous_ones_come_first():
         if row in ranks and order[-1:] != [row]:
             order.append(row)
     first = order.index(ranks[0])
-    assert tuple(order[first:first + 4]) == ranks, order
+    assert tuple(order[first : first + 4]) == ranks, order
     world.check()
 
 
@@ -656,8 +656,7 @@ def test_a_drive_that_falls_silent_on_the_number_of_its_warning_is_not_asked_all
 
 
 def test_a_stop_of_all_takes_no_time_from_the_dead_man():
-    """31 drives are told one after the other, a step of the loop each, and here it is a slow one.
-    """
+    """31 drives are told one after the other, a step of the loop each, and here it is a slow one."""
     world = panel(addresses=tuple(range(1, 32)), baud=115200, **_runs_on(31))
     world.run(4_000)
     start(world, 1)

@@ -62,6 +62,7 @@ def test_a_motor_whose_mains_failed_for_a_moment_does_not_start_again():
         assert world.drives[1].state == "running" and row_2(world) == "RUNNING      A1"
         world.check()
 
+
 def test_a_motor_that_is_at_its_speed_again_at_once_is_stopped_too():
     """Its ramp takes no time: HIW never shows the standstill. The drive counts from 0 again."""
     world = panel(parameters={2014: 2000, 1120: 0.0})

@@ -65,7 +65,7 @@ def test_a_main_loop_that_hangs_stops_the_motor_within_400_ms_and_restarts_the_c
         offs = stops(world, hung_us)
         assert offs and offs[0] - hung_us <= 400_000, (hang, offs[:1])
         assert not [stw for _, stw in telegrams(world, offs[0]) if stw != OFF1], hang
-        (bitten_us, cause), = world.restarts
+        ((bitten_us, cause),) = world.restarts
         assert cause == "watchdog" and bitten_us - hung_us <= 2_010_000, hang
         assert stands(world) and starts(world) == 1
         world.check()

@@ -98,13 +98,16 @@ print(struct.unpack("i", exclusive)[0])
 
 @pytest.mark.parametrize("name", ["os.ttyname(slave)", "'/dev/tty'"])
 def test_the_terminal_in_which_it_runs_is_no_port(name):
-    said = tells("""
+    said = tells(
+        """
 master, slave = os.openpty()
 fcntl.ioctl(slave, termios.TIOCSCTTY, 0)
 before = termios.tcgetattr(slave)
 print(opens(%s))
 print(termios.tcgetattr(slave) == before)
-""" % name)
+"""
+        % name
+    )
     assert said[0].endswith(" is the terminal in which this runs") and said[1] == "True"
 
 
@@ -124,7 +127,8 @@ print(opens(pty.path))
 
 def linked(link, program="print(opens(pty.path))"):
     """What a program says that makes a pty with this link; the pty is closed at the end."""
-    return tells("""
+    return tells(
+        """
 pty = Pty(link=%r)
 try:
     pty.open()
@@ -133,7 +137,9 @@ except PortError as error:
 else:
     %s
     pty.close()
-""" % (str(link), program))
+"""
+        % (str(link), program)
+    )
 
 
 def test_a_link_is_made_and_goes_with_the_pty(tmp_path):
@@ -151,7 +157,8 @@ def test_the_link_of_one_that_was_killed_is_replaced(tmp_path):
 
 def test_also_when_somebody_else_has_its_terminal_now(tmp_path):
     link = tmp_path / "line"
-    said = tells("""
+    said = tells(
+        """
 link = %r
 killed = Pty(link)
 killed.open()
@@ -166,7 +173,9 @@ print(opens(link))          # it is not for us
 pty = Pty(link)
 pty.open()
 print(os.readlink(link) == pty.path != other.path, opens(link))
-""" % str(link))
+"""
+        % str(link)
+    )
     assert said == [
         "True True",
         LEFT_OVER % link,
@@ -175,7 +184,8 @@ print(os.readlink(link) == pty.path != other.path, opens(link))
 
 
 def test_a_pty_that_has_gone_does_not_come_back_as_another_one(tmp_path):
-    said = tells("""
+    said = tells(
+        """
 link = %r
 pty = Pty()
 pty.open()
@@ -201,14 +211,17 @@ os.remove(link)
 os.symlink(other.path, link)
 ports[1].open()
 print("opened")
-""" % str(tmp_path / "line"))
+"""
+        % str(tmp_path / "line")
+    )
     assert said[0] == "True" and said[3:] == ["opened"], said
     assert "has gone for good" in said[1] and "is left over" in said[2], said
 
 
 def test_the_link_of_one_that_lives_is_not(tmp_path):
     link = tmp_path / "line"
-    path, trouble, still = tells("""
+    path, trouble, still = tells(
+        """
 pty, other = Pty(link=%r), Pty(link=%r)
 pty.open()
 print(pty.path)
@@ -217,7 +230,9 @@ try:
 except PortError as error:
     print(error)
 print(os.readlink(%r))
-""" % (3 * (str(link),)))
+"""
+        % (3 * (str(link),))
+    )
     assert still == path
     assert trouble.startswith("%s leads to %s, which is not ours" % (link, path))
 

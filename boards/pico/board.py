@@ -149,9 +149,7 @@ def make_i2c():
         pulse.value(0)
         time.sleep_us(BACKPACK_PULSE_US)
         pulse.value(1)
-    return I2C(
-        BACKPACK_I2C, sda=data, scl=pulse, freq=BACKPACK_HZ, timeout=BACKPACK_TIMEOUT_US
-    )
+    return I2C(BACKPACK_I2C, sda=data, scl=pulse, freq=BACKPACK_HZ, timeout=BACKPACK_TIMEOUT_US)
 
 
 def make_posted_i2c():
@@ -204,7 +202,7 @@ def make_link(baud):
 
 
 def why_it_booted():
-    """"WATCHDOG", or "" for power-on, the RUN pin and machine.reset()."""
+    """Either "WATCHDOG", or "" for power-on, the RUN pin and machine.reset()."""
     bitten = machine.mem32[REASON] and machine.mem32[SCRATCH_4] == STARTED
     return "WATCHDOG" if bitten else ""
 

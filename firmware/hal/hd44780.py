@@ -209,7 +209,6 @@ class Hd44780(CharacterDisplay):
 
     bytes_per_piece = 8  # a byte takes 63 us of waiting, and 190 us of computing on an RP2040
 
-
     def __init__(self, register_select, enable, data, clock):
         self._set_register_select = register_select.value
         self._set_enable = enable.value

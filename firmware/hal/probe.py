@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Whether a display's backpack is there: asked before its driver takes memory.
 
+In use:
+
     answers(i2c, 0x27)
 """
 

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """A START or a JOG that was obeyed: when that was, how things stood, and what took it back.
 
+In use:
+
     command = Command(drive, survey, bus, mask)
     command.give(now)                       # the key was obeyed
     command.send(now)                       # ON goes out from now on

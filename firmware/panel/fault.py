@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """What a status bit reports and a parameter numbers: the fault of a drive, its warning.
 
+In use:
+
     warning = Report(drive, mask, pzd.ZSW_WARNING, profiles.WARNING_NUMBER)
     warning.step(now)                   # again and again
     warning.number                      # 501 for A0501; 0 while it is not known

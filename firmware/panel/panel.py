@@ -61,9 +61,7 @@ class Panel:
         self.controls = controls
         self.selected = controls[0]
         self.announcer = Announcer(controls, mask)
-        self.warning = Report(
-            self.selected.drive, mask, pzd.ZSW_WARNING, profiles.WARNING_NUMBER
-        )
+        self.warning = Report(self.selected.drive, mask, pzd.ZSW_WARNING, profiles.WARNING_NUMBER)
         self.screen = screen = Screen()
         self.message = None
         self.setpoint_step = settings.setpoint_step_centihertz
@@ -71,9 +69,7 @@ class Panel:
         self._mask = mask
         self._settings = settings
         self._keys = keys = Keys(key_names, mask, HELD_KEYS)
-        self.stop_key = StopKey(
-            keys.bit("STOP"), controls, settings.second_stop, mask, self.say
-        )
+        self.stop_key = StopKey(keys.bit("STOP"), controls, settings.second_stop, mask, self.say)
         self._jog_keys = JogKeys(keys.bit("JOG_RIGHT"), keys.bit("JOG_LEFT"))
         self._writer = Writer(bus, settings, mask)
         cycle_us = bus.longest_cycle_us()

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Why a drive may not be started or jogged: the reasons, in the order an operator wants to know.
 
+In use:
+
     why_not_start(control)              # None, or texts.REFUSED_...
     why_not_jog(control)
 """

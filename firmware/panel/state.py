@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """What a drive does, in a word or two: the left part of row 2 on the home page.
 
+In use:
+
     text(control)                       # texts.RUNNING
 """
 

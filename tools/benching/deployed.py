@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Writes the firmware for a Pico into a folder, as tools/deploy copies it onto the chip.
 
+In use:
+
     build/mpremote/bin/python -B tools/benching/deployed.py FOLDER
 """
 

@@ -46,14 +46,17 @@ DEPLOYED = "build/deployed"  # the firmware as tools/deploy copies it onto a chi
 FOLDER = 0x4000  # kind of an entry of ilistdir
 LEARN_MS_A_DRIVE = 1_000  # for a drive that is not shown to tell its settings
 TELLS_FREE_MS = 2_000
-TELLS_FREE = b"""
+TELLS_FREE = (
+    b"""
 import gc
 from machine import Timer
 def tell(_):
     gc.collect()
     print(gc.mem_free(), "bytes free")
 timer = Timer(period=%d, mode=Timer.PERIODIC, callback=tell)
-""" % TELLS_FREE_MS
+"""
+    % TELLS_FREE_MS
+)
 
 
 # --- the chip and what is around it -------------------------------------------------------------
@@ -599,8 +602,20 @@ def checked_host(world, figures):
 MEASUREMENTS = {
     function.__name__: function
     for function in (
-        line, asking, mixed, saving, cuts, memory, stop, hang, steps, picture, boot, heap, codec,
-        simulation
+        line,
+        asking,
+        mixed,
+        saving,
+        cuts,
+        memory,
+        stop,
+        hang,
+        steps,
+        picture,
+        boot,
+        heap,
+        codec,
+        simulation,
     )
 }
 

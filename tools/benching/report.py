@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """From figures to the table that people read. It measures nothing and knows no row by name.
 
+In use:
+
     judged = judge(ROWS, {task: figures})
     print(page(judged, versions, "2026-01-31", "./tools/bench", quick=False))
     sys.exit(status(judged))
@@ -60,9 +62,7 @@ def page(judged, versions, date, command, quick):
     return "\n\n".join(parts)
 
 
-INTRODUCTION = (
-    "Written by `tools/bench`. A figure that does not reach its bar is shown as it is."
-)
+INTRODUCTION = "Written by `tools/bench`. A figure that does not reach its bar is shown as it is."
 
 CHIP = """\
 An emulated Raspberry Pi Pico with the firmware frozen in (`tools/uf2`). The cache through which it

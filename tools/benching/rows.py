@@ -221,11 +221,14 @@ def saving_row():
         "driver off after the last stop bit while settings are written, 19200 baud: "
         "min / median / max",
         "0...%s" % us(CHARACTER_BITS * 1_000_000_000 // 19200),
-        lambda figures: "%s; %d flash operations"
-        % (least_to_most(figures["release_ns"]), figures["flash"]),
-        lambda figures: figures["flash"] > 0
-        and not figures["unsaved"]
-        and within_a_character(figures["release_ns"], figures["character_ns"]),
+        lambda figures: (
+            "%s; %d flash operations" % (least_to_most(figures["release_ns"]), figures["flash"])
+        ),
+        lambda figures: (
+            figures["flash"] > 0
+            and not figures["unsaved"]
+            and within_a_character(figures["release_ns"], figures["character_ns"])
+        ),
     )
 
 
@@ -278,8 +281,7 @@ def stop_row(baud, drives):
         "<= %.1f ms: debounce and 2 exchanges"
         % ((DEBOUNCE_US + 2e6 * CHARACTERS * CHARACTER_BITS / baud) / 1000),
         show,
-        lambda figures: figures["took_us"][-1] <= bound_us(figures)
-        and not figures["lost_starts"],
+        lambda figures: figures["took_us"][-1] <= bound_us(figures) and not figures["lost_starts"],
     )
 
 

@@ -288,9 +288,7 @@ class Session:
             self._checked_ms = now_ms
             self._check()
         command = None if self.errand else self.command  # which waits for the errand
-        return self._picture.lines(
-            self._telegrams, self._bottom(), self.broken, speed, command
-        )
+        return self._picture.lines(self._telegrams, self._bottom(), self.broken, speed, command)
 
     def _bottom(self):
         if self.errand:

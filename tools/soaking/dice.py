@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Numbers that look random, of a sequence that one seed decides, the same on every interpreter.
 
+In use:
+
     dice = Dice(7)
     other = Dice(7, 1)      # others of the same seed
     dice.below(6)           # 0...5

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """One number for a whole life: where two interpreters live a seed differently, it differs.
 
+In use:
+
     digest = Digest(world)
     digest.look()                   # after every slice of time
     digest.number

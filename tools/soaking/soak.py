@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """One seed of the soak: its world, a hand, a judge and an eye.
 
+In use:
+
     soak = Soak(7)
     soak.run(180)                   # seconds of virtual time; raises nothing
     soak.broken                     # None, or what ended it

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """What led to a broken rule, for people: keys, faults, screens and telegrams, with their times.
 
+In use:
+
     for line in story(soak): print(line)
 """
 

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """What befalls the line during a soak: which faults, how often, and how many there were.
 
+In use:
+
     weather = Weather(world, plan)
     weather.change()                # other faults from now on
     weather.clear()                 # none

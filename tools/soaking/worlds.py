@@ -189,9 +189,7 @@ def _kind(plan, address):
         family, parameters = mm420, {}
     if plan.supervised:
         parameters = dict(parameters)
-        parameters.update(
-            supervision(family, supervision_ms(plan.baud, len(plan.listed)))
-        )
+        parameters.update(supervision(family, supervision_ms(plan.baud, len(plan.listed))))
     if plan.more.below(12) == 0 and family in (mm420, mm440):
         parameters = dict(parameters)
         parameters[2014] = plan.more.one_of(LONG_MS)

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """A warning of the drive shown, which takes turns with what a page has in row 2.
 
+What it draws:
+
     WARN A0501   A1
 """
 

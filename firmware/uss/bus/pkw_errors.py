@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Words for the error numbers of the parameter channel (reply 7). The panel has its own, shorter.
 
+In use:
+
     error_text(job.error)               # of a job that was REFUSED
 """
 

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """An eye on the display: what it must say, and what it must not, held against the drives.
 
+In use:
+
     reader = Reader(world, plan, judge)
     reader.look()                   # after every slice: raises Broken
     reader.screens                  # the last pictures, (instant, row 1, row 2)

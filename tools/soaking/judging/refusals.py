@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """What START and JOG must refuse, told from the drive itself and from what the line said of it.
 
+In use:
+
     reason = reason_against(judge, case, address, pressed_us, jogs)     # a text, or None
 """
 

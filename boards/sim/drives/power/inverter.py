@@ -305,9 +305,7 @@ class Inverter:
         if not self.potentiometer_kept:
             self._potentiometer.set(self.potentiometer_hz)
         hz = self._motor.hz(self._clock.now_us)
-        if hz and not restart.catches(
-            self.flying_start, self._freed_by, hz, self.setpoint_hz()
-        ):
+        if hz and not restart.catches(self.flying_start, self._freed_by, hz, self.setpoint_hz()):
             self._motor.jump(self._clock.now_us, 0.0)  # it forces its own frequency on the motor
 
     def _trip(self, at_us, number, value):
