@@ -656,7 +656,7 @@ def test_a_drive_that_falls_silent_on_the_number_of_its_warning_is_not_asked_all
 
 
 def test_a_stop_of_all_takes_no_time_from_the_dead_man():
-    """31 drives are told one after the other, a step of the loop each, and here it is a slow one."""
+    """31 drives are told one after the other, a step of the loop each, a slow one here."""
     world = panel(addresses=tuple(range(1, 32)), baud=115200, **_runs_on(31))
     world.run(4_000)
     start(world, 1)
