@@ -21,6 +21,8 @@ from hal.pacer import Pacer
 from panel import texts
 import panel.risks  # noqa: F401
 from panel.control import Control
+import panel.pages.risk  # noqa: F401
+import panel.pages.table  # noqa: F401
 from panel.panel import Panel
 from panel.screen import GLYPHS
 from settings import load, save
@@ -51,7 +53,7 @@ class App:
             survey = Survey(drive, mask, spares)
             controls.append(Control(drive, survey, self.bus, mask, settings))
         board.display.define(GLYPHS)
-        notice = texts.WATCHDOG_RESTART if board.reset_cause else None
+        notice = texts.WATCHDOG_RESTART if board.reset_cause else texts.NOTHING
         self.panel = Panel(controls, self.bus, board.keypad.names, settings, mask, notice)
         self._mask = mask
         self.ticks_us = board.clock.ticks_us
@@ -127,7 +129,7 @@ class App:
             save(self.board.store, self.settings)
         except OSError:
             self._save_failed = True
-            self.panel.say(texts.NOT_SAVED, now_ms)
+            self.panel.say(now_ms, texts.NOT_SAVED)
 
     def close(self):
         """Stop every drive, wait for its answer as long as it may take, and leave no interrupt.
@@ -156,7 +158,7 @@ class App:
         """The picture of a panel that has stopped would go on saying what no longer holds."""
         screen = self.panel.screen
         for row in range(len(texts.FAREWELL)):
-            screen.put(row, 0, texts.ROW_WIDTH, texts.FAREWELL[row])
+            screen.put(row, 0, texts.ROW_WIDTH, texts.of(texts.FAREWELL[row]))
         try:
             for _ in range(_FAREWELL_STEPS):
                 if self.board.display.show(screen.picture):

@@ -5,7 +5,11 @@ The same firmware as on the chip, in virtual time.
 """
 
 import main
+import panel.panel
 from boards.sim.world import World
+from strict_screen import StrictScreen
+
+panel.panel.Screen = StrictScreen
 
 
 def panel(**options):

@@ -192,7 +192,8 @@ def test_what_was_pressed_can_be_taken_up_later():
     acts.note()
     hand.hold(UP, 10)
     assert hand.keys.pressed == 0 and acts.pressed == UP
-    assert acts.moved(UP) == 1 and acts.moved(START) == 0 and acts.pace() == 1
+    assert acts.direction("UP", "START") == 1 and acts.direction("START", "UP") == -1
+    assert acts.has("UP") and not acts.has("START") and acts.pace() == 1
     hand.hold(UP, 400 + 8 * 120 - 10)
     acts.note()
     assert acts.pressed == 0 and acts.repeated == UP and acts.repeats == 9

@@ -9,7 +9,7 @@ import main
 import settings
 from boards.sim.world import World
 from panel import texts
-from panel_bench import OFF1, ON, panel, row_1, row_2, running, starts, telegrams
+from panel_bench import OFF1, ON, panel, row_1, row_2, running, starts, telegrams, unsupervised
 from version import VERSION
 
 NOT_TRACED = (
@@ -34,6 +34,29 @@ def test_a_second_later_it_shows_setpoint_frequency_state_and_address():
     world = panel()
     assert world.lcd() == ("S: 10.0 F:  0.00", "READY        A1 ")
     world.check()
+
+
+def test_the_language_changes_while_the_panel_runs():
+    german = list(texts.COLUMNS[0])
+    german[texts.READY] = b"BEREIT"
+    german[texts.LINE_FAILED] = b"LEITUNG WEG"
+    world = running(**unsupervised())
+    world.drives[1].unplug()
+    world.run(4000)
+    world.drives[1].plug()
+    world.run(12000)
+    assert row_2(world) == "LINE FAILED  A1", world.lcd()
+    texts.COLUMNS.append(german)
+    try:
+        texts.speak(1)
+        world.run(200)
+        assert row_2(world) == "LEITUNG WEG  A1"  # also what was noted before
+        world.press("STOP")
+        world.run(1000)
+        assert row_2(world) == "BEREIT       A1"
+    finally:
+        texts.speak(0)
+        texts.COLUMNS.pop()
 
 
 def test_the_display_works_a_week_after_power_on_as_well():

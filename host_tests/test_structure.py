@@ -51,7 +51,6 @@ PRIVATE = {
     ("test_bus.py", "_rest"): "the same",
     ("test_drive_command.py", "_descriptor"): "a pty has no rate of its own to be set",
     ("test_pacer.py", "_inside"): "Ctrl-C comes in one certain jump of the interpreter",
-    ("test_panel_announced.py", "_home"): "the page is drawn without a step of the panel",
     ("test_panel_failures.py", "_link"): "the link fails in the middle of a run",
     ("test_panel_failures.py", "_receiver"): "the engine fails in the middle of a run",
     ("test_panel_one_run.py", "_job"): "an answer is there that the loop has not taken",

@@ -8,13 +8,15 @@
     permits     why START and JOG are refused
     command     a START or JOG that was obeyed, and what took it back
     setpoint, fault, stop_watch, state      what is known of a drive and said of it
-    writer      writes parameters, follows a drive to another address
+    risks       what START asks before a motor turns
+    neighbours  the drives that are not shown
+    reading, writer             ask a parameter, write one, follow a drive to another address
     supervision the telegram off time that is offered to a drive
-    pages       one file for each page
+    pages       one file for each page, what they keep to, and the table of them
     view        what is shown whatever the page is
     announcer   what has to be said of drives besides what the page tells, one after the other
     screen      the picture of 2 x 16 characters
-    texts       every word that can be seen
+    texts       every word that can be seen, by row
 
 Knows no pins and no telegram bytes; time is an argument.
 """

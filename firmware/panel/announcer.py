@@ -30,12 +30,12 @@ NOTHING, UNHEARD, NOTED, TRIPPED, RUNS, REMARKED, LOST, UNCONFIRMED = range(8)
 _ALARMS = (TRIPPED, LOST, UNCONFIRMED)
 
 KINDS = (  # said of one drive, behind its address; of several; of more than so many together
-    (b"", b"", 0),
+    (texts.NOTHING, texts.NOTHING, 0),
     (texts.OTHER_UNHEARD, texts.SEVERAL_UNHEARD, 1),
-    (b"", texts.SEVERAL_NOTED, 4),  # and its notice
+    (texts.NOTHING, texts.SEVERAL_NOTED, 4),  # and its notice
     (texts.OTHER_TRIPPED, texts.SEVERAL_TRIPPED, 4),
     (texts.OTHER_RUNS, texts.SEVERAL_RUN, 4),
-    (b"", texts.SEVERAL_REMARKED, 4),  # runs, and what somebody has changed since
+    (texts.NOTHING, texts.SEVERAL_REMARKED, 4),  # runs, and what somebody has changed since
     (texts.OTHER_LOST, texts.SEVERAL_LOST, 4),
     (texts.OTHER_UNCONFIRMED, texts.SEVERAL_UNCONFIRMED, 4),
 )
@@ -116,21 +116,24 @@ class Announcer:
         """Write into all of `row` what is said now."""
         kind, control = self.kind, self.control
         one, several, _ = KINDS[kind]
-        screen.put(row, 0, texts.ROW_WIDTH, several if control is None else b"A")
+        words = texts.of(texts.ADDRESS if control else several)
+        screen.put(row, 0, texts.ROW_WIDTH, words)
         if control is None:
-            column = len(several) + 1
+            column = len(words) + 1
             count = self._counts[kind]
             screen.number(row, column, 1 if count < 10 else 2, count * 100, 0)
             return
         address = control.drive.address
         column = 2 if address < 10 else 3
         screen.number(row, 1, column - 1, address * 100, 0)
-        screen.put(row, column, texts.ROW_WIDTH - column, one)
         if kind == NOTED or kind == REMARKED:
             text = control.notice if kind == NOTED else state.remark(control)
-            screen.put(row, column + 1, texts.ROW_WIDTH - column - 1, text or b"")
-        elif kind == TRIPPED:
-            draw_number(screen, row, column + len(one) + 1, texts.FAULT_LETTER, control.fault)
+            screen.put(row, column + 1, texts.ROW_WIDTH - column - 1, texts.of(text))
+            return
+        words = texts.of(one)
+        screen.put(row, column, texts.ROW_WIDTH - column, words)
+        if kind == TRIPPED:
+            draw_number(screen, row, column + len(words) + 1, texts.FAULT_LETTER, control.fault)
 
     def _favour(self, now_ms):
         """A page that is new has a short turn at once, but keys that are pressed again and again
@@ -257,7 +260,7 @@ def _kind(control, seen, told):
         if control.lost_running:
             return LOST
         if control.drive.zsw & pzd.ZSW_RUNNING and control.runs():
-            return RUNS if control.remark is None else REMARKED
+            return REMARKED if control.remark else RUNS
     elif control.needs_attention():
         return NOTHING  # which outranks the rest
     elif not told and control.drive.is_on() and control.runs() and state.remark(control):
@@ -265,6 +268,6 @@ def _kind(control, seen, told):
     if not told:
         if control.fault.active:
             return TRIPPED
-        if control.notice is not None and control.question is None:  # which says why
+        if control.notice and control.question is None:  # which says why
             return NOTED
     return NOTHING

@@ -6,7 +6,7 @@ In use:
     command = Command(drive, survey, bus, mask)
     command.give(now)                       # the key was obeyed
     command.send(now)                       # ON goes out from now on
-    notice = command.why_in_vain(jogs, now) # again and again while it is sent; or None
+    notice = command.why_in_vain(jogs, now) # again and again while it is sent; or NOTHING
     notice = command.why_stopped()          # the engine has taken it back
 """
 
@@ -84,7 +84,7 @@ class Command:
         return self._survey.version == self._version
 
     def why_in_vain(self, jogs, now):
-        """Why it has to be taken back, as a notice, or None. jogs: the setpoint does not matter.
+        """Why it has to be taken back, as a notice, or NOTHING. jogs: no setpoint matters.
 
         ON that leads to nothing must not take effect minutes later; nor may one to a drive that
         listens to somebody else by now.
@@ -101,4 +101,4 @@ class Command:
                 self._ran = True
             elif elapsed(now, self._since, self._mask) >= _START_US:
                 return texts.DID_NOT_START
-        return None
+        return texts.NOTHING

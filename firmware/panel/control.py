@@ -44,7 +44,7 @@ class Control:
     control word of the jog that is held; `checking`, START was obeyed and the drive is being
     asked; `refusal`, why a key was not obeyed, to be shown once; `question`, the row of
     risks.RISKS that START waits to be told to take, or None; `notice`, why the drive is not on any
-    more, or None; `remark`, what has become of its P2014 while it runs, or None;
+    more; `remark`, what has become of its P2014 while it runs: rows of texts, or NOTHING;
     `lost_running`, when contact was lost it was running, or not heard at rest since the last ON;
     `absence_known`, STOP was pressed while it was shown and not heard;
     `stop_watch`, whether a STOP is obeyed; `fault`; `moving`, it is being given another
@@ -64,10 +64,10 @@ class Control:
         self.reversed = False
         self.jogging = 0
         self.checking = False
-        self.refusal = None
+        self.refusal = texts.NOTHING
         self.question = None
-        self.notice = None
-        self.remark = None
+        self.notice = texts.NOTHING
+        self.remark = texts.NOTHING
         self.lost_running = False
         self.absence_known = False
         self._command = None  # that was obeyed last: a drive that is never started needs none
@@ -89,9 +89,9 @@ class Control:
         What can be told at once, or turns out on the way, is in `refusal`: texts.REFUSED_...
         """
         self.refusal = permits.why_not_start(self)
-        if self.refusal is None and not self.is_starting():
+        if not self.refusal and not self.is_starting():
             self._obey()
-            self.notice = None
+            self.notice = texts.NOTHING
             self.checking = True
             self.survey.count_anew()
             self.survey.recheck()
@@ -111,7 +111,7 @@ class Control:
         if self.fault.was_shown():
             self.drive.acknowledge()
         self.stop_unseen()
-        self.notice = None
+        self.notice = texts.NOTHING
         self.absence_known = not self.drive.contact
 
     def stop_unseen(self):
@@ -130,7 +130,7 @@ class Control:
     def jog(self, stw):
         """Turn while a key is held. stw: pzd.JOG_RIGHT or JOG_LEFT. Not obeyed: `refusal`."""
         self.refusal = permits.why_not_jog(self)
-        if self.refusal is None:
+        if not self.refusal:
             self._obey()
             self.stop_watch.end()
             self.jogging = stw
@@ -162,12 +162,12 @@ class Control:
 
     def take_refusal(self):
         """The refusal, which is forgotten by this."""
-        refusal, self.refusal = self.refusal, None
+        refusal, self.refusal = self.refusal, texts.NOTHING
         return refusal
 
     def keep_quiet(self):
         """Forget what would be said and asked: another drive is shown."""
-        self.refusal = None
+        self.refusal = texts.NOTHING
         self.question = None
         if not self.checking:
             self.survey.drop_recheck()
@@ -315,7 +315,7 @@ class Control:
 
     def _obey(self):
         """A key was obeyed: what was said of the run before, and asked, is over."""
-        self.remark = None
+        self.remark = texts.NOTHING
         self.question = None
         self._quiet_zsw = _UNKNOWN
         if self._command is None:
@@ -328,11 +328,11 @@ class Control:
             return  # HSW may be another once `ask` has taken them
         command = self._command
         refusal = permits.why_not_start(self)
-        if refusal is None and (self.survey.unchecked or not self.survey.is_settled()):
+        if not refusal and (self.survey.unchecked or not self.survey.is_settled()):
             if not command.is_overdue(now):
                 return
             refusal = texts.REFUSED_CHECKING
-        if refusal is None and command.risk < len(risks.RISKS):  # one in a turn: each takes long
+        if not refusal and command.risk < len(risks.RISKS):  # one in a turn: each takes long
             if risks.is_open(self, command.risk):
                 self.checking = False
                 self.survey.drop_recheck()
@@ -344,7 +344,7 @@ class Control:
         self.survey.drop_recheck()
         if command.is_stale():
             self.notice = texts.PANEL_HUNG
-        elif refusal is not None:
+        elif refusal:
             self.refusal = refusal
             self.notice = texts.DID_NOT_START  # the operator may look at another drive by now
         else:
@@ -366,12 +366,12 @@ class Control:
             self._look_at_supervision()
         else:
             notice = command.why_in_vain(self.jogging, now)
-            if notice is not None:
+            if notice:
                 self._take_back(notice)
 
     def _look_at_supervision(self):
         """Whether it would run on longer without this panel than when it was started."""
-        self.remark = None
+        self.remark = texts.NOTHING
         if risks.exposure_ms(self) > self._command.exposure_ms:
             is_long = self.survey.values[profiles.SUPERVISION] > 0
             if self.jogging:  # that is refused

@@ -16,6 +16,8 @@ In use:
 
 from micropython import const
 
+from panel import texts
+from panel.reading import Reading
 from uss import pkw, profiles, pzd
 from uss.timing import elapsed
 
@@ -38,20 +40,18 @@ class Report:
         self._mask = mask
         self._bit = bit
         self._parameter = parameter
-        self._job = None  # made with the first report: most drives never have one
-        self._asked = False
+        self._reading = Reading()
         self._asked_at = 0
         self._wait_us = 0  # between the last question and the next
-        self._stale = False  # what was asked belongs to an earlier report
 
     def step(self, now):
         drive = self._drive
-        if not (self.active or self._asked or drive.zsw & self._bit):
+        if not (self.active or drive.zsw & self._bit):
             return  # as it mostly is
         active = drive.contact and drive.tells_status and drive.zsw & self._bit != 0
         if active != self.active:
             self._turn(active)
-        if self._asked:
+        if self._reading.asked:
             self._take()
         elif active:
             self._ask(now)  # again and again: there may be another one by now
@@ -67,30 +67,22 @@ class Report:
         self.active = active
         self.number = 0
         self._wait_us = 0
-        self._stale = self._asked
+        self._reading.drop()
 
     def _ask(self, now):
         waited_us = elapsed(now, self._asked_at, self._mask)
-        if waited_us < self._wait_us or self._drive.channel.is_full():
-            return
-        if self._job is None:
-            self._job = pkw.read(self._parameter)
-        self._drive.ask(self._job)
-        self._asked = True
-        self._asked_at = now
-        self._wait_us = _AGAIN_US
+        if waited_us >= self._wait_us and self._reading.ask(self._drive, self._parameter):
+            self._asked_at = now
+            self._wait_us = _AGAIN_US
 
     def _take(self):
-        if self._job.state == pkw.PENDING:
+        job = self._reading.take()
+        if job is None:
             return
-        self._asked = False
-        stale, self._stale = self._stale, False
-        if stale:
-            return
-        if self._job.state in (pkw.REFUSED, pkw.UNANSWERED):
+        if job.state in (pkw.REFUSED, pkw.UNANSWERED):
             self._wait_us = _REFUSED_US
-        elif self._job.state == pkw.DONE:
-            self.number = self._job.low
+        elif job.state == pkw.DONE:
+            self.number = job.low
 
 
 class Fault(Report):
@@ -137,7 +129,7 @@ NO_FAULT = NoFault()
 
 
 def draw_number(screen, row, column, letter, report):
-    """A letter and the number of a fault or a warning, once that is known."""
+    """A letter, a row of texts, and the number of a fault or a warning, once that is known."""
     if report.number:
-        screen.put(row, column, 1, letter)
+        screen.put(row, column, 1, texts.of(letter))
         screen.digits(row, column + 1, 4, report.number)

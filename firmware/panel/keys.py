@@ -43,7 +43,7 @@ class Acts:
         self.repeated = 0
         self.repeats = 0
         self.bit = keys.bit
-        self.forget = keys.forget
+        self.forget = keys.forget  # a key that is held repeats nothing any more
         self._keys = keys
 
     def note(self):
@@ -53,9 +53,14 @@ class Acts:
         self.repeated = keys.repeated
         self.repeats = keys.repeats
 
-    def moved(self, bit):
-        """1 when the key of this bit went down or repeated, else 0."""
-        return 1 if (self.pressed | self.repeated) & bit else 0
+    def has(self, key):
+        """Whether this key went down."""
+        return self.pressed & self.bit(key) != 0
+
+    def direction(self, up, down):
+        """1 when the key `up` went down or repeated, -1 when `down` did, else 0."""
+        moved = self.pressed | self.repeated
+        return (moved & self.bit(up) != 0) - (moved & self.bit(down) != 0)
 
     def pace(self, highest=10):
         """Steps for a value that a held key moves: more the longer it is held, up to `highest`."""

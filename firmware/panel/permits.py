@@ -3,7 +3,7 @@
 
 In use:
 
-    why_not_start(control)              # None, or texts.REFUSED_...
+    why_not_start(control)              # texts.REFUSED_..., or NOTHING
     why_not_jog(control)
 """
 
@@ -47,7 +47,7 @@ def why_not_start(control):
         return texts.REFUSED_STOPPING
     state = drive.state()
     reason = _why_no_command(control, state)
-    if reason is not None:
+    if reason:
         return reason
     if is_foreign(survey):
         return REFUSED_SOURCES[survey.wrong[profiles.SETPOINT]]
@@ -63,7 +63,7 @@ def why_not_jog(control):
         return texts.REFUSED_STOPPING
     state = drive.state()
     reason = _why_no_command(control, state)
-    if reason is not None:
+    if reason:
         return reason
     if control.is_starting() or state == pzd.RUNNING and not control.own_jog_ends():
         return texts.REFUSED_RUNS
@@ -91,7 +91,7 @@ def _why_no_command(control, state):
         return texts.REFUSED_STATUS
     if is_local(survey):
         return REFUSED_SOURCES[survey.wrong[profiles.COMMAND]]
-    return None
+    return texts.NOTHING
 
 
 def _why_not_now(state):
@@ -99,4 +99,4 @@ def _why_not_now(state):
         return texts.REFUSED_INHIBITED
     if state == pzd.NOT_READY:
         return texts.REFUSED_NOT_READY
-    return None
+    return texts.NOTHING

@@ -2,7 +2,7 @@
 """What START asks before a motor turns: risks that its operator may take, in the order of asking.
 
     is_open(control, row)           # there is this risk, and nobody has accepted it
-    text, can_fix, value = ask(control, row)
+    text, values, can_fix, value = ask(control, row)
     accept(control, row, value)     # as it was when that was asked
 
 P2014 = 0 is accepted for good, in the settings, and with it any other P2014. All else is accepted
@@ -40,32 +40,10 @@ def _of_lateness(control):
     return NONE if drive is None else drive.address
 
 
-def _ask_supervision(_control, off_time_ms):
-    if not off_time_ms:
-        return texts.ASK_UNSUPERVISED
-    tenths = -(-off_time_ms // 100)
-    turns = (
-        texts.ASK_LONG[0] % off_time_ms,
-        texts.ASK_LONG[1] % (tenths // 10, tenths % 10),
-        texts.ASK_LONG[2],
-    )
-    return turns, texts.ASK_UNSUPERVISED[1]
-
-
-def _ask_lateness(_control, address):
-    turns, choice = texts.ASK_LATE
-    return (turns[0] % address,) + turns[1:], choice
-
-
-def _ask_restart(_control, mode):
-    turns, choice = texts.ASK_RESTART
-    return (turns[0] % mode,) + turns[1:], choice
-
-
 RISKS = (  # its value or NONE, what is asked, whether SET puts it right: SET writes P2014
-    (_of_supervision, _ask_supervision, True),
-    (_of_lateness, _ask_lateness, False),
-    (_of_restart, _ask_restart, False),
+    (_of_supervision, texts.ASK_LONG, True),
+    (_of_lateness, texts.ASK_LATE, False),
+    (_of_restart, texts.ASK_RESTART, False),
 )
 SUPERVISION = const(0)
 
@@ -84,10 +62,16 @@ def is_open(control, row):
 
 
 def ask(control, row):
-    """The text of a `Question`, whether SET answers it too, and the value that it tells."""
-    _, words, can_fix = RISKS[row]
+    """The text of a `Question`, the values in it, whether SET answers it too, and the risk's."""
+    _, text, can_fix = RISKS[row]
     value = measure(control, row)
-    return words(control, value), can_fix, value
+    values = (value,)
+    if row == SUPERVISION:
+        tenths = -(-value // 100)
+        values = (value, tenths // 10, tenths % 10)
+        if not value:
+            text, values = texts.ASK_UNSUPERVISED, ()
+    return text, values, can_fix, value
 
 
 def accept(control, row, value):

@@ -3,7 +3,7 @@
 
 In use:
 
-    text(control)                       # texts.RUNNING
+    row(control)                        # texts.RUNNING
 """
 
 from panel import texts
@@ -16,8 +16,8 @@ _TROUBLES = (
 )  # fmt: skip
 
 
-def text(control):
-    """The state in words, at most texts.STATE_WIDTH. A motor that turns outranks a notice."""
+def row(control):
+    """The state as a row of texts, STATE_WIDTH at most. A motor that turns outranks a notice."""
     drive, survey = control.drive, control.survey
     if not drive.contact:
         return _TROUBLES[drive.trouble]
@@ -30,7 +30,7 @@ def text(control):
         return _running(control)
     if control.is_starting():
         return texts.STARTING
-    if control.notice is not None:
+    if control.notice:
         return control.notice
     if state == pzd.INHIBITED:
         return texts.INHIBITED
@@ -53,9 +53,7 @@ def _running(control):
 
 
 def remark(control):
-    """What somebody has changed at a drive that is on, since it was started; None: nothing."""
-    if control.remark is not None:
-        return control.remark
-    if not control.jogging and control.setpoint.is_below():
+    """What somebody has changed at a drive that is on, since it was started, or NOTHING."""
+    if not control.remark and not control.jogging and control.setpoint.is_below():
         return texts.RUNS_FASTER
-    return None
+    return control.remark

@@ -31,14 +31,15 @@ SAID = {
 class StopKey:
     """bit: of the key. controls: of all drives. second_stop: of the settings. mask: of the clock.
 
-    say: say(text, now_ms) has a row shown for a while.
+    say: say(now_ms, row) has a row of texts shown for a while.
 
-    text: what is to be said while it is held, or None. is_down: no START and no JOG meanwhile.
+    text: what is to be said while it is held, a row of texts or NOTHING. is_down: no START and no
+    JOG meanwhile.
     left: how many looks `stop_next` has still to take, until every drive was told to stop.
     """
 
     def __init__(self, bit, controls, second_stop, mask, say):
-        self.text = None
+        self.text = texts.NOTHING
         self.is_down = False
         self.left = 0
         self._bit = bit
@@ -61,7 +62,7 @@ class StopKey:
             control.stop()
         elif not self.is_down:
             self._stage = RELEASED
-            self.text = None
+            self.text = texts.NOTHING
         if self._stage != RELEASED:
             self._hold(now_ms)
         elif self.is_down:  # and nobody pressed it since power-on
@@ -84,7 +85,7 @@ class StopKey:
         if self._stage == SECOND_SENT and held_ms >= _ALL_MS:
             self._stage = ALL_SENT
             self.left = 2 * len(self._controls)
-            self._say(texts.ALL_STOPPED, now_ms)
+            self._say(now_ms, texts.ALL_STOPPED)
         if self._stage == ALL_SENT:
             self.text = texts.ALL_STOPPED
         elif self._stage == SECOND_SENT:

@@ -92,9 +92,9 @@ class View:
         if announces and self._text() is not None:
             announcer.draw(self._screen, 0)
         elif control.stop_watch.unconfirmed and (announces or self._text() is not None):
-            self._screen.put(0, 0, texts.ROW_WIDTH, texts.STOP_UNCONFIRMED)
+            self._screen.put(0, 0, texts.ROW_WIDTH, texts.of(texts.STOP_UNCONFIRMED))
         elif control.lost_running:
-            self._screen.put(0, 0, texts.ROW_WIDTH, texts.NO_CONTACT_ROW)
+            self._screen.put(0, 0, texts.ROW_WIDTH, texts.of(texts.NO_CONTACT_ROW))
         else:
             return False
         return True
@@ -106,9 +106,9 @@ class View:
             if self._panel.announcer.kind != NOTHING:
                 return ANNOUNCEMENT
             if control.stop_watch.unconfirmed:
-                text = texts.STOP_UNCONFIRMED
+                text = texts.of(texts.STOP_UNCONFIRMED)
             elif control.lost_running:
-                self._screen.put(1, 0, _ADDRESS_COLUMN, texts.MAY_RUN)
+                self._screen.put(1, 0, _ADDRESS_COLUMN, texts.of(texts.MAY_RUN))
                 return ADDRESS
             else:
                 return PAGE
@@ -119,35 +119,35 @@ class View:
         """The text that takes all of row 2 whatever is announced; None when there is none."""
         panel = self._panel
         if panel.stop_key.text:
-            return panel.stop_key.text
+            return texts.of(panel.stop_key.text)
         if panel.selected.needs_attention():
             return None
         if panel.message:
             return panel.message
-        return texts.LINE_IN_USE if panel.line_in_use() else None
+        return texts.of(texts.LINE_IN_USE) if panel.line_in_use() else None
 
 
 def _draw_address(screen, control):
     """A and the address of a drive, left-aligned at the end of row 2."""
     address = control.drive.address
-    screen.put(1, _ADDRESS_COLUMN, 3, b"A")
+    screen.put(1, _ADDRESS_COLUMN, 3, texts.of(texts.ADDRESS))
     screen.number(1, _ADDRESS_COLUMN + 1, 1 if address < 10 else 2, address * 100, 0)
 
 
 def _draw_setpoint(screen, control):
     setpoint = control.setpoint.centihertz
-    screen.put(0, 0, 2, b"S:")
+    screen.put(0, 0, 2, texts.of(texts.SETPOINT))
     screen.number(0, 2, 5, -setpoint if control.reversed else setpoint, 1)
     if control.reversed and not setpoint:
         screen.put(0, 3, 1, b"-")  # the direction is to be seen before it turns
 
 
 def _draw_actual(screen, control):
-    screen.put(0, 7, 3, b" F:")
+    screen.put(0, 7, 3, texts.of(texts.ACTUAL))
     actual = control.actual_centihertz()
     if actual is None:
-        screen.put(0, 10, 6, texts.UNKNOWN_VALUE)
+        screen.put(0, 10, 6, texts.of(texts.UNKNOWN_VALUE))
     elif control.actual_is_beyond():
-        screen.put(0, 10, 6, texts.BEYOND_VALUE)
+        screen.put(0, 10, 6, texts.of(texts.BEYOND_VALUE))
     else:
         screen.number(0, 10, 6, actual, 2)

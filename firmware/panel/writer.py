@@ -1,13 +1,23 @@
 # SPDX-License-Identifier: MIT
-"""Writes parameters for the panel, one at a time, and tells what became of it.
+"""Writes parameters for the panel, one at a time, and tells what became of each.
 
-    writer.write(control, 1000, 0, 5, False)        # into RAM
-    writer.step(now)                                # again and again
-    writer.take_result(selected)                    # a row to be shown, once, or None
+In use:
+
+    write = writer.write(control, 1000, 0, 5, False)        # a `Write`, into RAM
+    writer.step(now)                    # again and again, until
+    write.outcome                       # it is not None any more
 
 A drive that is to have another address is followed there, after a look whether anybody answers
 there already. When the answer to the write is lost, nobody knows where the drive is: it is looked
 for at the new address for a while, and then is taken to be at the old one.
+
+    phase       what goes on                                ends when
+    PROBING     three telegrams to the new address          nobody answers: WAITING
+                                                            somebody does, or STOP: IDLE
+    WAITING     the channel of the drive is full            it has room: WRITING
+    WRITING     the task is on its way; to a drive that     it is done or refused: IDLE
+                moves and is silent, at either address      such a drive stays silent: LOOKING
+    LOOKING     telegrams to the new address                it answers there, or time is up: IDLE
 """
 
 from micropython import const
@@ -27,15 +37,44 @@ _TRIES_MAX = const(3)
 IDLE, PROBING, WAITING, WRITING, LOOKING = range(5)
 
 
+class Write:
+    """A parameter that is to be written. value: 16 bits. moves: it is the drive's address.
+
+    outcome: how it ended, a row of texts and the values in it; None while it is on its way. done:
+    the drive has confirmed it.
+    """
+
+    def __init__(self, control, number, index, value, eeprom):
+        self.control = control
+        self.number = number
+        self.index = index
+        self.value = value
+        self.eeprom = eeprom
+        self.old_address = control.drive.address
+        self.moves = (
+            number == profiles.USS_ADDRESS
+            and index == profiles.COM_LINK
+            and value != self.old_address
+        )
+        self.outcome = None
+        self.done = False
+
+    def news(self, selected):
+        """The outcome for somebody who looks at this control, as a row and values."""
+        if self.control is selected:
+            return self.outcome
+        row = texts.OTHER_WRITTEN if self.done else texts.OTHER_NOT_WRITTEN
+        return row, self.control.drive.address
+
+
 class Writer:
     """bus: the `Master`, its drives added. settings: a `Settings`. mask: the clock's period - 1.
 
-    busy: a write is on its way. written: the last one was confirmed by the drive.
+    busy: a write is on its way.
     """
 
     def __init__(self, bus, settings, mask):
         self.busy = False
-        self.written = False
         self._bus = bus
         self._settings = settings
         self._mask = mask
@@ -44,58 +83,42 @@ class Writer:
         self._patience_us = min(patience_us, mask >> 2)
         self._phase = IDLE
         self._job = pkw.read(0)
-        self._control = None
-        self._value = 0
-        self._eeprom = False
-        self._result = None
-        self._old_address = 0  # of the drive that is written
+        self._write = None  # the last one
+        self._ended = None  # likewise, until somebody has taken it
         self._since = 0
         self._stops = 0  # drive.stops when it was spoken to at the new address first
         self._telegrams = 0  # to the drive, then
         self._tries = 0
-        self._moves = False  # what is written is the drive's address
         self._silent = 0  # drive.silent when it was last spoken to at the other address
 
     def write(self, control, number, index, value, eeprom):
-        """Write a 16-bit value, 0...65535. Why it cannot even be tried, a text, or None."""
+        """Write 0...65535. One that cannot even be tried has its outcome already."""
         drive = control.drive
+        write = Write(control, number, index, value, eeprom)
         if self.busy or drive.channel.is_full():
-            return texts.WRITER_BUSY
-        if not drive.contact:
-            return texts.NO_CONTACT
-        task = pkw.WRITE_WORD_EEPROM if eeprom else pkw.WRITE_WORD
-        self._job.aim(task, number, index, 0, value)
-        self._control = control
-        self._old_address = drive.address
-        self._value = value
-        self._eeprom = eeprom
-        self._tries = 0
-        self.busy = True
-        self.written = False
-        self._moves = (
-            number == profiles.USS_ADDRESS
-            and index == profiles.COM_LINK
-            and value != drive.address
-        )
-        if self._moves:
-            self._phase = PROBING
-            control.moving = True
-            self._go_to(value)
+            write.outcome = (texts.WRITER_BUSY,)
+        elif not drive.contact:
+            write.outcome = (texts.NO_CONTACT,)
         else:
-            self._ask()
-        return None
+            self._write = write
+            self._tries = 0
+            self.busy = True
+            if write.moves:
+                self._phase = PROBING
+                control.moving = True
+                self._go_to(value)
+            else:
+                self._ask()
+        return write
 
     def takes(self, address):
         """Whether a drive is just being given this address."""
-        return self.busy and self._moves and self._value == address
+        return self.busy and self._write.moves and self._write.value == address
 
-    def take_result(self, selected):
-        """A row that tells how the write ended, once; None otherwise. selected: what is shown."""
-        result, self._result = self._result, None
-        if result is None or self._control is selected:
-            return result
-        outcome = texts.OTHER_WRITTEN if self.written else texts.OTHER_NOT_WRITTEN
-        return b"A%d%s" % (self._control.drive.address, outcome)
+    def take_ended(self):
+        """The `Write` that has ended, once; None otherwise."""
+        ended, self._ended = self._ended, None
+        return ended
 
     def step(self, now):
         if self._phase == IDLE:
@@ -106,64 +129,68 @@ class Writer:
             self._probe()
         elif self._phase == LOOKING:
             self._look(now)
-        elif self._phase == WRITING:
-            if self._job.state != pkw.PENDING:
-                self._finish(now)
-            elif self._moves:
-                self._follow_silence()
+        elif self._job.state != pkw.PENDING:
+            self._finish(now)
+        elif self._write.moves:
+            self._follow_silence()
 
     def _ask(self):
-        drive = self._control.drive
+        write = self._write
+        drive = write.control.drive
         if drive.channel.is_full():
             self._phase = WAITING
             return
         self._phase = WRITING
         self._silent = drive.silent
-        self._job.aim(self._job.task, self._job.number, self._job.index, 0, self._value)
+        task = pkw.WRITE_WORD_EEPROM if write.eeprom else pkw.WRITE_WORD
+        self._job.aim(task, write.number, write.index, 0, write.value)
         drive.ask(self._job)
 
     def _finish(self, now):
-        job = self._job
+        job, write = self._job, self._write
+        drive = write.control.drive
         if job.state == pkw.REFUSED:
-            self._end(refusal(job.error), False)
+            self._end(*failure(job))
         elif job.state == pkw.DONE:
-            if job.low == self._value:
+            if job.low == write.value:
                 self._confirm()
             elif self._tries < _TRIES_MAX:  # that was an old answer to a reading
                 self._tries += 1
                 self._ask()
             else:
-                self._end(texts.NOT_WRITTEN, False)
-        elif self._moves and self._control.drive.silent:
+                self._end(texts.NOT_WRITTEN)
+        elif write.moves and drive.silent:
             self._phase = LOOKING
             self._since = now
-            self._go_to(self._value)
-        elif self._moves and self._control.drive.answered_address == self._value:
+            self._go_to(write.value)
+        elif write.moves and drive.answered_address == write.value:
             self._confirm()
         else:
-            self._end(unanswered(job), False)
+            self._end(*failure(job))
 
     def _confirm(self):
-        if self._moves:
-            self._bus.readdress(self._control.drive, self._value)
+        write = self._write
+        if write.moves:
+            self._bus.readdress(write.control.drive, write.value)
             # The panel must look for it there after a restart: it may run by then.
-            self._settings.readdress(self._old_address, self._value)
-            self._control.moved = True
-        self._end(texts.WRITTEN_EEPROM if self._eeprom else texts.WRITTEN, True)
+            self._settings.readdress(write.old_address, write.value)
+            write.control.moved = True
+        write.done = True
+        self._end(texts.WRITTEN_EEPROM if write.eeprom else texts.WRITTEN)
 
-    def _end(self, result, written):
+    def _end(self, *outcome):
         self._phase = IDLE
-        self._control.moving = False
         self.busy = False
-        self.written = written
-        self._result = result
+        self._ended = write = self._write
+        write.outcome = outcome
+        write.control.moving = False
         # What may have changed by it is read again before anybody relies on it.
-        self._control.survey.recheck()
+        write.control.survey.recheck()
 
     # --- a drive that moves to another address --------------------------------------------------
 
     def _go_to(self, address):
-        drive = self._control.drive
+        drive = self._write.control.drive
         self._bus.readdress(drive, address)
         drive.hurry()
         self._stops = drive.stops
@@ -171,51 +198,56 @@ class Writer:
 
     def _probe(self):
         """Nobody may be at the new address: two drives at one would answer at once for ever."""
-        drive = self._control.drive
+        write = self._write
+        drive = write.control.drive
         telegrams = (sum(drive.counters) - self._telegrams) & 0xFFFF
         if drive.stops != self._stops:  # that is for the drive, which is at the old address
             self._give_up_probe(texts.NOT_WRITTEN)
-        elif not drive.silent and drive.answered_address == self._value:
+        elif not drive.silent and drive.answered_address == write.value:
             self._give_up_probe(texts.ADDRESS_TAKEN)
         elif telegrams >= _PROBES:
-            self._bus.readdress(drive, self._old_address)
+            self._bus.readdress(drive, write.old_address)
             self._ask()
         elif drive.urgent == drive.served:
             drive.hurry()
 
-    def _give_up_probe(self, result):
-        self._bus.readdress(self._control.drive, self._old_address)
-        self._control.drive.hurry()
-        self._end(result, False)
+    def _give_up_probe(self, row):
+        drive = self._write.control.drive
+        self._bus.readdress(drive, self._write.old_address)
+        drive.hurry()
+        self._end(row)
 
     def _follow_silence(self):
         """A drive that falls silent while it is told its new address may be there already, or not
         have heard of it: it is spoken to at either in turn, and the task with it.
         """
-        drive = self._control.drive
+        write = self._write
+        drive = write.control.drive
         if not drive.silent:
             self._silent = 0
         elif drive.silent >= self._silent + _SILENT_MAX:
             self._silent = drive.silent
-            at_new = drive.address == self._value
-            self._bus.readdress(drive, self._old_address if at_new else self._value)
+            at_new = drive.address == write.value
+            self._bus.readdress(drive, write.old_address if at_new else write.value)
 
     def _look(self, now):
-        drive = self._control.drive
-        if not drive.silent and drive.answered_address == self._value:
+        write = self._write
+        drive = write.control.drive
+        if not drive.silent and drive.answered_address == write.value:
             self._confirm()
         elif elapsed(now, self._since, self._mask) >= self._patience_us:
-            self._bus.readdress(drive, self._old_address)
-            self._end(texts.NO_ANSWER, False)
+            self._bus.readdress(drive, write.old_address)
+            self._end(texts.NO_ANSWER)
 
 
-def unanswered(job):
-    """Words for a task that ended without an answer, at most a row."""
-    return texts.NO_REPLY_TO_THIS if job.state == pkw.UNANSWERED else texts.NO_ANSWER
-
-
-def refusal(error):
-    """Words for the error number of a refused task, at most a row."""
-    if error == pkw.NO_CHANGE_RIGHTS:
-        return texts.NO_RIGHTS
-    return texts.REFUSALS.get(error) or texts.OTHER_REFUSAL + b"%d" % error
+def failure(job):
+    """Why a job was not done: a row of texts and the values in it."""
+    if job.state == pkw.UNANSWERED:
+        return (texts.NO_REPLY_TO_THIS,)
+    if job.state != pkw.REFUSED:
+        return (texts.NO_ANSWER,)
+    if job.error == pkw.NO_CHANGE_RIGHTS:
+        return (texts.NO_RIGHTS,)
+    if job.error in texts.REFUSALS:
+        return (texts.REFUSALS[job.error],)
+    return texts.OTHER_REFUSAL, job.error

@@ -140,8 +140,8 @@ MUTATIONS = (
         ("STOP", "START"), 7,
         (
             "panel/panel.py",
-            "if self.stop_key.is_down and pressed & self._motion_keys:",
-            "if self.stop_key.is_down and pressed & self._jog_bits:",
+            "if self.stop_key.is_down and acts.pressed & self._motion_bits:",
+            "if self.stop_key.is_down and acts.pressed & self._jog_bits:",
         ),
     ),
     Mutation(
@@ -164,8 +164,8 @@ MUTATIONS = (
         ("panel/keys.py", "self._released = 0  #", "self._released = (1 << len(names)) - 1  #"),
         (
             "panel/panel.py",
-            "elif pressed & self._start_key:",
-            "elif (pressed | acts.repeated) & self._start_key:",
+            'elif acts.has("START"):',
+            'elif acts.has("START") or acts.repeated & acts.bit("START"):',
         ),
     ),
     Mutation(
@@ -174,7 +174,7 @@ MUTATIONS = (
         ("EEPROM",), 31,
         (
             "panel/writer.py",
-            "pkw.WRITE_WORD_EEPROM if eeprom else pkw.WRITE_WORD",
+            "pkw.WRITE_WORD_EEPROM if write.eeprom else pkw.WRITE_WORD",
             "pkw.WRITE_WORD_EEPROM",
         ),
     ),
@@ -222,8 +222,8 @@ MUTATIONS = (
         ("WITHOUT REASON", "ANNOUNCED"), 3,
         (
             "panel/panel.py",
-            "        self.selected.keep_quiet()\n        position",
-            "        self.selected.stop_unseen()\n        position",
+            "        self.selected.keep_quiet()\n",
+            "        self.selected.stop_unseen()\n",
         ),
     ),
     Mutation(
@@ -371,7 +371,7 @@ MUTATIONS = (
         ("WRITE",), 340,
         (
             "panel/writer.py",
-            "        drive = self._control.drive\n        if drive.channel.is_full():",
+            "        drive = write.control.drive\n        if drive.channel.is_full():",
             "        drive = self._bus.drives[0]\n        if drive.channel.is_full():",
         ),
     ),
@@ -381,8 +381,8 @@ MUTATIONS = (
         ("WRITE",), 16,
         (
             "panel/writer.py",
-            "self._job.number, self._job.index, 0, self._value)",
-            "self._job.number, self._job.index, 0, self._value ^ 1)",
+            "write.number, write.index, 0, write.value)",
+            "write.number, write.index, 0, write.value ^ 1)",
         ),
     ),
     Mutation(
@@ -597,7 +597,7 @@ MUTATIONS = (
         ("EXCEPTION",), 2,
         (
             "panel/view.py",
-            "        screen.put(0, 10, 6, texts.BEYOND_VALUE)\n",
+            "        screen.put(0, 10, 6, texts.of(texts.BEYOND_VALUE))\n",
             "        screen.put(0, 10, 6, None)\n",
         ),
         (

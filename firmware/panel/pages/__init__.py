@@ -1,11 +1,38 @@
 # SPDX-License-Identifier: MIT
-"""The pages of the panel, one file each. A page draws itself and takes keys of its own.
+"""The pages of the panel, one file each, and what all of them keep to: `Page`.
 
-The contract:
+A page draws itself and takes keys of its own. PARAM goes from each page of the table, in `table`,
+to the next. What hides the page for a while is a page as well: the splash, a question.
 
-    whole               it takes both rows; otherwise row 1 shows the frequencies
-    tells_state         its row 2 says what the drive shown does (pages that are not whole)
-    obeys               START, REVERSE, JOG, address keys and PARAM act while it is shown
-    take_keys(acts, now_ms)     a key was pressed, or repeats: `panel.keys.Acts`
-    draw(screen, now_ms)        both rows, or row 2 in front of the address; changes nothing else
+To add a page, write its file, put its class into the table, and its words into `panel.texts`.
 """
+
+
+class Page:
+    """panel: the `Panel`; `panel.selected` is the `Control` of the drive that is shown.
+
+    whole: it takes both rows; otherwise row 1 shows the frequencies, and row 2 ends in the address
+    tells_state: its row 2 says what the drive shown does (pages that are not whole)
+    obeys: START, REVERSE, JOG, address keys and PARAM act while it is shown; STOP always acts
+    announces: what has to be said of other drives is said while it is shown
+    """
+
+    whole = False
+    tells_state = False
+    obeys = True
+    announces = True
+
+    def __init__(self, panel):
+        self.panel = panel
+
+    def open(self):
+        """It is shown from now on."""
+
+    def step(self, keys, now_ms):
+        """Again and again while it is shown, or hidden by another. keys: `panel.keys.Keys`."""
+
+    def take_keys(self, acts, now_ms):
+        """A key was pressed, or repeats. acts: `panel.keys.Acts`."""
+
+    def draw(self, screen, now_ms):
+        """Draw both rows, or row 2 in front of the address. Change nothing else."""

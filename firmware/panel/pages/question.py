@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: MIT
 """A question that takes both rows: one key says yes, another may say something else, the rest no.
 
-    panel.ask(Question(panel, texts.ASK_CUTS_OFF, {"SET": self._write}, mask))
+In use:
+
+    panel.cover(Question(panel, texts.ASK_CUTS_OFF, (1, 700, 2), {"SET": self._write}))
 
 Row 1 says in turn what is at stake, row 2 which keys answer. STOP does its work besides.
 """
@@ -9,29 +11,33 @@ Row 1 says in turn what is at stake, row 2 which keys answer. STOP does its work
 from micropython import const
 
 from panel import texts
+from panel.pages import Page
 from uss.timing import elapsed
 
-_STALE_MS = const(30_000)
+_STALE_MS = const(30_000)  # whoever caused it is gone by then
 
 
-class Question:
-    """text: (texts for row 1 in turn, text of row 2). answers: key -> function of now_ms.
+class Question(Page):
+    """text: (rows for row 1 in turn, row for row 2), one of texts.ASK_...; values: what belongs
+    into the former. answers: key -> function of now_ms.
 
-    mask: the clock's period - 1. deaf_ms: so long after it appeared no answer counts, because
-    nobody has read it yet.
+    deaf_ms: so long after it appeared no answer counts, because nobody has read it yet.
     """
 
-    whole = True  # takes both rows
-    tells_state = False
-    obeys = False  # the keys that act on every page do not act on this one, but for STOP
+    whole = True
+    obeys = False
 
-    def __init__(self, panel, text, answers, mask, deaf_ms=0):
-        self._panel = panel
-        self._mask = mask
-        self._deaf_ms = deaf_ms
-        self._text = text
+    def __init__(self, panel, text, values, answers, deaf_ms=0):
+        Page.__init__(self, panel)
+        stakes, self._choice = text
+        self._stakes = texts.filled(stakes, *values)
         self._answers = answers
-        self._shown_at = None
+        self._deaf_ms = deaf_ms
+        self._shown_at_ms = None
+
+    def close(self):
+        """It was answered, or need not be any more."""
+        self.panel.uncover()
 
     def take_keys(self, acts, now_ms):
         if not acts.pressed:
@@ -40,26 +46,26 @@ class Question:
         for key in self._answers:
             if acts.pressed == acts.bit(key):  # two keys at once are no answer
                 chosen = self._answers[key]
-        if chosen is not None and self._shown_for(now_ms) < self._deaf_ms:
+        if chosen is not None and self._shown_for_ms(now_ms) < self._deaf_ms:
             return
-        self._panel.close_question()
+        self.close()
         acts.forget()  # a key that said no, and is held, does nothing else
         if chosen is not None:
             chosen(now_ms)
 
-    def step(self, now_ms):
-        """Again and again while it is shown. Answers whether it has been there so long that
-        whoever caused it is gone."""
-        if self._shown_at is None:
-            self._shown_at = now_ms
-        return self._shown_for(now_ms) >= _STALE_MS
+    def step(self, keys, now_ms):
+        if self._shown_at_ms is None:
+            self._shown_at_ms = now_ms
+        is_stale = self._shown_for_ms(now_ms) >= _STALE_MS
+        if is_stale or self.panel.selected.needs_attention():  # an alarm is not to be hidden
+            self.close()
 
     def draw(self, screen, now_ms):
-        turns, choice = self._text
-        screen.put(0, 0, texts.ROW_WIDTH, turns[self._panel.announcer.page_turns % len(turns)])
-        screen.put(1, 0, texts.ROW_WIDTH, choice)
+        stakes = self._stakes
+        screen.put(0, 0, texts.ROW_WIDTH, stakes[self.panel.announcer.page_turns % len(stakes)])
+        screen.put(1, 0, texts.ROW_WIDTH, texts.of(self._choice))
 
-    def _shown_for(self, now_ms):
-        if self._shown_at is None:
+    def _shown_for_ms(self, now_ms):
+        if self._shown_at_ms is None:
             return 0
-        return elapsed(now_ms, self._shown_at, self._mask)
+        return elapsed(now_ms, self._shown_at_ms, self.panel.mask)

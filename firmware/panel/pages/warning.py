@@ -15,6 +15,7 @@ def draw(screen, panel):
     report = panel.warning
     if not (report.active and panel.announcer.page_turns & 1):
         return False
-    screen.put(1, 0, texts.STATE_WIDTH + 1, texts.WARNING)
-    draw_number(screen, 1, len(texts.WARNING) + 1, texts.WARNING_LETTER, report)
+    words = texts.of(texts.WARNING)
+    screen.put(1, 0, texts.STATE_WIDTH + 1, words)
+    draw_number(screen, 1, len(words) + 1, texts.WARNING_LETTER, report)
     return True

@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: MIT
+"""What a START asks before the motor turns: whether the operator takes a risk, see `panel.risks`.
+
+START takes it. Where SET puts it right, SET writes P2014, and the next START asks for less.
+"""
+
+from micropython import const
+
+from panel import risks, texts
+from panel.pages.question import Question
+from uss import profiles
+
+_READING_MS = const(1_000)  # so long a START does not answer: it may be a double tap
+
+
+class RiskQuestion(Question):
+    """About the risk that `panel.selected.question` waits for, which is open."""
+
+    def __init__(self, panel):
+        self._control = control = panel.selected
+        self._risk = risk = control.question
+        text, values, can_fix, self._value = risks.ask(control, risk)
+        answers = {"START": self._accept}
+        if can_fix:
+            answers["SET"] = self._supervise
+        Question.__init__(self, panel, text, values, answers, _READING_MS)
+
+    def close(self):
+        self._control.question = None
+        Question.close(self)
+
+    def step(self, keys, now_ms):
+        control, risk = self._control, self._risk
+        if control.question is None or not risks.is_open(control, risk):
+            self.close()
+        elif risks.measure(control, risk) != self._value:  # another one than was asked about
+            self.panel.cover(RiskQuestion(self.panel))
+        else:
+            Question.step(self, keys, now_ms)
+
+    def _accept(self, now_ms):
+        if self.panel.stop_key.is_down:
+            self.panel.say(now_ms, texts.REFUSED_STOP)
+        else:
+            self._control.accept_risk(self._risk, self._value)
+
+    def _supervise(self, now_ms):
+        """Have the drive stop by itself when this panel falls silent."""
+        number, index = profiles.TELEGRAM_OFF_TIME, profiles.COM_LINK
+        self.panel.write(now_ms, self._control, number, index, self.panel.off_time_ms)
