@@ -5,6 +5,7 @@
     keys        what is down now -> pressed, repeated, held
     stop_key, jog_keys          what these do while they are held
     control     one drive under the operator's hand: start, stop, jog, reverse
+    phases      what becomes of a START or a JOG
     permits     why START and JOG are refused
     command     a START or JOG that was obeyed, and what took it back
     setpoint, fault, stop_watch, state      what is known of a drive and said of it

@@ -16,6 +16,7 @@ from micropython import const
 
 from panel import state, texts
 from panel.fault import draw_number
+from panel.phases import ASKING
 from uss import pzd
 from uss.timing import elapsed
 
@@ -268,6 +269,6 @@ def _kind(control, seen, told):
     if not told:
         if control.fault.active:
             return TRIPPED
-        if control.notice and control.question is None:  # which says why
+        if control.notice and control.phase != ASKING:  # which says why
             return NOTED
     return NOTHING

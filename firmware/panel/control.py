@@ -22,6 +22,7 @@ from uss.survey import REREAD_US
 from panel import permits, risks, texts
 from panel.command import Command
 from panel.fault import NO_FAULT, Fault
+from panel.phases import ASKING, CHECKING, IDLE, JOGGING, RUNNING
 from panel.setpoint import Setpoint
 from panel.stop_watch import NO_WATCH, StopWatch
 
@@ -40,32 +41,32 @@ class Control:
 
     settings: a `Settings`.
 
-    Fields for a page: `setpoint`; `reversed`, the direction START takes; `jogging`, 0 or the
-    control word of the jog that is held; `checking`, START was obeyed and the drive is being
-    asked; `refusal`, why a key was not obeyed, to be shown once; `question`, the row of
-    risks.RISKS that START waits to be told to take, or None; `notice`, why the drive is not on any
-    more; `remark`, what has become of its P2014 while it runs: rows of texts, or NOTHING;
-    `lost_running`, when contact was lost it was running, or not heard at rest since the last ON;
-    `absence_known`, STOP was pressed while it was shown and not heard;
-    `stop_watch`, whether a STOP is obeyed; `fault`; `moving`, it is being given another
-    address; `moved`, it has been.
+    Fields for a page: `phase`, of `phases`; `question`, the row of risks.RISKS that ASKING is about;
+    `setpoint`; `reversed`, the direction START takes; `refusal`, why a key was not obeyed, to be
+    shown once; `notice`, why the drive is not on any more; `remark`, what has become of its P2014
+    while it runs: rows of texts, or NOTHING; `lost_running`, when contact was lost it was running,
+    or not heard at rest since the last ON; `absence_known`, STOP was pressed while it was shown
+    and not heard; `stop_watch`, whether a STOP is obeyed; `fault`.
+
+    Nobody else writes a field of it, but for these: `longest_off_time_ms`, a longer P2014 is a
+    risk, by the panel; `moving`, it is being given another address, and `moved`, it has been, by
+    the writer.
     """
 
     def __init__(self, drive, survey, bus, mask, settings):
         self.drive = drive
         self.survey = survey
         self.bus = bus
-        self.longest_off_time_ms = 0  # a longer P2014 is a risk: the panel sets it
+        self.longest_off_time_ms = 0
         self.setpoint = Setpoint(drive, survey, settings)
         self.stop_watch = NO_WATCH
         self.fault = NO_FAULT
         self.moving = False
         self.moved = False
+        self.phase = IDLE
+        self.question = 0
         self.reversed = False
-        self.jogging = 0
-        self.checking = False
         self.refusal = texts.NOTHING
-        self.question = None
         self.notice = texts.NOTHING
         self.remark = texts.NOTHING
         self.lost_running = False
@@ -92,7 +93,7 @@ class Control:
         if not self.refusal and not self.is_starting():
             self._obey()
             self.notice = texts.NOTHING
-            self.checking = True
+            self.phase = CHECKING
             self.survey.count_anew()
             self.survey.recheck()
 
@@ -133,19 +134,19 @@ class Control:
         if not self.refusal:
             self._obey()
             self.stop_watch.end()
-            self.jogging = stw
+            self.phase = JOGGING
             self._jogged = True
             self.survey.count_anew()
             self._command.exposure_ms = risks.exposure_ms(self)
             self.drive.start(self.drive.hsw, stw)
 
     def end_jog(self):
-        if self.jogging:
+        if self.phase == JOGGING:
             self._stop(self.drive.off)
 
     def reverse(self):
         """The other direction: at once for a drive that runs, preselected for one that stands."""
-        if self.jogging:
+        if self.phase == JOGGING:
             self.refusal = texts.REFUSED_JOG
             return
         self.reversed = not self.reversed
@@ -168,9 +169,14 @@ class Control:
     def keep_quiet(self):
         """Forget what would be said and asked: another drive is shown."""
         self.refusal = texts.NOTHING
-        self.question = None
-        if not self.checking:
+        self.drop_question()
+        if self.phase != CHECKING:
             self.survey.drop_recheck()
+
+    def drop_question(self):
+        """Nobody takes the risk."""
+        if self.phase == ASKING:
+            self.phase = IDLE
 
     def learn_anew(self):
         """Have all settings of the drive read again soon: it is shown from now on."""
@@ -213,7 +219,7 @@ class Control:
 
     def is_starting(self):
         """Whether START has been obeyed: the drive is being asked, or ON is sent."""
-        return self.checking or self.drive.is_on()
+        return self.phase == CHECKING or self.drive.is_on()
 
     def needs_attention(self):
         """Whether it may run though it should not: an alarm."""
@@ -263,7 +269,7 @@ class Control:
 
     def ask_on(self, now):
         """In between, for somebody waits: what was just answered is not all."""
-        if self.checking:
+        if self.phase == CHECKING:
             self.survey.step(now)
 
     def watch(self, now):
@@ -279,10 +285,10 @@ class Control:
             self._contact = drive.contact
             self.lost_running = drive.was_running and not drive.contact
             self.absence_known = False
-        if self.checking:
+        if self.phase == CHECKING:
             self._finish_check(now)
             return  # that may have taken long
-        if drive.wanted:
+        if self.phase == RUNNING or self.phase == JOGGING:
             self._watch_command(now)
         elif drive.off != pzd.OFF1:
             self._watch_second_stop()
@@ -302,9 +308,7 @@ class Control:
 
     def _stop(self, off):
         self.drive.stop(off)
-        self.jogging = 0
-        self.question = None
-        self.checking = False
+        self.phase = IDLE
         self._quiet_zsw = _UNKNOWN
         self.survey.drop_recheck()
         if not self.stop_watch.active:  # pressing again does not put the alarm off
@@ -314,9 +318,8 @@ class Control:
         return pzd.ON_REVERSE if self.reversed else pzd.ON
 
     def _obey(self):
-        """A key was obeyed: what was said of the run before, and asked, is over."""
+        """A key was obeyed: what was said of the run before is over."""
         self.remark = texts.NOTHING
-        self.question = None
         self._quiet_zsw = _UNKNOWN
         if self._command is None:
             self._command = Command(self.drive, self.survey, self.bus, self._mask)
@@ -334,13 +337,13 @@ class Control:
             refusal = texts.REFUSED_CHECKING
         if not refusal and command.risk < len(risks.RISKS):  # one in a turn: each takes long
             if risks.is_open(self, command.risk):
-                self.checking = False
+                self.phase = ASKING
                 self.survey.drop_recheck()
                 self.question = command.risk
                 self.notice = texts.DID_NOT_START
             command.risk += 1
             return
-        self.checking = False
+        self.phase = IDLE
         self.survey.drop_recheck()
         if command.is_stale():
             self.notice = texts.PANEL_HUNG
@@ -352,6 +355,7 @@ class Control:
             command.exposure_ms = risks.exposure_ms(self)
             self.stop_watch.end()
             self._jogged = False
+            self.phase = RUNNING
             self.drive.start(self.drive.hsw, self._on())
 
     def _watch_command(self, now):
@@ -365,7 +369,7 @@ class Control:
             command.exposure_version = self.survey.version  # in a turn of its own
             self._look_at_supervision()
         else:
-            notice = command.why_in_vain(self.jogging, now)
+            notice = command.why_in_vain(self.phase == JOGGING, now)
             if notice:
                 self._take_back(notice)
 
@@ -374,7 +378,7 @@ class Control:
         self.remark = texts.NOTHING
         if risks.exposure_ms(self) > self._command.exposure_ms:
             is_long = self.survey.values[profiles.SUPERVISION] > 0
-            if self.jogging:  # that is refused
+            if self.phase == JOGGING:  # that is refused
                 self._take_back(texts.RUNS_LONG if is_long else texts.UNSUPERVISED)
             else:
                 self.remark = texts.RUNS_LONG if is_long else texts.RUNS_FOR_EVER
@@ -392,7 +396,7 @@ class Control:
             self._stirred_at = now
         elif self._stirred and elapsed(now, self._stirred_at, self._mask) >= _DOUBT_US:
             self._stirred = False
-        if self._jogged and not (self.jogging or watch.active):
+        if self._jogged and not (self.phase == JOGGING or watch.active):
             self._jogged = False
 
     def _begin_stop_watch(self):
@@ -417,7 +421,7 @@ class Control:
 
     def _take_back(self, notice):
         self.drive.stop(self.drive.off)
-        self.jogging = 0
+        self.phase = IDLE
         self.notice = notice
 
     def _watch_second_stop(self):

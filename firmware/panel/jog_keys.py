@@ -5,6 +5,7 @@ Two at once mean none. So does another drive that is shown, a STOP that is down,
 no place for jogging. Whatever ended a jog, the key must go up and down again.
 """
 
+from panel.phases import JOGGING
 from uss import pzd
 
 
@@ -26,10 +27,10 @@ class JogKeys:
         if self._control is not None:
             if down != self._key or control is not self._control or not allowed:
                 self._control.end_jog()
-            if not self._control.jogging:
+            if self._control.phase != JOGGING:
                 self._control = None
         if self._control is None and allowed and keys.pressed & down and down in (right, left):
             control.jog(pzd.JOG_RIGHT if down == right else pzd.JOG_LEFT)
-            if control.jogging:
+            if control.phase == JOGGING:
                 self._control = control
                 self._key = down

@@ -20,6 +20,7 @@ from panel.jog_keys import JogKeys
 from panel.keys import Acts, Keys, unknown
 from panel.neighbours import Neighbours
 from panel.pages.risk import RiskQuestion
+from panel.phases import ASKING, CHECKING
 from panel.pages.splash import Splash
 from panel.pages.table import PAGES
 from panel.screen import Screen
@@ -177,7 +178,7 @@ class Panel:
 
     def _watch(self, _now_ms, now_us):
         selected = self.selected
-        if not selected.checking:
+        if selected.phase != CHECKING:
             self.announcer.look(self._position)
         selected.watch(now_us)
         return False
@@ -294,7 +295,7 @@ class Panel:
         write = self._writer.take_ended()
         if write:
             self.say(now_ms, *write.news(selected))
-        if selected.question is not None and self._cover is None:
+        if selected.phase == ASKING and self._cover is None:
             self._cover = RiskQuestion(self)
         if self.message and elapsed(now_ms, self._message_at_ms, self.mask) >= _MESSAGE_MS:
             self.message = None

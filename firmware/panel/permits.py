@@ -8,6 +8,7 @@ In use:
 """
 
 from panel import risks, texts
+from panel.phases import JOGGING
 from uss import profiles, pzd
 from uss.survey import RIGHT
 
@@ -41,7 +42,7 @@ def tells_no_status(survey):
 
 def why_not_start(control):
     drive, survey = control.drive, control.survey
-    if control.jogging:
+    if control.phase == JOGGING:
         return texts.REFUSED_JOG
     if drive.off != pzd.OFF1:
         return texts.REFUSED_STOPPING

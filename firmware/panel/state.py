@@ -7,6 +7,7 @@ In use:
 """
 
 from panel import texts
+from panel.phases import JOGGING
 from panel.permits import is_local, tells_no_status
 from uss import pzd
 
@@ -47,13 +48,15 @@ def _running(control):
         if is_local(control.survey):
             return texts.RUNS_LOCALLY
         return texts.STOPPING
-    if control.jogging:
-        return texts.JOGS_RIGHT if control.jogging == pzd.JOG_RIGHT else texts.JOGS_LEFT
+    if drive.wanted == pzd.JOG_RIGHT:
+        return texts.JOGS_RIGHT
+    if drive.wanted == pzd.JOG_LEFT:
+        return texts.JOGS_LEFT
     return remark(control) or texts.RUNNING
 
 
 def remark(control):
     """What somebody has changed at a drive that is on, since it was started, or NOTHING."""
-    if not control.remark and not control.jogging and control.setpoint.is_below():
+    if not control.remark and control.phase != JOGGING and control.setpoint.is_below():
         return texts.RUNS_FASTER
     return control.remark

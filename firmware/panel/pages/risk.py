@@ -7,6 +7,7 @@ START takes it. Where SET puts it right, SET writes P2014, and the next START as
 from micropython import const
 
 from panel import risks, texts
+from panel.phases import ASKING
 from panel.pages.question import Question
 from uss import profiles
 
@@ -26,12 +27,12 @@ class RiskQuestion(Question):
         Question.__init__(self, panel, text, values, answers, _READING_MS)
 
     def close(self):
-        self._control.question = None
+        self._control.drop_question()
         Question.close(self)
 
     def step(self, keys, now_ms):
         control, risk = self._control, self._risk
-        if control.question is None or not risks.is_open(control, risk):
+        if control.phase != ASKING or not risks.is_open(control, risk):
             self.close()
         elif risks.measure(control, risk) != self._value:  # another one than was asked about
             self.panel.cover(RiskQuestion(self.panel))
