@@ -37,26 +37,24 @@ def test_a_second_later_it_shows_setpoint_frequency_state_and_address():
 
 
 def test_the_language_changes_while_the_panel_runs():
-    german = list(texts.COLUMNS[0])
-    german[texts.READY] = b"BEREIT"
-    german[texts.LINE_FAILED] = b"LEITUNG WEG"
+    german = {texts.READY: b"BEREIT", texts.LINE_FAILED: b"LEITUNG WEG"}
     world = running(**unsupervised())
     world.drives[1].unplug()
     world.run(4000)
     world.drives[1].plug()
     world.run(12000)
     assert row_2(world) == "LINE FAILED  A1", world.lcd()
-    texts.COLUMNS.append(german)
+    texts.LANGUAGES["Deutsch"] = german
     try:
-        texts.speak(1)
+        texts.speak("Deutsch")
         world.run(200)
         assert row_2(world) == "LEITUNG WEG  A1"  # also what was noted before
         world.press("STOP")
         world.run(1000)
         assert row_2(world) == "BEREIT       A1"
     finally:
-        texts.speak(0)
-        texts.COLUMNS.pop()
+        texts.speak("English")
+        del texts.LANGUAGES["Deutsch"]
 
 
 def test_the_display_works_a_week_after_power_on_as_well():

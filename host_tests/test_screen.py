@@ -71,21 +71,20 @@ def test_the_picture_has_the_size_of_the_display():
 
 
 def all_words(value):
-    """The words, in every language, of a row or rows of `texts`, however deep they stand."""
-    if isinstance(value, int):
-        for column in texts.COLUMNS:
-            yield column[value]
-    elif isinstance(value, (tuple, dict)):
+    """The words, in every language, of a text or texts, however deep they stand."""
+    if isinstance(value, bytes):
+        for column in texts.LANGUAGES.values():
+            yield column.get(value, value)
+    elif isinstance(value, (tuple, dict)) and value is not texts.LANGUAGES:
         for part in value.values() if isinstance(value, dict) else value:
             yield from all_words(part)
 
 
-def named_rows():
-    """(name, row or rows) of all that the module `texts` has."""
-    for name in dir(texts):
-        is_row = name.lstrip("_")[0].isupper() and not name.endswith("_WIDTH")
-        if is_row and name not in ("LANGUAGES", "COLUMNS", "NOTHING", "VERSION"):
-            yield name, getattr(texts, name)
+def named_texts():
+    """(name, text or texts) of all that the module `texts` has."""
+    return [
+        (name, getattr(texts, name)) for name in dir(texts) if name[0] != "_" and name != "NOTHING"
+    ]
 
 
 def test_no_text_is_wider_than_its_place():
@@ -96,7 +95,7 @@ def test_no_text_is_wider_than_its_place():
     ).split()
     values = ("UNREAD_VALUE", "REFUSED_VALUE", "UNKNOWN_VALUE", "BEYOND_VALUE")
     seen = 0
-    for name, rows in named_rows():
+    for name, named in named_texts():
         width = texts.ROW_WIDTH
         if name in states:
             width = texts.STATE_WIDTH
@@ -108,7 +107,7 @@ def test_no_text_is_wider_than_its_place():
             width = texts.ROW_WIDTH - len("65535") + len("%d")
         elif name.startswith("OTHER_"):
             width = texts.ROW_WIDTH - len("A31")
-        for text in all_words(rows):
+        for text in all_words(named):
             assert 0 < len(text.replace(b"A%d", b"")) <= width, (name, text)
             seen += 1
     assert seen > 100, seen
@@ -116,8 +115,8 @@ def test_no_text_is_wider_than_its_place():
 
 def test_every_text_is_made_of_characters_that_the_display_has():
     """The ROM of the HD44780 has a yen sign for the backslash and an arrow for the tilde."""
-    for name, rows in named_rows():
-        for text in all_words(rows):
+    for name, named in named_texts():
+        for text in all_words(named):
             for code in text:
                 assert 0x20 <= code < 0x7E and chr(code) != "\\", (name, text)
 

@@ -17,7 +17,7 @@
     view        what is shown whatever the page is
     announcer   what has to be said of drives besides what the page tells, one after the other
     screen      the picture of 2 x 16 characters
-    texts       every word that can be seen, by row
+    texts       every word that can be seen
 
 Knows no pins and no telegram bytes; time is an argument.
 """

@@ -41,10 +41,10 @@ class Control:
 
     settings: a `Settings`.
 
-    Fields for a page: `phase`, of `phases`; `question`, the row of risks.RISKS that ASKING is about;
+    Fields for a page: `phase`, of `phases`; `question`, the row of risks.RISKS that it asks;
     `setpoint`; `reversed`, the direction START takes; `refusal`, why a key was not obeyed, to be
     shown once; `notice`, why the drive is not on any more; `remark`, what has become of its P2014
-    while it runs: rows of texts, or NOTHING; `lost_running`, when contact was lost it was running,
+    while it runs: texts, or NOTHING; `lost_running`, when contact was lost it was running,
     or not heard at rest since the last ON; `absence_known`, STOP was pressed while it was shown
     and not heard; `stop_watch`, whether a STOP is obeyed; `fault`.
 

@@ -129,7 +129,7 @@ NO_FAULT = NoFault()
 
 
 def draw_number(screen, row, column, letter, report):
-    """A letter, a row of texts, and the number of a fault or a warning, once that is known."""
+    """A letter and the number of a fault or a warning, once that is known."""
     if report.number:
         screen.put(row, column, 1, texts.of(letter))
         screen.digits(row, column + 1, 4, report.number)

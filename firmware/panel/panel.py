@@ -48,7 +48,7 @@ HELD_KEYS = ("STOP", "JOG_RIGHT", "JOG_LEFT")
 class Panel:
     """controls: a `Control` for each drive, at least one. key_names: as the keypad has its bits.
 
-    settings: a `Settings`. mask: the clock's period - 1. notice: a row of texts that is said after
+    settings: a `Settings`. mask: the clock's period - 1. notice: a text that is said after
     the splash, or NOTHING; what is wrong with the settings goes before it.
 
     For pages and view: `selected`, the control that is shown; `warning`, its `Report`; `message`,
@@ -125,9 +125,9 @@ class Panel:
 
     # --- for the pages --------------------------------------------------------------------------
 
-    def say(self, now_ms, row, *values):
+    def say(self, now_ms, text, *values):
         """Show a text for _MESSAGE_MS, unless something else is said or a key is pressed."""
-        self.message = texts.of(row, *values)
+        self.message = texts.of(text, *values)
         self._message_at_ms = now_ms
 
     def cover(self, page):
@@ -304,7 +304,7 @@ class Panel:
 
 
 def _about(settings):
-    """What is wrong with the settings file: rows, with their values, said one after the other."""
+    """What is wrong with the settings file: texts, with their values, said one after the other."""
     suspect = settings.suspect
     if settings.complaint is None:
         return []

@@ -3,7 +3,7 @@
 
 In use:
 
-    row(control)                        # texts.RUNNING
+    text(control)                       # texts.RUNNING
 """
 
 from panel import texts
@@ -17,8 +17,8 @@ _TROUBLES = (
 )  # fmt: skip
 
 
-def row(control):
-    """The state as a row of texts, STATE_WIDTH at most. A motor that turns outranks a notice."""
+def text(control):
+    """The state in words, at most STATE_WIDTH wide. A motor that turns outranks a notice."""
     drive, survey = control.drive, control.survey
     if not drive.contact:
         return _TROUBLES[drive.trouble]

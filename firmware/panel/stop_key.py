@@ -31,9 +31,9 @@ SAID = {
 class StopKey:
     """bit: of the key. controls: of all drives. second_stop: of the settings. mask: of the clock.
 
-    say: say(now_ms, row) has a row of texts shown for a while.
+    say: say(now_ms, text) has a text shown for a while.
 
-    text: what is to be said while it is held, a row of texts or NOTHING. is_down: no START and no
+    text: what is to be said while it is held, a text or NOTHING. is_down: no START and no
     JOG meanwhile.
     left: how many looks `stop_next` has still to take, until every drive was told to stop.
     """

@@ -40,7 +40,7 @@ IDLE, PROBING, WAITING, WRITING, LOOKING = range(5)
 class Write:
     """A parameter that is to be written. value: 16 bits. moves: it is the drive's address.
 
-    outcome: how it ended, a row of texts and the values in it; None while it is on its way. done:
+    outcome: how it ended, a text and the values in it; None while it is on its way. done:
     the drive has confirmed it.
     """
 
@@ -60,11 +60,11 @@ class Write:
         self.done = False
 
     def news(self, selected):
-        """The outcome for somebody who looks at this control, as a row and values."""
+        """The outcome for somebody who looks at this control, as a text and values."""
         if self.control is selected:
             return self.outcome
-        row = texts.OTHER_WRITTEN if self.done else texts.OTHER_NOT_WRITTEN
-        return row, self.control.drive.address
+        text = texts.OTHER_WRITTEN if self.done else texts.OTHER_NOT_WRITTEN
+        return text, self.control.drive.address
 
 
 class Writer:
@@ -241,7 +241,7 @@ class Writer:
 
 
 def failure(job):
-    """Why a job was not done: a row of texts and the values in it."""
+    """Why a job was not done: a text and the values in it."""
     if job.state == pkw.UNANSWERED:
         return (texts.NO_REPLY_TO_THIS,)
     if job.state != pkw.REFUSED:

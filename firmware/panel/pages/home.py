@@ -25,10 +25,10 @@ class Home(Page):
 
     def draw(self, screen, now_ms):
         control = self.panel.selected
-        row = state.row(control)
-        if row != texts.FAULT and warning.draw(screen, self.panel):
+        text = state.text(control)
+        if text != texts.FAULT and warning.draw(screen, self.panel):
             return
-        words = texts.of(row)
+        words = texts.of(text)
         screen.put(1, 0, texts.STATE_WIDTH + 1, words)
-        if row == texts.FAULT:
+        if text == texts.FAULT:
             draw_number(screen, 1, len(words) + 1, texts.FAULT_LETTER, control.fault)

@@ -18,7 +18,7 @@ _STALE_MS = const(30_000)  # whoever caused it is gone by then
 
 
 class Question(Page):
-    """text: (rows for row 1 in turn, row for row 2), one of texts.ASK_...; values: what belongs
+    """text: (texts for row 1 in turn, text of row 2), one of texts.ASK_...; values: what belongs
     into the former. answers: key -> function of now_ms.
 
     deaf_ms: so long after it appeared no answer counts, because nobody has read it yet.
