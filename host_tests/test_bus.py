@@ -5,7 +5,7 @@ from boards.sim.drives.families import g110, g120, generic, mm3, mm420, mm440, v
 from bus_bench import QUICK, Bench, refusal
 from spoilt_bench import TROUBLES, spoil
 from tools.examples.simulation import Stage
-from uss import pkw, pzd, words
+from uss import bits, pkw, pzd
 from uss.bus import MAY_RUN, NO_CONTACT, Master
 from uss.bus.errors import FallsSilent, NoContact, NotStarted, Refused, TimedOut, UssError
 from uss.bus.scan import Scan
@@ -752,17 +752,17 @@ def test_of_a_drive_that_was_never_heard_nothing_is_known():
     drive = bench.drive
     bench.motor().unplug()
     bench.bus.wait(1)
-    assert words.names(drive.zsw, MM420.zsw_bits) == ["UNKNOWN"]
+    assert bits.names(drive.zsw, MM420.zsw_bits) == ["UNKNOWN"]
     assert drive.zsw is None and drive.hiw is None and drive.word(1) is None
-    assert not words.may_start(drive.zsw)
+    assert not bits.may_start(drive.zsw)
     refusal(ValueError, drive.word, 3)
     bench.motor().plug()
     bench.bus.wait(1)
-    assert "READY_TO_SWITCH_ON" in words.names(drive.zsw, MM420.zsw_bits)
-    assert words.may_start(drive.zsw) and drive.hiw == 0
+    assert "READY_TO_SWITCH_ON" in bits.names(drive.zsw, MM420.zsw_bits)
+    assert bits.may_start(drive.zsw) and drive.hiw == 0
     bench.motor().unplug()
     bench.bus.wait(2)
-    assert words.names(drive.zsw, MM420.zsw_bits) == ["UNKNOWN"]
+    assert bits.names(drive.zsw, MM420.zsw_bits) == ["UNKNOWN"]
     bench.end()
 
 

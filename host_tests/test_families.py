@@ -4,7 +4,7 @@
 Numbers of chapters are those of the protocol notes, USS.md.
 """
 
-from uss import pkw, profiles, pzd, words
+from uss import bits, pkw, profiles, pzd
 from uss.families import (
     CU240S,
     FAMILIES,
@@ -157,7 +157,7 @@ def test_a_drive_that_takes_no_sign_has_a_word_for_the_other_direction():
 
 def test_the_words_bits_are_named_for_what_they_do():
     def named(family, word):
-        return words.names(word & ~pzd.OFF1, family.stw_bits)
+        return bits.names(word & ~pzd.OFF1, family.stw_bits)
 
     assert named(MM440, MM440.on_reverse) == ["ON", "REVERSE"]
     assert named(MM3, MM3.on) == ["ON", "RUN_RIGHT"]

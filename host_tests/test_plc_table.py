@@ -14,6 +14,7 @@ from hal.rs485 import Rs485Link
 from plc_bench import SCAN_US
 from test_plc_codes import NEVER
 from uss import (
+    bits,
     drive,
     families,
     layout,
@@ -26,7 +27,6 @@ from uss import (
     single,
     telegram,
     timing,
-    words,
 )
 from uss.bus import pkw_errors
 from uss.s7 import codes
@@ -73,7 +73,7 @@ def roots():
     port = s7.Port(None, clock)
     modules = (
         codes, drive, families, layout, master, pkw, pkw_errors, pzd, receiver, s7, scaling,
-        single, telegram, timing, words,
+        single, telegram, timing, bits,
     )  # fmt: skip
     found = {module.__name__.split(".")[-1]: module for module in modules}
     found["Drive"] = drive.Drive(1, clock.ticks_mask)

@@ -29,7 +29,7 @@ What the panel knows of a drive:
 
 For programs that need more than the panel:
     families         what differs between the drive families: data
-    words            the bits of control and status words by name
+    bits             the bits of control and status words by name
     scaling          PZD2 in percent, Hz and 1/min, floating point
 
 Wings on top of that. The panel imports none of them, and what is above neither:

@@ -24,7 +24,7 @@ How the families differ from the MICROMASTER 4, in short (USS.md 1.3, 1.9, 4.2, 
 
 from micropython import const
 
-from uss import profiles, pzd, words
+from uss import bits, profiles, pzd
 from uss.layout import VARIABLE, Layout
 from uss.profiles import CUTS_OFF, RESCALES, WORD
 from uss.timing import BAUD_RATES
@@ -100,8 +100,8 @@ class GENERIC:
     is_cumulative = True  # bits 0, 1 and 2 of ZSW add up to xx7h; else the last stands alone
 
     # What the bits of the words are called.
-    stw_bits = words.STW_BITS_PROFILE
-    zsw_bits = words.ZSW_BITS_PROFILE
+    stw_bits = bits.STW_BITS_PROFILE
+    zsw_bits = bits.ZSW_BITS_PROFILE
     stw2_bits = ()
     zsw2_bits = ()
 
@@ -157,8 +157,8 @@ class MM3(GENERIC):
     hsw_is_signed = False
     hiw_is_signed = False
     is_cumulative = False
-    stw_bits = words.STW_BITS_MM3
-    zsw_bits = words.ZSW_BITS_MM3
+    stw_bits = bits.STW_BITS_MM3
+    zsw_bits = bits.ZSW_BITS_MM3
     integer_doubles = ()
     ask_first = {
         9: CUTS_OFF,  # access level
@@ -203,10 +203,10 @@ class MM420(GENERIC):
     jog_right = pzd.JOG_RIGHT
     jog_left = pzd.JOG_LEFT
     is_cumulative = False  # captured of MM4 and G110; (?) of a V20
-    stw_bits = words.STW_BITS
-    zsw_bits = words.ZSW_BITS
-    stw2_bits = words.STW2_BITS
-    zsw2_bits = words.ZSW2_BITS
+    stw_bits = bits.STW_BITS
+    zsw_bits = bits.ZSW_BITS
+    stw2_bits = bits.STW2_BITS
+    zsw2_bits = bits.ZSW2_BITS
     integer_doubles = (  # (?) rated voltage and fault value; the others are connectors
         208, 731, 732, 733, 771, 810, 840, 949, 1070, 1110, 2016, 2019, 2051, 2103, 2106, 2200,
         2253, 2264,
@@ -301,8 +301,8 @@ class G120(GENERIC):
         (2040, 0, WORD),  # (?) the type
     )
     on_reverse = pzd.ON_REVERSE
-    stw_bits = words.STW_BITS_G120
-    zsw_bits = words.ZSW_BITS_G120
+    stw_bits = bits.STW_BITS_G120
+    zsw_bits = bits.ZSW_BITS_G120
     integer_doubles = MM420.integer_doubles  # (?)
     ask_first = {  # (?) the selection
         10: CUTS_OFF,  # commissioning: the motor does not run

@@ -15,7 +15,7 @@ takes heap, so nothing of it belongs into an interrupt. The panel does not impor
 Whoever does not wait calls `step` again and again: without it for 300 ms every motor is stopped.
 """
 
-from uss import families, master, pkw, pzd, single, words
+from uss import bits, families, master, pkw, pzd, single
 from uss.bus import pkw_errors
 from uss.bus.errors import FallsSilent, NoContact, NotStarted, Refused, TimedOut, UssError
 from uss.layout import Layout
@@ -434,7 +434,7 @@ class Drive:
             self.bus.engine.supervise(self.engine, off_time_ms)
 
     def _may_start(self):
-        return self.engine.contact and words.may_start(self.engine.zsw)
+        return self.engine.contact and bits.may_start(self.engine.zsw)
 
     def _refuse(self, reason):
         raise NotStarted("drive %d %s" % (self.engine.address, reason))

@@ -37,7 +37,7 @@ from uss.s7.parameters import (  # noqa: F401  (also blocks of this library)
 from uss.scaling import RUNS_RIGHT, Scale, run_words, with_direction
 from uss.telegram import NODE_MAX
 from uss.timing import BAUD_RATES, elapsed
-from uss.words import may_start
+from uss.bits import may_start
 
 USS = const(1)  # MODE of USS_INIT
 PPI = const(0)  # the port is for something else

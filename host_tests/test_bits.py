@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Control and status words bit by bit: their names, and whether a drive may be started."""
 
-from uss import words
+from uss import bits
+from uss.bits import STW2_BITS, STW_BITS, ZSW2_BITS, ZSW_BITS, bit, may_start, names
 from uss.families import FAMILIES
 from uss.scaling import RUNS_RIGHT
-from uss.words import STW2_BITS, STW_BITS, ZSW2_BITS, ZSW_BITS, bit, may_start, names
 
 # ZSW, what is remarkable about it. From captures and manuals (USS.md 4.3).
 SEEN = (
@@ -72,21 +72,21 @@ def test_the_second_words_in_names():
 
 
 def test_an_idle_g120_reports_nothing_wrong():
-    said = names(0xEB31, words.ZSW_BITS_G120)
+    said = names(0xEB31, bits.ZSW_BITS_G120)
     assert said == ["READY_TO_SWITCH_ON", "CONTROL_REQUESTED", "RUNS_RIGHT"]
 
 
 def test_the_specification_names_the_first_eleven_bits_of_every_family():
     for family in FAMILIES:
-        for place, name, at_0 in words.ZSW_BITS_PROFILE:
+        for place, name, at_0 in bits.ZSW_BITS_PROFILE:
             assert (place, name, at_0) in family.zsw_bits, (family.name, name)
 
 
 def test_a_bit_by_its_name():
     assert bit("FAULT", ZSW_BITS) == 0x0008
     assert bit("REVERSE", STW_BITS) == 0x0800
-    assert bit("DATA_SET_BIT_0", words.STW_BITS_G120) == 0x8000
-    for table in (ZSW_BITS, words.ZSW_BITS_MM3, words.ZSW_BITS_G120):
+    assert bit("DATA_SET_BIT_0", bits.STW_BITS_G120) == 0x8000
+    for table in (ZSW_BITS, bits.ZSW_BITS_MM3, bits.ZSW_BITS_G120):
         assert bit("RUNS_RIGHT", table) == RUNS_RIGHT
     for table in tables():
         for place, name, _ in table:
@@ -95,7 +95,7 @@ def test_a_bit_by_its_name():
 
 def test_a_name_that_no_bit_has_is_an_error():
     try:
-        bit("JOG_RIGHT", words.STW_BITS_G120)
+        bit("JOG_RIGHT", bits.STW_BITS_G120)
     except ValueError as error:
         assert "JOG_RIGHT" in str(error)
         return

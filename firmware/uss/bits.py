@@ -86,18 +86,18 @@ _START_MASK = 0x0078
 _START_VALUE = 0x0030
 
 
-def names(word, bits):
-    """The names of the remarkable bits of a word, a list. bits: one of the tables. Of None, which
+def names(word, table):
+    """The names of the remarkable bits of a word, a list. table: one of these. Of None, which
     is no word: [UNKNOWN].
     """
     if word is None:
         return [UNKNOWN]
-    return [name for place, name, at_0 in bits if (word >> place & 1 == 0) == at_0]
+    return [name for place, name, at_0 in table if (word >> place & 1 == 0) == at_0]
 
 
-def bit(name, bits):
+def bit(name, table):
     """The bit of that name as a mask: 0x0008 for "FAULT". ValueError when the table has none."""
-    for place, candidate, _ in bits:
+    for place, candidate, _ in table:
         if candidate == name:
             return 1 << place
     raise ValueError("no bit is called %s" % name)
