@@ -5,7 +5,7 @@ Control words as in USS.md 4.8 of the protocol notes: r0054 of a MICROMASTER 4.
 """
 
 from master_bench import Bus
-from uss import pzd
+from uss import bits, pzd
 from uss.drive import Drive
 
 READY, RUNNING, FAULT = 0xFB31, 0xFB34, 0xFB78
@@ -33,7 +33,7 @@ def test_the_whole_words_are_those_of_the_manual():
         (pzd.OFF2, ("NO_OFF3", "PULSES", "RAMP_OUTPUT", "RAMP_RUN", "SETPOINT")),
         (pzd.OFF3, ("NO_OFF2", "PULSES", "RAMP_OUTPUT", "RAMP_RUN", "SETPOINT")),
     )
-    names = {name: 1 << bit for bit, name, _ in pzd.STW_BITS}
+    names = {name: 1 << bit for bit, name, _ in bits.STW_BITS}
     for word, set_bits in words:
         assert word == sum([names[name] for name in set_bits]) + names["CONTROL"], hex(word)
     assert pzd.ON == pzd.OFF1 | names["ON"]

@@ -8,7 +8,7 @@ What is not valid changes nothing.
 
 import golden
 from line_bench import MASK, Line, of_words, sealed
-from uss import pkw, pzd, single, telegram
+from uss import bits, pkw, pzd, single, telegram
 from uss.channel import Channel
 from uss.drive import Drive
 from uss.layout import Layout
@@ -17,7 +17,7 @@ from uss.tasks.change_reports import Reports
 
 # --- the words of a row -------------------------------------------------------------------------
 
-STW_BITS = {name: 1 << bit for bit, name, _ in pzd.STW_BITS}
+STW_BITS = {name: 1 << bit for bit, name, _ in bits.STW_BITS}
 
 
 def pzd_word(text):

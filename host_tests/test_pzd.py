@@ -28,14 +28,6 @@ def test_status_words_are_read_as_seen_on_real_drives():
         assert pzd.state(zsw) == said, hex(zsw)
 
 
-def test_bit_tables_name_each_bit_once():
-    for table in (pzd.STW_BITS, pzd.ZSW_BITS):
-        bits = [row[0] for row in table]
-        names = [row[1] for row in table]
-        assert bits == sorted(set(bits)) and max(bits) <= 15
-        assert len(set(names)) == len(names)
-
-
 def test_control_words_are_those_of_the_manuals():
     assert pzd.OFF1 == 0x047E and pzd.ON == 0x047F
     assert pzd.ON == pzd.OFF1 | pzd.STW_ON

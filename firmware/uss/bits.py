@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Every bit of the control and status words by its name, for programs that show or ask for them.
 
-Tables of rows (bit, name, whether 0 is the remarkable value). The first words of a MICROMASTER 4
-are in `pzd`, which is enough to run a drive; here are the second ones and the other families'.
+Tables of rows (bit, name, whether 0 is the remarkable value), for each family. To run a drive
+`pzd` is enough, and the panel does without this file.
 
     names(0xFB34, ZSW_BITS)             # ["RUNNING", "CONTROL_REQUESTED", "BRAKE", "RUNS_RIGHT"]
     drive.zsw & bit("WARNING", ZSW_BITS)
@@ -13,7 +13,45 @@ contact has None, whose only name is UNKNOWN, and which is no permission to star
 has a word at any time; ask its `contact`.
 """
 
-from uss.pzd import STW_BITS, ZSW_BITS
+# Bit, name, whether 0 is the remarkable value (here never: the name says what 1 does).
+# Bits 0-10: specification C-5.2.1; from 11 on: MICROMASTER 4, r0054.
+STW_BITS = (
+    (0, "ON", False),  # 0 is OFF1: ramp down and switch off
+    (1, "NO_OFF2", False),  # 0 coasts to a stop
+    (2, "NO_OFF3", False),  # 0 stops as fast as the drive can
+    (3, "PULSES", False),  # enables the inverter
+    (4, "RAMP_OUTPUT", False),  # 0 forces the ramp's output to 0
+    (5, "RAMP_RUN", False),  # 0 holds the ramp
+    (6, "SETPOINT", False),  # 0 makes the setpoint 0
+    (7, "ACKNOWLEDGE", False),  # its rising edge acknowledges a fault
+    (8, "JOG_RIGHT", False),
+    (9, "JOG_LEFT", False),
+    (10, "CONTROL", False),  # these process data are valid; 0 leaves the old ones in force
+    (11, "REVERSE", False),  # turn the other way
+    (13, "MOP_UP", False),
+    (14, "MOP_DOWN", False),
+    (15, "REMOTE", False),  # local / remote, command data set bit 0
+)
+
+# Bit, name, whether 0 is the remarkable value. Bits 0-10: specification C-5.2.1; others: r0052.
+ZSW_BITS = (
+    (0, "READY_TO_SWITCH_ON", False),
+    (1, "READY_TO_RUN", False),
+    (2, "RUNNING", False),
+    (3, "FAULT", False),
+    (4, "OFF2", True),
+    (5, "OFF3", True),
+    (6, "INHIBIT", False),
+    (7, "WARNING", False),
+    (8, "DEVIATION", True),
+    (9, "CONTROL_REQUESTED", False),
+    (10, "MAXIMUM_REACHED", False),
+    (11, "CURRENT_LIMIT", True),
+    (12, "BRAKE", False),
+    (13, "MOTOR_OVERLOAD", True),
+    (14, "RUNS_RIGHT", False),
+    (15, "INVERTER_OVERLOAD", True),
+)
 
 # Bits 0...10 are the specification's (C-5.2.1); what is above them each family has for itself.
 STW_BITS_PROFILE = STW_BITS[:11]

@@ -2,7 +2,8 @@
 """Process data: control word STW, status word ZSW, and the scaling of setpoint and actual value.
 
 Facts as tables; no telegram, no drive object. STW travels with the main setpoint HSW to the drive,
-ZSW with the main actual value HIW back (specification C-5).
+ZSW with the main actual value HIW back (specification C-5). What each bit is called stands in
+`bits`.
 
     ON, OFF1                          # whole control words a master sends
     state(0xFB34)                     # RUNNING
@@ -12,26 +13,6 @@ ZSW with the main actual value HIW back (specification C-5).
 from micropython import const
 
 # --- control word -------------------------------------------------------------------------------
-
-# Bit, name, whether 0 is the remarkable value (here never: the name says what 1 does).
-# Bits 0-10: specification C-5.2.1; from 11 on: MICROMASTER 4, r0054.
-STW_BITS = (
-    (0, "ON", False),  # 0 is OFF1: ramp down and switch off
-    (1, "NO_OFF2", False),  # 0 coasts to a stop
-    (2, "NO_OFF3", False),  # 0 stops as fast as the drive can
-    (3, "PULSES", False),  # enables the inverter
-    (4, "RAMP_OUTPUT", False),  # 0 forces the ramp's output to 0
-    (5, "RAMP_RUN", False),  # 0 holds the ramp
-    (6, "SETPOINT", False),  # 0 makes the setpoint 0
-    (7, "ACKNOWLEDGE", False),  # its rising edge acknowledges a fault
-    (8, "JOG_RIGHT", False),
-    (9, "JOG_LEFT", False),
-    (10, "CONTROL", False),  # these process data are valid; 0 leaves the old ones in force
-    (11, "REVERSE", False),  # turn the other way
-    (13, "MOP_UP", False),
-    (14, "MOP_DOWN", False),
-    (15, "REMOTE", False),  # local / remote, command data set bit 0
-)
 
 STW_ON = const(0x0001)
 STW_ACKNOWLEDGE = const(0x0080)
@@ -48,26 +29,6 @@ JOG_RIGHT = const(0x057E)
 JOG_LEFT = const(0x067E)
 
 # --- status word --------------------------------------------------------------------------------
-
-# Bit, name, whether 0 is the remarkable value. Bits 0-10: specification C-5.2.1; others: r0052.
-ZSW_BITS = (
-    (0, "READY_TO_SWITCH_ON", False),
-    (1, "READY_TO_RUN", False),
-    (2, "RUNNING", False),
-    (3, "FAULT", False),
-    (4, "OFF2", True),
-    (5, "OFF3", True),
-    (6, "INHIBIT", False),
-    (7, "WARNING", False),
-    (8, "DEVIATION", True),
-    (9, "CONTROL_REQUESTED", False),
-    (10, "MAXIMUM_REACHED", False),
-    (11, "CURRENT_LIMIT", True),
-    (12, "BRAKE", False),
-    (13, "MOTOR_OVERLOAD", True),
-    (14, "RUNS_RIGHT", False),
-    (15, "INVERTER_OVERLOAD", True),
-)
 
 ZSW_RUNNING = const(0x0004)
 ZSW_FAULT = const(0x0008)
