@@ -16,6 +16,7 @@ from micropython import const
 import uss.fast  # noqa: F401
 from uss.timing import Timing, elapsed
 from uss.master import CLOSED, Master
+from uss.families.mm4 import MM4
 from uss.survey import Survey, spare_jobs
 from hal.pacer import Pacer
 from panel import texts
@@ -50,7 +51,7 @@ class App:
         controls, spares = [], spare_jobs()
         for address in settings.drives:
             drive = self.bus.add(address)
-            survey = Survey(drive, mask, spares)
+            survey = Survey(drive, MM4, mask, spares)
             controls.append(Control(drive, survey, self.bus, mask, settings))
         board.display.define(GLYPHS)
         notice = texts.WATCHDOG_RESTART if board.reset_cause else texts.NOTHING

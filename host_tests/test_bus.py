@@ -10,9 +10,9 @@ from uss.bus import MAY_RUN, NO_CONTACT, Master
 from uss.bus.errors import FallsSilent, NoContact, NotStarted, Refused, TimedOut, UssError
 from uss.bus.scan import Scan
 from uss.families import G110, G120, GENERIC, MM3, MM420, MM440, V20
+from uss.families.rows import WORD
 from uss.layout import VARIABLE, Layout
 from uss.master import CLOSED, OFF
-from uss.profiles import WORD
 from uss.scaling import Scale
 
 NOT_TRACED = """
@@ -813,7 +813,7 @@ def test_a_double_word_may_be_an_integer():
 def test_a_family_of_ones_own_is_a_few_lines():
     class Odd(MM420):
         name = "ODD"
-        survey = ((1998, 0, WORD),) + MM420.survey[1:]  # neither does it have P1998
+        survey = ((1998, 0, WORD, None),) + MM420.survey[1:]  # neither does it have P1998
         fault_number = 1999  # nor P1999
         fault_format = "E%d"
 

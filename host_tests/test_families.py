@@ -4,7 +4,7 @@
 Numbers of chapters are those of the protocol notes, USS.md.
 """
 
-from uss import bits, pkw, profiles, pzd
+from uss import bits, pkw, pzd
 from uss.families import (
     CU240S,
     FAMILIES,
@@ -17,19 +17,19 @@ from uss.families import (
     MM420,
     MM430,
     MM440,
-    RPM,
-    STEPS,
     V20,
     baud_code,
     can_be_set_to,
     is_float,
+    rows,
     value,
 )
+from uss.families.generic import CUTS_OFF, RESCALES
 from uss.layout import VARIABLE, Layout
 from uss.timing import BAUD_RATES
 
 CONTROL = 1 << 10
-KINDS = (profiles.WORD, profiles.CENTIHERTZ, RPM, STEPS)
+KINDS = (rows.WORD, rows.CENTIHERTZ, rows.RPM, rows.STEPS, rows.SOURCE, rows.COUNT)
 
 # Family: lowest and highest baud code and the rates they stand for, the rate as delivered (1.3).
 BAUD = (
@@ -168,22 +168,45 @@ def test_the_words_bits_are_named_for_what_they_do():
 
 def test_surveys_have_every_row_and_no_kind_that_nobody_reads():
     for family in FAMILIES:
-        assert len(family.survey) == len(profiles.SURVEY), family.name
+        assert len(family.survey) == rows.COUNT_OF_ROWS, family.name
         for row in family.survey:
             if row is not None:
-                number, index, kind = row
+                number, index, kind, _ = row
                 assert 0 < number < 4000 and kind in KINDS, (family.name, row)
-                assert index == 0 or family.has_indices
+                assert index == 0 or family.has_indices  # also of the data set that is active
 
 
 def test_a_value_that_is_expected_belongs_to_a_row():
     for family in FAMILIES:
-        for row, expected in (
-            (profiles.COMMAND_SOURCE, family.command_value),
-            (profiles.SETPOINT_SOURCE, family.setpoint_value),
-            (profiles.ABSOLUTE, family.absolute_value),
-        ):
-            assert (family.survey[row] is None) == (expected is None), (family.name, row)
+        absolute = family.survey[rows.ABSOLUTE]
+        assert (absolute is None) == (family.absolute_value is None), family.name
+
+
+def test_the_rows_of_a_micromaster_4():
+    """Its file has the words of `rows` once more, as constants."""
+    kinds = {
+        rows.WORD: [700, 1000, 2009, 2014, 1210, 50, 51, 719],
+        rows.CENTIHERTZ: [2000, 1080, 1082],
+        rows.SOURCE: [2019, 2019, 840, 1070, 2200],
+        rows.COUNT: [2024],
+    }
+    for kind, numbers in kinds.items():
+        assert [row[0] for row in MM4.survey if row[2] == kind] == numbers
+    by_command_set = [row[0] for row in MM4.survey if row[1] == rows.BY_COMMAND_SET]
+    assert by_command_set == [700, 1000, 719, 840, 1070, 2200]
+    by_drive_set = [row[0] for row in MM4.survey if row[1] == rows.BY_DRIVE_SET]
+    assert by_drive_set == [2000, 1080, 1082]
+    missing = [MM4.survey[row][3] for row in (rows.ON_SOURCE, rows.MAIN_SOURCE)]
+    assert missing == [rows.source(2036), rows.source(2018, 1)]
+
+
+def test_every_rule_says_which_values_of_which_row_are_right():
+    for family in FAMILIES:
+        for subject, row, place, right, digit in family.meaning:
+            assert subject in range(len(rows.NOTHING_WRONG)) and row in range(rows.COUNT_OF_ROWS)
+            assert right and place in (rows.ALL_DIGITS, 1, 10) and digit in (None, 1, 10)
+    judged = [subject for subject, _, _, _, _ in MM4.meaning]
+    assert judged == sorted(judged) and sorted(set(judged)) == [0, 1, 2, 3]
 
 
 def test_what_ends_control_when_it_is_changed_is_asked_for():
@@ -191,11 +214,11 @@ def test_what_ends_control_when_it_is_changed_is_asked_for():
         links = (family.baud_number, family.address_number, family.pzd_words_number,
                  family.pkw_words_number, family.off_time_number)  # fmt: skip
         for number in links:
-            assert number is None or family.ask_first[number] == profiles.CUTS_OFF, number
-        for row in (profiles.REFERENCE, profiles.ABSOLUTE):
+            assert number is None or family.ask_first[number] == CUTS_OFF, number
+        for row in (rows.REFERENCE, rows.ABSOLUTE):
             if family.survey[row] is not None:
                 number = family.survey[row][0]
-                assert family.ask_first[number] == profiles.RESCALES, (family.name, number)
+                assert family.ask_first[number] == RESCALES, (family.name, number)
 
 
 def test_what_is_always_permanent_is_asked_for_as_well():
@@ -210,18 +233,18 @@ def test_what_is_always_permanent_is_asked_for_as_well():
 def test_the_panel_asks_before_everything_that_the_design_names():
     named = (3, 10, 700, 719, 840, 918, 927, 970, 1000, 1070, 2000, 2009, 2010, 2011, 2012, 2013,
              2014, 2016, 2019, 2023, 3900)  # fmt: skip
-    assert sorted(profiles.ASK_FIRST) == sorted(named)
+    assert sorted(MM4.ask_first) == sorted(named)
 
 
 def test_values_of_a_survey():
     frequency = pkw.read(2000)
     frequency.high, frequency.low, frequency.width = 0x4248, 0x0000, 2
-    assert value(frequency, profiles.CENTIHERTZ) == 50.0
+    assert value(frequency, rows.CENTIHERTZ) == 50.0
     word = pkw.read(94)
     word.high, word.low, word.width = 0, 500, 1
-    assert value(word, profiles.WORD) == 500
-    assert value(word, STEPS) == 50.0  # P095 = 0: in 0.1 Hz
-    assert value(word, STEPS, is_fine=True) == 5.0
+    assert value(word, rows.WORD) == 500
+    assert value(word, rows.STEPS) == 50.0  # P095 = 0: in 0.1 Hz
+    assert value(word, rows.STEPS, is_fine=True) == 5.0
 
 
 def test_which_32_bit_values_are_floating_point():

@@ -14,6 +14,7 @@ from panel_bench import (
 )
 from uss import pkw
 from uss.drive import Drive
+from uss.families import MM4
 
 FAULT_ZSW, READY_ZSW = 0xFB38, 0xFB31
 ON, ON_REVERSE, OFF1, OFF2, OFF3 = 0x047F, 0x0C7F, 0x047E, 0x047C, 0x047A
@@ -541,7 +542,7 @@ def test_the_number_of_an_earlier_fault_is_not_shown_for_the_next():
     drive = Drive(1, 0x3FFFFFFF)
     drive.ask = ask
     drive.contact = True
-    fault = Fault(drive, 0x3FFFFFFF)
+    fault = Fault(drive, 0x3FFFFFFF, MM4.fault_number)
     for drive.zsw in (FAULT_ZSW, READY_ZSW, FAULT_ZSW):
         fault.step(0)
     asked[0].state, asked[0].low = pkw.DONE, 12

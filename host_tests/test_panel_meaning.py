@@ -18,7 +18,7 @@ from panel_bench import (
     telegrams,
     wait_until_known,
 )
-from uss import profiles
+from uss.families import rows
 from version import VERSION
 
 NOT_TRACED = """
@@ -156,10 +156,10 @@ def test_nothing_is_shown_in_hertz_before_its_meaning_is_read():
     """P2000, P2009 and P2019[1], whichever comes last."""
     world = panel(baud=2400)
     values = world.app.panel.selected.survey.values
-    rows = (profiles.REFERENCE, profiles.ABSOLUTE, profiles.ACTUAL_SENT)
+    read_last = (rows.REFERENCE, rows.ABSOLUTE, rows.ACTUAL_SENT)
     splash = "USS %s IS NO" % VERSION
     dashes = 0
-    while min([values[row] for row in rows]) < 0:
+    while min([values[row] for row in read_last]) < 0:
         assert row_1(world) in ("S: 10.0 F: -----", splash, " " * 16), world.lcd()
         dashes += row_1(world).endswith("-----")
         world.run(20)

@@ -9,6 +9,7 @@ import random
 
 from uss import pkw, pzd, telegram
 from uss.drive import Drive
+from uss.families import MM4
 from uss.survey import Survey, spare_jobs
 
 MASK = (1 << 30) - 1
@@ -119,7 +120,7 @@ def test_most_telegrams_are_not_built_at_all():
 def test_a_drive_that_is_asked_for_everything_is_not_left_waiting():
     """Every row of the survey is asked for and answered, though the channel falls idle between."""
     drive = Drive(5, MASK)
-    survey = Survey(drive, MASK, spare_jobs())
+    survey = Survey(drive, MM4, MASK, spare_jobs())
     net = bytearray(16)
     telegram.put_word(net, 11, 0xFB31)
     now = 0

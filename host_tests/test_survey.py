@@ -4,13 +4,13 @@
 import struct
 
 from boards.sim.dice import Dice
-from uss import profiles
 from uss.drive import Drive
+from uss.families import MM4
 from uss.receiver import SILENCE
 from uss.survey import Survey, centihertz, spare_jobs
 
 MASK = (1 << 30) - 1
-ROWS = len(profiles.ROWS)
+ROWS = len(MM4.survey)
 US = 20_000  # an exchange
 LOST_US = 1_000_000
 R2024 = b"\x10\x18\x80\x00"  # PKE and IND of the task that reads it
@@ -23,7 +23,7 @@ class Line:
     def __init__(self, addresses):
         self.spares = spare_jobs()
         self.drives = [Drive(address, MASK) for address in addresses]
-        self.surveys = [Survey(drive, MASK, self.spares) for drive in self.drives]
+        self.surveys = [Survey(drive, MM4, MASK, self.spares) for drive in self.drives]
         self.now = 0
         self.questions = [0] * len(self.drives)
         self.counts = {}  # by place: r2024, and by how much it grows with each telegram

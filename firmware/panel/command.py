@@ -13,7 +13,7 @@ In use:
 from micropython import const
 
 from panel import permits, risks, texts
-from uss import profiles, pzd
+from uss import pzd
 from uss.timing import elapsed
 
 _NONE = const(-1)  # no version
@@ -64,7 +64,7 @@ class Command:
 
     def is_overdue(self, now):
         """Whether the drive has had more time to tell all its settings than it may need."""
-        patience_us = 2 * len(profiles.ROWS) * self._bus.patience_us
+        patience_us = 2 * len(self._survey.values) * self._bus.patience_us
         # A clock of a short period cannot tell more than half of it.
         return elapsed(now, self._since, self._mask) >= min(patience_us, self._mask >> 2)
 

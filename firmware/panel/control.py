@@ -17,7 +17,8 @@ from micropython import const
 
 # From the bottom of the house up: an import inside an import inside an import takes stack.
 from uss.timing import elapsed
-from uss import profiles, pzd
+from uss import pzd
+from uss.families import rows
 from uss.survey import REREAD_US
 from panel import permits, risks, texts
 from panel.command import Command
@@ -279,7 +280,7 @@ class Control:
         if self.survey.version != self._judged:
             self._judge_status()
         if drive.zsw & pzd.ZSW_FAULT and self.fault is NO_FAULT:
-            self.fault = Fault(drive, self._mask)
+            self.fault = Fault(drive, self._mask, self.survey.family.fault_number)
         self.fault.step(now)
         if drive.contact != self._contact:
             self._contact = drive.contact
@@ -377,7 +378,7 @@ class Control:
         """Whether it would run on longer without this panel than when it was started."""
         self.remark = texts.NOTHING
         if risks.exposure_ms(self) > self._command.exposure_ms:
-            is_long = self.survey.values[profiles.SUPERVISION] > 0
+            is_long = self.survey.values[rows.SUPERVISION] > 0
             if self.phase == JOGGING:  # that is refused
                 self._take_back(texts.RUNS_LONG if is_long else texts.UNSUPERVISED)
             else:
@@ -408,7 +409,7 @@ class Control:
     def _judge_status(self):
         """Whether ZSW is its status word. What was known stays true until that is read again."""
         self._judged = self.survey.version
-        if self.survey.values[profiles.STATUS_SENT] >= 0:
+        if self.survey.values[rows.STATUS_SENT] >= 0:
             self.drive.tells_status = not permits.tells_no_status(self.survey)
 
     def _may_run(self):

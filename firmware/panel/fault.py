@@ -3,13 +3,13 @@
 
 In use:
 
-    warning = Report(drive, mask, pzd.ZSW_WARNING, profiles.WARNING_NUMBER)
+    warning = Report(drive, mask, pzd.ZSW_WARNING, MM4.warning_number)
     warning.step(now)                   # again and again
     warning.number                      # 501 for A0501; 0 while it is not known
     warning.turn_to(other)              # another drive is shown
 
     fault = NO_FAULT                    # of a drive that has not tripped yet
-    fault = Fault(drive, mask)          # has to be seen before it may be acknowledged
+    fault = Fault(drive, mask, MM4.fault_number)    # has to be seen before it may be acknowledged
     fault.show(passed_ms)               # it was on the display for so long
     if fault.was_shown(): drive.acknowledge()
 """
@@ -18,7 +18,7 @@ from micropython import const
 
 from panel import texts
 from panel.reading import Reading
-from uss import pkw, profiles, pzd
+from uss import pkw, pzd
 from uss.timing import elapsed
 
 _SHOWN_MS = const(1_000)  # a STOP in the moment of the trip must not wipe its number away
@@ -88,8 +88,8 @@ class Report:
 class Fault(Report):
     """It has to be seen before it may be acknowledged."""
 
-    def __init__(self, drive, mask):
-        Report.__init__(self, drive, mask, pzd.ZSW_FAULT, profiles.FAULT_NUMBER)
+    def __init__(self, drive, mask, parameter):
+        Report.__init__(self, drive, mask, pzd.ZSW_FAULT, parameter)
         self._shown_ms = 0
 
     def show(self, passed_ms):

@@ -28,7 +28,8 @@ from panel.stop_key import StopKey
 from panel.supervision import longest_off_time_ms, off_time_ms
 from panel.view import View
 from panel.writer import Writer
-from uss import profiles, pzd
+from uss import pzd
+from uss.families import rows
 from uss.timing import elapsed
 
 _DRAW_MS = const(50)
@@ -62,7 +63,8 @@ class Panel:
         self.controls = controls
         self.selected = controls[0]
         self.announcer = Announcer(controls, mask)
-        self.warning = Report(self.selected.drive, mask, pzd.ZSW_WARNING, profiles.WARNING_NUMBER)
+        number = self.selected.survey.family.warning_number
+        self.warning = Report(self.selected.drive, mask, pzd.ZSW_WARNING, number)
         self.screen = screen = Screen()
         self.mask = mask
         self.message = None
@@ -174,7 +176,7 @@ class Panel:
         """A drive has told its settings: its telegram-off time decides how soon it is asked."""
         survey = control.survey
         if survey.complete:
-            self._bus.supervise(control.drive, survey.values[profiles.SUPERVISION])
+            self._bus.supervise(control.drive, survey.values[rows.SUPERVISION])
 
     def _watch(self, _now_ms, now_us):
         selected = self.selected

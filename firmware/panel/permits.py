@@ -9,35 +9,35 @@ In use:
 
 from panel import risks, texts
 from panel.phases import JOGGING
-from uss import profiles, pzd
-from uss.survey import RIGHT
+from uss import pzd
+from uss.families import rows
 
-# Why START is refused where this row of profiles.ROWS says that somebody else commands the drive,
+# Why START is refused where this row of a survey says that somebody else commands the drive,
 # tells it its speed, or that its status word is none.
 REFUSED_SOURCES = {
-    profiles.COMMAND_SOURCE: texts.REFUSED_COMMAND,
-    profiles.SETPOINT_SOURCE: texts.REFUSED_SETPOINT,
-    profiles.SELECTION: texts.REFUSED_SELECTION,
-    profiles.ON_SOURCE: texts.REFUSED_ON_SOURCE,
-    profiles.MAIN_SOURCE: texts.REFUSED_MAIN_SOURCE,
-    profiles.PID: texts.REFUSED_PID,
-    profiles.STATUS_SENT: texts.REFUSED_STATUS,
+    rows.COMMAND_SOURCE: texts.REFUSED_COMMAND,
+    rows.SETPOINT_SOURCE: texts.REFUSED_SETPOINT,
+    rows.SELECTION: texts.REFUSED_SELECTION,
+    rows.ON_SOURCE: texts.REFUSED_ON_SOURCE,
+    rows.MAIN_SOURCE: texts.REFUSED_MAIN_SOURCE,
+    rows.PID: texts.REFUSED_PID,
+    rows.STATUS_SENT: texts.REFUSED_STATUS,
 }
 
 
 def is_local(survey):
     """Whether the drive takes its commands from elsewhere: P0700, P0719, P0840."""
-    return survey.wrong[profiles.COMMAND] != RIGHT
+    return survey.wrong[rows.COMMAND] != rows.RIGHT
 
 
 def is_foreign(survey):
     """Whether its setpoint comes from elsewhere, or from here and elsewhere: P1000 and others."""
-    return survey.wrong[profiles.SETPOINT] != RIGHT
+    return survey.wrong[rows.SETPOINT] != rows.RIGHT
 
 
 def tells_no_status(survey):
     """Whether what it sends as ZSW is known to be something else, P2019[0]."""
-    return survey.wrong[profiles.STATUS] != RIGHT
+    return survey.wrong[rows.STATUS] != rows.RIGHT
 
 
 def why_not_start(control):
@@ -51,8 +51,8 @@ def why_not_start(control):
     if reason:
         return reason
     if is_foreign(survey):
-        return REFUSED_SOURCES[survey.wrong[profiles.SETPOINT]]
-    if min(survey.lowest(), survey.values[profiles.HIGHEST]) > survey.scaling.limit_centihertz():
+        return REFUSED_SOURCES[survey.wrong[rows.SETPOINT]]
+    if min(survey.lowest(), survey.values[rows.HIGHEST]) > survey.scaling.limit_centihertz():
         return texts.REFUSED_MINIMUM
     return _why_not_now(state)
 
@@ -69,7 +69,7 @@ def why_not_jog(control):
     if control.is_starting() or state == pzd.RUNNING and not control.own_jog_ends():
         return texts.REFUSED_RUNS
     if risks.is_open(control, risks.SUPERVISION):
-        is_long = survey.values[profiles.SUPERVISION] > 0
+        is_long = survey.values[rows.SUPERVISION] > 0
         return texts.REFUSED_LONG if is_long else texts.REFUSED_UNSUPERVISED
     if survey.unchecked:
         return texts.REFUSED_CHECKING  # P2014 may be another by now
@@ -91,7 +91,7 @@ def _why_no_command(control, state):
     if tells_no_status(survey):
         return texts.REFUSED_STATUS
     if is_local(survey):
-        return REFUSED_SOURCES[survey.wrong[profiles.COMMAND]]
+        return REFUSED_SOURCES[survey.wrong[rows.COMMAND]]
     return texts.NOTHING
 
 

@@ -12,7 +12,7 @@ until the panel restarts, and only as it is: another P2014, another P1210 is ask
 from micropython import const
 
 from panel import texts
-from uss import profiles
+from uss.families import rows
 
 NONE = const(-1)  # there is no such risk
 
@@ -22,7 +22,7 @@ _FOR_EVER_MS = const(1 << 20)  # longer than any P2014
 
 def _of_supervision(control):
     """P2014 with which the motor runs on too long when the panel dies, 0: for ever, or unread."""
-    off_time_ms = max(control.survey.values[profiles.SUPERVISION], 0)
+    off_time_ms = max(control.survey.values[rows.SUPERVISION], 0)
     if 0 < off_time_ms <= control.longest_off_time_ms:
         return NONE
     return off_time_ms
@@ -30,7 +30,7 @@ def _of_supervision(control):
 
 def _of_restart(control):
     """P1210 where the drive restarts by itself."""
-    mode = control.survey.values[profiles.RESTART]
+    mode = control.survey.values[rows.RESTART]
     return mode if mode >= _RESTARTS else NONE
 
 

@@ -23,7 +23,7 @@ for at the new address for a while, and then is taken to be at the old one.
 from micropython import const
 
 from panel import texts
-from uss import pkw, profiles
+from uss import pkw
 from uss.timing import elapsed
 
 _LOOK_US = const(2_000_000)  # a drive that may have moved is looked for so long, or
@@ -51,11 +51,9 @@ class Write:
         self.value = value
         self.eeprom = eeprom
         self.old_address = control.drive.address
-        self.moves = (
-            number == profiles.USS_ADDRESS
-            and index == profiles.COM_LINK
-            and value != self.old_address
-        )
+        family = control.survey.family
+        is_address = number == family.address_number and index == family.link_index
+        self.moves = is_address and value != self.old_address
         self.outcome = None
         self.done = False
 

@@ -22,13 +22,12 @@ The engine, which may run in interrupts:
     single           telegrams outside the list: mirror, broadcast, special
     fast             the loops over characters: machine code, or else plain Python
 
-What the panel knows of a drive:
-    profiles         the parameters of a MICROMASTER 4 that matter to it: data
+What is known of a drive:
+    families         what differs between the drive families: data, loaded when it is named
     survey           what must be known of a drive before it may be started
     telegram_count   whether a drive was without its mains
 
 For programs that need more than the panel:
-    families         what differs between the drive families: data
     bits             the bits of control and status words by name
     scaling          PZD2 in percent, Hz and 1/min, floating point
 

@@ -124,18 +124,23 @@ _START_MASK = 0x0078
 _START_VALUE = 0x0030
 
 
+def rows(table):
+    """The rows of a table that is told as a family has it: itself, or its name here."""
+    return globals()[table] if isinstance(table, str) else table
+
+
 def names(word, table):
-    """The names of the remarkable bits of a word, a list. table: one of these. Of None, which
-    is no word: [UNKNOWN].
+    """The names of the remarkable bits of a word, a list. table: as of `rows`. Of None, which is
+    no word: [UNKNOWN].
     """
     if word is None:
         return [UNKNOWN]
-    return [name for place, name, at_0 in table if (word >> place & 1 == 0) == at_0]
+    return [name for place, name, at_0 in rows(table) if (word >> place & 1 == 0) == at_0]
 
 
 def bit(name, table):
     """The bit of that name as a mask: 0x0008 for "FAULT". ValueError when the table has none."""
-    for place, candidate, _ in table:
+    for place, candidate, _ in rows(table):
         if candidate == name:
             return 1 << place
     raise ValueError("no bit is called %s" % name)

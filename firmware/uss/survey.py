@@ -2,11 +2,11 @@
 """What must be known of a drive before it may be started, read from it again and again.
 
 Works on the loop's side, through parameter jobs, which cost the bus nothing: every telegram has a
-parameter channel. It reads the rows of `profiles.ROWS` at once when contact is made and one every
-REREAD_US from then on, so that a change made at the drive itself is noticed. What was known is
-forgotten when contact is lost. `recheck` has all of it read again soon.
+parameter channel. It reads the rows of the family's survey at once when contact is made and one
+every REREAD_US from then on, so that a change made at the drive itself is noticed. What was known
+is forgotten when contact is lost. `recheck` has all of it read again soon.
 
-    survey = Survey(drive, clock.ticks_mask, spare_jobs())
+    survey = Survey(drive, MM4, clock.ticks_mask, spare_jobs())
     survey.step(now)                # each step of the loop
     if survey.complete: survey.scaling.hsw(1000)
     survey.recheck()                # before a START; survey.unchecked counts down to 0
@@ -16,7 +16,9 @@ from micropython import const
 
 # From the bottom of the house up: an import inside an import inside an import takes stack.
 from uss.timing import elapsed
-from uss import pkw, profiles, pzd
+from uss import pkw, pzd
+from uss.families import rows
+from uss.families.rows import NOTHING_WRONG, RIGHT, index_of, source, wrong_rows
 import uss.drive  # noqa: F401
 from uss.telegram_count import TelegramCount
 
@@ -37,9 +39,9 @@ _CENTIHERTZ_MAX = const(65_000)
 
 _UNANSWERED_MAX = const(2)  # then it is taken to be missing, and asked for before a START alone
 _ABSENT = (pkw.NO_PARAMETER, pkw.NO_INDEX)  # the drive has no such parameter
-RIGHT = const(-1)  # no row is wrong
-NOTHING_WRONG = (RIGHT,) * profiles.SUBJECTS
-SOURCES = tuple(row for _, row, _, _, _ in profiles.MEANING)
+_FIRST = rows.COMMAND_SET  # of a round: with it the indices of others are known
+_LATER = (rows.RESTART, rows.COUNTER)  # START alone needs them, and reads them
+_WATCHED = (rows.COUNTER, rows.LOWEST, rows.HIGHEST)  # read more often while it runs
 
 
 def spare_jobs():
@@ -52,14 +54,14 @@ def spare_jobs():
 
 
 class Survey:
-    """drive: a `Drive`. mask: the clock's period - 1. spares: `spare_jobs()`, those of
-    several surveys.
+    """drive: a `Drive`. family: what it is, of `families`. mask: the clock's period - 1. spares:
+    `spare_jobs()`, those of several surveys.
 
-    values: for each row of profiles.ROWS the number read, or _UNKNOWN; 0 for profiles.LATER as
-    long as nobody has read them.
+    values: for each row of family.survey the number read, or rows.UNKNOWN; 0 for _LATER as long as
+    nobody has read them.
     complete: all rows are known. scaling: a `pzd.Scaling` of the setpoint, or None while it is not
     known; actual: that of HIW, or None while nobody knows that HIW tells the frequency.
-    wrong: for each subject of profiles.MEANING the row that is known and wrong, or RIGHT.
+    wrong: for each subject of family.meaning the row that is known and wrong, or RIGHT.
     unreadable: the drive refused one of them, or fell silent on it. version: counts the changes
     of all this.
     unchecked: how many rows `recheck` has still to read.
@@ -69,10 +71,10 @@ class Survey:
 
     latest_scaling = None  # of any drive: most drives of a bus have the same, and share it
 
-    def __init__(self, drive, mask, spares):
-        rows = len(profiles.ROWS)
+    def __init__(self, drive, family, mask, spares):
         self.drive = drive
-        self.values = [0 if row in profiles.LATER else _UNKNOWN for row in range(rows)]
+        self.family = family
+        self.values = [0 if row in _LATER else _UNKNOWN for row in range(len(family.survey))]
         self.complete = False
         self.scaling = None
         self.actual = None
@@ -89,9 +91,9 @@ class Survey:
         self._waiting = 0  # so many are on their way
         self._stale = 0  # so many of them were asked too early to count
         self._unanswered = None  # by row, so often the drive fell silent on it: most never do
-        self._row = profiles.FIRST  # that is next in the round
-        self._watched = 0  # of profiles.WATCHED
-        self._round_is_next = False  # and not one of profiles.WATCHED
+        self._row = _FIRST  # that is next in the round
+        self._watched = 0  # of _WATCHED
+        self._round_is_next = False  # and not one of _WATCHED
         self._changed = _NOTHING  # this row is new, and still to be judged
         self._read_at = 0
         self._tells_count = True  # as far as anybody knows
@@ -101,11 +103,11 @@ class Survey:
 
     def lowest(self):
         """The lowest frequency of the drive, P1080, in centihertz. Once complete."""
-        return self.values[profiles.LOWEST]
+        return self.values[rows.LOWEST]
 
     def highest(self):
         """The highest frequency that can be had of it, in centihertz. Once complete."""
-        return min(self.values[profiles.HIGHEST], self.scaling.limit_centihertz())
+        return min(self.values[rows.HIGHEST], self.scaling.limit_centihertz())
 
     def recheck(self):
         """Have every row read again soon: the drive gets more than its turn meanwhile."""
@@ -113,7 +115,7 @@ class Survey:
         self.unchecked = len(self.values)
         self._tells_count = True
         self.settle()
-        self._row = profiles.FIRST
+        self._row = _FIRST
         self._stale = self._waiting
 
     def count_anew(self):
@@ -167,17 +169,17 @@ class Survey:
         row, self._changed = self._changed, _NOTHING
         if row == _NOTHING:
             return
-        if row in SOURCES:
-            self._judge_meaning()
-        elif row == profiles.REFERENCE or row == profiles.ABSOLUTE:
+        if row == rows.REFERENCE or row == rows.ABSOLUTE:
             self._judge_scaling()
+        else:
+            self.wrong = wrong_rows(self.family.meaning, self.values)
         self._judge()
 
     def _forget(self):
         self._knows = False
         self.unchecked = 0
         self._changed = _NOTHING
-        self._row = profiles.FIRST
+        self._row = _FIRST
         self.restarted = False
         self._tells_count = True
         if self._count:
@@ -185,14 +187,14 @@ class Survey:
         self._unanswered = None
         known = self.unreadable
         for row in range(len(self.values)):
-            if row in profiles.LATER:
+            if row in _LATER:
                 self.values[row] = 0
             else:
                 known = known or self.values[row] != _UNKNOWN
                 self.values[row] = _UNKNOWN
         if known:
             self.scaling = None
-            self._judge_meaning()
+            self.wrong = wrong_rows(self.family.meaning, self.values)
             self._judge()
             self.unreadable = False
 
@@ -213,19 +215,16 @@ class Survey:
         if channel.is_full():
             return  # others ask as well: later
         row = self._next_row()
-        number, index, _, _ = profiles.ROWS[row]
-        if index < 0:
-            active = profiles.DRIVE_SET if index == profiles.BY_DRIVE_SET else profiles.COMMAND_SET
-            index = max(self.values[active], 0)
+        asked = self.family.survey[row]
         if not self._waiting:
             self._first = 0
         place = (self._first + self._waiting) % _JOBS
         job = self._job
         if place == _SECOND:
             job = self._second = self._spares.pop()
-        job.aim(pkw.READ, number, index)
+        job.aim(pkw.READ, asked[0], index_of(asked, self.values))
         job.tag = row
-        if row == profiles.COUNTER and self._count:
+        if row == rows.COUNTER and self._count:
             self._count.asked()
         self._knows = True
         channel.ask(job)
@@ -241,19 +240,19 @@ class Survey:
                 row = (row + 1) % len(self.values)
             self._row = (row + 1) % len(self.values)
             return row
-        self._watched = (self._watched + 1) % len(profiles.WATCHED)
-        if profiles.WATCHED[self._watched] == profiles.COUNTER and not self._tells_count:
+        self._watched = (self._watched + 1) % len(_WATCHED)
+        if _WATCHED[self._watched] == rows.COUNTER and not self._tells_count:
             self._watched += 1
-        return profiles.WATCHED[self._watched]
+        return _WATCHED[self._watched]
 
     def _is_left_out(self, row):
         """Whether the round goes on without it: START alone asks for it, or it is watched."""
-        missing = profiles.ROWS[row][3]
+        missing = self.family.survey[row][3]
         if self._is_unanswered(row) and self.values[row] == missing:
             return True
-        if row in profiles.LATER:
+        if row in _LATER:
             return self.values[row] != _UNKNOWN
-        return self.drive.wanted != 0 and self.complete and row in profiles.WATCHED
+        return self.drive.wanted != 0 and self.complete and row in _WATCHED
 
     def _is_unanswered(self, row):
         """Whether the drive has fallen silent on it so often that it seems to lack it."""
@@ -280,21 +279,21 @@ class Survey:
             return
         if self._unanswered:
             self._unanswered[row] = 0
-        kind = profiles.ROWS[row][2]
-        if kind == profiles.COUNT:
+        kind = self.family.survey[row][2]
+        if kind == rows.COUNT:
             self._take_count(job.low)
             return
         value = job.low
-        if kind == profiles.CENTIHERTZ:
+        if kind == rows.CENTIHERTZ:
             value = centihertz(job.high, value)
-        elif kind == profiles.SOURCE:
-            value = profiles.source(job.high, value)
+        elif kind == rows.SOURCE:
+            value = source(job.high, value)
         if value != self.values[row] or value == _UNKNOWN:
             self._put(row, value)
 
     def _take_refusal(self, job, row):
         value = _UNKNOWN
-        if row == profiles.COUNTER:
+        if row == rows.COUNTER:
             if job.state == pkw.TIMED_OUT:
                 return  # the line was bad: the count that comes next tells as much
             self._tells_count = False
@@ -303,8 +302,8 @@ class Survey:
             self._unanswered = self._unanswered or bytearray(len(self.values))
             self._unanswered[row] = min(self._unanswered[row] + 1, _UNANSWERED_MAX)
             is_absent = self._is_unanswered(row)
-        if is_absent or row in profiles.LATER and job.state != pkw.TIMED_OUT:
-            value = profiles.ROWS[row][3]
+        if is_absent or row in _LATER and job.state != pkw.TIMED_OUT:
+            value = self.family.survey[row][3]
         if value is None or value == _UNKNOWN:
             value = _UNKNOWN
             self.unreadable = job.state == pkw.REFUSED or job.state == pkw.UNANSWERED
@@ -312,7 +311,7 @@ class Survey:
             self._put(row, value)
 
     def _take_count(self, count):
-        before, self.values[profiles.COUNTER] = self.values[profiles.COUNTER], count
+        before, self.values[rows.COUNTER] = self.values[rows.COUNTER], count
         if self._count and self._count.tells_reset(before, count):
             self.restarted = self.drive.wanted != 0
 
@@ -320,9 +319,9 @@ class Survey:
         """A value that is new, and still to be judged. Another data set makes others unknown."""
         self.values[row] = value
         self._changed = row
-        if row == profiles.COMMAND_SET or row == profiles.DRIVE_SET:
+        if row == rows.COMMAND_SET or row == rows.DRIVE_SET:
             for other in range(len(self.values)):
-                if profiles.ROWS[other][1] < 0:
+                if self.family.survey[other][1] < 0:
                     self.values[other] = _UNKNOWN
             self.scaling = None
             self.complete = False  # at once: who looks before that is judged finds no scaling
@@ -333,7 +332,7 @@ class Survey:
         """What all values together amount to, after one of them changed."""
         values = self.values
         self.version += 1
-        tells = values[profiles.ACTUAL_SENT] != _UNKNOWN and self.wrong[profiles.ACTUAL] == RIGHT
+        tells = values[rows.ACTUAL_SENT] != _UNKNOWN and self.wrong[rows.ACTUAL] == RIGHT
         self.actual = self.scaling if tells else None
         self.complete = self.scaling is not None and _UNKNOWN not in values
         if self.complete:
@@ -341,7 +340,7 @@ class Survey:
             self.drive.tell_speed(self.scaling.full_scale() if tells else 0)
 
     def _judge_scaling(self):
-        reference, absolute = self.values[profiles.REFERENCE], self.values[profiles.ABSOLUTE]
+        reference, absolute = self.values[rows.REFERENCE], self.values[rows.ABSOLUTE]
         if reference < pzd.REFERENCE_MIN or absolute == _UNKNOWN:
             self.scaling = None
         elif self.scaling is None or not self.scaling.is_of(reference, bool(absolute)):
@@ -349,22 +348,6 @@ class Survey:
             if latest is None or not latest.is_of(reference, bool(absolute)):
                 Survey.latest_scaling = latest = pzd.Scaling(reference, bool(absolute))
             self.scaling = latest
-
-    def _judge_meaning(self):
-        """Which row gives a word another meaning than this panel takes it for."""
-        values, wrong = self.values, NOTHING_WRONG
-        selection = max(values[profiles.SELECTION], 0)
-        for subject, row, place, right, digit in profiles.MEANING:
-            if digit is not None and selection // digit % 10:
-                continue
-            value = values[row]
-            if value == _UNKNOWN or wrong[subject] != RIGHT:
-                continue
-            if (value // place % 10 if place else value) not in right:
-                if wrong is NOTHING_WRONG:
-                    wrong = list(NOTHING_WRONG)
-                wrong[subject] = row
-        self.wrong = wrong
 
 
 def centihertz(high, low):

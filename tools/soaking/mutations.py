@@ -182,7 +182,7 @@ MUTATIONS = (
         "no question",
         "a parameter that cuts the panel off is written at once",
         ("WRITE",), 3,
-        ("panel/pages/parameters.py", "elif number in profiles.ASK_FIRST:", "elif number < 0:"),
+        ("panel/pages/parameters.py", "elif number in ask_first:", "elif number < 0:"),
     ),
     Mutation(
         "setpoint limit dropped",
@@ -311,7 +311,7 @@ MUTATIONS = (
         (
             "panel/permits.py",
             "    if is_local(survey):\n"
-            "        return REFUSED_SOURCES[survey.wrong[profiles.COMMAND]]\n",
+            "        return REFUSED_SOURCES[survey.wrong[rows.COMMAND]]\n",
             "",
         ),
     ),
@@ -321,7 +321,7 @@ MUTATIONS = (
         ("UNSUPERVISED",), 2,
         (
             "panel/risks.py",
-            "    off_time_ms = max(control.survey.values[profiles.SUPERVISION], 0)\n",
+            "    off_time_ms = max(control.survey.values[rows.SUPERVISION], 0)\n",
             "    return NONE\n",
         ),
     ),

@@ -18,7 +18,8 @@ from panel.pages.question import Question
 from panel.reading import Reading
 from panel.screen import BUSY, EDITS
 from panel.writer import failure
-from uss import pkw, profiles
+from uss import pkw
+from uss.families.generic import CUTS_OFF, RESCALES
 from uss.timing import elapsed
 
 PARAMETERS = (  # what is shown, number, index, highest value or None: read only. Lowest is 0.
@@ -36,7 +37,7 @@ _FAST_SPAN = const(100)  # values of a smaller range move by ones, however long 
 _MARK_COLUMN = const(12)
 GLYPHS = (bytes((BUSY,)), bytes((EDITS,)))
 
-ASK = {profiles.CUTS_OFF: texts.ASK_CUTS_OFF, profiles.RESCALES: texts.ASK_RESCALES}
+ASK = {CUTS_OFF: texts.ASK_CUTS_OFF, RESCALES: texts.ASK_RESCALES}
 
 
 class Parameters(Page):
@@ -103,12 +104,13 @@ class Parameters(Page):
             return
         _, number, index, _ = PARAMETERS[self._row]
         self._wish = (self._control, number, index, self._edited)
+        ask_first = self._control.survey.family.ask_first
         reason = self._why_not()
         if reason:
             self.panel.say(now_ms, reason)
-        elif number in profiles.ASK_FIRST:
+        elif number in ask_first:
             values = (self._control.drive.address, number, self._edited)
-            text = ASK[profiles.ASK_FIRST[number]]
+            text = ASK[ask_first[number]]
             self.panel.cover(Question(self.panel, text, values, {"SET": self._grant}))
         else:
             self._grant(now_ms)
@@ -116,7 +118,7 @@ class Parameters(Page):
     def _why_not(self):
         """Why the wish is not even tried. Asked again when a question was answered."""
         control, number, _, value = self._wish
-        if number != profiles.USS_ADDRESS:
+        if number != control.survey.family.address_number:
             return texts.NOTHING
         if self.panel.any_runs() or control.is_starting():
             return texts.STOP_FIRST
@@ -129,7 +131,7 @@ class Parameters(Page):
             self.panel.say(now_ms, reason)
             return
         control, number, index, value = self._wish
-        eeprom = eeprom or number in profiles.PERMANENT
+        eeprom = eeprom or number in control.survey.family.permanent
         self._write = self.panel.write(now_ms, control, number, index, value, eeprom)
         self._set_at_ms = None if eeprom or not self._write else now_ms
 

@@ -9,7 +9,6 @@ from micropython import const
 from panel import risks, texts
 from panel.phases import ASKING
 from panel.pages.question import Question
-from uss import profiles
 
 _READING_MS = const(1_000)  # so long a START does not answer: it may be a double tap
 
@@ -47,5 +46,6 @@ class RiskQuestion(Question):
 
     def _supervise(self, now_ms):
         """Have the drive stop by itself when this panel falls silent."""
-        number, index = profiles.TELEGRAM_OFF_TIME, profiles.COM_LINK
+        family = self._control.survey.family
+        number, index = family.off_time_number, family.link_index
         self.panel.write(now_ms, self._control, number, index, self.panel.off_time_ms)

@@ -18,6 +18,7 @@ Whoever does not wait calls `step` again and again: without it for 300 ms every 
 from uss import bits, families, master, pkw, pzd, single
 from uss.bus import pkw_errors
 from uss.bus.errors import FallsSilent, NoContact, NotStarted, Refused, TimedOut, UssError
+from uss.families.rows import ACTUAL, STATUS
 from uss.layout import Layout
 from uss.bus.particulars import Particulars
 from uss.scaling import Scale, run_words, with_direction
@@ -219,7 +220,7 @@ class Drive:
         `kind` says, float or int. ValueError: a kind that it is known not to be.
         """
         _check_kind(kind)
-        job = self.do(self._addressed(pkw.read(number, index)))
+        job = self.do(self.addressed(pkw.read(number, index)))
         return self._value(job, self._agreed(job, kind))
 
     def write(self, number, value, index=0, eeprom=False, kind=None, sure=False):
@@ -247,7 +248,7 @@ class Drive:
                 "drive %d may be running: stop it before it gets another address, or nobody could"
                 % self.engine.address
             )
-        kind = self._agreed(self.do(self._addressed(pkw.read(number, index))), kind)
+        kind = self._agreed(self.do(self.addressed(pkw.read(number, index))), kind)
         if kind is float:
             job = pkw.write_float(number, value, index, eeprom)
         elif int(value) != value:
@@ -258,7 +259,7 @@ class Drive:
             job = pkw.write_word(number, int(value), index, eeprom)
         if asked_first:
             self.particulars.forget()
-        return self._value(self.do(self._addressed(job)), kind)
+        return self._value(self.do(self.addressed(job)), kind)
 
     def do(self, job):
         """Carry out any job of `pkw`, wait for its end and answer it; `ask` does not wait.
@@ -273,6 +274,10 @@ class Drive:
     def carry_out(self, job):
         """Wait for the end of a job, whatever that is. NoContact: it was not begun, or the bus
         was put off before it ended."""
+        self.finish(self.begin(job))
+
+    def begin(self, job):
+        """As carry_out, but it waits for contact alone, and answers the job: `finish` is next."""
         engine = self.engine
         if not engine.layout.pkw_words:
             raise UssError(
@@ -280,6 +285,11 @@ class Drive:
             )
         self._wait_for_contact()
         engine.ask(job)
+        return job
+
+    def finish(self, job):
+        """Wait for the end of a job that was begun."""
+        engine = self.engine
         engine.want_turns(True)
         try:
             while job.state == pkw.PENDING:
@@ -307,7 +317,8 @@ class Drive:
 
     # --- behind it ------------------------------------------------------------------------------
 
-    def _addressed(self, job):
+    def addressed(self, job):
+        """The job, by the task that drives of the family take its index with."""
         if not job.index or not self.family.has_array_tasks:
             return job
         from uss.tasks import arrays  # here, because most programs need the room that it takes
@@ -355,7 +366,10 @@ class Drive:
         return job.float_value() if kind is float else job.integer_value()
 
     def _actual(self):
-        """HIW with its sign."""
+        """HIW with its sign. ValueError: it is known not to be the speed."""
+        wrong = self.particulars.what_is_wrong(ACTUAL)
+        if wrong:
+            raise ValueError("drive %d %s" % (self.engine.address, wrong))
         self._wait_for_contact()
         hiw = self.engine.word(2)
         return hiw if self.family.hiw_is_signed else with_direction(hiw, self.engine.zsw)
@@ -392,6 +406,11 @@ class Drive:
                 self._refuse("is still stopping")
             self.engine.stop()
         stops = self.engine.stops
+        particulars = self.particulars
+        particulars.ask()
+        wrong = particulars.what_is_wrong(STATUS)
+        if wrong:
+            self._refuse(wrong)
         if not self._may_start():
             self.bus.wait(SETTLE_S, self._may_start)
         fault = self.fault
@@ -400,11 +419,10 @@ class Drive:
             self._refuse("has tripped with %s: acknowledge() when its cause is gone" % name)
         if not self._may_start():
             self._refuse("is inhibited, or stopped by OFF2 or OFF3 from elsewhere")
-        self.particulars.ask()
-        obstacle = self.particulars.obstacle(needs_setpoint, self.unsupervised)
+        obstacle = particulars.obstacle(needs_setpoint, self.unsupervised)
         if obstacle:
             self._refuse(obstacle)
-        self.keep_within(self.particulars.off_time_ms())
+        self.keep_within(particulars.off_time_ms())
         if self.engine.stops != stops:
             self._refuse("was told to stop meanwhile")
 

@@ -2,8 +2,9 @@
 """What a drive tells of itself: who may command it, what 100 % is, how fast it may turn.
 
 For `bus`: it is asked before a start, and when a speed is wanted in Hz or 1/min. What is asked for
-are the rows of the family's survey, a value each. Nothing of this is kept over a loss of contact,
-for it may be another drive that answers then. The panel has `survey` for it, which never waits.
+are the rows of the family's survey, a value each; `families.rows` judges them. Nothing of this is
+kept over a loss of contact, for it may be another drive that answers then. The panel has `survey`
+for it, which never waits.
 
     particulars = Particulars(drive, None)
     particulars.ask()                   # waits
@@ -11,28 +12,42 @@ for it may be another drive that answers then. The panel has `survey` for it, wh
     particulars.setpoint(25.0, None, None)
 """
 
-from uss import families, pkw, profiles
-from uss.pkw import NO_PARAMETER
+from uss import families, pkw
+from uss.families import rows
+from uss.families.rows import ACTUAL, COMMAND, RIGHT, SETPOINT, STATUS, UNKNOWN
+from uss.pkw import NO_INDEX, NO_PARAMETER
 from uss.pzd import FULL_SCALE
 from uss.scaling import CENTIHERTZ_PER_HERTZ, Scale, pole_pairs
 
 TOLERANCE = 1.001  # a limit that was rounded to a word of PZD2 is still within itself
+
+FIRST = (rows.COMMAND_SET, rows.DRIVE_SET, rows.ABSOLUTE)  # by them others are asked for or read
+LEFT_OUT = (rows.RESTART, rows.COUNTER)  # nobody asks here
+
+# What a drive does where a row of the subject is wrong.
+WRONGS = {
+    COMMAND: "is not under USS control",
+    SETPOINT: "is not under USS control",
+    STATUS: "does not send its status word",
+    ACTUAL: "does not send its actual speed",
+}
 
 
 class Particulars:
     """drive: a `bus.Drive`. scale: a `scaling.Scale` that its owner knows, or None; what the drive
     tells goes before it.
 
-    values: for each row of the family's survey what was read, None where it is not known.
+    values: for each row of the family's survey what was read, UNKNOWN where nobody knows it.
     scale: None as long as it is not known. told_off_time_ms: what the owner says of a drive that
     does not tell it, None as long as nothing was said.
     """
 
     def __init__(self, drive, scale):
         self.scale = scale
-        self.values = (None,) * len(drive.family.survey)
+        self.values = [UNKNOWN] * rows.COUNT_OF_ROWS
         self.told_off_time_ms = None
         self._told_scale = scale
+        self._wrong = rows.NOTHING_WRONG  # as far as anybody knows
         self._is_fine = False  # words that are frequencies count in 0.01 Hz
         self._drive = drive
         self._contact = None  # drive.contacts when it was asked
@@ -41,17 +56,14 @@ class Particulars:
         """Read all that is needed. Waits; NoContact, Refused, TimedOut."""
         drive = self._drive
         survey = drive.family.survey
-        jobs = [None] * len(survey)
+        self.values = [UNKNOWN] * len(survey)
+        self._is_fine = False
         if drive.layout.pkw_words:
-            for row in range(len(survey)):
-                if survey[row]:
-                    jobs[row] = self._read(survey[row])
-        absolute = jobs[profiles.ABSOLUTE]
-        self._is_fine = absolute is not None and absolute.integer_value() != 0
-        self.values = [
-            None if jobs[row] is None else families.value(jobs[row], survey[row][2], self._is_fine)
-            for row in range(len(survey))
-        ]
+            asked = [row for row in range(len(survey)) if survey[row] and row not in LEFT_OUT]
+            self._read([row for row in asked if row in FIRST])
+            self._is_fine = self.values[rows.ABSOLUTE] > 0
+            self._read([row for row in asked if row not in FIRST])
+        self._wrong = rows.wrong_rows(drive.family.meaning, self.values)
         self.scale = self._scale()
         self._tell_speed()
         self._contact = drive.contacts
@@ -62,8 +74,8 @@ class Particulars:
 
     def off_time_ms(self):
         """The drive's telegram-off time; None when it is not known, nor was told."""
-        value = self.values[profiles.SUPERVISION]
-        if value is None:
+        value = self.values[rows.SUPERVISION]
+        if value == UNKNOWN:
             return self.told_off_time_ms
         return round(value * self._drive.family.off_time_unit_ms)
 
@@ -73,22 +85,27 @@ class Particulars:
         needs_setpoint: the speed comes from this bus. unsupervised: it may run although it would
         not notice that nobody is there any more.
         """
-        family = self._drive.family
-        sources = [(profiles.COMMAND_SOURCE, family.command_value)]
-        if needs_setpoint:
-            sources.append((profiles.SETPOINT_SOURCE, family.setpoint_value))
-        for row, wanted in sources:
-            found = self.values[row]
-            if found is not None and found != wanted:
-                return "is not under USS control: %s = %d, not %d" % (
-                    self._name(row), found, wanted
-                )  # fmt: skip
+        for subject in (COMMAND, SETPOINT) if needs_setpoint else (COMMAND,):
+            wrong = self.what_is_wrong(subject)
+            if wrong:
+                return wrong
         if needs_setpoint and self.scale is None:
             return "cannot tell what 100 % is: add it to the bus with scale=Scale(...)"
         return None if unsupervised or self.off_time_ms() else self._supervision_obstacle()
 
+    def what_is_wrong(self, subject):
+        """What a wrong row of this subject makes of the drive, in words; None: none is wrong."""
+        row = self._wrong[subject]
+        if row == RIGHT:
+            return None
+        family, found = self._drive.family, self.values[row]
+        wanted = [rule[3][0] for rule in family.meaning if rule[:2] == (subject, row)][0]
+        if family.survey[row][2] == rows.SOURCE:
+            found, wanted = ["%d:%d" % (value >> 16, value & 0xFFFF) for value in (found, wanted)]
+        return "%s: %s = %s, not %s" % (WRONGS[subject], self._name(row), found, wanted)
+
     def _supervision_obstacle(self):
-        if self.values[profiles.SUPERVISION] is None:
+        if self.values[rows.SUPERVISION] == UNKNOWN:
             return (
                 "may run on if this program died: it does not tell its telegram-off time. "
                 "bus.supervise(drive, 2000) says that it has one of 2000 ms; or add it to the bus "
@@ -96,7 +113,7 @@ class Particulars:
             )
         return (
             "would run on if this program died: %s = 0. supervise(2.0) changes that; or add "
-            "it to the bus with unsupervised=True" % self._name(profiles.SUPERVISION)
+            "it to the bus with unsupervised=True" % self._name(rows.SUPERVISION)
         )
 
     # --- speeds ---------------------------------------------------------------------------------
@@ -112,8 +129,8 @@ class Particulars:
             word = self.rpm_scale().from_rpm(rpm)
         else:
             word = self.known_scale().from_percent(percent)
-        for row in (profiles.LOWEST, profiles.HIGHEST):
-            if self.values[row] is not None:
+        for row in (rows.LOWEST, rows.HIGHEST):
+            if self.values[row] != UNKNOWN:
                 self._check_limit(row, self.values[row], word)
         return word
 
@@ -135,15 +152,35 @@ class Particulars:
         scale = self.known_scale()
         return self._with_motor(scale) if scale.reference_rpm is None else scale
 
-    def _read(self, row):
-        """The job that has read a row of the survey; None when the drive has no such parameter."""
-        number, index, _ = row
-        job = pkw.read(number, index)
-        self._drive.carry_out(job)
-        if job.state == pkw.REFUSED and job.error == NO_PARAMETER:
-            return None
-        self._drive.raise_unless_done(job)
+    def _read(self, asked):
+        """Read these rows; while one is on the line, the next waits behind it."""
+        drive, job = self._drive, None
+        for row in asked:
+            before, job = job, drive.begin(drive.addressed(self._question(row)))
+            if before:
+                self._take(before)
+        if job:
+            self._take(job)
+
+    def _question(self, row):
+        asked = self._drive.family.survey[row]
+        job = pkw.read(asked[0], rows.index_of(asked, self.values))
+        job.tag = row
         return job
+
+    def _take(self, job):
+        """Its answer; what a drive without such a parameter is meant to have."""
+        drive, row = self._drive, job.tag
+        drive.finish(job)
+        _, _, kind, missing = drive.family.survey[row]
+        if row == rows.SUPERVISION:
+            missing = None  # its owner may tell it
+        is_absent = job.state == pkw.UNANSWERED and missing is not None
+        if is_absent or job.state == pkw.REFUSED and job.error in (NO_PARAMETER, NO_INDEX):
+            self.values[row] = UNKNOWN if missing is None else missing
+            return
+        drive.raise_unless_done(job)
+        self.values[row] = families.value(job, kind, self._is_fine)
 
     def _scale(self):
         """The scale that the drive tells, else the one that was told, else None."""
@@ -161,18 +198,20 @@ class Particulars:
         if scale is not None and drive.family.hiw_is_signed:
             is_hertz = scale.absolute and scale.reference_hertz
             full = scale.reference_hertz * CENTIHERTZ_PER_HERTZ if is_hertz else FULL_SCALE
-            drive.engine.tell_speed(round(full))
+            drive.engine.tell_speed(0 if self.what_is_wrong(ACTUAL) else round(full))
 
     def _own_scale(self):
         """What the values say of the scale; None when they lack what could change it."""
         family = self._drive.family
         values = self.values
-        if family.survey[profiles.ABSOLUTE] and values[profiles.ABSOLUTE] is None:
+        if family.survey[rows.ABSOLUTE] and values[rows.ABSOLUTE] == UNKNOWN:
             return None
         absolute = family.absolute_value is not None
-        absolute = absolute and values[profiles.ABSOLUTE] == family.absolute_value
-        reference = values[profiles.REFERENCE]
-        if reference is not None and family.survey[profiles.REFERENCE][2] == families.RPM:
+        absolute = absolute and values[rows.ABSOLUTE] == family.absolute_value
+        reference = values[rows.REFERENCE]
+        if reference == UNKNOWN:
+            return Scale(absolute=absolute)
+        if family.survey[rows.REFERENCE][2] == rows.RPM:
             return Scale(reference_rpm=reference, absolute=absolute)
         return Scale(reference_hertz=reference, absolute=absolute)
 
@@ -182,18 +221,18 @@ class Particulars:
         if not drive.family.motor or not drive.layout.pkw_words:
             return scale
         frequency, speed = drive.family.motor
-        kind = drive.family.survey[profiles.REFERENCE][2]  # that of its other frequencies
+        kind = drive.family.survey[rows.REFERENCE][2]  # that of its other frequencies
         rated_hertz = families.value(drive.do(pkw.read(frequency)), kind, self._is_fine)
         pairs = pole_pairs(rated_hertz, drive.read(speed))
         self.scale = Scale(scale.reference_hertz, scale.reference_rpm, pairs, scale.absolute)
         return self.scale
 
     def _check_limit(self, row, limit, word):
-        if self._drive.family.survey[row][2] == families.RPM:
+        if self._drive.family.survey[row][2] == rows.RPM:
             speed, unit = abs(self.scale.rpm(word)), "1/min"
         else:
             speed, unit = abs(self.scale.hertz(word)), "Hz"
-        if row == profiles.LOWEST:
+        if row == rows.LOWEST:
             is_beyond = speed * TOLERANCE < limit
         else:
             is_beyond = speed > limit * TOLERANCE
@@ -204,4 +243,5 @@ class Particulars:
             )
 
     def _name(self, row):
-        return pkw.name(*self._drive.family.survey[row][:2])
+        asked = self._drive.family.survey[row]
+        return pkw.name(asked[0], rows.index_of(asked, self.values))

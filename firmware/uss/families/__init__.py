@@ -1,0 +1,42 @@
+# SPDX-License-Identifier: MIT
+"""The drive families, as data: what a program must know of a drive to talk to it and to run it.
+
+A family is a class that only holds values and is never instantiated; what it does not say itself
+it has from the family it is like. `GENERIC`, the specification alone, says what each value means.
+A drive that differs is one more class: `class Pump(MM440): layout = Layout(4, 4)`. Each row that
+the protocol notes hold unverified is marked (?). A family is loaded when it is named for the first
+time, so that the panel has room for its drives.
+
+    from uss.families import MM440
+    bus.add(3, MM440)
+    MM440.baud_codes[7]                # 19200
+    baud_code(MM440, 19200)            # 7, for P2010
+
+How the families differ from the MICROMASTER 4, in short (USS.md 1.3, 1.9, 4.2, 4.5, 4.7):
+
+    MM3     3 + 2 words, no IND, numbers below 1000; ON is 0C7Fh right, 147Fh left, and HIW has no
+            sign; P091...P095, telegram-off time in seconds
+    G110    parameters without index, 127 PKW words as delivered, no P2009
+    V20     USS is chosen by P2023 = 1 and a power cycle; baud codes from 9600 on; trips with F72
+    CU240S  the first G120: as an MM440
+    G120    ready xx31h, runs xx37h; reference p2000 in rpm; link p2020...p2040; jog bits reserved;
+            no broadcast; trips with F01910, and with F07220 when bit 10 drops while it runs
+"""
+
+import uss.families.rows  # noqa: F401 - __getattr__ does not see the modules of this package
+
+_FAMILIES = "GENERIC MM3 MM410 MM420 MM430 MM440 G110 V20 CU240S G120"
+
+# Where a name is looked for, in this order.
+_MODULES = ("questions", "generic", "mm4", "mm3", "g110", "v20", "g120")
+
+
+def __getattr__(name):
+    """A family or a function that is named for the first time; FAMILIES are all of them."""
+    if name == "FAMILIES":
+        return tuple([__getattr__(family) for family in _FAMILIES.split()])
+    for module in _MODULES:
+        found = getattr(__import__(__name__ + "." + module, None, None, (name,)), name, None)
+        if found:
+            return found
+    raise AttributeError("uss.families has no %s" % name)

@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: MIT
+"""What a program asks of a family besides its values; all of it is found in `uss.families`.
+
+baud_code(MM440, 19200)                     # 7
+can_be_set_to(MM440, Layout(4, 8))          # True
+"""
+
+from uss.families.rows import SOURCE, STEPS, WORD
+
+
+def baud_code(family, baud):
+    """The code of a baud rate for the family's parameter. ValueError when it has none."""
+    for code, rate in family.baud_codes.items():
+        if rate == baud:
+            return code
+    raise ValueError("%s has no code for %r baud" % (family.name, baud))
+
+
+def can_be_set_to(family, layout):
+    """Whether drives of the family can have telegrams of this `Layout`."""
+    return layout.pkw_words in family.pkw_choices and layout.pzd_words in family.pzd_choices
+
+
+def value(job, kind, is_fine=False):
+    """What a job that is done read for a row of `survey`: an integer, or a float in Hz or 1/min.
+
+    kind: of the row. is_fine: whether the row ABSOLUTE is not 0, which matters to STEPS alone.
+    """
+    if kind == STEPS:
+        return job.integer_value() / (100 if is_fine else 10)
+    if kind in (WORD, SOURCE):
+        return job.integer_value()
+    return job.float_value()
+
+
+def is_float(family, number):
+    """Whether a 32-bit value of this parameter is floating point, as far as anybody knows."""
+    return family.integer_doubles is not None and number not in family.integer_doubles
