@@ -1,9 +1,38 @@
 # SPDX-License-Identifier: MIT
-"""What a drive tells of itself before a start: when it is asked anew, what is never left out."""
+"""What a drive tells of itself before a start: when it is asked anew, what is never left out.
 
-from bus_bench import Bench, refusal
+Parameters are changed behind the bus's back, as somebody at the drive does.
+"""
+
+from boards.sim.drives.families import mm440
+from bus_bench import QUICK, Bench, refusal
 from uss.bus import NotStarted, TimedOut
+from uss.families import MM440
 from uss.scaling import Scale
+
+USS = "is not under USS control: "
+
+# Number, index, a value that means something else, what run() says, whether a jog is refused too.
+WRONG = (
+    (700, 0, 2, USS + "P0700[0] = 2, not 5", True),
+    (719, 0, 11, USS + "P0719[0] = 11, not 0", True),
+    (719, 0, 3, USS + "P0719[0] = 3, not 0", False),
+    (840, 0, 722 << 16, USS + "P0840[0] = 722:0, not 2036:0", True),
+    (1000, 0, 2, USS + "P1000[0] = 2, not 5", False),
+    (1000, 0, 15, USS + "P1000[0] = 15, not 5", False),
+    (1070, 0, 755 << 16, USS + "P1070[0] = 755:0, not 2018:1", False),
+    (2200, 0, 1 << 16, USS + "P2200[0] = 1:0, not 0:0", False),
+    (2019, 0, 55 << 16, "does not send its status word: P2019[0] = 55:0, not 52:0", True),
+)
+
+
+def set_at(motor, number, index, value):
+    """What P0700 and P1000 connect stays as it is."""
+    connected = [(source, motor.read(source)) for source in (840, 1070)]
+    motor.write(number, index, value)
+    for source, before in connected:
+        if number != source:
+            motor.write(source, 0, before)
 
 
 def test_a_scale_that_was_told_saves_no_look_at_who_commands_and_who_supervises():
@@ -40,4 +69,62 @@ def test_what_was_known_is_asked_anew_when_the_drive_was_away():
     bench.motor().plug()
     bench.bus.wait(2)
     assert bench.drive.particulars.known_scale().reference_hertz == 100.0
+    bench.end()
+
+
+def test_what_means_something_else_refuses_a_start_and_is_named():
+    for number, index, value, said, jog_too in WRONG:
+        bench = Bench()
+        set_at(bench.motor(), number, index, value)
+        assert refusal(NotStarted, bench.drive.run, 10.0) == "drive 1 " + said
+        if jog_too:
+            assert refusal(NotStarted, bench.drive.jog_right) == "drive 1 " + said
+        else:
+            bench.drive.jog_right()
+        assert bench.motor().starts == (0 if jog_too else 1), said
+        bench.end()
+
+
+def test_p0719_goes_before_p0700_and_p1000_and_what_they_connect():
+    bench = Bench()
+    for number, value in ((719, 55), (700, 2), (1000, 2)):
+        bench.motor().write(number, 0, value)
+    bench.drive.run(10.0)
+    assert bench.drive.is_running
+    bench.end()
+
+
+def test_what_counts_is_the_data_set_that_is_active():
+    bench = Bench(family=MM440, kinds={1: {"family": mm440, "parameters": QUICK}})
+    motor = bench.motor()
+    for number, value in ((700, 5), (1000, 5), (1070, 755 << 16)):
+        motor.write(number, 1, value)
+    motor.write(2000, 2, 100.0)
+    bench.drive.run(10.0)
+    bench.drive.stop()
+    bench.bus.wait(1)
+    active, readings = {50: 1, 51: 2}, motor.readings.value
+    motor.parameters.reading = lambda *place: active.get(place[0]) or readings(*place)
+    assert "P1070[1] = 755:0" in refusal(NotStarted, bench.drive.run, 10.0)
+    assert bench.drive.particulars.scale.reference_hertz == 100.0
+    bench.end()
+
+
+def test_an_actual_value_that_is_no_frequency_is_told_as_none():
+    bench = Bench()
+    set_at(bench.motor(), 2019, 1, 27 << 16)
+    bench.drive.run(10.0)
+    for name in ("hertz", "percent", "rpm"):
+        text = refusal(ValueError, getattr, bench.drive, name)
+        assert text == "drive 1 does not send its actual speed: P2019[1] = 27:0, not 21:0"
+    bench.bus.wait(3)
+    assert bench.drive.is_running and bench.drive.hiw is not None
+    bench.end()
+
+
+def test_a_drive_that_falls_silent_on_what_it_lacks_is_started_all_the_same():
+    bench = Bench()
+    bench.motor().switches.silent_refusals = True
+    bench.drive.run(10.0)
+    assert bench.drive.is_running
     bench.end()

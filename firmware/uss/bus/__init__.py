@@ -80,9 +80,10 @@ class Drive:
     def run(self, hertz=None, percent=None, rpm=None):
         """Have the motor turn at one of the three; percent of the reference, 1/min without slip.
 
-        To a motor that stands it waits until the drive has told its settings, a quarter of a
-        second at 19200 baud, and says that it runs. To one that runs the new speed goes with its
-        next telegram. NotStarted; ValueError: a speed beyond the drive's limits, or not one speed.
+        To a motor that stands it waits until the drive has told its settings, a third of a second
+        at 19200 baud, half a second beside others, and says that it runs. To one that runs the new
+        speed goes with its next telegram. NotStarted; ValueError: a speed beyond the drive's
+        limits, or not one speed.
         """
         if self.set(hertz, percent, rpm):
             return

@@ -56,6 +56,7 @@ class Particulars:
         """Read all that is needed. Waits; NoContact, Refused, TimedOut."""
         drive = self._drive
         survey = drive.family.survey
+        self.forget()
         self.values = [UNKNOWN] * len(survey)
         self._is_fine = False
         if drive.layout.pkw_words:
