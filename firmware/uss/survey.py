@@ -18,7 +18,6 @@ from micropython import const
 from uss.timing import elapsed
 from uss import pkw, pzd
 from uss.families import rows
-from uss.families.rows import NOTHING_WRONG, RIGHT, index_of, source, wrong_rows
 import uss.drive  # noqa: F401
 from uss.telegram_count import TelegramCount
 
@@ -78,7 +77,7 @@ class Survey:
         self.complete = False
         self.scaling = None
         self.actual = None
-        self.wrong = NOTHING_WRONG
+        self.wrong = rows.NOTHING_WRONG
         self.unreadable = False
         self.version = 0
         self.unchecked = 0
@@ -172,7 +171,7 @@ class Survey:
         if row == rows.REFERENCE or row == rows.ABSOLUTE:
             self._judge_scaling()
         else:
-            self.wrong = wrong_rows(self.family.meaning, self.values)
+            self.wrong = rows.wrong_rows(self.family.meaning, self.values)
         self._judge()
 
     def _forget(self):
@@ -194,7 +193,7 @@ class Survey:
                 self.values[row] = _UNKNOWN
         if known:
             self.scaling = None
-            self.wrong = wrong_rows(self.family.meaning, self.values)
+            self.wrong = rows.wrong_rows(self.family.meaning, self.values)
             self._judge()
             self.unreadable = False
 
@@ -222,7 +221,7 @@ class Survey:
         job = self._job
         if place == _SECOND:
             job = self._second = self._spares.pop()
-        job.aim(pkw.READ, asked[0], index_of(asked, self.values))
+        job.aim(pkw.READ, asked[0], rows.index_of(asked, self.values))
         job.tag = row
         if row == rows.COUNTER and self._count:
             self._count.asked()
@@ -287,7 +286,7 @@ class Survey:
         if kind == rows.CENTIHERTZ:
             value = centihertz(job.high, value)
         elif kind == rows.SOURCE:
-            value = source(job.high, value)
+            value = rows.source(job.high, value)
         if value != self.values[row] or value == _UNKNOWN:
             self._put(row, value)
 
@@ -332,7 +331,7 @@ class Survey:
         """What all values together amount to, after one of them changed."""
         values = self.values
         self.version += 1
-        tells = values[rows.ACTUAL_SENT] != _UNKNOWN and self.wrong[rows.ACTUAL] == RIGHT
+        tells = values[rows.ACTUAL_SENT] != _UNKNOWN and self.wrong[rows.ACTUAL] == rows.RIGHT
         self.actual = self.scaling if tells else None
         self.complete = self.scaling is not None and _UNKNOWN not in values
         if self.complete:

@@ -23,6 +23,7 @@ TOLERANCE = 1.001  # a limit that was rounded to a word of PZD2 is still within 
 
 FIRST = (rows.COMMAND_SET, rows.DRIVE_SET, rows.ABSOLUTE)  # by them others are asked for or read
 LEFT_OUT = (rows.RESTART, rows.COUNTER)  # nobody asks here
+_ABSENT = (NO_PARAMETER, NO_INDEX)  # the drive has no such parameter
 
 # What a drive does where a row of the subject is wrong.
 WRONGS = {
@@ -58,7 +59,6 @@ class Particulars:
         survey = drive.family.survey
         self.forget()
         self.values = [UNKNOWN] * len(survey)
-        self._is_fine = False
         if drive.layout.pkw_words:
             asked = [row for row in range(len(survey)) if survey[row] and row not in LEFT_OUT]
             self._read([row for row in asked if row in FIRST])
@@ -86,10 +86,9 @@ class Particulars:
         needs_setpoint: the speed comes from this bus. unsupervised: it may run although it would
         not notice that nobody is there any more.
         """
-        for subject in (COMMAND, SETPOINT) if needs_setpoint else (COMMAND,):
-            wrong = self.what_is_wrong(subject)
-            if wrong:
-                return wrong
+        wrong = self.what_is_wrong(COMMAND) or needs_setpoint and self.what_is_wrong(SETPOINT)
+        if wrong:
+            return wrong
         if needs_setpoint and self.scale is None:
             return "cannot tell what 100 % is: add it to the bus with scale=Scale(...)"
         return None if unsupervised or self.off_time_ms() else self._supervision_obstacle()
@@ -155,33 +154,35 @@ class Particulars:
 
     def _read(self, asked):
         """Read these rows; while one is on the line, the next waits behind it."""
-        drive, job = self._drive, None
+        drive, before = self._drive, None
         for row in asked:
-            before, job = job, drive.begin(drive.addressed(self._question(row)))
+            job = drive.begin(drive.addressed(pkw.read(*self._place(row))))
+            job.tag = row
             if before:
                 self._take(before)
-        if job:
-            self._take(job)
-
-    def _question(self, row):
-        asked = self._drive.family.survey[row]
-        job = pkw.read(asked[0], rows.index_of(asked, self.values))
-        job.tag = row
-        return job
+            before = job
+        if before:
+            self._take(before)
 
     def _take(self, job):
         """Its answer; what a drive without such a parameter is meant to have."""
-        drive, row = self._drive, job.tag
-        drive.finish(job)
-        _, _, kind, missing = drive.family.survey[row]
+        row = job.tag
+        self._drive.finish(job)
+        _, _, kind, missing = self._drive.family.survey[row]
         if row == rows.SUPERVISION:
             missing = None  # its owner may tell it
-        is_absent = job.state == pkw.UNANSWERED and missing is not None
-        if is_absent or job.state == pkw.REFUSED and job.error in (NO_PARAMETER, NO_INDEX):
-            self.values[row] = UNKNOWN if missing is None else missing
-            return
-        drive.raise_unless_done(job)
-        self.values[row] = families.value(job, kind, self._is_fine)
+        error = job.error if job.state == pkw.REFUSED else None
+        if job.state == pkw.DONE:
+            self.values[row] = families.value(job, kind, self._is_fine)
+        elif missing is not None and (job.state == pkw.UNANSWERED or error in _ABSENT):
+            self.values[row] = missing
+        elif error != NO_PARAMETER:
+            self._drive.raise_unless_done(job)
+
+    def _place(self, row):
+        """The number and the index of a row."""
+        asked = self._drive.family.survey[row]
+        return asked[0], rows.index_of(asked, self.values)
 
     def _scale(self):
         """The scale that the drive tells, else the one that was told, else None."""
@@ -244,5 +245,4 @@ class Particulars:
             )
 
     def _name(self, row):
-        asked = self._drive.family.survey[row]
-        return pkw.name(asked[0], rows.index_of(asked, self.values))
+        return pkw.name(*self._place(row))

@@ -18,16 +18,13 @@ STATUS_SENT, ACTUAL_SENT, SELECTION, ON_SOURCE, MAIN_SOURCE, PID = range(11, 17)
 COUNT_OF_ROWS = const(17)
 
 # How the value of a row is to be read.
-WORD = const(0)  # as it is
-CENTIHERTZ = const(1)  # a floating-point frequency; the panel keeps it in 0.01 Hz
-RPM = const(2)  # a floating-point speed in 1/min
-STEPS = const(3)  # a frequency in 0.1 Hz, or in 0.01 Hz when the row ABSOLUTE is not 0
-SOURCE = const(4)  # a connector, as `source` makes it
-COUNT = const(5)  # a counter of 16 bits that wraps
+# WORD: as it is. CENTIHERTZ: a floating-point frequency; the panel keeps it in 0.01 Hz. RPM: a
+# floating-point speed in 1/min. STEPS: a frequency in 0.1 Hz, or in 0.01 Hz when the row ABSOLUTE
+# is not 0. SOURCE: a connector, as `source` makes it. COUNT: a counter of 16 bits that wraps.
+WORD, CENTIHERTZ, RPM, STEPS, SOURCE, COUNT = range(6)
 
 # In place of an index: that of the command data set, or of the drive data set, that is active.
-BY_COMMAND_SET = const(-1)
-BY_DRIVE_SET = const(-2)
+BY_COMMAND_SET, BY_DRIVE_SET = -1, -2
 
 # What the rules of `meaning` are about: who commands, whence the setpoint comes, whether PZD1 is
 # the status word, whether PZD2 is the actual frequency.
