@@ -161,17 +161,17 @@ def test_two_drives_that_run_unseen_are_both_to_be_announced():
     soak = Soak(13, drives=3)
     soak.hand.run(3_000)
     addresses = soak.plan.addresses
-    judge, reader = soak.judge, soak.reader
-    judge.shown = addresses[0]
+    witness, reader = soak.judge.witness, soak.reader
+    witness.shown = addresses[0]
     for address in addresses[1:]:
-        judge.cases[address].zsw = 0xFB34
+        witness.cases[address].zsw = 0xFB34
     reader.rows = ("S: 10.0 F:  0.00", "A%d RUN,HOLD=ALL " % addresses[1])
     now = soak.world.clock.now_us
     told = None
     for _ in range(500):
         now += 40_000
         for address in addresses:
-            judge.cases[address].answered_us = judge.cases[address].heard_us = now
+            witness.cases[address].answered_us = witness.cases[address].heard_us = now
         try:
             reader.announced.look(now)
         except Broken as broken:

@@ -22,6 +22,7 @@ class Fingers:
         self.world = world
         self.plan = plan
         self.judge = judge
+        self.witness = judge.witness
         self.reader = reader
         self.weather = weather
         self.dice = plan.dice
@@ -54,14 +55,14 @@ class Fingers:
     # --- keys -----------------------------------------------------------------------------------
 
     def down(self, key):
-        if key not in self.judge.down:
-            self.judge.key(key, True)
+        if key not in self.witness.down:
+            self.witness.key(key, True)
             self.note("%s down" % key)
             self.world.down(key)
 
     def up(self, key):
-        if key in self.judge.down:
-            self.judge.key(key, False)
+        if key in self.witness.down:
+            self.witness.key(key, False)
             self.note("%s up" % key)
             self.world.up(key)
 
@@ -73,7 +74,7 @@ class Fingers:
         self.run(60)
 
     def let_go(self):
-        for key in list(self.judge.down):
+        for key in list(self.witness.down):
             self.up(key)
         self.run(100)
 

@@ -59,9 +59,9 @@ class Hand(Mischief):
         self.let_go()
         self.judge.look()
         self.world.flash.cut_at = None
-        self.run(2_500 + 8 * self.judge.cycle_us // MS)  # what was asked for is written by then
+        self.run(2_500 + 8 * self.witness.cycle_us // MS)  # what was asked for is written by then
         for drive in self.drives:
-            self.judge.excuse(drive.address, 3)
+            self.witness.excuse(drive.address, 3)
             if not drive.plugged:
                 drive.plug()
             if not drive.mains:
@@ -71,7 +71,7 @@ class Hand(Mischief):
             for number in WARNINGS:
                 drive.warn(number, False)
         self.follow_addresses()
-        self.run(1_500 + 4 * self.judge.cycle_us // MS)
+        self.run(1_500 + 4 * self.witness.cycle_us // MS)
         self.press("STOP", 4_300)
         self.run(3_000)
 
@@ -91,7 +91,7 @@ class Hand(Mischief):
         if self.is_unconfirmed():
             return
         self.wait_for("an address on the display", self._is_home, 8)
-        address = self.judge.shown
+        address = self.witness.shown
         if not reader.is_able(address):
             return
         drive = reader.drive_at(address)
@@ -103,7 +103,7 @@ class Hand(Mischief):
         self.press("START")
         self.run(200)
         if self.reader.reads("NO:"):  # a drive that was not shown is not always known by now
-            self.run(3_000 + 20 * self.judge.cycle_us // MS)
+            self.run(3_000 + 20 * self.witness.cycle_us // MS)
             self.press("START")
         for _ in range(RISKS_MAX):
             self.wait_for("a START to be answered", lambda: self._is_answered(drive), 8)
@@ -156,7 +156,7 @@ class Hand(Mischief):
         self.wait_for("drive %d to stand" % drive.address, lambda: drive.state == "ready", 12)
 
     def wait_for(self, what, condition, seconds, rule="RECOVERS"):
-        until_us = self.world.clock.now_us + seconds * S + 20 * self.judge.cycle_us
+        until_us = self.world.clock.now_us + seconds * S + 20 * self.witness.cycle_us
         while not condition():
             if self.world.clock.now_us > until_us:
                 raise Broken(rule, "waited for %s" % what)
@@ -178,10 +178,14 @@ class Hand(Mischief):
 
     def _is_home(self):
         """Parameter mode is left as soon as it is seen."""
-        reader, judge = self.reader, self.judge
-        if not reader.steady or judge.shown is None or self.world.clock.now_us < judge.unsure_us:
+        reader, witness = self.reader, self.witness
+        if (
+            not reader.steady
+            or witness.shown is None
+            or self.world.clock.now_us < witness.unsure_us
+        ):
             return False
-        if address_in(reader.rows[1]) != judge.shown:
+        if address_in(reader.rows[1]) != witness.shown:
             return False
         if reader.rows[1][5] == ":":
             self.press("PARAM")

@@ -63,7 +63,7 @@ class Mischief(Fingers):
         drive = self.any_drive()
         self.note("drive %d unplugged" % drive.address)
         self.count("unplugged")
-        self.judge.excuse(drive.address)
+        self.witness.excuse(drive.address)
         self.judge.look()
         drive.unplug()
 
@@ -79,7 +79,7 @@ class Mischief(Fingers):
         if drive.state != "off":
             self.note("drive %d trips" % drive.address)
             self.count("trip")
-            self.judge.excuse(drive.address)
+            self.witness.excuse(drive.address)
             drive.fault(self.dice.between(1, 80))
 
     def mains(self):
@@ -107,11 +107,11 @@ class Mischief(Fingers):
         self.run(self.dice.between(500, 8_000))
 
     def power_off(self, drive):
-        self.judge.unpowered(drive)
+        self.witness.unpowered(drive)
         drive.power_off()
 
     def power_on(self, drive):
-        self.judge.powered(drive)
+        self.witness.powered(drive)
         drive.power_on()
 
     def dip(self, whose, ms):
@@ -150,7 +150,7 @@ class Mischief(Fingers):
         happens = "comes" if on else "goes"
         self.note("drive %d: warning A%04d %s" % (drive.address, number, happens))
         self.count("warning")
-        self.judge.stirred_us = self.world.clock.now_us
+        self.witness.stirred_us = self.world.clock.now_us
         drive.warn(number, on)
         self.run(self.dice.one_of((50, 50, 9_000)))
 
@@ -175,12 +175,12 @@ class Mischief(Fingers):
             self.run(self.dice.between(400, 1_000))
         self.press("STOP")
         self.run(self.dice.between(500, 2_000))
-        drive = None if self.judge.shown is None else self.reader.drive_at(self.judge.shown)
+        drive = None if self.witness.shown is None else self.reader.drive_at(self.witness.shown)
         number, value = self.dice.one_of(DOUBTS)
         if drive is None or drive.state == "off":
             return
         if number is None:
-            self.judge.excuse(drive.address)
+            self.witness.excuse(drive.address)
             drive.fault(self.dice.between(1, 80))
         else:
             self.set_at_drive(drive, number, value)
@@ -202,7 +202,7 @@ class Mischief(Fingers):
             drive.write(number, index, value)
         except (KeyError, ValueError):
             return
-        self.judge.meddled(drive)
+        self.witness.meddled(drive)
         return True
 
     def old_replies(self):
@@ -218,18 +218,18 @@ class Mischief(Fingers):
         ms = self.dice.one_of((60, 200, 400, 700, 1_500, 2_600, 4_000))
         self.note("the loop hangs for %d ms" % ms)
         self.count("hang")
-        self.judge.hangs(True)
-        while ms > 0 and self.judge.hung_us is not None:
+        self.witness.hangs(True)
+        while ms > 0 and self.witness.hung_us is not None:
             self.world.hang(min(ms, SLICE_MS))
             ms -= SLICE_MS
             self.judge.look()
-        self.judge.hangs(False)
+        self.witness.hangs(False)
 
     def stick(self):
         """The chip's timers die, as if their clock stood: the watchdog has to help."""
         self.note("the timers die")
         self.count("dead timers")
-        self.judge.sticks()
+        self.witness.sticks()
         for peripheral in self.world.chip.peripherals:
             if isinstance(peripheral, Timer):
                 peripheral.die()

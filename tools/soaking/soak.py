@@ -36,8 +36,8 @@ class Soak:
         self.plan = plan = Plan(seed, drives, troubles)
         self.world = world = SoakWorld(main.start, plan)
         self.judge = judge = Judge(world, plan)
-        self.reader = reader = Reader(world, plan, judge)
-        self.weather = judge.weather = weather = Weather(world, plan)
+        self.reader = reader = Reader(world, plan, judge.witness)
+        self.weather = judge.witness.weather = weather = Weather(world, plan)
         self.hand = Hand(world, plan, judge, reader, weather)
 
     def run(self, seconds, progress=None):

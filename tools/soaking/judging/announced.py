@@ -5,7 +5,7 @@ A drive is in trouble when it runs and is not shown, has tripped, ran when conta
 never heard since power-on, or was stopped by something else than STOP. With n of them each is to
 be on the display for a second within 2 n s, again and again, whatever page there is.
 
-    announced = Announced(plan, judge, reader)
+    announced = Announced(plan, witness, reader)
     announced.look(now)             # after every slice: raises Broken
 """
 
@@ -54,9 +54,9 @@ LATELY = 4  # turns: what was said in these may have taken the time of what is t
 
 
 class Announced:
-    def __init__(self, plan, judge, reader):
+    def __init__(self, plan, witness, reader):
         self.plan = plan
-        self.judge = judge
+        self.witness = witness
         self.reader = reader
         self._troubles = {}  # address -> (which, since when)
         self._said = {}  # (address or ANY, which) -> when it was last said, for long enough
@@ -75,14 +75,14 @@ class Announced:
         if self._is_taken(now):
             self._free_us = now
         self._find_troubles(now)
-        judge = self.judge
-        if not self._troubles or judge.shown is None or now < judge.unsure_us:
+        witness = self.witness
+        if not self._troubles or witness.shown is None or now < witness.unsure_us:
             return
         patience_us = TURN_US * self._count(now) + SLACK_US
-        selected_us = max(judge.pressed_us["ADDRESS_UP"], judge.pressed_us["ADDRESS_DOWN"])
+        selected_us = max(witness.pressed_us["ADDRESS_UP"], witness.pressed_us["ADDRESS_DOWN"])
         if now - selected_us < patience_us:
             patience_us += PAGE_US
-        if self._stops_us > STOPS_US and now - judge.pressed_us["STOP"] < 2 * patience_us:
+        if self._stops_us > STOPS_US and now - witness.pressed_us["STOP"] < 2 * patience_us:
             patience_us *= 2  # what is said during a STOP of all is short, and said again
         for address, (which, since_us) in self._troubles.items():
             said_us = max(self._said.get((one, which), NEVER) for one in (address, ANY, SHOWN))
@@ -102,7 +102,7 @@ class Announced:
                 if address == ANY and number_in(rows):  # else it is half drawn
                     self._many[troubles] = (number_in(rows), now)
         read = self._read
-        if self._alarm and self.judge.shown is None:  # the page of whichever drive says it
+        if self._alarm and self.witness.shown is None:  # the page of whichever drive says it
             read += ((SHOWN, (NOT_STOPPED, RUNS, EXPOSED, MAY_RUN)),)
         for address, troubles in read:
             since_us, last_us = self._times.get((address, troubles), (now, NEVER))
@@ -115,10 +115,10 @@ class Announced:
 
     def _is_taken(self, now):
         """Whether the panel starts, hangs, or may do nothing."""
-        judge = self.judge
-        if judge.hung_us is not None or judge.stuck_us is not None:
+        witness = self.witness
+        if witness.hung_us is not None or witness.stuck_us is not None:
             return True
-        if now - max(judge.boot_us, judge.stalled_us) < SPLASH_US:
+        if now - max(witness.boot_us, witness.stalled_us) < SPLASH_US:
             return True
         return self.reader.reads("LINE IN USE")
 
@@ -138,11 +138,11 @@ class Announced:
         return count
 
     def _find_troubles(self, now):
-        judge = self.judge
+        witness = self.witness
         for address in self.plan.listed:
             which = None
-            if address not in judge.moved:
-                which = self._trouble_of(address, judge.cases[address], now)
+            if address not in witness.moved:
+                which = self._trouble_of(address, witness.cases[address], now)
             before = self._troubles.get(address)
             if which is None:
                 self._troubles.pop(address, None)
@@ -150,16 +150,16 @@ class Announced:
                 self._troubles[address] = (which, now)
 
     def _trouble_of(self, address, case, now):
-        judge = self.judge
-        is_shown = address == (self.reader.address if judge.shown is None else judge.shown)
-        if case.answered_us < judge.boot_us:
-            unheard = case.acknowledge_us < judge.boot_us and case.unheard > UNHEARD_TELEGRAMS
+        witness = self.witness
+        is_shown = address == (self.reader.address if witness.shown is None else witness.shown)
+        if case.answered_us < witness.boot_us:
+            unheard = case.acknowledge_us < witness.boot_us and case.unheard > UNHEARD_TELEGRAMS
             return UNHEARD if unheard else None
         if is_shown and not self._hides_state():
             return None  # its own page says it
         taken_us = min(case.answered_us, case.heard_us)  # a reply, by the panel, for sure
-        if now - taken_us > judge.lost_us * 9 // 10:
-            if not judge.is_lost(case, now):
+        if now - taken_us > witness.lost_us * 9 // 10:
+            if not witness.is_lost(case, now):
                 return None  # it may be, or about to be
             may_run = case.zsw & ZSW_RUNNING and case.ran_us == case.answered_us
             return MAY_RUN if may_run else None
@@ -168,8 +168,8 @@ class Announced:
         if case.zsw & ZSW_RUNNING:
             if is_shown:
                 return None
-            return EXPOSED if judge.is_more_exposed(address, case) else RUNS
-        known_us = max(case.acknowledge_us, case.start_us, judge.boot_us)
+            return EXPOSED if witness.is_more_exposed(address, case) else RUNS
+        known_us = max(case.acknowledge_us, case.start_us, witness.boot_us)
         return OFF if case.off_us > known_us else None
 
     def _hides_state(self):

@@ -7,8 +7,7 @@ telegram is judged by the keys as they were when it began.
 
     judge = Judge(world, plan)
     judge.look()                    # after every slice: raises Broken
-    judge.key("START", True)        # before the key moves
-    judge.hangs(True)
+    judge.witness.key("START", True)    # before the key moves
 """
 
 from tools.soaking.judging.drive_settings import scalings
@@ -59,22 +58,34 @@ LISTEN_US = 95 * MS  # 100 ms, and what the panel's clocks may be short of
 SILENT_US = 3_500 * MS  # a panel that listens, and then one exchange
 
 
-class Judge(Witness):
-    """exchanges: telegrams that were judged."""
+class Judge:
+    """world: a `SoakWorld`. plan: its `Plan`. witness: who is told what is done to that world.
+    exchanges: telegrams that were judged.
+    """
 
     def __init__(self, world, plan):
-        Witness.__init__(self, world, plan)
+        self.world = world
+        self.plan = plan
+        self.clock = world.clock
+        self.witness = witness = Witness(world, plan, self)
+        self.cases = witness.cases
+        self.tape = witness.tape
         self.exchanges = 0
-        self.shares = Shares(self)
-        self.patience_us = SILENT_US + self.exchange_us
+        self.drives = list(world.drives.values())
+        self.starts = [0] * len(self.drives)  # of their motors, as counted last
+        self._shares = Shares(witness)
+        self._patience_us = SILENT_US + witness.exchange_us
+        self._unsettled = []  # replies that may still be spoilt: row, case, whether it has stopped
+        self._begun_us = None  # the power-on whose first telegram was judged last
         self._counted_us = 0
 
     def look(self):
         """Judge what has happened since the last look."""
+        witness = self.witness
         now = self.clock.now_us
-        if self.weather is not None and self.weather.is_bad():
-            self.late_us = self.stirred_us = now
-        if self.unsettled:
+        if witness.weather.is_bad():
+            witness.late_us = witness.stirred_us = now
+        if self._unsettled:
             self._settle_replies(now)
         self.play()
         world = self.world
@@ -85,41 +96,35 @@ class Judge(Witness):
             self._judge_line()
         if world.lcd_chip.complaints():
             raise Broken("DISPLAY", world.lcd_chip.complaints()[0])
-        if self.tape.sent_us > self.spoken_us:
-            self.spoken_us = self.tape.sent_us
-        if self.stuck_us is not None:
-            if now - self.stuck_us > STUCK_US + self.exchange_us:
-                raise Broken("WATCHDOG", "the bus stands since %d" % self.stuck_us)
-        elif self.hung_us is None and now - max(self.spoken_us, self.late_us) > self.patience_us:
-            raise Broken("SILENT PANEL", "no telegram for %d ms" % ((now - self.spoken_us) // MS))
+        spoken_us = max(self.tape.sent_us, witness.boot_us)
+        if witness.stuck_us is not None:
+            if now - witness.stuck_us > STUCK_US + witness.exchange_us:
+                raise Broken("WATCHDOG", "the bus stands since %d" % witness.stuck_us)
+        elif witness.hung_us is None and now - max(spoken_us, witness.late_us) > self._patience_us:
+            raise Broken("SILENT PANEL", "no telegram for %d ms" % ((now - spoken_us) // MS))
         self.judge_motors(now)
         if now - self._counted_us > S:
             self._counted_us = now
-            self.shares.look(now)
-            self.note_settings(now)
-        down = self.down
+            self._shares.look(now)
+            witness.note_settings(now)
+        down = witness.down
         if down:
-            if "STOP" in down and "STOP" not in self.spoilt:
+            if "STOP" in down and "STOP" not in witness.spoilt:
                 self._judge_held_stop(now, now - down["STOP"])
             if "SET" in down and now - down["SET"] > HELD_SET_US:
-                self.wishes["eeprom"] = now + self.wish_us
-
-    def asked_for_us(self, case, now):
-        """How long a drive was not asked that could have been."""
-        if self.hung_us is not None or self.stuck_us is not None:
-            return 0
-        return now - max(case.sent_us, self.stalled_us, self.late_us, self.boot_us)
+                witness.wishes["eeprom"] = now + witness.wish_us
 
     def _judge_held_stop(self, now, held_us):
         """What a STOP that is held must have led to by now."""
+        witness = self.witness
         pressed_us = now - held_us
-        if max(self.stalled_us, self.late_us) > pressed_us or self.hung_us is not None:
+        if max(witness.stalled_us, witness.late_us) > pressed_us or witness.hung_us is not None:
             return
-        patience_us = self.debounce_us + 4 * self.exchange_us
-        if self.second_owed is not None and held_us > SECOND_STOP_US + patience_us:
-            if self.second_owed.second_us < pressed_us:
+        patience_us = witness.debounce_us + 4 * witness.exchange_us
+        if witness.second_owed is not None and held_us > SECOND_STOP_US + patience_us:
+            if witness.second_owed.second_us < pressed_us:
                 raise Broken("SECOND STOP", "not sent at %d" % now)
-        patience_us += len(self.plan.listed) * (2 * self.exchange_us + 10 * MS)
+        patience_us += len(self.plan.listed) * (2 * witness.exchange_us + 10 * MS)
         if held_us > ALL_STOP_US + patience_us:
             for address, case in enumerate(self.cases):
                 if case.stw & RUN:
@@ -142,9 +147,9 @@ class Judge(Witness):
         case = self.cases[tape.address[row]]
         now = tape.end_us[row]
         zsw = tape.words[at + 4]
-        if case.missed_us - case.answered_us > self.lost_us + 100 * MS:
+        if case.missed_us - case.answered_us > self.witness.lost_us + 100 * MS:
             case.void_us = max(case.void_us, now - SHORT_CHORD_US)
-            case.excused_us = now + 2 * S + self.cycle_us
+            case.excused_us = now + 2 * S + self.witness.cycle_us
             case.heard_us = NEVER
         case.answered_us = now
         case.unheard = 0
@@ -161,15 +166,15 @@ class Judge(Witness):
             if zsw & ZSW_RUNNING:
                 case.ran = True
             stops = is_over(case, zsw)
-            if is_standstill(case, tape.words[at + 5]) and self._tells_speed(case, row, now):
+            if is_standstill(case, tape.words[at + 5]) and self._tells_speed(row):
                 stops = True
             if stops:
-                case.excused_us = now + 2 * S + self.cycle_us
-        self.unsettled.append((row, case, stops))
+                case.excused_us = now + 2 * S + self.witness.cycle_us
+        self._unsettled.append((row, case, stops))
 
-    def _tells_speed(self, case, row, now):
+    def _tells_speed(self, row):
         """Whether HIW is the speed, in percent, by what the drive is set to."""
-        meant = self.meant(self.tape.address[row])
+        meant = self.witness.meant(self.tape.address[row])
         told = [values.tells_hz and not values.absolute for values in meant]
         return bool(told) and all(told)
 
@@ -177,7 +182,7 @@ class Judge(Witness):
         """Those by now that the panel must have taken."""
         tape = self.tape
         waiting = []
-        for one in self.unsettled:
+        for one in self._unsettled:
             row, case, stops = one
             if not tape.is_settled(row, now):
                 waiting.append(one)
@@ -188,15 +193,15 @@ class Judge(Witness):
                     case.bad_us = max(case.bad_us, tape.end_us[row])
                 if stops:
                     case.void_us = case.off_us = max(case.void_us, tape.end_us[row])
-        self.unsettled = waiting
+        self._unsettled = waiting
 
     def _is_sure(self, row, tape):
         """Whether the panel must have taken this reply."""
         delay_us = tape.delay_us[row]
         return (
             tape.flawless[row]
-            and self.world.wire.start_interval_us + 200 < delay_us < self.timeout_us - MS
-            and not (self.weather is not None and self.weather.may_be_deaf())
+            and self.world.wire.start_interval_us + 200 < delay_us < self.witness.timeout_us - MS
+            and not self.witness.weather.may_be_deaf()
         )
 
     def _judge_request(self, row, tape):
@@ -209,24 +214,25 @@ class Judge(Witness):
         self.exchanges += 1
         task = words[at] >> 12
         asks = (words[at], words[at + 1]) if task else None
-        self.shares.ask(case, address, asks, now)
-        if self.first_sent is not None:
+        self._shares.ask(case, address, asks, now)
+        if self._begun_us != self.witness.boot_us:
             self._judge_first(row, tape)
         if case.asked_us > 0:
             case.missed_us = case.asked_us
-            if case.lost_us < max(case.answered_us, self.boot_us) < case.missed_us - self.lost_us:
+            heard_us = max(case.answered_us, self.witness.boot_us)
+            if case.lost_us < heard_us < case.missed_us - self.witness.lost_us:
                 case.lost_us = now
         case.asked_us = now
         case.unheard += 1
-        if self.owed:
+        if self.witness.owed:
             self._judge_owed(case, now)
         if task and task != 1:
             self._judge_task(task, words[at] & 0x7FF, words[at + 1], words[at + 3], now, address)
         if not stw & RUN:
             if words[at + 5]:
                 raise Broken("SETPOINT", "%04X with OFF" % words[at + 5])
-            if self.owed and case in self.owed and now >= case.owed_us:
-                self.owed.remove(case)
+            if self.witness.owed and case in self.witness.owed and now >= case.owed_us:
+                self.witness.owed.remove(case)
                 case.owed_us = NEVER
         if stw == OFF1 and case.stw == OFF1:
             case.sent_us = now
@@ -241,10 +247,10 @@ class Judge(Witness):
         case.sent_us = now
 
     def _judge_first(self, row, tape):
-        self.first_sent = None
-        if tape.at_us[row] - self.late_us < S:
+        self._begun_us = boot_us = self.witness.boot_us
+        if tape.at_us[row] - self.witness.late_us < S:
             return
-        if tape.silence_us[row] < LISTEN_US or tape.at_us[row] - self.boot_us < LISTEN_US:
+        if tape.silence_us[row] < LISTEN_US or tape.at_us[row] - boot_us < LISTEN_US:
             raise Broken("LISTEN", "the line was silent for %d us" % tape.silence_us[row])
 
     def _judge_word(self, case, address, stw, now):
@@ -256,21 +262,22 @@ class Judge(Witness):
 
     def _grace(self, since_us):
         """From when on a key moved at `since_us` must have had its effect."""
-        if self.stalled_us > since_us:
-            since_us = self.stalled_us
-        return since_us + self.debounce_us
+        if self.witness.stalled_us > since_us:
+            since_us = self.witness.stalled_us
+        return since_us + self.witness.debounce_us
 
     def _judge_run(self, case, address, stw, hsw, now):
+        witness = self.witness
         where = "%04X to drive %d at %d" % (stw, address, now)
         silent_us = now - case.answered_us
-        if case.missed_us - case.answered_us > self.lost_us + 10 * MS:
+        if case.missed_us - case.answered_us > witness.lost_us + 10 * MS:
             raise Broken("LOST", "%s, silent for %d ms" % (where, silent_us // MS))
-        if self.hung_us is not None:
-            stood_us = now - self.hung_us
-            if stood_us > DEAD_MAN_US + self.exchange_us + 10 * MS:
+        if witness.hung_us is not None:
+            stood_us = now - witness.hung_us
+            if stood_us > DEAD_MAN_US + witness.exchange_us + 10 * MS:
                 raise Broken("DEAD MAN", "%s, the loop stood for %d ms" % (where, stood_us // MS))
-        stop_us = self.down.get("STOP")
-        if stop_us is not None and self.hung_us is None and case.stop_us == stop_us:
+        stop_us = witness.down.get("STOP")
+        if stop_us is not None and witness.hung_us is None and case.stop_us == stop_us:
             if now > self._grace(stop_us):
                 raise Broken("STOP", "%s, and STOP is down" % where)
         begins = case.stw not in (ON, ON_REVERSE) and stw in (ON, ON_REVERSE)
@@ -282,10 +289,10 @@ class Judge(Witness):
         if begins or not case.stw & RUN:
             begin(case, hsw)
             is_on = stw in (ON, ON_REVERSE)
-            case.exposed_us = self.exposed_us(address, case) if is_on else ALWAYS
+            case.exposed_us = witness.exposed_us(address, case) if is_on else ALWAYS
         elif stw in (ON, ON_REVERSE):
-            judge_rise(self, case, hsw, now, where)
-            judge_restart(self, case, where, now)
+            judge_rise(witness, case, hsw, now, where)
+            judge_restart(witness, case, where, now)
         if stw != case.stw or hsw != case.hsw:
             case.reached = False
         if not case.stw & RUN:
@@ -293,17 +300,17 @@ class Judge(Witness):
             self._judge_permission(case, address, stw not in (ON, ON_REVERSE), where, now)
         case.turned_us = now
         if case.owed_us > 0 and now > self._grace(case.owed_us):
-            if self.hung_us is None:
+            if witness.hung_us is None:
                 raise Broken("STOP", "%s, and no OFF before it" % where)
 
     def _judge_permission(self, case, address, jogs, where, now):
         pressed_us = case.jog_us if jogs else case.used_us
         if now - self.tape.chance_us < MEANT_US:
             return
-        reason = reason_against(self, case, address, pressed_us, jogs)
+        reason = reason_against(self.witness, case, address, pressed_us, jogs)
         if reason is not None:
             raise Broken("REFUSED", "%s: %s" % (where, reason))
-        if runs_on_unasked(self, case, address, pressed_us, jogs):
+        if runs_on_unasked(self.witness, case, address, pressed_us, jogs):
             raise Broken("UNSUPERVISED", where)
 
     def _judge_on(self, case, where, now):
@@ -313,7 +320,7 @@ class Judge(Witness):
                 start_us = case.start_us
         else:
             start_us = case.start_us
-            if now - start_us > START_S * S + 28 * self.cycle_us:
+            if now - start_us > START_S * S + 28 * self.witness.cycle_us:
                 raise Broken("START", "%s, pressed at %d" % (where, start_us))
         if start_us <= case.void_us and now > self._grace(case.void_us):
             told = (where, start_us, case.void_us)
@@ -322,27 +329,28 @@ class Judge(Witness):
             case.used_us = start_us
 
     def _judge_jog(self, case, key, where, now):
+        witness = self.witness
         other = "JOG_LEFT" if key == "JOG_RIGHT" else "JOG_RIGHT"
-        pressed_us = self.pressed_us[key]
+        pressed_us = witness.pressed_us[key]
         if pressed_us <= case.jog_void_us and now > self._grace(case.jog_void_us):
             raise Broken("JOG", "%s, by a key that had done its work" % where)
         case.jog_us = pressed_us
-        if self.is_sure() and self.cases[self.shown] is not case:
-            raise Broken("JOG", "%s, drive %d is shown" % (where, self.shown))
-        if self.hung_us is not None:
+        if witness.is_sure() and self.cases[witness.shown] is not case:
+            raise Broken("JOG", "%s, drive %d is shown" % (where, witness.shown))
+        if witness.hung_us is not None:
             return
-        if key not in self.down and now > self._grace(self.up[key]):
+        if key not in witness.down and now > self._grace(witness.up[key]):
             raise Broken("JOG", "%s, the key is up" % where)
-        if key in self.down and now > self._grace(self.down.get(other, ALWAYS)):
+        if key in witness.down and now > self._grace(witness.down.get(other, ALWAYS)):
             raise Broken("JOG", "%s, both keys are down" % where)
-        if key in self.spoilt:
+        if key in witness.spoilt:
             raise Broken("JOG", "%s, the key was down at power-on" % where)
         if case.stw in (ON, ON_REVERSE):
             raise Broken("JOG", "%s, right behind ON" % where)
 
     def _judge_setpoint(self, address, hsw, now, where, begins):
-        limited = self.limited(address)
-        for scaling in scalings(self.meant(address)):
+        limited = self.witness.limited(address)
+        for scaling in scalings(self.witness.meant(address)):
             for values in limited:
                 if scaling.allows(hsw, values, self.plan.settings, begins):
                     return
@@ -374,54 +382,63 @@ class Judge(Witness):
         """From OFF2 or OFF3 to OFF1: when the drive has heard it, or is lost."""
         if case.answered_us > case.second_since_us or now < case.excused_us:
             return
-        if now - case.answered_us < self.lost_us * 9 // 10 and self.hung_us is None:
+        if (
+            now - case.answered_us < self.witness.lost_us * 9 // 10
+            and self.witness.hung_us is None
+        ):
             raise Broken("SECOND STOP", "drive %d never heard it, at %d" % (address, now))
 
     def _has_reason(self, case, now, jogged):
-        if jogged and len(self.down) != 1:
+        if jogged and len(self.witness.down) != 1:
             return True
-        if jogged and now - max(self.up.values()) < 2 * S:
+        if jogged and now - max(self.witness.up.values()) < 2 * S:
             return True
         if self._is_stopping(case, now):
             return True
-        if now - case.heard_us > self.lost_us * 9 // 10:
+        if now - case.heard_us > self.witness.lost_us * 9 // 10:
             return True
         if not case.ran and now - case.on_us > 4 * S:
             return True
-        if now - self.tape.chance_us < 2 * S + self.cycle_us:
+        if now - self.tape.chance_us < 2 * S + self.witness.cycle_us:
             return True
-        return self.hung_us is not None
+        return self.witness.hung_us is not None
 
     def _is_stopping(self, case, now):
         """Whether STOP stops this drive: it is the one shown, or the key is held for 4 s."""
-        if now < self.all_until_us + 2 * S:
+        witness = self.witness
+        if now < witness.all_until_us + 2 * S:
             return True
-        is_down = "STOP" in self.down
-        if is_down and now - self.stop_from_us > ALL_STOP_US - 150 * MS:
+        is_down = "STOP" in witness.down
+        if is_down and now - witness.stop_from_us > ALL_STOP_US - 150 * MS:
             return True
-        if not is_down and now - self.up["STOP"] > 2 * S:
+        if not is_down and now - witness.up["STOP"] > 2 * S:
             return False
-        return self.stopping is None or case in self.stopping
+        return witness.stopping is None or case in witness.stopping
 
     def _judge_second_stop(self, case, address, off, now):
-        if self.stopping is not None and case not in self.stopping:
+        witness = self.witness
+        if witness.stopping is not None and case not in witness.stopping:
             raise Broken("SECOND STOP", "%04X to drive %d, which is not shown" % (off, address))
-        pressed_us = self.stop_from_us if "STOP" in self.down else None
-        if pressed_us is None and now - self.up["STOP"] < 200 * MS + self.exchange_us:
-            pressed_us = min(case.stop_us, self.stop_from_us)
-        if case.sent_us < self.held_us + SECOND_STOP_US + self.debounce_us:
-            pressed_us = self.held_us  # the line was taken: nothing has gone to it since then
+        pressed_us = witness.stop_from_us if "STOP" in witness.down else None
+        if pressed_us is None and now - witness.up["STOP"] < 200 * MS + witness.exchange_us:
+            pressed_us = min(case.stop_us, witness.stop_from_us)
+        if case.sent_us < witness.held_us + SECOND_STOP_US + witness.debounce_us:
+            pressed_us = witness.held_us  # the line was taken: nothing has gone to it since then
         held_us = now - (pressed_us if pressed_us is not None else ALWAYS)
-        if off != self.second_stop or held_us < SECOND_STOP_US - 50 * MS:
+        if off != witness.second_stop or held_us < SECOND_STOP_US - 50 * MS:
             told = (off, address, now, held_us // MS)
             raise Broken("SECOND STOP", "%04X to drive %d at %d, held for %d ms" % told)
 
     def _judge_owed(self, told, now):
         """A telegram to `told`; an OFF is owed to others: it goes before all but other stops."""
-        for case in self.owed:
-            if case is not told and self.hung_us is None and now > self._grace(case.owed_us):
+        for case in self.witness.owed:
+            if (
+                case is not told
+                and self.witness.hung_us is None
+                and now > self._grace(case.owed_us)
+            ):
                 case.owed_requests += 1
-                if case.owed_requests > 2 + self._running() and now > self.all_until_us:
+                if case.owed_requests > 2 + self._running() and now > self.witness.all_until_us:
                     address = self.cases.index(case)
                     raise Broken("STOP", "drive %d was not told within two telegrams" % address)
 
@@ -429,27 +446,28 @@ class Judge(Witness):
         return sum(1 for case in self.cases if case.stw & RUN or case.turned_us > case.owed_us > 0)
 
     def _judge_task(self, task, number, index, value, now, address):
+        witness = self.witness
         if task in READS:
             return
         number += 2000 if index & 0x8000 else 0
         self.cases[address].changes(now)
         if number == 2011:
-            self.moved[address] = self.moved[value] = True
+            witness.moved[address] = witness.moved[value] = True
         where = "parameter %d of drive %d, task %d at %d" % (number, address, task, now)
         if task not in RAM_WRITES and task not in EEPROM_WRITES:
             raise Broken("TELEGRAM", where)
-        if number in DANGEROUS and now > self.wishes.get("write", NEVER):
+        if number in DANGEROUS and now > witness.wishes.get("write", NEVER):
             raise Broken("WRITE", where)
         if number in DANGEROUS and not self._is_confirmed((address, number, value), now):
             raise Broken("WRITE", "%s: %d, and that was not asked" % (where, value))
-        if number not in DANGEROUS and now - self.set_us > self.wish_us:
+        if number not in DANGEROUS and now - witness.set_us > witness.wish_us:
             raise Broken("WRITE", where)
         if task in EEPROM_WRITES and number not in PERMANENT:
-            if now > self.wishes.get("eeprom", NEVER):
+            if now > witness.wishes.get("eeprom", NEVER):
                 raise Broken("EEPROM", where)
 
     def _is_confirmed(self, written, now):
-        for until_us, question in self.confirmed:
+        for until_us, question in self.witness.confirmed:
             if until_us < now:
                 continue
             if question is None or question == written:
@@ -466,19 +484,24 @@ class Judge(Witness):
                 self.starts[index] = starts
                 case = self.cases[drive.address]
                 begin_again(case, now)
-                if now - case.turned_us > S + self.exchange_us and not self._is_garbage(drive.stw):
+                if now - case.turned_us > S + self.witness.exchange_us and not self._is_garbage(
+                    drive.stw
+                ):
                     raise Broken("TURNS", "the motor of drive %d starts" % drive.address)
 
     def _is_garbage(self, stw):
         """Whether a drive was told what no panel says: what faults have left of telegrams."""
-        weather = self.weather
+        weather = self.witness.weather
         return weather.faults is not None and stw & ~ACKNOWLEDGE not in KNOWN
 
     def _judge_line(self):
         wire = self.world.wire
-        helpless = self.stuck_us is not None or self.clock.now_us - self.boot_us < 200 * MS
+        helpless = (
+            self.witness.stuck_us is not None
+            or self.clock.now_us - self.witness.boot_us < 200 * MS
+        )
         # A plug that is pulled within a character: nobody hears that one, so it is no silence.
-        pulled = self.clock.now_us - self.pulled_us < 100 * MS
+        pulled = self.clock.now_us - self.witness.pulled_us < 100 * MS
         if not helpless and not pulled:
             raise Broken("LINE", wire.violations()[0])
         wire.forgive()

@@ -3,7 +3,7 @@
 
 In use:
 
-    reader = Reader(world, plan, judge)
+    reader = Reader(world, plan, witness)
     reader.look()                   # after every slice: raises Broken
     reader.screens                  # the last pictures, (instant, row 1, row 2)
 """
@@ -49,20 +49,20 @@ class Reader:
     """screens: the last pictures, oldest first. rows: the present one. address: that row 2 shows,
     or None."""
 
-    def __init__(self, world, plan, judge):
+    def __init__(self, world, plan, witness):
         self.world = world
         self.plan = plan
-        self.judge = judge
+        self.witness = witness
         self.screens = []
         self.rows = ("", "")
         self.address = None
-        self.announced = Announced(plan, judge, self)
+        self.announced = Announced(plan, witness, self)
         self.steady = False  # row 2 is drawn to its end
         self._drawn_us = DRAWN_STEPS * plan.loop_us
         self._changed_us = 0  # row 2 was another one until then
         self._written_us = 0  # when the controller was last seen to have been written to
         self._written = -1
-        self._calm_us = 3 * S + 12 * judge.cycle_us
+        self._calm_us = 3 * S + 12 * witness.cycle_us
         self._judged_us = 0
         self._exposed_us = 0  # that its P2014 is longer by now was said, or could not be
         self._warned_us = NEVER  # a warning of the drive shown was read last
@@ -82,27 +82,27 @@ class Reader:
         self.steady = now - self._changed_us > self._drawn_us
         if self.reads("BUS ERROR"):
             raise Broken("EXCEPTION", "the display says BUS ERROR at %d" % now)
-        if self.steady and now > self.judge.unsure_us:
+        if self.steady and now > self.witness.unsure_us:
             if self.address is not None:
-                self.judge.shows(self.address)
+                self.witness.shows(self.address)
         self.announced.look(now)
-        judge = self.judge
+        witness = self.witness
         if self.rows[1] in QUESTIONS:
             self._read_question(now)
         else:
-            judge.question = None
-        if judge.shown is None or now < judge.unsure_us or judge.hung_us is not None:
+            witness.question = None
+        if witness.shown is None or now < witness.unsure_us or witness.hung_us is not None:
             self._unwarned_us = self._exposed_us = now
             return
         if not self.steady or now == self._written_us:
             return
-        case = judge.cases[judge.shown]
+        case = witness.cases[witness.shown]
         self._judge_lost(case, now)
         self._judge_unconfirmed(case, now)
         self._judge_warning(case, now)
         self._judge_exposed(case, now)
-        if now - judge.stirred_us > self._calm_us and now - self._judged_us > S:
-            if not judge.down and now - judge.late_us > self._calm_us:
+        if now - witness.stirred_us > self._calm_us and now - self._judged_us > S:
+            if not witness.down and now - witness.late_us > self._calm_us:
                 if now - self._judged_us > 2 * S:
                     self._hz = None
                 self._judged_us = now
@@ -119,13 +119,13 @@ class Reader:
             self.screens.append((now, rows[0], rows[1]))
 
     def _read_question(self, now):
-        judge = self.judge
+        witness = self.witness
         if self.rows[1] == RUNS_ON:
-            judge.go_us = now
-        judge.asked_us = now
+            witness.go_us = now
+        witness.asked_us = now
         subject = subject_in(self.rows[0])
         if subject is not None and subject == self._subject:  # drawn to its end
-            judge.question = subject
+            witness.question = subject
         self._subject = subject
 
     def reads(self, text):
@@ -133,14 +133,14 @@ class Reader:
         return text in row_1 or text in row_2
 
     def _judge_lost(self, case, now):
-        judge = self.judge
-        address = judge.shown
-        silent_us = judge.silent_us(case, now)
-        if not judge.is_lost(case, now):
+        witness = self.witness
+        address = witness.shown
+        silent_us = witness.silent_us(case, now)
+        if not witness.is_lost(case, now):
             return
-        if now - judge.stalled_us < S or now - judge.unsure_us < S:
+        if now - witness.stalled_us < S or now - witness.unsure_us < S:
             return
-        if now < judge.wishes.get("write", NEVER):
+        if now < witness.wishes.get("write", NEVER):
             return  # it may be on its way to another address
         row_1, row_2 = self.rows
         if row_1[7:10] == " F:" and row_1[15:].isdigit() and address_in(row_2) == address:
@@ -148,9 +148,9 @@ class Reader:
         for text in STATES + DOINGS:
             if row_2.startswith(text[0]) and address_in(row_2) == address:
                 raise Broken("MAY RUN", "%s, silent for %d ms" % (row_2, silent_us // MS))
-        if not self._may_run(case) or case.answered_us < judge.boot_us:
+        if not self._may_run(case) or case.answered_us < witness.boot_us:
             return
-        if case.acknowledge_us > case.answered_us or "STOP" in judge.down:
+        if case.acknowledge_us > case.answered_us or "STOP" in witness.down:
             return
         for text in MAY_RUN:
             if self.reads(text):
@@ -160,8 +160,8 @@ class Reader:
     def _judge_warning(self, case, now):
         """The number of a warning is shown in turn with the state, standing and running."""
         row_2 = self.rows[1]
-        drive = self.drive_at(self.judge.shown)
-        if drive is None or not self.is_able(self.judge.shown):
+        drive = self.drive_at(self.witness.shown)
+        if drive is None or not self.is_able(self.witness.shown):
             self._unwarned_us = now
             return
         present = [drive.read(NUMBERS, index) for index in range(PRESENT)]
@@ -171,27 +171,27 @@ class Reader:
         if not any(present) and row_2.startswith("WARN  "):
             self._warned_us = now  # the drive has no number for it
         hidden = row_2[5:6] == ":" or row_2 in CHOICES or self.reads("STOP UNCONFIRMED")
-        hidden = hidden or "STOP" in self.judge.down  # row 2 tells what that does
+        hidden = hidden or "STOP" in self.witness.down  # row 2 tells what that does
         hidden = hidden or address_in(row_2) is None and said_in(row_2) is None  # a message
-        lost = now - case.answered_us > self.judge.lost_us // 2
+        lost = now - case.answered_us > self.witness.lost_us // 2
         if hidden or lost or not case.zsw & ZSW_WARNING or case.zsw & ZSW_FAULT:
             self._unwarned_us = now
-        waited_us = now - max(self._unwarned_us, self._warned_us, self.judge.stirred_us)
-        patience_us = WARNED_US + 4 * self.judge.cycle_us
-        if waited_us > patience_us and now - self.judge.late_us > waited_us:
-            raise Broken("SHOWN", "a warning of drive %d is not shown" % self.judge.shown)
+        waited_us = now - max(self._unwarned_us, self._warned_us, self.witness.stirred_us)
+        patience_us = WARNED_US + 4 * self.witness.cycle_us
+        if waited_us > patience_us and now - self.witness.late_us > waited_us:
+            raise Broken("SHOWN", "a warning of drive %d is not shown" % self.witness.shown)
 
     def _judge_exposed(self, case, now):
         """A P2014 that has become longer while the drive runs is said in place of RUNNING, which
         takes turns with announcements and warnings."""
-        judge = self.judge
+        witness = self.witness
         row_2 = self.rows[1]
         hides = row_2.startswith(("RUNNING", "WARN")) or said_in(row_2)
         if not hides or self.reads(EXPOSED[0]) or self.reads(EXPOSED[1]):
             self._exposed_us = now
-        elif not judge.is_more_exposed(judge.shown, case):
+        elif not witness.is_more_exposed(witness.shown, case):
             self._exposed_us = now
-        elif now - self._exposed_us > EXPOSED_US + 2 * judge.cycle_us:
+        elif now - self._exposed_us > EXPOSED_US + 2 * witness.cycle_us:
             raise Broken("SHOWN", "%s, and P2014 has become longer" % row_2)
 
     def _may_run(self, case):
@@ -199,26 +199,26 @@ class Reader:
         return case.zsw & ZSW_RUNNING and case.ran_us == case.answered_us
 
     def _judge_unconfirmed(self, case, now):
-        judge = self.judge
-        address = judge.shown
+        witness = self.witness
+        address = witness.shown
         stop_us = case.stop_us
         if self.reads("STOP UNCONFIRMED"):
             self._unconfirmed_us = now
             return
-        if case.answered_us >= stop_us - 100 * MS or stop_us < judge.boot_us:
+        if case.answered_us >= stop_us - 100 * MS or stop_us < witness.boot_us:
             return
-        if not case.zsw & ZSW_RUNNING and case.turned_us < case.answered_us > judge.boot_us:
+        if not case.zsw & ZSW_RUNNING and case.turned_us < case.answered_us > witness.boot_us:
             return  # heard at rest since the last ON
         patience_us = 5_800 * MS if case.brakes else 3_800 * MS
-        if now - stop_us < patience_us + judge.exchange_us or now - judge.stalled_us < S:
+        if now - stop_us < patience_us + witness.exchange_us or now - witness.stalled_us < S:
             return
-        if judge.stuck_us is not None:
+        if witness.stuck_us is not None:
             return
-        if max(judge.up.values()) > stop_us + 400 * MS and judge.up["STOP"] != max(
-            judge.up.values()
+        if max(witness.up.values()) > stop_us + 400 * MS and witness.up["STOP"] != max(
+            witness.up.values()
         ):
             return  # another key was pressed since
-        if judge.down and list(judge.down) != ["STOP"]:
+        if witness.down and list(witness.down) != ["STOP"]:
             return
         if case.start_us > stop_us:
             return
@@ -228,14 +228,14 @@ class Reader:
 
     def _judge_shown(self):
         """Nothing was done for a while: is the display right?"""
-        address = self.judge.shown
+        address = self.witness.shown
         drive = self.drive_at(address)
         if drive is None or not self.is_able(address):
             return
         row_1, row_2 = self.rows
         if self.reads("STOP UNCONFIRMED") and drive.state in ("ready", "fault", "inhibited"):
-            answered_us = self.judge.cases[address].answered_us
-            if self.world.clock.now_us - answered_us < S + self.judge.cycle_us:
+            answered_us = self.witness.cases[address].answered_us
+            if self.world.clock.now_us - answered_us < S + self.witness.cycle_us:
                 raise Broken("UNCONFIRMED", "drive %d stands, and says so" % address)
         hz, before_hz = drive.hz(), self._hz
         self._hz = hz
@@ -250,8 +250,8 @@ class Reader:
                 if drive.state != state:
                     raise Broken("SHOWN", "drive %d is %s" % (address, drive.state))
                 break
-        case = self.judge.cases[address]
-        meant = self.judge.meant(address)
+        case = self.witness.cases[address]
+        meant = self.witness.meant(address)
         if row_1[:2] == "S:" and case.stw in (ON, ON_REVERSE):
             shown = row_1[2:7].strip()
             if shown[-1:].isdigit() and not shown.startswith("- "):

@@ -3,7 +3,7 @@
 
 In use:
 
-    reason = reason_against(judge, case, address, pressed_us, jogs)     # a text, or None
+    reason = reason_against(witness, case, address, pressed_us, jogs)     # a text, or None
 """
 
 from tools.soaking.judging.case import drive_at
@@ -15,24 +15,24 @@ SETPOINT = ((1000, USS), (1070, 2018 << 16 | 1), (2200, 0))
 TAKEN_US = 1 * S  # a change at the drive that is so young may still come in between
 
 
-def reason_against(judge, case, address, pressed_us, jogs):
+def reason_against(witness, case, address, pressed_us, jogs):
     """Why ON, or JOG, should not have been sent for the key that went down at `pressed_us`."""
     if case.bad_us > case.good_us and pressed_us > case.bad_us + 10 * MS:
         return "its status word forbids it"
-    drive = drive_at(judge.world, address)
+    drive = drive_at(witness.world, address)
     if drive is None or drive.family.NAME not in CONTROLLED:
         return None
-    if not _knows(judge, case, address, pressed_us, jogs):
+    if not _knows(witness, case, address, pressed_us, jogs):
         return None
     tens, units = drive.read(719) // 10, drive.read(719) % 10
     wrong = _wrong(drive, tens, COMMAND)
     return wrong if jogs else wrong or _wrong(drive, units, SETPOINT)
 
 
-def _knows(judge, case, address, pressed_us, jogs):
+def _knows(witness, case, address, pressed_us, jogs):
     """Whether the panel must know its settings. START has them read anew."""
     if jogs:
-        return judge.knows(case, address, pressed_us)
+        return witness.knows(case, address, pressed_us)
     return case.settings_us <= pressed_us - TAKEN_US
 
 
@@ -46,14 +46,14 @@ def _wrong(drive, selected, sources):
     return None
 
 
-def runs_on_unasked(judge, case, address, pressed_us, jogs):
+def runs_on_unasked(witness, case, address, pressed_us, jogs):
     """Whether the motor would run on without the panel, for ever or long, and nobody agreed."""
-    if case.accepted or address in judge.plan.settings.get("unsupervised", ()):
+    if case.accepted or address in witness.plan.settings.get("unsupervised", ()):
         return False
-    drive = drive_at(judge.world, address)
-    if drive is None or drive.family.NAME not in CONTROLLED or address in judge.moved:
+    drive = drive_at(witness.world, address)
+    if drive is None or drive.family.NAME not in CONTROLLED or address in witness.moved:
         return False
-    if not _knows(judge, case, address, pressed_us, jogs):
+    if not _knows(witness, case, address, pressed_us, jogs):
         return False
     off_time_us = drive.read(2014) * MS
-    return not off_time_us or off_time_us > 2 * max(LONG_US, 4 * judge.cycle_us)
+    return not off_time_us or off_time_us > 2 * max(LONG_US, 4 * witness.cycle_us)

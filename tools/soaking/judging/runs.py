@@ -37,10 +37,10 @@ def begin(case, hsw):
     case.highest_hsw = hsw
 
 
-def judge_rise(judge, case, hsw, now, where):
+def judge_rise(witness, case, hsw, now, where):
     """A setpoint that is above what UP left of it."""
-    raises = "UP" in judge.down and case in judge.candidates()
-    if raises or now - case.raised_us < RAISED_US + 2 * judge.cycle_us:
+    raises = "UP" in witness.down and case in witness.candidates()
+    if raises or now - case.raised_us < RAISED_US + 2 * witness.cycle_us:
         case.highest_hsw = hsw
     elif hsw > case.highest_hsw + ROUNDING:
         told = (where, hsw, case.highest_hsw)
@@ -72,10 +72,10 @@ def begin_again(case, now):
         case.again_us = now
 
 
-def judge_restart(judge, case, where, now):
+def judge_restart(witness, case, where, now):
     """A motor has started twice by one START: ON is taken back when r2024 has told that."""
     if not case.telltale or case.again_us < case.on_us:
         return
-    since_us = now - max(case.again_us, judge.late_us, judge.stalled_us)
-    if since_us > COUNTED_US + S + 4 * judge.cycle_us:
+    since_us = now - max(case.again_us, witness.late_us, witness.stalled_us)
+    if since_us > COUNTED_US + S + 4 * witness.cycle_us:
         raise Broken("TURNS", "%s, its motor started again %d ms ago" % (where, since_us // MS))

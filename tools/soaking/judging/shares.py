@@ -6,7 +6,7 @@ allow that; all that are silent, and were not running, have a fifth of the line;
 is asked so often that a drive that is switched on is found. A task that a drive answers with
 silence is taken back.
 
-    shares = Shares(judge)
+    shares = Shares(witness)
     shares.ask(case, address, task, now)    # a request begins; task: of its PKW words, or None
     shares.look(now)                        # now and then: both raise Broken
 """
@@ -27,9 +27,9 @@ TASKS = 4  # telegrams with a task that nobody answers: 3, and one that is made 
 
 
 class Shares:
-    def __init__(self, judge):
-        self.judge = judge
-        self._answer_us = judge.exchange_us - judge.timeout_us + 20 * MS
+    def __init__(self, witness):
+        self.witness = witness
+        self._answer_us = witness.exchange_us - witness.timeout_us + 20 * MS
         self._last = None  # the case that was asked last, and when
         self._last_us = 0
         self._silent_us = 0  # that silence has cost since `_since_us`
@@ -37,61 +37,63 @@ class Shares:
         self._crowded_us = NEVER
 
     def ask(self, case, address, task, now):
-        judge = self.judge
+        witness = self.witness
         may_run = case.stw & RUN or (
-            case.zsw & ZSW_RUNNING and case.asked_us > case.answered_us > judge.boot_us
+            case.zsw & ZSW_RUNNING and case.asked_us > case.answered_us > witness.boot_us
         )
-        if may_run and address not in judge.moved:
+        if may_run and address not in witness.moved:
             self._judge_gap(case, address, now)
         self._judge_task(case, address, task, now)
         self._count(case, now)
 
     def look(self, now):
-        judge = self.judge
+        witness = self.witness
         silent = [case for case in self._listed() if self._is_silent(case, now)]
-        patience_us = OWED * max(FOUND_US, SHARE * len(silent) * judge.exchange_us)
+        patience_us = OWED * max(FOUND_US, SHARE * len(silent) * witness.exchange_us)
         if self._is_crowded():
             self._crowded_us = now
         if now - self._crowded_us < patience_us:
             patience_us += OWED * RARE_US * len(silent)
-        for address in judge.plan.listed:
-            if address not in judge.moved:
-                asked_us = judge.asked_for_us(judge.cases[address], now)
-                if asked_us > patience_us + 2 * judge.cycle_us:
+        for address in witness.plan.listed:
+            if address not in witness.moved:
+                asked_us = witness.asked_for_us(witness.cases[address], now)
+                if asked_us > patience_us + 2 * witness.cycle_us:
                     told = (address, asked_us // MS, now)
                     raise Broken("NEGLECTED", "drive %d not asked for %d ms at %d" % told)
         self._judge_share(silent, now)
 
     def _is_crowded(self):
         """Whether a silence would make a drive that runs late, whose turns come first."""
-        judge = self.judge
-        running = [address for address in judge.plan.listed if judge.cases[address].stw & RUN]
-        needed_us = LOOKS * judge.plan.loop_us + 2 * judge.exchange_us
+        witness = self.witness
+        running = [address for address in witness.plan.listed if witness.cases[address].stw & RUN]
+        needed_us = LOOKS * witness.plan.loop_us + 2 * witness.exchange_us
         needed_us += 3 * len(running) * self._answer_us // 2
         return any(self._limit_us(address) < needed_us for address in running)
 
     def _listed(self):
-        judge = self.judge
-        return [judge.cases[address] for address in judge.plan.listed]
+        witness = self.witness
+        return [witness.cases[address] for address in witness.plan.listed]
 
     def _is_silent(self, case, now):
         """Whether it has been for so long that nobody waits for it, and was heard at rest since it
         was told to run."""
-        judge = self.judge
+        witness = self.witness
         if case.stw & RUN or case.zsw & ZSW_RUNNING or case.turned_us > case.rested_us:
             return False
-        return now - max(case.answered_us, judge.boot_us) > judge.lost_us + S
+        return now - max(case.answered_us, witness.boot_us) > witness.lost_us + S
 
     def _judge_gap(self, case, address, now):
         """One that runs, or may, has its turn in time, whatever else there is to say."""
-        judge = self.judge
-        gap_us = judge.asked_for_us(case, now)
-        others = len(judge.plan.listed)
+        witness = self.witness
+        gap_us = witness.asked_for_us(case, now)
+        others = len(witness.plan.listed)
         silent = sum(1 for one in self._listed() if self._is_silent(one, now))
-        round_us = (others - silent) * self._answer_us + judge.exchange_us
-        longest_us = max(self._limit_us(address), 2 * round_us) + 6 * judge.exchange_us + 200 * MS
-        stop_us = others * judge.exchange_us  # of all: a telegram to each goes before that
-        if now - gap_us < judge.stops_all_us(now) + stop_us:
+        round_us = (others - silent) * self._answer_us + witness.exchange_us
+        longest_us = (
+            max(self._limit_us(address), 2 * round_us) + 6 * witness.exchange_us + 200 * MS
+        )
+        stop_us = others * witness.exchange_us  # of all: a telegram to each goes before that
+        if now - gap_us < witness.stops_all_us(now) + stop_us:
             longest_us += stop_us
         if gap_us > longest_us:
             told = (address, gap_us // MS, now)
@@ -99,12 +101,12 @@ class Shares:
 
     def _limit_us(self, address):
         """A third of P2014, of the lost time where there is none."""
-        judge = self.judge
-        drive = drive_at(judge.world, address)
+        witness = self.witness
+        drive = drive_at(witness.world, address)
         off_time_us = 0
         if drive is not None and drive.family.NAME in CONTROLLED:
             off_time_us = drive.read(2014) * MS
-        return (off_time_us or judge.lost_us) // 3
+        return (off_time_us or witness.lost_us) // 3
 
     def _judge_task(self, case, address, task, now):
         """The same one, from the first that was not answered on."""
@@ -114,8 +116,8 @@ class Shares:
             case.task = None
             return
         case.tasks += 1
-        judge = self.judge
-        if case.tasks > TASKS and now - max(judge.late_us, judge.stalled_us) > judge.lost_us:
+        witness = self.witness
+        if case.tasks > TASKS and now - max(witness.late_us, witness.stalled_us) > witness.lost_us:
             told = (address, case.tasks, now)
             raise Broken("TASK", "drive %d, %d telegrams with a task unanswered at %d" % told)
 
@@ -129,20 +131,20 @@ class Shares:
         self._last, self._last_us = case, now
 
     def _judge_share(self, silent, now):
-        judge = self.judge
+        witness = self.witness
         # A STOP goes before all shares, and is repeated to those that do not confirm it.
-        stops_us = judge.all_until_us + STOPS * len(silent) * judge.exchange_us
+        stops_us = witness.all_until_us + STOPS * len(silent) * witness.exchange_us
         disturbed_us = max(
-            judge.late_us, judge.stalled_us, judge.stirred_us, judge.boot_us, stops_us
+            witness.late_us, witness.stalled_us, witness.stirred_us, witness.boot_us, stops_us
         )
-        alone = not [case for case in self._listed() if now - case.answered_us < judge.lost_us]
-        if alone or disturbed_us > self._since_us or judge.hung_us is not None:
+        alone = not [case for case in self._listed() if now - case.answered_us < witness.lost_us]
+        if alone or disturbed_us > self._since_us or witness.hung_us is not None:
             self._since_us, self._silent_us = now, 0
             return
         passed_us = now - self._since_us
         if passed_us < COUNTED_US:
             return
-        most_us = passed_us // SHARE + passed_us * SLACK // 100 + 2 * judge.exchange_us
+        most_us = passed_us // SHARE + passed_us * SLACK // 100 + 2 * witness.exchange_us
         if self._silent_us > most_us:
             told = (len(silent), 100 * self._silent_us // passed_us, now)
             raise Broken("NEGLECTED", "%d silent drives take %d %% of the line at %d" % told)

@@ -29,7 +29,6 @@ class Tape:
     nothing was heard in between, and no character came with an error.
 
     count         telegrams ever
-    sent          requests ever
     sent_us       when the last request began
     blurred_us    the end of the last telegram that somebody talked into
     chance_us     the end of the last characters that are no reply, and whose BCC fits by chance
@@ -48,7 +47,6 @@ class Tape:
         self.words = array("H", bytes(2 * 6 * LENGTH))
         self.silence_us = [0] * LENGTH
         self.count = 0
-        self.sent = 0
         self.sent_us = -1
         self.blurred_us = 0
         self.chance_us = NEVER
@@ -83,7 +81,6 @@ class Tape:
         burst = self._talk(station, data, count)
         self._panel_talks = False
         if is_panel and burst is not None:
-            self.sent += 1
             self.sent_us = burst.start_us
             self._asked = data[2]
             self._ended_us = burst.end_us

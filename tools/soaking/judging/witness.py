@@ -46,16 +46,21 @@ from tools.soaking.judging.tape import Tape
 
 
 class Witness:
-    """world: a `SoakWorld`. plan: its `Plan`. `look` and `play` are those of the `Judge`."""
+    """world: a `SoakWorld`. plan: its `Plan`. judge: he judges what has happened, by `look` or
+    `play`, before the next thing is noted.
 
-    def __init__(self, world, plan):
+    The hand, the world and what befalls it tell it things. Others write: the judge `late_us`,
+    `stirred_us`, `wishes`, `moved`, and he strikes out what is `owed`; the reader, what the
+    display asks: `asked_us`, `go_us`, `question`.
+    """
+
+    def __init__(self, world, plan, judge):
+        self.judge = judge
         self.world = world
         self.plan = plan
         self.tape = Tape(world.wire)
         self.cases = [Case() for _ in range(32)]
         self.clock = world.clock
-        self.drives = list(world.drives.values())
-        self.starts = [0] * len(self.drives)  # of their motors, as counted last
         self.exchange_us = exchange_us(plan)
         self.debounce_us = debounce_us(plan)
         self.cycle_us = self.exchange_us * len(plan.listed)
@@ -68,7 +73,6 @@ class Witness:
         self.pressed_us = dict(self.up)  # key -> when it last went down
         self.spoilt = {}  # keys that must go up before they count -> True
         self.boot_us = 0
-        self.first_sent = self.tape.sent
         self.hung_us = None  # since when the loop stands still
         self.stalled_us = NEVER  # the end of the last standstill of any kind
         self.weather = None  # a `Weather`: what befalls the line
@@ -80,7 +84,6 @@ class Witness:
         self.question = None  # address, number and value that it asks about, as far as it is known
         self.confirmed = []  # what SET has said yes to, until when: (instant, question)
         self.moved = {}  # addresses that a drive was given, or left, or was to -> True
-        self.unsettled = []  # replies that may still be spoilt: row, case, whether it has stopped
         self.owed = []  # cases that wait for their OFF
         self.all_from_us = NEVER  # a STOP of all began then, as far as anybody can tell,
         self.all_until_us = NEVER  # and until then every drive is stopped, one after the other
@@ -92,7 +95,6 @@ class Witness:
         self.shown_us = NEVER  # since when
         self.unsure_us = 0  # until when it cannot
         self.settings = {address: Settings(drive) for address, drive in world.drives.items()}
-        self.spoken_us = 0  # the panel's last telegram
         self.stirred_us = 0  # when something was last done to keys, drives, line or loop
         self.pulled_us = NEVER  # something was last done that may cut what a drive sends
         self.stuck_us = None  # since when the chip's timers are dead
@@ -103,7 +105,7 @@ class Witness:
 
     def key(self, key, down):
         """A key is about to move."""
-        self.look()
+        self.judge.look()
         self.stirred_us = now = self.clock.now_us
         if key == "UP":
             for case in self.candidates():
@@ -195,7 +197,7 @@ class Witness:
     def reset(self, bitten):
         """The chip is about to restart."""
         now = self.clock.now_us
-        self.play()
+        self.judge.play()
         if bitten:
             stood_us = 0 if self.hung_us is None else now - self.hung_us
             if stood_us < WATCHDOG_US - 200 * MS and self.stuck_us is None:
@@ -203,7 +205,7 @@ class Witness:
 
     def sticks(self):
         """The chip's timers die: nothing ends a transmission any more."""
-        self.look()
+        self.judge.look()
         self.stuck_us = self.stirred_us = self.clock.now_us
         for case in self.cases:
             case.excused_us = ALWAYS
@@ -215,8 +217,6 @@ class Witness:
         self.stirred_us = now
         self.stalled_us = now
         self.stuck_us = None
-        self.spoken_us = now
-        self.first_sent = self.tape.sent
         self.hung_us = None
         for case in self.cases:
             case.unheard = 0
@@ -243,7 +243,7 @@ class Witness:
 
     def hangs(self, on):
         """The main loop stops, or goes on."""
-        self.look()
+        self.judge.look()
         self.stirred_us = now = self.clock.now_us
         if on:
             self.hung_us = now
@@ -268,7 +268,7 @@ class Witness:
         """Somebody has changed parameters at the drive itself."""
         self.stirred_us = now = self.clock.now_us
         self.cases[drive.address].changes(now)
-        self.look()
+        self.judge.look()
         self.note_settings(now)
         self.cases[drive.address].excused_us = now + 30 * S
 
@@ -295,6 +295,12 @@ class Witness:
     def silent_us(self, case, now):
         """How long ago a reply came that the panel may have taken."""
         return now - max(case.answered_us, self.boot_us, self.tape.blurred_us)
+
+    def asked_for_us(self, case, now):
+        """How long a drive was not asked that could have been."""
+        if self.hung_us is not None or self.stuck_us is not None:
+            return 0
+        return now - max(case.sent_us, self.stalled_us, self.late_us, self.boot_us)
 
     def is_lost(self, case, now):
         """Whether a drive is silent for so long, and was asked meanwhile, that all must say so."""
@@ -377,7 +383,7 @@ class Witness:
         """Something is being done to this drive that may stop it."""
         self.stirred_us = self.pulled_us = now = self.clock.now_us
         self.cases[address].changes(now)
-        self.look()
+        self.judge.look()
         self.cases[address].excused_us = now + s * S
 
 
