@@ -100,7 +100,7 @@ class Watchdog:
 
     def feed(self):
         if self._wdt is None:
-            self._wdt = WDT(0, WATCHDOG_MS)
+            self._wdt = WDT(timeout=WATCHDOG_MS)
         else:
             self._wdt.feed()
 

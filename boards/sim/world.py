@@ -58,6 +58,7 @@ class Surroundings:
 
     place = "the virtual board"
     refused = {}
+    run = None  # run(ms): lets time pass, each world in its way
     notices = ()
     port = None
 

@@ -67,6 +67,7 @@ class CharacterDisplay:
     columns = _COLUMNS
     bytes_per_piece = 2
     cells_per_piece = _CELLS
+    _nibble = _pause = _end_piece = None  # see above
 
     def __init__(self, clock):
         self._ticks_us = clock.ticks_us

@@ -46,7 +46,7 @@ class FileStore:
             data = self.read(_COPY_MAX + 1)
             is_copied = data is None or len(data) <= _COPY_MAX
         except OSError:
-            is_copied = False
+            data, is_copied = None, False
         if not is_copied:
             self._os.rename(self._path, self._path + ".bad")
         elif data is not None:

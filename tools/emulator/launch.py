@@ -51,11 +51,10 @@ def main(command):
         program = _start_program(command, descriptors, before)
     except OSError as error:
         program = None
-        status = _refuse("%s: %s" % (command[0], error.strerror), NOT_FOUND)
+        _refuse("%s: %s" % (command[0], error.strerror), NOT_FOUND)
     for descriptor in descriptors:
         os.close(descriptor)
-    if program is not None:
-        status = _accompany(program)
+    status = NOT_FOUND if program is None else _accompany(program)
     _end(chip)
     return status
 

@@ -16,7 +16,9 @@ JOGS = ("JOG_RIGHT", "JOG_LEFT")
 
 
 class Fingers:
-    """deeds: the last things done, texts with their instants. dips: supplies that have failed."""
+    """deeds: the last things done, texts with their instants."""
+
+    dip = None  # dip(whose, ms): a supply fails; see `Mischief`
 
     def __init__(self, world, plan, judge, reader, weather):
         self.world = world

@@ -188,7 +188,8 @@ def fuzz(count, seed):
     """Feed `count` bytes. Exceptions of the firmware go through."""
     dice = Dice(seed)
     fed = good = exchanges = 0
-    while fed < count:
+    broken = None
+    while fed < count and not broken:
         one = Fuzz(dice)
         for _ in range(EXCHANGES):
             broken = one.exchange()
@@ -197,6 +198,4 @@ def fuzz(count, seed):
                 break
         fed += one.fed
         good += one.good
-        if broken:
-            return {"bytes": fed, "exchanges": exchanges, "good": good, "broken": broken}
-    return {"bytes": fed, "exchanges": exchanges, "good": good, "broken": None}
+    return {"bytes": fed, "exchanges": exchanges, "good": good, "broken": broken}

@@ -40,6 +40,8 @@ class LongJob(pkw.Job):
             self.words[4 + 2 * position] = word >> 8
             self.words[5 + 2 * position] = word & 0xFF
 
+    _is_whole = None  # see above
+
     def size(self):
         """Characters of the task."""
         return self._size

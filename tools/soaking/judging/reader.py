@@ -264,13 +264,10 @@ class Reader:
 
     def _judge_setpoint(self, case, shown_hz, meant):
         """It is the one sent, by what that meant the last time that the panel could read it."""
-        for scaling in scalings(meant):
-            hz = scaling.hz(case.hsw)
-            hz = -hz if case.stw == ON_REVERSE else hz
-            if abs(shown_hz - hz) <= 0.06 + abs(hz) / 0x2000:
-                return
-        if meant:
-            raise Broken("SHOWN", "%s, %.2f Hz are sent" % (self.rows[0], hz))
+        sign = -1 if case.stw == ON_REVERSE else 1
+        sent_hz = [sign * scaling.hz(case.hsw) for scaling in scalings(meant)]
+        if sent_hz and not [hz for hz in sent_hz if abs(shown_hz - hz) <= 0.06 + abs(hz) / 0x2000]:
+            raise Broken("SHOWN", "%s, %.2f Hz are sent" % (self.rows[0], sent_hz[-1]))
 
     def drive_at(self, address):
         return drive_at(self.world, address)

@@ -63,6 +63,8 @@ class Inverter:
     whenever one of these has changed.
     """
 
+    # Every family sets these.
+    maximum_hz = reached_hz = reference_hz = up_s = down_s = None
     # What a family has that cannot set it.
     commissioning = 0
     command_source = setpoint_source = COM_LINK
@@ -78,6 +80,8 @@ class Inverter:
     skip_band_hz = 2.0
     fixed_1_hz = fixed_2_hz = fixed_3_hz = fixed_4_hz = 0.0
     no_reverse = 0  # P1110
+
+    command_word = None  # command_word(): STW, wherever it comes from; see `Process`
     flying_start = 1  # P1200
     auto_restart = None  # P1210
     selection = 0  # P0719
