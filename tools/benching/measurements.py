@@ -163,7 +163,7 @@ def line(quick, baud, drives):
 
 
 def asking(quick, baud, drives):
-    """The same, a parameter task always pending for each drive."""
+    """As `line`, and each drive always has a parameter task pending."""
     return exchanges(quick, baud, drives, True)
 
 
@@ -401,7 +401,7 @@ def steps(quick, baud, drives):
     world.repl.begin("steps(%d, 3, %d)" % (phase_ms, COLLECT_MS))
     began_us = world.clock.now_us
     world.run(500)
-    rest_of(world, began_us, phase_ms)
+    world.run(max(0, began_us + phase_ms * 1000 - world.clock.now_us) // 1000)
     start_the_motor(world)
     while world.clock.now_us < began_us + 2 * phase_ms * 1000:
         world.press("UP", 900)
@@ -414,10 +414,6 @@ def steps(quick, baud, drives):
     found = {name: steps_of(table) for name, table in zip(names, inside["steps"])}
     found["collections_us"] = spread(inside["collections_us"])
     return checked(world, found)
-
-
-def rest_of(world, began_us, ms):
-    world.run(max(0, began_us + ms * 1000 - world.clock.now_us) // 1000)
 
 
 def boot(quick, display):
@@ -591,12 +587,8 @@ def simulation(quick):
         raise RuntimeError("the motor does not turn: %r" % (world.lcd(),))
     began = time.clock()
     world.run(seconds * 1000)
-    return checked_host(world, {"times": round(seconds / (time.clock() - began))})
-
-
-def checked_host(world, figures):
-    figures["complaints"] = world.complaints()[:5]
-    return figures
+    times = round(seconds / (time.clock() - began))
+    return {"times": times, "complaints": world.complaints()[:5]}
 
 
 MEASUREMENTS = {

@@ -107,12 +107,9 @@ class Plan:
         self.keeps_board = BOARD in files and not new_board and self._is_of_others(BOARD)
         if self.keeps_board:
             del self.files[BOARD]
-        self.conflicts = self._conflicts(new_board)
-        if replace:
-            self.replaced = [path for path in self.conflicts if found[path].size >= 0]
-            self.conflicts = [path for path in self.conflicts if found[path].size < 0]
-        else:
-            self.replaced = []
+        conflicts = self._conflicts(new_board)
+        self.replaced = [path for path in conflicts if replace and found[path].size >= 0]
+        self.conflicts = [path for path in conflicts if path not in self.replaced]
         self.copy = {
             path: data
             for path, data in self.files.items()

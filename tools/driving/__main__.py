@@ -283,10 +283,8 @@ def main(words):
     complain = Complaints()
     try:
         serve(chosen, found, complain)
-    except KeyboardInterrupt:
-        return 0
-    except BrokenPipeError:
-        return 0  # whoever read the log has gone
+    except (KeyboardInterrupt, BrokenPipeError):
+        pass  # Ctrl-C; or whoever read the log has gone
     except (PortError, ValueError, KeyError) as error:
         complain(error.args[0])
         return NO_PORT if isinstance(error, PortError) else NOT_UNDERSTOOD

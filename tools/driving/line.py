@@ -18,9 +18,8 @@ from boards.port.line import PortMaster, PtyMaster
 from boards.sim.drives.drive import Drive
 from boards.sim.line.wire import Wire
 from tools.driving import decoding
-from tools.port.serial_port import LineCut, PortError
+from tools.port.lasting_port import LastingPort
 
-AGAIN_S = 1.0  # a port that has gone is looked for so often
 LONGEST_WAIT_US = 1_000_000
 
 LOST = "%d characters are lost: they came faster than a line of %d baud carries them"
@@ -41,15 +40,14 @@ class DriveLine:
         self.clock = RealClock(lambda: time.monotonic_ns() // 1000)
         self.wire = Wire(self.clock, baud)
         self.drives = {}
-        self._port = port
+        self._port = LastingPort(port, self._told)
         self._log = log
         self._say = say
-        self._gone_at = None
         for address, kind in kinds.items():
             self.drives[address] = Drive(self.clock, self.wire, address, **kind)
         station = PtyMaster if port.is_pty else PortMaster
         noted = (self._note, self._look) if log else ()
-        self._master = station(self.wire, self._write, *noted)
+        self._master = station(self.wire, self._port.write, *noted)
 
     def run(self, ms):
         """Serve for so long, whatever is typed."""
@@ -63,13 +61,13 @@ class DriveLine:
         """Wait for something to happen, and let it. Answers whether `keyboard` can be read."""
         wait_s = max(0, min(self.clock.next_us() / 1e6, longest_s))
         awaited = [keyboard] if keyboard is not None else []
-        if self._gone_at is not None:
-            self._look_again()
-        else:
+        if self._port.is_open:
             awaited.append(self._port)
+        else:
+            self._port.look_again()
         ready, _, _ = select.select(awaited, (), (), wait_s)
         self.clock.follow()
-        if self._gone_at is None and self._port in ready:
+        if self._port.is_open and self._port in ready:
             self._read()
         elif self._master.lost:
             self._say(LOST % (self._master.lost, self.wire.baud))
@@ -77,37 +75,13 @@ class DriveLine:
         return keyboard in ready
 
     def _read(self):
-        try:
-            data, flaws = self._port.read()
-        except LineCut as cut:
-            self._lost(cut)
-            return
+        data, flaws = self._port.read()
         if data:
             self._master.received(data, flaws)
 
-    def _write(self, data):
-        if self._gone_at is not None:
-            return
-        try:
-            self._port.write(data)
-        except LineCut as cut:
-            self._lost(cut)
-
-    def _lost(self, cut):
-        self._port.close()
-        self._gone_at = time.monotonic()
-        self._say("%s has gone (%s): the drives hear nothing" % (self._port.path, cut))
-
-    def _look_again(self):
-        if time.monotonic() - self._gone_at < AGAIN_S:
-            return
-        self._gone_at = time.monotonic()
-        try:
-            self._port.open()
-        except PortError:
-            return
-        self._gone_at = None
-        self._say("%s is back" % self._port.path)
+    def _told(self, cut):
+        what = "has gone (%s): the drives hear nothing" % cut if cut else "is back"
+        self._say("%s %s" % (self._port.port.path, what))
 
     def _look(self):
         return {drive.address: decoding.Setup(drive) for drive in self.drives.values()}

@@ -33,12 +33,10 @@ class Chip:
     """reader, writer: binary files, to the emulator and from it.
 
     now_ns    how far the chip has come
-    batches   how often the pipe was used, for those who care for speed
     """
 
     def __init__(self, reader, writer):
         self.now_ns = 0
-        self.batches = 0
         self._reader = reader
         self._writer = writer
         self._whole = True  # no answer was broken off, as by Ctrl-C
@@ -92,7 +90,6 @@ class Chip:
         while waiting and waiting[0][0] <= until_ns:
             self._writer.write(waiting.pop(0)[1])
         self._writer.write(struct.pack(RECORD, until_ns, ord("R"), 0, 0))
-        self.batches += 1
         failure = None
         while True:
             at_ns, kind, a, b = self._next()

@@ -43,13 +43,10 @@ class Errand:
         else:
             world.run(ms)
         if world.clock.now_us >= self._up_us:
-            self._let_go()
+            self.end()
 
     def end(self):
-        """It is over, or nobody wants the rest."""
-        self._let_go()
-
-    def _let_go(self):
+        """The key is let go of: its time is over, or nobody wants the rest."""
         if self._key:
             self._world.up(self._key)
             self._hand.fix(self._key, False)

@@ -97,8 +97,7 @@ class Picture:
         """The display, the keys beside it."""
         box = BOX if self._boxes else PLAIN_BOX
         display = [box[0] + box[4] * 16 + box[1]]
-        for row in self._world.lcd():
-            display.append(box[5] + HIGHLIGHT + row + PLAIN + box[5])
+        display += [box[5] + HIGHLIGHT + row + PLAIN + box[5] for row in self._world.lcd()]
         display.append(box[2] + box[4] * 16 + box[3])
         legend = self._legend()
         lines = []
@@ -109,10 +108,8 @@ class Picture:
         return lines
 
     def _legend(self):
-        cells = []
-        for letter, key in LETTERS:
-            if key in self._world.keypad.names:
-                cells.append(self._cell(letter, key))
+        names = self._world.keypad.names
+        cells = [self._cell(letter, key) for letter, key in LETTERS if key in names]
         rows = -(-len(cells) // LEGEND_COLUMNS)
         return ["".join(cells[row::rows]) for row in range(rows)]
 
@@ -141,10 +138,7 @@ class Picture:
 
     def _matters(self, address):
         drive = self._world.drives[address]
-        return drive.read(ADDRESS) == self._selected() or drive.hz() != 0
-
-    def _selected(self):
-        return self._world.selected()
+        return drive.read(ADDRESS) == self._world.selected() or drive.hz() != 0
 
     def _drive(self, address):
         drive = self._world.drives[address]
@@ -152,7 +146,7 @@ class Picture:
         hz = drive.hz()
         fault = drive.report().split("fault=")[1].split()[0]
         return "%s%-6s (%s) %7.2f Hz %-6s %-13s %s%s" % (
-            "*" if address == self._selected() else " ",
+            "*" if address == self._world.selected() else " ",
             "A%d" % address,
             SHAFT[self.positions[address] % len(SHAFT)],
             abs(hz),
@@ -188,8 +182,7 @@ def telegram_line(at_us, from_panel, characters):
     """A telegram as the script command `bus` shows it; what does not fit is left out."""
     shown = "%10d %s" % (at_us, ">" if from_panel else "<")
     fitting = (COLUMNS - len(shown) - len(" ...")) // 3
-    for character in characters[:fitting]:
-        shown += " %02X" % character
+    shown += "".join(" %02X" % character for character in characters[:fitting])
     return shown + (" ..." if len(characters) > fitting else "")
 
 

@@ -274,10 +274,9 @@ class Session:
 
     def lines(self, now_ms, speed):
         """The picture now; now_ms is real time, speed the true one."""
-        if self._world.notices:
-            for line in self._world.notices:
-                self._print(line)
-            self._world.notices = []
+        for line in self._world.notices:
+            self._print(line)
+        self._world.notices = []
         world_us = self._world.clock.now_us
         self._picture.turn(world_us - self._drawn_us)
         self._drawn_us = world_us
@@ -418,12 +417,8 @@ def shows_boxes(getenv):
 
 def turning(world):
     """Which motors turn, and how fast: [(address, hz)]."""
-    found = []
-    for address in sorted(world.drives):
-        hz = world.drives[address].hz()
-        if hz:
-            found.append((address, hz))
-    return found
+    drives = world.drives
+    return [(address, drives[address].hz()) for address in sorted(drives) if drives[address].hz()]
 
 
 def farewell(world, ran):

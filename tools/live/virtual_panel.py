@@ -50,12 +50,10 @@ NOT_UNDERSTOOD = 2
 CRASHED = 4  # 3 is that of the wrapper: no MicroPython
 NO_PORT = 5
 INTERRUPTED = 130
-SPEED_MAX = 100
 # Bytes between two collections. Left alone, MicroPython fills the heap first, and takes ten times
 # as long for everything while it looks for the last holes in it.
 COLLECT_AFTER = 1_000_000
 SLICE_MS = 10  # of real time, between two looks at standard input
-REPLY_TIMEOUT_MS = 20, 500
 PORT_REPLY_TIMEOUT_MS = 60  # 20 ms, and what an adapter keeps back on the way there and back
 
 USAGE = """\
@@ -115,13 +113,6 @@ def addresses(word):
     return numbers
 
 
-def baud_rate(word):
-    if not word.isdigit() or int(word) not in BAUD_RATES:
-        rates = " ".join(str(rate) for rate in BAUD_RATES)
-        raise UsageError("--baud %s: USS knows %s" % (word, rates))
-    return int(word)
-
-
 def known_to_drives(baud):
     if baud not in mm420.BAUD_CODES.values():
         raise UsageError("a %s has no code for %d baud" % (mm420.NAME, baud))
@@ -134,51 +125,42 @@ def number(word):
     return int(word)
 
 
-def speed_factor(word):
-    if not word.isdigit() or not 1 <= int(word) <= SPEED_MAX:
-        raise UsageError("--speed %s: time passes 1...%d times as fast" % (word, SPEED_MAX))
-    return int(word)
-
-
-def milliseconds(word):
-    lowest, highest = REPLY_TIMEOUT_MS
-    if not word.isdigit() or not lowest <= int(word) <= highest:
-        raise UsageError("--reply-timeout %s: %d...%d ms" % (word, lowest, highest))
-    return int(word)
-
-
-def wiring(word):
-    if word not in WIRINGS:
-        raise UsageError("--keys %s: keys are wired %s" % (word, " or ".join(sorted(WIRINGS))))
-    return word
-
-
-def one_of(option, *words):
-    """A reader that takes these words."""
+def one_of(allowed, why):
+    """A reader that takes these words or numbers; `why` says what is wrong with another one."""
 
     def reader(word):
-        if word not in words:
-            raise UsageError("%s %s: there are %s" % (option, word, " and ".join(words)))
-        return word
+        value = int(word) if word.isdigit() else word
+        if value not in allowed:
+            raise UsageError(why % word)
+        return value
 
     return reader
 
 
+RATES = "--baud %s: USS knows " + " ".join(str(rate) for rate in BAUD_RATES)
+SPEEDS = "--speed %s: time passes 1...100 times as fast"
+TIMEOUTS = "--reply-timeout %s: 20...500 ms"
+WIRED = "--keys %s: keys are wired " + " or ".join(sorted(WIRINGS))
+
 # Option: name of the value, default, reader. An option without a reader is a switch.
 OPTIONS = {
     "--script": ("script", None, str),
-    "--speed": ("speed", 1, speed_factor),
+    "--speed": ("speed", 1, one_of(range(1, 101), SPEEDS)),
     "--drives": ("drives", None, addresses),
-    "--baud": ("baud", None, baud_rate),
+    "--baud": ("baud", None, one_of(BAUD_RATES, RATES)),
     "--settings": ("settings", None, str),
-    "--keys": ("keys", "direct", wiring),
+    "--keys": ("keys", "direct", one_of(WIRINGS, WIRED)),
     "--seed": ("seed", 0, number),
     "--polled": ("polled", False, None),
-    "--board": ("board", "sim", one_of("--board", "sim", "pico")),
+    "--board": ("board", "sim", one_of(("sim", "pico"), "--board %s: there are sim and pico")),
     "--flash": ("flash", None, str),
-    "--display": ("display", None, one_of("--display", "wires", "backpack")),
+    "--display": (
+        "display",
+        None,
+        one_of(("wires", "backpack"), "--display %s: there are wires and backpack"),
+    ),
     "--port": ("port", None, str),
-    "--reply-timeout": ("reply_timeout", None, milliseconds),
+    "--reply-timeout": ("reply_timeout", None, one_of(range(20, 501), TIMEOUTS)),
     "--help": ("help", False, None),
     "-h": ("help", False, None),
     "--check": ("check", False, None),  # only whether it can be: before anything is fetched
@@ -495,10 +477,9 @@ def typed_meanwhile(world):
 
 def tell_notices(world):
     """What has happened to the line."""
-    if world.notices:
-        for line in world.notices:
-            complain(line)
-        world.notices = []
+    for line in world.notices:
+        complain(line)
+    world.notices = []
 
 
 def show(line):

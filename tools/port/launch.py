@@ -24,7 +24,8 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[2]))
 
 from tools.port.dead_man import DeadMan, telegrams  # noqa: E402
-from tools.port.serial_port import LineCut, PortError, SerialPort  # noqa: E402
+from tools.port.lasting_port import AGAIN_S, LastingPort  # noqa: E402
+from tools.port.serial_port import PortError, SerialPort  # noqa: E402
 from tools.port.standard_streams import open_missing  # noqa: E402
 
 LEAVE = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT)
@@ -32,7 +33,6 @@ SUSPEND = (signal.SIGTSTP, signal.SIGTTIN, signal.SIGTTOU)
 STALE_S = 0.3  # what the program said before we stood still for so long is not meant any more
 NOT_FOUND = 127  # the exit status of a shell whose command is not there
 READ_MAX = 4096
-AGAIN_S = 1.0  # a port that has gone is looked for so often
 HURRY = -10  # niceness, where the user may have that: the panel stops what it cannot look after
 DRAIN_S = 2.0  # for the last telegrams to leave the machine
 STOPPED = "panel: it hung or died, and drive %s was sent OFF1 in its place"
@@ -45,8 +45,6 @@ class Relay:
         self._data = data
         self._control = control
         self._port = None
-        self._is_open = False
-        self._looked_at = 0.0
         self._typed = b""
         self._over = False
         self._dead_man = None  # until a port is open
@@ -58,16 +56,18 @@ class Relay:
     def run(self):
         """Until the program has ended; what it has said by then is on the line."""
         while not self._over:
-            awaited = [self._data, self._control] + ([self._port] if self._is_open else [])
+            awaited = [self._data, self._control]
+            if self._is_there():
+                awaited.append(self._port)
             ready, _, _ = select.select(awaited, (), (), self._wait_s())
             if self._control in ready:
                 self._listen()
             if self._data in ready:
                 self.send()
-            if self._is_open and self._port in ready:
+            if self._is_there() and self._port in ready:
                 self._receive()
-            if self._port is not None and not self._is_open:
-                self._look_again()
+            if self._port is not None and not self._port.is_open:
+                self._port.look_again()
             if not select.select([self._data], (), (), 0)[0]:  # or it was us who hung
                 self._stop_due()
             self._awake_s = time.monotonic()
@@ -97,8 +97,7 @@ class Relay:
         except PortError as error:
             self._tell("error %s" % error)
             return
-        self._port = port
-        self._is_open = True
+        self._port = LastingPort(port, self._tell_line)
         self._dead_man = DeadMan(baud)
         self._tell("opened")
 
@@ -126,20 +125,12 @@ class Relay:
         if said:
             may_pass = self._dead_man.heard(said, self._awake_s if is_stale else now_s)
             if may_pass and not is_stale and len(telegrams(said)) == 1:
-                self._write(said)
-
-    def _write(self, telegram):
-        if not self._is_open:
-            return  # a line that is cut
-        try:
-            self._port.write(telegram)
-        except LineCut as cut:
-            self._lost(cut)
+                self._port.write(said)
 
     def _stop_due(self):
         telegram = self._dead_man.due(time.monotonic()) if self._dead_man else None
         if telegram:
-            self._write(telegram)
+            self._port.write(telegram)
 
     def _stop_all(self):
         """The program has ended: what it has left running is stopped."""
@@ -151,11 +142,7 @@ class Relay:
             time.sleep(self._dead_man.wait_s(time.monotonic(), AGAIN_S))
 
     def _receive(self):
-        try:
-            data, flaws = self._port.read()
-        except LineCut as cut:
-            self._lost(cut)
-            return
+        data, flaws = self._port.read()
         # A character that came with an error is none: its telegram must not be complete.
         data = bytes(data[i] for i in range(len(data)) if not flaws[i])
         try:
@@ -163,33 +150,23 @@ class Relay:
         except OSError:
             pass  # the program does not read, or has ended
 
-    def _lost(self, cut):
-        self._port.close()
-        self._is_open = False
-        self._looked_at = time.monotonic()
-        self._tell("cut %s" % cut)
-
-    def _look_again(self):
-        if time.monotonic() - self._looked_at < AGAIN_S:
-            return
-        self._looked_at = time.monotonic()
-        try:
-            self._port.open()
-        except PortError:
-            return
-        self._is_open = True
-        self._tell("back")
+    def _is_there(self):
+        return self._port is not None and self._port.is_open
 
     def _drain(self):
-        if not self._is_open:
+        if not self._is_there():
             return
+        port = self._port.port
         until = time.monotonic() + DRAIN_S
         try:
-            while self._port.unsent() and time.monotonic() < until:
+            while port.unsent() and time.monotonic() < until:
                 time.sleep(0.005)
         except OSError:
             pass
-        self._port.close()
+        port.close()
+
+    def _tell_line(self, cut):
+        self._tell("cut %s" % cut if cut else "back")
 
     def _tell(self, line):
         try:

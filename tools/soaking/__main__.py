@@ -149,9 +149,8 @@ class Worker:
 class Tally:
     """What has been done so far."""
 
-    def __init__(self, count, minutes):
+    def __init__(self, count):
         self.count = count
-        self.minutes = minutes
         self.began = time.monotonic()
         self.running = {}  # worker -> seconds of the seed that it is at
         self.done = 0
@@ -247,7 +246,7 @@ def sayings(workers, said):
 def soak(wanted):
     arguments = ["soak", wanted.minutes, wanted.drives or 0, 2 if wanted.two_troubles else 1]
     workers, said = start(wanted, arguments)
-    tally = Tally(wanted.seeds, wanted.minutes)
+    tally = Tally(wanted.seeds)
     crashed = 0
     for worker, what in sayings(workers, said):
         tally.take(worker, what)

@@ -116,11 +116,12 @@ class Announced:
     def _is_taken(self, now):
         """Whether the panel starts, hangs, or may do nothing."""
         witness = self.witness
-        if witness.hung_us is not None or witness.stuck_us is not None:
-            return True
-        if now - max(witness.boot_us, witness.stalled_us) < SPLASH_US:
-            return True
-        return self.reader.reads("LINE IN USE")
+        return (
+            witness.hung_us is not None
+            or witness.stuck_us is not None
+            or now - max(witness.boot_us, witness.stalled_us) < SPLASH_US
+            or self.reader.reads("LINE IN USE")
+        )
 
     def _count(self, now):
         """How much the panel may have to say: of drives in trouble, or spoken of in the last round

@@ -389,19 +389,16 @@ class Judge:
             raise Broken("SECOND STOP", "drive %d never heard it, at %d" % (address, now))
 
     def _has_reason(self, case, now, jogged):
-        if jogged and len(self.witness.down) != 1:
-            return True
-        if jogged and now - max(self.witness.up.values()) < 2 * S:
-            return True
-        if self._is_stopping(case, now):
-            return True
-        if now - case.heard_us > self.witness.lost_us * 9 // 10:
-            return True
-        if not case.ran and now - case.on_us > 4 * S:
-            return True
-        if now - self.tape.chance_us < 2 * S + self.witness.cycle_us:
-            return True
-        return self.witness.hung_us is not None
+        witness = self.witness
+        let_go = len(witness.down) != 1 or now - max(witness.up.values()) < 2 * S
+        return (
+            (jogged and let_go)
+            or self._is_stopping(case, now)
+            or now - case.heard_us > witness.lost_us * 9 // 10
+            or (not case.ran and now - case.on_us > 4 * S)
+            or now - self.tape.chance_us < 2 * S + witness.cycle_us
+            or witness.hung_us is not None
+        )
 
     def _is_stopping(self, case, now):
         """Whether STOP stops this drive: it is the one shown, or the key is held for 4 s."""
