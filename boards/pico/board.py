@@ -2,11 +2,11 @@
 """The panel on a Raspberry Pi Pico: which pin is what. README.md beside it shows the wiring.
 
 The attributes below the tables are those that `hal` asks of any board. A PIO state machine sends
-to the bus and owns the driver enable, UART 1 receives. The display is found by looking: a backpack
-on I2C, else four data lines.
+to the bus and owns the driver enable; UART 1 receives. The board looks for the display: it takes a
+backpack on I2C if one answers, and four data lines otherwise.
 
-Whoever wires it differently puts a changed copy as board.py on the chip's file system, where it is
-found before the one that is frozen into the firmware.
+If you wire it differently, put a changed copy as board.py on the chip's file system: MicroPython
+finds it there before the one that is frozen into the firmware.
 """
 
 import os
@@ -138,8 +138,9 @@ def make_timer():
 
 
 def make_i2c():
-    """The I2C of the backpack, its wires free. A reset in the middle of a transfer leaves the
-    backpack waiting for a clock with SDA low."""
+    """The I2C of the backpack, after its wires were made free: a reset in the middle of a transfer
+    leaves the backpack waiting for a clock, and it holds SDA low.
+    """
     data = Pin(BACKPACK_SDA, Pin.IN, Pin.PULL_UP)
     pulse = Pin(BACKPACK_SCL, Pin.OPEN_DRAIN, Pin.PULL_UP, value=1)
     for _ in range(BACKPACK_CLOCKS):

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: MIT
 """The world's clock where the world is joined to something real: it follows a true counter.
 
-What is simulated keeps its exact instants: events happen at theirs, only later than they should by
-as much as the machine was busy. The clock may run ahead of the counter by what somebody has slept
-in it; then it waits for it.
+Simulated events keep their exact instants; in real time they come as late as the machine was busy.
+If somebody sleeps in the clock, it runs ahead of the counter, and then waits for it.
 
     clock = RealClock(stopwatch)        # stopwatch() -> microseconds, never falls, never wraps
     clock.follow()                      # events up to now happen

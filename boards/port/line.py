@@ -10,13 +10,13 @@ its time already, and the reply is handed over at its beginning.
     master = PtyMaster(wire, write)     # or PortMaster(wire, write)
     master.received(data)               # what has come, when it comes; clock.follow() before it
 
-Judged is what a computer can tell: characters that came together are one burst, a master that is
-too fast behind a reply is taken for one that has kept the start interval, and behind a real port,
-whose adapter may hand over late, a telegram may come in pieces.
+The line judges only what a computer can tell. Characters that came together are one burst. A
+master that is too fast behind a reply passes for one that has kept the start interval. Behind a
+real port, whose adapter may hand over late, a telegram may come in pieces.
 
-A port has no way to say that a character came with a wrong parity or stop bit: such a one is not
-handed over, as by a program that obeys its UART. What is written into a pty faster than a line
-could carry it is lost: nobody has to wait until a simulated line has said it all.
+A port cannot say that a character came with a wrong parity or stop bit: the line drops such a
+character, as does a program that obeys its UART. If somebody writes into a pty faster than a line
+could carry it, the rest is lost: nobody has to wait until a simulated line has said it all.
 """
 
 from boards.sim.clock import Event
@@ -92,7 +92,7 @@ class PtyMaster(Master):
             self._begin()
 
     def watch(self, burst):
-        """A drive begins to talk. Of two at once the second one is handed over at its end."""
+        """A drive begins to talk. If two talk at once, the second is handed over at its end."""
         self._begins(burst)
         now_us = self._clock.now_us
         if self._heard is None or self._heard.end_us <= now_us:
@@ -139,7 +139,9 @@ class PtyMaster(Master):
         self._say(BURST_LIMIT)
 
     def _say_more(self):
-        """Behind what it is saying, without a gap; what has no room waits for the end of that."""
+        """Say more behind the present burst, without a gap; what has no room waits for the end of
+        that.
+        """
         room = BURST_LIMIT - self._burst.sent_count
         if room:
             self._say(room)
@@ -162,7 +164,7 @@ class PtyMaster(Master):
 
 
 class PortMaster(Master):
-    """Its characters have been on a line already when they come; replies go there themselves."""
+    """Its characters have been on a line already when they come; replies go onto that line."""
 
     def __init__(self, wire, write, note=None, look=None):
         Master.__init__(self, wire, write, note, look)

@@ -6,8 +6,8 @@ kernel keep characters back for milliseconds, and the link says so by its resolu
 
     link = PortLink(port, clock, wire)
 
-port: read(count) -> what has come, at most so much, or None; write(data). It is told nothing of a
-line that is cut: nothing comes any more then.
+port: read(count) -> what has come, at most so much, or None; write(data). Nobody tells the link
+that the line is cut: then nothing comes any more.
 """
 
 from boards.sim.line.wire import BURST_LIMIT, Burst
@@ -17,7 +17,7 @@ APART_US = 100_000  # characters so far apart are no telegram: told one by one i
 
 
 def _nobody():
-    """Whom the link tells of what it hears, until somebody wants to know."""
+    """Stands for the listener until somebody wants to know what the link hears."""
 
 
 class PortLink:
@@ -79,7 +79,9 @@ class PortLink:
         self._sending = False
 
     def _hear(self, came):
-        """For the log, which wants telegrams: what comes until the panel talks again is one."""
+        """Note it for the log, which wants telegrams: all that comes until the panel talks again
+        is one.
+        """
         heard = self._heard
         now_us = self.clock.now_us
         if now_us - self._heard_us > APART_US or heard.count + len(came) > BURST_LIMIT:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """A panel on a real line: the virtual board, but for its UART, which is a port of the computer.
 
-The display, the keys and the chip around the firmware are simulated as ever, in real time; at the
-port are real drives, or simulated ones that somebody else serves.
+The display, the keys and the chip around the firmware are simulated as ever, but in real time. At
+the port are real drives, or simulated ones that another program serves.
 
     world = PortWorld(main.start, port, (1, 2), 19200, clock=RealClock(stopwatch))
     world.run(1000)                 # takes a second

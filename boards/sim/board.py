@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """The virtual board: the attributes that `hal` asks of any board, on a simulated chip.
 
-The display's controller, switches and flash are things of the panel that outlive a restart of the
-chip; the board itself is made anew by every restart, as on the chip.
+The display's controller, the switches and the flash belong to the panel and outlive a restart of
+the chip. Every restart makes a new board, as on the chip.
 """
 
 from boards.sim.chip.machine import UART, WDT, Pin, Timer
@@ -58,7 +58,7 @@ class Watchdog:
             self._wdt.feed()
 
     def stop(self):
-        """By the bit of a register that the RP2040 has, and machine.WDT does not offer."""
+        """Stop it by a bit of the RP2040's register, which machine.WDT does not offer."""
         if self._wdt is not None:
             self._wdt.die()
             self._wdt = None
@@ -116,7 +116,7 @@ class Board:
 
 
 def clear_fifo(uart):
-    """What is in the FIFO into the buffer; what finds no room is lost."""
+    """Move what is in the FIFO into the buffer; what finds no room is lost."""
     uart.any()
     uart.drop_fifo()
 

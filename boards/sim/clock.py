@@ -2,9 +2,9 @@
 """Virtual time: one clock for the whole simulated world, in integer microseconds.
 
 It is not a scheduler of tasks: it keeps a list of instants and calls what is due, in order, while
-somebody advances it. Nothing happens between two instants, so an idle second costs nothing, and
-a run repeats to the microsecond. Owners allocate their events once; arming, moving and cancelling
-them then takes no heap, as code that runs in an interrupt handler demands.
+somebody advances it. Nothing happens between two instants, so an idle second costs nothing, and a
+run repeats to the microsecond. Owners allocate their events once. To arm, move or cancel them then
+takes no heap, as an interrupt handler demands.
 
     blink = Event(led.toggle)
     clock.schedule(blink, clock.now_us + 500_000)
@@ -70,7 +70,7 @@ class Clock:
         return elapsed + self._start_ms
 
     def schedule(self, event, at_us):
-        """Let `event` happen at `at_us`; an armed event moves. An instant gone by means now.
+        """Let `event` happen at `at_us`; an armed event moves. An instant in the past means now.
 
         Events of one instant happen in the order in which they were scheduled.
         """

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Random numbers of a seed: the same ones for the same seed on every interpreter, without heap.
 
-Whoever must not be shifted by what others draw has dice of their own.
+If what others draw must not change your numbers, take dice of your own.
 
     dice = Dice(4711)
     dice.random(1, 6)

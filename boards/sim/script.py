@@ -34,7 +34,7 @@ class ExpectationFailed(Exception):
 
 
 class Refused(Exception):
-    """What a command says to a value that was read well, and is none for the drive."""
+    """A command understood a value that the drive does not take."""
 
 
 class Script:

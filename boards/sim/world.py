@@ -36,7 +36,7 @@ COMPLAINTS_SHOWN = 5
 
 
 class Surroundings:
-    """All that is around the chip of a panel, whichever chip that is: a line with drives, the
+    """Everything around the chip of a panel, whichever chip that is: a line with drives, the
     controller of the display, switches; a hand that presses them, an eye, and a referee.
 
     addresses: of the drives on the wire. baud: of wire and panel. settings: what else the panel's

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """The measurements of the bench: an emulated Pico with the frozen firmware, or the host alone.
 
-One process, one measurement: it prints its figures as a line of JSON. What they are held against
-is none of its business (rows.py). Runs on the Unix port, started by __main__.py; by hand
+One process does one measurement, and prints its figures as a line of JSON. It does not judge them:
+rows.py has the bars. Runs on the Unix port, started by __main__.py; by hand
 
     python3 tools/emulator/launch.py build/unix64/micropython -X heapsize=64M \\
         tools/benching/measurements.py quick stop 19200 1
@@ -84,7 +84,9 @@ def world_of(kinds, baud, seed=0, **more):
 
 
 def at_the_prompt(world, program=ON_CHIP):
-    """DOWN held at power-on leaves the chip at its prompt; then what is in `program` is there."""
+    """Hold DOWN at power-on, which leaves the chip at its prompt, and load what is in
+    `program`.
+    """
     world.down("DOWN")
     world.run(BOOT_MS)
     world.repl.open()
@@ -112,7 +114,7 @@ def settle(world):
 
 
 def start_the_motor(world):
-    """START, and the motor turns: the measurement would be of nothing otherwise."""
+    """Press START and see that the motor turns: otherwise there would be nothing to measure."""
     settle(world)
     world.press("START")
     if not world.run_until(lambda: world.drives[1].hz() > STOP_HZ, 4_000):
@@ -148,7 +150,7 @@ def steps_of(table, bucket_us=20):
 
 
 def checked(world, figures):
-    """What broke the rules of the line or the display is a figure as well."""
+    """Breaches of the rules of line and display are a figure as well."""
     figures["complaints"] = world.complaints()[:5]
     figures["restarts"] = ["%s at %d" % (cause, at) for at, cause in world.restarts[:5]]
     return figures
@@ -261,9 +263,11 @@ def saving(quick):
 
 
 def cuts(quick):
-    """Power is cut within and behind every flash operation of a save: the old settings, the new?
+    """Power is cut within and after every flash operation of a save: are the settings the old ones
+    or the new ones?
 
-    The same records give the same run, to the microsecond: one tells when the others are cut.
+    The same records give the same run, to the microsecond, so one run tells when to cut the
+    others.
     """
     world = saving_again()
     result(world, 10_000)
@@ -372,7 +376,7 @@ def off_after_us(world, since_us, bits):
 
 
 def hang(quick, how, drive):
-    """The main loop hangs while jogging: until OFF on the wire."""
+    """The main loop hangs during a jog: how long until OFF is on the wire."""
     world = world_at(19200)
     at_the_prompt(world)
     world.repl.begin("hang(%r, %d)" % (how, SETTLE_MS + 2_000))

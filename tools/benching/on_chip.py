@@ -22,7 +22,7 @@ idle_at = 0
 
 
 def idle():
-    """The board's, which tells when a step has done its work."""
+    """Takes the place of the board's `idle`, and notes when a step has done its work."""
     global idle_at
     idle_at = time.ticks_us()
     time.sleep_ms(1)
@@ -37,7 +37,7 @@ class Tasks:
         self.ended = 0
 
     def ask(self):
-        """One of them again, when it has ended: a drive has its turn every so many steps."""
+        """Ask the next job again if it has ended: each drive has its turn every so many steps."""
         drive, job = self._jobs[self._next]
         self._next = (self._next + 1) % len(self._jobs)
         if job.state != pkw.PENDING and not drive.channel.is_full():

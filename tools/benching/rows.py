@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The rows of the bench: what is measured, the bar it is held against, how it reads.
+"""The rows of the bench: each says what is measured, which bar it has to reach, and how it reads.
 
 The bars are facts and stand here; the figures come from measurements.py, whose functions and
 arguments are the tasks. Nothing here measures.

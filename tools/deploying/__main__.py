@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Copies the firmware onto a Raspberry Pi Pico with MicroPython, and restarts it.
 
-What runs on the Pico is ended by Ctrl-C: a panel stops all its drives first. Only what differs is
-copied; settings.json and what others have put there stay. Exit status: 0 the panel runs with this
+Ctrl-C ends what runs on the Pico: a panel stops all its drives first. Only files that differ are
+copied; settings.json and the files of others stay. Exit status: 0 the panel runs with this
 firmware, or the dry run came to its end; 1 it failed; 2 wrong usage.
 """
 

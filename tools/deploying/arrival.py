@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Whether the panel has come up after a restart: it says so itself, once, on the serial line.
+"""Finds out whether the panel has come up after a restart: it says so itself, once, on the serial
+line.
 
-On a real Pico the serial port goes with the restart and comes again a little later; what was said
-in between waits in the chip. An emulated one keeps its port.
+On a real Pico the serial port goes with the restart and comes back a little later; the chip keeps
+what it says in between. An emulated one keeps its port.
 """
 
 import time

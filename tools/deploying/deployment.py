@@ -3,10 +3,11 @@
 
     Deployment(chip, firmware, options, say).run()
 
-At no instant is there a firmware on the chip that is half the old and half the new one and starts.
-main.py is removed first and written last. That is not enough where a main.py is frozen into
-MicroPython, which nobody can remove: therefore the gate (plan.GATE) is put up before, and taken
-away last of all. Each file is written beside the one it replaces, and a rename puts it in place.
+The chip never has a firmware that is half the old and half the new one and starts. The steps
+remove main.py first and write it last. That is not enough if a main.py is frozen into MicroPython,
+because nobody can remove that. Therefore they put up the gate (plan.GATE) before everything else,
+and take it away last of all. Each file is written beside the one it replaces, and a rename puts it
+in place.
 """
 
 from typing import NamedTuple

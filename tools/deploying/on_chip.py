@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """What tools/deploy has the chip do: look at files, put a new one in place of an old one, remove.
 
-This file is MicroPython. It is sent over the serial line and lives in the chip's RAM until the
-next restart; nothing of it is copied. Paths are relative to the top of the chip's file system.
-Answers are printed and read back as Python literals.
+This file is MicroPython. tools/deploy sends it over the serial line, and it lives in the chip's
+RAM until the next restart; no file of it stays there. Paths are relative to the top of the chip's
+file system. Answers are printed and read back as Python literals.
 """
 
 import binascii

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""What is to be done, from what should be on the chip and what is: a comparison, nothing else.
+"""Compares what should be on the chip with what is there, and says what is to be done; it does
+nothing itself.
 
 The chip keeps a list of what was copied onto it, LIST: {"files": {path: [SHA-256, ...]}}. A file
-there is ours when its SHA-256 is the listed one. Everything else belongs to somebody: a board.py
-stays, any other file that would be overwritten, or would go before one of ours, is a conflict.
+there is ours if its SHA-256 is the listed one. Everything else belongs to somebody else: their
+board.py stays, and any other file is a conflict if we would overwrite it, or if it would go before
+one of ours.
 
     plan = Plan(files, read_list(text), look)       # look: {path: Found} of all in `paths`
 """
@@ -175,7 +177,9 @@ class Plan:
         return sorted(path for path in in_the_way if self._is_of_others(path))
 
     def _remove(self):
-        """Ours that is no longer part, what an interruption left, and what is being replaced."""
+        """Files of ours that are no longer part, what an interruption left, and what is to be
+        replaced.
+        """
         gone = {
             path
             for path in self.listed

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Simulated drives for any USS master, on a pty or a serial port, in real time: tools/drive.
 
-Nothing that it says holds up the drives: what nobody reads is left out.
+Its output never holds up the drives: it leaves out the lines that nobody reads.
 
-Exit status: 0 after Ctrl-C or `quit`, 2 when the command line cannot be understood, 5 when the
-port cannot be had.
+Exit status: 0 after Ctrl-C or `quit`, 2 if it does not understand the command line, 5 if it cannot
+have the port.
 """
 
 import argparse

@@ -6,8 +6,8 @@
         if line.serve(keyboard):
             keyboard.read()
 
-It has the face that the script language asks of a world (`drives`, `wire`, `run` ...), so that
-the same commands work on it, those of the panel apart.
+It has the face that the script language asks of a world (`drives`, `wire`, `run` ...), so that the
+same commands work on it, except those of the panel.
 """
 
 import select

@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: MIT
 """The transceiver of an emulated panel: TX, RX and driver enable as a station on the wire.
 
-What the chip sends comes as characters with the instant of their start bits, known when they are
-over; the world runs so far behind that they can still begin on the wire when they did. What others
-send goes to the chip character by character, each as late as it can be told in time, so that a
-collision garbles it and a cut ends it. As on the `Transceiver` of boards.sim.line.wire, the
-receiver is off while the driver is on. It keeps the figures of the line, in nanoseconds of the
-chip's clock.
+The chip tells a character when it is over, with the instant of its start bit; the world runs so
+far behind that the character can still begin on the wire at that instant. What others send goes to
+the chip character by character, each as late as possible, so that a collision can garble it and a
+cut can end it. As on the `Transceiver` of boards.sim.line.wire, the receiver is off while the
+driver is on. It keeps the figures of the line, in nanoseconds of the chip's clock.
 """
 
 from array import array
@@ -131,7 +130,7 @@ class Station:
         self._wire.drive(self, on)
 
     def reset(self):
-        """The chip let go of everything: what it was sending ends here."""
+        """The chip has let go of everything: its telegram ends here."""
         self._clock.cancel(self._begin)
         self._clock.cancel(self._next)
         self._wire.detach(self)
@@ -145,7 +144,7 @@ class Station:
         self._wire.attach(self)
 
     def _put(self):
-        """Put on the wire what follows what is there; wait with what does not."""
+        """Put on the wire what follows the present burst without a gap; the rest waits."""
         while self._to_send:
             at_ns, _, follows = self._to_send[0]
             on_the_wire = self._burst is not None and self._burst.end_us > self._clock.now_us

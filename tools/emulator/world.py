@@ -7,9 +7,9 @@
     assert world.lcd()[1].startswith("RUNNING")
     world.check()
 
-It has the face of `boards.sim.world.World`, but for what only a program inside the chip can do
-(hang). It runs on the Unix port under launch.py. The world's clock stands behind the chip's by
-a little less than a character, so that whatever the chip sends is known before its turn comes, and
+It has the face of `boards.sim.world.World`, except `hang`: only a program inside the chip can do
+that. It runs on the Unix port under launch.py. The world's clock stands behind the chip's by a
+little less than a character, so that whatever the chip sends is known before its turn comes, and
 whatever it receives still lies before it.
 """
 
@@ -186,7 +186,7 @@ class PicoWorld(Surroundings):
             self.chip.tell(self._origin_ns + at_us * 1000, "X", POWER)
 
     def close(self):
-        """As by a person who leaves: Ctrl-C stops the drives, and the panel with them."""
+        """Do as a person who leaves: Ctrl-C stops the drives, and the panel with them."""
         self.tell("S", 0)
         self.repl.write(b"\x03")
         self.run_until(lambda: not any(drive.hz() for drive in self.drives.values()), CLOSE_MS)
@@ -284,8 +284,9 @@ class PicoWorld(Surroundings):
     def _next_event_us(self, until_us):
         """When the world does something next that the chip might notice.
 
-        What it does because of a record, the chip has done already. But for a restart it may not
-        be late: what the chip sends after that is not what the restart has cut.
+        The chip has done already what the world does because of a record. Only a restart may not
+        come late: the restart must cut what the chip sent before it, and nothing that it sends
+        afterwards.
         """
         for at_ns, kind, _, _ in self._records:
             if kind == "Z":

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Broadcast: three drives run, and one telegram stops them all at the same instant.
 
-Each is sent a stop of its own after it, because nobody answers a broadcast.
+After it the program stops each drive once more by itself, because nobody answers a broadcast.
 """
 
 from uss.bus import Master

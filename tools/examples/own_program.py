@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """A program of its own, without a panel: START runs the pump, STOP stops it, for ever.
 
-The bus works by interrupts; the watchdog restarts the chip when this loop hangs, and 300 ms after
-that it was the bus that stopped the motor. Ctrl-C ends it.
+The bus works by interrupts; if this loop hangs, the bus stops the motor after 300 ms, and the
+watchdog restarts the chip. Ctrl-C ends it.
 """
 
 from hal.pacer import Pacer

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Parameters of a drive: read, written into RAM and into EEPROM, and a refusal.
 
-What waits for an answer lets the bus go on meanwhile.
+While a call waits for its answer, the bus goes on.
 """
 
 from uss import pkw

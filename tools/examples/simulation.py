@@ -6,11 +6,11 @@
     stage.play(one_drive.main)
     stage.check()
 
-A file of one's own finds a module `board`, as on a chip: ./tools/example mine.py --drives 1,2=g110
+A file of your own finds a module `board`, as on a chip: ./tools/example mine.py --drives 1,2=g110
 
-Only an example that wants somebody at its keys has one, and a Ctrl-C at its end (SOMEBODY); that
-is said. Exit status: 0; 1 when a rule of the line was broken, or with the exception that ended the
-program; 2 when there is no such example, file or drive.
+Somebody presses keys, and Ctrl-C at the end, only for the examples that want it (SOMEBODY); the
+output says so. Exit status: 0; 1 if a rule of the line was broken, or an exception ended the
+program; 2 if there is no such example, file or drive.
 """
 
 import os

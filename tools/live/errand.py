@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """A command of the script language that lets time pass, done slice by slice.
 
-So the keys are heard and the picture lives on while it lasts, and it can be ended early:
+So the panel hears the keys and the picture lives on meanwhile, and a person can end it early:
 
     errand = Errand(world, hand, "hold", ("UP", 3000))      # the key is down now
     while errand.left_us():
@@ -46,7 +46,7 @@ class Errand:
             self.end()
 
     def end(self):
-        """The key is let go of: its time is over, or nobody wants the rest."""
+        """Let go of the key: its time is over, or nobody wants the rest."""
         if self._key:
             self._world.up(self._key)
             self._hand.fix(self._key, False)

@@ -6,9 +6,9 @@
     hand.hold("JOG_RIGHT", now_ms)  # down until something else is pressed
     hand.step(now_ms)               # every few milliseconds of the world
 
-Taps happen in the world's time, so that the panel sees a tap at every speed. A person's
-patience is real time: a JOG lets go when the keyboard does not repeat it. On a real line so does
-every key but STOP: a terminal that went silent must not move a setpoint on and on.
+Taps happen in the world's time, so that the panel sees a tap at every speed. A person's patience
+is real time: a JOG lets go when the keyboard does not repeat it. On a real line every key but STOP
+does the same: a terminal that went silent must not move a setpoint on and on.
 """
 
 from boards.sim.world import RELEASE_MS, TAP_MS
@@ -84,7 +84,7 @@ class Hand:
             self._up()
 
     def vanish(self):
-        """Whoever had the hand has not been heard: every key is up, those of commands too."""
+        """Nobody has heard from the person: let go of every key, those of commands too."""
         self.let_go()
         for key in self.fixed:
             self._world.up(key)

@@ -69,7 +69,7 @@ class Terminal:
         self._write(OPEN)
 
     def close(self):
-        """As it was before. What was typed and not read is dropped, lest a shell takes it."""
+        """Make it as it was before, and drop what nobody has read, lest a shell takes it."""
         settings, self._settings = self._settings, None
         if settings is None:
             return
@@ -126,8 +126,8 @@ class Terminal:
 class Strokes:
     """From bytes to strokes: a character, "UP" ... for the arrows, ESCAPE, or OTHER.
 
-    Nothing that is typed after Esc is lost for that: what begins no sequence is a stroke of its
-    own, and a space or a control character ends every sequence.
+    An Esc does not swallow what is typed after it: a character that begins no sequence is a stroke
+    of its own, and a space or a control character ends every sequence.
 
     pasted    the strokes taken last were no keys that somebody pressed one after the other:
               they stood in brackets, or several different ones came in one read

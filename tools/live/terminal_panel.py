@@ -4,12 +4,13 @@
     live(world, speed=1)        # until q, Ctrl-C or the terminal's end
 
 It joins the pieces: `terminal` (bytes and lines), `hand` (keys), `errand` (commands that take
-time), `picture` (what is shown).
-Whatever ends it, the drives are stopped and the terminal is as it was before.
+time), `picture` (what is shown). However it ends, it stops the drives and leaves the terminal as
+it was before.
 
-A person is at the keys, and may mistype. Text is never keys: a command line stays open until it
-is left, and what comes all at once, as a paste does, is left out but for STOP. START and JOG want
-the display in sight, and on a real line, where a motor turns, a first key before them.
+A person is at the keys, and may mistype. Text is never keys: a command line stays open until
+somebody leaves it, and the panel ignores what comes all at once, as a paste does, except STOP.
+START and JOG want the display in sight. On a real line, where a motor turns, they also want
+another key before them.
 """
 
 import os
@@ -112,7 +113,7 @@ class Pace:
 
     clock: of the world. session: has a `hand`, and `run` for the world. time: has ticks_us and
     ticks_diff. now_ms: real time since the beginning. speed: the true one. late: the machine is
-    too slow. What it does not manage is dropped, never made up for.
+    too slow. It drops the time that it does not manage, and never makes up for it.
     """
 
     def __init__(self, clock, session, speed, time):
@@ -164,7 +165,7 @@ class Pace:
 
 
 class RealPace:
-    """As `Pace`, where the world's time is the real one: to let it pass is to wait.
+    """As `Pace`, for a world whose time is the real one: it just waits.
 
     A program that stood still heard nobody meanwhile: the hand lets go of everything.
     """

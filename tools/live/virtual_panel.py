@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
 """What ./tools/panel runs: the panel's firmware on the virtual board, live or driven by a script.
 
-With --board pico it is the firmware file for the Raspberry Pi Pico on an emulated one: then this
-runs under emulator/launch.py. With --port it talks on a real line, in real time, and runs under
-port/launch.py. Runs on MicroPython. Exit status: 0, 1 when an expectation failed or a rule of the
-RS-485 line was broken, 2 when the command line or a script cannot be understood, 4 with a
-traceback when the firmware or the simulation failed, 5 when the serial port cannot be had, 130
-after Ctrl-C.
+With --board pico an emulated Raspberry Pi Pico runs its firmware file, and this runs under
+emulator/launch.py. With --port the panel talks on a real line, in real time, and this runs under
+port/launch.py. It runs on MicroPython. Exit status: 0; 1 if an expectation failed or a rule of the
+RS-485 line was broken; 2 if it does not understand the command line or a script; 4, with a
+traceback, if the firmware or the simulation failed; 5 if it cannot have the serial port; 130 after
+Ctrl-C.
 """
 
 import gc
@@ -419,7 +419,7 @@ def difference(path, kept, drives):
 
 
 def lines_of(name, world):
-    """The lines of a script. Those of standard input are done as they come."""
+    """The lines of a script. Lines of standard input are done as they come."""
     if name == "-":
         return standard_input() if world.port is None else typed_meanwhile(world)
     try:
@@ -433,7 +433,9 @@ def lines_of(name, world):
 
 
 def pieces(stream):
-    """Its lines; of one that is longer than a command may be, pieces that are too long as well."""
+    """Its lines. A line that is longer than a command may be comes in pieces, which are too long
+    as well.
+    """
     line = stream.readline(LINE_MAX + 2)
     while line:
         yield line

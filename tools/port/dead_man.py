@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Stops the drives of a panel that says nothing any more: it hangs, was killed, or is suspended.
 
-It knows what the panel has sent, and nothing else: a drive whose last control word turns it is
-owed an OFF1, which is that telegram without its commands. A panel that hung may go on in the
-middle of sending an ON: a drive that was stopped here gets none before the panel itself has sent
-it a telegram that turns nothing. Pure: the time is an argument.
+It knows what the panel has sent, and nothing else. If the last control word to a drive turns its
+motor, it owes the drive an OFF1, which is that telegram without its commands. A panel that hung
+may go on in the middle of an ON. Therefore a drive that was stopped here gets no ON before the
+panel itself has sent it a telegram that turns nothing. The time is an argument.
 
     dead_man = DeadMan(19200)
     if dead_man.heard(data, now_s):     # whatever the panel sends

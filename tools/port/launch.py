@@ -7,9 +7,9 @@
 PROGRAM finds in its environment USS_PORT_DATA and USS_PORT_CONTROL, the numbers of two sockets:
 the characters of the port, and lines. It says "open BAUD PATH" and is told "opened" or "error
 TEXT"; later "cut TEXT" when the port has gone, "back" when it is there again, and "leave" when
-somebody wants it to end: Ctrl-C, kill, a closed terminal. Those do not reach it themselves, so
-that it can stop its drives first; nor does Ctrl-Z: a panel that stands still stops nothing. When
-it hangs or dies all the same, its drives are sent OFF1 from here. Exit status: that of PROGRAM.
+somebody wants it to end: Ctrl-C, kill, a closed terminal. These signals do not reach it, so that
+it can stop its drives first. Nor does Ctrl-Z: a panel that stands still stops nothing. If it hangs
+or dies all the same, this program sends its drives OFF1. Exit status: that of PROGRAM.
 """
 
 import os
@@ -105,8 +105,8 @@ class Relay:
         return self._dead_man.wait_s(time.monotonic(), AGAIN_S) if self._dead_man else AGAIN_S
 
     def send(self):
-        """Hand on the telegram that the program has said. Where there are more, we have been too
-        slow: how old they are nobody knows, and the program will repeat what matters.
+        """Hand on the telegram that the program has said. If there are more, we have been too
+        slow: nobody knows how old they are, and the program will repeat what matters.
         """
         now_s = time.monotonic()
         is_stale = now_s - self._awake_s > AGAIN_S + STALE_S

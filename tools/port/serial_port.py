@@ -7,8 +7,8 @@
     port.write(data)
     port = Pty(link="/tmp/drive")   # one of our own: port.path is for the other side
 
-`fileno()` is for select. Nothing here waits. A pty has no parity and no rate; what is set there
-is that nothing is changed on the way.
+`fileno()` is for select. Nothing here waits. A pty has no parity and no rate; it is only set to
+change nothing on the way.
 """
 
 import array
@@ -106,7 +106,7 @@ class SerialPort:
         return self.unmarked(data) if self._marking else (data, bytes(len(data)))
 
     def write(self, data):
-        """What has no room is lost, as on a line that nobody reads. LineCut."""
+        """Write what has room; the rest is lost, as on a line that nobody reads. LineCut."""
         try:
             os.write(self._descriptor, data)
         except BlockingIOError:
@@ -144,8 +144,8 @@ class SerialPort:
         self._opened_ns = time.time_ns()
 
     def _look_whose(self, status):
-        """The number of a pty that has gone is given to the next terminal that anybody opens:
-        what was made after the link to it, or after we had it, is another one.
+        """When a pty has gone, the next terminal that anybody opens gets its number. If this one
+        was made after the link to it, or after we had it, it is another one.
         """
         if os.path.islink(self.path):
             if os.lstat(self.path).st_mtime_ns < made_ns(status):

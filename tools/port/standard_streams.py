@@ -35,7 +35,8 @@ def is_ours(number):
 
 
 class Output:
-    """Lines for somebody who need not read them: what has no room is left out, and counted.
+    """Lines for somebody who need not read them: it leaves out those that have no room, and counts
+    them.
 
     failed: called once, with the reason in words, when nothing can be written: the disk is full,
     the terminal has gone. What is said then is left out as well.
@@ -90,9 +91,9 @@ class Output:
 
 
 def anew(number):
-    """A number for a stream that does not wait. Only of a terminal it is another one: that says
-    that it can be written to when there is room for one character, and then waits for the rest.
-    Without waiting it is opened once more, for it may belong to others as well.
+    """A number for a stream that does not wait. Only a terminal gets another number: it says that
+    it can be written to when it has room for one character, and then waits for the rest. It is
+    opened once more without waiting, because the first number may belong to others as well.
     """
     if not os.isatty(number):
         return number

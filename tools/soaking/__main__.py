@@ -4,8 +4,8 @@
     python3 tools/soaking --seeds N --minutes M [--first SEED] [--drives N] [--jobs N]
     python3 tools/soaking --fuzz BYTES [--first SEED] [--jobs N]
 
-The work is done by worker.py, on the interpreters of interpreters.py. Standard library only,
-CPython 3.11 or newer.
+worker.py does the work, on the interpreters of interpreters.py. This needs nothing but CPython
+3.11 or newer.
 """
 
 import argparse

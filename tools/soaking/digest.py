@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""One number for a whole life: where two interpreters live a seed differently, it differs.
+"""One number for a whole life: if two interpreters live a seed differently, their numbers differ.
 
 In use:
 

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""Bytes that may be anything, through the firmware's bus engine and its receiver: nothing breaks.
+"""Feeds any bytes to the firmware's bus engine and its receiver, and sees that nothing breaks.
 
-Noise, telegrams with a few wrong bits, pieces of telegrams, good replies, in bursts of any size,
-with pauses of any length. What must hold: no exception; every good reply behind a start gap is
-taken, unless something that begins like a telegram is still coming in; nothing else is.
+It sends noise, telegrams with a few wrong bits, pieces of telegrams and good replies, in bursts of
+any size, with pauses of any length. These rules must hold: the firmware raises no exception; it
+takes every good reply behind a start gap, unless something that begins like a telegram is still
+coming in; it takes nothing else.
 
     fuzz(1_000_000, 7)          # {"bytes": ..., "good": ..., "broken": None or a text}
 """

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """The hand of a soak: it presses keys at random and lets things fail at random.
 
-One number decides all of it. It lives in turns: a time in which anything may happen, then one in
-which everything is put in order and it looks whether the panel controls its drives again.
+One number decides all of it. It lives in turns: for a time anything may happen; then it puts
+everything in order and looks whether the panel controls its drives again.
 
     hand = Hand(world, plan, judge, reader, weather)
     hand.live(180)                  # seconds of virtual time: raises Broken, or what firmware did

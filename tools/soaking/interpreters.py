@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """The interpreters that a soak can run on: which of them lives a seed, and how it is started.
 
-A seed is the same life on each of them; what differs is speed, and what they notice. MicroPython
+A seed is the same life on each of them; they differ in speed, and in what they notice. MicroPython
 alone locks its heap in interrupt handlers, so every tenth seed stays there. CPython is half as
-fast again; PyPy seven times as fast once it is warm, for which it takes five seconds and more.
+fast again. PyPy is seven times as fast once it is warm, which takes five seconds and more.
 """
 
 import os

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""What befalls drives, chip and flash during a soak; what befalls the line is `weather`.
+"""What befalls drives, chip and flash during a soak; `weather` is what befalls the line.
 
-Judge and reader are told of it before it happens.
+It tells the witness of each thing before it happens.
 """
 
 from boards.sim.chip.machine import Timer
@@ -166,8 +166,9 @@ class Mischief(Fingers):
         self.run(SAID_S * 1_000 * self.dice.between(1, 4))
 
     def distrust(self):
-        """The drive shown becomes one that START and JOG have to refuse, or to ask about; another
-        one may run meanwhile."""
+        """Change the drive shown into one that START and JOG have to refuse, or to ask about;
+        another one may run meanwhile.
+        """
         if len(self.drives) > 1 and self.dice.below(4):
             self.press("START")
             self.run(self.dice.between(500, 2_000))

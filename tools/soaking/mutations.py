@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Planted bugs: what a soak must find, or it proves nothing.
+"""Planted bugs. A soak must find them, or it proves nothing.
 
 Each row of MUTATIONS is a firmware with one thing wrong. host_tests/test_soak_mutations.py makes
 them in copies of firmware/, and soaks each with the seed beside it.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the world of a seed is: how many drives, of which families, the line, the settings.
+"""The world of a seed: how many drives it has, of which families, its line, and its settings.
 
 The same seed gives the same world, whatever else is asked of the soak.
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """The I2C backpack of an LCD: a PCF8574 whose eight outputs are the controller's wires.
 
-A byte that it acknowledges is on its outputs at once, all eight together. What that means for a
-controller that wants one thing after the other is judged here: where E moves in the same byte as
-another wire, the order on the wires is anybody's guess, so the worse one is taken.
+A byte that it acknowledges is on its outputs at once, all eight bits together. But a controller
+wants one change after the other. If E moves in the same byte as another wire, nobody knows which
+moves first, so this model takes the worse order.
 
     backpack = Backpack(clock, lcd)         # lcd: a `boards.sim.chip.lcd.Lcd`
     backpack.take(0x0C)                     # E up, backlight on: as acknowledged on the bus

@@ -31,11 +31,12 @@ CAPACITY_BYTES = 64 * BLOCK_BYTES
 
 
 class PowerCut(BaseException):
-    """The power is gone: no handler of errors may go on as if it were not."""
+    """The power is gone: no handler of errors may go on as if it were there."""
 
 
 class Flash:
-    """torn: of a file that was being written at the cut, what had been written is visible.
+    """torn: if the power is cut while a file is written, a reader sees what had been written by
+    then.
 
     littlefs promises better; a firmware that stands this needs no such promise. busy: called with
     the microseconds that each step takes.

@@ -3,8 +3,8 @@
 
 It takes nibbles from pins, executes instructions, keeps its memory while the microcontroller
 resets, and complains about what the data sheet forbids (Hitachi, ADE-207-272). It is as slow as
-the slowest specimen, and its memory is full of anything when power comes. It cannot be read: R/W
-is tied low. The data sheet does not say what becomes of a write that comes too soon: here it is
+the slowest specimen, and its memory is full of anything when power comes. You cannot read it: R/W
+is tied low. The data sheet does not say what becomes of a write that comes too soon; here it is
 lost.
 
     lcd = Lcd(clock)
@@ -139,7 +139,7 @@ class Lcd:
     def let_go(self):
         """The microcontroller resets and lets go of the wires, so that E falls.
 
-        A pulse cut short by that counts as a pulse, and nobody is to blame for it.
+        A pulse that this cuts short counts as a pulse, and nobody is to blame for it.
         """
         for pin in self._pins:
             pin.on_change = None
@@ -163,7 +163,9 @@ class Lcd:
     # --- the controller -------------------------------------------------------------------------
 
     def _take(self, lines):
-        """A nibble, and RS as bit 4: of a byte, the register that came with the second counts."""
+        """Take a nibble, with RS as bit 4. For a byte, the register that came with the second
+        nibble counts.
+        """
         if self._clock.now_us < self._ready_us:
             self._complain(BUSY if self._has_started else TOO_SOON)
         elif self.eight_bits:

@@ -267,7 +267,7 @@ class UART:
             self._serve_full()
 
     def _move(self, most):
-        """So many from the FIFO to the buffer, as far as there is room."""
+        """Move so many characters from the FIFO to the buffer, as far as there is room."""
         moved = min(most, self._in_fifo, RX_BUFFER - (self._count - self._in_fifo))
         if moved:
             self._in_fifo -= moved
@@ -292,7 +292,7 @@ class UART:
         self._count -= count
 
     def write(self, data, n=None):
-        """Send `data`, or `n` characters of it, at once or behind what is still being sent.
+        """Send `data`, or `n` characters of it, at once or as soon as earlier characters are out.
 
         Returns how many characters were taken; None if there is no room for a single one.
         """
@@ -413,7 +413,7 @@ class Pin:
         self._settle()
 
     def value(self, level=None):
-        """The level, or set it; to set that of an input changes nothing."""
+        """Answer the level, or set it. To set the level of an input changes nothing."""
         if level is None:
             return self._level
         level = 1 if level else 0

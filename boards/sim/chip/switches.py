@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 """The keys of the panel as switches: a hand, contacts, and wires to the chip's pins.
 
-A switch of its own joins a pin to ground; a normally closed one does while nobody presses it. The
-others join a row to a column of a matrix without diodes: current also flows backwards through
-closed contacts, so that three keys at the corners of a rectangle really look like four. The
-switches outlive the chip: every boot connects its new pins.
+A switch that has a pin of its own joins this pin to ground while somebody presses it; a normally
+closed one does so while nobody does. The others join a row to a column of a matrix without diodes:
+current also flows backwards through closed contacts, so that three keys at the corners of a
+rectangle really look like four. The switches outlive the chip: every boot connects its new pins.
 
     switches = Switches(clock, ("START", "STOP"), closed=("STOP",))
     switches.connect((start_pin, stop_pin))
@@ -156,7 +156,7 @@ class Wire:
 
 
 class Column(Wire):
-    """It falls at once, and rises slowly: who scans a matrix has to wait for that."""
+    """It falls at once, and rises slowly: a program that scans a matrix has to wait for that."""
 
     def __init__(self, clock):
         Wire.__init__(self)

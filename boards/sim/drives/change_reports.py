@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Change reports of a simulated drive: it tells the master what somebody else has changed.
 
-Which report is open, and what bit 11 of PKE has to be (USS specification C-4.2.1.2). It knows no
-values; parameter_channel.py makes the words. MICROMASTERs make no reports.
+It knows which report is open, and what bit 11 of PKE has to be (USS specification C-4.2.1.2). It
+knows no values; parameter_channel.py makes the words. MICROMASTERs make no reports.
 
     reports.add(1120, 0)        # somebody has changed P1120
     reports.send()              # (1120, 0), again and again, with `bit` toggled once
@@ -22,7 +22,7 @@ class Reports:
         self._waiting = []
 
     def add(self, number, index):
-        """A report to be sent; what does not fit in any more is not told."""
+        """Add a report to be sent; one that finds no room is not told."""
         if len(self._waiting) < WAITING_LIMIT:
             self._waiting.append((number, index))
 

@@ -131,7 +131,9 @@ class Drive:
 
     @property
     def powered(self):
-        """Whether its electronics live. They may boot still: it is "off" until they have."""
+        """Whether its electronics live. They may still be booting: it is "off" until they have
+        booted.
+        """
         return self._supply.powered
 
     @property
@@ -189,7 +191,9 @@ class Drive:
 
     @property
     def residual_time_errors(self):
-        """Telegrams that were not over in time; no parameter shows it, nor the next."""
+        """Telegrams that were not over in time. No parameter shows this number, nor the next
+        one.
+        """
         return self.slave.counters()[RESIDUAL_TIME]
 
     @property
@@ -276,7 +280,7 @@ class Drive:
         self._connect()
 
     def unplug(self):
-        """Pull the RS-485 connector. The drive goes on as it was told last; P2014 applies."""
+        """Pull the RS-485 connector. The drive goes on with its last command; P2014 applies."""
         self.plugged = False
         self._connect()
 
@@ -287,7 +291,7 @@ class Drive:
         self._supply.off()
 
     def power_on(self):
-        """Mains on. Where its electronics were off they boot: no process data yet, inhibited."""
+        """Mains on. If its electronics were off, they boot: no process data yet, inhibited."""
         self._supply.on()
 
     def _go_dark(self):
@@ -426,7 +430,7 @@ class Drive:
         return "C" if self.process.commissioning else "T"
 
     def _changed(self, number):
-        """A parameter was written: most take effect at once, some when the reply is out."""
+        """A parameter was written. Most take effect at once, some when the reply is out."""
         link = self.family.LINK
         if number in [link[name] for name in LATE]:
             self._unsettled = True

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """What the documents leave open about a drive: one switch for each question, with its default.
 
-A switch is how a whole drive behaves, of whatever family; what differs between families is in
-their tables (mm420.py), and what a drive is set to are its parameters. A drive takes them when it
-is built, and they may be changed at any time.
+A switch says how a whole drive behaves, whatever its family. What differs between families stands
+in their tables (mm420.py), and what a drive is set to stands in its parameters. A drive takes its
+switches when it is built, and you may change them at any time.
 
     drive = Drive(clock, wire, 1, switches={"stale_replies": 2})
     drive.switches.reexecute = True
@@ -89,7 +89,9 @@ SWITCH_MAX = 0xFFFF
 
 
 def switch_value(name, word):
-    """What a switch of the drive is set to by a word. ValueError: there is none, or not so."""
+    """The value that a word means for a switch. ValueError: there is no such switch, or no such
+    value.
+    """
     usual = {row[0]: row[1] for row in SWITCHES}.get(name)
     if usual is None:
         raise ValueError("there is no such switch; --switch help of tools/drive lists them")

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""Whether every trouble is said: what the line tells of each drive, held against the display.
+"""Looks whether the panel says every trouble: it holds the display against what the line tells of
+each drive.
 
 A drive is in trouble when it runs and is not shown, has tripped, ran when contact was lost, was
-never heard since power-on, or was stopped by something else than STOP. With n of them each is to
-be on the display for a second within 2 n s, again and again, whatever page there is.
+never heard since power-on, or was stopped by something else than STOP. If n drives are in trouble,
+each must be on the display for a second within 2 n s, again and again, on every page.
 
     announced = Announced(plan, witness, reader)
     announced.look(now)             # after every slice: raises Broken

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""The judge of a soak: what the panel sends, held against what a hand at its keys has asked for.
+"""The judge of a soak: he holds what the panel sends against what a hand at its keys has asked
+for.
 
 He knows the keys, the line, the loop and the display's picture, and asks the firmware nothing. He
-plays back the tape after every slice of time and before every key that moves, so that each
-telegram is judged by the keys as they were when it began.
+plays back the tape after every slice of time and before every key that moves, so that he judges
+each telegram by the keys as they were when it began.
 
     judge = Judge(world, plan)
     judge.look()                    # after every slice: raises Broken
@@ -261,7 +262,7 @@ class Judge:
                 raise Broken("ACKNOWLEDGE", "%04X to drive %d at %d" % (stw, address, now))
 
     def _grace(self, since_us):
-        """From when on a key moved at `since_us` must have had its effect."""
+        """When a key that moved at `since_us` must have had its effect."""
         if self.witness.stalled_us > since_us:
             since_us = self.witness.stalled_us
         return since_us + self.witness.debounce_us
@@ -427,7 +428,9 @@ class Judge:
             raise Broken("SECOND STOP", "%04X to drive %d at %d, held for %d ms" % told)
 
     def _judge_owed(self, told, now):
-        """A telegram to `told`; an OFF is owed to others: it goes before all but other stops."""
+        """A telegram went to `told` while others are owed an OFF, which goes before all but other
+        stops.
+        """
         for case in self.witness.owed:
             if (
                 case is not told

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""An eye on the display: what it must say, and what it must not, held against the drives.
+"""An eye on the display: it holds what the display says, and does not say, against the drives.
 
 In use:
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What START and JOG must refuse, told from the drive itself and from what the line said of it.
+"""What START and JOG must refuse, judged by the drive itself and by what the line said of it.
 
 In use:
 
@@ -30,7 +30,7 @@ def reason_against(witness, case, address, pressed_us, jogs):
 
 
 def _knows(witness, case, address, pressed_us, jogs):
-    """Whether the panel must know its settings. START has them read anew."""
+    """Whether the panel must know its settings. START makes it read them anew."""
     if jogs:
         return witness.knows(case, address, pressed_us)
     return case.settings_us <= pressed_us - TAKEN_US

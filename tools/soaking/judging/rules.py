@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The rules that a soak holds the panel to, in plain words, and how a broken one is told.
+"""The rules that a soak holds the panel to, in plain words, and the exception for a broken one.
 
 They are those of the panel's own promises (firmware/panel/README.md, "What it promises"), of the
 RS-485 line and of the display. The judge and the reader say when one is broken; a rule is named by

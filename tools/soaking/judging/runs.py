@@ -2,8 +2,8 @@
 """One START, one run: what a motor that was started must keep to, by the line and the drive.
 
 A reply that shows that a run is over ends it: the drive has tripped, or stands though nobody has
-ordered it. A motor that was started once more, after a moment without mains, is stopped before
-long. While a run goes on, its setpoint rises by nothing but UP.
+ordered it. If a motor starts once more, after a moment without mains, the panel stops it before
+long. While a run goes on, nothing but UP raises its setpoint.
 
     if is_over(case, zsw) or is_standstill(case, hiw): ...
 """

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""How the panel shares out the line: who has to be asked how often, and what silence may cost.
+"""How the panel shares out the line: how often it has to ask each drive, and what silence may
+cost.
 
-One that runs has its turn within a third of its telegram off time, as far as those that answer
-allow that; all that are silent, and were not running, have a fifth of the line; and each of them
-is asked so often that a drive that is switched on is found. A task that a drive answers with
-silence is taken back.
+A drive that runs has its turn within a third of its telegram off time, as far as those that answer
+allow that. All drives together that are silent, and were not running, have a fifth of the line.
+The panel asks each of them so often that it finds a drive that is switched on. It takes back a
+task that a drive answers with silence.
 
     shares = Shares(witness)
     shares.ask(case, address, task, now)    # a request begins; task: of its PKW words, or None
@@ -83,7 +84,7 @@ class Shares:
         return now - max(case.answered_us, witness.boot_us) > witness.lost_us + S
 
     def _judge_gap(self, case, address, now):
-        """One that runs, or may, has its turn in time, whatever else there is to say."""
+        """A drive that runs, or may run, has its turn in time, whatever else there is to say."""
         witness = self.witness
         gap_us = witness.asked_for_us(case, now)
         others = len(witness.plan.listed)

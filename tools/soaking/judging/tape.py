@@ -2,8 +2,8 @@
 """A tape of the line: every request of the panel as sent, every reply as it arrived whole.
 
 It runs in the panel's interrupt handlers, where nothing may take heap, so it only notes; the judge
-plays it back later. A request is noted when it begins, before the line can spoil it, a reply at
-its end, when no character of it was spoilt.
+plays it back later. It notes a request when it begins, before the line can spoil it, and a reply
+at its end, if no character of it was spoilt.
 
     tape = Tape(world.wire)
     for row in tape.news(): tape.kind[row], tape.at_us[row], ...
@@ -120,7 +120,9 @@ class Tape:
         return not check
 
     def _hear_more(self, burst, is_whole):
-        """What is spoilt, or in pieces: who does not notice the gaps may take it for a reply."""
+        """What is spoilt, or comes in pieces: a panel that does not notice the gaps may take it
+        for a reply.
+        """
         heard, count = self._heard, self._heard_count
         if burst.start_us - self._heard_us > self._behind_us:
             count = 0

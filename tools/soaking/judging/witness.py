@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """What the judge is told: which keys move, when the chip restarts, hangs, writes its flash.
 
-From that follows what may be sent and what has to be, noted in the `Case` of each address. Where a
-person could not tell either (which of two keys came first, which drive is shown while the address
-keys move) either way is allowed.
+From that follows what the panel may send, and what it has to send; the `Case` of each address
+notes it. If a person could not tell either (which of two keys came first, which drive is shown
+while the address keys move), both ways are allowed.
 """
 
 from boards.sim.board import KEYS
@@ -46,12 +46,12 @@ from tools.soaking.judging.tape import Tape
 
 
 class Witness:
-    """world: a `SoakWorld`. plan: its `Plan`. judge: he judges what has happened, by `look` or
-    `play`, before the next thing is noted.
+    """world: a `SoakWorld`. plan: its `Plan`. judge: has `look` and `play`, and judges with them
+    what has happened so far, before anything new is noted.
 
-    The hand, the world and what befalls it tell it things. Others write: the judge `late_us`,
-    `stirred_us`, `wishes`, `moved`, and he strikes out what is `owed`; the reader, what the
-    display asks: `asked_us`, `go_us`, `question`.
+    The hand, the world and what befalls it tell it things. Others write some fields: the judge
+    writes `late_us`, `stirred_us`, `wishes` and `moved`, and strikes out what is `owed`; the
+    reader writes what the display asks, `asked_us`, `go_us` and `question`.
     """
 
     def __init__(self, world, plan, judge):

@@ -3,7 +3,7 @@
 
     Drive(clock, wire, 3, family=named("v20"))
 
-A new family is a file here, and its name in NAMES.
+To add a family, write a file here and put its name into NAMES.
 """
 
 NAMES = ("mm420", "mm440", "mm3", "g110", "v20", "g120", "generic")

@@ -2,15 +2,15 @@
 """The inverter of a simulated drive: its states, and what they make the motor do.
 
 The states are those of PROFIdrive as a MICROMASTER 4 goes through them (P and r numbers are its
-own). It obeys one control word; which one, and all other process data, is the business of
-process.py. It trips, warns and remembers as fault_memory.py keeps it.
+own). It obeys one control word; process.py decides which one, and knows all other process data. It
+trips and warns, and fault_memory.py remembers that.
 
     inverter.command(0x047F, 0x0001)    # ON, which has just risen
     inverter.state                      # "running"
     inverter.hz()                       # 0.0
 
-Nothing runs in the background: what time does (a ramp ends, pulses go off, an overload trips) is
-worked out when somebody asks, for the instant at which it happened.
+Nothing runs in the background. When somebody asks, the inverter works out what time has done (a
+ramp ends, pulses go off, an overload trips), for the instant at which it happened.
 """
 
 from boards.sim.drives.power import restart
@@ -176,7 +176,7 @@ class Inverter:
         self._trip(self._clock.now_us, number, value)
 
     def clear_cause(self, number=None):
-        """Of a lasting fault; of all without a number."""
+        """The cause of a lasting fault is gone; without a number, the causes of all."""
         causes = self.memory.causes
         causes[:] = [cause for cause in causes if number not in (None, cause)]
 

@@ -43,7 +43,7 @@ class Motor:
         return (to_hz - from_hz) * 1e6 / (to_us - from_us)
 
     def _next_corner(self, now_us):
-        """Which one comes next, of a path that has not ended."""
+        """The corner that comes next, on a path that has not ended."""
         at = 1
         while self._corners[at][0] <= now_us:
             at += 1
