@@ -215,7 +215,7 @@ def mistakes(config, folder):
     if not os.path.exists(pyright) and not strict():
         pytest.skip("no pyright is here: tools/test with USS_STRICT=1 fetches it")
     command = [os.path.join(build, "node/node"), pyright, "--outputjson", "-p", config]
-    run = subprocess.run(command, cwd=TOP, capture_output=True, text=True, timeout=100)
+    run = subprocess.run(command, cwd=TOP, capture_output=True, text=True, timeout=300)
     told = json.loads(run.stdout)
     assert told["summary"]["filesAnalyzed"], run.stdout + run.stderr
     for one in told["generalDiagnostics"]:
