@@ -72,6 +72,7 @@ UNDERSTOOD = (
     ("", "No overloads for", "types of arguments: our own functions have no overloads"),
     ("", r'class "(Settings|Switches|Description)\*?"', "an attribute for each row of a table"),
     ("firmware/panel/", 'class "NoWatch"', "a stand-in that is never asked for it"),
+    ("firmware/uss/", r'"tuple\[Unknown, \.\.\.\]"', "a family, loaded when it is named"),
     ("firmware/hal/", r'class "set\[', "a word of the PIO assembler"),
     ("firmware/hal/", 'parameter "program"', "the port wants none, the stubs do"),
     ("tools/", "attribute of module", "of CPython or of the unix port, which no chip has"),
