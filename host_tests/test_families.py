@@ -4,7 +4,7 @@
 Numbers of chapters are those of the protocol notes, USS.md.
 """
 
-from uss import bits, pkw, pzd
+from uss import bits, families, pkw, pzd
 from uss.families import (
     CU240S,
     FAMILIES,
@@ -262,6 +262,13 @@ def test_what_the_families_have_in_common_and_what_not():
     assert not G120.takes_broadcast and not GENERIC.takes_broadcast
     names = [family.name for family in FAMILIES]
     assert len(set(names)) == len(names)
+
+
+def test_a_family_that_there_is_not_is_an_error():
+    try:
+        raise AssertionError("who is %r?" % families.MM450)
+    except AttributeError as error:
+        assert "MM450" in str(error)
 
 
 def test_a_drive_of_ones_own_is_one_more_class():
