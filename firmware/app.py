@@ -49,7 +49,7 @@ class App:
         self.pacer = Pacer(self.bus, self.link, board.clock, board.timer)
         controls, spares = [], spare_jobs()
         for address in settings.drives:
-            drive = self.bus.add(address)
+            drive = self.bus.turns.add(address)
             survey = Survey(drive, MM4, mask, spares)
             controls.append(Control(drive, survey, self.bus, mask, settings))
         board.display.define(GLYPHS)
@@ -159,7 +159,7 @@ class App:
         """Let the engine work until `condition()` is true, or as long as may be expected."""
         clock = self.board.clock
         began_ms = clock.ticks_ms()
-        patience_ms = _CLOSE_MS + self.bus.longest_cycle_us() // 1000
+        patience_ms = _CLOSE_MS + self.bus.turns.longest_cycle_us() // 1000
         while True:
             try:
                 waited_ms = elapsed(clock.ticks_ms(), began_ms, self._mask)
@@ -173,7 +173,7 @@ class App:
 
     def _all_stopped(self):
         """Whether every drive in contact has answered OFF1, and the others were sent it."""
-        for drive in self.bus.drives:
+        for drive in self.bus.turns.drives:
             if drive.urgent != drive.served or (drive.contact and not drive.answered_off()):
                 return False
         return True
@@ -188,5 +188,5 @@ class App:
             self._progress = self.bus.progress
             self._progress_at_ms = now_ms
         stands_ms = elapsed(now_ms, self._progress_at_ms, self._mask)
-        if stands_ms * 1000 < self.bus.patience_us:
+        if stands_ms * 1000 < self.bus.patience_us():
             self.board.watchdog.feed()

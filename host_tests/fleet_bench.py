@@ -59,7 +59,7 @@ class Fleet:
         self.master = Master(link, self.timing, clock.ticks_mask, lost_us)
         self.drives = {}
         for address, motor in self.motors.items() if listed else ():
-            self.drives[address] = self.master.add(address, Layout(*motor.layout))
+            self.drives[address] = self.master.turns.add(address, Layout(*motor.layout))
         self.pacer = Pacer(self.master, link, clock, HardTimer(chip))
         self.pacer.start()
 
@@ -91,7 +91,7 @@ class Fleet:
     def predicted_us(self):
         """A round of the list, from the layouts and the drives' delays."""
         exchanges = []
-        for drive in self.master.list:
+        for drive in self.master.turns.list:
             net_count = drive.layout.net_count
             delay_us = self.motors[drive.address].reply_delay_us
             exchanges.append((net_count, net_count, delay_us))

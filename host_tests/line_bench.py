@@ -8,7 +8,7 @@
     [(pause_us, characters)...] pieces, each after a silence; an announced burst each
 
     line = Line(lambda request: reply)
-    drive = line.master.add(1)
+    drive = line.master.turns.add(1)
     line.exchange()                 # ... until one more reply is judged
 """
 

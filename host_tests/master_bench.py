@@ -33,7 +33,7 @@ class Bus:
         self.reply = b""
         self.reply_at = 0
         self.master = Master(self, TIMING, MASK)
-        self.drives = [self.master.add(address) for address in addresses]
+        self.drives = [self.master.turns.add(address) for address in addresses]
 
     # The link.
 

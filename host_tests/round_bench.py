@@ -154,7 +154,7 @@ class Bench:
         if listed:
             for node in nodes:
                 layout = Layout(node.pkw_words, node.pzd_words)
-                self.drives[node.address] = self.master.add(node.address, layout)
+                self.drives[node.address] = self.master.turns.add(node.address, layout)
 
     # The link.
 
@@ -286,7 +286,7 @@ class Bench:
 
     def contact(self):
         """Let the master find everybody who is plugged in."""
-        drives = [drive for drive in self.master.drives if self.nodes[drive.address].plugged]
+        drives = [drive for drive in self.master.turns.drives if self.nodes[drive.address].plugged]
         self.run_until(lambda: all([drive.contact for drive in drives]))
 
     # What was sent.

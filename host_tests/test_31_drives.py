@@ -28,7 +28,7 @@ def numbers(fleet, address):
 
 
 def contact(fleet):
-    fleet.run_until(lambda: all([drive.contact for drive in fleet.master.drives]))
+    fleet.run_until(lambda: all([drive.contact for drive in fleet.master.turns.drives]))
 
 
 def test_they_are_all_different():
@@ -202,9 +202,9 @@ def test_another_master_is_heard_and_starts_nothing():
     fleet = Fleet(lost_us=5_000_000)
     contact(fleet)
     for drive in fleet.drives.values():  # or they would be asked in the pauses
-        fleet.master.supervise(drive, 60_000)
+        fleet.master.care.supervise(drive, 60_000)
     fleet.start_all()
-    fleet.master.cycle_us = 1_500_000
+    fleet.master.turns.cycle_us = 1_500_000
     intruder = Intruder(fleet.clock, fleet.wire, framed(31, bytes(12)), 397_000)
     intruder.begin()
     fleet.run(20_000)
@@ -214,6 +214,7 @@ def test_another_master_is_heard_and_starts_nothing():
         running = fleet.motors[address].state == "running"
         assert drive.contact and running == drive.is_on(), (address, drive)
         assert fleet.motors[address].starts == 1
-    fleet.master.cycle_us = 0
+    fleet.master.turns.cycle_us = 0
     fleet.run(2_000)
-    assert fleet.master.status() == 0 and fleet.master.failures == 0
+    assert fleet.master.failures == 0
+    assert not [drive for drive in fleet.drives.values() if drive.status]

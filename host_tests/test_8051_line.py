@@ -90,7 +90,7 @@ def once(change):
 
 def bus_drive(world):
     """The drive as the panel's bus master keeps it."""
-    return world.app.bus.drives[0]
+    return world.app.bus.turns.drives[0]
 
 
 def known(world):
@@ -390,10 +390,10 @@ def rates(world, ms):
         return read()
 
     keypad.read = counting
-    began = world.app.bus.exchanges
+    began = world.app.bus.turns.exchanges
     world.run(ms)
     del keypad.read
-    return (world.app.bus.exchanges - began) & 0xFFFF, turns[0]
+    return (world.app.bus.turns.exchanges - began) & 0xFFFF, turns[0]
 
 
 def test_keys_and_display_slow_down_neither_the_bus_nor_the_loop():

@@ -91,7 +91,7 @@ def test_many_dead_drives_leave_the_living_ones_their_rate():
     for address in range(3, 32):
         bench.nodes[address].plugged = True
     bench.run(5_000_000)
-    assert all(drive.contact for drive in bench.master.drives)
+    assert all(drive.contact for drive in bench.master.turns.drives)
 
 
 def test_a_bus_on_which_everybody_is_dead_goes_on_asking():
@@ -106,7 +106,7 @@ def test_a_bus_on_which_everybody_is_dead_goes_on_asking():
     for node in bench.nodes.values():
         node.plugged = True
     bench.run(2_000_000)
-    assert all(drive.contact for drive in bench.master.drives)
+    assert all(drive.contact for drive in bench.master.turns.drives)
 
 
 def test_a_command_reaches_a_drive_that_is_asked_now_and_then_at_once():
@@ -215,7 +215,7 @@ def test_after_its_stop_was_confirmed_it_may_be_asked_now_and_then():
 def running(bench, address, off_time_ms):
     """Have a drive run that trips after so long without a telegram."""
     drive = bench.drives[address]
-    bench.master.supervise(drive, off_time_ms)
+    bench.master.care.supervise(drive, off_time_ms)
     drive.start(0x1000)
     bench.run(1_000_000)
     assert bench.nodes[address].zsw == 0xFB34
@@ -250,9 +250,9 @@ def test_the_gap_is_kept_with_retries_parameters_and_a_fixed_cycle():
     bench.contact()
     running(bench, 5, 600)
     bench.master.retries = 3
-    bench.master.cycle_us = 900_000
+    bench.master.turns.cycle_us = 900_000
     bench.nodes[6].plugged = bench.nodes[7].plugged = False
-    for drive in bench.master.drives:
+    for drive in bench.master.turns.drives:
         if drive.address != 5:
             drive.want_turns(True)
             drive.ask(pkw.read(700))
@@ -288,7 +288,7 @@ def test_where_every_drive_is_in_a_hurry_the_list_alone_keeps_the_gap():
 def test_a_drive_that_stands_has_its_turn_in_the_list_and_no_more():
     bench = Bench(nodes(31))
     bench.contact()
-    bench.master.supervise(bench.drives[17], 450)
+    bench.master.care.supervise(bench.drives[17], 450)
     sent = len(bench.sent)
     bench.run(10_000_000)
     assert min(gaps(bench, 17, sent)) > 600_000
@@ -300,7 +300,7 @@ def test_a_drive_that_never_trips_counts_as_one_that_trips_when_it_would_be_lost
         bench = Bench(nodes(31))
         bench.contact()
         if told:
-            bench.master.supervise(bench.drives[17], 0)
+            bench.master.care.supervise(bench.drives[17], 0)
         bench.drives[17].start(0x1000)
         bench.run(1_000_000)
         sent = len(bench.sent)

@@ -153,7 +153,7 @@ def test_set_gives_a_motor_that_runs_another_speed_and_starts_none():
 def test_what_checks_nothing_is_found_in_the_engine_alone():
     drive = Bench().drive
     for name in ("start", "turn"):
-        assert "say run()" in refusal(AttributeError, getattr, drive, name)
+        assert hasattr(drive.engine, name) and not hasattr(drive, name)
     assert refusal(ValueError, drive.stop, pzd.ON) and not drive.is_on()
 
 
@@ -217,7 +217,7 @@ def test_where_a_family_takes_no_broadcast_each_is_stopped_by_itself():
     bench.drive.run(10.0)
     bench.bus.wait(1)
     assert "USS drive" in refusal(ValueError, bench.bus.broadcast_stop)
-    assert bench.drive.wanted == 0 and other.stops == 1
+    assert bench.drive.engine.wanted == 0 and other.engine.stops == 1
     bench.end()
 
 
@@ -397,7 +397,7 @@ def test_without_a_step_for_300_ms_every_motor_is_stopped():
     bench.bus.wait(1)
     bench.clock.advance(500_000)  # the program is busy elsewhere; interrupts go on
     for drive in bench.bus.drives:
-        assert drive.stopped_by_engine() and bench.stws(drive.address)[-1] == pzd.OFF1
+        assert drive.engine.stopped_by_engine() and bench.stws(drive.address)[-1] == pzd.OFF1
     bench.bus.wait(2)
     assert not any(drive.is_running for drive in bench.bus.drives)
     bench.end()
@@ -411,7 +411,7 @@ def test_a_loop_that_does_not_call_for_300_ms_stops_its_motors_without_interrupt
     bench.clock.advance(310_000)
     bench.bus.step()
     for drive in bench.bus.drives:
-        assert drive.stopped_by_engine() and not drive.is_on()
+        assert drive.engine.stopped_by_engine() and not drive.is_on()
     bench.bus.wait(2)
     assert not any(drive.is_running for drive in bench.bus.drives)
     assert "step() was not called" in refusal(NotStarted, bench.drive.run, 10.0)
@@ -437,7 +437,7 @@ def test_whatever_idle_raises_stops_every_motor():
                 bench.bus.wait(1)
         except OSError:
             pass
-        assert len(idle_calls) == 1 and bench.bus.phase == CLOSED
+        assert len(idle_calls) == 1 and bench.bus.engine.phase == CLOSED
         for address in (1, 2):
             assert bench.stws(address)[-1] == pzd.OFF1
         bench.check()
@@ -482,7 +482,7 @@ def test_bus_off_gives_the_line_away_and_on_takes_it_back():
     bench.drive.run(10.0)
     bench.bus.wait(0.5)
     bench.bus.off()
-    assert bench.bus.wait(1, bench.bus.is_silent) and bench.bus.phase == OFF
+    assert bench.bus.wait(1, bench.bus.is_silent) and bench.bus.engine.phase == OFF
     assert bench.stws(1)[-1] == pzd.OFF1
     assert refusal(NoContact, bench.drive.read, 700) == "the bus is off"
     bench.bus.on()
@@ -877,7 +877,7 @@ def test_a_question_that_silences_the_drive_stops_no_motor():
     bench.motor().switches.silent_refusals = True
     drive = bench.drive
     drive.run(10.0)
-    contacts = drive.contacts
+    contacts = drive.engine.contacts
     for ask in (
         lambda: drive.read(999),
         lambda: drive.write(999, 5.0, kind=float),
@@ -890,7 +890,7 @@ def test_a_question_that_silences_the_drive_stops_no_motor():
             "drive 1 falls silent when it is asked about P0999[0], and answers without"
         ), text
         assert bench.clock.now_us - before_us < 500_000, "half of the lost time"
-        assert drive.contact and drive.contacts == contacts and drive.is_running
+        assert drive.contact and drive.engine.contacts == contacts and drive.is_running
         assert drive.read(1082) == 50.0
     assert issubclass(FallsSilent, TimedOut)
     assert bench.motor().starts == 1 and bench.motor().state == "running"
@@ -1010,9 +1010,21 @@ def test_a_drive_that_stands_in_the_list_twice_is_asked_twice_as_often():
     bench = Bench((1, 2))
     one = bench.drive
     assert bench.bus.add(1) is one
-    assert [drive.address for drive in bench.bus.list] == [1, 2, 1]
+    assert [drive.address for drive in bench.bus.engine.turns.list] == [1, 2, 1]
     bench.bus.wait(2)
     near(one.counters[0] / bench.bus.drives[1].counters[0], 2.0, 0.1)
+    bench.end()
+
+
+def test_the_bus_has_the_sums_of_the_counters_and_all_the_bits():
+    bench = Bench((1, 2))
+    assert bench.bus.wait(1, lambda: all([drive.contact for drive in bench.bus.drives]))
+    assert bench.bus.status() == 0
+    bench.motor(2).unplug()
+    bench.bus.wait(2)
+    figures = zip(*[drive.counters for drive in bench.bus.drives])
+    assert bench.bus.counters() == [sum(pair) for pair in figures] and bench.bus.counters()[5] > 5
+    assert bench.bus.status() == bench.bus.drives[1].status == 0x80
     bench.end()
 
 
@@ -1203,12 +1215,12 @@ def test_leaving_the_bus_stops_every_drive():
         for drive in bench.bus.drives:
             drive.run(10.0)
         bench.bus.wait(1)
-    assert bench.bus.phase == CLOSED
+    assert bench.bus.engine.phase == CLOSED
     for address in (1, 2):
         assert bench.stws(address)[-1] == pzd.OFF1
-    sent = bench.bus.exchanges
+    sent = bench.bus.engine.turns.exchanges
     bench.clock.advance(1_000_000)
-    assert bench.bus.exchanges == sent
+    assert bench.bus.engine.turns.exchanges == sent
     bench.check()
 
 
@@ -1225,7 +1237,7 @@ def test_an_exception_and_ctrl_c_stop_them_too_wherever_they_strike():
             pass
         else:
             raise AssertionError("Ctrl-C was swallowed")
-        assert bench.stws(1)[-1] == pzd.OFF1 and bench.bus.phase == CLOSED
+        assert bench.stws(1)[-1] == pzd.OFF1 and bench.bus.engine.phase == CLOSED
         assert not bench.wire.violations()
 
 
@@ -1251,7 +1263,7 @@ def test_a_failure_in_the_engine_is_not_hidden_and_takes_every_on_back():
         pass
     else:
         raise AssertionError("swallowed")
-    assert bench.bus.failures == 1 and not bench.drive.is_on()
+    assert bench.bus.engine.failures == 1 and not bench.drive.is_on()
 
 
 def test_the_link_has_a_clock_and_the_rate_is_one_of_uss():

@@ -29,7 +29,7 @@ def resting(bench, address):
     """Let this one be unplugged until it backs off."""
     bench.nodes[address].plugged = False
     bench.run(4_000_000)
-    assert bench.drives[address] not in bench.master.round[: bench.master.round_count]
+    assert bench.drives[address] not in bench.master.turns.round[: bench.master.turns.round_count]
 
 
 # --- the gap of a drive that may run ------------------------------------------------------------
@@ -41,7 +41,7 @@ def test_drives_that_need_more_turns_leave_the_others_theirs():
     """
     bench = bench_of(15)
     for address in range(1, 11):
-        bench.master.supervise(bench.drives[address], 1_000)
+        bench.master.care.supervise(bench.drives[address], 1_000)
         bench.drives[address].start(0x1000)
     bench.run(1_000_000)
     sent = len(bench.sent)
@@ -55,9 +55,9 @@ def test_a_cycle_longer_than_the_off_time_does_not_trip_a_drive():
     for first in (True, False):
         bench = bench_of(2)
         if first:
-            bench.master.cycle_us = 2_000_000
-        bench.master.supervise(bench.drives[1], 1_500)
-        bench.master.cycle_us = 2_000_000
+            bench.master.turns.cycle_us = 2_000_000
+        bench.master.care.supervise(bench.drives[1], 1_500)
+        bench.master.turns.cycle_us = 2_000_000
         bench.drives[1].start(0x1000)
         bench.run(200_000)
         sent = len(bench.sent)
@@ -70,7 +70,7 @@ def test_a_loop_that_seldom_comes_round_keeps_the_gap_of_all():
     bench.refreshing = False
     bench.loop = seldom(bench)
     for address in range(1, 6):
-        bench.master.supervise(bench.drives[address], 1_000)
+        bench.master.care.supervise(bench.drives[address], 1_000)
         bench.drives[address].start(0x1000)
     bench.run(500_000)
     sent = len(bench.sent)
@@ -82,15 +82,15 @@ def test_a_loop_that_seldom_comes_round_keeps_the_gap_of_all():
 def test_the_off_time_goes_with_the_drive_and_not_with_its_address():
     """Also when it is taken away, and another one comes in its place."""
     bench = bench_of(20)
-    bench.master.lost_us = 6_000_000  # those of which nobody has told may wait for long
-    bench.master.supervise(bench.drives[5], 600)
+    bench.master.turns.lost_us = 6_000_000  # those of which nobody has told may wait for long
+    bench.master.care.supervise(bench.drives[5], 600)
     bench.nodes[25] = bench.nodes.pop(5)
     bench.nodes[25].address = 25
-    bench.master.readdress(bench.drives[5], 25)
+    bench.master.turns.readdress(bench.drives[5], 25)
     bench.nodes[5] = Node(5)
-    bench.master.supervise(bench.drives[6], 600)
-    bench.master.remove(bench.drives[6])
-    drives = [bench.drives[5], bench.master.add(5), bench.master.add(6)]
+    bench.master.care.supervise(bench.drives[6], 600)
+    bench.master.turns.remove(bench.drives[6])
+    drives = [bench.drives[5], bench.master.turns.add(5), bench.master.turns.add(6)]
     bench.run(600_000)
     for drive in drives:
         drive.start(0x1000)
@@ -122,7 +122,7 @@ def test_a_drive_taken_away_is_not_asked_again_for_want_of_a_reply():
         bench.master.retries = 3
         bench.nodes[2].plugged = False
         bench.run(offset_us)
-        bench.master.remove(bench.drives[2])
+        bench.master.turns.remove(bench.drives[2])
         going_on = bench.sent[-1].address == 2
         sent = len(bench.sent)
         bench.run(200_000)
@@ -133,17 +133,17 @@ def test_the_address_of_one_that_was_taken_away_is_free():
     """For a new drive, which has its turn at once though the other one had lost its own."""
     bench = bench_of(3)
     resting(bench, 3)
-    bench.master.remove(bench.drives[3])
+    bench.master.turns.remove(bench.drives[3])
     bench.nodes[3] = Node(3, pkw_words=3)
     bench.refreshing = False  # nobody looks after it meanwhile
-    drive = bench.master.add(3, Layout(3, 2))
+    drive = bench.master.turns.add(3, Layout(3, 2))
     bench.run(200_000)
     assert drive.contact
     bench.refreshing = True
-    bench.master.remove(drive)
+    bench.master.turns.remove(drive)
     bench.nodes[3] = bench.nodes[2]
     bench.nodes[3].address = 3
-    bench.master.readdress(bench.drives[2], 3)
+    bench.master.turns.readdress(bench.drives[2], 3)
     sent = len(bench.sent)
     bench.run(200_000)
     assert set(bench.addresses(sent + 1)) == {1, 3}
@@ -152,22 +152,22 @@ def test_the_address_of_one_that_was_taken_away_is_free():
 def test_one_that_backs_off_goes_on_doing_so_at_another_address():
     bench = bench_of(3)
     resting(bench, 3)
-    bench.master.readdress(bench.drives[3], 9)
+    bench.master.turns.readdress(bench.drives[3], 9)
     bench.refreshing = False
     bench.nodes[3] = Node(3, pkw_words=3)
-    drive = bench.master.add(3, Layout(3, 2))
+    drive = bench.master.turns.add(3, Layout(3, 2))
     bench.run(250_000)
     assert drive.contact  # it does not back off in its place
-    assert bench.drives[3] not in bench.master.round[: bench.master.round_count]
+    assert bench.drives[3] not in bench.master.turns.round[: bench.master.turns.round_count]
 
 
 def test_two_drives_change_places():
     bench = bench_of(2)
-    one, two = bench.master.drives
+    one, two = bench.master.turns.drives
     for drive, address in ((one, 9), (two, 1), (one, 2)):
         bench.nodes[address] = bench.nodes.pop(drive.address)
         bench.nodes[address].address = address
-        bench.master.readdress(drive, address)
+        bench.master.turns.readdress(drive, address)
         bench.run(100_000)
     sent = len(bench.sent)
     one.stop()
@@ -179,13 +179,13 @@ def test_two_drives_change_places():
 def test_another_address_in_the_middle_of_an_exchange_is_no_other_master():
     """On a link that is looked at, the reply comes in pieces, from the address before."""
     bench = bench_of(2, interrupts=False)
-    drive = bench.master.drives[0]
+    drive = bench.master.turns.drives[0]
     for round_number in range(30):
         bench.run(1_000 + 777 * round_number)
         address = 7 if drive.address == 1 else 1
         bench.nodes[address] = bench.nodes.pop(drive.address)
         bench.nodes[address].address = address
-        bench.master.readdress(drive, address)
+        bench.master.turns.readdress(drive, address)
         bench.run(100_000)
     assert drive.contact and not bench.master.foreign and drive.counters[4] == 0
 
@@ -212,7 +212,7 @@ def test_looking_for_a_dead_drive_takes_a_fifth_of_the_line_at_300_baud_too():
 def test_a_dead_drive_loses_contact_however_long_the_round_takes():
     """Also where the clock's counter is over sooner than that."""
     bench = bench_of(1, mask=(1 << 24) - 1)
-    bench.master.cycle_us = 1 << 24
+    bench.master.turns.cycle_us = 1 << 24
     bench.run(20_000_000)
     bench.nodes[1].plugged = False
     bench.run(60_000_000)
@@ -226,13 +226,13 @@ def test_a_mirror_telegram_is_pending_until_the_last_repetition_is_over():
     bench = bench_of(1)
     bench.master.retries = 2
     probe = Mirror(9)
-    bench.master.post(probe)
+    bench.master.turns.post(probe)
     states = []
     bench.loop = lambda: states.append((probe.state, bench.addresses().count(0x49)))
     bench.run(400_000)
     assert all([state == PENDING for state, times in states if times < 3])
     assert probe.state == TIMED_OUT and bench.addresses().count(0x49) == 3
-    bench.master.post(probe)
+    bench.master.turns.post(probe)
     bench.run(400_000)
     assert probe.state == TIMED_OUT and bench.addresses().count(0x49) == 6
 
@@ -240,12 +240,12 @@ def test_a_mirror_telegram_is_pending_until_the_last_repetition_is_over():
 def test_one_that_is_on_the_line_when_the_engine_fails_comes_to_an_end():
     bench = bench_of(1)
     probe = Mirror(1)
-    bench.master.post(probe)
+    bench.master.turns.post(probe)
     bench.run_until(lambda: bench.sent[-1].address == 0x41)
     bench.master.recover(bench.now & bench.mask)
     bench.run(100_000)
     assert probe.state == TIMED_OUT
-    bench.master.post(probe)
+    bench.master.turns.post(probe)
     bench.run(500_000)
     assert probe.state == DONE
 
@@ -254,7 +254,7 @@ def test_a_special_reply_that_is_too_long_for_a_telegram_is_none():
     """LGE 255 would be 253 net characters; the longest telegram has 252."""
     bench = Bench([])
     special = Special(1, b"\x01\x02")
-    bench.master.post(special)
+    bench.master.turns.post(special)
     bench.run_until(lambda: bench.sent)
     begin = bench.now + 15_000
     bench.talk(framed(0x81, bytes(253)), begin)
@@ -265,7 +265,7 @@ def test_a_special_reply_that_is_too_long_for_a_telegram_is_none():
 def test_a_special_reply_as_long_as_the_request_is_none_when_another_length_was_agreed():
     bench = Bench([])
     special = Special(1, b"\x01\x02\x03\x04", reply_count=6)
-    bench.master.post(special)
+    bench.master.turns.post(special)
     bench.run_until(lambda: bench.sent)
     bench.talk(framed(0x81, bytes(4)), bench.now + bench.timing.telegram_us(4) + 3_000)
     bench.run(100_000)
@@ -277,7 +277,7 @@ def test_what_a_mirror_telegram_found_before_is_forgotten():
     probe = Mirror(1)
     for plugged, finding in ((False, SILENT), (True, telegram.GOOD)):
         bench.nodes[1].plugged = plugged
-        bench.master.post(probe)
+        bench.master.turns.post(probe)
         bench.run(200_000)
         assert probe.finding == finding
 
@@ -299,7 +299,7 @@ def test_a_broadcast_is_sent_before_the_bus_is_off():
     bench.run(200_000)
     broadcast = Broadcast((pzd.OFF1, 0), {1: pzd.STW_RUN})
     broadcast.ahead = True
-    bench.master.post(broadcast)
+    bench.master.turns.post(broadcast)
     bench.master.off()
     bench.run(300_000)
     assert bench.master.phase == OFF and broadcast.state == DONE
@@ -329,7 +329,7 @@ def test_an_off_that_nobody_confirms_is_repeated_although_mirrors_are_sent():
 
     def loop():
         if probe.state != PENDING:
-            bench.master.post(probe)
+            bench.master.turns.post(probe)
 
     bench.loop = loop
     sent = len(bench.sent)
@@ -346,7 +346,7 @@ def test_a_pause_is_not_broken_by_another_address():
     sent = len(bench.sent)
     bench.nodes[9] = bench.nodes.pop(1)
     bench.nodes[9].address = 9
-    bench.master.readdress(bench.drives[1], 9)
+    bench.master.turns.readdress(bench.drives[1], 9)
     bench.run(100_000)
     assert len(bench.sent) == sent and bench.master.paused
 
@@ -357,7 +357,7 @@ def test_a_drive_added_after_a_long_silence_is_asked_at_once():
         bench = Bench([], mask=(1 << 24) - 1)
         bench.run(seconds * 1_000_000)
         bench.nodes[1] = Node(1)
-        drive = bench.master.add(1)
+        drive = bench.master.turns.add(1)
         bench.run(50_000)
         assert drive.contact, seconds
 
@@ -608,7 +608,7 @@ def test_a_task_that_a_drive_leaves_unanswered_stops_no_motor():
                 sent = [each for each in bench.sent if each.at >= asked_at and each.address == 1]
                 assert len([each for each in sent if each.task()]) <= 3
         assert bench.nodes[1].zsw == RUNNING
-        assert all([other.contact for other in bench.master.drives])
+        assert all([other.contact for other in bench.master.turns.drives])
 
 
 def test_three_losses_in_a_row_on_a_bad_line_withdraw_no_question():

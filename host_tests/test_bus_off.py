@@ -56,7 +56,7 @@ def test_off_cuts_no_exchange():
         bench = Bench(nodes(2))
         bench.run(300_000 + offset_us)
         go_off(bench)
-        for drive in bench.master.drives:
+        for drive in bench.master.turns.drives:
             assert not any(drive.counters[1:]), (offset_us, drive.counters)
 
 
@@ -67,7 +67,7 @@ def test_while_it_is_off_the_loop_may_take_its_time():
     go_off(bench)
     for _ in range(20):
         progress = bench.master.progress
-        bench.run(bench.master.patience_us)
+        bench.run(bench.master.patience_us())
         assert bench.master.progress != progress
 
 
@@ -76,7 +76,7 @@ def test_nothing_is_sent_for_any_command_or_task():
     bench.contact()
     go_off(bench)
     sent = len(bench.sent)
-    one, two = bench.master.drives
+    one, two = bench.master.turns.drives
     one.start(0x1000)
     two.stop()
     two.acknowledge()
@@ -112,7 +112,7 @@ def test_on_listens_first_and_then_goes_on():
     bench.run_until(lambda: len(bench.sent) > sent)
     assert bench.now - began >= LISTEN_US
     bench.run(200_000)
-    assert all(drive.contact for drive in bench.master.drives)
+    assert all(drive.contact for drive in bench.master.turns.drives)
 
 
 def test_after_on_nothing_starts_by_itself():
@@ -162,7 +162,7 @@ def test_on_before_it_was_off_altogether():
     sent = len(bench.sent)
     bench.run(3_000_000)
     assert pzd.ON not in bench.stws(2, sent)[2:]
-    assert all(drive.contact for drive in bench.master.drives)
+    assert all(drive.contact for drive in bench.master.turns.drives)
 
 
 def test_off_and_on_again_a_hundred_times():
@@ -172,8 +172,8 @@ def test_off_and_on_again_a_hundred_times():
         go_off(bench)
         bench.master.on()
         bench.run(600_000)
-        assert all(drive.contact for drive in bench.master.drives)
-    for drive in bench.master.drives:
+        assert all(drive.contact for drive in bench.master.turns.drives)
+    for drive in bench.master.turns.drives:
         assert not any(drive.counters[1:]), drive.counters
 
 
@@ -230,14 +230,14 @@ def test_a_spike_is_no_master_for_long():
 def test_another_master_that_comes_later_is_noticed():
     """It talks when this one does not expect anything: it is counted, and said."""
     bench = Bench(nodes(2))
-    bench.master.cycle_us = 200_000
+    bench.master.turns.cycle_us = 200_000
     bench.contact()
     before = bench.master.foreign
     for _ in range(30):
         bench.talk(FOREIGN)
         bench.run(97_000)
     assert bench.master.foreign >= before + 5
-    assert all(drive.contact for drive in bench.master.drives)
+    assert all(drive.contact for drive in bench.master.turns.drives)
 
 
 def test_a_bus_of_its_own_is_not_taken_for_another_masters():

@@ -188,14 +188,14 @@ def test_a_drive_follows_to_another_address():
     bus.zsw[5] = READY
     bus.pkw[5] = None
     bus.run(300_000)
-    bus.master.readdress(bus.drives[0], 5)
+    bus.master.turns.readdress(bus.drives[0], 5)
     bus.silent.add(1)
     since = len(bus.sent)
     bus.run(300_000)
     assert set(bus.addresses(since + 1)) == {2, 5} and bus.drives[0].silent == 0
     for address in (2, 32, -1):
         try:
-            bus.master.readdress(bus.drives[0], address)
+            bus.master.turns.readdress(bus.drives[0], address)
         except ValueError:
             continue
         raise AssertionError(address)

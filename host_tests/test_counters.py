@@ -61,27 +61,28 @@ def test_several_kinds_of_faults_in_a_row_all_show():
     assert drive.status & bits == bits
 
 
-def test_the_bus_has_the_sums_and_all_the_bits():
+def test_each_drive_of_a_bus_has_its_own():
     bench = Bench([Node(address) for address in range(1, 8)])
     bench.contact()
     for address, (_, how, _, _) in enumerate(WRONGS, 1):
         node = bench.nodes[address]
         node.answer = lambda characters, node=node, how=how: how(good(node, characters))
     bench.run(500_000)
-    drives = bench.master.drives
-    sums = [sum([drive.counters[row] for drive in drives]) for row in range(len(COUNTERS))]
-    assert bench.master.counters() == sums and all(sums)
-    assert bench.master.status() == 0x80 | 0x10 | 0x08 | 0x40 | 0x20
+    drives = bench.master.turns.drives
+    assert all([sum([drive.counters[row] for drive in drives]) for row in range(len(COUNTERS))])
+    status = 0
+    for drive in drives:
+        status |= drive.status
+    assert status == 0x80 | 0x10 | 0x08 | 0x40 | 0x20
 
 
 def test_every_telegram_is_counted_once():
     bench = Bench([Node(1), Node(2), Node(3, 3, 2)])
     bench.nodes[2].plugged = False
     bench.run(3_000_000)
-    drives = bench.master.drives
-    sums = bench.master.counters()
-    under_way = len(bench.sent) - sum(sums)
-    assert 0 <= under_way <= 1 and bench.master.exchanges == len(bench.sent)
+    drives = bench.master.turns.drives
+    under_way = len(bench.sent) - sum([sum(drive.counters) for drive in drives])
+    assert 0 <= under_way <= 1 and bench.master.turns.exchanges == len(bench.sent)
     for drive in drives:
         asked = bench.addresses().count(drive.address)
         assert 0 <= asked - sum(drive.counters) <= 1

@@ -26,7 +26,7 @@ def bench_of(nodes, bits, baud=19200, echo=True, **more):
 def mirrored(bench, address, net):
     """Post a mirror telegram and answer it when it is through."""
     mirror = Mirror(address, net)
-    bench.master.post(mirror)
+    bench.master.turns.post(mirror)
     bench.run_until(lambda: mirror.state != pkw.PENDING)
     return mirror
 
@@ -37,7 +37,7 @@ def test_every_layout_works_with_and_without_an_echo_on_every_link():
             nodes = [Node(1 + row, *layout) for row, layout in enumerate(LAYOUTS)]
             bench = bench_of(nodes, bits, echo=echo)
             bench.run(2_000_000)
-            for drive in bench.master.drives:
+            for drive in bench.master.turns.drives:
                 where = (bits, echo, drive.address, drive.counters)
                 assert drive.contact and drive.counters[0] > 3, where
                 assert not any(drive.counters[1:]), where
@@ -125,7 +125,7 @@ def test_the_echo_may_go_and_come():
     for step in range(40):
         bench.echo = bool(step & 1)
         bench.run(37_000)
-    for drive in bench.master.drives:
+    for drive in bench.master.turns.drives:
         assert drive.contact and sum(drive.counters[1:]) == 0, drive.counters
 
 

@@ -73,7 +73,7 @@ def test_ten_thousand_exchanges_with_the_heap_locked():
         return poll(now)
 
     bus.poll = counted
-    drive = bus.drives[0]
+    drive = bus.turns.drives[0]
     good = world.drives[1].read(2024, 0)
     done = 0
     jobs = parameter_jobs()
@@ -161,13 +161,13 @@ def test_no_layout_takes_memory():
         layouts = LAYOUTS[first : first + 23]
         fleet = fleet_of(layouts)
         fleet.run(500)
-        for drive in fleet.master.drives:
+        for drive in fleet.master.turns.drives:
             if drive.layout.pzd_words:
                 drive.start(0x1000)
             for place in range(3, drive.layout.pzd_words + 1):
                 drive.put(place, 0x1111 * place & 0xFFFF)
         check_locked(fleet, all_ask(fleet), 1_500)
-        for drive in fleet.master.drives:
+        for drive in fleet.master.turns.drives:
             assert drive.counters[0] > 3 and not any(drive.counters[1:]), (drive, drive.counters)
 
 
@@ -179,8 +179,8 @@ def test_nothing_that_a_bus_does_takes_memory():
     fleet.run(1_000)
     fleet.start_all(but=(3, 4))
     master.retries = 2
-    master.cycle_us = 400_000
-    master.supervise(fleet.drives[1], 400)
+    master.turns.cycle_us = 400_000
+    master.care.supervise(fleet.drives[1], 400)
     fleet.motors[3].unplug()
     fleet.motors[5].unplug()
     ask = all_ask(fleet)
@@ -196,7 +196,7 @@ def test_nothing_that_a_bus_does_takes_memory():
             Special(None, b"\x01"),
         )
         if step[0] % 20 == 0 and not 120 < step[0] < 310:
-            master.post(singles[step[0] // 20 % 4])
+            master.turns.post(singles[step[0] // 20 % 4])
         if step[0] % 50 == 0:
             fleet.wire.echo = not fleet.wire.echo
         if step[0] == 120:
@@ -244,7 +244,7 @@ def test_a_bus_with_31_drives_takes_less_than_32_kb():
     def make(layouts):
         master = Master(Nowhere(), Timing(19200), MASK)
         for address in range(31):
-            master.add(address, Layout(*layouts[address % len(layouts)]))
+            master.turns.add(address, Layout(*layouts[address % len(layouts)]))
         return master
 
     for layouts in (((4, 2),), ((4, 2), (3, 2), (127, 6), (4, 16), (0, 2))):

@@ -235,7 +235,7 @@ def test_an_adr_that_means_nothing_cannot_be_sent():
 def told(example, characters):
     """A drive, and what came of the job that this reply answers, after a master has heard it."""
     line = Line(lambda request: characters)
-    drive = line.master.add(example.node, Layout(*example.layout))
+    drive = line.master.turns.add(example.node, Layout(*example.layout))
     job = job_of(example.asked())
     if job:
         drive.ask(job)
@@ -303,9 +303,9 @@ def test_a_mirror_telegram_that_came_back_is_recognised():
     for name in ("SPMq", "V16"):
         example = golden.BY_ID[name]
         line = Line(lambda request: request)
-        line.master.add(1)
+        line.master.turns.add(1)
         probe = single.Mirror(example.node, example.net)
-        line.master.post(probe)
+        line.master.turns.post(probe)
         line.exchange(2)
         assert example.characters in line.requests
         assert probe.state == single.DONE, name
@@ -316,7 +316,7 @@ def test_a_change_report_is_acknowledged_and_the_task_goes_on():
     replies = [golden.BY_ID[name].characters for name in ("V62", "V64")]
     idle = golden.BY_ID["V02"].characters
     line = Line(lambda request: idle)
-    drive = line.master.add(1)
+    drive = line.master.turns.add(1)
     reports = Reports(drive.channel)
     line.exchange()
     job = pkw.read(1000)
@@ -337,7 +337,7 @@ def test_what_is_not_valid_changes_nothing_in_the_master():
     for example in golden.INVALID:
         characters = example.characters
         line = Line()
-        drive = line.master.add(characters[2], Layout(example.pkw_words, example.pzd_words))
+        drive = line.master.turns.add(characters[2], Layout(example.pkw_words, example.pzd_words))
         reply = of_words([0] * (drive.layout.net_count // 2 - 2) + [0xFB34, 0x2000], drive.address)
         line.answer = lambda request, reply=reply: reply
         line.exchange()
@@ -355,7 +355,7 @@ def test_every_telegram_to_somebody_else_changes_nothing_in_the_master():
     for example in golden.VALID:
         line = Line(lambda request: sealed(bytes(layout.net_count), 30))
         layout = Layout(*example.layout)
-        drive = line.master.add(30, layout)
+        drive = line.master.turns.add(30, layout)
         line.exchange()
         line.answer = lambda request, characters=example.characters: characters
         line.exchange()

@@ -183,7 +183,7 @@ def test_a_mirror_telegram():
     def post(bench):
         singles[:] = [Mirror(1), Mirror(3)]
         for single in singles:
-            bench.master.post(single)
+            bench.master.turns.post(single)
 
     for bench, _ in interrupted(three, post):
         bench.run(300_000)
@@ -210,8 +210,8 @@ def others_are_well(bench, *addresses):
 
 def test_the_list_arranged_anew():
     def arrange(bench):
-        one, two, three = bench.master.drives
-        bench.master.arrange([three, one, one, two])
+        one, two, three = bench.master.turns.drives
+        bench.master.turns.arrange([three, one, one, two])
 
     for bench, _ in interrupted(three, arrange):
         returned = len(bench.sent)
@@ -223,7 +223,7 @@ def test_the_list_arranged_anew():
 
 
 def test_a_drive_taken_away():
-    for bench, _ in interrupted(three, lambda bench: bench.master.remove(bench.drives[3])):
+    for bench, _ in interrupted(three, lambda bench: bench.master.turns.remove(bench.drives[3])):
         returned = len(bench.sent)
         bench.run(200_000)
         assert 3 not in bench.addresses(returned)
@@ -236,9 +236,9 @@ def test_a_drive_added():
         bench.nodes[7] = Node(7, 3, 2)
         return bench
 
-    for bench, _ in interrupted(prepare, lambda bench: bench.master.add(7, Layout(3, 2))):
+    for bench, _ in interrupted(prepare, lambda bench: bench.master.turns.add(7, Layout(3, 2))):
         bench.run(300_000)
-        assert bench.master.drives[-1].contact
+        assert bench.master.turns.drives[-1].contact
         others_are_well(bench, 1, 2, 3)
 
 
@@ -250,7 +250,7 @@ def test_a_drive_that_gets_another_address():
 
     def move(bench):
         bench.nodes[3].address = 9
-        bench.master.readdress(bench.drives[3], 9)
+        bench.master.turns.readdress(bench.drives[3], 9)
 
     for bench, _ in interrupted(prepare, move):
         returned = len(bench.sent)
@@ -270,14 +270,16 @@ def test_off_and_on():
 
     for bench, _ in interrupted(three, both):
         bench.run(1_500_000)
-        assert all([drive.contact for drive in bench.master.drives])
+        assert all([drive.contact for drive in bench.master.turns.drives])
         sent = len(bench.sent)
         bench.run(500_000)
         assert pzd.ON not in bench.stws(2, sent)
 
 
 def test_supervision():
-    for bench, _ in interrupted(three, lambda bench: bench.master.supervise(bench.drives[2], 100)):
+    for bench, _ in interrupted(
+        three, lambda bench: bench.master.care.supervise(bench.drives[2], 100)
+    ):
         sent = len(bench.sent)
         bench.run(1_000_000)
         instants = [telegram.at for telegram in bench.sent[sent:] if telegram.address == 2]

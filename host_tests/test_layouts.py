@@ -221,7 +221,7 @@ def test_a_telegram_of_another_layout_is_not_received():
 def contact(layout, address=1, **options):
     """A line with one drive of this layout, which has answered once, with zeros."""
     line = Line(lambda request: sealed(bytes(layout.net_count), address), **options)
-    drive = line.master.add(address, layout)
+    drive = line.master.turns.add(address, layout)
     line.exchange()
     assert drive.contact, layout
     return line, drive
@@ -341,7 +341,7 @@ def test_a_reply_of_any_length_is_taken_at_every_rate():
             for pause_us in (timing.start_interval_us, 3 * timing.character_us):
                 pieces = [(pause_us, reply)]
                 line = Line(lambda request, pieces=pieces: pieces, timing)
-                drive = line.master.add(1, Layout(VARIABLE, 1))
+                drive = line.master.turns.add(1, Layout(VARIABLE, 1))
                 line.exchange()
                 assert drive.contact, (baud, words, pause_us)
 
@@ -404,7 +404,7 @@ def test_a_simulated_drive_of_every_layout_understands_and_is_understood():
         parameters = {2013: layout.pkw_words, 2012: layout.pzd_words}
         bench = Bench(parameters, family=generic)
         line = Line(bench.ask)
-        drive = line.master.add(1, layout)
+        drive = line.master.turns.add(1, layout)
         line.exchange()
         words = random_words(layout.pzd_words)
         words[:2] = [pzd.ON, 0x2000][: len(words)]

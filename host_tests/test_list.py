@@ -34,7 +34,7 @@ def test_a_round_is_as_it_was_arranged():
     """The list of specification A-5.1: 0 1 3 5 0 1 7 21."""
     order = (0, 1, 3, 5, 0, 1, 7, 21)
     bench = Bench([Node(address) for address in (0, 1, 3, 5, 7, 21)])
-    bench.master.arrange([bench.drives[address] for address in order])
+    bench.master.turns.arrange([bench.drives[address] for address in order])
     bench.run(1_000_000)
     assert len(bench.sent) > 24
     assert bench.addresses()[:24] == list(order) * 3
@@ -42,8 +42,8 @@ def test_a_round_is_as_it_was_arranged():
 
 def test_a_drive_that_stands_in_the_list_ten_times_gets_ten_turns():
     bench = Bench(nodes(3))
-    one, two, three = bench.master.drives
-    bench.master.arrange([one] * 10 + [two, three])
+    one, two, three = bench.master.turns.drives
+    bench.master.turns.arrange([one] * 10 + [two, three])
     bench.run(2_000_000)
     addresses = bench.addresses()[:60]
     assert [addresses.count(each) for each in (1, 2, 3)] == [50, 5, 5]
@@ -51,11 +51,11 @@ def test_a_drive_that_stands_in_the_list_ten_times_gets_ten_turns():
 
 def test_255_entries_go_round_and_no_more_are_taken():
     bench = Bench(nodes(31))
-    drives = bench.master.drives
+    drives = bench.master.turns.drives
     entries = [drives[index * 7 % 31] for index in range(255)]
-    bench.master.arrange(entries)
-    assert "255" in refused(bench.master.arrange, entries + [drives[0]])
-    assert "255" in refused(bench.master.add, 1)
+    bench.master.turns.arrange(entries)
+    assert "255" in refused(bench.master.turns.arrange, entries + [drives[0]])
+    assert "255" in refused(bench.master.turns.add, 1)
     bench.run_until(lambda: len(bench.sent) >= 520, 20_000_000)
     wanted = [drive.address for drive in entries]
     assert bench.addresses()[:510] == wanted + wanted
@@ -64,11 +64,11 @@ def test_255_entries_go_round_and_no_more_are_taken():
 def test_a_list_of_strangers_and_one_without_a_drive_are_refused():
     """A drive without a turn would never be heard of again."""
     bench, other = Bench(nodes(2)), Bench(nodes(2))
-    before = list(bench.master.list)
-    refused(bench.master.arrange, [])
-    refused(bench.master.arrange, [bench.drives[1]])
-    refused(bench.master.arrange, [bench.drives[1], bench.drives[2], other.drives[2]])
-    assert bench.master.list == before
+    before = list(bench.master.turns.list)
+    refused(bench.master.turns.arrange, [])
+    refused(bench.master.turns.arrange, [bench.drives[1]])
+    refused(bench.master.turns.arrange, [bench.drives[1], bench.drives[2], other.drives[2]])
+    assert bench.master.turns.list == before
     bench.run(300_000)
     assert set(bench.addresses()) == {1, 2}
 
@@ -77,13 +77,13 @@ def test_the_list_is_arranged_anew_at_any_instant_of_an_exchange():
     """The exchange under way ends as ever; the next telegram is one of the new list."""
     for offset_us in range(0, 24_000, 571):
         bench = Bench(nodes(3))
-        one, two, three = bench.master.drives
+        one, two, three = bench.master.turns.drives
         bench.run(300_000 + offset_us)
         sent = len(bench.sent)
-        bench.master.arrange([three, one, one, two, one])
+        bench.master.turns.arrange([three, one, one, two, one])
         bench.run(250_000)
         assert bench.addresses(sent)[:10] == [3, 1, 1, 2, 1] * 2, offset_us
-        for drive in bench.master.drives:
+        for drive in bench.master.turns.drives:
             assert not any(drive.counters[1:]), (offset_us, drive.counters)
 
 
@@ -94,19 +94,19 @@ def test_a_random_hand_edits_the_list_of_a_bus_that_runs():
     master = bench.master
     bench.contact()
     for _ in range(60):
-        drives = master.drives
+        drives = master.turns.drives
         count = 1 + random.getrandbits(5)
         entries = drives + [drives[random.getrandbits(8) % 12] for _ in range(count)]
         for place in range(len(entries)):
             other = random.getrandbits(8) % len(entries)
             entries[place], entries[other] = entries[other], entries[place]
-        master.arrange(entries)
+        master.turns.arrange(entries)
         sent = len(bench.sent)
         bench.run(random.getrandbits(20))
         wanted = [drive.address for drive in entries] * 5
         addresses = bench.addresses(sent)
         assert addresses == wanted[: len(addresses)]
-    for drive in master.drives:
+    for drive in master.turns.drives:
         assert not any(drive.counters[1:]), drive.counters
 
 
@@ -114,12 +114,12 @@ def test_a_drive_that_is_taken_away_is_not_asked_any_more():
     bench = Bench(nodes(3))
     bench.run(300_000)
     two = bench.drives[2]
-    bench.master.remove(two)
-    assert two not in bench.master.drives and two not in bench.master.list
+    bench.master.turns.remove(two)
+    assert two not in bench.master.turns.drives and two not in bench.master.turns.list
     sent = len(bench.sent)
     bench.run(300_000)
     assert set(bench.addresses(sent)) == {1, 3}
-    again = bench.master.add(2)
+    again = bench.master.turns.add(2)
     bench.run(300_000)
     assert again.contact and again is not two
 
@@ -129,7 +129,7 @@ def test_the_drive_whose_exchange_goes_on_may_be_taken_away():
         bench = Bench(nodes(2))
         bench.run(300_000 + offset_us)
         sent = len(bench.sent)
-        bench.master.remove(bench.drives[2])
+        bench.master.turns.remove(bench.drives[2])
         bench.run(200_000)
         assert 2 not in bench.addresses(sent) and bench.drives[1].contact
         assert not any(bench.drives[1].counters[1:])
@@ -138,12 +138,12 @@ def test_the_drive_whose_exchange_goes_on_may_be_taken_away():
 def test_a_list_without_drives_is_silence_until_one_is_added():
     bench = Bench(nodes(1))
     bench.run(300_000)
-    bench.master.remove(bench.drives[1])
+    bench.master.turns.remove(bench.drives[1])
     bench.run(50_000)
     sent = len(bench.sent)
     bench.run(1_000_000)
     assert len(bench.sent) == sent
-    drive = bench.master.add(1)
+    drive = bench.master.turns.add(1)
     bench.run(1_000_000)
     assert drive.contact
 
@@ -153,20 +153,20 @@ def test_a_drive_that_runs_or_may_run_is_not_taken_away():
     bench.run(300_000)
     drive = bench.drives[1]
     drive.start(0x1000)
-    refused(bench.master.remove, drive)  # before the first telegram says ON
+    refused(bench.master.turns.remove, drive)  # before the first telegram says ON
     bench.run(200_000)
-    refused(bench.master.remove, drive)
+    refused(bench.master.turns.remove, drive)
     bench.nodes[1].follows = False  # it ramps down
     drive.stop()
     bench.run(200_000)
-    refused(bench.master.remove, drive)
+    refused(bench.master.turns.remove, drive)
     bench.nodes[1].plugged = False
     bench.run(3_000_000)
-    refused(bench.master.remove, drive)  # no contact: it may run still
+    refused(bench.master.turns.remove, drive)  # no contact: it may run still
     bench.nodes[1].plugged = bench.nodes[1].follows = True
     bench.run(4_000_000)
-    bench.master.remove(drive)
-    assert bench.master.drives == [bench.drives[2]]
+    bench.master.turns.remove(drive)
+    assert bench.master.turns.drives == [bench.drives[2]]
 
 
 # --- layouts ------------------------------------------------------------------------------------
@@ -175,7 +175,7 @@ def test_a_drive_that_runs_or_may_run_is_not_taken_away():
 def test_drives_of_all_layouts_are_asked_in_turn():
     bench = Bench([Node(5 + row, *layout) for row, layout in enumerate(LAYOUTS)])
     bench.run(2_000_000)
-    for drive in bench.master.drives:
+    for drive in bench.master.turns.drives:
         assert drive.contact and drive.counters[0] > 3, drive.address
         assert not any(drive.counters[1:]), (drive.address, drive.counters)
 
@@ -192,8 +192,8 @@ def test_a_drive_without_process_data_cannot_be_started():
 
 def test_the_same_address_with_another_layout_is_refused():
     bench = Bench(nodes(1))
-    refused(bench.master.add, 1, Layout(3, 2))
-    assert len(bench.master.list) == 1
+    refused(bench.master.turns.add, 1, Layout(3, 2))
+    assert len(bench.master.turns.list) == 1
 
 
 # --- fixed cycle --------------------------------------------------------------------------------
@@ -206,7 +206,7 @@ def beginnings(bench, address, since=0):
 
 def test_rounds_begin_a_fixed_time_after_each_other():
     bench = Bench(nodes(3))
-    bench.master.cycle_us = 150_000
+    bench.master.turns.cycle_us = 150_000
     bench.run(5_000_000)
     instants = beginnings(bench, 1)
     assert len(instants) > 30
@@ -216,11 +216,11 @@ def test_rounds_begin_a_fixed_time_after_each_other():
 
 def test_within_a_round_nothing_waits():
     bench = Bench(nodes(3))
-    bench.master.cycle_us = 150_000
+    bench.master.turns.cycle_us = 150_000
     bench.run(1_000_000)
-    bench.master.cycle_us = 0
+    bench.master.turns.cycle_us = 0
     bench.run(300_000)
-    bench.master.cycle_us = 150_000
+    bench.master.turns.cycle_us = 150_000
     bench.run(300_000)
     sent = len(bench.sent)
     bench.run(1_000_000)
@@ -233,14 +233,14 @@ def test_within_a_round_nothing_waits():
 
 def test_a_round_that_takes_longer_than_the_cycle_is_followed_at_once():
     bench = Bench(nodes(8))
-    bench.master.cycle_us = 100_000
+    bench.master.turns.cycle_us = 100_000
     bench.run(2_000_000)
     instants = beginnings(bench, 1)
     round_us = 8 * bench.timing.exchange_us(12, 1719)
     for before, after in zip(instants, instants[1:]):
         assert after - before <= round_us + 40
     bench.nodes[3].plugged = False  # a single long round does not shift all that follow
-    bench.master.cycle_us = 250_000
+    bench.master.turns.cycle_us = 250_000
     bench.run(5_000_000)
     sent = len(bench.sent)
     bench.run(3_000_000)
@@ -252,7 +252,7 @@ def test_a_round_that_takes_longer_than_the_cycle_is_followed_at_once():
 def test_a_round_that_began_late_delays_none_behind_it():
     """A command took the line when the round should have begun."""
     bench = Bench(nodes(3))
-    bench.master.cycle_us = 150_000
+    bench.master.turns.cycle_us = 150_000
     bench.run_until(lambda: bench.sent)
     began = bench.sent[0].at
     for place in range(1, 20):
@@ -268,7 +268,7 @@ def test_a_round_that_began_late_delays_none_behind_it():
 
 def test_no_cycle_is_missed_when_the_clock_wraps():
     bench = Bench(nodes(2), mask=(1 << 24) - 1)
-    bench.master.cycle_us = 3_000_000
+    bench.master.turns.cycle_us = 3_000_000
     bench.run(60_000_000)
     instants = beginnings(bench, 1)
     assert len(instants) >= 19

@@ -35,10 +35,10 @@ def test_the_list_goes_round_and_a_node_may_stand_in_it_twice():
     """The list of specification A-5.1: 0 1 3 5 0 1 7 21."""
     order = (0, 1, 3, 5, 0, 1, 7, 21)
     bus = Bus((0, 1, 3, 5, 7, 21))
-    bus.master.list.clear()
+    bus.master.turns.list.clear()
     for address in order:
-        bus.master.add(address)
-    assert len(bus.master.drives) == 6
+        bus.master.turns.add(address)
+    assert len(bus.master.turns.drives) == 6
     bus.run(1_000_000)
     sent = bus.addresses()
     for index in range(24):
@@ -59,7 +59,7 @@ def test_a_silent_drive_is_counted_and_stays_in_the_list():
     bus.silent.add(2)
     bus.run(3_000_000)
     one, two = bus.drives
-    assert two in bus.master.list
+    assert two in bus.master.turns.list
     assert two.counters[5] >= 4 and two.counters[0] == 0 and not two.contact
     assert one.counters[0] > 20 and one.contact
 
@@ -68,14 +68,14 @@ def test_a_drive_beyond_the_list_or_the_addresses_is_refused():
     bus = Bus()
     for wrong in (-1, 32, None, "1"):
         try:
-            bus.master.add(wrong)
+            bus.master.turns.add(wrong)
         except (ValueError, TypeError):
             continue
         raise AssertionError(wrong)
     for _ in range(254):
-        bus.master.add(1)
+        bus.master.turns.add(1)
     try:
-        bus.master.add(1)
+        bus.master.turns.add(1)
     except ValueError:
         return
     raise AssertionError("256 entries")
@@ -735,12 +735,12 @@ def test_while_characters_come_in_nothing_is_sent_into_them():
 def test_a_list_that_is_emptied_ends_the_telegrams_and_nothing_else():
     bus = Bus()
     bus.run(300_000)
-    bus.master.remove(bus.drives[0])
+    bus.master.turns.remove(bus.drives[0])
     bus.run(100_000)
     sent = len(bus.sent)
     bus.run(500_000)
     assert len(bus.sent) == sent and bus.master.failures == 0
-    bus.master.add(1)
+    bus.master.turns.add(1)
     bus.run(500_000)
     assert len(bus.sent) > sent + 5
 
@@ -751,10 +751,10 @@ def test_the_patience_with_a_bus_that_works_outlasts_its_longest_exchange():
         line = Timing(baud)
         for layout, reply_count in ((Layout(4, 2), 12), (Layout(VARIABLE, 2), 252)):
             master = Master(Bus(), line, MASK)
-            master.add(1, layout)
+            master.turns.add(1, layout)
             longest_us = line.telegram_us(layout.net_max) + line.reply_timeout_us
             longest_us += line.residual_us(reply_count)
-            assert master.patience_us > longest_us, (baud, layout)
-            least_us = master.patience_us
-            master.add(2)
-            assert master.patience_us >= least_us
+            assert master.patience_us() > longest_us, (baud, layout)
+            least_us = master.patience_us()
+            master.turns.add(2)
+            assert master.patience_us() >= least_us

@@ -182,7 +182,7 @@ def test_a_motor_that_turns_left_is_shown_with_a_sign():
     world = running()
     world.press("STOP")
     world.run(8000)
-    drive = world.app.bus.drives[0]
+    drive = world.app.bus.turns.drives[0]
     drive.start(0x10000 - 0x0CCD)  # an own program may reverse by the sign of the setpoint
     world.run(5000)
     assert row_1(world) == "S: 10.0 F:-10.00"

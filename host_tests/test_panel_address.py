@@ -412,7 +412,7 @@ def test_an_address_is_not_changed_while_another_drive_is_sent_on():
     world.press("START")
     world.press("ADDRESS_UP")
     edit(show(world, "P2011"), 4)
-    assert world.app.bus.drives[0].is_on()
+    assert world.app.bus.turns.drives[0].is_on()
     world.press("SET", 40)
     assert row_2(world) == "STOP ALL FIRST"
     world.check()

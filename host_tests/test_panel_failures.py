@@ -306,7 +306,7 @@ def test_saving_the_settings_spoils_no_telegram():
         print("seed", seed)
         world = panel(addresses=(1, 2), seed=seed)
         world.run(world.random(0, 60))
-        good = [drive.counters[0] for drive in world.app.bus.drives]
+        good = [drive.counters[0] for drive in world.app.bus.turns.drives]
         world.app.settings.accept_unsupervised(2)
         began_us = world.clock.now_us
         while world.app.settings.dirty:
@@ -314,7 +314,7 @@ def test_saving_the_settings_spoils_no_telegram():
         assert 100_000 < world.clock.now_us - began_us < 400_000
         world.run(2000)
         assert b'"unsupervised": [2]' in world.flash.files["settings.json"]
-        for drive, before in zip(world.app.bus.drives, good):
+        for drive, before in zip(world.app.bus.turns.drives, good):
             assert drive.counters[0] > before + 20 and not any(drive.counters[1:])
         world.check()
 
@@ -477,7 +477,7 @@ def test_a_gap_that_the_loop_has_slept_through_was_the_line():
     world.hang(180)
     world.drives[1].plug()
     world.hang(80)
-    assert world.app.bus.drives[0].contact and world.app.bus.dead_man_trips == 0
+    assert world.app.bus.turns.drives[0].contact and world.app.bus.dead_man_trips == 0
     world.run(6000)
     assert row_2(world) == "LINE FAILED  A1"
     world.check()

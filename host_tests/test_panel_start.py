@@ -206,7 +206,7 @@ def test_the_settings_of_a_drive_that_was_away_are_read_anew():
     world.drives[1].write(700, 0, 2)
     world.drives[1].plug()
     survey = world.app.panel.selected.survey
-    while not world.app.bus.drives[0].contact:
+    while not world.app.bus.turns.drives[0].contact:
         world.run(2)
     world.run(4)
     assert not survey.complete and survey.scaling is None
@@ -281,7 +281,7 @@ def test_the_time_after_which_a_drive_is_lost_is_that_of_the_settings():
         world = panel(settings={"lost_ms": lost_ms})
         world.drives[1].unplug()
         world.run(lost_ms - 100)
-        assert world.app.bus.drives[0].contact and row_2(world) != "NO CONTACT   A1"
+        assert world.app.bus.turns.drives[0].contact and row_2(world) != "NO CONTACT   A1"
         world.run(300)
         assert row_2(world) == "NO CONTACT   A1"
 
@@ -297,7 +297,7 @@ def test_the_wait_for_a_reply_is_that_of_the_settings():
 def test_other_parameter_jobs_do_not_disturb_the_panel():
     """An own program fills the queue of the drive."""
     world = panel()
-    drive = world.app.bus.drives[0]
+    drive = world.app.bus.turns.drives[0]
     for _ in range(50):
         while not drive.channel.is_full():
             drive.ask(pkw.read(1120))
@@ -446,7 +446,7 @@ def test_a_start_that_was_taken_back_asks_the_drive_nothing_more():
     world = panel()
     world.down("START")
     world.run(40)
-    drive = world.app.bus.drives[0]
+    drive = world.app.bus.turns.drives[0]
     assert drive.asking
     world.press("STOP", 20)
     assert not drive.asking

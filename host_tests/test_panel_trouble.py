@@ -19,7 +19,7 @@ def test_a_drive_as_it_is_delivered_answers_in_another_length():
         seen.add(row_2(world))
     assert "OTHER LENGTH A1" in seen and not any("NO CONTACT" in row for row in seen), seen
     world.press("START")
-    assert not world.app.bus.drives[0].is_on()
+    assert not world.app.bus.turns.drives[0].is_on()
     world.drives[1].write(2013, 0, 4)
     world.run(6_000)
     assert row_2(world) == "READY        A1", row_2(world)

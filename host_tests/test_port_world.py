@@ -92,7 +92,7 @@ def test_an_adapter_that_keeps_characters_back_is_waited_for():
     world = panel(adapter)
     world.run(2500)
     assert world.reads("READY")
-    assert world.app.bus.drives[0].contact
+    assert world.app.bus.turns.drives[0].contact
 
 
 def test_whoever_leaves_stops_the_drives_first():

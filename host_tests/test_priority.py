@@ -78,7 +78,7 @@ def check(prepare, phases=SENT, window_us=WINDOW_US, late_us=45_000, commands=CO
     for instant in instants_of(prepare, window_us):
         for _ in range(4):
             bench = prepare()
-            drives = bench.master.drives
+            drives = bench.master.turns.drives
             command, mask, value = commands[turn % len(commands)]
             drive = drives[turn // len(commands) % len(drives)]
             turn += 1
@@ -141,7 +141,7 @@ def test_while_a_mirror_telegram_is_under_way():
 
         def prepare(node=node):
             bench = started()
-            bench.master.post(Mirror(node))
+            bench.master.turns.post(Mirror(node))
             return reach(bench, lambda telegram: telegram.address == node | 0x40)
 
         check(prepare)
@@ -150,7 +150,7 @@ def test_while_a_mirror_telegram_is_under_way():
 def test_after_a_broadcast():
     def prepare():
         bench = started()
-        bench.master.post(Broadcast((pzd.OFF1, 0), {2: 0xFFFF}))
+        bench.master.turns.post(Broadcast((pzd.OFF1, 0), {2: 0xFFFF}))
         return reach(bench, lambda telegram: telegram.address == 0x20)
 
     check(prepare)
@@ -159,7 +159,7 @@ def test_after_a_broadcast():
 def test_while_a_special_telegram_is_under_way():
     def prepare():
         bench = started()
-        bench.master.post(Special(9, b"\x12\x34\x56"))
+        bench.master.turns.post(Special(9, b"\x12\x34\x56"))
         return reach(bench, lambda telegram: telegram.address == 0x89)
 
     check(prepare)
@@ -191,7 +191,7 @@ def test_before_parameters():
 def test_before_a_turn_for_the_off_time():
     def prepare():
         bench = started(6)
-        bench.master.supervise(bench.drives[2], 200)
+        bench.master.care.supervise(bench.drives[2], 200)
         return reach(bench, lambda telegram: telegram.address == 2)
 
     check(prepare, window_us=140_000)
@@ -202,7 +202,7 @@ def test_while_it_waits_for_the_cycle():
 
     def prepare():
         bench = started()
-        bench.master.cycle_us = 200_000
+        bench.master.turns.cycle_us = 200_000
         bench.run(500_000)
         return reach(bench, lambda telegram: telegram.address == 4)
 
@@ -267,8 +267,8 @@ def test_on_a_link_that_is_looked_at():
 def test_when_the_list_was_just_changed():
     def prepare():
         bench = reach(started(), lambda telegram: telegram.address == 1)
-        one, two, three, four = bench.master.drives
-        bench.master.arrange([four, four, three, one, two, two])
+        one, two, three, four = bench.master.turns.drives
+        bench.master.turns.arrange([four, four, three, one, two, two])
         return bench
 
     check(prepare)
@@ -278,7 +278,7 @@ def test_with_a_queue_of_other_telegrams():
     def prepare():
         bench = started()
         for node in (9, 10, 1, 2, 11, 12):
-            bench.master.post(Mirror(node))
+            bench.master.turns.post(Mirror(node))
         return reach(bench, lambda telegram: telegram.address & 0x40)
 
     check(prepare, window_us=100_000)
@@ -292,7 +292,7 @@ def test_several_commands_go_one_after_the_other_stops_first():
         bench = started(6)
         bench.run_to(instant)
         sent = len(bench.sent)
-        one, two, three, four, five, six = bench.master.drives
+        one, two, three, four, five, six = bench.master.turns.drives
         six.start(0x1000)
         five.acknowledge()
         four.stop()  # it stands

@@ -93,7 +93,7 @@ class Hand:
         referee = self.referee
         if self.bench.refreshing:
             referee.refreshed_at = self.bench.now
-        for drive in self.bench.master.drives:
+        for drive in self.bench.master.turns.drives:
             if not drive.contact:
                 referee.may[drive.address] = False
 
@@ -101,7 +101,7 @@ class Hand:
         return random.getrandbits(16) % below
 
     def step(self):
-        drives = self.bench.master.drives
+        drives = self.bench.master.turns.drives
         drive = drives[self.number(len(drives))]
         deeds = (
             self.start, self.start, self.stop, self.stop, self.acknowledge, self.jog, self.ask,
@@ -133,7 +133,7 @@ class Hand:
 
     def stop_all(self, drive):
         self.bench.master.stop_all()
-        for each in self.bench.master.drives:
+        for each in self.bench.master.turns.drives:
             self.stopped(each)
 
     def acknowledge(self, drive):
@@ -155,8 +155,9 @@ class Hand:
         self.bench.nodes[drive.address].plugged = False
 
     def arrange(self, drive):
-        drives = self.bench.master.drives
-        self.bench.master.arrange(drives + [drive] * self.number(5) + drives[: self.number(3)])
+        turns = self.bench.master.turns
+        drives = turns.drives
+        turns.arrange(drives + [drive] * self.number(5) + drives[: self.number(3)])
 
     def post(self, drive):
         singles = (
@@ -166,15 +167,15 @@ class Hand:
             Special(None, b"\x01\x02\x03"),
         )
         try:
-            self.bench.master.post(singles[self.number(4)])
+            self.bench.master.turns.post(singles[self.number(4)])
         except RuntimeError:
             pass
 
     def settings(self, drive):
         master = self.bench.master
         master.retries = self.number(3)
-        master.cycle_us = (0, 0, 100_000, 350_000)[self.number(4)]
-        master.supervise(drive, (0, 400, 2_000)[self.number(3)])
+        master.turns.cycle_us = (0, 0, 100_000, 350_000)[self.number(4)]
+        master.care.supervise(drive, (0, 400, 2_000)[self.number(3)])
 
     def hang(self, drive):
         """The main loop stands still for a while."""
@@ -204,17 +205,20 @@ class Hand:
         """Everybody is plugged in, and nothing is wanted any more: all is well in the end."""
         bench = self.bench
         self.plug(None)
-        bench.master.cycle_us = 0
+        bench.master.turns.cycle_us = 0
         if self.off:
             self.switch(None)
         bench.master.stop_all()
         bench.run(LOST_US * 4)
-        for drive in bench.master.drives:
+        for drive in bench.master.turns.drives:
             self.referee.demand(drive.contact and drive.silent == 0, "contact in the end")
             self.referee.demand(bench.nodes[drive.address].zsw == 0xFB31, "stopped in the end")
-        good = bench.master.counters()[0]
+        good = self.answers()
         bench.run(1_000_000)
-        self.referee.demand(bench.master.counters()[0] - good >= 15, "progress in the end")
+        self.referee.demand(self.answers() - good >= 15, "progress in the end")
+
+    def answers(self):
+        return sum([drive.counters[0] for drive in self.bench.master.turns.drives])
 
 
 def test_a_random_hand_breaks_no_rule():

@@ -131,7 +131,7 @@ class Exchange:
 
     def __init__(self, layout=None):
         self.line = Line()
-        self.drive = self.line.master.add(1, layout or Layout(4, 2))
+        self.drive = self.line.master.turns.add(1, layout or Layout(4, 2))
         words = self.drive.layout.net_count // 2 - self.drive.layout.pzd_words
         self.idle = [0] * words
         self.process_data = [READY, 0][: self.drive.layout.pzd_words]
@@ -209,7 +209,7 @@ def test_a_reply_that_is_longer_than_its_lge_is_refused_by_its_length():
 def test_a_reply_full_of_02h_is_taken_whole_or_not_at_all():
     """Drive 2, PNU 514, values and setpoint of 0202h."""
     line = Line()
-    drive = line.master.add(2)
+    drive = line.master.turns.add(2)
     reply = telegram(2, 0x1202, 0x0002, 0x0202, 0x0202, 0x0202, 0x0202)
     line.answer = lambda request: reply
     line.exchange()
@@ -358,14 +358,14 @@ def test_a_dead_node_keeps_nobody_else_from_being_asked():
         line = Line()
         alive = lambda request: telegram(request[2], 0, 0, 0, 0, READY, 0)  # noqa: E731
         line.answer = lambda request, dead=dead: None if request[2] == dead else alive(request)
-        drives = [line.master.add(address) for address in (1, 2, 3)]
+        drives = [line.master.turns.add(address) for address in (1, 2, 3)]
         line.run(3_000_000)
         for drive in drives:
             assert drive.contact == (drive.address != dead)
             if drive.contact:
                 assert drive.counters[GOOD] > 20 and sum(drive.counters[1:]) == 0
         assert drives[dead - 1].counters[NO_REPLY] >= 3 and drives[dead - 1].silent >= 3
-        assert drives[dead - 1] in line.master.list
+        assert drives[dead - 1] in line.master.turns.list
         line.answer = alive
         line.run(2_000_000)
         assert drives[dead - 1].contact and drives[dead - 1].silent == 0

@@ -145,7 +145,7 @@ def test_it_waits_behind_other_telegrams_outside_the_list():
     bench = Bench([Node(1)], listed=False)
     others = [Mirror(1) for _ in range(8)]
     for other in others:
-        bench.master.post(other)
+        bench.master.turns.post(other)
     scan = Scan(bench.master, MASK, range(3))
     bench.run_until(lambda: scan.step(bench.now), 60_000_000)
     assert scan.found == {1: 12} and all([other.state == DONE for other in others])

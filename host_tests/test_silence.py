@@ -82,7 +82,7 @@ def gaps(bench, address, since):
 
 
 def started(bench, address, off_time_ms):
-    bench.master.supervise(bench.drives[address], off_time_ms)
+    bench.master.care.supervise(bench.drives[address], off_time_ms)
     bench.drives[address].start(0x1000)
     bench.run(1_000_000)
     assert bench.nodes[address].zsw == 0xFB34
@@ -129,7 +129,7 @@ def test_those_that_are_switched_on_together_are_found_one_behind_the_other():
     for node in bench.nodes.values():
         node.plugged = True
     began = bench.now
-    bench.run_until(lambda: all([drive.contact for drive in bench.master.drives]))
+    bench.run_until(lambda: all([drive.contact for drive in bench.master.turns.drives]))
     assert bench.now - began < 2_500_000
 
 
@@ -168,8 +168,8 @@ def test_one_that_was_found_does_not_keep_the_turn_of_the_others():
     """It is the only one in the round by then: whenever the loop looks, it is being asked."""
     bench = bench_of(20, present=1, listed=3)
     bench.run(3_000_000)
-    found, is_under_way = bench.drives[2], bench.master.is_under_way
-    bench.master.is_under_way = lambda drive: (
+    found, is_under_way = bench.drives[2], bench.master.turns.is_under_way
+    bench.master.turns.is_under_way = lambda drive: (
         drive is found and drive.contact or is_under_way(drive)
     )
     bench.nodes[2].plugged = True
@@ -228,9 +228,9 @@ def test_a_silence_that_would_be_longer_than_that_is_not_risked():
     """Half a second, beside a drive that trips after one: the silent ones have to wait."""
     bench = bench_of(500)
     bench.run(5_000_000)
-    assert bench.master.first_late(bench.drives[1]) is None  # it never trips
+    assert bench.master.care.first_late(bench.drives[1]) is None  # it never trips
     since = started(bench, 1, 1_000)
-    assert bench.master.first_late(bench.drives[1]) is bench.drives[1]
+    assert bench.master.care.first_late(bench.drives[1]) is bench.drives[1]
     bench.run(10_000_000)
     assert set(bench.addresses(since)) == {1, 2}
     assert max(gaps(bench, 1, since)) < 333_333
@@ -242,7 +242,7 @@ def test_a_silence_that_would_be_longer_than_that_is_not_risked():
 def test_one_that_never_trips_may_be_late_now_and_then_for_their_sake():
     """It is lost after 0.3 s, and is to be asked three times in that; a silence takes longer."""
     bench = bench_of(90, listed=6)
-    bench.master.lost_us = 300_000
+    bench.master.turns.lost_us = 300_000
     bench.run(3_000_000)
     since = started(bench, 1, 0)
     bench.run(20_000_000)
@@ -257,10 +257,10 @@ def test_where_they_are_too_many_for_their_bound_the_silent_ones_are_still_asked
     """Thirty that run, a third of a second each: the line cannot carry that, and says so."""
     bench = bench_of(20, present=30)
     for address in range(1, 31):
-        bench.master.supervise(bench.drives[address], 1_000)
+        bench.master.care.supervise(bench.drives[address], 1_000)
         bench.drives[address].start(0x1000)
     bench.run(3_000_000)
-    assert bench.master.first_late(bench.drives[1]) is bench.drives[1]
+    assert bench.master.care.first_late(bench.drives[1]) is bench.drives[1]
     bench.nodes[31].plugged = True
     bench.run_until(lambda: bench.drives[31].contact, 5_000_000)
 
@@ -277,13 +277,13 @@ def test_no_gap_is_longer_than_the_bus_has_promised():
         bench = bench_of(timeout_ms, present, listed)
         drives = [bench.drives[address] for address in range(1, running + 1)]
         for drive in drives:
-            bench.master.supervise(drive, 2_000)
+            bench.master.care.supervise(drive, 2_000)
         bench.run(3_000_000)
         for drive in drives[1:]:
             drive.start(0x1000)
         bench.run(1_000_000)
-        promised_us = bench.master.gap_us(drives[0])
-        late = bench.master.first_late(drives[0])
+        promised_us = bench.master.care.gap_us(drives[0])
+        late = bench.master.care.first_late(drives[0])
         drives[0].start(0x1000)
         bench.run(500_000)
         since = len(bench.sent)
@@ -301,20 +301,20 @@ def test_no_gap_is_longer_than_the_bus_has_promised():
 
 def test_a_drive_that_runs_is_named_when_another_one_would_make_it_late():
     bench = bench_of(20, present=31)
-    master, drives = bench.master, bench.drives
+    care, drives = bench.master.care, bench.drives
     for address in range(1, 32):
-        master.supervise(drives[address], 10_000)
-    master.supervise(drives[7], 350)
-    assert master.first_late(drives[1]) is None
-    assert master.first_late(drives[7]) is drives[7] or master.gap_us(drives[7]) < 116_666
+        care.supervise(drives[address], 10_000)
+    care.supervise(drives[7], 350)
+    assert care.first_late(drives[1]) is None
+    assert care.first_late(drives[7]) is drives[7] or care.gap_us(drives[7]) < 116_666
     started(bench, 7, 350)
     for address in range(8, 15):
         drives[address].start(0x1000)
     bench.run(500_000)
-    assert master.first_late(drives[1]) is drives[7]
+    assert care.first_late(drives[1]) is drives[7]
     drives[7].stop()
     bench.run(500_000)
-    assert master.first_late(drives[1]) is None
+    assert care.first_late(drives[1]) is None
 
 
 def test_a_telegram_that_nobody_may_answer_waits_for_its_share():
@@ -322,7 +322,7 @@ def test_a_telegram_that_nobody_may_answer_waits_for_its_share():
     bench = bench_of(60)
     bench.run(3_000_000)
     waits = []
-    bench.loop = lambda: waits.append(bench.master.silence_wait_us())
+    bench.loop = lambda: waits.append(bench.master.care.silence_wait_us())
     bench.run(5_000_000)
     assert max(waits) <= 5 * (silence_us(bench) + 2_000) and min(waits) == 0
     started(bench, 1, 200)  # no silence of 60 ms and more leaves it a third of that

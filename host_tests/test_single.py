@@ -19,7 +19,7 @@ def nodes(count):
 def through(bench, single):
     """Post it and wait until it is through; the telegrams that carried it."""
     sent = len(bench.sent)
-    bench.master.post(single)
+    bench.master.turns.post(single)
     assert single.state == PENDING
     bench.run_until(lambda: single.state != PENDING)
     wanted = bytes(single.request[: single.size])
@@ -69,7 +69,7 @@ def test_a_mirror_telegram_comes_back_from_who_is_there():
     through(bench, nobody)
     assert there.state == pkw.DONE and bench.nodes[2].mirrored == 1
     assert nobody.state == TIMED_OUT and nobody.finding == SILENT
-    assert all([drive.zsw == 0xFB31 for drive in bench.master.drives])
+    assert all([drive.zsw == 0xFB31 for drive in bench.master.turns.drives])
 
 
 def test_a_mirror_telegram_that_comes_back_otherwise_is_no_answer():
@@ -102,7 +102,7 @@ def test_after_a_broadcast_the_drives_have_time_to_take_it():
     following = bench.sent[bench.sent.index(telegram) + 1]
     pause_us = following.at - telegram.at - bench.timing.telegram_us(12)
     assert RESPONSE_DELAY_US <= pause_us <= RESPONSE_DELAY_US + 1_000
-    assert not any([any(drive.counters[1:]) for drive in bench.master.drives])
+    assert not any([any(drive.counters[1:]) for drive in bench.master.turns.drives])
 
 
 def test_a_special_telegram_brings_what_its_node_answers():
@@ -130,7 +130,7 @@ def test_they_take_every_second_telegram_at_the_most():
     bench.contact()
     singles = [Mirror(address, NET) for address in (1, 2, 1, 2, 1)]
     for single in singles:
-        bench.master.post(single)
+        bench.master.turns.post(single)
     sent = len(bench.sent)
     bench.run_until(lambda: singles[-1].state != PENDING)
     addresses = bench.addresses(sent)
@@ -143,16 +143,16 @@ def test_eight_may_wait_and_each_once():
     bench.contact()
     singles = [Mirror(1, NET) for _ in range(9)]
     for single in singles[:8]:
-        bench.master.post(single)
+        bench.master.turns.post(single)
     for single in (singles[8], singles[0]):
         try:
-            bench.master.post(single)
+            bench.master.turns.post(single)
         except RuntimeError:
             continue
         raise AssertionError("taken")
     bench.run(3_000_000)
     assert [single.state for single in singles] == [pkw.DONE] * 8 + [NEW]
-    bench.master.post(singles[0])  # again, now that it is through
+    bench.master.turns.post(singles[0])  # again, now that it is through
     bench.run(300_000)
     assert singles[0].state == pkw.DONE and bench.nodes[1].mirrored == 9
 

@@ -58,7 +58,6 @@ PRIVATE = {
     ("test_panel_failures.py", "_receiver"): "the engine fails in the middle of a run",
     ("test_panel_one_run.py", "_job"): "an answer is there that the loop has not taken",
     ("test_panel_one_run.py", "_waiting"): "the same",
-    ("test_panel_supervision.py", "_care"): "a bound on the line, which no telegram shows",
     ("test_pico_failures.py", "_receiver"): "the engine fails on the chip",
     ("test_request.py", "_sent_stw"): "a request is made anew, to compare it with one made ready",
     ("test_soak.py", "_obey"): "a start that no key asked for",

@@ -86,7 +86,7 @@ def stopping():
 
 def test_stops_that_wait_are_in_the_next_telegrams():
     for bench in thrown(stopping, 90_000):
-        waiting = {drive.address for drive in bench.master.drives if drive.urgency() > 1}
+        waiting = {drive.address for drive in bench.master.turns.drives if drive.urgency() > 1}
         sent = len(bench.sent)
         bench.run(300_000)
         assert set(bench.addresses(sent)[: len(waiting)]) == waiting
@@ -111,7 +111,7 @@ def test_a_telegram_outside_the_list_comes_to_an_end():
     def prepare():
         bench = running()
         probes[:] = [Mirror(3)]
-        bench.master.post(probes[0])
+        bench.master.turns.post(probes[0])
         return bench
 
     for bench in thrown(prepare, 60_000):
@@ -119,7 +119,7 @@ def test_a_telegram_outside_the_list_comes_to_an_end():
         if probes[0].state == PENDING:
             assert 0x43 not in bench.addresses()
             continue
-        bench.master.post(probes[0])
+        bench.master.turns.post(probes[0])
         bench.run(300_000)
         assert probes[0].state == DONE
 

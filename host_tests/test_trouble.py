@@ -91,6 +91,6 @@ def test_a_telegram_outside_the_list_tells_what_came_instead():
         node = bench.nodes[1]
         node.answer = lambda characters, node=node, how=how: how(Node.answer(node, characters))
         mirror = Mirror(1)
-        bench.master.post(mirror)
+        bench.master.turns.post(mirror)
         bench.run(200_000)
         assert receiver.TROUBLES[mirror.finding] == trouble, (how.__name__, mirror.finding)

@@ -46,6 +46,20 @@ def blocks():
             code.append(line)
 
 
+def named_behind(start):
+    """The words behind "drive." or "bus." in the text, but where that is the end of a name."""
+    found = set()
+    told = text()
+    for mark in "/._":
+        told = told.replace(mark + start, "")
+    for piece in told.split(start)[1:]:
+        end = 0
+        while piece[end].isalpha() or piece[end].isdigit() or piece[end] == "_":
+            end += 1
+        found.add(piece[:end])
+    return found
+
+
 def play(code):
     """Run a block on a board of its own; answer what it printed, and the board."""
     stage = Stage((1, 2, 3, 4, 5), parameters=QUICK, kinds=KINDS)
@@ -99,6 +113,17 @@ def test_the_results_that_it_shows_are_those():
     assert will_trip == {2: 2_000, 3: 2_000, 4: 2_000, 5: None}
     (speed, state, highest) = printed_under("In two minutes", "import board")[0]
     assert 24.9 < speed < 25.1 and state == "running" and highest == 50.0
+
+
+def test_each_verb_that_it_names_is_listed_with_the_drive_or_the_bus():
+    """By `dir`, and so by `help`: nothing is found there that only the engine has."""
+    with Master(Stage((1,)).board.make_link(19200)) as bus:
+        drive = bus.add(1, families.MM420)
+        for thing, others in ((drive, ("COUNTERS", "py")), (bus, ())):
+            name = type(thing).__name__.lower().replace("master", "bus")
+            listed = dir(type(thing)) + list(thing.__dict__)
+            verbs = named_behind(name + ".") - set(others)
+            assert len(verbs) > 20 and not verbs - set(listed), verbs - set(listed)
 
 
 def test_the_table_of_families_names_each():

@@ -91,6 +91,6 @@ class PortWorld(World):
         """After `close`: the addresses of the drives that have not answered OFF1."""
         return [
             drive.address
-            for drive in self.app.bus.drives
+            for drive in self.app.bus.turns.drives
             if not (drive.contact and drive.answered_off())
         ]

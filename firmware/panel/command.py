@@ -64,7 +64,7 @@ class Command:
 
     def is_overdue(self, now):
         """Whether the drive has had more time to tell all its settings than it may need."""
-        patience_us = 2 * len(self._survey.values) * self._bus.patience_us
+        patience_us = 2 * len(self._survey.values) * self._bus.patience_us()
         # A clock of a short period cannot tell more than half of it.
         return elapsed(now, self._since, self._mask) >= min(patience_us, self._mask >> 2)
 

@@ -69,7 +69,7 @@ class Panel:
         self.mask = mask
         self.message = None
         self.setpoint_step = settings.setpoint_step_centihertz
-        cycle_us = bus.longest_cycle_us()
+        cycle_us = bus.turns.longest_cycle_us()
         self.off_time_ms = off_time_ms(cycle_us)
         for control in controls:
             control.longest_off_time_ms = longest_off_time_ms(cycle_us)
@@ -176,7 +176,7 @@ class Panel:
         """A drive has told its settings: its telegram-off time decides how soon it is asked."""
         survey = control.survey
         if survey.complete:
-            self._bus.supervise(control.drive, survey.values[rows.SUPERVISION])
+            self._bus.care.supervise(control.drive, survey.values[rows.SUPERVISION])
 
     def _watch(self, _now_ms, now_us):
         selected = self.selected

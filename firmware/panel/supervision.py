@@ -4,8 +4,8 @@
 With P2014 = 0 a motor runs on for ever when the panel dies. The panel offers a time that fits its
 bus: long enough for bad luck, short enough to matter.
 
-    off_time_ms(bus.longest_cycle_us())         # 1000...65000
-    longest_off_time_ms(bus.longest_cycle_us()) # from 2000 on: more is too long
+    off_time_ms(bus.turns.longest_cycle_us())         # 1000...65000
+    longest_off_time_ms(bus.turns.longest_cycle_us()) # from 2000 on: more is too long
 """
 
 from micropython import const

@@ -77,7 +77,7 @@ class Writer:
         self._settings = settings
         self._mask = mask
         # A clock of a short period cannot tell more than half of it.
-        patience_us = max(_LOOK_US, _LOOK_CYCLES * bus.longest_cycle_us())
+        patience_us = max(_LOOK_US, _LOOK_CYCLES * bus.turns.longest_cycle_us())
         self._patience_us = min(patience_us, mask >> 2)
         self._phase = IDLE
         self._job = pkw.read(0)
@@ -169,7 +169,7 @@ class Writer:
     def _confirm(self):
         write = self._write
         if write.moves:
-            self._bus.readdress(write.control.drive, write.value)
+            self._bus.turns.readdress(write.control.drive, write.value)
             # The panel must look for it there after a restart: it may run by then.
             self._settings.readdress(write.old_address, write.value)
             write.control.moved = True
@@ -189,7 +189,7 @@ class Writer:
 
     def _go_to(self, address):
         drive = self._write.control.drive
-        self._bus.readdress(drive, address)
+        self._bus.turns.readdress(drive, address)
         drive.hurry()
         self._stops = drive.stops
         self._telegrams = sum(drive.counters)
@@ -204,14 +204,14 @@ class Writer:
         elif not drive.silent and drive.answered_address == write.value:
             self._give_up_probe(texts.ADDRESS_TAKEN)
         elif telegrams >= _PROBES:
-            self._bus.readdress(drive, write.old_address)
+            self._bus.turns.readdress(drive, write.old_address)
             self._ask()
         elif drive.urgent == drive.served:
             drive.hurry()
 
     def _give_up_probe(self, row):
         drive = self._write.control.drive
-        self._bus.readdress(drive, self._write.old_address)
+        self._bus.turns.readdress(drive, self._write.old_address)
         drive.hurry()
         self._end(row)
 
@@ -226,7 +226,7 @@ class Writer:
         elif drive.silent >= self._silent + _SILENT_MAX:
             self._silent = drive.silent
             at_new = drive.address == write.value
-            self._bus.readdress(drive, write.old_address if at_new else write.value)
+            self._bus.turns.readdress(drive, write.old_address if at_new else write.value)
 
     def _look(self, now):
         write = self._write
@@ -234,7 +234,7 @@ class Writer:
         if not drive.silent and drive.answered_address == write.value:
             self._confirm()
         elif elapsed(now, self._since, self._mask) >= self._patience_us:
-            self._bus.readdress(drive, write.old_address)
+            self._bus.turns.readdress(drive, write.old_address)
             self._end(texts.NO_ANSWER)
 
 

@@ -36,7 +36,9 @@ _LONGEST_US = const(100_000_000)  # small enough to be multiplied
 class Care:
     """turns: the `Turns` that it belongs to. mask: the clock's period - 1.
 
-    looked_at: when `look` was called last; it is due after LOOK_US.
+    looked_at: when `look` was called last; it is due after LOOK_US. silence: what is known of
+    those that do not answer. The loop writes all fields of this class; of `Turns` it writes
+    `lists_between`, of `Silence` it counts `wait_us` down.
     """
 
     def __init__(self, turns, mask):
@@ -79,8 +81,14 @@ class Care:
 
     # --- what may be asked ----------------------------------------------------------------------
 
-    def supervise(self, drive, bound_us):
-        """Keep two telegrams to a drive that may run less than so far apart; 0: it never trips."""
+    def supervise(self, drive, off_time_ms):
+        """Keep two telegrams to a drive that may run less than a third of `off_time_ms` apart: the
+        time without telegrams after which it trips, P2014 of a MICROMASTER 4. 0, it never does,
+        counts as the time after which it is lost; so does a drive of which nobody has told.
+
+        Where its turns in the list are further apart it gets more, through `look`.
+        """
+        bound_us = off_time_ms * 1000 // 3
         if bound_us != self._bounds_us[drive.address]:
             self._bounds_us[drive.address] = bound_us
             self._sweep_us = _SWEEP_US  # it counts from the next looks on
@@ -89,9 +97,12 @@ class Care:
         return self._bounds_us[drive.address] or self._turns.lost_us // 3
 
     def gap_us(self, drive):
-        """See `Turns.gap_us`. Of those that run as the last sweep found them: to walk the drives
-        takes as long as a step of the loop may.
+        """The longest gap in microseconds between two telegrams to `drive`, and to every drive
+        that runs, that this line can promise once `drive` runs beside them; one exchange in it
+        that is not answered. A tenth of a second after a start it counts in.
         """
+        # Those that run as the last sweep found them: to walk the drives takes as long as a step
+        # of the loop may.
         running, running_us = self._hurried_count, self._hurried_us
         if not drive.may_run():
             running += 1
@@ -99,7 +110,10 @@ class Care:
         return self._with_silences(self._needed(running, running_us))
 
     def first_late(self, drive):
-        """See `Turns.first_late`."""
+        """Whom its telegrams would reach too late for `supervise` if `drive` ran beside those that
+        run now: `drive` or one of them. None: nobody. One that never trips, or of which nobody
+        has told when it does, is never late.
+        """
         gap_us = self.gap_us(drive)
         bounds_us = self._bounds_us  # of one that never trips 0: it is never late
         if 0 < bounds_us[drive.address] <= gap_us:
@@ -112,7 +126,9 @@ class Care:
         return None
 
     def silence_wait_us(self):
-        """See `Turns.silence_wait_us`."""
+        """How long to wait, in microseconds, before one more telegram that perhaps nobody answers:
+        until the share of the silent drives has room for it. It is theirs that it takes.
+        """
         if not self._has_room():
             return _LONGEST_US
         return max(self.silence.wait_us, 0)
@@ -167,7 +183,7 @@ class Care:
             self._press(now)
         elif following == 0 and (now - self._measured_at) & self._mask >= _MEASURE_US:
             self._measure(now)
-        elif following == 2 and self._turns.shared_us != silence.charged_us:
+        elif following == 2 and silence.shared_us != silence.charged_us:
             silence.settle()
         elif following == 2 and silence.resting and self._has_room():
             silence.give_turn()
@@ -309,15 +325,15 @@ class Care:
 
     def _measure(self, now):
         """How long exchanges take that are answered."""
-        turns = self._turns
+        turns, silence = self._turns, self.silence
         passed_us = (now - self._measured_at) & self._mask
-        silences = (turns.silences - self._silences) & 0xFFFF
+        silences = (silence.count - self._silences) & 0xFFFF
         count = ((turns.exchanges - self._exchanges) & 0xFFFF) - silences
-        passed_us -= (turns.silences_us - self._silences_us) & SPENT_MASK
+        passed_us -= (silence.spent_us - self._silences_us) & SPENT_MASK
         self._measured_at = now
         self._exchanges = turns.exchanges
-        self._silences = turns.silences
-        self._silences_us = turns.silences_us
+        self._silences = silence.count
+        self._silences_us = silence.spent_us
         # What waits for its cycle takes no longer for that.
         if _EXCHANGES_MIN <= count and 0 < passed_us < _MEASURED_MAX_US and not turns.cycle_us:
             longest_us = self._quickest_us + turns.timing.reply_timeout_us

@@ -11,7 +11,7 @@ allocates nothing, uses no float, and must not be entered twice at once (`hal.pa
 Not a clock and not a driver: the time is an argument, and the link is a duck type of `hal`.
 
     bus = Master(link, Timing(19200), clock.ticks_mask)
-    drive = bus.add(1)              # or bus.add(1, Layout(VARIABLE, 4))
+    drive = bus.turns.add(1)
     bus.refresh(now)                # from the main loop, or every motor is stopped after 300 ms
     wait_us = bus.poll(now)
 """
@@ -20,11 +20,9 @@ from micropython import const
 
 # From the bottom of the house up: an import inside an import inside an import takes stack.
 from uss import pkw, telegram
-from uss.drive import ANY
 from uss.care import LOOK_US
 from uss.fast import frame
 from uss.receiver import COMING, SILENT, WAITING, Receiver
-from uss.silence import SPENT_MASK
 from uss.timing import elapsed
 from uss.turns import Turns
 
@@ -53,17 +51,18 @@ _HELD_BY_OFF = const(2)
 _HELD_BY_CLOSE = const(4)
 
 
-class Master(Turns):
-    """The bus: its circulating list (`Turns`) and the exchanges with its drives.
+class Master:
+    """The bus: whose turn it is (`turns`), and the exchanges with its drives.
 
     link: what is sent on and received from. timing: `Timing` of its baud rate. mask: the clock's
     period - 1, at most 2**30 - 1. All figures of counters are unsigned 16-bit and wrap.
 
-    Fields to look at: `phase`; `exchanges` (telegrams sent); `progress`, which moves as long as
-    the engine gets anything done; `dead_man_trips`; `failures` (exceptions in `poll`); `foreign`
-    (heard from another master: bursts before the first telegram, telegrams after it); `paused`
-    (nothing is sent and nothing awaited, by order of `pause`). `patience_us` is how long
-    `progress` may stand still on a bus that works.
+    Fields to look at: `phase`; `turns`, the drives and the circulating list; `care`, what they
+    are promised; `progress`, which moves as long as the engine gets anything done;
+    `dead_man_trips`; `failures` (exceptions in `poll`); `foreign` (heard from another master:
+    bursts before the first telegram, telegrams after it); `paused` (nothing is sent and nothing
+    awaited, by order of `pause`). A setting, at any time: `retries`, how often an exchange without
+    a valid reply is repeated at once.
     """
 
     def __init__(self, link, timing, mask, lost_us=LOST_US):
@@ -72,15 +71,19 @@ class Master(Turns):
         self._refreshed_at = 0
         self._dead_man = True  # tripped until the loop refreshes for the first time
         self.phase = LISTENING
-        Turns.__init__(self, timing, mask, lost_us)
+        self.turns = turns = Turns(timing, mask, lost_us, self.is_under_way)
+        self.care = turns.care
+        self.timing = timing
         self.progress = 0
-        self.patience_us = _BABBLE_US + _STUCK_US
         self.dead_man_trips = 0
         self.failures = 0
         self.foreign = 0
-        self._shared = False  # with another master, lately
-        self._foreign_at = 0  # `exchanges` then
+        self.retries = 0
         self.paused = False
+        self._mask = mask
+        self._choose = turns.choose  # a method that is found once is not looked for in every turn
+        self._shared = False  # with another master, lately
+        self._foreign_at = 0  # exchanges then
         self._link = link
         self._receiver = Receiver(timing, mask)
         self._foreseen = link.interrupts and getattr(link, "foreseen", False)
@@ -106,18 +109,19 @@ class Master(Turns):
         """
         self._refreshed_at = now
         self._dead_man = False
-        if looks and (now - self._care.looked_at) & self._mask >= LOOK_US:
-            self._care.look(now)
-            if self._shared and (self.exchanges - self._foreign_at) & 0xFFFF >= _SHARED_EXCHANGES:
-                self._shared = False
+        if looks and (now - self.care.looked_at) & self._mask >= LOOK_US:
+            self.care.look(now)
+            if self._shared:
+                exchanges = self.turns.exchanges - self._foreign_at
+                self._shared = exchanges & 0xFFFF < _SHARED_EXCHANGES
 
     def is_under_way(self, drive):
         """Whether an exchange with this drive has begun and not ended."""
         return self._drive is drive and self.phase in (SENDING, AWAITING)
 
-    def _set_list(self, entries):
-        Turns._set_list(self, entries)
-        self.patience_us = _BABBLE_US + _STUCK_US + self.longest_exchange_us()
+    def patience_us(self):
+        """How long `progress` may stand still on a bus that works."""
+        return _BABBLE_US + _STUCK_US + self.turns.longest_exchange_us
 
     def is_line_in_use(self):
         """Whether another master was heard and is listened to instead of talking."""
@@ -132,6 +136,11 @@ class Master(Turns):
     def has_echo(self):
         """Whether what is sent comes back: two wires, and a receiver that stays on."""
         return self._receiver.echo
+
+    def stop_all(self):
+        """OFF1 to every drive by a telegram each; those that run have theirs first."""
+        for drive in self.turns.drives:
+            drive.stop()
 
     def off(self):
         """Leave the line to others: OFF1 to every drive first, then nothing is sent until `on`.
@@ -193,7 +202,7 @@ class Master(Turns):
         """
         self.failures = (self.failures + 1) & 0xFFFF
         self._failures_in_row += 1
-        for drive in self.drives:
+        for drive in self.turns.drives:
             drive.revoke()
             if self._failures_in_row >= _FAILURES_MAX:
                 drive.lose()
@@ -215,7 +224,7 @@ class Master(Turns):
                 return
             self._dead_man = True
             self.dead_man_trips = (self.dead_man_trips + 1) & 0xFFFF
-        for drive in self.drives:
+        for drive in self.turns.drives:
             drive.revoke()
 
     def _get_on(self):
@@ -269,8 +278,7 @@ class Master(Turns):
         self._get_on()
         self._begin_rest(now)
         self._quiet_since = (now - self._rest_us) & self._mask  # at the latest
-        left_us, self._round_left_us = self._round_left_us, 0
-        return min(left_us, PAUSE_LOOK_US) or PAUSE_LOOK_US
+        return min(self.turns.wait_us(), PAUSE_LOOK_US) or PAUSE_LOOK_US
 
     def _hold(self, now):
         """By order of close, off or pause: how long nothing is sent, 0 when something is."""
@@ -278,12 +286,12 @@ class Master(Turns):
             self.phase = CLOSED
             return DEAD_MAN_US
         if self._held & _HELD_BY_OFF:
-            for drive in self.drives:
+            for drive in self.turns.drives:
                 if drive.wanted:
                     drive.revoke()  # started since `off`
-            if not self._all_told():
+            if not self.turns.all_told():
                 return 0
-            for drive in self.drives:
+            for drive in self.turns.drives:
                 drive.lose()
             self.phase = OFF
             return DEAD_MAN_US
@@ -296,7 +304,7 @@ class Master(Turns):
         elif elapsed(now, self._paused_since, self._mask) >= _PAUSE_US:
             self.resume()
             return False
-        self.paused = not self._has_command()
+        self.paused = not self.turns.has_command()
         self._get_on()
         self._begin_rest(now)
         return self.paused
@@ -325,7 +333,7 @@ class Master(Turns):
 
     def _count_foreign(self):
         self.foreign = (self.foreign + 1) & 0xFFFF
-        self._foreign_at = self.exchanges
+        self._foreign_at = self.turns.exchanges
         self._shared = self.phase != LISTENING
 
     def _send(self, drive, now):
@@ -337,7 +345,6 @@ class Master(Turns):
             frame(request, size, drive.address)
             drive.sealed = True
         link = self._link
-        self.exchanges = (self.exchanges + 1) & 0xFFFF
         if not self._foreseen:
             self.phase = SENDING
             self._sending_since = now
@@ -371,7 +378,7 @@ class Master(Turns):
 
     def _give_up(self, now):
         """The link does not get rid of a telegram. Try again; this is no progress."""
-        self._drive.miss(SILENT, now, self.lost_us, self._mask)
+        self._drive.miss(SILENT, now, self.turns.lost_us, self._mask)
         self._begin_rest(now)
         self._quiet_since = now
         self._resting_since = (now - _BABBLE_US) & self._mask
@@ -401,24 +408,14 @@ class Master(Turns):
     def _miss(self, finding, now):
         """There was no valid reply: it is counted, and the exchange repeated if it is to be."""
         drive = self._drive
-        drive.miss(finding, now, self.lost_us, self._mask)
+        drive.miss(finding, now, self.turns.lost_us, self._mask)
         if finding == telegram.BAD_ADDRESS:
             self._count_foreign()
         if drive.outside or not drive.contact:
-            self._count_silence(drive, now)
+            spent_us = elapsed(now, self._receiver.sent_at, self._mask)
+            spent_us += self._start_interval_us + drive.size * self._character_us
+            self.care.silence.charge(drive, spent_us)
         if drive.silent <= self.retries:
             if drive.outside:
                 drive.state = pkw.PENDING  # it is not over yet
-            elif drive not in self.drives:
-                return  # it was removed meanwhile
-            self._again = drive
-            self._attention[ANY] = 1
-
-    def _count_silence(self, drive, now):
-        """It answered nothing, and costs the others so much of the line's time."""
-        spent_us = elapsed(now, self._receiver.sent_at, self._mask)
-        spent_us += self._start_interval_us + drive.size * self._character_us
-        self.silences = (self.silences + 1) & 0xFFFF
-        self.silences_us = (self.silences_us + spent_us) & SPENT_MASK
-        if drive.outside or not drive.was_running:
-            self.shared_us = (self.shared_us + spent_us) & SPENT_MASK
+            self.turns.repeat(drive)

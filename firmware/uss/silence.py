@@ -18,18 +18,25 @@ from uss.fast import greatest
 SHARE = const(5)  # one part in so many
 _ROUND_US = const(700_000)  # few silent ones are asked no oftener than once in this: it will do
 _OWED_MAX = const(2)  # silences; a STOP to many at once is not made up for by asking nobody
-SPENT_MASK = const(0x3FFFFFFF)  # of the sum that `Turns` keeps
+SPENT_MASK = const(0x3FFFFFFF)  # of sums of microseconds
 
 
 class Silence:
     """turns: the `Turns` that it belongs to.
 
-    rests: by address, whether a drive rests. resting: how many do. wait_us: until the share has
-    room for one more silence, counted down by `Care`; below 0 it has had for so long. charged_us:
-    of `Turns.shared_us`.
+    Telegrams to drives without contact, and outside the list, that brought no valid reply:
+    `count`, 16 bit; `spent_us`, what they took; `shared_us`, what they took but for drives that
+    may run, whose turns are not the others'. The engine writes these three, in `charge`.
+
+    `rests`: by address, whether a drive rests. `resting`: how many do. `wait_us`: until the share
+    has room for one more silence; `Care` counts it down, below 0 it has had room for so long.
+    `charged_us`: of `shared_us`. The loop writes these, and all else.
     """
 
     def __init__(self, turns):
+        self.count = 0
+        self.spent_us = 0
+        self.shared_us = 0
         self.rests = bytearray(NODES)
         self.resting = 0
         self.wait_us = 0
@@ -40,18 +47,21 @@ class Silence:
         self._is_asked = False  # and has not had it
         self._witness = None  # a drive for whose sake others rest
 
+    def charge(self, drive, spent_us):
+        """From the engine: it answered nothing, and cost the others so much of the line's time."""
+        self.count = (self.count + 1) & 0xFFFF
+        self.spent_us = (self.spent_us + spent_us) & SPENT_MASK
+        if drive.outside or not drive.was_running:
+            self.shared_us = (self.shared_us + spent_us) & SPENT_MASK
+
     def list_changed(self):
-        turns = self._turns
-        timing = turns.timing
+        timing = self._turns.timing
         longest_us = 0
-        for drive in turns.drives:
+        for drive in self._turns.drives:
             longest_us = max(longest_us, timing.telegram_us(drive.layout.net_count))
         longest_us += timing.start_interval_us + timing.reply_timeout_us + timing.character_us
         self.silent_exchange_us = longest_us
         self._witness = None
-        turns.round_count = 0  # nobody has a turn until it is filled
-        turns.round = list(turns.list)
-        self._fill_round()
 
     def forget(self, drive):
         """It is not on the bus any more."""
@@ -66,7 +76,7 @@ class Silence:
 
     def settle(self):
         """Time was spent in vain."""
-        shared_us = self._turns.shared_us
+        shared_us = self.shared_us
         spent_us = (shared_us - self.charged_us) & SPENT_MASK
         self.charged_us = shared_us
         if not self._is_anyone_there():
@@ -86,10 +96,11 @@ class Silence:
             rests = self.rests[drive.address] or drive.silent or self.wait_us > 0
             rests = 1 if rests and self._is_anyone_there() else 0
         if rests != self.rests[drive.address]:
+            self._set(drive.address, rests)
             if rests:
-                self._leave_round(drive)
+                self._turns.leave_round(drive)
             else:
-                self._join_round(drive)
+                self._turns.join_round(drive)
 
     def give_turn(self):
         """One that rests has a turn, if none of them has."""
@@ -122,45 +133,3 @@ class Silence:
     def _set(self, address, rests):
         self.rests[address] = rests
         self.resting += 1 if rests else -1
-
-    # Where the round goes on moves with the round, or the next drive would have no turn: that of
-    # a drive behind one that answers every second telegram would never come. An interrupt that
-    # takes a turn between the two steps asks one drive twice, and leaves none out.
-
-    def _leave_round(self, drive):
-        turns = self._turns
-        drives = turns.round
-        places = 0  # of this drive, among those that have had their turn
-        for place in range(min(turns.following, turns.round_count)):
-            if drives[place] is drive:
-                places += 1
-        turns.following = max(turns.following - places, 0)
-        self._set(drive.address, 1)
-        self._fill_round()
-
-    def _join_round(self, drive):
-        self._set(drive.address, 0)
-        self._fill_round()
-        turns = self._turns
-        drives = turns.round
-        passed = min(turns.following, turns.round_count)
-        place = 0
-        while place < passed:
-            if drives[place] is drive:
-                turns.following += 1
-                passed = min(passed + 1, turns.round_count)
-            place += 1
-
-    def _fill_round(self):
-        """The list without those that rest. In place: it takes no heap, and an interrupt that
-        walks it meanwhile finds a drive everywhere, the one before or the one after.
-        """
-        turns = self._turns
-        rests = self.rests
-        drives = turns.round
-        count = 0
-        for drive in turns.list:
-            if not rests[drive.address]:
-                drives[count] = drive
-                count += 1
-        turns.round_count = count

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: MIT
 """Telegrams outside the circulating list: mirror, broadcast, special (specification A-4.3, A-5.3).
 
-Each is built once, handed to `Master.post`, sent in between as soon as there is room, and tells
+Each is built once, handed to `Turns.post`, sent in between as soon as there is room, and tells
 what became of it: NEW, PENDING, DONE or TIMED_OUT, the states of a parameter job. None of them
 starts a motor: a mirror is not acted on, a broadcast with a start bit is refused, and special
 telegrams mean nothing to a drive.
 
     probe = single.Mirror(5)
-    bus.post(probe)                     # ... later:
+    bus.turns.post(probe)                     # ... later:
     probe.state == single.DONE          # node 5 is there
 
     single.stop_all(bus)                # OFF1 to all at once, where all of them take broadcasts
@@ -198,7 +198,7 @@ def stop_all(bus):
     the same PZD words; each is sent its own OFF1 even so.
     """
     bus.stop_all()
-    layouts = [drive.layout for drive in bus.drives]
+    layouts = [drive.layout for drive in bus.turns.drives]
     for layout in layouts:
         if not layout.takes_broadcast() or layout.pzd_words != layouts[0].pzd_words:
             raise ValueError("%r beside %r: no common broadcast" % (layout, layouts[0]))
@@ -207,6 +207,6 @@ def stop_all(bus):
         broadcast = Broadcast(words, {1: pzd.STW_RUN})
         broadcast.ahead = True
         try:
-            bus.post(broadcast)
+            bus.turns.post(broadcast)
         except RuntimeError:
             pass  # one like it is about to be sent

@@ -14,12 +14,16 @@ asked twice as often. Before it goes, in this order,
 A drive that stays silent is counted and shown, and never taken off the list. Which of them rest is
 the subject of `silence`, whose turns are too far apart that of `care`. Sends nothing: `master`
 does.
+
+    turns = Turns(Timing(19200), mask, 1_000_000, is_under_way)
+    drive = turns.add(1)            # loop: or turns.add(1, Layout(VARIABLE, 4))
+    turns.choose(now)               # engine: that drive, or None when nobody is to be asked now
 """
 
 from micropython import const
 
 from uss import pkw, telegram
-from uss.drive import ANY, ATTENTION, COMMANDS, COUNTERS, NODES, OVERDUE, WANTS, Drive
+from uss.drive import ANY, ATTENTION, COMMANDS, NODES, OVERDUE, WANTS, Drive
 from uss.care import Care
 from uss.fast import calling, greatest
 from uss.layout import STANDARD
@@ -36,26 +40,38 @@ _FORGOTTEN_MAX = const(4)  # drives in one look that want no turn any more
 
 
 class Turns:
-    """timing: `Timing` of the line. mask: the clock's period - 1.
+    """timing: `Timing` of the line. mask: the clock's period - 1. lost_us: without a valid reply
+    for so long, contact with a drive is lost. is_under_way: function drive -> whether an exchange
+    with it has begun and not ended.
 
-    Settings, at any time: `cycle_us`, a round of the list begins so long after the one before, 0
-    for at once; `retries`, how often an exchange without a valid reply is repeated at once.
-    `drives`, each once, in the order added; `list`, the circulating list: see `arrange`.
+    Fields to look at: `drives`, each once, in the order added; `list`, the circulating list, see
+    `arrange`; `exchanges`, how often there was a turn, 16 bit; `care`, which looks after those
+    that have too few. A setting, at any time: `cycle_us`, a round of the list begins so long after
+    the one before, 0 for at once.
+
+    Written by the loop: the list and the round with all that follows from them, _singles_in. By
+    `care`: lists_between. By the engine: all else. By both: following (the loop when it changes
+    the round or the list); _ahead and _again (the loop puts one in, or takes out the drive that
+    is removed); the attention (each of its rows is set by whoever calls, cleared by the engine).
     """
 
-    def __init__(self, timing, mask, lost_us):
+    def __init__(self, timing, mask, lost_us, is_under_way):
+        # What every exchange asks for comes first, as in `Master`.
+        self._attention = bytearray(ATTENTION)
+        self.following = _LIST_MAX  # place in the round of the next; behind its end one begins
+        self.round_count = 0  # so many of these are in the round,
+        self.round = []  # the list without those that rest
+        self.exchanges = 0
+        self.cycle_us = 0
         self.drives = []
         self.list = []
         self.by_address = [None] * NODES  # the same drives
         self.timing = timing
-        self.lost_us = lost_us  # without a valid reply for so long, contact with a drive is lost
-        self.cycle_us = 0
-        self.retries = 0
+        self.lost_us = lost_us
+        self.is_under_way = is_under_way
+        self.longest_exchange_us = 0  # when the reply comes, and ends, at the last moment
+        self.lists_between = 1  # from one telegram that is extra to the next, so many of the list
         self._mask = mask
-        self._attention = bytearray(ATTENTION)
-        self.round = []  # the list without those that rest, which the engine walks:
-        self.round_count = 0  # so many of these
-        self.following = _LIST_MAX  # place in it of the next one; behind its end a round begins
         self._round_began_at = None
         self._round_left_us = 0  # of the cycle time, when the round was over before it
         self._again = None  # whose exchange is to be repeated
@@ -65,16 +81,10 @@ class Turns:
         self._singles_out = 0
         self._single_last = False  # of both, a telegram outside the list had the last such turn
         self._overdue = 0  # turns in a row that overdue drives had; below 0: that they have first
-        self.lists_between = 1  # from one telegram that is extra to the next, so many of the list
         self._lists_left = 0
         self._look_from = 0  # behind which address the search for one with a hurry begins,
         self._overdue_from = 0  # and for one that is overdue
-        self.exchanges = 0  # telegrams sent
-        # Telegrams to drives without contact, and outside the list, that brought no valid reply:
-        self.silences = 0  # how many, 16 bit
-        self.silences_us = 0  # what they took; wraps
-        self.shared_us = 0  # and that without drives that may run, whose turns are not the others'
-        self._care = Care(self, mask)
+        self.care = Care(self, mask)
 
     # --- for the loop ---------------------------------------------------------------------------
 
@@ -109,7 +119,7 @@ class Turns:
             raise ValueError("drive %d is not on this bus" % drive.address)
         if drive.may_run():
             raise ValueError("drive %d may be running" % drive.address)
-        self._care.forget(drive)
+        self.care.forget(drive)
         self.drives = [other for other in self.drives if other is not drive]
         self._set_list([entry for entry in self.list if entry is not drive])
         self.by_address[drive.address] = None
@@ -148,42 +158,9 @@ class Turns:
             raise ValueError("address %d is taken" % address)
         self.by_address[address] = drive
         drive.move(address)
-        self._care.readdressed(old, address)
+        self.care.readdressed(old, address)
         self._attention[old] = 0
         self.by_address[old] = None
-
-    def supervise(self, drive, off_time_ms):
-        """Keep two telegrams to a drive that may run less than a third of `off_time_ms` apart: the
-        time without telegrams after which it trips, P2014 of a MICROMASTER 4. 0, it never does,
-        counts as the time after which it is lost; so does a drive of which nobody has told.
-
-        Where its turns in the list are further apart it gets more, through `refresh`.
-        """
-        self._care.supervise(drive, off_time_ms * 1000 // 3)
-
-    def gap_us(self, drive):
-        """The longest gap in microseconds between two telegrams to `drive`, and to every drive
-        that runs, that this line can promise once `drive` runs beside them; one exchange in it
-        that is not answered. A tenth of a second after a start it counts in.
-        """
-        return self._care.gap_us(drive)
-
-    def first_late(self, drive):
-        """Whom its telegrams would reach too late for `supervise` if `drive` ran beside those that
-        run now: `drive` or one of them. None: nobody. One that never trips, or of which nobody
-        has told when it does, is never late.
-        """
-        return self._care.first_late(drive)
-
-    def silence_wait_us(self):
-        """How long to wait, in microseconds, before one more telegram that perhaps nobody answers:
-        until the share of the silent drives has room for it. It is theirs that it takes.
-        """
-        return self._care.silence_wait_us()
-
-    def _set_list(self, entries):
-        self.list = entries
-        self._care.list_changed()
 
     def post(self, telegram_outside):
         """Send a telegram outside the list once (see `single`): at the next but one telegram at
@@ -206,21 +183,6 @@ class Turns:
             self._singles_in = following
         self._attention[ANY] = 1
 
-    def longest_exchange_us(self):
-        """How long an exchange takes when the reply comes, and ends, at the last moment."""
-        longest_us = 0
-        for drive in self.drives:
-            layout = drive.layout
-            reply_count = telegram.NET_COUNT_MAX if layout.variable else layout.net_max
-            longest_us = max(longest_us, self._longest_us(layout.net_max, reply_count))
-        return longest_us
-
-    def _longest_us(self, request_count, reply_count):
-        timing = self.timing
-        request_us = timing.start_interval_us + timing.telegram_us(request_count)
-        reply_us = timing.character_us + timing.residual_us(reply_count)
-        return request_us + timing.reply_timeout_us + reply_us
-
     def longest_cycle_us(self):
         """How long a round of the list takes when every drive is silent till the last moment."""
         cycle_us = 0
@@ -228,44 +190,107 @@ class Turns:
             cycle_us += self._longest_us(drive.layout.net_max, drive.layout.net_max)
         return cycle_us
 
-    def stop_all(self):
-        """OFF1 to every drive by a telegram each; the engine takes those that run first."""
-        for drive in self.drives:
-            drive.stop()
+    def _longest_us(self, request_count, reply_count):
+        timing = self.timing
+        request_us = timing.start_interval_us + timing.telegram_us(request_count)
+        reply_us = timing.character_us + timing.residual_us(reply_count)
+        return request_us + timing.reply_timeout_us + reply_us
 
-    def counters(self):
-        """The counters of all drives together, as named in `drive.COUNTERS`."""
-        sums = [0] * len(COUNTERS)
+    def _set_list(self, entries):
+        self.list = entries
+        longest_us = 0
         for drive in self.drives:
-            for index in range(len(sums)):
-                sums[index] += drive.counters[index]
-        return sums
+            layout = drive.layout
+            reply_count = telegram.NET_COUNT_MAX if layout.variable else layout.net_max
+            longest_us = max(longest_us, self._longest_us(layout.net_max, reply_count))
+        self.longest_exchange_us = longest_us
+        self.care.list_changed()
+        self.round_count = 0  # nobody has a turn until it is filled
+        self.round = list(entries)
+        self._fill_round()
 
-    def status(self):
-        """The error status word of the bus: what is wrong with any of its drives."""
-        status = 0
-        for drive in self.drives:
-            status |= drive.status
-        return status
+    # --- for `silence`, from the loop -----------------------------------------------------------
+
+    # Where the round goes on moves with the round, or the next drive would have no turn: that of
+    # a drive behind one that answers every second telegram would never come. An interrupt that
+    # takes a turn between the two steps asks one drive twice, and leaves none out.
+
+    def leave_round(self, drive):
+        """It rests from now on."""
+        drives = self.round
+        places = 0  # of this drive, among those that have had their turn
+        for place in range(min(self.following, self.round_count)):
+            if drives[place] is drive:
+                places += 1
+        self.following = max(self.following - places, 0)
+        self._fill_round()
+
+    def join_round(self, drive):
+        """It does not rest any more."""
+        self._fill_round()
+        drives = self.round
+        passed = min(self.following, self.round_count)
+        place = 0
+        while place < passed:
+            if drives[place] is drive:
+                self.following += 1
+                passed = min(passed + 1, self.round_count)
+            place += 1
+
+    def _fill_round(self):
+        """The list without those that rest. In place: it takes no heap, and an interrupt that
+        walks it meanwhile finds a drive everywhere, the one before or the one after.
+        """
+        rests = self.care.silence.rests
+        drives = self.round
+        count = 0
+        for drive in self.list:
+            if not rests[drive.address]:
+                drives[count] = drive
+                count += 1
+        self.round_count = count
 
     # --- for the engine: allocates nothing ------------------------------------------------------
 
-    def _choose(self, now):
+    def choose(self, now):
         """The next drive: a command that matters goes before the list, a stop before a start.
 
-        None when nobody is to be asked now.
+        None when nobody is to be asked now; `wait_us` tells for how long.
         """
-        if self._attention[ANY]:
-            drive = self._most_urgent()
-            if drive is not None:
-                return drive
-        position = self.following
-        if position >= self.round_count:
-            if not self.round_count or self.cycle_us and not self._begin_round(now):
-                return None
-            position = 0
-        self.following = position + 1
-        return self.round[position]
+        drive = self._most_urgent() if self._attention[ANY] else None
+        if drive is None:
+            position = self.following
+            if position >= self.round_count:
+                if not self.round_count or self.cycle_us and not self._begin_round(now):
+                    return None
+                position = 0
+            self.following = position + 1
+            drive = self.round[position]
+        self.exchanges = (self.exchanges + 1) & 0xFFFF
+        return drive
+
+    def wait_us(self):
+        """`choose` has found nobody: what is left of the cycle time; 0: the list is empty."""
+        left_us, self._round_left_us = self._round_left_us, 0
+        return left_us
+
+    def repeat(self, drive):
+        """There was no valid reply: once more, unless the drive was removed meanwhile."""
+        if drive.outside or drive in self.drives:
+            self._again = drive
+            self._attention[ANY] = 1
+
+    def has_command(self):
+        """Whether somebody has to be told something that does not wait for its turn."""
+        return self._ahead is not None or greatest(self._attention, COMMANDS, NODES, 0) >= 0
+
+    def all_told(self):
+        """Whether every drive has answered its OFF1, or has been sent it often enough."""
+        for drive in self.drives:
+            insists = drive.insist and (drive.contact or drive.was_running)
+            if insists or drive.urgency() > 1:
+                return False
+        return self._ahead is None
 
     def _begin_round(self, now):
         """At the end of the list: whether the cycle time is over and it may begin anew."""
@@ -370,14 +395,3 @@ class Turns:
         self._singles_out = (place + 1) % len(self._singles)
         self._attention[ANY] = 1
         return telegram_outside
-
-    def _has_command(self):
-        return self._ahead is not None or greatest(self._attention, COMMANDS, NODES, 0) >= 0
-
-    def _all_told(self):
-        """Whether every drive has answered its OFF1, or has been sent it often enough."""
-        for drive in self.drives:
-            insists = drive.insist and (drive.contact or drive.was_running)
-            if insists or drive.urgency() > 1:
-                return False
-        return self._ahead is None

@@ -17,7 +17,7 @@ def mixed(baud, layouts, ms):
     link = board.make_link(baud)
     bus = Master(link, Timing(baud), board.clock.ticks_mask)
     for address, pkw_words, pzd_words in layouts:
-        bus.add(address, Layout(pkw_words, pzd_words))
+        bus.turns.add(address, Layout(pkw_words, pzd_words))
     pacer = Pacer(bus, link, board.clock, board.timer)
     bus.refresh(time.ticks_us())
     pacer.start()
@@ -31,5 +31,6 @@ def mixed(baud, layouts, ms):
                 bus.close()
     finally:
         pacer.stop()
-    silent = [drive.address for drive in bus.drives if not drive.contact]
-    print(json.dumps({"silent": silent, "counters": bus.counters()}))
+    silent = [drive.address for drive in bus.turns.drives if not drive.contact]
+    counters = [sum(row) for row in zip(*[drive.counters for drive in bus.turns.drives])]
+    print(json.dumps({"silent": silent, "counters": counters}))

@@ -55,7 +55,7 @@ def steps(phase_ms, phases, collect_ms, tasks=False):
     collections = array("I")
     board.idle = idle
     app = main.start(board)
-    asking = Tasks(app.bus.drives if tasks else ())
+    asking = Tasks(app.bus.turns.drives if tasks else ())
     gc.collect()
     try:
         began = collected = ticks_ms()
@@ -91,13 +91,13 @@ def memory(exchanges, settled_ms):
         step_for(app, settled_ms)
         gc.collect()
         gc.disable()
-        first = app.bus.exchanges
+        first = app.bus.turns.exchanges
         before = gc.mem_alloc()
-        while (app.bus.exchanges - first) & 0xFFFF < exchanges:
+        while (app.bus.turns.exchanges - first) & 0xFFFF < exchanges:
             app.step()
         taken = gc.mem_alloc() - before
         gc.enable()
-        made = (app.bus.exchanges - first) & 0xFFFF
+        made = (app.bus.turns.exchanges - first) & 0xFFFF
         runs = app.panel.any_runs()
     finally:
         app.close()

@@ -68,7 +68,7 @@ class Fuzz:
         self.line = Line(self.timing, dice.below(MASK))
         self.master = Master(self.line, self.timing, MASK)
         for address in range(1 + dice.below(3)):
-            self.master.add(address, Layout(*dice.one_of(LAYOUTS)))
+            self.master.turns.add(address, Layout(*dice.one_of(LAYOUTS)))
         self.fed = 0
         self.good = 0
         self._due_us = 1  # until the engine wants to be called again
@@ -115,7 +115,7 @@ class Fuzz:
         return passed_us + 3 * self.timing.character_us < self.timing.reply_timeout_us
 
     def drive_at(self, address):
-        for drive in self.master.drives:
+        for drive in self.master.turns.drives:
             if drive.address == address:
                 return drive
 

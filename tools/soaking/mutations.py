@@ -230,7 +230,7 @@ MUTATIONS = (
         "watchdog fed always",
         "a bus that stands is not restarted",
         ("WATCHDOG",), 15,
-        ("app.py", "if stands_ms * 1000 < self.bus.patience_us:", "if stands_ms >= 0:"),
+        ("app.py", "if stands_ms * 1000 < self.bus.patience_us():", "if stands_ms >= 0:"),
     ),
     Mutation(
         "watchdog starved",
@@ -372,7 +372,7 @@ MUTATIONS = (
         (
             "panel/writer.py",
             "        drive = write.control.drive\n        if drive.channel.is_full():",
-            "        drive = self._bus.drives[0]\n        if drive.channel.is_full():",
+            "        drive = self._bus.turns.drives[0]\n        if drive.channel.is_full():",
         ),
     ),
     Mutation(
@@ -396,11 +396,11 @@ MUTATIONS = (
         "a drive behind one that answers now and then is never asked",
         ("NEGLECTED",), 23,
         (
-            "uss/silence.py",
-            "        turns.following = max(turns.following - places, 0)\n",
+            "uss/turns.py",
+            "        self.following = max(self.following - places, 0)\n",
             "",
         ),
-        ("uss/silence.py", "                turns.following += 1\n", "                pass\n"),
+        ("uss/turns.py", "                self.following += 1\n", "                pass\n"),
     ),
     Mutation(
         "a running drive backs off",
@@ -585,7 +585,7 @@ MUTATIONS = (
         "one drive that may run and is silent takes the turns of those that rest",
         ("NEGLECTED",), 98,
         (
-            "uss/master.py",
+            "uss/silence.py",
             "        if drive.outside or not drive.was_running:\n"
             "            self.shared_us = (self.shared_us + spent_us) & SPENT_MASK\n",
             "        self.shared_us = (self.shared_us + spent_us) & SPENT_MASK\n",

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
 """The bus for a program of one's own: drives that run, stop, are read and written, in a few words.
 
-In front of the engine (`master`, `drive`), all of whose fields and methods are found here as well:
-floats, calls that wait, and exceptions that say in plain words why something was not done. It
-takes heap, so nothing of it belongs into an interrupt. The panel does not import it.
+In front of the engine (`master`, `drive`): floats, calls that wait, and exceptions that say in
+plain words why something was not done. What only few programs need is found behind `bus.engine`
+and `drive.engine`. It takes heap, so nothing of it belongs into an interrupt. The panel does not
+import it.
 
     with Master(link, baud=19200) as bus:       # a link of `hal`; leaving it stops every drive
         drive = bus.add(3, MM440)               # a family of `families`
@@ -21,6 +22,7 @@ from uss.bus.errors import FallsSilent, NoContact, NotStarted, Refused, TimedOut
 from uss.families.rows import ACTUAL, STATUS
 from uss.layout import Layout
 from uss.bus.particulars import Particulars
+from uss.drive import COUNTERS
 from uss.scaling import Scale, run_words, with_direction
 from uss.timing import Timing, elapsed
 
@@ -54,9 +56,8 @@ TROUBLES = (
 class Drive:
     """One drive, made by `Master.add`. Speeds have a sign: negative turns left.
 
-    What waits lets the bus go on, and raises NoContact when the drive does not answer. Whatever is
-    not found here is that of `engine`, the `drive.Drive` behind it: stop, acknowledge, ask,
-    control, put, word, contact, counters ...
+    What waits lets the bus go on, and raises NoContact when the drive does not answer. `engine` is
+    the `drive.Drive` behind it.
     """
 
     def __init__(self, bus, engine, family, scale, unsupervised):
@@ -69,11 +70,6 @@ class Drive:
             engine.tell_speed(0)
         self._off_time_ms = 0  # as the bus was told last
         self._kinds = {}  # of double words, number -> (contacts, kind), as the drive tells them
-
-    def __getattr__(self, name):
-        if name in ("start", "turn"):  # they check nothing
-            raise AttributeError("%s: say run(), or drive.engine.%s()" % (name, name))
-        return getattr(self.engine, name)
 
     # --- to run and to stop ---------------------------------------------------------------------
 
@@ -116,13 +112,39 @@ class Drive:
         """As jog_right, the other way."""
         self._jog(self.family.jog_left)
 
+    def stop(self, off=pzd.OFF1):
+        """Ramp down to a stop, which holds until run() or a jog.
+
+        It waits for nothing: it goes ahead of everything, and again until the drive answers. off:
+        OFF1, OFF2 or OFF3 of `pzd`, ValueError else.
+        """
+        self.engine.stop(off)
+
     def off2(self):
-        """Coast to a stop. It is sent at once, as `stop` is, and waits for nothing."""
-        self.engine.stop(pzd.OFF2)
+        """Coast to a stop; otherwise likewise."""
+        self.stop(pzd.OFF2)
 
     def off3(self):
-        """Stop as fast as the drive can; likewise."""
-        self.engine.stop(pzd.OFF3)
+        """Stop as fast as the drive can; otherwise likewise."""
+        self.stop(pzd.OFF3)
+
+    def acknowledge(self):
+        """Acknowledge a fault, while it does not run. Waits for nothing."""
+        self.engine.acknowledge()
+
+    def control(self, bits, on):
+        """Have these bits of STW 1, or 0, in every telegram, also while it runs.
+
+        bits: any of 3...6, which are 1 otherwise, and 13...15, which are 0. ValueError: others.
+        """
+        self.engine.control(bits, on)
+
+    def put(self, place, word):
+        """Send `word`, 0...FFFFh, as PZD word `place`, 3...16, from the next telegram on.
+
+        ValueError: no such word, or not in its layout.
+        """
+        self.engine.put(place, word)
 
     def supervise(self, seconds):
         """Have the drive trip when it hears nothing for so long, 0: never; kept in its RAM.
@@ -150,6 +172,36 @@ class Drive:
     # --- what it does ---------------------------------------------------------------------------
 
     @property
+    def address(self):
+        """0...31; `Master.readdress` changes it."""
+        return self.engine.address
+
+    @property
+    def layout(self):
+        """The `Layout` of its telegrams."""
+        return self.engine.layout
+
+    @property
+    def counters(self):
+        """A 16-bit figure for each name in `drive.COUNTERS`."""
+        return self.engine.counters
+
+    @property
+    def status(self):
+        """The error status word: what went wrong since the last valid reply, 0 after one."""
+        return self.engine.status
+
+    @property
+    def silent(self):
+        """Telegrams without a valid reply in a row."""
+        return self.engine.silent
+
+    @property
+    def trouble(self):
+        """Which of `receiver.TROUBLES` that mostly was."""
+        return self.engine.trouble
+
+    @property
     def contact(self):
         """Whether it answers, and this bus still asks it."""
         return self.engine.contact and not self._why_not_asked()
@@ -175,6 +227,10 @@ class Drive:
         if self.contact:
             return STATES[pzd.state(self.engine.zsw)]
         return MAY_RUN if self.engine.may_run() else NO_CONTACT
+
+    def is_on(self):
+        """Whether it is told to run, and the bus has not taken that back."""
+        return self.engine.is_on()
 
     @property
     def is_running(self):
@@ -263,7 +319,7 @@ class Drive:
         return self._value(self.do(self.addressed(job)), kind)
 
     def do(self, job):
-        """Carry out any job of `pkw`, wait for its end and answer it; `ask` does not wait.
+        """Carry out any job of `pkw`, wait for its end and answer it.
 
         Refused; TimedOut, and as one FallsSilent; UssError when the drive's telegrams have no PKW
         words.
@@ -271,6 +327,13 @@ class Drive:
         self.carry_out(job)
         self.raise_unless_done(job)
         return job
+
+    def ask(self, job):
+        """Queue a job of `pkw` and do not wait: its state tells when it is no longer PENDING.
+
+        RuntimeError when 8 wait already, it is pending, or the drive has no parameter channel.
+        """
+        self.engine.ask(job)
 
     def carry_out(self, job):
         """Wait for the end of a job, whatever that is. NoContact: it was not begun, or the bus
@@ -450,7 +513,7 @@ class Drive:
         """The drive's telegram-off time is known, or None: the bus keeps within it from now on."""
         if off_time_ms is not None and off_time_ms != self._off_time_ms:
             self._off_time_ms = off_time_ms
-            self.bus.engine.supervise(self.engine, off_time_ms)
+            self.bus.engine.care.supervise(self.engine, off_time_ms)
 
     def _may_start(self):
         return self.engine.contact and bits.may_start(self.engine.zsw)
@@ -471,7 +534,7 @@ class Drive:
             failed = (self._failures() - failures) & 0xFFFF
             return engine.contact or failed >= TRIES or self._why_not_asked() is not None
 
-        patience_us = LISTEN_US + TRIES * self.bus.engine.longest_cycle_us()
+        patience_us = LISTEN_US + TRIES * self.bus.engine.turns.longest_cycle_us()
         engine.ask_soon()  # among other silent ones it may have no turn for long
         self.bus.wait(patience_us / 1_000_000, has_answered_or_failed)
         if not self.contact:
@@ -513,8 +576,7 @@ class Master:
     a watchdog, say; never while the bus is closed, so that nothing in it keeps a motor turning.
     ValueError: no rate of USS, or another Master has the link and was not closed.
 
-    drives: each once, in the order added. Whatever is not found here is that of `engine`, the
-    `master.Master` behind it: stop_all, post, off, on, counters, status, foreign ...
+    drives: each once, in the order added. engine: the `master.Master` behind it.
     """
 
     def __init__(self, link, baud=19200, reply_timeout_ms=20, lost_ms=1000, idle=None):
@@ -528,9 +590,6 @@ class Master:
         link.bus = self
         self._idle = idle
         self._pacer = None
-
-    def __getattr__(self, name):
-        return getattr(self.engine, name)
 
     def __enter__(self):
         return self
@@ -556,20 +615,20 @@ class Master:
             if drive.address == address:
                 if family not in (None, drive.family):
                     raise ValueError("drive %d is a %s already" % (address, drive.family.name))
-                self.engine.add(address, layout or drive.layout)
+                self.engine.turns.add(address, layout or drive.layout)
                 return drive
         family = family or families.GENERIC
         layout = layout or family.layout
         if not families.can_be_set_to(family, layout):
             raise ValueError("a %s has no %r" % (family.name, layout))
-        engine = self.engine.add(address, layout)
+        engine = self.engine.turns.add(address, layout)
         drive = Drive(self, engine, family, scale, unsupervised)
         self.drives.append(drive)
         return drive
 
     def remove(self, drive):
         """Take a drive off the bus. ValueError when it is not on it, or may be running."""
-        self.engine.remove(drive.engine)
+        self.engine.turns.remove(drive.engine)
         self.drives = [other for other in self.drives if other is not drive]
 
     def arrange(self, drives):
@@ -577,11 +636,11 @@ class Master:
 
         Who stands in it more often is asked more often. ValueError when one is missing or strange.
         """
-        self.engine.arrange([drive.engine for drive in drives])
+        self.engine.turns.arrange([drive.engine for drive in drives])
 
     def readdress(self, drive, address):
         """From now on the drive answers at another address. ValueError: taken, or beyond 31."""
-        self.engine.readdress(drive.engine, address)
+        self.engine.turns.readdress(drive.engine, address)
 
     def supervise(self, drive, off_time_ms):
         """Tell of a drive that cannot be asked after which time without telegrams it trips, in ms,
@@ -598,13 +657,13 @@ class Master:
         """How long a round of the list takes when every drive answers as soon as it may."""
         timing = self.engine.timing
         delay_us = timing.start_interval_us
-        entries = [(drive.layout.net_count,) * 2 + (delay_us,) for drive in self.engine.list]
-        return max(timing.cycle_us(entries), self.engine.cycle_us)
+        entries = [(drive.layout.net_count,) * 2 + (delay_us,) for drive in self.engine.turns.list]
+        return max(timing.cycle_us(entries), self.cycle_us)
 
     @property
     def cycle_us(self):
         """A round of the list begins so long after the one before; 0: at once. May be set."""
-        return self.engine.cycle_us
+        return self.engine.turns.cycle_us
 
     @cycle_us.setter
     def cycle_us(self, cycle_us):
@@ -612,7 +671,7 @@ class Master:
             raise ValueError(
                 "cycle_us is a number of microseconds from 0 on, not %r" % (cycle_us,)
             )
-        self.engine.cycle_us = cycle_us
+        self.engine.turns.cycle_us = cycle_us
 
     @property
     def retries(self):
@@ -681,6 +740,10 @@ class Master:
 
     # --- all together ---------------------------------------------------------------------------
 
+    def stop_all(self):
+        """OFF1 to every drive by a telegram each; those that run have theirs first."""
+        self.engine.stop_all()
+
     def broadcast_stop(self):
         """OFF1 to all drives at once, in a single telegram, and then to each by one of its own, as
         `stop_all` has it.
@@ -712,11 +775,52 @@ class Master:
         return probe.state == pkw.DONE
 
     def post(self, telegram_outside):
-        """As of `master.Master`; NoContact: nothing is sent on this bus."""
+        """Send a telegram outside the list once (see `single`), which tells what became of it.
+
+        NoContact: nothing is sent on this bus. RuntimeError when 8 wait, or it does.
+        """
         reason = self.why_silent()
         if reason:
             raise NoContact(reason)
-        self.engine.post(telegram_outside)
+        self.engine.turns.post(telegram_outside)
+
+    def counters(self):
+        """The counters of all drives together, as named in `drive.COUNTERS`."""
+        rows = range(len(COUNTERS))
+        return [sum([drive.counters[row] for drive in self.drives]) for row in rows]
+
+    def status(self):
+        """The error status word of the bus: what is wrong with any of its drives."""
+        status = 0
+        for drive in self.drives:
+            status |= drive.status
+        return status
+
+    # --- the line -------------------------------------------------------------------------------
+
+    def off(self):
+        """Leave the line to others: OFF1 to every drive first, then nothing is sent until on().
+
+        It does not wait; is_silent() tells when it has come so far.
+        """
+        self.engine.off()
+
+    def on(self):
+        """Take the line again: listen first, as at the beginning. What ran needs a new run()."""
+        self.engine.on()
+
+    @property
+    def foreign(self):
+        """Heard from another master: bursts before the first telegram, telegrams after it."""
+        return self.engine.foreign
+
+    def is_line_in_use(self):
+        """Whether another master was heard and is listened to instead of talking."""
+        return self.engine.is_line_in_use()
+
+    def has_echo(self):
+        """Whether what is sent comes back: two wires, and a receiver that stays on."""
+        return self.engine.has_echo()
 
     def why_silent(self):
         """Why nothing is sent any more, in words; None: something is."""
@@ -761,14 +865,14 @@ class Master:
 
     def _wait_to_close(self, is_over):
         if not is_over():
-            self._wait(CLOSE_S + self.engine.longest_cycle_us() / 1_000_000, is_over)
+            self._wait(CLOSE_S + self.engine.turns.longest_cycle_us() / 1_000_000, is_over)
 
     def _all_stopped(self):
         """Whether every drive in contact has answered OFF1, and the others were sent it; or
         nothing is sent anyway."""
         if self.is_silent() or self.engine.is_line_in_use():
             return True
-        for drive in self.engine.drives:
+        for drive in self.engine.turns.drives:
             if drive.urgency() > 1 or (drive.contact and not drive.answered_off()):
                 return False
         return True

@@ -51,7 +51,7 @@ class Particulars:
         self._wrong = rows.NOTHING_WRONG  # as far as anybody knows
         self._is_fine = False  # words that are frequencies count in 0.01 Hz
         self._drive = drive
-        self._contact = None  # drive.contacts when it was asked
+        self._contact = None  # contacts of the drive when it was asked
 
     def ask(self):
         """Read all that is needed. Waits; NoContact, Refused, TimedOut."""
@@ -67,7 +67,7 @@ class Particulars:
         self._wrong = rows.wrong_rows(drive.family.meaning, self.values)
         self.scale = self._scale()
         self._tell_speed()
-        self._contact = drive.contacts
+        self._contact = drive.engine.contacts
 
     def forget(self):
         """It may have changed: ask anew when it is needed."""
@@ -136,7 +136,7 @@ class Particulars:
 
     def known_scale(self):
         """The scale, asked for if need be. ValueError when the drive cannot tell it."""
-        if self._contact is None or self._contact != self._drive.contacts:
+        if self._contact is None or self._contact != self._drive.engine.contacts:
             self.ask()
         if self.scale is None:
             raise ValueError("drive %d cannot tell what 100 %% is" % self._drive.address)

@@ -49,9 +49,9 @@ SILENCES = const(2)  # to a question: it has no answer
 
 
 class Scan:
-    """bus: a `Master`. mask: the clock's period - 1. addresses: 0...31 in the order of asking.
-    net_counts: the lengths to try, in net characters, even, 2...250. enquire: False sends mirror
-    telegrams only, and `nodes` and `will_trip` stay empty.
+    """bus: a `Master` of `uss.bus`, or an engine. mask: the clock's period - 1. addresses: 0...31
+    in the order of asking. net_counts: the lengths to try, in net characters, even, 2...250.
+    enquire: False sends mirror telegrams only, and `nodes` and `will_trip` stay empty.
 
     Fields to look at: `found`, a dictionary address -> net characters; `variable`, a set of those
     that take any length; `unclear`, address -> finding of `receiver`, where something came that
@@ -75,7 +75,7 @@ class Scan:
         self.asked = 0
         self.over = False
         self.stopped = False
-        self._bus = bus
+        self._bus = engine_of(bus)
         self._mask = mask
         self._addresses = addresses
         self._net_counts = net_counts
@@ -140,7 +140,7 @@ class Scan:
             if elapsed(now, self._silent_at, self._mask) < ACCOUNT_US:
                 return
             self._silent_at = None
-        if self._bus.silence_wait_us():
+        if self._bus.care.silence_wait_us():
             return
         if not self._is_searched():
             self._ask()
@@ -150,7 +150,7 @@ class Scan:
     def _send(self, telegram, take):
         """Hand in a telegram; `take` is told of its end. False: others wait already."""
         try:
-            self._bus.post(telegram)
+            self._bus.turns.post(telegram)
         except RuntimeError:
             return False
         self._telegram = telegram
@@ -275,19 +275,19 @@ class Scan:
     # --- the bus --------------------------------------------------------------------------------
 
     def _listed(self, address):
-        for drive in self._bus.drives:
+        for drive in self._bus.turns.drives:
             if drive.address == address:
                 return drive
         return None
 
     def _has_contact(self):
-        for drive in self._bus.drives:
+        for drive in self._bus.turns.drives:
             if drive.contact:
                 return True
         return False
 
     def _count_stops(self):
-        return sum([drive.stops for drive in self._bus.drives])
+        return sum([drive.stops for drive in self._bus.turns.drives])
 
 
 class RateScan:
@@ -333,7 +333,7 @@ class RateScan:
         self._net_counts = net_counts
         self._enquires = enquire
         self._bus = None
-        self._left = bus  # until it is off
+        self._left = engine_of(bus)  # until it is off
         self._is_leaving = False
         self._foreign = 0  # what the bus had counted when it sent its first telegram
 
@@ -388,10 +388,10 @@ class RateScan:
     def _leave(self):
         """Put the bus off whose drives all stand."""
         bus = self._left
-        if bus.phase == OFF and (self._is_leaving or not bus.drives):
+        if bus.phase == OFF and (self._is_leaving or not bus.turns.drives):
             self._left = None
         elif not self._is_leaving:
-            for drive in bus.drives:
+            for drive in bus.turns.drives:
                 if not drive.contact or drive.may_run() or drive.zsw & ZSW_RUNNING:
                     raise UssError("drive %d is not seen to stand: no other rate" % drive.address)
             if bus.is_line_in_use() or bus.is_line_shared():
@@ -407,8 +407,8 @@ class RateScan:
         return bus.is_line_in_use() or bus.foreign != self._foreign
 
     def _open(self):
-        self._bus = bus = self._open_bus(self._rates[self._next])
-        if bus.drives:
+        self._bus = bus = engine_of(self._open_bus(self._rates[self._next]))
+        if bus.turns.drives:
             raise ValueError("a bus with drives would send them telegrams that nobody knows yet")
         self.scan = Scan(bus, self._mask, self._addresses, self._net_counts, self._enquires)
 
@@ -424,6 +424,11 @@ class RateScan:
             self.over = True
         else:
             self.scan = None
+
+
+def engine_of(bus):
+    """The engine of a `Master`, of `uss.bus` or of `uss.master`, which is one."""
+    return getattr(bus, "engine", bus)
 
 
 def _probe_us(timing, net_count):

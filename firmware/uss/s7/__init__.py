@@ -204,7 +204,7 @@ class Port:
             return
         bus.off()
         clock = self._clock
-        left_us = CLOSE_US + bus.longest_cycle_us()
+        left_us = CLOSE_US + bus.turns.longest_cycle_us()
         before = clock.ticks_us()
         while bus.phase != OFF and left_us > 0:
             self._go_on(bus, before)
@@ -263,10 +263,10 @@ class Port:
                 self._remove(address)
 
     def _add(self, address):
-        self.drives[address] = self.bus.add(address, self.family(address).layout)
+        self.drives[address] = self.bus.turns.add(address, self.family(address).layout)
 
     def _remove(self, address):
-        self.bus.remove(self.drives[address])
+        self.bus.turns.remove(self.drives[address])
         self.drives[address] = None
 
 

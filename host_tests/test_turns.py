@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: MIT
+"""Whose turn it is, without a line, a link or a master: `choose` is asked, and answers."""
+
+from uss.receiver import SILENT
+from uss.single import Mirror
+from uss.timing import Timing
+from uss.turns import Turns
+
+MASK = (1 << 30) - 1
+LOST_US = 1_000_000
+EXCHANGE_US = 20_000
+READY = b"\xfb\x31\x00\x00"
+
+
+class Table:
+    """Drives at these addresses, and whoever asks those that have their turn; `silent` ones do
+    not answer."""
+
+    def __init__(self, *addresses):
+        self.now = 0
+        self.silent = set()
+        self.turns = Turns(Timing(19200), MASK, LOST_US, lambda drive: False)
+        self.drives = {address: self.turns.add(address) for address in addresses}
+
+    def asked(self, count):
+        """Whose the next so many turns are: addresses, None where it was nobody's."""
+        return [self._ask() for _ in range(count)]
+
+    def _ask(self):
+        self.now += EXCHANGE_US
+        drive = self.turns.choose(self.now)
+        if drive is None:
+            return None
+        drive.fill(self.now)
+        if drive.address in self.silent:
+            drive.miss(SILENT, self.now, LOST_US, MASK)
+        else:
+            reply = bytes((2, 14, drive.address)) + bytes(8) + READY + bytes(1)
+            drive.take(reply, len(reply), self.now)
+        return drive.address
+
+    def rest(self, count):
+        """The loop comes round so often, and nobody has a turn meanwhile."""
+        for _ in range(count):
+            self.now += 4_000
+            self.turns.care.look(self.now)
+
+
+def test_the_list_goes_round_as_it_is_arranged():
+    table = Table(1, 2, 3)
+    assert table.asked(7) == [1, 2, 3, 1, 2, 3, 1]
+    one, two, three = table.turns.drives
+    table.turns.arrange((one, two, one, three))
+    assert table.asked(6) == [1, 2, 1, 3, 1, 2]
+    table.turns.remove(two)
+    assert table.asked(4) == [3, 1, 1, 3]
+    assert table.turns.exchanges == 17
+
+
+def test_nobody_has_a_turn_in_an_empty_list():
+    table = Table()
+    assert table.asked(3) == [None] * 3
+    assert table.turns.wait_us() == 0 and table.turns.exchanges == 0
+
+
+def test_a_round_that_is_over_early_waits_for_its_cycle_time():
+    table = Table(1, 2)
+    table.turns.cycle_us = 5 * EXCHANGE_US
+    assert table.asked(3) == [1, 2, None]
+    assert table.turns.wait_us() == 3 * EXCHANGE_US
+    assert table.asked(7) == [None, None, 1, 2, None, None, None]
+
+
+def test_a_stop_goes_before_other_commands_and_these_before_the_list():
+    table = Table(1, 2, 3, 4)
+    table.asked(4)
+    table.drives[3].acknowledge()
+    table.drives[4].stop()
+    table.drives[2].start(0x1000)
+    table.asked(3)
+    table.drives[3].hurry()
+    table.drives[2].stop()
+    assert table.asked(4) == [2, 3, 1, 2]
+
+
+def test_what_nobody_answered_is_repeated_unless_the_drive_was_removed():
+    table = Table(1, 2, 3)
+    table.asked(1)
+    table.turns.repeat(table.drives[1])
+    assert table.asked(3) == [1, 2, 3]
+    table.turns.repeat(table.drives[2])
+    table.turns.remove(table.drives[2])
+    table.turns.repeat(table.drives[2])
+    assert table.asked(3) == [1, 3, 1]
+
+
+def test_telegrams_outside_the_list_have_every_second_turn_and_one_ahead_the_next():
+    table = Table(1, 2)
+    table.asked(2)
+    urgent = Mirror(9)
+    urgent.ahead = True
+    for telegram in (Mirror(7), Mirror(8), urgent):
+        table.turns.post(telegram)
+    assert table.turns.has_command() and not table.turns.all_told()
+    assert [address & 0x1F for address in table.asked(6)] == [9, 7, 1, 8, 2, 1]
+    assert not table.turns.has_command()
+
+
+def test_a_stop_is_told_when_it_is_answered_or_was_sent_often_enough():
+    table = Table(1, 2)
+    table.asked(2)
+    table.silent.add(2)
+    for drive in table.turns.drives:
+        drive.stop()
+    assert not table.turns.all_told()
+    table.asked(2)
+    assert table.drives[1].answered_off() and not table.turns.all_told()
+    table.asked(30)
+    assert table.turns.all_told()
+
+
+def test_a_drive_that_does_not_answer_rests_and_comes_back():
+    table = Table(1, 2, 3)
+    table.silent.add(2)
+    table.asked(3)
+    table.rest(200)
+    assert table.turns.round_count == 2
+    assert table.asked(4).count(2) <= 1
+    table.silent.clear()
+    for _ in range(10):
+        table.rest(200)
+        table.asked(4)
+    assert table.turns.round_count == 3 and table.drives[2].contact
+
+
+def test_a_drive_that_trips_soon_has_its_turn_in_time_in_a_long_list():
+    table = Table(*range(1, 32))
+    table.asked(31)
+    first = table.drives[1]
+    first.start(0x1000)
+    table.turns.care.supervise(first, 900)
+    asked = []
+    for _ in range(200):
+        table.rest(4)
+        asked += table.asked(1)
+    gaps = [len(piece) for piece in "".join([".1"[each == 1] for each in asked]).split("1")]
+    assert max(gaps[1:-1]) < 300 // 36, gaps
+    assert set(asked) == set(range(1, 32))
