@@ -15,7 +15,8 @@ from micropython import const
 # From the bottom of the house up: an import inside an import inside an import takes stack.
 import uss.fast  # noqa: F401
 from uss.timing import Timing, elapsed
-from uss.master import CLOSED, Master
+from uss.master import Master
+from uss.leave import leave, persist
 from uss.families.mm4 import MM4
 from uss.survey import Survey, spare_jobs
 from hal.pacer import Pacer
@@ -28,7 +29,6 @@ from panel.panel import Panel
 from panel.screen import GLYPHS
 from settings import load, save
 
-_CLOSE_MS = const(1_000)  # for the drives to answer their OFF1, and a round of the bus on top
 _FAREWELL_STEPS = const(100)  # for the display to show that nothing is controlled any more
 _SAVE_AGAIN_MS = const(10_000)  # after the store failed
 _FEED_MS = const(100)  # of the watchdog, which bites after 2 s
@@ -122,25 +122,18 @@ class App:
     def close(self):
         """Stop every drive, wait for its answer as long as it may take, and leave no interrupt.
 
-        Ctrl-C does not cut this short, wherever it strikes: it takes a second, and a motor may be
-        turning.
+        Ctrl-C does not cut this short, wherever it strikes.
         """
         try:
-            self._persist(self.bus.resume)
-            self._persist(self.bus.stop_all)
-            self._persist(self._wait, self._all_stopped)
-            self._persist(self.bus.close)
-            self._persist(self._wait, self._is_closed)
+            leave(self.bus, self.board.clock, self._go_on)
         finally:
-            self._persist(self.pacer.stop)
-        self._persist(self._say_farewell)
+            persist(self.pacer.stop)
+        persist(self._say_farewell)
 
-    def _persist(self, action, *arguments):
-        while True:
-            try:
-                return action(*arguments)
-            except KeyboardInterrupt:
-                pass
+    def _go_on(self):
+        self.pacer.tend()
+        self.board.watchdog.feed()
+        self.board.idle()
 
     def _say_farewell(self):
         """The picture of a panel that has stopped would go on saying what no longer holds."""
@@ -154,32 +147,6 @@ class App:
                 self.board.idle()
         except Exception:  # it may be the display that has failed
             pass
-
-    def _wait(self, condition):
-        """Let the engine work until `condition()` is true, or as long as may be expected."""
-        clock = self.board.clock
-        began_ms = clock.ticks_ms()
-        patience_ms = _CLOSE_MS + self.bus.turns.longest_cycle_us() // 1000
-        while True:
-            try:
-                waited_ms = elapsed(clock.ticks_ms(), began_ms, self._mask)
-                if condition() or waited_ms > patience_ms:
-                    return
-                self.pacer.tend()
-                self.board.watchdog.feed()
-                self.board.idle()
-            except KeyboardInterrupt:
-                pass
-
-    def _all_stopped(self):
-        """Whether every drive in contact has answered OFF1, and the others were sent it."""
-        for drive in self.bus.turns.drives:
-            if drive.urgent != drive.served or (drive.contact and not drive.answered_off()):
-                return False
-        return True
-
-    def _is_closed(self):
-        return self.bus.phase == CLOSED
 
     def _feed(self, now_ms):
         """Feed the watchdog, as long as the engine works."""

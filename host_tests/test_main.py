@@ -5,6 +5,7 @@ import sys
 
 import main
 from boards.sim.clock import Event
+from boards.sim.line.intruder import Intruder
 from boards.sim.world import World
 from panel_bench import panel, unsupervised
 
@@ -126,7 +127,7 @@ def test_ctrl_c_again_and_again_does_not_keep_the_drives_from_being_stopped():
 
 
 def test_a_second_ctrl_c_wherever_it_strikes_leaves_no_motor_running():
-    for name in ("_all_stopped", "_is_closed", "_wait", "stop_all", "close", "stop"):
+    for name in ("_go_on", "stop_all", "close", "stop"):
         world = World(main.start)
         world.run(1000)
         world.press("START")
@@ -227,6 +228,32 @@ def test_closing_waits_until_every_drive_of_a_long_list_was_sent_off():
     for drive in world.drives.values():
         assert drive.state == "ready", drive.report()
     world.check()
+
+
+def test_closing_does_not_wait_on_a_line_that_another_master_uses():
+    world = World(main.start)
+    intruder = Intruder(world.clock, world.wire, b"\x02\x02\x01\x01", 40_000)
+    intruder.begin()
+    world.run(1_000)
+    assert world.app.bus.is_line_in_use()
+    assert closed_after_us(world) < 300_000  # for the picture
+    assert not [1 for _, from_panel, _ in world.wire.log.last(1000) if from_panel]
+
+
+def test_closing_at_once_tells_every_drive_to_stop():
+    """It may have been left running by whoever used the line before."""
+    world = World(main.start, addresses=(1, 2))
+    world.run(20)
+    assert world.wire.log.count == 0 and closed_after_us(world) < 500_000
+    sent = [each[2] for _, from_panel, each in world.wire.log.last(1000) if from_panel]
+    assert sorted(sent) == [1, 2]
+    world.check()
+
+
+def closed_after_us(world):
+    began_us = world.clock.now_us
+    world.app.close()
+    return world.clock.now_us - began_us
 
 
 def test_closing_a_short_list_does_not_wait_for_drives_that_are_away():

@@ -106,17 +106,21 @@ def test_telegrams_outside_the_list_have_every_second_turn_and_one_ahead_the_nex
     assert not table.turns.has_command()
 
 
-def test_a_stop_is_told_when_it_is_answered_or_was_sent_often_enough():
+def test_a_stop_is_told_when_it_is_answered_or_the_drive_is_lost_and_was_sent_it_often_enough():
     table = Table(1, 2)
+    table.asked(2)
+    for drive in table.turns.drives:
+        drive.start(0x1000)
     table.asked(2)
     table.silent.add(2)
     for drive in table.turns.drives:
         drive.stop()
     assert not table.turns.all_told()
-    table.asked(2)
-    assert table.drives[1].answered_off() and not table.turns.all_told()
     table.asked(30)
-    assert table.turns.all_told()
+    assert table.drives[1].answered_off() and table.drives[2].contact
+    assert not table.turns.all_told()
+    table.asked(60)
+    assert not table.drives[2].contact and table.turns.all_told()
 
 
 def test_a_drive_that_does_not_answer_rests_and_comes_back():

@@ -38,17 +38,30 @@ _FAILURES_MAX = const(3)  # exceptions in a row after which nothing is known of 
 
 _GOOD = const(0)  # of `telegram`, for the compiler: needed in every exchange
 
-# What the engine is doing.
-LISTENING = const(0)
-RESTING = const(1)
-SENDING = const(2)
-AWAITING = const(3)
-CLOSED = const(4)
-OFF = const(5)
+# What the engine is doing: `phase`. One that ends goes over to the next in the same `poll`.
+#
+# phase        what ends it                                                 next
+LISTENING = const(0)  # 100 ms of silence                                   RESTING
+#                       off; close, when another master was heard           OFF, CLOSED
+RESTING = const(1)  #   the start interval is over, and it is a drive's turn
+#                       the link foresees the last stop bit                 AWAITING
+#                       it does not                                         SENDING
+#                       off, close, and every drive is told to stop         OFF, CLOSED
+SENDING = const(2)  #   the last stop bit                                   AWAITING
+#                       the link does not get rid of the telegram           RESTING
+AWAITING = const(3)  #  the reply, or no reply in time                      RESTING
+OFF = const(5)  #       on                                                  LISTENING
+#                       close                                               CLOSED
+CLOSED = const(4)  #    nothing
+#
+# An exception in SENDING or AWAITING leads to RESTING as well (`recover`). From AWAITING the next
+# telegram is sent at once where the start interval has passed already.
 
+# What keeps the next exchange from beginning, bits of `_held`.
 _HELD_BY_PAUSE = const(1)
 _HELD_BY_OFF = const(2)
 _HELD_BY_CLOSE = const(4)
+_GIVEN_UP = const(8)  # nobody waits for the drives any more
 
 
 class Master:
@@ -63,6 +76,11 @@ class Master:
     bursts before the first telegram, telegrams after it); `paused` (nothing is sent and nothing
     awaited, by order of `pause`). A setting, at any time: `retries`, how often an exchange without
     a valid reply is repeated at once.
+
+    Written by the loop: _refreshed_at, retries, _held. By the engine: all else. By both: `phase`
+    (the loop when it is OFF, where the engine does nothing), what follows from that (_first,
+    foreign), `paused` and _shared (the loop to False), _dead_man (the loop to False, in `refresh`;
+    the engine to True).
     """
 
     def __init__(self, link, timing, mask, lost_us=LOST_US):
@@ -92,7 +110,7 @@ class Master:
         self._drive = None  # the one whose turn it is, or a telegram outside the list
         self._failures_in_row = 0
         self._first = True  # poll was never called
-        self._held = 0  # what keeps the next exchange from beginning: bits of HELD_BY_...
+        self._held = 0
         self._paused_since = 0
         self._quiet_since = 0  # the last character on the line, either direction
         self._resting_since = 0
@@ -159,11 +177,18 @@ class Master:
             self.phase = LISTENING
 
     def close(self):
-        """Send nothing any more once the exchange that goes on is over; `phase` is CLOSED then.
+        """Leave the line for good: OFF1 to every drive first, then nothing is sent any more.
 
-        Stop the drives first.
+        `phase` is CLOSED once it has come so far. See `leave`, which waits for that.
         """
+        self.stop_all()
         self._held |= _HELD_BY_CLOSE
+        if self.phase == OFF:
+            self.phase = CLOSED
+
+    def give_up(self):
+        """After `close`: wait for no drive any more, only for the end of the exchange."""
+        self._held |= _GIVEN_UP
 
     def pause(self):
         """Begin no exchange until `resume`, 1 s at the most; `paused` tells when it has come so
@@ -238,8 +263,9 @@ class Master:
             self._quiet_since = now
         if self._swallow(now):
             self._count_foreign()
-        if self._held & (_HELD_BY_OFF | _HELD_BY_CLOSE):  # nobody was told anything yet
-            self.phase = CLOSED if self._held & _HELD_BY_CLOSE else OFF
+        held = self._held
+        if held & (_HELD_BY_OFF | _GIVEN_UP) or held & _HELD_BY_CLOSE and self.foreign:
+            self.phase = CLOSED if held & _HELD_BY_CLOSE else OFF  # nobody was told anything yet
             return DEAD_MAN_US
         left_us = LISTEN_US - elapsed(now, self._quiet_since, self._mask)
         if left_us > 0:
@@ -282,20 +308,21 @@ class Master:
 
     def _hold(self, now):
         """By order of close, off or pause: how long nothing is sent, 0 when something is."""
-        if self._held & _HELD_BY_CLOSE:
+        held = self._held
+        if not held & (_HELD_BY_OFF | _HELD_BY_CLOSE):
+            return PAUSE_LOOK_US if self._keeps_pausing(now) else 0
+        for drive in self.turns.drives:
+            if drive.wanted:
+                drive.revoke()  # started since then
+        if not held & _GIVEN_UP and not self.turns.all_told():
+            return 0
+        if held & _HELD_BY_CLOSE:
             self.phase = CLOSED
-            return DEAD_MAN_US
-        if self._held & _HELD_BY_OFF:
-            for drive in self.turns.drives:
-                if drive.wanted:
-                    drive.revoke()  # started since `off`
-            if not self.turns.all_told():
-                return 0
+        else:
+            self.phase = OFF
             for drive in self.turns.drives:
                 drive.lose()
-            self.phase = OFF
-            return DEAD_MAN_US
-        return PAUSE_LOOK_US if self._keeps_pausing(now) else 0
+        return DEAD_MAN_US
 
     def _keeps_pausing(self, now):
         """Whether `pause` is in force: no command is waiting, and it has not taken too long."""

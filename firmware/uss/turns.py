@@ -285,10 +285,15 @@ class Turns:
         return self._ahead is not None or greatest(self._attention, COMMANDS, NODES, 0) >= 0
 
     def all_told(self):
-        """Whether every drive has answered its OFF1, or has been sent it often enough."""
+        """Whether every drive in contact has answered its OFF1 and the others were sent it; those
+        that may run, some times.
+        """
         for drive in self.drives:
-            insists = drive.insist and (drive.contact or drive.was_running)
-            if insists or drive.urgency() > 1:
+            if drive.contact:
+                waits = not drive.answered_off()
+            else:
+                waits = drive.was_running and drive.insist
+            if waits or drive.urgency() > 1:
                 return False
         return self._ahead is None
 

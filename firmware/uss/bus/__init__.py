@@ -21,6 +21,7 @@ from uss.bus import pkw_errors
 from uss.bus.errors import FallsSilent, NoContact, NotStarted, Refused, TimedOut, UssError
 from uss.families.rows import ACTUAL, STATUS
 from uss.layout import Layout
+from uss.leave import leave, persist
 from uss.bus.particulars import Particulars
 from uss.drive import COUNTERS
 from uss.scaling import Scale, run_words, with_direction
@@ -31,7 +32,6 @@ TRIES = 3  # telegrams without a valid reply: nobody waits for more of them
 LISTEN_US = 1_000_000  # a bus that has just begun, or was put on, sends long before
 START_S = 5.0  # for a drive to run after it was told to
 SETTLE_S = 1.0  # for a drive to lift its inhibit, or a fault to go, before it is started
-CLOSE_S = 1.0  # for the drives to answer their OFF1, and a round of the bus on top
 OFF_TIME_S = (0.3, 65.0)  # telegram-off times that are taken; a word of ms ends at 65.5
 ROUNDS = 3  # of the bus that a telegram-off time must last
 RETRIES_MAX = 255
@@ -723,9 +723,6 @@ class Master:
         """
         if self.engine.phase == master.CLOSED:
             raise NoContact(self.why_silent())
-        return self._wait(seconds, until)
-
-    def _wait(self, seconds, until):
         left_us = int(seconds * 1_000_000)
         before = self.clock.ticks_us()
         while True:
@@ -840,42 +837,11 @@ class Master:
         """
         self._idle = None
         try:
-            self._persist(self._stop_and_wait)
-            self._persist(self._end)
+            leave(self.engine, self.clock, self.rest)
         finally:
-            self._persist(self._pacer.stop if self._pacer else self._link.close)
+            persist(self._pacer.stop if self._pacer else self._link.close)
             if self._link.bus is self:
                 self._link.bus = None
-
-    def _stop_and_wait(self):
-        self.engine.resume()
-        self.engine.stop_all()
-        self._wait_to_close(self._all_stopped)
-
-    def _end(self):
-        self.engine.close()
-        self._wait_to_close(self.is_silent)
-
-    def _persist(self, action):
-        while True:
-            try:
-                return action()
-            except KeyboardInterrupt:
-                pass
-
-    def _wait_to_close(self, is_over):
-        if not is_over():
-            self._wait(CLOSE_S + self.engine.turns.longest_cycle_us() / 1_000_000, is_over)
-
-    def _all_stopped(self):
-        """Whether every drive in contact has answered OFF1, and the others were sent it; or
-        nothing is sent anyway."""
-        if self.is_silent() or self.engine.is_line_in_use():
-            return True
-        for drive in self.engine.turns.drives:
-            if drive.urgency() > 1 or (drive.contact and not drive.answered_off()):
-                return False
-        return True
 
 
 def _check_kind(kind):

@@ -26,6 +26,7 @@ from uss import pkw, pzd
 from uss.s7 import codes
 from uss.families import MM3, MM4
 from uss.master import DEAD_MAN_US, OFF
+from uss.leave import leave, persist
 from uss.s7.parameters import (  # noqa: F401  (also blocks of this library)
     USS_RPM_D,
     USS_RPM_R,
@@ -45,8 +46,7 @@ PPI = const(0)  # the port is for something else
 TYPES = (MM3, MM4)  # what TYPE of USS_CTRL means: 0 and 1
 DEFAULT_TYPE = const(1)  # of an active drive that no USS_CTRL has named yet
 
-CLOSE_US = const(1_000_000)  # for the drives to answer their OFF1, and a round of the bus on top
-REST_US = const(100)  # between two looks at the bus meanwhile
+REST_US = const(100)  # between two looks at the bus while it is left
 
 SPEED_LIMIT = const(200)  # percent
 PERCENT = Scale()  # of full speed, 4000h
@@ -56,7 +56,7 @@ class Port:
     """The serial port that all blocks share.
 
     open_bus: function, baud -> a `Master` without drives on a link of that rate; it lets go of the
-        one before, whose phase is OFF then. clock: of the board, see `hal`.
+        one before, whose phase is OFF or CLOSED then. clock: of the board, see `hal`.
     types: the family for each value of TYPE; one that differs is a class more, see `families`.
     polled: `scan` makes the engine go on. False: something else does, such as `hal.pacer`, which
         also goes on, and stops the motors, when the scan does not.
@@ -108,11 +108,7 @@ class Port:
         blocks say PORT_NOT_USS then, and USS_INIT may begin anew. Where not `polled` the engine
         has to go on meanwhile: a pacer has a timer and is stopped afterwards. The link stays open.
         """
-        while True:
-            try:
-                return self._close()
-            except KeyboardInterrupt:  # a motor may be turning
-                pass
+        persist(self._close)
 
     # --- for the blocks -------------------------------------------------------------------------
 
@@ -198,20 +194,15 @@ class Port:
                 raise
         bus.refresh(now)
 
+    def _rest(self):
+        self._go_on(self._leaving or self.bus, self._clock.ticks_us())
+        self._clock.sleep_us(REST_US)
+
     def _close(self):
         bus = self._leaving or self.bus
         if bus is None:
             return
-        bus.off()
-        clock = self._clock
-        left_us = CLOSE_US + bus.turns.longest_cycle_us()
-        before = clock.ticks_us()
-        while bus.phase != OFF and left_us > 0:
-            self._go_on(bus, before)
-            clock.sleep_us(REST_US)
-            now = clock.ticks_us()
-            left_us -= elapsed(now, before, clock.ticks_mask)
-            before = now
+        leave(bus, self._clock, self._rest)
         for address in range(NODE_MAX + 1):
             self.drives[address] = self._controls[address] = None
         self._baud = 0

@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: MIT
+"""How a program leaves the line: every drive is stopped, and has said so, before nobody asks it.
+
+For the panel, `bus` and `s7` alike. What the engine does for it is `Master.close`; this waits.
+
+    leave(bus, clock, go_on)        # bus: a `master.Master`
+    persist(pacer.stop)             # whatever else must not be cut short
+"""
+
+from micropython import const
+
+from uss.master import CLOSED
+from uss.timing import elapsed
+
+_PATIENCE_US = const(1_000_000)  # for the answers to OFF1, and a round of the bus on top
+
+
+def leave(bus, clock, go_on):
+    """Return when every drive in contact has answered OFF1, the others were sent it, and nothing
+    is sent any more: in a second and a round of the bus, mostly. At once where another master is
+    listened to, or the bus is off.
+
+    clock: as of `hal`. go_on: called again and again meanwhile; it has the engine work, feeds a
+    watchdog, sleeps. Ctrl-C does not cut this short: a motor may be turning.
+    """
+    persist(bus.close)
+    persist(_wait, bus, clock, go_on)
+
+
+def persist(action, *arguments):
+    """Do it once more from the beginning when Ctrl-C strikes in the middle."""
+    while True:
+        try:
+            return action(*arguments)
+        except KeyboardInterrupt:
+            pass
+
+
+def _wait(bus, clock, go_on):
+    patience_us = _PATIENCE_US + bus.turns.longest_cycle_us()
+    left_us = 2 * patience_us  # as much again for the exchange that goes on, or a link that hangs
+    before = clock.ticks_us()
+    while bus.phase != CLOSED and left_us > 0:
+        try:
+            if left_us <= patience_us:
+                bus.give_up()
+            go_on()
+        except KeyboardInterrupt:
+            pass
+        now = clock.ticks_us()
+        left_us -= elapsed(now, before, clock.ticks_mask)
+        before = now
