@@ -171,9 +171,9 @@ def test_every_task_is_placed_as_printed():
         job = job_of(asked)
         channel.ask(job)
         net = bytearray(32)
-        channel.fill(net, 0, 0)
-        assert channel.size == 2 * example.pkw_words, example.id
-        assert net[: channel.size] == example.net[: channel.size], example.id
+        size = channel.fill(net, 0, 0)
+        assert size == 2 * example.pkw_words, example.id
+        assert net[:size] == example.net[:size], example.id
 
 
 def test_mirror_telegrams_are_sent_as_printed():

@@ -16,8 +16,8 @@ def sent(job, pkw_words=VARIABLE_WORDS, longest=20):
     channel = Channel(MASK, pkw_words, longest)
     net = bytearray(60)
     channel.ask(job)
-    channel.fill(net, 0, 0)
-    return [net[at] << 8 | net[at + 1] for at in range(0, channel.size, 2)]
+    size = channel.fill(net, 0, 0)
+    return [net[at] << 8 | net[at + 1] for at in range(0, size, 2)]
 
 
 def test_one_element():

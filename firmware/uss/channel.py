@@ -12,8 +12,7 @@ the line is silent: a task that reads goes on when the drive answers again. One 
 sent again, because it would be carried out twice.
 
     channel.ask(pkw.read(700))                  # loop
-    channel.fill(net, at, now)                  # engine: the PKW words of the next request,
-    channel.size                                # so many characters
+    channel.fill(net, at, now)                  # engine: the PKW words of the next request, 8
     channel.take(net, at, count)                # engine: those of the reply
 """
 
@@ -41,11 +40,8 @@ _THREE_WORDS = const(6)
 _FOUR_WORDS = const(8)
 _VARIABLE_LENGTH = const(0x100)
 _FOLLOWED = const(0x200)  # in _form: somebody follows change reports
-_POSITION = const(7)  # bits of _turn: where the job on the line stands in the queue
-_REST = const(8)  # above: telegrams without a task still to be tried for an answer with AK 0
-_PROBE = const(1 << 8)  # further above: telegrams without the task that stays unanswered
-_LAG = const(16)  # in job.silences, above them: old answers in a row, before
-_LAG_MAX = const(4)
+_POSITION = const(7)  # bits of a place in the queue
+_LAGS_MAX = const(4)  # old answers in a row that count
 _WAITING = const(-1)  # tries of a job whose turn has not come
 _PENDING = const(1)
 _FIRST_PERMANENT = const(11)
@@ -56,10 +52,10 @@ class Channel:
     the most PKW words that a request has room for.
 
     idle: nothing is asked, and the words in the telegram say so: neither `fill` nor `take` would
-    do anything. size: characters of the PKW area that `fill` wrote.
+    do anything.
 
-    Written by the loop: _in, and idle to False. By the engine: everything else. A Job belongs to
-    the loop, but to the engine from `ask` until its state is no longer PENDING.
+    Written by the loop: _in, _form, and idle to False. By the engine: everything else. A Job
+    belongs to the loop, but to the engine from `ask` until its state is no longer PENDING.
     """
 
     # Eight fields: with one more each drive would take 16 bytes more.
@@ -67,12 +63,14 @@ class Channel:
     def __init__(self, mask, pkw_words=4, longest=10):
         variable = pkw_words == _VARIABLE
         self.idle = pkw_words == 0
-        self.size = _THREE_WORDS if variable else 2 * pkw_words
         self._form = _VARIABLE_LENGTH | 2 * longest if variable else 2 * pkw_words
         self._mask = mask
         self._queue = [None] * JOBS_MAX if pkw_words else NO_QUEUE
-        self._in = 0
-        self._turn = 0  # see _POSITION, _REST and _PROBE
+        self._in = 0  # the place of the next job in it,
+        self._out = 0  # and of the one on the line
+        # Telegrams go without a task: above 0, until one is answered with AK 0, so many at the
+        # most; below 0, because the task stays unanswered, and so many did.
+        self._without = 0
         self._ended = _ANY  # the key of the job that must be told apart from the next, or _ANY
 
     def is_full(self):
@@ -96,7 +94,7 @@ class Channel:
             job.refuse(pkw.TOO_SMALL)
             return
         job.tries = _WAITING
-        job.silences = 0
+        job.silences = job.lags = 0
         job.state = _PENDING
         self._queue[position] = job
         self._in = position + 1 & _POSITION
@@ -119,14 +117,14 @@ class Channel:
     # --- for the engine: allocates nothing ------------------------------------------------------
 
     def fill(self, net, at, now):
-        """Write the PKW words of the next request into `net` from index `at` on; whether `size`
-        may be another now.
+        """Write the PKW words of the next request into `net` from index `at` on; how many
+        characters they are.
         """
-        turn = self._turn
-        job = self._queue[turn & _POSITION]
+        job = self._queue[self._out]
+        without = self._without
         words = NO_TASK
         if job is None:
-            self.idle = turn < _REST and self._form < _FOLLOWED
+            self.idle = not without and self._form < _FOLLOWED
         else:
             tries = job.tries
             if tries == _WAITING:
@@ -134,20 +132,19 @@ class Channel:
                 job.since = now
                 # Mostly only to the same question could an old reply be taken for the answer.
                 if self._ended != _ANY and self._ended != job.key:
-                    self._turn = turn = turn & _POSITION
+                    self._without = without = 0
             elif tries >= _TRIES_MIN:
                 self._watch(job, now)
-                turn = self._turn
-            if turn < _REST:
+                without = self._without
+            if not without:
                 words = job.words
                 if tries < _TRIES_MIN:
                     tries += 1
             job.tries = tries
         if self._form == _FOUR_WORDS:
             copy(words, net, at, _FOUR_WORDS)
-            return False
-        self._place(job, words, net, at)
-        return True
+            return _FOUR_WORDS
+        return self._place(job, words, net, at)
 
     def _place(self, job, words, net, at):
         """Write words where other than four fixed ones have their place, and the report bit."""
@@ -161,7 +158,7 @@ class Channel:
             net[at + 5] = words[7]
         if form & _FOLLOWED:
             net[at] |= self.reports.bit
-        self.size = size
+        return size
 
     def take(self, net, at, count=8):
         """Take the PKW words of a valid reply, `count` characters in `net` from index `at` on."""
@@ -169,62 +166,64 @@ class Channel:
         if form >= _FOLLOWED:
             form -= _FOLLOWED
             self.reports.take(net, at, count, form)
-        turn = self._turn
-        job = self._queue[turn & _POSITION]
-        if turn >= _REST:
-            if turn >= _PROBE:
+        out = self._out
+        job = self._queue[out]
+        without = self._without
+        if without:
+            if without < 0:
                 self._judge(job)
                 return
             # The task was withdrawn; until the drive says AK 0 an old reply may still come.
-            self._turn = turn = turn & _POSITION if net[at] < 0x10 else turn - _REST
-            if job is None and turn < _REST and self._form < _FOLLOWED:
+            self._without = without = 0 if net[at] < 0x10 else without - 1
+            if job is None and not without and self._form < _FOLLOWED:
                 self.idle = True
         elif job is not None:
             if job.tries > 0 and job.answer(net, at, count, form):
                 # As in `_end`, without the call: this is the common case.
                 self._ended = _ANY if job.task >= _FIRST_PERMANENT else job.key
-                self._queue[turn] = None
-                self._turn = REST_MAX * _REST | turn + 1 & _POSITION
+                self._queue[out] = None
+                self._out = out + 1 & _POSITION
+                self._without = REST_MAX
             else:  # an old answer; the next silence is the first
-                job.silences = min(job.silences // _LAG + 1, _LAG_MAX) * _LAG
+                job.silences = 0
+                job.lags = min(job.lags + 1, _LAGS_MAX)
 
     def miss(self, now, silent=0, pressing=False):
         """There was no valid reply. silent: telegrams in a row without one. pressing: with one
         more, half of the time after which the drive counts as lost would be over.
         """
-        turn = self._turn
-        job = self._queue[turn & _POSITION]
-        if turn >= _PROBE:
-            if turn // _PROBE > job.silences // _LAG:
-                job.silences &= -_LAG  # it is not for the task
+        job = self._queue[self._out]
+        without = self._without
+        if without < 0:
+            if -without > job.lags:
+                job.silences = 0  # it is not for the task
             else:  # a drive that lags is at the task for as many telegrams more
-                self._turn = turn + _PROBE
+                self._without = without - 1
             job.tries = min(job.tries + 1, _TRIES_MIN)
-        elif turn >= _REST:
-            self._turn = turn - _REST
+        elif without:
+            self._without = without - 1
         elif job is not None and job.tries > 0:
-            job.silences += 1
-            silences = job.silences % _LAG
+            job.silences = silences = job.silences + 1
             if pressing or silences >= _SILENCES_MAX:
-                self._turn = turn | _PROBE
+                self._without = -1
                 if silent > silences:  # the drive was silent before it heard of the task
-                    job.silences -= silences
+                    job.silences = 0
         if job is not None and job.tries >= _TRIES_MIN:
             self._watch(job, now)
 
     def _judge(self, job):
         """The drive answers a telegram without the task: is the task to blame?"""
         writes = job.writes()
-        silences = job.silences % _LAG
-        lags = silences != job.silences  # each time that it is asked: they do not add up
-        if silences >= _SILENCES_MAX - lags or writes and silences:
+        silences = job.silences
+        # A drive that lags does so each time that it is asked: its silences do not add up.
+        if silences >= _SILENCES_MAX - (job.lags > 0) or writes and silences:
             job.state = pkw.UNANSWERED
             self._end(job, writes)
         elif writes:
             job.state = pkw.TIMED_OUT
             self._end(job, True)
         else:
-            self._turn &= _POSITION  # it goes on
+            self._without = 0  # it goes on
 
     def _watch(self, job, now):
         """Time out a job that takes long."""
@@ -238,6 +237,6 @@ class Channel:
         # (specification C-4.2.1.1): "no task" stands between them until the drive has answered it.
         # strictly: it stands before any other, for what wears out or may still be carried out.
         self._ended = _ANY if strictly else job.key
-        position = self._turn & _POSITION
-        self._queue[position] = None
-        self._turn = REST_MAX * _REST | position + 1 & _POSITION
+        self._queue[self._out] = None
+        self._out = self._out + 1 & _POSITION
+        self._without = REST_MAX

@@ -365,11 +365,10 @@ class Drive:
         channel = self.channel
         if not channel.idle:
             self.sealed = False
-            if channel.fill(self.request, NET, now):
-                size = NET + channel.size + self._behind
-                if size != self.size:  # variable length: the PZD have moved
-                    self.size = size
-                    self.steady = False
+            size = NET + channel.fill(self.request, NET, now) + self._behind
+            if size != self.size:  # variable length: the PZD have moved
+                self.size = size
+                self.steady = False
         hsw = self.hsw
         if self.steady and hsw == self._hsw:
             return

@@ -170,7 +170,8 @@ class Job:
         self.words = bytearray(8)  # PKE, IND, PWE1, PWE2 as four fixed words have them
         self.since = 0  # for the engine: when it was begun,
         self.tries = 0  # how often it was sent, as far as that matters,
-        self.silences = 0  # how often in a row the drive was silent on it, see `channel`
+        self.silences = 0  # how often in a row the drive was silent on it,
+        self.lags = 0  # and how often before that it gave an old answer
         self.tag = 0  # for whoever asks: which of its questions this is
         self.aim(task, number, index, high, low)
 
