@@ -22,7 +22,7 @@ from uss.survey import Survey, spare_jobs
 from hal.pacer import Pacer
 from panel import texts
 import panel.risks  # noqa: F401
-from panel.control import Control
+from panel.control import Control, Desk
 import panel.pages.risk  # noqa: F401
 import panel.pages.table  # noqa: F401
 from panel.panel import Panel
@@ -47,11 +47,9 @@ class App:
         timing = Timing(settings.baud, settings.reply_timeout_ms * 1000)
         self.bus = Master(self.link, timing, mask, settings.lost_ms * 1000)
         self.pacer = Pacer(self.bus, self.link, board.clock, board.timer)
-        controls, spares = [], spare_jobs()
-        for address in settings.drives:
-            drive = self.bus.turns.add(address)
-            survey = Survey(drive, MM4, mask, spares)
-            controls.append(Control(drive, survey, self.bus, mask, settings))
+        drives = [self.bus.turns.add(address) for address in settings.drives]
+        desk, spares = Desk(self.bus, settings, mask), spare_jobs()
+        controls = [Control(drive, Survey(drive, MM4, mask, spares), desk) for drive in drives]
         board.display.define(GLYPHS)
         notice = texts.WATCHDOG_RESTART if board.reset_cause else texts.NOTHING
         self.panel = Panel(controls, self.bus, board.keypad.names, settings, mask, notice)

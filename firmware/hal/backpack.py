@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """A character display behind a PCF8574 backpack: the HD44780's four data lines through I2C.
 
-Fulfils the contract `display` of `hal`; what is written when is `hal.hd44780`. A backpack that is
-unplugged, or whose wires a pulse has upset, is tried again every AGAIN_US and set up anew when it
-answers; the panel goes on meanwhile.
+Fulfils the contract `display` of `hal`; `hal.character_display` says what is written when. A
+backpack that is unplugged, or whose wires a pulse has upset, is tried again every AGAIN_US and set
+up anew when it answers; the panel goes on meanwhile.
 
     display = Backpack(make_i2c, 0x27, clock)
     display.show(picture)               # each step of the loop, until it answers True
@@ -12,7 +12,7 @@ answers; the panel goes on meanwhile.
 
 from micropython import const
 
-from hal.hd44780 import POWER_ON_US, CharacterDisplay
+from hal.character_display import POWER_ON_US, CharacterDisplay
 from hal.probe import BACKLIGHT
 
 AGAIN_US = const(500_000)

@@ -13,11 +13,11 @@ Runs on the chip alone; it is proven on the emulated one.
 import rp2
 from micropython import const
 
-from hal.hd44780 import CharacterDisplay
+from hal.character_display import CharacterDisplay
 
 _CYCLES_HZ = const(1_000_000)  # of the state machine: its waits are microseconds
 
-# The wait behind a byte, and behind a nibble while the controller is set up: `hal.hd44780`.
+# The wait behind a byte, and behind a nibble while the controller is set up.
 _BYTE_US = const(61)
 _NIBBLE_US = const(100)
 _BACKLOG_US = const(700)  # what a full FIFO takes: a wait for a command may begin so late

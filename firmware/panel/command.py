@@ -23,7 +23,8 @@ _START_US = const(5_000_000)  # a drive that does not run by then is told to sto
 class Command:
     """drive: `uss.drive.Drive`. survey: its `Survey`. bus: the `Master`. mask: of the clock.
 
-    For `Control`: risk, the row of risks.RISKS that a START is to be asked about next; accepted,
+    For `Control`: risk, the row of risks.RISKS that a START is to be asked about next; question,
+    that it was asked about last; accepted,
     by row the value with which the operator takes that risk; exposure_ms, how long the motor
     would run on too long, when it was started; exposure_version, of the survey when that was
     looked at last.
@@ -31,6 +32,7 @@ class Command:
 
     def __init__(self, drive, survey, bus, mask):
         self.risk = 0
+        self.question = 0
         self.accepted = [risks.NONE] * len(risks.RISKS)
         self.exposure_ms = 0
         self.exposure_version = _NONE

@@ -4,7 +4,7 @@
 The rules that keep a motor from starting by surprise and a STOP from getting lost live here, in
 `permits` and in `uss.drive`; pages only show, keys only ask.
 
-    control = Control(drive, survey, bus, mask, settings)
+    control = Control(drive, survey, Desk(bus, settings, mask))
     control.ask(now)                    # again and again, in steps of their own:
     control.watch(now)                  # each takes its time
     control.start()                     # START: asks the drive first, then ON, or `refusal`
@@ -26,6 +26,7 @@ from panel.fault import NO_FAULT, Fault
 from panel.phases import ASKING, CHECKING, IDLE, JOGGING, RUNNING
 from panel.setpoint import Setpoint
 from panel.stop_watch import NO_WATCH, StopWatch
+from panel.supervision import longest_off_time_ms
 
 _UNKNOWN = const(-1)  # no status word
 _SILENT_MAX = const(3)  # telegrams without an answer after which the speed is not known any more
@@ -37,35 +38,44 @@ _DOUBT_US = const(40_000_000)  # in which P2019[0] of each drive has been read a
 SECOND_STOPS = {"OFF3": pzd.OFF3, "OFF2": pzd.OFF2, "none": 0}
 
 
-class Control:
-    """drive: `uss.drive.Drive`. survey: its `Survey`. bus: the `Master`. mask: of the clock.
+class Desk:
+    """What the controls of a panel share. bus: the `Master`, its drives added. settings: a
+    `Settings`. mask: the clock's period - 1.
 
-    settings: a `Settings`.
-
-    Fields for a page: `phase`, of `phases`; `question`, the row of risks.RISKS that it asks;
-    `setpoint`; `reversed`, the direction START takes; `refusal`, why a key was not obeyed, to be
-    shown once; `notice`, why the drive is not on any more; `remark`, what has become of its P2014
-    while it runs: texts, or NOTHING; `lost_running`, when contact was lost it was running,
-    or not heard at rest since the last ON; `absence_known`, STOP was pressed while it was shown
-    and not heard; `stop_watch`, whether a STOP is obeyed; `fault`.
-
-    Nobody else writes a field of it, but for these: `longest_off_time_ms`, a longer P2014 is a
-    risk, by the panel; `moving`, it is being given another address, and `moved`, it has been, by
-    the writer.
+    longest_off_time_ms: a longer P2014 is a risk.
     """
 
-    def __init__(self, drive, survey, bus, mask, settings):
+    def __init__(self, bus, settings, mask):
+        self.bus = bus
+        self.settings = settings
+        self.mask = mask
+        self.longest_off_time_ms = longest_off_time_ms(bus.turns.longest_cycle_us())
+
+
+class Control:
+    """drive: `uss.drive.Drive`. survey: its `Survey`. desk: a `Desk`.
+
+    Fields for a page: `phase`, of `phases`; `setpoint`; `reversed`, the direction START takes;
+    `refusal`, why a key was not obeyed, to be shown once; `notice`, why the drive is not on any
+    more; `remark`, what has become of its P2014 while it runs: texts, or NOTHING; `lost_running`,
+    when contact was lost it was running, or not heard at rest since the last ON; `absence_known`,
+    STOP was pressed while it was shown and not heard; `stop_watch`, whether a STOP is obeyed;
+    `fault`.
+
+    The writer writes `moving`, it is being given another address, and sets `moved`, it has been.
+    Nobody else writes a field of it.
+    """
+
+    def __init__(self, drive, survey, desk):
         self.drive = drive
         self.survey = survey
-        self.bus = bus
-        self.longest_off_time_ms = 0
-        self.setpoint = Setpoint(drive, survey, settings)
+        self.desk = desk
+        self.setpoint = Setpoint(drive, survey, desk.settings)
         self.stop_watch = NO_WATCH
         self.fault = NO_FAULT
         self.moving = False
         self.moved = False
         self.phase = IDLE
-        self.question = 0
         self.reversed = False
         self.refusal = texts.NOTHING
         self.notice = texts.NOTHING
@@ -73,8 +83,6 @@ class Control:
         self.lost_running = False
         self.absence_known = False
         self._command = None  # that was obeyed last: a drive that is never started needs none
-        self._settings = settings
-        self._mask = mask
         self._now = 0
         self._contact = False  # as last seen
         self._quiet_zsw = _UNKNOWN  # drive.zsw when there was nothing to watch
@@ -99,14 +107,14 @@ class Control:
             self.survey.recheck()
 
     def accept_risk(self, row, value):
-        """The operator takes the risk that `question` asked about, as it was then, and starts the
+        """The operator takes the risk that it was asked about, as it was then, and starts the
         drive."""
         risks.accept(self, row, value)
         self.start()
 
     def accept_unsupervised(self):
         """P2014 = 0 is accepted for this drive, once and for all."""
-        self._settings.accept_unsupervised(self.drive.address)
+        self.desk.settings.accept_unsupervised(self.drive.address)
 
     def stop(self):
         """OFF, always; acknowledge what was announced about this drive and its fault, if shown."""
@@ -125,7 +133,7 @@ class Control:
 
     def second_stop(self):
         """Stop by what the settings say: OFF3, OFF2, or nothing more than OFF1."""
-        off = SECOND_STOPS[self._settings.second_stop]
+        off = SECOND_STOPS[self.desk.settings.second_stop]
         if off:
             self._stop(off)
 
@@ -173,6 +181,10 @@ class Control:
         self.drop_question()
         if self.phase != CHECKING:
             self.survey.drop_recheck()
+
+    def question(self):
+        """The row of risks.RISKS that ASKING is about."""
+        return self._command.question
 
     def drop_question(self):
         """Nobody takes the risk."""
@@ -239,11 +251,11 @@ class Control:
         self._command.accepted[row] = value
 
     def accepts_unsupervised(self):
-        return self.drive.address in self._settings.unsupervised
+        return self.drive.address in self.desk.settings.unsupervised
 
     def is_unsaved(self):
         """Whether its address is another one than the panel will look for after a restart."""
-        return self.moved and self._settings.dirty
+        return self.moved and self.desk.settings.dirty
 
     # --- what goes on ---------------------------------------------------------------------------
 
@@ -280,7 +292,7 @@ class Control:
         if self.survey.version != self._judged:
             self._judge_status()
         if drive.zsw & pzd.ZSW_FAULT and self.fault is NO_FAULT:
-            self.fault = Fault(drive, self._mask, self.survey.family.fault_number)
+            self.fault = Fault(drive, self.desk.mask, self.survey.family.fault_number)
         self.fault.step(now)
         if drive.contact != self._contact:
             self._contact = drive.contact
@@ -294,7 +306,7 @@ class Control:
         elif drive.off != pzd.OFF1:
             self._watch_second_stop()
         self._watch_stop(now)
-        if self.moved and not self._settings.dirty:
+        if self.moved and not self.desk.settings.dirty:
             self.moved = False
         zsw = drive.zsw
         is_busy = (
@@ -323,7 +335,7 @@ class Control:
         self.remark = texts.NOTHING
         self._quiet_zsw = _UNKNOWN
         if self._command is None:
-            self._command = Command(self.drive, self.survey, self.bus, self._mask)
+            self._command = Command(self.drive, self.survey, self.desk.bus, self.desk.mask)
         self._command.give(self._now)
 
     def _finish_check(self, now):
@@ -340,7 +352,7 @@ class Control:
             if risks.is_open(self, command.risk):
                 self.phase = ASKING
                 self.survey.drop_recheck()
-                self.question = command.risk
+                command.question = command.risk
                 self.notice = texts.DID_NOT_START
             command.risk += 1
             return
@@ -395,14 +407,14 @@ class Control:
         if watch.active or self.drive.wanted:
             self._stirred = True
             self._stirred_at = now
-        elif self._stirred and elapsed(now, self._stirred_at, self._mask) >= _DOUBT_US:
+        elif self._stirred and elapsed(now, self._stirred_at, self.desk.mask) >= _DOUBT_US:
             self._stirred = False
         if self._jogged and not (self.phase == JOGGING or watch.active):
             self._jogged = False
 
     def _begin_stop_watch(self):
         if self.stop_watch is NO_WATCH:
-            self.stop_watch = StopWatch(self.drive, self._mask)
+            self.stop_watch = StopWatch(self.drive, self.desk.mask)
         self.stop_watch.begin()
         return self.stop_watch
 

@@ -25,7 +25,7 @@ from panel.pages.splash import Splash
 from panel.pages.table import PAGES
 from panel.screen import Screen
 from panel.stop_key import StopKey
-from panel.supervision import longest_off_time_ms, off_time_ms
+from panel.supervision import off_time_ms
 from panel.view import View
 from panel.writer import Writer
 from uss import pzd
@@ -69,10 +69,7 @@ class Panel:
         self.mask = mask
         self.message = None
         self.setpoint_step = settings.setpoint_step_centihertz
-        cycle_us = bus.turns.longest_cycle_us()
-        self.off_time_ms = off_time_ms(cycle_us)
-        for control in controls:
-            control.longest_off_time_ms = longest_off_time_ms(cycle_us)
+        self.off_time_ms = off_time_ms(bus.turns.longest_cycle_us())
         self._bus = bus
         self._settings = settings
         self._keys = keys = Keys(key_names, mask, HELD_KEYS)

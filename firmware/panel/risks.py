@@ -23,7 +23,7 @@ _FOR_EVER_MS = const(1 << 20)  # longer than any P2014
 def _of_supervision(control):
     """P2014 with which the motor runs on too long when the panel dies, 0: for ever, or unread."""
     off_time_ms = max(control.survey.values[rows.SUPERVISION], 0)
-    if 0 < off_time_ms <= control.longest_off_time_ms:
+    if 0 < off_time_ms <= control.desk.longest_off_time_ms:
         return NONE
     return off_time_ms
 
@@ -36,7 +36,7 @@ def _of_restart(control):
 
 def _of_lateness(control):
     """The address of the drive that this bus cannot ask within a third of its P2014, if it ran."""
-    drive = control.bus.care.first_late(control.drive)
+    drive = control.desk.bus.care.first_late(control.drive)
     return NONE if drive is None else drive.address
 
 

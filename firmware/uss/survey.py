@@ -73,7 +73,9 @@ class Survey:
     def __init__(self, drive, family, mask, spares):
         self.drive = drive
         self.family = family
-        self.values = [0 if row in _LATER else _UNKNOWN for row in range(len(family.survey))]
+        self.values = [_UNKNOWN] * len(family.survey)
+        for row in _LATER:
+            self.values[row] = 0
         self.complete = False
         self.scaling = None
         self.actual = None

@@ -55,7 +55,7 @@ HANG_US = 400_000
 STEP_US = 4_000
 FIRST_TELEGRAM_US = 500_000
 PICTURE_US = 100_000
-FREE_BYTES = {"frozen": 118 * 1024, "files": 36 * 1024}
+FREE_BYTES = {"frozen": 138 * 1024, "files": 40 * 1024}
 SIMULATION_TIMES = 100
 
 HANGS = (("pass", "drive"), ("sleep", "drive"), ("collect", "drive"), ("pass", "silent"))

@@ -442,7 +442,7 @@ MUTATIONS = (
         "display hurried",
         "the display is written to while it is still at work",
         ("DISPLAY",), 1,
-        ("hal/hd44780.py", "_COMMAND_US = const(53)", "_COMMAND_US = const(20)"),
+        ("hal/character_display.py", "_COMMAND_US = const(53)", "_COMMAND_US = const(20)"),
     ),
     Mutation(
         "the first alarm for ever",

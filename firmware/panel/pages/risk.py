@@ -14,11 +14,11 @@ _READING_MS = const(1_000)  # so long a START does not answer: it may be a doubl
 
 
 class RiskQuestion(Question):
-    """About the risk that `panel.selected.question` waits for, which is open."""
+    """About the risk that `panel.selected` is asked about, which is open."""
 
     def __init__(self, panel):
         self._control = control = panel.selected
-        self._risk = risk = control.question
+        self._risk = risk = control.question()
         text, values, can_fix, self._value = risks.ask(control, risk)
         answers = {"START": self._accept}
         if can_fix:
