@@ -7,6 +7,7 @@ The same firmware as on the chip, in virtual time.
 import main
 import panel.panel
 from boards.sim.world import World
+from panel.pages.table import PAGES
 from strict_screen import StrictScreen
 
 panel.panel.Screen = StrictScreen
@@ -143,3 +144,9 @@ def telegrams(world, since_us, address=None):
 
 ON, OFF1 = 0x047F, 0x047E
 ERROR = ValueError("on purpose")  # made beforehand: the heap is locked in an interrupt
+
+
+def page_back(world):
+    """PARAM leads through all pages; this is how to come back to the one before."""
+    for _ in PAGES[1:]:
+        world.press("PARAM")

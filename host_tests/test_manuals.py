@@ -135,10 +135,10 @@ def pattern(text):
 
 
 def every_text(thing):
-    """All texts in the module, in whatever they stand: bytes, tuples, dictionaries."""
+    """All texts in the module in English, in whatever they stand: bytes, tuples, dictionaries."""
     if isinstance(thing, bytes):
         yield thing
-    elif isinstance(thing, (tuple, dict)):
+    elif isinstance(thing, (tuple, dict)) and thing is not texts.LANGUAGES:
         for value in thing.values() if isinstance(thing, dict) else thing:
             yield from every_text(value)
 

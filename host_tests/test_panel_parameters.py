@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The operator's manual, parameter mode: look at parameters and change them."""
 
-from panel_bench import OFF1, panel, row_1, row_2, running, starts, telegrams
+from panel_bench import OFF1, page_back, panel, row_1, row_2, running, starts, telegrams
 from parameter_bench import (
     ASKED,
     WRITES,
@@ -34,7 +34,7 @@ def test_param_goes_to_parameter_mode_and_back():
     world.press("PARAM")
     world.run(200)
     assert world.lcd() == ("S: 10.0 F:  0.00", "P0700:     5 A1 ")
-    world.press("PARAM")
+    page_back(world)
     assert world.lcd() == home
     world.check()
 
@@ -285,11 +285,14 @@ def test_what_is_not_read_yet_cannot_be_edited():
 
 
 def test_another_parameter_or_drive_drops_what_was_edited():
-    for away, back in (("NEXT", "PREVIOUS"), ("ADDRESS_UP", "ADDRESS_DOWN"), ("PARAM", "PARAM")):
+    for away, back in (("NEXT", "PREVIOUS"), ("ADDRESS_UP", "ADDRESS_DOWN"), ("PARAM", None)):
         world = parameter("P1000", addresses=(1, 2))
         edit(world, 3)
         world.press(away)
-        world.press(back)
+        if back:
+            world.press(back)
+        else:
+            page_back(world)
         world.run(300)
         assert row_2(world) == "P1000:     5 A1"
         world.press("SET")
@@ -593,7 +596,7 @@ def test_a_write_goes_on_when_parameter_mode_is_left():
     assert [row[2] for row in writes(world)] == ["RAM"]  # for the EEPROM nobody looks on
     world.up("SET")
     world.drives[1].stale_replies = 0
-    world.press("PARAM")
+    page_back(world)
     world.run(300)
     assert row_2(world) == "P1000:     3 A1"
     world.check()
@@ -615,7 +618,7 @@ def test_what_was_written_is_known_on_the_home_page_soon():
     world.run(3000)
     show(world, "P0700")
     write(world, 2)
-    world.press("PARAM")
+    page_back(world)
     world.run(350)
     assert row_2(world) == "LOCAL        A1"
     world.check()
