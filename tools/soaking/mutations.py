@@ -84,8 +84,8 @@ MUTATIONS = (
         ("LOST", "MAY RUN"), 1,
         (
             "uss/master.py",
-            "drive.miss(finding, now, self.lost_us, self._mask)\n        if",
-            "drive.miss(finding, now, 8 * self.lost_us, self._mask)\n        if",
+            "drive.miss(finding, now, self.turns.lost_us, self._mask)\n        if",
+            "drive.miss(finding, now, 8 * self.turns.lost_us, self._mask)\n        if",
         ),
     ),
     Mutation(
