@@ -20,6 +20,7 @@ from micropython import const
 
 # From the bottom of the house up: an import inside an import inside an import takes stack.
 from uss import pkw, telegram
+import uss.drive  # noqa: F401
 from uss.care import LOOK_US
 from uss.fast import frame
 from uss.receiver import COMING, SILENT, WAITING, Receiver
