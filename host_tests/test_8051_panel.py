@@ -8,7 +8,7 @@ display: 1 to 6, 11 to 15, 18 and 19. Those of the line are in test_8051_line.py
 
 import main
 from boards.sim.world import World
-from panel_bench import OFF1, ON, panel, row_1, row_2, running, said, starts, telegrams
+from panel_bench import OFF1, ON, page_back, panel, row_1, row_2, running, said, starts, telegrams
 
 NOT_TRACED = """
     test_the_setpoint_stays_between_zero_and_the_highest_frequency
@@ -375,7 +375,7 @@ def test_the_panel_follows_a_drive_to_the_address_it_wrote():
     world.run(4000)
     assert world.drives[1].address == 4
     assert row_2(world) == "P2011:     4 A4"
-    world.press("PARAM")
+    page_back(world)
     world.press("START")
     world.run(4000)
     assert world.lcd() == ("S: 10.0 F: 10.00", "RUNNING      A4 ")
@@ -394,7 +394,7 @@ def test_a_source_that_was_written_away_is_said_and_start_is_refused():
         world.press("SET")
         world.press("SET")
         world.run(4000)
-        world.press("PARAM")
+        page_back(world)
         world.run(100)
         assert row_2(world) == state
         world.press("START")

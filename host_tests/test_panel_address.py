@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The operator's manual: a drive is given another address, and the panel follows it."""
 
-from panel_bench import OFF1, panel, row_2, running, starts, telegrams
+from panel_bench import OFF1, page_back, panel, row_2, running, starts, telegrams
 from parameter_bench import (
     ASKED,
     edit,
@@ -30,7 +30,7 @@ def test_a_drive_is_followed_to_its_new_address():
     assert row_2(world) == "WRITTEN (EEPROM)"  # always: where would it be after its power-up?
     world.run(3000)
     assert row_2(world) == "P2011:     5 A5" and world.drives[1].address == 5
-    world.press("PARAM")
+    page_back(world)
     assert row_2(world) == "READY        A5"
     world.press("START")
     world.run(4000)
@@ -195,7 +195,7 @@ def test_a_drive_whose_answer_was_lost_is_found_at_its_new_address():
         world.run(6500)
         assert world.drives[1].address == 5
         assert row_2(world)[13:] == "A5", (silent_ms, world.lcd())
-        world.press("PARAM")
+        page_back(world)
         world.press("START")
         world.run(4000)
         assert world.drives[1].state == "running" and row_2(world) == "RUNNING      A5"
@@ -255,7 +255,7 @@ def test_a_drive_that_is_not_of_this_panel_is_not_taken_for_the_one_that_moved()
     world.drives[1].unplug()
     world.press("SET")
     world.run(3000)
-    world.press("PARAM")
+    page_back(world)
     world.press("START")
     world.run(3000)
     assert starts(world, 5) == 0
@@ -283,7 +283,7 @@ def test_a_drive_whose_new_address_cannot_be_saved_is_not_started():
     write(world, 5)
     world.run(1000)
     assert world.drives[1].address == 5
-    world.press("PARAM")
+    page_back(world)
     world.press("START")
     assert row_2(world) in ("NO: UNSAVED", "SETTINGS UNSAVED")
     world.run(2000)
@@ -372,7 +372,7 @@ def test_a_drive_whose_new_address_was_saved_does_not_wait_for_other_settings():
     world = parameter("P2011", addresses=(1, 2, 3))
     write(world, 5)
     world.run(3000)
-    world.press("PARAM")
+    page_back(world)
     assert stored(world)["drives"] == [5, 2, 3]
     world.press("ADDRESS_DOWN")
     world.press("START")

@@ -8,6 +8,7 @@ import json
 from panel.supervision import off_time_ms
 from panel_bench import (
     ON,
+    page_back,
     panel,
     row_1,
     row_2,
@@ -230,9 +231,11 @@ def test_what_was_accepted_before_stays_accepted():
 
 def test_what_was_accepted_stays_with_a_drive_that_moves():
     world = panel(**unsupervised())
-    for key in ("PARAM", "NEXT", "NEXT", "EDIT", "UP", "SET", "SET", "PARAM"):
+    for key in ("PARAM", "NEXT", "NEXT", "EDIT", "UP", "SET", "SET"):
         world.run(300)
         world.press(key)
+    world.run(300)
+    page_back(world)
     world.run(500)
     assert row_2(world) == "READY        A2"
     world.press("START")
