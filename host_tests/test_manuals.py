@@ -160,7 +160,7 @@ def test_the_splash_is_where_it_is_seen_first():
 def test_every_key_is_explained():
     board = text("boards/pico/board.py")
     keys = re.findall(r'^    \("([A-Z_]+)", \d+\),$', board, re.M)
-    assert len(keys) == 14
+    assert len(keys) >= 14
     told = section(PANEL, "The keys")
     rows = " ".join(re.findall(r"^\| ([A-Z_, ]+) \|", told, re.M)).replace(",", "").split()
     assert sorted(keys) == sorted(rows)

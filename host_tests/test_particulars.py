@@ -56,7 +56,7 @@ def test_a_drive_that_does_not_say_what_it_is_asked_is_not_started():
     bench.bus.wait(1)
     bench.motor().stale_replies = 10_000
     refusal(TimedOut, bench.drive.run, 10.0)
-    assert bench.motor().starts == 0 and not bench.drive.wanted
+    assert bench.motor().starts == 0 and not bench.drive.engine.wanted
 
 
 def test_what_was_known_is_asked_anew_when_the_drive_was_away():

@@ -25,18 +25,27 @@ How the families differ from the MICROMASTER 4, in short (USS.md 1.3, 1.9, 4.2, 
 
 import uss.families.rows  # noqa: F401 - __getattr__ does not see the modules of this package
 
-_FAMILIES = "GENERIC MM3 MM410 MM420 MM430 MM440 G110 V20 CU240S G120"
-
-# Where a name is looked for, in this order.
-_MODULES = ("questions", "generic", "mm4", "mm3", "g110", "v20", "g120")
+# Which module has which families. The last one has what a program asks of them.
+_MODULES = {
+    "generic": "GENERIC",
+    "mm3": "MM3",
+    "mm4": "MM410 MM420 MM430 MM440",
+    "g110": "G110",
+    "v20": "V20",
+    "g120": "CU240S G120",
+    "questions": "",
+}
 
 
 def __getattr__(name):
     """A family or a function that is named for the first time; FAMILIES are all of them."""
     if name == "FAMILIES":
-        return tuple([__getattr__(family) for family in _FAMILIES.split()])
+        return tuple([__getattr__(family) for family in " ".join(_MODULES.values()).split()])
+    home = "mm4" if name == "MM4" else "questions"
     for module in _MODULES:
-        found = getattr(__import__(__name__ + "." + module, None, None, (name,)), name, None)
-        if found:
-            return found
-    raise AttributeError("uss.families has no %s" % name)
+        if name in _MODULES[module].split():
+            home = module
+    found = getattr(__import__(__name__ + "." + home, None, None, (name,)), name, None)
+    if found is None:
+        raise AttributeError("uss.families has no %s" % name)
+    return found
