@@ -31,6 +31,7 @@ from settings import load, save
 
 _FAREWELL_STEPS = const(100)  # for the display to show that nothing is controlled any more
 _SAVE_AGAIN_MS = const(10_000)  # after the store failed
+_LONG_US = const(900)  # a step that has taken so long is not to do two more things
 _FEED_MS = const(100)  # of the watchdog, which bites after 2 s
 
 
@@ -66,6 +67,7 @@ class App:
         self._fed_at_ms = 0
         self._save_failed = False
         self._saved_at_ms = 0
+        self._shows_next = False
 
     def start(self):
         self._progress_at_ms = self._fed_at_ms = self._ticks_ms()
@@ -74,16 +76,14 @@ class App:
         self.pacer.start()
 
     def step(self):
-        """One turn of the main loop, 4 ms of work at most; ends in the board's `idle`."""
+        """One turn of the main loop, 2 ms of work at most; ends in the board's `idle`."""
         board = self.board
         keypad = board.keypad
         now_ms = self._ticks_ms()
         now_us = self.ticks_us()
         self.refresh_bus(now_us, False)
         if self.step_panel(keypad.read(), now_ms, now_us, keypad.unclear):
-            self.refresh_bus(now_us)  # and looks at drives that are silent or wait too long
-            board.display.show(self.panel.screen.picture)
-            self._tend()
+            self._look_or_show(now_us)
         elif (now_ms - self._fed_at_ms) & self._mask >= _FEED_MS:
             self._feed(now_ms)
         if self._polled:
@@ -91,6 +91,19 @@ class App:
         if self.settings.dirty:
             self._save_if_quiet(now_ms)
         board.idle()
+
+    def _look_or_show(self, now_us):
+        """The drives that are silent or wait too long; a piece of the display, and the pacer: both
+        of these, or one where the step has taken long already, and next time the other one.
+        """
+        if not self._shows_next:
+            self.refresh_bus(now_us)
+            if (self.ticks_us() - now_us) & self._mask > _LONG_US:
+                self._shows_next = True
+                return
+        self._shows_next = False
+        self.board.display.show(self.panel.screen.picture)
+        self._tend()
 
     def _save_if_quiet(self, now_ms):
         """Writing flash holds everything up for a while, interrupts too: only when no drive runs,

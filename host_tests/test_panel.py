@@ -499,3 +499,39 @@ def test_down_goes_on_from_the_setpoint_that_is_shown():
     world.press("DOWN")
     assert row_1(world).startswith("S:  4.9")
     world.check()
+
+
+def test_a_step_that_takes_long_leaves_the_display_or_the_silent_drives_to_the_next():
+    """Both have their turns all the same, however slow the chip is."""
+    for look_us in (0, 5_000):
+        app = panel().app
+        done = []
+        app.board.display = Counted(done)
+        refresh, ticks_us = app.refresh_bus, app.ticks_us
+        looked = []
+
+        def look(now, looks=True):
+            refresh(now, looks)
+            if looks:
+                done.append("look")
+                looked.append(look_us)
+
+        app.refresh_bus = look
+        app.ticks_us = lambda: ticks_us() + (looked.pop() if looked else 0)
+        for _ in range(240):
+            before = len(done)
+            app.step()
+            assert len(done) - before <= (1 if look_us else 2)
+        assert done[:4] == ["look", "show"] * 2
+        assert abs(done.count("look") - done.count("show")) <= 1
+        assert len(done) >= (120 if not look_us else 60) - 1, len(done)
+
+
+class Counted:
+    """A display that only counts."""
+
+    def __init__(self, done):
+        self._done = done
+
+    def show(self, _picture):
+        self._done.append("show")
