@@ -76,7 +76,7 @@ class App:
         self.pacer.start()
 
     def step(self):
-        """One turn of the main loop, 2 ms of work at most; ends in the board's `idle`."""
+        """One turn of the main loop, 4 ms of work at most; ends in the board's `idle`."""
         board = self.board
         keypad = board.keypad
         now_ms = self._ticks_ms()
