@@ -5,7 +5,7 @@ import random
 
 from uss import pzd
 from uss.families import FAMILIES, G120, GENERIC, MM3, MM440
-from uss.scaling import Scale, pole_pairs, run_words, with_direction
+from uss.scaling import Scale, pole_pairs, run_words, signed_hiw
 
 RIGHT, LEFT = 0xFB34, 0xBB34
 
@@ -159,11 +159,12 @@ def test_whatever_makes_a_drive_run_is_one_of_its_words():
 
 
 def test_an_actual_value_without_a_sign_gets_it_from_bit_14():
-    assert with_direction(0x2000, RIGHT) == 0x2000
-    assert with_direction(0x2000, LEFT) == 0xE000
-    assert with_direction(0xE000, LEFT) == 0xE000  # it had one
-    assert with_direction(0x2001, LEFT) == 0xDFFF
-    assert with_direction(0, LEFT) == 0  # a drive that stands says so too
+    assert signed_hiw(MM3, 0x2000, RIGHT) == 0x2000
+    assert signed_hiw(MM3, 0x2000, LEFT) == 0xE000
+    assert signed_hiw(MM3, 0xE000, LEFT) == 0xE000  # it had one
+    assert signed_hiw(MM3, 0x2001, LEFT) == 0xDFFF
+    assert signed_hiw(MM3, 0, LEFT) == 0  # a drive that stands says so too
+    assert signed_hiw(MM440, 0x2000, LEFT) == 0x2000  # this family sends the sign itself
 
 
 def test_pole_pairs_of_a_motor():

@@ -105,12 +105,13 @@ def run_words(family, hsw, reverse=False):
     return (family.on_reverse if count < 0 else family.on), min(abs(count), HSW_MAX)
 
 
-def with_direction(hiw, zsw):
-    """The actual value as a word with a sign, for a drive whose HIW is only a magnitude.
+def signed_hiw(family, hiw, zsw):
+    """The actual value of a drive of the family as a word with a sign.
 
-    Bit 14 of ZSW tells the direction. A value that is negative already stays so.
+    Where HIW is only a magnitude, bit 14 of ZSW tells the direction. A value that is negative
+    already stays so.
     """
-    if zsw & RUNS_RIGHT or hiw & 0x8000:
+    if family.hiw_is_signed or zsw & RUNS_RIGHT or hiw & 0x8000:
         return hiw
     return -hiw & 0xFFFF
 

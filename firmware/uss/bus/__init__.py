@@ -24,7 +24,7 @@ from uss.layout import Layout
 from uss.leave import leave, persist
 from uss.bus.particulars import Particulars
 from uss.drive import COUNTERS
-from uss.scaling import Scale, run_words, with_direction
+from uss.scaling import Scale, run_words, signed_hiw
 from uss.timing import Timing, elapsed
 
 REST_US = 100  # between two looks at the bus while a call waits
@@ -435,8 +435,7 @@ class Drive:
         if wrong:
             raise ValueError("drive %d %s" % (self.engine.address, wrong))
         self._wait_for_contact()
-        hiw = self.engine.word(2)
-        return hiw if self.family.hiw_is_signed else with_direction(hiw, self.engine.zsw)
+        return signed_hiw(self.family, self.engine.word(2), self.engine.zsw)
 
     def _jog(self, stw):
         if not stw:

@@ -28,6 +28,7 @@ from uss.families import MM3, MM4
 from uss.master import DEAD_MAN_US, OFF
 from uss.leave import leave, persist
 from uss.s7.parameters import (  # noqa: F401  (also blocks of this library)
+    Block,
     USS_RPM_D,
     USS_RPM_R,
     USS_RPM_W,
@@ -35,7 +36,7 @@ from uss.s7.parameters import (  # noqa: F401  (also blocks of this library)
     USS_WPM_R,
     USS_WPM_W,
 )
-from uss.scaling import RUNS_RIGHT, Scale, run_words, with_direction
+from uss.scaling import RUNS_RIGHT, Scale, run_words, signed_hiw
 from uss.telegram import NODE_MAX
 from uss.timing import BAUD_RATES, elapsed
 from uss.bits import may_start
@@ -62,20 +63,21 @@ class Port:
         also goes on, and stops the motors, when the scan does not.
 
     Leaving `with` stops the motors, see `close`. Fields to look at: `bus` (None while the port is
-    not set up for USS), `drives` (by address), `now` (the instant of this scan).
+    not set up for USS), `drives` and `families` (by address), `now` (the instant of this scan).
+    For the blocks: `controls`, the USS_CTRL that commands each drive.
     """
 
     def __init__(self, open_bus, clock, types=TYPES, polled=True):
         self.bus = None
         self.now = 0
         self.drives = [None] * (NODE_MAX + 1)
+        self.families = [types[min(DEFAULT_TYPE, len(types) - 1)]] * (NODE_MAX + 1)
+        self.controls = [None] * (NODE_MAX + 1)
         self.job = None  # the parameter job of the block that was served last
         self._open_bus = open_bus
         self._clock = clock
         self._types = types
-        self._type_of = [min(DEFAULT_TYPE, len(types) - 1)] * (NODE_MAX + 1)
         self._polled = polled
-        self._controls = [None] * (NODE_MAX + 1)  # the USS_CTRL that commands each drive
         self._baud = 0
         self._leaving = None  # the bus that is being left
         self._following = None  # (baud, active) of the one after it
@@ -97,8 +99,9 @@ class Port:
         if bus is None:
             return
         self._go_on(bus, self.now)
-        for control in self._controls:
-            if control is not None and control.is_overdue():
+        mask = self._clock.ticks_mask
+        for control in self.controls:
+            if control and elapsed(self.now, control.called_at, mask) > DEAD_MAN_US:
                 control.leave()
 
     def close(self):
@@ -112,10 +115,6 @@ class Port:
 
     # --- for the blocks -------------------------------------------------------------------------
 
-    def passed_us(self, since):
-        """Microseconds from the scan of the instant `since` to this one."""
-        return elapsed(self.now, since, self._clock.ticks_mask)
-
     def refusal(self, address):
         """Why no block may use the drive at this address: a status code, or NO_ERROR."""
         if self.bus is None:
@@ -126,22 +125,14 @@ class Port:
             return codes.NOT_ACTIVE
         return codes.NO_ERROR
 
-    def family(self, address):
-        """What the drive at this address is, see `families`."""
-        return self._types[self._type_of[address]]
-
     def refusal_to(self, control, address, type_number):
         """Why this USS_CTRL may not command the drive at this address, as one of this TYPE."""
         refusal = self.refusal(address)
         if refusal:
             return refusal
-        if self._controls[address] not in (None, control):
+        if self.controls[address] not in (None, control):
             return codes.INTERFERENCE
         return self._set_type(address, type_number)
-
-    def hand_over(self, address, control):
-        """This USS_CTRL commands the drive from now on, None for nobody."""
-        self._controls[address] = control
 
     def is_busy(self):
         """Whether a parameter job is under way."""
@@ -204,23 +195,24 @@ class Port:
             return
         leave(bus, self._clock, self._rest)
         for address in range(NODE_MAX + 1):
-            self.drives[address] = self._controls[address] = None
+            self.drives[address] = self.controls[address] = None
         self._baud = 0
         self._leaving = self.bus = self.job = None
 
     def _set_type(self, address, type_number):
         if not isinstance(type_number, int) or not 0 <= type_number < len(self._types):
             return codes.ILLEGAL_COMMAND
-        if not self._types[type_number].layout.pzd_words:
+        family = self._types[type_number]
+        if not family.layout.pzd_words:
             return codes.ILLEGAL_COMMAND
-        if self._type_of[address] == type_number:
+        if self.families[address] is family:
             return codes.NO_ERROR
         if self.is_busy():
             return codes.PORT_BUSY
         if self.drives[address].may_run():
             return codes.CHANGE_NOT_ALLOWED
         self._remove(address)
-        self._type_of[address] = type_number
+        self.families[address] = family
         self._add(address)
         return codes.NO_ERROR
 
@@ -254,14 +246,14 @@ class Port:
                 self._remove(address)
 
     def _add(self, address):
-        self.drives[address] = self.bus.turns.add(address, self.family(address).layout)
+        self.drives[address] = self.bus.turns.add(address, self.families[address].layout)
 
     def _remove(self, address):
         self.bus.turns.remove(self.drives[address])
         self.drives[address] = None
 
 
-class USS_INIT:
+class USS_INIT(Block):
     """Sets up the port; once for each change, by the rising edge of EN.
 
     MODE: 1 USS, 0 the port is for something else. BAUD: bits per second. ACTIVE: bit n is drive n.
@@ -271,16 +263,13 @@ class USS_INIT:
 
     def __init__(self, port):
         self.DONE = False
-        self.ERROR = codes.NO_ERROR
-        self.STATUS_WORD = codes.word(codes.NO_ERROR)
         self._port = port
         self._was_enabled = False
         self._is_at_work = False
 
     def __call__(self, EN=False, MODE=USS, BAUD=9600, ACTIVE=0):
         if EN and not self._was_enabled:
-            self.ERROR = self._port.set_up(MODE, BAUD, ACTIVE)
-            self.STATUS_WORD = codes.word(self.ERROR)
+            self._tell(self._port.set_up(MODE, BAUD, ACTIVE))
             self._is_at_work = self.ERROR == codes.NO_ERROR
             self.DONE = not self._is_at_work
         self._was_enabled = bool(EN)
@@ -289,7 +278,7 @@ class USS_INIT:
             self.DONE = True
 
 
-class USS_CTRL:
+class USS_CTRL(Block):
     """Commands one active drive and shows its state; to be called in every scan.
 
     RUN: run, by its rising edge; off is OFF1, down the ramp. OFF2: coast; OFF3: as fast as the
@@ -307,8 +296,6 @@ class USS_CTRL:
 
     def __init__(self, port):
         self.RESP_R = False
-        self.ERROR = codes.NO_ERROR
-        self.STATUS_WORD = codes.word(codes.NO_ERROR)
         self.STATUS = 0
         self.SPEED = 0.0
         self.RUN_EN = False
@@ -316,13 +303,13 @@ class USS_CTRL:
         self.INHIBIT = False
         self.FAULT = False
         self.RUN_VOID = False
+        self.called_at = 0  # the instant of the scan in which it was called last
         self._port = port
         self._drive = None
         self._family = None  # of this drive
-        self._called_at = 0
         self._run = True  # as of the last scan
         self._f_ack = True
-        self._counters = [0] * len(codes.COUNTER_CODES)  # of the drive, as of the last scan
+        self._counters = None  # of the drive, as of the last scan
         self._reply_code = codes.NO_ERROR
 
     def __call__(
@@ -340,12 +327,7 @@ class USS_CTRL:
             error = self._command(RUN, off, DIR, SPEED_SP)
             self._acknowledge(F_ACK)
             self._report()
-        self.ERROR = error or self._reply_code
-        self.STATUS_WORD = codes.word(self.ERROR)
-
-    def is_overdue(self):
-        """Whether it was not called for so long that its motor is to be stopped."""
-        return self._port.passed_us(self._called_at) > DEAD_MAN_US
+        self._tell(error or self._reply_code)
 
     def leave(self):
         """Stop the motor and let the drive go."""
@@ -354,13 +336,13 @@ class USS_CTRL:
             return
         if drive.wanted:
             drive.stop()
-        self._port.hand_over(drive.address, None)
+        self._port.controls[drive.address] = None
         self._drive = None
 
     def _take_drive(self, address, type_number):
         """Command the drive at this address and no other; a code when that cannot be."""
         port = self._port
-        self._called_at = port.now
+        self.called_at = port.now
         error = port.refusal_to(self, address, type_number)
         drive = None if error else port.drives[address]
         if drive is not self._drive:
@@ -371,13 +353,13 @@ class USS_CTRL:
 
     def _begin(self, drive):
         self._drive = drive
-        self._family = self._port.family(drive.address)
-        self._port.hand_over(drive.address, self)
+        self._family = self._port.families[drive.address]
+        self._port.controls[drive.address] = self
         # An input that is on already has no rising edge: it may have been on before power came.
         self._run = True
         self._f_ack = True
         self._reply_code = codes.NO_ERROR
-        self._note_counters()
+        self._counters = list(drive.counters)
 
     def _command(self, run, off, reverse, speed):
         """What the inputs say, to the drive; a code when the setpoint cannot be followed."""
@@ -412,30 +394,19 @@ class USS_CTRL:
     def _report(self):
         """The outputs, as far as there is news of the drive."""
         drive = self._drive
-        answers = drive.counters[0]
+        counters = list(drive.counters)  # what comes meanwhile is for the next scan
         if drive.silent:
-            code = codes.of_reply(drive.counters, self._counters)
-            self._reply_code = code or self._reply_code
+            self._reply_code = codes.of_reply(counters, self._counters) or self._reply_code
         elif self._port.bus.is_line_in_use():
             self._reply_code = codes.PORT_BUSY
         else:
             self._reply_code = codes.NO_ERROR
-        self.RESP_R = answers != self._counters[0]
-        self._note_counters()
-        self._counters[0] = answers  # one that came meanwhile is for the next scan
+        self.RESP_R = counters[0] != self._counters[0]
+        self._counters = counters
         if self.RESP_R:
-            zsw = drive.zsw
-            hiw = drive.hiw
-            if not self._family.hiw_is_signed:
-                hiw = with_direction(hiw, zsw)
-            self.STATUS = zsw
-            self.SPEED = PERCENT.percent(hiw)
+            self.STATUS = zsw = drive.zsw
+            self.SPEED = PERCENT.percent(signed_hiw(self._family, drive.hiw, zsw))
             self.RUN_EN = zsw & pzd.ZSW_RUNNING != 0
             self.D_DIR = zsw & RUNS_RIGHT != 0
             self.INHIBIT = zsw & pzd.ZSW_INHIBIT != 0
             self.FAULT = zsw & pzd.ZSW_FAULT != 0
-
-    def _note_counters(self):
-        counters = self._counters
-        for index in range(len(counters)):
-            counters[index] = self._drive.counters[index]

@@ -16,29 +16,32 @@ from micropython import const
 
 from uss import pkw
 
-NO_ERROR = const(0)
-NO_ANSWER = const(1)
-CHECKSUM = const(2)
-PARITY = const(3)
-INTERFERENCE = const(4)
-ILLEGAL_COMMAND = const(5)
-ILLEGAL_ADDRESS = const(6)
-PORT_NOT_USS = const(7)
-PORT_BUSY = const(8)
-SPEED_RANGE = const(9)
-REPLY_LENGTH = const(10)
-FIRST_CHARACTER = const(11)
-LENGTH_CHARACTER = const(12)
-WRONG_DRIVE = const(13)
-BUFFER_ADDRESS = const(14)
-PARAMETER_NUMBER = const(15)
-PROTOCOL = const(16)
-CHANGE_NOT_ALLOWED = const(17)
-BAUD_RATE = const(18)
-NOT_ACTIVE = const(19)
-PARAMETER_REPLY = const(20)
-WIDTH_DOUBLE = const(21)
-WIDTH_WORD = const(22)
+# In the order of their numbers, as the table below.
+(
+    NO_ERROR,  # 0
+    NO_ANSWER,
+    CHECKSUM,
+    PARITY,
+    INTERFERENCE,
+    ILLEGAL_COMMAND,  # 5
+    ILLEGAL_ADDRESS,
+    PORT_NOT_USS,
+    PORT_BUSY,
+    SPEED_RANGE,
+    REPLY_LENGTH,  # 10
+    FIRST_CHARACTER,
+    LENGTH_CHARACTER,
+    WRONG_DRIVE,
+    BUFFER_ADDRESS,
+    PARAMETER_NUMBER,  # 15
+    PROTOCOL,
+    CHANGE_NOT_ALLOWED,
+    BAUD_RATE,
+    NOT_ACTIVE,
+    PARAMETER_REPLY,  # 20
+    WIDTH_DOUBLE,
+    WIDTH_WORD,
+) = range(23)
 
 # The S7-200's text of each code, its number being the index, and the S7-1200's word of the same
 # cause; None where that library has none.

@@ -16,7 +16,21 @@ from uss.tasks import arrays
 FLOAT_MAX = 3.4028235e38  # the largest number of a REAL
 
 
-class Parameter:
+class Block:
+    """What every block has.
+
+    ERROR: a code of `codes`. STATUS_WORD: that of the S7-1200.
+    """
+
+    ERROR = codes.NO_ERROR
+    STATUS_WORD = codes.word(codes.NO_ERROR)
+
+    def _tell(self, code, word=None):
+        self.ERROR = code
+        self.STATUS_WORD = word or codes.word(code)
+
+
+class Parameter(Block):
     """What the blocks for parameters share; one of them at a time on a port.
 
     EN: on until DONE. XMT_REQ: the request, once for each time that it and EN become on. DRIVE:
@@ -31,8 +45,6 @@ class Parameter:
 
     def __init__(self, port):
         self.DONE = False
-        self.ERROR = codes.NO_ERROR
-        self.STATUS_WORD = codes.word(codes.NO_ERROR)
         self.PKW_ERROR = None
         self._port = port
         self._was_requested = False
@@ -56,24 +68,23 @@ class Parameter:
         self.PKW_ERROR = None
         port = self._port
         refusal = port.refusal(address)
-        if not refusal and port.is_busy():
-            refusal = codes.PORT_BUSY
-        if not refusal and not _is_parameter(number, index):
-            refusal = codes.PARAMETER_NUMBER
         if refusal:
             self._end(refusal)
-            return
-        drive = port.drives[address]
-        has_task = port.family(address).has_eeprom_tasks or not eeprom
-        if drive.layout.pkw_words == 0 or not has_task:
+        elif port.is_busy():
+            self._end(codes.PORT_BUSY)
+        elif not _is_parameter(number, index):
+            self._end(codes.PARAMETER_NUMBER)
+        elif eeprom and not port.families[address].has_eeprom_tasks:
+            self._end(codes.ILLEGAL_COMMAND)
+        elif not port.drives[address].layout.pkw_words:
             self._end(codes.ILLEGAL_COMMAND)
         else:
-            self._ask(drive, number, index, value, eeprom)
+            self._ask(port.drives[address], number, index, value, eeprom)
 
     def _ask(self, drive, number, index, value, eeprom):
         try:
             job = self._make_job(number, index, value, eeprom)
-            arrays.with_array_task(job, self._port.family(drive.address))
+            arrays.with_array_task(job, self._port.families[drive.address])
         except (ValueError, TypeError, OverflowError):
             self._end(codes.ILLEGAL_COMMAND, codes.WRONG_VALUE_TYPE)
             return
@@ -85,8 +96,7 @@ class Parameter:
         self._job = job
         self._drive = drive
         self._counters = list(drive.counters)
-        self.ERROR = codes.NO_ERROR
-        self.STATUS_WORD = codes.word(codes.NO_ERROR)
+        self._tell(codes.NO_ERROR)
 
     def _finish(self):
         job = self._job
@@ -106,8 +116,7 @@ class Parameter:
         self._end(code, codes.word_of_job(job, code))
 
     def _end(self, code, word=None):
-        self.ERROR = code
-        self.STATUS_WORD = word or codes.word(code)
+        self._tell(code, word)
         self.DONE = True
 
     def _make_job(self, number, index, value, eeprom):
@@ -118,9 +127,8 @@ class Parameter:
 
 
 def _is_parameter(number, index):
-    if not isinstance(number, int) or not isinstance(index, int):
-        return False
-    return 0 <= number <= pkw.NUMBER_MAX and 0 <= index <= pkw.INDEX_MAX
+    is_number = isinstance(number, int) and 0 <= number <= pkw.NUMBER_MAX
+    return is_number and isinstance(index, int) and 0 <= index <= pkw.INDEX_MAX
 
 
 class USS_RPM_W(Parameter):
