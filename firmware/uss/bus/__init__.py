@@ -18,7 +18,8 @@ Whoever does not wait calls `step` again and again: without it for 300 ms every 
 
 from uss import bits, families, master, pkw, pzd, single
 from uss.bus import pkw_errors
-from uss.bus.errors import FallsSilent, NoContact, NotStarted, Refused, TimedOut, UssError
+from uss.bus.errors import WHY_SILENT, UssError
+from uss.bus.errors import FallsSilent, NoContact, NotStarted, Refused, TimedOut
 from uss.families.rows import ACTUAL, STATUS
 from uss.layout import Layout
 from uss.leave import leave, persist
@@ -68,7 +69,6 @@ class Drive:
         self.particulars = Particulars(self, scale)
         if not family.hiw_is_signed:
             engine.tell_speed(0)
-        self._off_time_ms = 0  # as the bus was told last
         self._kinds = {}  # of double words, number -> (contacts, kind), as the drive tells them
 
     # --- to run and to stop ---------------------------------------------------------------------
@@ -84,8 +84,7 @@ class Drive:
         if self.set(hertz, percent, rpm):
             return
         self._check_start(True)
-        setpoint = self.particulars.setpoint(hertz, percent, rpm)
-        stw, hsw = run_words(self.family, setpoint)
+        stw, hsw = run_words(self.family, self.particulars.setpoint(hertz, percent, rpm))
         self._start(hsw, stw)
 
     def set(self, hertz=None, percent=None, rpm=None):
@@ -94,14 +93,13 @@ class Drive:
         Answers whether there was such a motor; nothing happens otherwise. ValueError as of run().
         """
         _check_speed(hertz, percent, rpm)
-        engine = self.engine
         if not self._has_speed():
             return False
         stw, hsw = run_words(self.family, self.particulars.setpoint(hertz, percent, rpm))
         if not self._has_speed():  # it was asked for its settings first, and stopped meanwhile
             return False
-        engine.hsw = hsw
-        engine.turn(stw)
+        self.engine.hsw = hsw
+        self.engine.turn(stw)
         return True
 
     def jog_right(self):
@@ -166,8 +164,7 @@ class Drive:
         if seconds:
             value = max(value, 1)  # 0 would be "never"
         self.write(family.off_time_number, value, family.link_index, sure=True)
-        self.particulars.told_off_time_ms = value * family.off_time_unit_ms
-        self.keep_within(value * family.off_time_unit_ms)
+        self.bus.supervise(self, value * family.off_time_unit_ms)
 
     # --- what it does ---------------------------------------------------------------------------
 
@@ -342,25 +339,21 @@ class Drive:
 
     def begin(self, job):
         """As carry_out, but it waits for contact alone, and answers the job: `finish` is next."""
-        engine = self.engine
-        if not engine.layout.pkw_words:
-            raise UssError(
-                "drive %d has no parameter channel: %r" % (engine.address, engine.layout)
-            )
+        if not self.layout.pkw_words:
+            raise UssError("drive %d has no parameter channel: %r" % (self.address, self.layout))
         self._wait_for_contact()
-        engine.ask(job)
+        self.ask(job)
         return job
 
     def finish(self, job):
         """Wait for the end of a job that was begun."""
-        engine = self.engine
-        engine.want_turns(True)
+        self.engine.want_turns(True)
         try:
             while job.state == pkw.PENDING:
                 self._raise_unless_asked()
                 self.bus.rest()
         finally:
-            engine.want_turns(False)
+            self.engine.want_turns(False)
 
     def raise_unless_done(self, job):
         """The exception that a job deserves which has ended otherwise."""
@@ -494,7 +487,9 @@ class Drive:
         engine = self.engine
         self._raise_unless_asked()
         engine.start(hsw, stw)
-        self.bus.wait(START_S, self._has_started_or_failed)
+        self.bus.wait(
+            START_S, lambda: self.is_running or not engine.wanted or engine.stopped_by_engine()
+        )
         if self.is_running:
             return
         self._raise_unless_asked()
@@ -505,13 +500,9 @@ class Drive:
         engine.stop()
         self._refuse("did not start: is it being commissioned (P0010), or held by its terminals?")
 
-    def _has_started_or_failed(self):
-        return self.is_running or not self.engine.wanted or self.engine.stopped_by_engine()
-
     def keep_within(self, off_time_ms):
         """The drive's telegram-off time is known, or None: the bus keeps within it from now on."""
-        if off_time_ms is not None and off_time_ms != self._off_time_ms:
-            self._off_time_ms = off_time_ms
+        if off_time_ms is not None:
             self.bus.engine.care.supervise(self.engine, off_time_ms)
 
     def _may_start(self):
@@ -527,10 +518,10 @@ class Drive:
         engine = self.engine
         if engine.contact:
             return
-        failures = self._failures()
+        failures = sum(engine.counters[1:])  # telegrams to it without a valid reply; wraps
 
         def has_answered_or_failed():
-            failed = (self._failures() - failures) & 0xFFFF
+            failed = (sum(engine.counters[1:]) - failures) & 0xFFFF
             return engine.contact or failed >= TRIES or self._why_not_asked() is not None
 
         patience_us = LISTEN_US + TRIES * self.bus.engine.turns.longest_cycle_us()
@@ -538,10 +529,6 @@ class Drive:
         self.bus.wait(patience_us / 1_000_000, has_answered_or_failed)
         if not self.contact:
             raise self._no_contact()
-
-    def _failures(self):
-        """Telegrams to it without a valid reply; wraps."""
-        return sum(self.engine.counters[1:])
 
     def _no_contact(self):
         """The exception that says why."""
@@ -820,13 +807,11 @@ class Master:
 
     def why_silent(self):
         """Why nothing is sent any more, in words; None: something is."""
-        if self.engine.phase == master.CLOSED:
-            return "the bus is closed"
-        return "the bus is off" if self.engine.phase == master.OFF else None
+        return WHY_SILENT.get(self.engine.phase)
 
     def is_silent(self):
         """Whether nothing is sent any more, after off() or close()."""
-        return self.engine.phase in (master.OFF, master.CLOSED)
+        return self.engine.phase in WHY_SILENT
 
     def close(self):
         """Stop every drive, wait for the answers, and leave the line and the link alone.

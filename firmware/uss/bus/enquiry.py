@@ -63,11 +63,8 @@ def layouts(net_count, variable):
     if variable:
         return [Layout(VARIABLE, pzd_words) for pzd_words in USUAL_PZD_WORDS]
     words = net_count // 2
-    found = []
-    for pkw_words in (4, 3, 0):
-        if 0 <= words - pkw_words <= PZD_WORDS_MAX:
-            found.append(Layout(pkw_words, words - pkw_words))
-    return found or [Layout(VARIABLE, 2)]
+    pkw_words = [count for count in (4, 3, 0) if 0 <= words - count <= PZD_WORDS_MAX]
+    return [Layout(count, words - count) for count in pkw_words] or [Layout(VARIABLE, 2)]
 
 
 def enquiry(node):
@@ -94,9 +91,8 @@ def enquiry(node):
                     continue
                 if number not in known:
                     known[number] = yield layout, number
-                if known[number] in (None, NO_CHANNEL):
-                    break
-                if wanted is not None and known[number] != wanted:
+                value = known[number]
+                if value in (None, NO_CHANNEL) or wanted not in (None, value):
                     break
             else:
                 node.layout = layout

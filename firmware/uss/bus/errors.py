@@ -10,6 +10,11 @@ TypeError.
         print(reason)                       # drive 1 does not answer
 """
 
+from uss.master import CLOSED, OFF
+
+# Why nothing is sent any more, by the phase of the engine.
+WHY_SILENT = {OFF: "the bus is off", CLOSED: "the bus is closed"}
+
 
 class UssError(Exception):
     """What was wanted of a drive was not done."""

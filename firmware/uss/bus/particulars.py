@@ -91,7 +91,18 @@ class Particulars:
             return wrong
         if needs_setpoint and self.scale is None:
             return "cannot tell what 100 % is: add it to the bus with scale=Scale(...)"
-        return None if unsupervised or self.off_time_ms() else self._supervision_obstacle()
+        if unsupervised or self.off_time_ms():
+            return None
+        if self.values[rows.SUPERVISION] == UNKNOWN:
+            return (
+                "may run on if this program died: it does not tell its telegram-off time. "
+                "bus.supervise(drive, 2000) says that it has one of 2000 ms; or add it to the bus "
+                "with unsupervised=True"
+            )
+        return (
+            "would run on if this program died: %s = 0. supervise(2.0) changes that; or add "
+            "it to the bus with unsupervised=True" % self._name(rows.SUPERVISION)
+        )
 
     def what_is_wrong(self, subject):
         """What a wrong row of this subject makes of the drive, in words; None: none is wrong."""
@@ -103,18 +114,6 @@ class Particulars:
         if family.survey[row][2] == rows.SOURCE:
             found, wanted = ["%d:%d" % (value >> 16, value & 0xFFFF) for value in (found, wanted)]
         return "%s: %s = %s, not %s" % (WRONGS[subject], self._name(row), found, wanted)
-
-    def _supervision_obstacle(self):
-        if self.values[rows.SUPERVISION] == UNKNOWN:
-            return (
-                "may run on if this program died: it does not tell its telegram-off time. "
-                "bus.supervise(drive, 2000) says that it has one of 2000 ms; or add it to the bus "
-                "with unsupervised=True"
-            )
-        return (
-            "would run on if this program died: %s = 0. supervise(2.0) changes that; or add "
-            "it to the bus with unsupervised=True" % self._name(rows.SUPERVISION)
-        )
 
     # --- speeds ---------------------------------------------------------------------------------
 
@@ -187,12 +186,8 @@ class Particulars:
     def _scale(self):
         """The scale that the drive tells, else the one that was told, else None."""
         scale = self._own_scale()
-        told = self._told_scale
-        if told is None:
-            return scale
-        if scale is None or scale.reference_hertz is None and scale.reference_rpm is None:
-            return told
-        return scale
+        tells = scale is not None and (scale.reference_hertz or scale.reference_rpm)
+        return scale if tells or self._told_scale is None else self._told_scale
 
     def _tell_speed(self):
         """Let the engine know what 100 % of the actual value is, where that tells the speed."""
@@ -208,8 +203,7 @@ class Particulars:
         values = self.values
         if family.survey[rows.ABSOLUTE] and values[rows.ABSOLUTE] == UNKNOWN:
             return None
-        absolute = family.absolute_value is not None
-        absolute = absolute and values[rows.ABSOLUTE] == family.absolute_value
+        absolute = values[rows.ABSOLUTE] == family.absolute_value
         reference = values[rows.REFERENCE]
         if reference == UNKNOWN:
             return Scale(absolute=absolute)

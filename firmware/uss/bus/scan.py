@@ -22,8 +22,8 @@ address. Whoever is silent costs a reply time-out each time; `longest_ms` says i
 from micropython import const
 
 from uss.bus.enquiry import Node, Question, enquiry
-from uss.bus.errors import NoContact, UssError
-from uss.master import CLOSED, LISTENING, OFF, PAUSE_LOOK_US
+from uss.bus.errors import WHY_SILENT, NoContact, UssError
+from uss.master import LISTENING, OFF, PAUSE_LOOK_US
 from uss.pzd import ZSW_RUNNING
 from uss.receiver import SILENT
 from uss.silence import SHARE
@@ -98,10 +98,8 @@ class Scan:
     def longest_ms(self):
         """How long it takes to ask everybody, in ms, when nobody answers; with what the drives
         take. Those who are found are asked in between: that takes up to three times as long."""
-        total_us = 0
-        for net_count in self._net_counts:
-            total_us += len(self._addresses) * _probe_us(self._bus.timing, net_count)
-        return total_us * (SHARE if self._has_contact() else 1) // 1000
+        longest_us = _longest_us(self._bus.timing, self._addresses, self._net_counts)
+        return longest_us * (SHARE if self._has_contact() else 1) // 1000
 
     def step(self, now):
         """Do what is next, which never takes long; True when all is asked.
@@ -109,8 +107,8 @@ class Scan:
         now: reading of the clock in microseconds. Nothing is asked as long as the bus listens.
         NoContact: the bus is off, or closed.
         """
-        if self._bus.phase in (OFF, CLOSED) and not self.over:
-            raise NoContact("the bus is %s" % ("off" if self._bus.phase == OFF else "closed"))
+        if self._bus.phase in WHY_SILENT and not self.over:
+            raise NoContact(WHY_SILENT[self._bus.phase])
         if self._count_stops() != self._stops:
             self.end()
         if self.over:
@@ -222,16 +220,12 @@ class Scan:
 
     def _keep(self, now):
         """Ask whoever was found and waits longest, if it is high time; whether one is asked."""
-        longest_us = KEEP_US
-        waits = None
-        for address, asked_at in self._kept.items():
-            waited_us = elapsed(now, asked_at, self._mask)
-            if waited_us >= longest_us:
-                waits, longest_us = address, waited_us
-        if waits is None or self._kept_in_a_row >= KEEP_MAX:
+        waits = [(elapsed(now, at, self._mask), address) for address, at in self._kept.items()]
+        waited_us, address = max(waits or [(0, None)])
+        if waited_us < KEEP_US or self._kept_in_a_row >= KEEP_MAX:
             self._kept_in_a_row = 0
             return False
-        if self._send(Mirror(waits, bytes(self.found[waits])), self._note):
+        if self._send(Mirror(address, bytes(self.found[address])), self._note):
             self._kept_in_a_row += 1
         return True
 
@@ -281,10 +275,7 @@ class Scan:
         return None
 
     def _has_contact(self):
-        for drive in self._bus.turns.drives:
-            if drive.contact:
-                return True
-        return False
+        return any([drive.contact for drive in self._bus.turns.drives])
 
     def _count_stops(self):
         return sum([drive.stops for drive in self._bus.turns.drives])
@@ -306,7 +297,10 @@ class RateScan:
         scan.baud, scan.found               # 19200, {3: 12}; None, {} when nobody answered
 
     At each rate the bus listens before it sends. When it hears anybody talk, the scan is over and
-    `line_in_use` is True. It ends at the first rate at which somebody answers. `unclear` tells of
+    `line_in_use` is True. It ends at the first rate at which somebody answers. As of `Scan`, of
+    the rate that is tried: `found`, who answered, address -> net characters; `nodes`, what those
+    are, address -> `enquiry.Node`; `will_trip`, who of them trips when he hears no more, address
+    -> milliseconds. `unclear` tells of
     the rates before it at which something came that was no answer, rate -> `Scan.unclear`: where
     all drives have the address that they are delivered with, for instance.
     """
@@ -321,6 +315,7 @@ class RateScan:
             if rate not in BAUD_RATES:
                 raise ValueError("baud rate %r is none of USS" % (rate,))
         self.baud = None
+        self.found = self.nodes = self.will_trip = {}
         self.unclear = {}
         self.line_in_use = False
         self.over = False
@@ -338,29 +333,11 @@ class RateScan:
         self._foreign = 0  # what the bus had counted when it sent its first telegram
 
     @property
-    def found(self):
-        """As of `Scan`: who answered, address -> net characters."""
-        return self.scan.found if self.scan else {}
-
-    @property
-    def nodes(self):
-        """As of `Scan`: what those are who answered, address -> `enquiry.Node`."""
-        return self.scan.nodes if self.scan else {}
-
-    @property
-    def will_trip(self):
-        """As of `Scan`: who of them trips when he hears no more, address -> milliseconds."""
-        return self.scan.will_trip if self.scan else {}
-
-    @property
     def longest_ms(self):
         """How long it takes at the most, in ms, besides listening: when nobody answers at all."""
-        total_us = 0
-        for rate in self._rates:
-            timing = Timing(rate)
-            for net_count in self._net_counts:
-                total_us += len(self._addresses) * _probe_us(timing, net_count)
-        return total_us // 1000
+        timings = [Timing(rate) for rate in self._rates]
+        addresses, net_counts = self._addresses, self._net_counts
+        return sum([_longest_us(timing, addresses, net_counts) for timing in timings]) // 1000
 
     def step(self, now):
         """Do what is next; True when it is over. ValueError: the bus opened has drives. UssError:
@@ -410,7 +387,8 @@ class RateScan:
         self._bus = bus = engine_of(self._open_bus(self._rates[self._next]))
         if bus.turns.drives:
             raise ValueError("a bus with drives would send them telegrams that nobody knows yet")
-        self.scan = Scan(bus, self._mask, self._addresses, self._net_counts, self._enquires)
+        self.scan = scan = Scan(bus, self._mask, self._addresses, self._net_counts, self._enquires)
+        self.found, self.nodes, self.will_trip = scan.found, scan.nodes, scan.will_trip
 
     def _end_rate(self):
         rate = self._rates[self._next]
@@ -431,7 +409,9 @@ def engine_of(bus):
     return getattr(bus, "engine", bus)
 
 
-def _probe_us(timing, net_count):
-    """What a mirror telegram costs that nobody answers; on an idle bus it is noticed late."""
-    sending_us = timing.start_interval_us + timing.telegram_us(net_count)
-    return PAUSE_LOOK_US + sending_us + timing.reply_timeout_us + timing.character_us
+def _longest_us(timing, addresses, net_counts):
+    """What mirror telegrams cost that nobody answers; on an idle bus they are noticed late."""
+    waiting_us = PAUSE_LOOK_US + timing.start_interval_us
+    waiting_us += timing.reply_timeout_us + timing.character_us
+    probes_us = sum([waiting_us + timing.telegram_us(net_count) for net_count in net_counts])
+    return len(addresses) * probes_us
