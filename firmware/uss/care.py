@@ -148,13 +148,11 @@ class Care:
 
     def list_changed(self):
         """There is another list: what follows from that."""
-        self.silence.list_changed()
+        net_count = max([drive.layout.net_count for drive in self._turns.drives] or [0])
+        self.silence.list_changed(net_count)
         timing = self._turns.timing
-        longest_us = 0
-        for drive in self._turns.drives:
-            net_count = drive.layout.net_count
-            longest_us = max(longest_us, timing.exchange_us(net_count, timing.start_interval_us))
-        self._exchange_us = self._quickest_us = longest_us
+        self._exchange_us = timing.exchange_us(net_count, timing.start_interval_us)
+        self._quickest_us = self._exchange_us
 
     def look(self, now):
         """From the loop: a little of what is due."""

@@ -54,13 +54,12 @@ class Silence:
         if drive.outside or not drive.was_running:
             self.shared_us = (self.shared_us + spent_us) & SPENT_MASK
 
-    def list_changed(self):
+    def list_changed(self, net_count):
+        """There is another list. net_count: net characters of its longest telegram."""
         timing = self._turns.timing
-        longest_us = 0
-        for drive in self._turns.drives:
-            longest_us = max(longest_us, timing.telegram_us(drive.layout.net_count))
-        longest_us += timing.start_interval_us + timing.reply_timeout_us + timing.character_us
-        self.silent_exchange_us = longest_us
+        sending_us = timing.start_interval_us + timing.telegram_us(net_count)
+        waiting_us = timing.reply_timeout_us + timing.character_us
+        self.silent_exchange_us = sending_us + waiting_us
         self._witness = None
 
     def forget(self, drive):

@@ -97,16 +97,14 @@ class Turns:
         """
         if len(self.list) >= _LIST_MAX:
             raise ValueError("the circulating list holds %d entries" % _LIST_MAX)
-        for drive in self.drives:
-            if drive.address == address:
-                if layout and not layout.is_like(drive.layout):
-                    raise ValueError("drive %d has %r already" % (address, drive.layout))
-                break
-        else:
+        drive = self.by_address[address] if address in range(NODES) else None
+        if drive is None:
             drive = Drive(address, self._mask, self._attention, layout or STANDARD)
             # New lists, because an interrupt may be walking the old ones.
             self.by_address[address] = drive
             self.drives = self.drives + [drive]
+        elif layout and not layout.is_like(drive.layout):
+            raise ValueError("drive %d has %r already" % (address, drive.layout))
         self._set_list(self.list + [drive])
         return drive
 
@@ -185,10 +183,8 @@ class Turns:
 
     def longest_cycle_us(self):
         """How long a round of the list takes when every drive is silent till the last moment."""
-        cycle_us = 0
-        for drive in self.list:
-            cycle_us += self._longest_us(drive.layout.net_max, drive.layout.net_max)
-        return cycle_us
+        counts = [drive.layout.net_max for drive in self.list]
+        return sum([self._longest_us(count, count) for count in counts])
 
     def _longest_us(self, request_count, reply_count):
         timing = self.timing
