@@ -31,7 +31,12 @@ _ARRAY_TASKS = {
 def with_array_task(job, family):
     """Aim a job of `pkw` by the task that drives of the family take its index with; answer it."""
     if job.index and family.has_array_tasks and job.task in _ARRAY_TASKS:
-        job.aim(_ARRAY_TASKS[job.task], job.number, job.index, job.high, job.low)
+        _aim_at_element(job)
+    return job
+
+
+def _aim_at_element(job):
+    job.aim(_ARRAY_TASKS[job.task], job.number, job.index, job.high, job.low)
     return job
 
 
@@ -42,22 +47,17 @@ def read_element(number, index):
 
 def write_element_word(number, index, value, eeprom=False):
     """A job that writes one element, -32768...65535, to RAM or, when asked, to EEPROM too."""
-    task = pkw.WRITE_ELEMENT_WORD_EEPROM if eeprom else pkw.WRITE_ELEMENT_WORD
-    return pkw.Job(task, number, index, 0, pkw.word_of(value))
+    return _aim_at_element(pkw.write_word(number, value, index, eeprom))
 
 
 def write_element_double(number, index, value, eeprom=False):
     """A job that writes one element of 32 bits, -2**31...2**32 - 1."""
-    task = pkw.WRITE_ELEMENT_DOUBLE_EEPROM if eeprom else pkw.WRITE_ELEMENT_DOUBLE
-    high, low = pkw.words_of(value)
-    return pkw.Job(task, number, index, high, low)
+    return _aim_at_element(pkw.write_double(number, value, index, eeprom))
 
 
 def write_element_float(number, index, value, eeprom=False):
     """A job that writes one floating-point element, rounded to single precision."""
-    task = pkw.WRITE_ELEMENT_DOUBLE_EEPROM if eeprom else pkw.WRITE_ELEMENT_DOUBLE
-    high, low = pkw.float_to_words(value)
-    return pkw.Job(task, number, index, high, low)
+    return _aim_at_element(pkw.write_float(number, value, index, eeprom))
 
 
 def count_elements(number):

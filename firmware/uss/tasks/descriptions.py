@@ -121,7 +121,7 @@ class DescriptionJob(LongJob):
     def description(self):
         """A `Description` of what came."""
         description = Description()
-        characters = self._characters()
+        characters = characters_of(self.data[: self.count] or (self.high, self.low))
         if self.index != pkw.ALL:
             description.take(self.index, characters)
             return description
@@ -133,11 +133,6 @@ class DescriptionJob(LongJob):
                 description.take(element, characters[at:end])
                 at = end
         return description
-
-    def _characters(self):
-        if self.count:
-            return characters_of(self.data[: self.count])
-        return characters_of((self.high, self.low))
 
     def _is_whole(self, reply, words):
         return is_size(self.index, 2 * words)
