@@ -325,7 +325,9 @@ class USS_CTRL(Block):
         else:
             off = pzd.OFF2 if OFF2 else pzd.OFF3 if OFF3 else pzd.OFF1
             error = self._command(RUN, off, DIR, SPEED_SP)
-            self._acknowledge(F_ACK)
+            if F_ACK and not self._f_ack:
+                self._drive.acknowledge()
+            self._f_ack = bool(F_ACK)
             self._report()
         self._tell(error or self._reply_code)
 
@@ -385,11 +387,6 @@ class USS_CTRL(Block):
     def _is_followed(self):
         """Whether the drive is being told to run."""
         return self._drive.wanted != 0 and not self._drive.stopped_by_engine()
-
-    def _acknowledge(self, f_ack):
-        if f_ack and not self._f_ack:
-            self._drive.acknowledge()
-        self._f_ack = bool(f_ack)
 
     def _report(self):
         """The outputs, as far as there is news of the drive."""
