@@ -202,7 +202,7 @@ def test_another_master_is_heard_and_starts_nothing():
     fleet = Fleet(lost_us=5_000_000)
     contact(fleet)
     for drive in fleet.drives.values():  # or they would be asked in the pauses
-        fleet.master.care.supervise(drive, 60_000)
+        fleet.master.deadlines.supervise(drive, 60_000)
     fleet.start_all()
     fleet.master.turns.cycle_us = 1_500_000
     intruder = Intruder(fleet.clock, fleet.wire, framed(31, bytes(12)), 397_000)

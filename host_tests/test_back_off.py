@@ -215,7 +215,7 @@ def test_after_its_stop_was_confirmed_it_may_be_asked_now_and_then():
 def running(bench, address, off_time_ms):
     """Have a drive run that trips after so long without a telegram."""
     drive = bench.drives[address]
-    bench.master.care.supervise(drive, off_time_ms)
+    bench.master.deadlines.supervise(drive, off_time_ms)
     drive.start(0x1000)
     bench.run(1_000_000)
     assert bench.nodes[address].zsw == 0xFB34
@@ -288,7 +288,7 @@ def test_where_every_drive_is_in_a_hurry_the_list_alone_keeps_the_gap():
 def test_a_drive_that_stands_has_its_turn_in_the_list_and_no_more():
     bench = Bench(nodes(31))
     bench.contact()
-    bench.master.care.supervise(bench.drives[17], 450)
+    bench.master.deadlines.supervise(bench.drives[17], 450)
     sent = len(bench.sent)
     bench.run(10_000_000)
     assert min(gaps(bench, 17, sent)) > 600_000
@@ -300,7 +300,7 @@ def test_a_drive_that_never_trips_counts_as_one_that_trips_when_it_would_be_lost
         bench = Bench(nodes(31))
         bench.contact()
         if told:
-            bench.master.care.supervise(bench.drives[17], 0)
+            bench.master.deadlines.supervise(bench.drives[17], 0)
         bench.drives[17].start(0x1000)
         bench.run(1_000_000)
         sent = len(bench.sent)

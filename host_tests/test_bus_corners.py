@@ -41,7 +41,7 @@ def test_drives_that_need_more_turns_leave_the_others_theirs():
     """
     bench = bench_of(15)
     for address in range(1, 11):
-        bench.master.care.supervise(bench.drives[address], 1_000)
+        bench.master.deadlines.supervise(bench.drives[address], 1_000)
         bench.drives[address].start(0x1000)
     bench.run(1_000_000)
     sent = len(bench.sent)
@@ -56,7 +56,7 @@ def test_a_cycle_longer_than_the_off_time_does_not_trip_a_drive():
         bench = bench_of(2)
         if first:
             bench.master.turns.cycle_us = 2_000_000
-        bench.master.care.supervise(bench.drives[1], 1_500)
+        bench.master.deadlines.supervise(bench.drives[1], 1_500)
         bench.master.turns.cycle_us = 2_000_000
         bench.drives[1].start(0x1000)
         bench.run(200_000)
@@ -70,7 +70,7 @@ def test_a_loop_that_seldom_comes_round_keeps_the_gap_of_all():
     bench.refreshing = False
     bench.loop = seldom(bench)
     for address in range(1, 6):
-        bench.master.care.supervise(bench.drives[address], 1_000)
+        bench.master.deadlines.supervise(bench.drives[address], 1_000)
         bench.drives[address].start(0x1000)
     bench.run(500_000)
     sent = len(bench.sent)
@@ -83,12 +83,12 @@ def test_the_off_time_goes_with_the_drive_and_not_with_its_address():
     """Also when it is taken away, and another one comes in its place."""
     bench = bench_of(20)
     bench.master.turns.lost_us = 6_000_000  # those of which nobody has told may wait for long
-    bench.master.care.supervise(bench.drives[5], 600)
+    bench.master.deadlines.supervise(bench.drives[5], 600)
     bench.nodes[25] = bench.nodes.pop(5)
     bench.nodes[25].address = 25
     bench.master.turns.readdress(bench.drives[5], 25)
     bench.nodes[5] = Node(5)
-    bench.master.care.supervise(bench.drives[6], 600)
+    bench.master.deadlines.supervise(bench.drives[6], 600)
     bench.master.turns.remove(bench.drives[6])
     drives = [bench.drives[5], bench.master.turns.add(5), bench.master.turns.add(6)]
     bench.run(600_000)

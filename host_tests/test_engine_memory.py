@@ -180,7 +180,7 @@ def test_nothing_that_a_bus_does_takes_memory():
     fleet.start_all(but=(3, 4))
     master.retries = 2
     master.turns.cycle_us = 400_000
-    master.care.supervise(fleet.drives[1], 400)
+    master.deadlines.supervise(fleet.drives[1], 400)
     fleet.motors[3].unplug()
     fleet.motors[5].unplug()
     ask = all_ask(fleet)

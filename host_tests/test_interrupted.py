@@ -278,7 +278,7 @@ def test_off_and_on():
 
 def test_supervision():
     for bench, _ in interrupted(
-        three, lambda bench: bench.master.care.supervise(bench.drives[2], 100)
+        three, lambda bench: bench.master.deadlines.supervise(bench.drives[2], 100)
     ):
         sent = len(bench.sent)
         bench.run(1_000_000)

@@ -644,7 +644,7 @@ def test_a_p2014_that_only_start_has_read_is_known_to_the_bus():
         world.run(3000)
         assert starts(world) and world.drives[1].state == "running"
         bus = world.app.bus
-        assert bus.care.bound_us(bus.turns.drives[0]) == p2014_ms * 1000 // 3, p2014_ms
+        assert bus.deadlines.bound_us(bus.turns.drives[0]) == p2014_ms * 1000 // 3, p2014_ms
         world.press("STOP")
         world.run(6000)
     world.check()

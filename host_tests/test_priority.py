@@ -191,7 +191,7 @@ def test_before_parameters():
 def test_before_a_turn_for_the_off_time():
     def prepare():
         bench = started(6)
-        bench.master.care.supervise(bench.drives[2], 200)
+        bench.master.deadlines.supervise(bench.drives[2], 200)
         return reach(bench, lambda telegram: telegram.address == 2)
 
     check(prepare, window_us=140_000)

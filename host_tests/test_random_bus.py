@@ -175,7 +175,7 @@ class Hand:
         master = self.bench.master
         master.retries = self.number(3)
         master.turns.cycle_us = (0, 0, 100_000, 350_000)[self.number(4)]
-        master.care.supervise(drive, (0, 400, 2_000)[self.number(3)])
+        master.deadlines.supervise(drive, (0, 400, 2_000)[self.number(3)])
 
     def hang(self, drive):
         """The main loop stands still for a while."""

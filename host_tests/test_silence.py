@@ -82,7 +82,7 @@ def gaps(bench, address, since):
 
 
 def started(bench, address, off_time_ms):
-    bench.master.care.supervise(bench.drives[address], off_time_ms)
+    bench.master.deadlines.supervise(bench.drives[address], off_time_ms)
     bench.drives[address].start(0x1000)
     bench.run(1_000_000)
     assert bench.nodes[address].zsw == 0xFB34
@@ -228,9 +228,9 @@ def test_a_silence_that_would_be_longer_than_that_is_not_risked():
     """Half a second, beside a drive that trips after one: the silent ones have to wait."""
     bench = bench_of(500)
     bench.run(5_000_000)
-    assert bench.master.care.first_late(bench.drives[1]) is None  # it never trips
+    assert bench.master.deadlines.first_late(bench.drives[1]) is None  # it never trips
     since = started(bench, 1, 1_000)
-    assert bench.master.care.first_late(bench.drives[1]) is bench.drives[1]
+    assert bench.master.deadlines.first_late(bench.drives[1]) is bench.drives[1]
     bench.run(10_000_000)
     assert set(bench.addresses(since)) == {1, 2}
     assert max(gaps(bench, 1, since)) < 333_333
@@ -257,10 +257,10 @@ def test_where_they_are_too_many_for_their_bound_the_silent_ones_are_still_asked
     """Thirty that run, a third of a second each: the line cannot carry that, and says so."""
     bench = bench_of(20, present=30)
     for address in range(1, 31):
-        bench.master.care.supervise(bench.drives[address], 1_000)
+        bench.master.deadlines.supervise(bench.drives[address], 1_000)
         bench.drives[address].start(0x1000)
     bench.run(3_000_000)
-    assert bench.master.care.first_late(bench.drives[1]) is bench.drives[1]
+    assert bench.master.deadlines.first_late(bench.drives[1]) is bench.drives[1]
     bench.nodes[31].plugged = True
     bench.run_until(lambda: bench.drives[31].contact, 5_000_000)
 
@@ -277,13 +277,13 @@ def test_no_gap_is_longer_than_the_bus_has_promised():
         bench = bench_of(timeout_ms, present, listed)
         drives = [bench.drives[address] for address in range(1, running + 1)]
         for drive in drives:
-            bench.master.care.supervise(drive, 2_000)
+            bench.master.deadlines.supervise(drive, 2_000)
         bench.run(3_000_000)
         for drive in drives[1:]:
             drive.start(0x1000)
         bench.run(1_000_000)
-        promised_us = bench.master.care.gap_us(drives[0])
-        late = bench.master.care.first_late(drives[0])
+        promised_us = bench.master.deadlines.gap_us(drives[0])
+        late = bench.master.deadlines.first_late(drives[0])
         drives[0].start(0x1000)
         bench.run(500_000)
         since = len(bench.sent)
@@ -301,20 +301,20 @@ def test_no_gap_is_longer_than_the_bus_has_promised():
 
 def test_a_drive_that_runs_is_named_when_another_one_would_make_it_late():
     bench = bench_of(20, present=31)
-    care, drives = bench.master.care, bench.drives
+    deadlines, drives = bench.master.deadlines, bench.drives
     for address in range(1, 32):
-        care.supervise(drives[address], 10_000)
-    care.supervise(drives[7], 350)
-    assert care.first_late(drives[1]) is None
-    assert care.first_late(drives[7]) is drives[7] or care.gap_us(drives[7]) < 116_666
+        deadlines.supervise(drives[address], 10_000)
+    deadlines.supervise(drives[7], 350)
+    assert deadlines.first_late(drives[1]) is None
+    assert deadlines.first_late(drives[7]) is drives[7] or deadlines.gap_us(drives[7]) < 116_666
     started(bench, 7, 350)
     for address in range(8, 15):
         drives[address].start(0x1000)
     bench.run(500_000)
-    assert care.first_late(drives[1]) is drives[7]
+    assert deadlines.first_late(drives[1]) is drives[7]
     drives[7].stop()
     bench.run(500_000)
-    assert care.first_late(drives[1]) is None
+    assert deadlines.first_late(drives[1]) is None
 
 
 def test_a_telegram_that_nobody_may_answer_waits_for_its_share():
@@ -322,7 +322,7 @@ def test_a_telegram_that_nobody_may_answer_waits_for_its_share():
     bench = bench_of(60)
     bench.run(3_000_000)
     waits = []
-    bench.loop = lambda: waits.append(bench.master.care.silence_wait_us())
+    bench.loop = lambda: waits.append(bench.master.deadlines.silence_wait_us())
     bench.run(5_000_000)
     assert max(waits) <= 5 * (silence_us(bench) + 2_000) and min(waits) == 0
     started(bench, 1, 200)  # no silence of 60 ms and more leaves it a third of that

@@ -43,7 +43,7 @@ class Table:
         """The loop comes round so often, and nobody has a turn meanwhile."""
         for _ in range(count):
             self.now += 4_000
-            self.turns.care.look(self.now)
+            self.turns.deadlines.look(self.now)
 
 
 def test_the_list_goes_round_as_it_is_arranged():
@@ -142,7 +142,7 @@ def test_a_drive_that_trips_soon_has_its_turn_in_time_in_a_long_list():
     table.asked(31)
     first = table.drives[1]
     first.start(0x1000)
-    table.turns.care.supervise(first, 900)
+    table.turns.deadlines.supervise(first, 900)
     asked = []
     for _ in range(200):
         table.rest(4)

@@ -173,7 +173,7 @@ class Panel:
         """A drive has told its settings: its telegram-off time decides how soon it is asked."""
         survey = control.survey
         if survey.complete:
-            self._bus.care.supervise(control.drive, survey.values[rows.SUPERVISION])
+            self._bus.deadlines.supervise(control.drive, survey.values[rows.SUPERVISION])
 
     def _watch(self, _now_ms, now_us):
         selected = self.selected

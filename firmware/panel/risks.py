@@ -36,7 +36,7 @@ def _of_restart(control):
 
 def _of_lateness(control):
     """The address of the drive that this bus cannot ask within a third of its P2014, if it ran."""
-    drive = control.desk.bus.care.first_late(control.drive)
+    drive = control.desk.bus.deadlines.first_late(control.drive)
     return NONE if drive is None else drive.address
 
 

@@ -14,7 +14,7 @@ The telegrams:
 The engine, which may run in interrupts:
     master           the exchange: silence, request, reply; supervision of the loop
     turns            who talks when: the circulating list, and what goes before it
-    care             drives that need more turns
+    deadlines        drives that need more turns
     silence          what the silent ones may cost
     receiver         bursts of a link -> the one telegram awaited
     drive            one slave: commands, process image, counters

@@ -21,7 +21,7 @@ from micropython import const
 # From the bottom of the house up: an import inside an import inside an import takes stack.
 from uss import pkw, telegram
 import uss.drive  # noqa: F401
-from uss.care import LOOK_US
+from uss.deadlines import LOOK_US
 from uss.fast import frame
 from uss.receiver import COMING, SILENT, WAITING, Receiver
 from uss.timing import elapsed
@@ -71,8 +71,8 @@ class Master:
     link: what is sent on and received from. timing: `Timing` of its baud rate. mask: the clock's
     period - 1, at most 2**30 - 1. All figures of counters are unsigned 16-bit and wrap.
 
-    Fields to look at: `phase`; `turns`, the drives and the circulating list; `care`, what they
-    are promised; `progress`, which moves as long as the engine gets anything done;
+    Fields to look at: `phase`; `turns`, the drives and the circulating list; `deadlines`, what
+    they are promised; `progress`, which moves as long as the engine gets anything done;
     `dead_man_trips`; `failures` (exceptions in `poll`); `foreign` (heard from another master:
     bursts before the first telegram, telegrams after it); `paused` (nothing is sent and nothing
     awaited, by order of `pause`). A setting, at any time: `retries`, how often an exchange without
@@ -91,7 +91,7 @@ class Master:
         self._dead_man = True  # tripped until the loop refreshes for the first time
         self.phase = LISTENING
         self.turns = turns = Turns(timing, mask, lost_us, self.is_under_way)
-        self.care = turns.care
+        self.deadlines = turns.deadlines
         self.timing = timing
         self.progress = 0
         self.dead_man_trips = 0
@@ -128,8 +128,8 @@ class Master:
         """
         self._refreshed_at = now
         self._dead_man = False
-        if looks and (now - self.care.looked_at) & self._mask >= LOOK_US:
-            self.care.look(now)
+        if looks and (now - self.deadlines.looked_at) & self._mask >= LOOK_US:
+            self.deadlines.look(now)
             if self._shared:
                 exchanges = self.turns.exchanges - self._foreign_at
                 self._shared = exchanges & 0xFFFF < _SHARED_EXCHANGES
@@ -442,7 +442,7 @@ class Master:
         if drive.outside or not drive.contact:
             spent_us = elapsed(now, self._receiver.sent_at, self._mask)
             spent_us += self._start_interval_us + drive.size * self._character_us
-            self.care.silence.charge(drive, spent_us)
+            self.deadlines.silence.charge(drive, spent_us)
         if drive.silent <= self.retries:
             if drive.outside:
                 drive.state = pkw.PENDING  # it is not over yet

@@ -7,7 +7,7 @@ that nobody answers takes long, the reply time-out and itself. So the share is o
 telegrams: from one of them to the next passes five times as long as it took. A drive that answers
 owes nothing: where many are switched on at once, they are found one behind the other.
 
-Drives that run go before that: `Care` says whether one more silence leaves them their bound.
+Drives that run go before that: `Deadlines` says whether one more silence leaves them their bound.
 """
 
 from micropython import const
@@ -29,7 +29,7 @@ class Silence:
     may run, whose turns are not the others'. The engine writes these three, in `charge`.
 
     `rests`: by address, whether a drive rests. `resting`: how many do. `wait_us`: until the share
-    has room for one more silence; `Care` counts it down, below 0 it has had room for so long.
+    has room for one more silence; `Deadlines` counts it down, below 0 it has had room for so long.
     `charged_us`: of `shared_us`. The loop writes these, and all else.
     """
 

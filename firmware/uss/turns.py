@@ -12,8 +12,8 @@ asked twice as often. Before it goes, in this order,
     one outside the list, or a drive that is to have more than its turn (every second telegram)
 
 A drive that stays silent is counted and shown, and never taken off the list. Which of them rest is
-the subject of `silence`, whose turns are too far apart that of `care`. Sends nothing: `master`
-does.
+the subject of `silence`, whose turns are too far apart that of `deadlines`. Sends nothing:
+`master` does.
 
     turns = Turns(Timing(19200), mask, 1_000_000, is_under_way)
     drive = turns.add(1)            # loop: or turns.add(1, Layout(VARIABLE, 4))
@@ -24,7 +24,7 @@ from micropython import const
 
 from uss import pkw, telegram
 from uss.drive import ANY, ATTENTION, COMMANDS, NODES, OVERDUE, WANTS, Drive
-from uss.care import Care
+from uss.deadlines import Deadlines
 from uss.fast import calling, greatest
 from uss.layout import STANDARD
 
@@ -45,14 +45,15 @@ class Turns:
     with it has begun and not ended.
 
     Fields to look at: `drives`, each once, in the order added; `list`, the circulating list, see
-    `arrange`; `exchanges`, how often there was a turn, 16 bit; `care`, which looks after those
-    that have too few. A setting, at any time: `cycle_us`, a round of the list begins so long after
-    the one before, 0 for at once.
+    `arrange`; `exchanges`, how often there was a turn, 16 bit; `deadlines`, which looks after
+    those that have too few. A setting, at any time: `cycle_us`, a round of the list begins so long
+    after the one before, 0 for at once.
 
     Written by the loop: the list and the round with all that follows from them, _singles_in. By
-    `care`: lists_between. By the engine: all else. By both: following (the loop when it changes
-    the round or the list); _ahead and _again (the loop puts one in, or takes out the drive that
-    is removed); the attention (each of its rows is set by whoever calls, cleared by the engine).
+    `deadlines`: lists_between. By the engine: all else. By both: following (the loop when it
+    changes the round or the list); _ahead and _again (the loop puts one in, or takes out the drive
+    that is removed); the attention (each of its rows is set by whoever calls, cleared by the
+    engine).
     """
 
     def __init__(self, timing, mask, lost_us, is_under_way):
@@ -84,7 +85,7 @@ class Turns:
         self._lists_left = 0
         self._look_from = 0  # behind which address the search for one with a hurry begins,
         self._overdue_from = 0  # and for one that is overdue
-        self.care = Care(self, mask)
+        self.deadlines = Deadlines(self, mask)
 
     # --- for the loop ---------------------------------------------------------------------------
 
@@ -117,7 +118,7 @@ class Turns:
             raise ValueError("drive %d is not on this bus" % drive.address)
         if drive.may_run():
             raise ValueError("drive %d may be running" % drive.address)
-        self.care.forget(drive)
+        self.deadlines.forget(drive)
         self.drives = [other for other in self.drives if other is not drive]
         self._set_list([entry for entry in self.list if entry is not drive])
         self.by_address[drive.address] = None
@@ -156,7 +157,7 @@ class Turns:
             raise ValueError("address %d is taken" % address)
         self.by_address[address] = drive
         drive.move(address)
-        self.care.readdressed(old, address)
+        self.deadlines.readdressed(old, address)
         self._attention[old] = 0
         self.by_address[old] = None
 
@@ -200,7 +201,7 @@ class Turns:
             reply_count = telegram.NET_COUNT_MAX if layout.variable else layout.net_max
             longest_us = max(longest_us, self._longest_us(layout.net_max, reply_count))
         self.longest_exchange_us = longest_us
-        self.care.list_changed()
+        self.deadlines.list_changed()
         self.round_count = 0  # nobody has a turn until it is filled
         self.round = list(entries)
         self._fill_round()
@@ -237,7 +238,7 @@ class Turns:
         """The list without those that rest. In place: it takes no heap, and an interrupt that
         walks it meanwhile finds a drive everywhere, the one before or the one after.
         """
-        rests = self.care.silence.rests
+        rests = self.deadlines.silence.rests
         drives = self.round
         count = 0
         for drive in self.list:

@@ -503,7 +503,7 @@ class Drive:
     def keep_within(self, off_time_ms):
         """The drive's telegram-off time is known, or None: the bus keeps within it from now on."""
         if off_time_ms is not None:
-            self.bus.engine.care.supervise(self.engine, off_time_ms)
+            self.bus.engine.deadlines.supervise(self.engine, off_time_ms)
 
     def _may_start(self):
         return self.engine.contact and bits.may_start(self.engine.zsw)

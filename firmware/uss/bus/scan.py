@@ -138,7 +138,7 @@ class Scan:
             if elapsed(now, self._silent_at, self._mask) < ACCOUNT_US:
                 return
             self._silent_at = None
-        if self._bus.care.silence_wait_us():
+        if self._bus.deadlines.silence_wait_us():
             return
         if not self._is_searched():
             self._ask()

@@ -33,7 +33,7 @@ _RARE_US = const(1_000_000)  # from one silence to the next that makes a drive t
 _LONGEST_US = const(100_000_000)  # small enough to be multiplied
 
 
-class Care:
+class Deadlines:
     """turns: the `Turns` that it belongs to. mask: the clock's period - 1.
 
     looked_at: when `look` was called last; it is due after LOOK_US. silence: what is known of
