@@ -6,11 +6,11 @@ minded.
 """
 
 from round_bench import RUNNING, Bench, Node, framed
-from uss import pkw, pzd, single, telegram
+from uss import outside, pkw, pzd, telegram
 from uss.layout import Layout
 from uss.master import OFF
+from uss.outside import DONE, PENDING, TIMED_OUT, Broadcast, Mirror, Special
 from uss.receiver import SILENT
-from uss.single import DONE, PENDING, TIMED_OUT, Broadcast, Mirror, Special
 
 
 def bench_of(count, **options):
@@ -287,7 +287,7 @@ def test_behind_a_broadcast_stop_those_that_run_are_first():
     for address in (7, 9):
         bench.drives[address].start(0x1000)
     bench.run(400_000)
-    single.stop_all(bench.master)
+    outside.stop_all(bench.master)
     bench.run_until(lambda: bench.sent[-1].address == 0x20)
     sent = len(bench.sent)
     bench.run(300_000)

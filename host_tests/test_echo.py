@@ -7,8 +7,8 @@ comes back looks just the same.
 
 from round_bench import Bench, Node
 from uss import pkw
+from uss.outside import Mirror
 from uss.receiver import SILENT
-from uss.single import Mirror
 
 IDLE_BITS = 32  # after so many bit times without a character an RP2040 reports a burst
 

@@ -16,7 +16,7 @@ from uss import pkw, pzd
 from uss.drive import ATTENTION, Drive
 from uss.layout import Layout
 from uss.master import Master
-from uss.single import Broadcast, Mirror, Special
+from uss.outside import Broadcast, Mirror, Special
 from uss.timing import Timing
 
 INTERPRETERS = "unix64 unix32"

@@ -8,7 +8,7 @@ What is not valid changes nothing.
 
 import golden
 from line_bench import MASK, Line, of_words, sealed
-from uss import bits, pkw, pzd, single, telegram
+from uss import bits, outside, pkw, pzd, telegram
 from uss.channel import Channel
 from uss.drive import Drive
 from uss.layout import Layout
@@ -179,14 +179,14 @@ def test_every_task_is_placed_as_printed():
 def test_mirror_telegrams_are_sent_as_printed():
     for name in ("SPMq", "V16"):
         example = golden.BY_ID[name]
-        probe = single.Mirror(example.node, example.net)
+        probe = outside.Mirror(example.node, example.net)
         assert bytes(probe.request) == example.characters, name
 
 
 def test_special_telegrams_are_sent_as_printed():
     for name, node in (("V57", 5), ("V58", None)):
         example = golden.BY_ID[name]
-        assert bytes(single.Special(node, example.net).request) == example.characters, name
+        assert bytes(outside.Special(node, example.net).request) == example.characters, name
 
 
 # Broadcasts: what is taken over of which word, and what the master says to the row.
@@ -210,7 +210,7 @@ def test_broadcasts_are_sent_as_printed_but_for_bit_10_and_never_start_anything(
         if kind == WITH_BIT_10:
             words[0] |= STW_BITS["CONTROL"]
         try:
-            built = single.Broadcast(words, takes)
+            built = outside.Broadcast(words, takes)
         except ValueError:
             assert example.id == "V55"
             continue
@@ -221,7 +221,7 @@ def test_broadcasts_are_sent_as_printed_but_for_bit_10_and_never_start_anything(
 def test_an_adr_that_means_nothing_cannot_be_sent():
     example = golden.BY_ID["V56"]
     assert example.address() == 0x65
-    for make in (single.Mirror, single.Special):
+    for make in (outside.Mirror, outside.Special):
         try:
             make(0x25, example.net)
         except ValueError:
@@ -304,11 +304,11 @@ def test_a_mirror_telegram_that_came_back_is_recognised():
         example = golden.BY_ID[name]
         line = Line(lambda request: request)
         line.master.turns.add(1)
-        probe = single.Mirror(example.node, example.net)
+        probe = outside.Mirror(example.node, example.net)
         line.master.turns.post(probe)
         line.exchange(2)
         assert example.characters in line.requests
-        assert probe.state == single.DONE, name
+        assert probe.state == outside.DONE, name
 
 
 def test_a_change_report_is_acknowledged_and_the_task_goes_on():

@@ -10,7 +10,7 @@ import sys
 from round_bench import Bench, Node
 from uss import pkw, pzd
 from uss.layout import Layout
-from uss.single import Mirror, stop_all
+from uss.outside import Mirror, stop_all
 
 INTERPRETERS = "cpython"
 
@@ -178,16 +178,16 @@ def test_a_job():
 
 
 def test_a_mirror_telegram():
-    singles = []
+    telegrams = []
 
     def post(bench):
-        singles[:] = [Mirror(1), Mirror(3)]
-        for single in singles:
-            bench.master.turns.post(single)
+        telegrams[:] = [Mirror(1), Mirror(3)]
+        for telegram in telegrams:
+            bench.master.turns.post(telegram)
 
     for bench, _ in interrupted(three, post):
         bench.run(300_000)
-        assert [single.state for single in singles] == [pkw.DONE] * 2
+        assert [telegram.state for telegram in telegrams] == [pkw.DONE] * 2
         assert bench.nodes[1].mirrored == bench.nodes[3].mirrored == 1
 
 

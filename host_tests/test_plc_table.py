@@ -19,12 +19,12 @@ from uss import (
     families,
     layout,
     master,
+    outside,
     pkw,
     pzd,
     receiver,
     s7,
     scaling,
-    single,
     telegram,
     timing,
 )
@@ -73,7 +73,7 @@ def roots():
     port = s7.Port(None, clock)
     modules = (
         codes, drive, families, layout, master, pkw, pkw_errors, pzd, receiver, s7, scaling,
-        single, telegram, timing, bits,
+        outside, telegram, timing, bits,
     )  # fmt: skip
     found = {module.__name__.split(".")[-1]: module for module in modules}
     found["Drive"] = drive.Drive(1, clock.ticks_mask)

@@ -10,7 +10,7 @@ telegram that begins must carry it.
 from round_bench import Bench, Node
 from uss import pkw, pzd
 from uss.master import AWAITING, DEAD_MAN_US, LISTENING, RESTING, SENDING
-from uss.single import Broadcast, Mirror, Special
+from uss.outside import Broadcast, Mirror, Special
 
 # Each runs some thousand buses: traced they would take minutes.
 NOT_TRACED = """

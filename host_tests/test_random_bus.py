@@ -9,7 +9,7 @@ import random
 from round_bench import Bench, Node
 from uss import pkw, pzd
 from uss.master import DEAD_MAN_US, LISTENING, LOST_US, OFF
-from uss.single import Broadcast, Mirror, Special
+from uss.outside import Broadcast, Mirror, Special
 
 NOT_TRACED = "test_a_random_hand_breaks_no_rule"
 

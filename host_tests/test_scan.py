@@ -6,7 +6,7 @@ from uss.bus import scan as scanning
 from uss.bus.errors import UssError
 from uss.bus.scan import EVERY_NET_COUNT, NET_COUNTS, RATES, TRIES, RateScan, Scan
 from uss.master import OFF
-from uss.single import DONE, Mirror
+from uss.outside import DONE, Mirror
 from uss.timing import BAUD_RATES
 
 

@@ -11,7 +11,7 @@ import sys
 from round_bench import Bench, Node
 from test_interrupted import interrupted
 from uss import pzd
-from uss.single import DONE, PENDING, Mirror
+from uss.outside import DONE, PENDING, Mirror
 
 INTERPRETERS = "cpython"
 

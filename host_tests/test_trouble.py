@@ -16,7 +16,7 @@ from spoilt_bench import (
     with_a_wrong_check,
 )
 from uss import receiver
-from uss.single import Mirror
+from uss.outside import Mirror
 
 
 def spoilt_by_turns(*turns):

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Whose turn it is, without a line, a link or a master: `choose` is asked, and answers."""
 
+from uss.outside import Mirror
 from uss.receiver import SILENT
-from uss.single import Mirror
 from uss.timing import Timing
 from uss.turns import Turns
 

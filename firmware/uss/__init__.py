@@ -19,7 +19,7 @@ The engine, which may run in interrupts:
     receiver         bursts of a link -> the one telegram awaited
     drive            one slave: commands, process image, counters
     channel          the parameter channel of one drive: jobs wait, one task is on the line
-    single           telegrams outside the list: mirror, broadcast, special
+    outside          telegrams outside the list: mirror, broadcast, special
     leave            how a program ends: every drive is stopped, then the line is left
     fast             the loops over characters: machine code, or else plain Python
 

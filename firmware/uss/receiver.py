@@ -76,7 +76,7 @@ class Receiver:
         self._coming = False  # the link has announced nothing yet, but will
 
     def open(self, awaited, sent_at):
-        """Await the reply to `awaited`, a `Drive` or a telegram outside the list (`single`).
+        """Await the reply to `awaited`, a `Drive` or a telegram outside the list (`outside`).
 
         Of it are needed: `address`, the ADR of the reply; `request` and `size`, the characters
         sent, as many as the reply probably has; `fits(net_count)`, whether it may have so many net

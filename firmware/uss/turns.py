@@ -29,7 +29,7 @@ from uss.fast import calling, greatest
 from uss.layout import STANDARD
 
 _LIST_MAX = const(255)  # entries of the circulating list
-_SINGLES_MAX = const(8)  # telegrams outside the list that wait
+_OUTSIDE_MAX = const(8)  # telegrams outside the list that wait
 _OVERDUE_IN_A_ROW = const(2)
 _OVERDUE_BETWEEN = const(3)  # commands to drives without contact
 # Rows of the drives' attention, as bits of `calling`.
@@ -49,7 +49,7 @@ class Turns:
     those that have too few. A setting, at any time: `cycle_us`, a round of the list begins so long
     after the one before, 0 for at once.
 
-    Written by the loop: the list and the round with all that follows from them, _singles_in. By
+    Written by the loop: the list and the round with all that follows from them, _outside_in. By
     `deadlines`: lists_between. By the engine: all else. By both: following (the loop when it
     changes the round or the list); _ahead and _again (the loop puts one in, or takes out the drive
     that is removed); the attention (each of its rows is set by whoever calls, cleared by the
@@ -77,10 +77,10 @@ class Turns:
         self._round_left_us = 0  # of the cycle time, when the round was over before it
         self._again = None  # whose exchange is to be repeated
         self._ahead = None  # a telegram outside the list that goes before everything
-        self._singles = [None] * (_SINGLES_MAX + 1)  # the others: a ring, one writer at each end
-        self._singles_in = 0
-        self._singles_out = 0
-        self._single_last = False  # of both, a telegram outside the list had the last such turn
+        self._outside = [None] * (_OUTSIDE_MAX + 1)  # the others: a ring, one writer at each end
+        self._outside_in = 0
+        self._outside_out = 0
+        self._outside_last = False  # of both, a telegram outside the list had the last such turn
         self._overdue = 0  # turns in a row that overdue drives had; below 0: that they have first
         self._lists_left = 0
         self._look_from = 0  # behind which address the search for one with a hurry begins,
@@ -162,24 +162,24 @@ class Turns:
         self.by_address[old] = None
 
     def post(self, telegram_outside):
-        """Send a telegram outside the list once (see `single`): at the next but one telegram at
+        """Send a telegram outside the list once (see `outside`): at the next but one telegram at
         the latest when nothing else is in a hurry. RuntimeError when 8 wait, or it does.
         """
         if telegram_outside.state == pkw.PENDING:
             raise RuntimeError("%r is pending already" % (telegram_outside,))
-        following = (self._singles_in + 1) % len(self._singles)
+        following = (self._outside_in + 1) % len(self._outside)
         if telegram_outside.ahead:
             if self._ahead is not None:
                 raise RuntimeError("%r is to go ahead of everything already" % (self._ahead,))
-        elif following == self._singles_out:
-            raise RuntimeError("%d telegrams wait already" % _SINGLES_MAX)
+        elif following == self._outside_out:
+            raise RuntimeError("%d telegrams wait already" % _OUTSIDE_MAX)
         telegram_outside.state = pkw.PENDING
         telegram_outside.silent = 0
         if telegram_outside.ahead:
             self._ahead = telegram_outside
         else:
-            self._singles[self._singles_in] = telegram_outside
-            self._singles_in = following
+            self._outside[self._outside_in] = telegram_outside
+            self._outside_in = following
         self._attention[ANY] = 1
 
     def longest_cycle_us(self):
@@ -343,14 +343,14 @@ class Turns:
             return drive
         if self._lists_left:
             self._lists_left -= 1
-            if rows or self._lists_left or self._singles_out != self._singles_in:
+            if rows or self._lists_left or self._outside_out != self._outside_in:
                 attention[ANY] = 1
             return None
-        drive = self._find(WANTS, 1) if rows & _WANTS and self._single_last else None
-        self._single_last = False
+        drive = self._find(WANTS, 1) if rows & _WANTS and self._outside_last else None
+        self._outside_last = False
         if drive is None:
-            drive = self._next_single()
-            self._single_last = drive is not None
+            drive = self._next_outside()
+            self._outside_last = drive is not None
         if drive is None and rows & _WANTS:
             drive = self._find(WANTS, 1)
         if drive is not None:
@@ -388,12 +388,12 @@ class Turns:
             attention[row + address] = 0
         return None
 
-    def _next_single(self):
-        place = self._singles_out
-        if place == self._singles_in:
+    def _next_outside(self):
+        place = self._outside_out
+        if place == self._outside_in:
             return None
-        telegram_outside = self._singles[place]
-        self._singles[place] = None
-        self._singles_out = (place + 1) % len(self._singles)
+        telegram_outside = self._outside[place]
+        self._outside[place] = None
+        self._outside_out = (place + 1) % len(self._outside)
         self._attention[ANY] = 1
         return telegram_outside

@@ -16,7 +16,7 @@ import it.
 Whoever does not wait calls `step` again and again: without it for 300 ms every motor is stopped.
 """
 
-from uss import bits, families, master, pkw, pzd, single
+from uss import bits, families, master, outside, pkw, pzd
 from uss.bus import pkw_errors
 from uss.bus.errors import WHY_SILENT, UssError
 from uss.bus.errors import FallsSilent, NoContact, NotStarted, Refused, TimedOut
@@ -738,7 +738,7 @@ class Master:
             if not drive.family.takes_broadcast:
                 self.engine.stop_all()
                 raise ValueError("a %s takes no broadcast" % drive.family.name)
-        single.stop_all(self.engine)
+        outside.stop_all(self.engine)
 
     def mirror(self, node, net_count=12):
         """Whether a node sends back a telegram of so many net characters, which it does not obey.
@@ -749,7 +749,7 @@ class Master:
         for drive in self.drives:
             if drive.address == node:
                 net_count = drive.layout.net_count
-        probe = single.Mirror(node, bytes(net_count))
+        probe = outside.Mirror(node, bytes(net_count))
         self.post(probe)
         while probe.state == pkw.PENDING:
             if self.why_silent() or self.engine.is_line_in_use():
@@ -758,7 +758,7 @@ class Master:
         return probe.state == pkw.DONE
 
     def post(self, telegram_outside):
-        """Send a telegram outside the list once (see `single`), which tells what became of it.
+        """Send a telegram outside the list once (see `outside`), which tells what became of it.
 
         NoContact: nothing is sent on this bus. RuntimeError when 8 wait, or it does.
         """

@@ -17,7 +17,7 @@ form that is wrong, bit 10 is 0 where the drive looks for its control word, and 
 from uss import pkw, pzd
 from uss.families import G110, G120, GENERIC, MM3, MM4, MM440, V20, can_be_set_to
 from uss.layout import PZD_WORDS_MAX, VARIABLE, Layout
-from uss.single import DONE, TIMED_OUT, Single
+from uss.outside import DONE, TIMED_OUT, OutsideTelegram
 from uss.telegram import GOOD, NET, put_word
 
 FRAME = 4  # characters of a telegram that are not net data
@@ -107,7 +107,7 @@ def enquiry(node):
     yield node.layout, None
 
 
-class Question(Single):
+class Question(OutsideTelegram):
     """An ordinary telegram to a node outside the list: OFF1, and a parameter to be read, or None.
 
     DONE: it has answered it; `job` holds the answer, or the refusal. TIMED_OUT: it was silent, or,
@@ -126,7 +126,7 @@ class Question(Single):
             net[:FRAME] = self.job.words[:FRAME]  # PKE and IND; the others are 0
         if layout.pzd_words:
             put_word(net, layout.net_count - layout.pzd_count, pzd.OFF1)
-        Single.__init__(self, address, net)
+        OutsideTelegram.__init__(self, address, net)
 
     def fits(self, net_count):
         """Whether a reply may have so many net characters."""

@@ -27,7 +27,7 @@ from uss.master import LISTENING, OFF, PAUSE_LOOK_US
 from uss.pzd import ZSW_RUNNING
 from uss.receiver import SILENT
 from uss.silence import SHARE
-from uss.single import DONE, PENDING, Mirror
+from uss.outside import DONE, PENDING, Mirror
 from uss.timing import BAUD_RATES, FRAME_CHARACTERS, Timing, elapsed
 
 ADDRESSES = range(32)

@@ -3,8 +3,8 @@
 
 from round_bench import MIRROR, Bench, Node, framed
 from uss import pkw, pzd
+from uss.outside import NEW, PENDING, TIMED_OUT, Broadcast, Mirror, Special, stop_all
 from uss.receiver import SILENT
-from uss.single import NEW, PENDING, TIMED_OUT, Broadcast, Mirror, Special, stop_all
 from uss.telegram import BAD_BCC
 
 NET = b"\x12\x34\x56\x78\x9a\xbc\xde\xf0\x00\x00\x00\x00"

@@ -6,11 +6,11 @@ what became of it: NEW, PENDING, DONE or TIMED_OUT, the states of a parameter jo
 starts a motor: a mirror is not acted on, a broadcast with a start bit is refused, and special
 telegrams mean nothing to a drive.
 
-    probe = single.Mirror(5)
-    bus.turns.post(probe)                     # ... later:
-    probe.state == single.DONE          # node 5 is there
+    probe = outside.Mirror(5)
+    bus.turns.post(probe)               # ... later:
+    probe.state == outside.DONE         # node 5 is there
 
-    single.stop_all(bus)                # OFF1 to all at once, where all of them take broadcasts
+    outside.stop_all(bus)               # OFF1 to all at once, where all of them take broadcasts
 """
 
 from micropython import const
@@ -32,7 +32,7 @@ UNMASKED = const(0xFFFF)
 ENABLED_PLACES = const(15)  # PZD 16 is never taken over
 
 
-class Single:
+class OutsideTelegram:
     """The telegram with these net data to this ADR. ValueError when it cannot be one.
 
     state, and finding: of the receiver, why there was no reply. reply: the net characters of it,
@@ -77,7 +77,7 @@ class Single:
         return "<%s to ADR %02X>" % (type(self).__name__, self.address)
 
 
-class Mirror(Single):
+class Mirror(OutsideTelegram):
     """Asks a node to send the telegram back as it is (A-5.3). It acts on nothing in it.
 
     node: 0...31. net: what is sent; a drive of fixed length answers only its own length. DONE when
@@ -87,7 +87,7 @@ class Mirror(Single):
     def __init__(self, node, net=PROBE):
         if not 0 <= node <= NODE_MAX:
             raise ValueError("node %r is not 0...31" % (node,))
-        Single.__init__(self, node | MIRROR, net)
+        OutsideTelegram.__init__(self, node | MIRROR, net)
         self.node = node
 
     def take(self, buffer, count, now):
@@ -99,7 +99,7 @@ class Mirror(Single):
         self.state = DONE
 
 
-class Broadcast(Single):
+class Broadcast(OutsideTelegram):
     """Process data for all drives of one layout at the same time (A-3, C-5.2.3 and appendix).
 
     words: 1...16 PZD words, STW first; every drive must have so many, and 4 PKW words. takes: what
@@ -130,7 +130,7 @@ class Broadcast(Single):
             telegram.put_word(net, 2 + 2 * index, takes.get((1, 4, 5)[index], 0))
         for index in range(len(words)):
             telegram.put_word(net, 2 * (ENABLE_WORDS + index), words[index])
-        Single.__init__(self, BROADCAST, net)
+        OutsideTelegram.__init__(self, BROADCAST, net)
 
     def fits(self, net_count):
         """Nothing does: nobody answers."""
@@ -145,7 +145,7 @@ class Broadcast(Single):
         self.state = DONE
 
 
-class Special(Single):
+class Special(OutsideTelegram):
     """Net data of a kind of its own, for a node that knows them (A-5.3.1).
 
     node: 0...31, or None for all of that kind, which do not answer. net: 1...252 characters.
@@ -157,7 +157,7 @@ class Special(Single):
     def __init__(self, node, net, reply_count=None, hook=None):
         if node is not None and not 0 <= node <= NODE_MAX:
             raise ValueError("node %r is not 0...31" % (node,))
-        Single.__init__(self, SPECIAL | (BROADCAST if node is None else node), net)
+        OutsideTelegram.__init__(self, SPECIAL | (BROADCAST if node is None else node), net)
         self.reply = bytearray(telegram.NET_COUNT_MAX)
         self.reply_count = 0
         self._awaited_count = reply_count
@@ -185,7 +185,7 @@ class Special(Single):
         self.state = DONE
 
     def miss(self, finding, now, lost_us, mask):
-        Single.miss(self, finding, now, lost_us, mask)
+        OutsideTelegram.miss(self, finding, now, lost_us, mask)
         if self._to_all:
             self.silent = OFTEN
             self.state = DONE
