@@ -144,7 +144,7 @@ def test_set_gives_a_motor_that_runs_another_speed_and_starts_none():
     drive.stop()
     bench.bus.wait(2)
     drive.run(10.0)
-    drive.particulars.forget()  # so that it has to ask
+    drive.survey.forget()  # so that it has to ask
     bench.at(0.05, drive.stop)
     assert drive.set(20.0) is False and not drive.is_on()
     bench.end()

@@ -23,7 +23,7 @@ from uss.bus.errors import FallsSilent, NoContact, NotStarted, Refused, TimedOut
 from uss.families.rows import ACTUAL, STATUS
 from uss.layout import Layout
 from uss.leave import leave, persist
-from uss.bus.particulars import Particulars
+from uss.bus.survey import Survey
 from uss.drive import COUNTERS
 from uss.scaling import Scale, run_words, signed_hiw
 from uss.timing import Timing, elapsed
@@ -66,7 +66,7 @@ class Drive:
         self.engine = engine
         self.family = family
         self.unsupervised = unsupervised
-        self.particulars = Particulars(self, scale)
+        self.survey = Survey(self, scale)
         if not family.hiw_is_signed:
             engine.tell_speed(0)
         self._kinds = {}  # of double words, number -> (contacts, kind), as the drive tells them
@@ -84,7 +84,7 @@ class Drive:
         if self.set(hertz, percent, rpm):
             return
         self._check_start(True)
-        stw, hsw = run_words(self.family, self.particulars.setpoint(hertz, percent, rpm))
+        stw, hsw = run_words(self.family, self.survey.setpoint(hertz, percent, rpm))
         self._start(hsw, stw)
 
     def set(self, hertz=None, percent=None, rpm=None):
@@ -95,7 +95,7 @@ class Drive:
         _check_speed(hertz, percent, rpm)
         if not self._has_speed():
             return False
-        stw, hsw = run_words(self.family, self.particulars.setpoint(hertz, percent, rpm))
+        stw, hsw = run_words(self.family, self.survey.setpoint(hertz, percent, rpm))
         if not self._has_speed():  # it was asked for its settings first, and stopped meanwhile
             return False
         self.engine.hsw = hsw
@@ -238,17 +238,17 @@ class Drive:
     def hertz(self):
         """The actual frequency. Waits for the drive's settings when they are not known yet;
         ValueError when they do not tell, as for the next two."""
-        return self.particulars.hertz_scale().hertz(self._actual())
+        return self.survey.hertz_scale().hertz(self._actual())
 
     @property
     def percent(self):
         """The actual speed in percent of the reference."""
-        return self.particulars.known_scale().percent(self._actual())
+        return self.survey.known_scale().percent(self._actual())
 
     @property
     def rpm(self):
         """The actual speed in 1/min, without slip."""
-        return self.particulars.rpm_scale().rpm(self._actual())
+        return self.survey.rpm_scale().rpm(self._actual())
 
     @property
     def fault(self):
@@ -312,7 +312,7 @@ class Drive:
         else:
             job = pkw.write_word(number, int(value), index, eeprom)
         if asked_first:
-            self.particulars.forget()
+            self.survey.forget()
         return self._value(self.do(self.addressed(job)), kind)
 
     def do(self, job):
@@ -424,7 +424,7 @@ class Drive:
 
     def _actual(self):
         """HIW with its sign. ValueError: it is known not to be the speed."""
-        wrong = self.particulars.what_is_wrong(ACTUAL)
+        wrong = self.survey.what_is_wrong(ACTUAL)
         if wrong:
             raise ValueError("drive %d %s" % (self.engine.address, wrong))
         self._wait_for_contact()
@@ -462,9 +462,9 @@ class Drive:
                 self._refuse("is still stopping")
             self.engine.stop()
         stops = self.engine.stops
-        particulars = self.particulars
-        particulars.ask()
-        wrong = particulars.what_is_wrong(STATUS)
+        survey = self.survey
+        survey.ask()
+        wrong = survey.what_is_wrong(STATUS)
         if wrong:
             self._refuse(wrong)
         if not self._may_start():
@@ -475,10 +475,10 @@ class Drive:
             self._refuse("has tripped with %s: acknowledge() when its cause is gone" % name)
         if not self._may_start():
             self._refuse("is inhibited, or stopped by OFF2 or OFF3 from elsewhere")
-        obstacle = particulars.obstacle(needs_setpoint, self.unsupervised)
+        obstacle = survey.obstacle(needs_setpoint, self.unsupervised)
         if obstacle:
             self._refuse(obstacle)
-        self.keep_within(particulars.off_time_ms())
+        self.keep_within(survey.off_time_ms())
         if self.engine.stops != stops:
             self._refuse("was told to stop meanwhile")
 
@@ -636,7 +636,7 @@ class Master:
         """
         if not isinstance(off_time_ms, int) or not 0 <= off_time_ms <= 1000 * OFF_TIME_S[1]:
             raise ValueError("a telegram-off time is an integer in ms, not %r" % (off_time_ms,))
-        drive.particulars.told_off_time_ms = off_time_ms
+        drive.survey.told_off_time_ms = off_time_ms
         drive.keep_within(off_time_ms)
 
     def round_us(self):

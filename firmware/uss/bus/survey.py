@@ -3,13 +3,13 @@
 
 For `bus`: it is asked before a start, and when a speed is wanted in Hz or 1/min. What is asked for
 are the rows of the family's survey, a value each; `families.rows` judges them. Nothing of this is
-kept over a loss of contact, for it may be another drive that answers then. The panel has `survey`
-for it, which never waits.
+kept over a loss of contact, for it may be another drive that answers then. The panel has
+`uss.survey` for it, which never waits.
 
-    particulars = Particulars(drive, None)
-    particulars.ask()                   # waits
-    particulars.obstacle(True, False)   # None, or why it must not be started, in words
-    particulars.setpoint(25.0, None, None)
+    survey = Survey(drive, None)
+    survey.ask()                        # waits
+    survey.obstacle(True, False)        # None, or why it must not be started, in words
+    survey.setpoint(25.0, None, None)
 """
 
 from uss import families, pkw
@@ -34,7 +34,7 @@ WRONGS = {
 }
 
 
-class Particulars:
+class Survey:
     """drive: a `bus.Drive`. scale: a `scaling.Scale` that its owner knows, or None; what the drive
     tells goes before it.
 

@@ -61,14 +61,14 @@ def test_a_drive_that_does_not_say_what_it_is_asked_is_not_started():
 
 def test_what_was_known_is_asked_anew_when_the_drive_was_away():
     bench = Bench()
-    assert bench.drive.particulars.known_scale().reference_hertz == 50.0
+    assert bench.drive.survey.known_scale().reference_hertz == 50.0
     bench.motor().unplug()
     bench.bus.wait(2)
     bench.motor().write(2000, 0, 100.0)
-    assert bench.drive.particulars.scale.reference_hertz == 50.0
+    assert bench.drive.survey.scale.reference_hertz == 50.0
     bench.motor().plug()
     bench.bus.wait(2)
-    assert bench.drive.particulars.known_scale().reference_hertz == 100.0
+    assert bench.drive.survey.known_scale().reference_hertz == 100.0
     bench.end()
 
 
@@ -106,7 +106,7 @@ def test_what_counts_is_the_data_set_that_is_active():
     active, readings = {50: 1, 51: 2}, motor.readings.value
     motor.parameters.reading = lambda *place: active.get(place[0]) or readings(*place)
     assert "P1070[1] = 755:0" in refusal(NotStarted, bench.drive.run, 10.0)
-    assert bench.drive.particulars.scale.reference_hertz == 100.0
+    assert bench.drive.survey.scale.reference_hertz == 100.0
     bench.end()
 
 
