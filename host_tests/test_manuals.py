@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """What the manuals say is so: links lead somewhere, no key, text, setting or command is missing.
 
-The library's manuals have tests of their own: test_uss_readme.py, test_plc_table.py.
+The library's manuals have tests of their own: test_uss_readme.py, test_s7_readme.py.
 """
 
 import json

@@ -12,7 +12,7 @@ from boards.sim.line.wire import Transceiver, Wire
 from hal import pacer
 from hal.rs485 import Rs485Link
 from plc_bench import SCAN_US
-from test_plc_codes import NEVER
+from test_s7_codes import NEVER
 from uss import (
     bits,
     drive,

@@ -3,7 +3,7 @@
 
 from test_channel import Line
 from test_pkw import FOUR, THREE, VARIABLE, answered, refused
-from test_pkw_text import text_words
+from test_tasks_texts import text_words
 from uss import pkw
 from uss.bus import pkw_errors
 from uss.layout import VARIABLE as VARIABLE_WORDS
