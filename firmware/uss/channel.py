@@ -5,11 +5,11 @@ The loop puts jobs in, the engine carries them out: a task is repeated in every 
 fitting reply comes, then "no task" follows (specification C-4.2.1.1). The queue is a ring with one
 writer at each end, so that neither side waits for the other.
 
-A drive may fall silent on a task that it does not know. It must not be lost by that, for its motor
-would be stopped: when telegrams with a task stay unanswered, one without it shows whether the
-drive answers that. If it does, the task is to blame, and ends as UNANSWERED. If not, the drive or
-the line is silent: a task that reads goes on when the drive answers again. One that writes is not
-sent again, because it would be carried out twice.
+A drive may fall silent on a task that it does not know. The bus must not lose it by that, or it
+would stop its motor. So when telegrams with a task stay unanswered, the bus sends one without it.
+If the drive answers that, the task is to blame, and ends as UNANSWERED. If not, the drive or the
+line is silent: a task that reads goes on when the drive answers again. A task that writes is not
+sent again, because the drive might carry it out twice.
 
     channel.ask(pkw.read(700))                  # loop
     channel.fill(net, at, now)                  # engine: the PKW words of the next request, 8

@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: MIT
-"""Drives that have too few turns: the loop's part in `turns`.
+"""Gives more turns to drives that would trip for want of telegrams: the loop's part in `turns`.
 
-A drive that may run is to have its telegrams less than a third of the time apart after which it
-trips for want of them: P2014 of a MICROMASTER 4. Where the list alone would not do, it gets more
-turns: it is pressed in time for what may still go before it. A drive that never trips counts as
-one that trips when it would be lost.
+A drive trips when it has heard no telegram for its telegram-off time, P2014 of a MICROMASTER 4.
+So two telegrams to a drive that may run are less than a third of that time apart. Where the list
+alone does not achieve this, the drive is pressed: it gets a turn early enough for whatever may
+still go before it. A drive that never trips counts as one that trips when it would be lost.
 
-While silent drives are told to stop, the list has few turns. Then those at rest are pressed as
-well: they trip like the others, and cannot be started before somebody acknowledges that.
+While the bus tells silent drives to stop, the list has few turns. Then drives at rest are pressed
+as well: they trip like the others, and nobody can start them before the fault is acknowledged.
 
-What is left is for the silent ones, see `silence`. Works a little at a time, whenever the loop
-refreshes the bus; the engine only walks the round.
+The silent drives get what time is left, see `silence`. All this is done a little at a time,
+whenever the loop refreshes the bus. The engine only walks the round.
 """
 
 from array import array
@@ -86,7 +86,7 @@ class Deadlines:
         time without telegrams after which it trips, P2014 of a MICROMASTER 4. 0, it never does,
         counts as the time after which it is lost; so does a drive of which nobody has told.
 
-        Where its turns in the list are further apart it gets more, through `look`.
+        Where its turns in the list are further apart, `look` gives it more.
         """
         bound_us = off_time_ms * 1000 // 3
         if bound_us != self._bounds_us[drive.address]:
@@ -98,8 +98,8 @@ class Deadlines:
 
     def gap_us(self, drive):
         """The longest gap in microseconds between two telegrams to `drive`, and to every drive
-        that runs, that this line can promise once `drive` runs beside them; one exchange in it
-        that is not answered. A tenth of a second after a start it counts in.
+        that runs, that this line can promise once `drive` runs beside them. One exchange in that
+        gap may stay unanswered. A drive counts as running a tenth of a second after its start.
         """
         # Those that run as the last sweep found them: to walk the drives takes as long as a step
         # of the loop may.
@@ -127,7 +127,7 @@ class Deadlines:
 
     def silence_wait_us(self):
         """How long to wait, in microseconds, before one more telegram that perhaps nobody answers:
-        until the share of the silent drives has room for it. It is theirs that it takes.
+        until the share of the silent drives has room for it. The telegram takes of their share.
         """
         if not self._has_room():
             return _LONGEST_US
@@ -310,9 +310,10 @@ class Deadlines:
         return needed_us + self.silence.silent_exchange_us
 
     def _has_room(self):
-        """Whether a silence leaves the drives that run their bound. Where there are too many of
-        them for that anyway, it may take a quarter of what they need: it trips none. Where only
-        one that never trips would be late, and not lost, it may be now and then.
+        """Whether the drives that run still have their telegrams in time after one more silence.
+        Where there are too many of them for that anyway, a silence may take a quarter of what they
+        need: it trips none. Where only a drive that never trips would be late, and not lost, a
+        silence is allowed now and then.
         """
         needed_us = self._needed_us
         least_us = self._least_us

@@ -101,7 +101,7 @@ class Drive:
     was: it stays what it is while others mix in.
     """
 
-    outside = False  # of the list; what is, has a state (`outside`)
+    outside = False  # of the list; a telegram that is outside has a state, see `outside`
 
     def __init__(self, address, mask, attention=None, layout=STANDARD):
         if not 0 <= address <= NODE_MAX:

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Telegrams outside the circulating list: mirror, broadcast, special (specification A-4.3, A-5.3).
 
-Each is built once, handed to `Turns.post`, sent in between as soon as there is room, and tells
-what became of it: NEW, PENDING, DONE or TIMED_OUT, the states of a parameter job. None of them
-starts a motor: a mirror is not acted on, a broadcast with a start bit is refused, and special
+You build one and hand it to `Turns.post`, and the bus sends it as soon as there is room. Its state
+tells what became of it: NEW, PENDING, DONE or TIMED_OUT, as of a parameter job. None of them
+starts a motor: no drive acts on a mirror telegram, `Broadcast` refuses a start bit, and special
 telegrams mean nothing to a drive.
 
     probe = outside.Mirror(5)
@@ -35,8 +35,8 @@ ENABLED_PLACES = const(15)  # PZD 16 is never taken over
 class OutsideTelegram:
     """The telegram with these net data to this ADR. ValueError when it cannot be one.
 
-    state, and finding: of the receiver, why there was no reply. reply: the net characters of it,
-    bytes, once DONE. The other fields are those that the engine has of a drive.
+    state: what became of it. finding: of the receiver, why there was no reply. The engine uses
+    the other fields as those of a drive.
     """
 
     outside = True  # of the list
@@ -151,7 +151,7 @@ class Special(OutsideTelegram):
     node: 0...31, or None for all of that kind, which do not answer. net: 1...252 characters.
     reply_count: net characters of the reply, None for any number. hook(net, count), when given, is
     called in the engine with the reply's net data in the first `count` characters of `net`; it
-    must not allocate.
+    must not allocate. Once DONE, `reply_count` says how many characters of `reply` came.
     """
 
     def __init__(self, node, net, reply_count=None, hook=None):

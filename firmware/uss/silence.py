@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: MIT
-"""What drives cost that do not answer: all of them together at most a fifth of the line's time.
+"""Limits what silent drives cost: all of them together at most a fifth of the line's time.
 
-A drive without contact, not told to run and not last seen running, rests as soon as it was silent
-once: it has no turn in the round, and the resting ones are asked one after the other. A telegram
-that nobody answers takes long, the reply time-out and itself. So the share is one of time, not of
-telegrams: from one of them to the next passes five times as long as it took. A drive that answers
-owes nothing: where many are switched on at once, they are found one behind the other.
+A drive rests as soon as it was silent once, if it has no contact, is not told to run and was not
+running when it was seen last. A resting drive has no turn in the round; the resting ones are asked
+one after the other. A telegram that nobody answers takes long: itself and the reply time-out. So
+the share counts time, not telegrams: after such a telegram the bus waits five times as long as it
+took before it sends the next. A drive that answers owes nothing. So when many are switched on at
+once, the bus finds them one right after the other.
 
-Drives that run go before that: `Deadlines` says whether one more silence leaves them their bound.
+Drives that run come first: `Deadlines` says whether one more silence leaves them their bound.
 """
 
 from micropython import const
@@ -24,9 +25,9 @@ SPENT_MASK = const(0x3FFFFFFF)  # of sums of microseconds
 class Silence:
     """turns: the `Turns` that it belongs to.
 
-    Telegrams to drives without contact, and outside the list, that brought no valid reply:
-    `count`, 16 bit; `spent_us`, what they took; `shared_us`, what they took but for drives that
-    may run, whose turns are not the others'. The engine writes these three, in `charge`.
+    The engine counts telegrams that brought no valid reply, those to drives without contact and
+    those outside the list: `count`, 16 bit; `spent_us`, how long they took; `shared_us`, the same
+    without drives that may run, whose turns are their own. It writes these three in `charge`.
 
     `rests`: by address, whether a drive rests. `resting`: how many do. `wait_us`: until the share
     has room for one more silence; `Deadlines` counts it down, below 0 it has had room for so long.

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 """What must be known of a drive before it may be started, read from it again and again.
 
-Works on the loop's side, through parameter jobs, which cost the bus nothing: every telegram has a
-parameter channel. It reads the rows of the family's survey at once when contact is made and one
-every REREAD_US from then on, so that a change made at the drive itself is noticed. What was known
-is forgotten when contact is lost. `recheck` has all of it read again soon.
+The loop reads it through parameter jobs, which cost the bus nothing: every telegram has a
+parameter channel. A `Survey` reads all rows of the family's survey when contact is made, and one
+every REREAD_US from then on, so that it notices a change made at the drive itself. It forgets
+everything when contact is lost. After `recheck` it reads all rows again soon.
 
     survey = Survey(drive, MM4, clock.ticks_mask, spare_jobs())
     survey.step(now)                # each step of the loop

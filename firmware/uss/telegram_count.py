@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Whether a drive was without its mains: what its own count of telegrams, r2024, tells of that.
+"""Tells from a drive's own count of telegrams, r2024, whether the drive was without its mains.
 
-The count goes on from 0 when the drive powers up. So the drive was reset when the count has gone
+The count starts at 0 when the drive powers up. So the drive was reset when the count has gone
 back, or when it lacks telegrams that the drive has answered.
 
     count = TelegramCount(drive)

@@ -11,9 +11,9 @@ asked twice as often. Before it goes, in this order,
     an exchange that is repeated because no valid reply came
     one outside the list, or a drive that is to have more than its turn (every second telegram)
 
-A drive that stays silent is counted and shown, and never taken off the list. Which of them rest is
-the subject of `silence`, whose turns are too far apart that of `deadlines`. Sends nothing:
-`master` does.
+The bus counts and shows a drive that stays silent, and never takes it off the list. `silence` says
+which of these rest, `deadlines` which drives need more turns. Nothing is sent here: `master` does
+that.
 
     turns = Turns(Timing(19200), mask, 1_000_000, is_under_way)
     drive = turns.add(1)            # loop: or turns.add(1, Layout(VARIABLE, 4))
@@ -208,8 +208,8 @@ class Turns:
 
     # --- for `silence`, from the loop -----------------------------------------------------------
 
-    # Where the round goes on moves with the round, or the next drive would have no turn: that of
-    # a drive behind one that answers every second telegram would never come. An interrupt that
+    # `following` moves with the round, or the next drive would lose its turn: one that stands
+    # behind a drive that answers every second telegram would never be asked. An interrupt that
     # takes a turn between the two steps asks one drive twice, and leaves none out.
 
     def leave_round(self, drive):
@@ -311,13 +311,13 @@ class Turns:
     def _most_urgent(self):
         """Who is in the greatest hurry; None when the list may go on.
 
-        What is only to have more than its turn gets every second telegram at the most, and what
-        is overdue two in a row, so that the list goes on in between. A command to a drive without
-        contact takes long: behind one of these, three that are overdue and not told to run go
-        before the next.
+        A drive that only wants more than its turn gets every second telegram at the most. Overdue
+        drives get two in a row, so that the list goes on in between. A command to a drive without
+        contact takes long: after one of these, three drives that are overdue and not told to run
+        go before the next.
         """
         attention = self._attention
-        attention[ANY] = 0  # before looking: whoever calls for it from now on is not missed
+        attention[ANY] = 0  # before looking: whoever calls from now on is not missed
         if self._ahead is not None:
             drive, self._ahead = self._ahead, None
             attention[ANY] = 1
