@@ -566,7 +566,7 @@ MUTATIONS = (
         ("UNSUPERVISED",), 78,
         (
             "panel/risks.py",
-            "    if 0 < off_time_ms <= control.longest_off_time_ms:\n",
+            "    if 0 < off_time_ms <= control.desk.longest_off_time_ms:\n",
             "    if 0 < off_time_ms:\n",
         ),
     ),
