@@ -8,7 +8,7 @@
     phases      what becomes of a START or a JOG
     permits     why START and JOG are refused
     command     a START or JOG that was obeyed, and what took it back
-    setpoint, fault, stop_watch, state      what is known of a drive and said of it
+    setpoint, fault, stop_watch, wording    what is known of a drive and said of it
     risks       what START asks before a motor turns
     neighbours  the drives that are not shown
     reading, writer             ask a parameter, write one, follow a drive to another address

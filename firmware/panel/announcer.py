@@ -14,7 +14,7 @@ order of the list. Between two announcements it is the page's turn.
 
 from micropython import const
 
-from panel import state, texts
+from panel import texts, wording
 from panel.fault import draw_number
 from panel.phases import ASKING
 from uss import pzd
@@ -128,7 +128,7 @@ class Announcer:
         column = 2 if address < 10 else 3
         screen.number(row, 1, column - 1, address * 100, 0)
         if kind == NOTED or kind == REMARKED:
-            text = control.notice if kind == NOTED else state.remark(control)
+            text = control.notice if kind == NOTED else wording.remark(control)
             screen.put(row, column + 1, texts.ROW_WIDTH - column - 1, texts.of(text))
             return
         words = texts.of(one)
@@ -264,7 +264,7 @@ def _kind(control, seen, told):
             return REMARKED if control.remark else RUNS
     elif control.needs_attention():
         return NOTHING  # which outranks the rest
-    elif not told and control.drive.is_on() and control.runs() and state.remark(control):
+    elif not told and control.drive.is_on() and control.runs() and wording.remark(control):
         return REMARKED
     if not told:
         if control.fault.active:

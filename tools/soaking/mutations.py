@@ -243,7 +243,7 @@ MUTATIONS = (
         "a drive that is lost is shown as it was last",
         ("MAY RUN",), 1,
         (
-            "panel/state.py",
+            "panel/wording.py",
             "    if not drive.contact:\n        return _TROUBLES[drive.trouble]\n",
             "",
         ),

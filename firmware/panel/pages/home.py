@@ -7,7 +7,7 @@
 Row 1 and the address are drawn by `panel.view`, because parameter mode shows them too.
 """
 
-from panel import state, texts
+from panel import texts, wording
 from panel.fault import draw_number
 from panel.pages import Page, warning
 
@@ -25,7 +25,7 @@ class Home(Page):
 
     def draw(self, screen, now_ms):
         control = self.panel.selected
-        text = state.text(control)
+        text = wording.text(control)
         if text != texts.FAULT and warning.draw(screen, self.panel):
             return
         words = texts.of(text)
