@@ -115,8 +115,8 @@ def test_a_count_that_the_loop_takes_late_lacks_no_telegram():
     is_new = [True]
 
     def step_late(now, *more):
-        waiting, job = survey._waiting, survey._job
-        is_there = waiting and job.number == 2024 and job.state == DONE
+        job = survey._asked
+        is_there = job is not None and job.number == 2024 and job.state == DONE
         if is_there and is_new[0]:
             counts.append(now)
         is_new[0] = not is_there

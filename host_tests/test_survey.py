@@ -156,7 +156,7 @@ def runs(count, step):
     survey.count_anew()
     survey.recheck()
     let_pass(line, 40)
-    assert survey.complete and not survey.restarted
+    assert survey.complete and not survey.count.restarted
     return line
 
 
@@ -173,14 +173,14 @@ def test_a_drive_that_counts_from_the_beginning_was_without_power():
         let_pass(line, 60)
         line.counts[0] = (after, 1)
         let_pass(line, 200)
-        assert line.surveys[0].restarted, (before, after)
+        assert line.surveys[0].count.restarted, (before, after)
 
 
 def test_a_counter_that_goes_on_or_wraps_is_no_reset():
     for step in (1, 2, 3, 31, 0):  # that of each telegram; with those to others; none at all
         line = runs(0xF000, step)
         let_pass(line, 5000)
-        assert not line.surveys[0].restarted, step
+        assert not line.surveys[0].count.restarted, step
 
 
 def test_who_asks_anew_does_not_hide_that_the_counter_went_back():
@@ -189,4 +189,4 @@ def test_who_asks_anew_does_not_hide_that_the_counter_went_back():
     line.counts[0] = (0, 1)
     line.surveys[0].recheck()
     let_pass(line, 100)
-    assert line.surveys[0].restarted
+    assert line.surveys[0].count.restarted

@@ -270,7 +270,7 @@ class Control:
         if self.drive.wanted:
             survey.step(now, _RUNS_REREAD_US if is_shown else _UNSEEN_REREAD_US)
             survey.settle()
-            if survey.restarted and survey.take_restart():
+            if survey.has_restarted():
                 self._take_back(texts.DRIVE_RESET)
             return self.setpoint.step()  # at once: a limit may have come down
         if self.setpoint.step() and survey.complete:

@@ -23,9 +23,7 @@ from uss.telegram_count import TelegramCount
 
 REREAD_US = const(100_000)
 _UNKNOWN = const(-1)
-_JOBS = const(2)  # on their way at a time: its own, and perhaps
-_SECOND = const(1)  # another one,
-_SPARES = const(4)  # of so many; a list of four is never made smaller, so it takes no memory
+_SPARES = const(4)  # a list of four is never made smaller, so it takes no memory
 _NOTHING = const(-1)  # no row
 
 # Of the frequencies that a drive can have, as floating-point singles: the exponents as they are
@@ -64,8 +62,7 @@ class Survey:
     unreadable: the drive refused one of them, or fell silent on it. version: counts the changes
     of all this.
     unchecked: how many rows `recheck` has still to read.
-    restarted: since `recheck` the drive has begun to count its telegrams anew while it was wanted
-    to run: it was without its mains.
+    count: the `TelegramCount`; None before the first START, for most drives need none.
     """
 
     latest_scaling = None  # of any drive: most drives of a bus have the same, and share it
@@ -83,24 +80,18 @@ class Survey:
         self.unreadable = False
         self.version = 0
         self.unchecked = 0
-        self.restarted = False
+        self.count = None
         self._mask = mask
-        self._job = pkw.read(0)
-        self._second = None  # of its jobs, while it has one of the spares
+        self._job = pkw.read(0)  # its own; a second one is a spare one
         self._spares = spares
-        self._first = 0  # which was asked first of those on their way
-        self._waiting = 0  # so many are on their way
-        self._stale = 0  # so many of them were asked too early to count
+        self._asked = None  # the job on its way that was asked first,
+        self._asked_next = None  # and the one after it
         self._unanswered = None  # by row, so often the drive fell silent on it: most never do
         self._row = _FIRST  # that is next in the round
-        self._watched = 0  # of _WATCHED
-        self._round_is_next = False  # and not one of _WATCHED
+        self._turn = 0  # of the round and of _WATCHED, which take turns
         self._changed = _NOTHING  # this row is new, and still to be judged
         self._read_at = 0
-        self._tells_count = True  # as far as anybody knows
-        self._count = None  # a TelegramCount, made with the first START: most drives need none
-        self._contact = 0  # drive.contacts to which the values belong
-        self._knows = False  # something has been asked since all was forgotten
+        self._contact = 0  # drive.contacts to which the values belong; 0 without contact
 
     def lowest(self):
         """The lowest frequency of the drive, P1080, in centihertz. Once complete."""
@@ -112,24 +103,22 @@ class Survey:
 
     def recheck(self):
         """Have every row read again soon: the drive gets more than its turn meanwhile."""
-        self._knows = True
-        self.unchecked = len(self.values)
-        self._tells_count = True
+        if self.drive.contact:
+            self.unchecked = len(self.values)
+        if self.count:
+            self.count.is_told = True
         self.settle()
         self._row = _FIRST
-        self._stale = self._waiting
+        self._disown()
 
     def count_anew(self):
         """From the next count of telegrams on fewer of them mean that the drive was reset."""
-        self.restarted = False
-        self._tells_count = True
-        self._count = self._count or TelegramCount(self.drive)
-        self._count.begin()
+        self.count = self.count or TelegramCount(self.drive)
+        self.count.begin()
 
-    def take_restart(self):
-        """`restarted`, which is forgotten by this."""
-        restarted, self.restarted = self.restarted, False
-        return restarted
+    def has_restarted(self):
+        """Whether the drive was without its mains while it was wanted to run. Says so once."""
+        return self.count is not None and self.count.take_restart()
 
     def drop_recheck(self):
         """Nobody waits for it any more."""
@@ -142,16 +131,15 @@ class Survey:
         reread_us: once all is known, a row is read again so long after the one before.
         """
         drive = self.drive
-        if drive.contacts != self._contact or self._knows and not drive.contact:
+        contact = drive.contacts if drive.contact else 0
+        if contact != self._contact:
+            self._contact = contact
             self._forget()  # that takes long enough
-            self._stale = self._waiting
-            if drive.contacts != self._contact:
-                self._contact = drive.contacts
-                if reread_us == REREAD_US:  # it is shown: somebody waits
-                    self.unchecked = len(self.values)
+            if contact and reread_us == REREAD_US:  # it is shown: somebody waits
+                self.unchecked = len(self.values)
         elif self._changed != _NOTHING:
             self.settle()
-        elif self._waiting and self._oldest().state != pkw.PENDING:
+        elif self._asked and self._asked.state != pkw.PENDING:
             self._read_at = now
             self._take()
         elif self._is_due(now, reread_us):
@@ -177,22 +165,18 @@ class Survey:
         self._judge()
 
     def _forget(self):
-        self._knows = False
         self.unchecked = 0
         self._changed = _NOTHING
         self._row = _FIRST
-        self.restarted = False
-        self._tells_count = True
-        if self._count:
-            self._count.forget()
+        self._disown()
+        if self.count:
+            self.count.forget()
         self._unanswered = None
         known = self.unreadable
         for row in range(len(self.values)):
-            if row in _LATER:
-                self.values[row] = 0
-            else:
-                known = known or self.values[row] != _UNKNOWN
-                self.values[row] = _UNKNOWN
+            blank = 0 if row in _LATER else _UNKNOWN
+            known = known or self.values[row] != blank
+            self.values[row] = blank
         if known:
             self.scaling = None
             self.wrong = rows.wrong_rows(self.family.meaning, self.values)
@@ -201,14 +185,14 @@ class Survey:
 
     def _is_due(self, now, reread_us):
         """Whether a row is to be asked for now."""
-        waiting = self._waiting
-        if waiting == _JOBS or not self.drive.contact:
+        asked = self._asked
+        if self._asked_next or not self.drive.contact:
             return False
-        if waiting and self._first != _SECOND and not self._spares:
+        if asked is self._job and not self._spares:
             return False
-        if self.unchecked > waiting or not self.complete:
+        if self.unchecked > (asked is not None) or not self.complete:
             return True
-        return not waiting and elapsed(now, self._read_at, self._mask) >= reread_us
+        return not asked and elapsed(now, self._read_at, self._mask) >= reread_us
 
     # --- questions and answers ------------------------------------------------------------------
 
@@ -216,35 +200,38 @@ class Survey:
         if channel.is_full():
             return  # others ask as well: later
         row = self._next_row()
-        asked = self.family.survey[row]
-        if not self._waiting:
-            self._first = 0
-        place = (self._first + self._waiting) % _JOBS
-        job = self._job
-        if place == _SECOND:
-            job = self._second = self._spares.pop()
-        job.aim(pkw.READ, asked[0], rows.index_of(asked, self.values))
+        wanted = self.family.survey[row]
+        job = self._spares.pop() if self._asked is self._job else self._job
+        job.aim(pkw.READ, wanted[0], rows.index_of(wanted, self.values))
         job.tag = row
-        if row == rows.COUNTER and self._count:
-            self._count.asked()
-        self._knows = True
+        if row == rows.COUNTER and self.count:
+            self.count.asked()
         channel.ask(job)
-        self._waiting += 1
+        if self._asked:
+            self._asked_next = job
+        else:
+            self._asked = job
+
+    def _disown(self):
+        """What is on its way was asked too early to count."""
+        for job in (self._asked, self._asked_next):
+            if job:
+                job.tag = _NOTHING
 
     def _next_row(self):
         """The round goes on; while the drive runs, every other row is one that is watched."""
-        self._round_is_next = not self._round_is_next
-        rechecks = self.unchecked or not self.complete
-        if self._round_is_next or rechecks or not self.drive.wanted:
-            row = self._row
-            while not self.unchecked and self._is_left_out(row):
-                row = (row + 1) % len(self.values)
-            self._row = (row + 1) % len(self.values)
-            return row
-        self._watched = (self._watched + 1) % len(_WATCHED)
-        if _WATCHED[self._watched] == rows.COUNTER and not self._tells_count:
-            self._watched += 1
-        return _WATCHED[self._watched]
+        self._turn = (self._turn + 1) % (2 * len(_WATCHED))
+        if self._turn & 1 and self.drive.wanted and self.complete and not self.unchecked:
+            row = _WATCHED[self._turn >> 1]
+            if row != rows.COUNTER or self.count is None or self.count.is_told:
+                return row
+            self._turn += 2
+            return _WATCHED[self._turn >> 1]
+        row = self._row
+        while not self.unchecked and self._is_left_out(row):
+            row = (row + 1) % len(self.values)
+        self._row = (row + 1) % len(self.values)
+        return row
 
     def _is_left_out(self, row):
         """Whether the round goes on without it: START alone asks for it, or it is watched."""
@@ -259,19 +246,15 @@ class Survey:
         """Whether the drive has fallen silent on it so often that it seems to lack it."""
         return self._unanswered is not None and self._unanswered[row] == _UNANSWERED_MAX
 
-    def _oldest(self):
-        return self._second if self._first == _SECOND else self._job
-
     def _take(self):
         """The answer to the question that was asked first."""
-        job = self._oldest()
+        job = self._asked
         row = job.tag
-        if self._first == _SECOND:
+        if job is not self._job:
             self._spares.append(job)
-        self._first = (self._first + 1) % _JOBS
-        self._waiting -= 1
-        if self._stale:
-            self._stale -= 1
+        self._asked = self._asked_next
+        self._asked_next = None
+        if row == _NOTHING:
             return
         if self.unchecked:
             self.unchecked -= 1
@@ -297,7 +280,8 @@ class Survey:
         if row == rows.COUNTER:
             if job.state == pkw.TIMED_OUT:
                 return  # the line was bad: the count that comes next tells as much
-            self._tells_count = False
+            if self.count:
+                self.count.is_told = False
         is_absent = job.state == pkw.REFUSED and job.error in _ABSENT
         if job.state == pkw.UNANSWERED:
             self._unanswered = self._unanswered or bytearray(len(self.values))
@@ -313,8 +297,8 @@ class Survey:
 
     def _take_count(self, count):
         before, self.values[rows.COUNTER] = self.values[rows.COUNTER], count
-        if self._count and self._count.tells_reset(before, count):
-            self.restarted = self.drive.wanted != 0
+        if self.count:
+            self.count.take(before, count)
 
     def _put(self, row, value):
         """A value that is new, and still to be judged. Another data set makes others unknown."""

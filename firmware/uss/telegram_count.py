@@ -6,7 +6,8 @@ back, or when it lacks telegrams that the drive has answered.
 
     count = TelegramCount(drive)
     count.asked()                       # r2024 is being asked for
-    count.tells_reset(before, now)      # its answer, and the one before
+    count.take(before, now)             # its answer, and the one before
+    count.take_restart()                # whether it was reset while it was wanted to run
     count.begin()                       # another run begins: nothing has been counted yet
     count.forget()                      # contact was lost
 """
@@ -21,7 +22,11 @@ _LATE = const(32)  # and that it may count later than it answers them
 
 
 class TelegramCount:
-    """drive: a `Drive`. Its counters of exchanges are what the count is held against."""
+    """drive: a `Drive`. Its counters of exchanges are what the count is held against.
+
+    restarted: since `begin` the drive was reset while it was wanted to run. is_told: it answers
+    when it is asked for its count, as far as anybody knows; for the survey to write.
+    """
 
     def __init__(self, drive):
         self._drive = drive
@@ -38,16 +43,26 @@ class TelegramCount:
 
     def begin(self):
         """From the next count on fewer telegrams mean that the drive was reset."""
+        self.restarted = False
+        self.is_told = True
         self._begun = False
 
     def asked(self):
         """The drive is being asked for its count."""
         self._answers_asked = self._drive.counters[_GOOD]
 
-    def tells_reset(self, before, count):
-        """Whether the drive has been reset since the last count. One that never moves tells
-        nothing.
-        """
+    def take_restart(self):
+        """`restarted`, which is forgotten by this."""
+        restarted, self.restarted = self.restarted, False
+        return restarted
+
+    def take(self, before, count):
+        """Note whether the drive has been reset since the last count."""
+        if self._tells_reset(before, count):
+            self.restarted = self._drive.wanted != 0
+
+    def _tells_reset(self, before, count):
+        """One that never moves tells nothing."""
         exchanges = 0
         for counted in self._drive.counters:
             exchanges += counted

@@ -545,7 +545,7 @@ MUTATIONS = (
         ),
         (
             "panel/control.py",
-            "            if survey.restarted and survey.take_restart():\n"
+            "            if survey.has_restarted():\n"
             "                self._take_back(texts.DRIVE_RESET)\n",
             "",
         ),
