@@ -65,8 +65,7 @@ class App:
         self._progress = 0  # of the bus as last seen, and when it moved
         self._progress_at_ms = 0
         self._fed_at_ms = 0
-        self._save_failed = False
-        self._saved_at_ms = 0
+        self._save_failed_at_ms = None
         self._shows_next = False
 
     def start(self):
@@ -108,7 +107,11 @@ class App:
     def _save_if_quiet(self, now_ms):
         """Writing flash holds everything up for a while, interrupts too: only when no drive runs,
         and between two exchanges."""
-        if self.panel.any_runs() or self._just_failed_to_save(now_ms):
+        failed_at_ms = self._save_failed_at_ms
+        has_just_failed = (
+            failed_at_ms is not None and elapsed(now_ms, failed_at_ms, self._mask) < _SAVE_AGAIN_MS
+        )
+        if has_just_failed or self.panel.any_runs():
             self.bus.resume()
             return
         self.bus.pause()
@@ -116,18 +119,12 @@ class App:
             self._save(now_ms)
             self.bus.resume()
 
-    def _just_failed_to_save(self, now_ms):
-        if not self._save_failed:
-            return False
-        return elapsed(now_ms, self._saved_at_ms, self._mask) < _SAVE_AGAIN_MS
-
     def _save(self, now_ms):
-        self._saved_at_ms = now_ms
-        self._save_failed = False
         try:
             save(self.board.store, self.settings)
+            self._save_failed_at_ms = None
         except OSError:
-            self._save_failed = True
+            self._save_failed_at_ms = now_ms
             self.panel.say(now_ms, texts.NOT_SAVED)
 
     def close(self):

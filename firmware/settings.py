@@ -68,7 +68,8 @@ class Settings:
             if type(value) is type(default) and value in choices:
                 setattr(self, name, value)
             else:
-                self.complain(name, "%r is none of %s" % (value, _words(choices)))
+                words = " ".join(str(choice) for choice in choices)
+                self.complain(name, "%r is none of %s" % (value, words))
         for name, default, lowest, highest, _ in NUMBERS:
             value = stored.get(name, default)
             if _is_number(value, lowest, highest):
@@ -81,7 +82,11 @@ class Settings:
                 setattr(self, name, tuple(value))
             else:
                 self.complain(name, "%r are not up to 31 addresses 0...31" % (value,))
-        self._check_limits()
+        if self.lowest_centihertz > self.highest_centihertz:
+            limits = (self.lowest_centihertz, self.highest_centihertz)
+            self.complain("lowest_centihertz", "%d is above highest_centihertz: %d" % limits)
+            self.lowest_centihertz = DEFAULTS["lowest_centihertz"]
+            self.highest_centihertz = DEFAULTS["highest_centihertz"]
 
     def take_file(self, found):
         """As `take`, from the `fields` of the file; what is not known is kept."""
@@ -142,14 +147,6 @@ class Settings:
             self.suspect = suspect
         self.damaged = True
 
-    def _check_limits(self):
-        if self.lowest_centihertz > self.highest_centihertz:
-            limits = (self.lowest_centihertz, self.highest_centihertz)
-            text = "%d is above highest_centihertz: %d" % limits
-            self.complain("lowest_centihertz", text)
-            self.lowest_centihertz = DEFAULTS["lowest_centihertz"]
-            self.highest_centihertz = DEFAULTS["highest_centihertz"]
-
     def _check_present(self, address):
         if address not in self.drives:
             raise ValueError("no drive %r" % (address,))
@@ -170,10 +167,6 @@ def _are_addresses(values, fewest):
 
 def _replaced(addresses, old, new):
     return tuple(new if address == old else address for address in addresses)
-
-
-def _words(choices):
-    return " ".join(str(choice) for choice in choices)
 
 
 def _fields(data):

@@ -28,13 +28,10 @@ def fields(data):
     """
     data.decode()  # UnicodeError is a ValueError
     reader = Reader(data)
-    found = None
     try:
         found = reader.members()
     except IndexError:
-        pass
-    if found is None:
-        raise ValueError("it ends too soon")
+        raise ValueError("it ends too soon") from None
     reader.end()
     return found
 

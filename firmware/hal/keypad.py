@@ -49,7 +49,7 @@ class Keypad:
 
     def read(self):
         if self._levels is None:
-            down = self._read_direct()
+            down = _low(self._direct) ^ self._closed
         else:
             levels = self._levels()
             down = self._down if levels == self._seen else self._take_levels(levels)
@@ -68,12 +68,14 @@ class Keypad:
         self._seen = levels
         return down
 
-    def _read_direct(self):
-        low = 0
-        for bit, level in self._direct:
-            if not level():
-                low |= bit
-        return low ^ self._closed
+
+def _low(pins):
+    """Those that are low, as bits."""
+    low = 0
+    for bit, level in pins:
+        if not level():
+            low |= bit
+    return low
 
 
 def check_names(names, own, closed):
@@ -134,7 +136,7 @@ class Matrix:
         for put in self._rows:
             put(0)
         self._sleep_us(_SETTLE_US)
-        low = self._low_columns()
+        low = _low(self._columns)
         for put in self._rows:
             put(1)
         return not low
@@ -142,22 +144,15 @@ class Matrix:
     def _scan(self):
         """Look at every row; answer the columns that are shorted."""
         self._sleep_us(_SETTLE_US)
-        shorted = self._low_columns()
+        shorted = _low(self._columns)
         row = 0
         for put in self._rows:
             put(0)
             self._sleep_us(_SETTLE_US)
-            self._seen[row] = self._low_columns() & ~shorted
+            self._seen[row] = _low(self._columns) & ~shorted
             put(1)
             row += 1
         return shorted
-
-    def _low_columns(self):
-        low = 0
-        for bit, level in self._columns:
-            if not level():
-                low |= bit
-        return low
 
     def _is_ambiguous(self):
         seen = self._seen

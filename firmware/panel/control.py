@@ -289,10 +289,13 @@ class Control:
         """Look what became of the commands, and whether the drive does as it is told."""
         self._now = now
         drive = self.drive
-        if self.survey.version != self._judged:
-            self._judge_status()
+        survey = self.survey
+        if survey.version != self._judged:
+            self._judged = survey.version
+            if survey.values[rows.STATUS_SENT] >= 0:  # else what was known stays true
+                drive.tells_status = not permits.tells_no_status(survey)
         if drive.zsw & pzd.ZSW_FAULT and self.fault is NO_FAULT:
-            self.fault = Fault(drive, self.desk.mask, self.survey.family.fault_number)
+            self.fault = Fault(drive, self.desk.mask, survey.family.fault_number)
         self.fault.step(now)
         if drive.contact != self._contact:
             self._contact = drive.contact
@@ -415,14 +418,9 @@ class Control:
     def _begin_stop_watch(self):
         if self.stop_watch is NO_WATCH:
             self.stop_watch = StopWatch(self.drive, self.desk.mask)
-        self.stop_watch.begin()
+        else:
+            self.stop_watch.begin()
         return self.stop_watch
-
-    def _judge_status(self):
-        """Whether ZSW is its status word. What was known stays true until that is read again."""
-        self._judged = self.survey.version
-        if self.survey.values[rows.STATUS_SENT] >= 0:
-            self.drive.tells_status = not permits.tells_no_status(self.survey)
 
     def _may_run(self):
         """Whether the motor may turn. Of one that never tells only what has stirred it counts."""

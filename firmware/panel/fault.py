@@ -34,15 +34,13 @@ class Report:
     """
 
     def __init__(self, drive, mask, bit, parameter):
-        self.active = False
-        self.number = 0
         self._drive = drive
         self._mask = mask
         self._bit = bit
         self._parameter = parameter
         self._reading = Reading()
         self._asked_at = 0
-        self._wait_us = 0  # between the last question and the next
+        self._turn(False)
 
     def step(self, now):
         drive = self._drive
@@ -66,7 +64,7 @@ class Report:
         """It comes or goes."""
         self.active = active
         self.number = 0
-        self._wait_us = 0
+        self._wait_us = 0  # between the last question and the next
         self._reading.drop()
 
     def _ask(self, now):
@@ -90,7 +88,6 @@ class Fault(Report):
 
     def __init__(self, drive, mask, parameter):
         Report.__init__(self, drive, mask, pzd.ZSW_FAULT, parameter)
-        self._shown_ms = 0
 
     def show(self, passed_ms):
         """It was on the display for so long."""

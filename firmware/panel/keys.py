@@ -39,12 +39,10 @@ class Acts:
     """
 
     def __init__(self, keys):
-        self.pressed = 0
-        self.repeated = 0
-        self.repeats = 0
         self.bit = keys.bit
         self.forget = keys.forget  # a key that is held repeats nothing any more
         self._keys = keys
+        self.note()
 
     def note(self):
         """Keep what has just been found."""

@@ -40,49 +40,35 @@ def tells_no_status(survey):
     return survey.wrong[rows.STATUS] != rows.RIGHT
 
 
+# And where the drive itself is not ready for ON.
+_REFUSED_STATES = {
+    pzd.INHIBITED: texts.REFUSED_INHIBITED,
+    pzd.NOT_READY: texts.REFUSED_NOT_READY,
+}
+
+
 def why_not_start(control):
-    drive, survey = control.drive, control.survey
     if control.phase == JOGGING:
         return texts.REFUSED_JOG
-    if drive.off != pzd.OFF1:
-        return texts.REFUSED_STOPPING
-    state = drive.state()
-    reason = _why_no_command(control, state)
-    if reason:
-        return reason
-    if is_foreign(survey):
-        return REFUSED_SOURCES[survey.wrong[rows.SETPOINT]]
-    if min(survey.lowest(), survey.values[rows.HIGHEST]) > survey.scaling.limit_centihertz():
-        return texts.REFUSED_MINIMUM
-    return _why_not_now(state)
+    return _why_not(control, _why_no_start)
 
 
 def why_not_jog(control):
     """JOG has its speed from the drive (P1058, P1059): the source of the setpoint is no matter."""
+    return _why_not(control, _why_no_jog)
+
+
+def _why_not(control, why_not_this):
+    """why_not_this: asks about START or JOG alone."""
     drive, survey = control.drive, control.survey
+    state = drive.state()
     if drive.off != pzd.OFF1:
         return texts.REFUSED_STOPPING
-    state = drive.state()
-    reason = _why_no_command(control, state)
-    if reason:
-        return reason
-    if control.is_starting() or state == pzd.RUNNING and not control.own_jog_ends():
-        return texts.REFUSED_RUNS
-    if risks.is_open(control, risks.SUPERVISION):
-        is_long = survey.values[rows.SUPERVISION] > 0
-        return texts.REFUSED_LONG if is_long else texts.REFUSED_UNSUPERVISED
-    if survey.unchecked:
-        return texts.REFUSED_CHECKING  # P2014 may be another by now
-    return _why_not_now(state)
-
-
-def _why_no_command(control, state):
-    drive, survey = control.drive, control.survey
     if not drive.contact:
         return texts.REFUSED_SILENT
     if control.moving:
         return texts.WRITER_BUSY
-    if control.moved and control.is_unsaved():
+    if control.is_unsaved():
         return texts.REFUSED_UNSAVED
     if state == pzd.FAULT:
         return texts.REFUSED_FAULT
@@ -92,12 +78,24 @@ def _why_no_command(control, state):
         return texts.REFUSED_STATUS
     if is_local(survey):
         return REFUSED_SOURCES[survey.wrong[rows.COMMAND]]
+    return why_not_this(control, state) or _REFUSED_STATES.get(state, texts.NOTHING)
+
+
+def _why_no_start(control, state):
+    survey = control.survey
+    if is_foreign(survey):
+        return REFUSED_SOURCES[survey.wrong[rows.SETPOINT]]
+    if min(survey.lowest(), survey.values[rows.HIGHEST]) > survey.scaling.limit_centihertz():
+        return texts.REFUSED_MINIMUM
     return texts.NOTHING
 
 
-def _why_not_now(state):
-    if state == pzd.INHIBITED:
-        return texts.REFUSED_INHIBITED
-    if state == pzd.NOT_READY:
-        return texts.REFUSED_NOT_READY
+def _why_no_jog(control, state):
+    if control.is_starting() or state == pzd.RUNNING and not control.own_jog_ends():
+        return texts.REFUSED_RUNS
+    if risks.is_open(control, risks.SUPERVISION):
+        is_long = control.survey.values[rows.SUPERVISION] > 0
+        return texts.REFUSED_LONG if is_long else texts.REFUSED_UNSUPERVISED
+    if control.survey.unchecked:
+        return texts.REFUSED_CHECKING  # P2014 may be another by now
     return texts.NOTHING

@@ -27,6 +27,7 @@ _MINUS = const(0x2D)
 _POINT = const(0x2E)
 _ZERO = const(0x30)
 _NINE = const(0x39)
+_DIVISORS = (100, 10, 1)  # of hundredths, by the decimals that are left
 
 
 class Screen:
@@ -51,14 +52,11 @@ class Screen:
         """
         magnitude = abs(hundredths)
         negative = hundredths < 0
-        while True:
-            divisor = 1 if decimals == 2 else 10 if decimals == 1 else 100
+        for left in range(decimals, -1, -1):
+            divisor = _DIVISORS[left]
             digits = (magnitude + divisor // 2) // divisor
-            if self._digits(row * COLUMNS + column, width, digits, decimals, negative):
+            if self._digits(row * COLUMNS + column, width, digits, left, negative):
                 return
-            if decimals == 0:
-                break
-            decimals -= 1
         for index in range(width):
             self.picture[row * COLUMNS + column + index] = _NINE
 

@@ -22,10 +22,9 @@ class Setpoint:
         self.centihertz = settings.setpoint_centihertz
         self._asked_centihertz = settings.setpoint_centihertz  # what the operator set
         self._settings = settings
-        self._lowest = settings.lowest_centihertz  # that the settings and the drive allow
-        self._highest = settings.highest_centihertz
         self._drive = drive
         self._survey = survey
+        self._find_limits()
         self._version = 0  # of the survey, as last seen
         self._scaling = None  # by which drive.hsw was made
         self._wanted = False  # the drive was to run, as last seen
@@ -34,13 +33,10 @@ class Setpoint:
         """A key moves it by so much, within the limits of the drive and of the settings."""
         self.step()
         wish = self.centihertz + centihertz
-        if centihertz > 0:
-            wish = max(wish, self._lowest)
-        elif self._drive.wanted:
-            wish = max(wish, min(self._lowest, self.centihertz))  # down is not up to the lowest
-        else:
-            wish = max(wish, self._lowest)
-        self._send(max(min(wish, self._highest), 0))
+        lowest = self._lowest
+        if centihertz < 0 and self._drive.wanted:
+            lowest = min(lowest, self.centihertz)  # down is not up to the lowest
+        self._send(max(min(max(wish, lowest), self._highest), 0))
         self._asked_centihertz = self.centihertz
 
     def is_below(self):
@@ -77,7 +73,7 @@ class Setpoint:
         if survey.complete:
             highest = min(highest, survey.highest())
             lowest = max(lowest, survey.lowest())
-        self._highest = highest
+        self._highest = highest  # that the settings and the drive allow
         self._lowest = min(lowest, highest)
 
     def _lower(self):

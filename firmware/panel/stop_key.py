@@ -1,12 +1,16 @@
 # SPDX-License-Identifier: MIT
 """The STOP key: what it does when it goes down, and what while it is held.
 
-    when      what
-    at once   OFF1 to the drive that is shown, and a second stop that goes on is not weakened
-    1.5 s     that drive's second stop: OFF3, OFF2 or none, by the settings
-    4 s       OFF1 to every drive
+    stage         what it has sent                              ends when
+    RELEASED      nothing                                       the key goes down: PRESSED
+    PRESSED       OFF1 to the drive shown; a second stop that   it is held for 1.5 s: SECOND_SENT
+                  goes on is not weakened
+    SECOND_SENT   to that drive its second stop: OFF3, OFF2     it is held for 4 s: ALL_SENT
+                  or nothing, by the settings
+    ALL_SENT      OFF1 to every drive
 
-A STOP that was down when the panel started holds nothing: it only forbids START and JOG.
+Each stage ends in RELEASED when the key goes up. A STOP that was down when the panel started stays
+RELEASED: it sends nothing, it only forbids START and JOG.
 """
 
 from micropython import const
@@ -53,9 +57,8 @@ class StopKey:
 
     def step(self, keys, control, now_ms):
         """keys: `Keys`, up to date. control: of the drive that is shown."""
-        stop = self._bit
-        self.is_down = keys.down & stop != 0
-        if keys.pressed & stop:
+        self.is_down = keys.down & self._bit != 0
+        if keys.pressed & self._bit:
             self._stage = PRESSED
             self._pressed_at = now_ms
             self._control = control
@@ -63,10 +66,10 @@ class StopKey:
         elif not self.is_down:
             self._stage = RELEASED
             self.text = texts.NOTHING
-        if self._stage != RELEASED:
-            self._hold(now_ms)
-        elif self.is_down:  # and nobody pressed it since power-on
+        elif self._stage == RELEASED:  # nobody pressed it since power-on
             self.text = texts.STOP_IS_DOWN
+        else:
+            self._hold(now_ms)
 
     def stop_next(self):
         """OFF1 to one drive after the other: all at once take too long for a step of the loop, and
@@ -82,13 +85,11 @@ class StopKey:
         if self._stage == PRESSED and held_ms >= _SECOND_MS:
             self._stage = SECOND_SENT
             self._control.second_stop()
+            self.text = self._said[1]
         if self._stage == SECOND_SENT and held_ms >= _ALL_MS:
             self._stage = ALL_SENT
             self.left = 2 * len(self._controls)
             self._say(now_ms, texts.ALL_STOPPED)
-        if self._stage == ALL_SENT:
             self.text = texts.ALL_STOPPED
-        elif self._stage == SECOND_SENT:
-            self.text = self._said[1]
-        elif held_ms >= _TELL_MS:
+        elif self._stage == PRESSED and held_ms >= _TELL_MS:
             self.text = self._said[0]

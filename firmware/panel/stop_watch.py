@@ -7,8 +7,8 @@ falls silent need not answer where it was heard at rest after the last ON it was
 that does not send its status are no evidence: its STOP is never confirmed.
 
     watch = NO_WATCH                # of a drive that nobody has stopped yet
-    watch = StopWatch(drive, mask)
-    watch.begin()                   # OFF1 is being sent; the time counts from the next step on
+    watch = StopWatch(drive, mask)  # OFF1 is being sent; the time counts from the next step on
+    watch.begin()                   # likewise, another time
     watch.step(now)                 # again and again
     watch.unconfirmed               # an alarm
 """
@@ -33,25 +33,18 @@ class StopWatch:
     """
 
     def __init__(self, drive, mask):
-        self.active = False
-        self.unconfirmed = False
         self._drive = drive
         self._mask = mask
-        self._begins = False
-        self._slowed = False  # it has been seen to slow down
-        self._seems_slower = False  # by less than the word may tremble
-        self._slowed_at = 0  # when that was last, at first when the watch began
-        self._off_answers = 0  # drive.off_answers then
-        self._speed = 0  # |HIW| then, at first the highest since the watch began
+        self.begin()
 
     def begin(self):
         self.active = True
         self.unconfirmed = False
-        self._begins = True
-        self._slowed = False
-        self._seems_slower = False
-        self._off_answers = self._drive.off_answers
-        self._speed = 0
+        self._slowed = False  # it has been seen to slow down
+        self._seems_slower = False  # by less than the word may tremble
+        self._slowed_at = None  # when that was last, at first when the watch began
+        self._off_answers = self._drive.off_answers  # then
+        self._speed = 0  # |HIW| then, at first the highest since the watch began
 
     def end(self):
         """The motor stands still, or is wanted to run again."""
@@ -61,8 +54,7 @@ class StopWatch:
     def step(self, now):
         if not self.active:
             return
-        if self._begins:
-            self._begins = False
+        if self._slowed_at is None:
             self._slowed_at = now
         drive = self._drive
         if drive.contact:

@@ -68,11 +68,10 @@ class Write:
 class Writer:
     """bus: the `Master`, its drives added. settings: a `Settings`. mask: the clock's period - 1.
 
-    busy: a write is on its way.
+    Of a control it writes `moving` and `moved`, and no other field.
     """
 
     def __init__(self, bus, settings, mask):
-        self.busy = False
         self._bus = bus
         self._settings = settings
         self._mask = mask
@@ -93,14 +92,13 @@ class Writer:
         """Write 0...65535. One that cannot even be tried has its outcome already."""
         drive = control.drive
         write = Write(control, number, index, value, eeprom)
-        if self.busy or drive.channel.is_full():
+        if self._phase != IDLE or drive.channel.is_full():
             write.outcome = (texts.WRITER_BUSY,)
         elif not drive.contact:
             write.outcome = (texts.NO_CONTACT,)
         else:
             self._write = write
             self._tries = 0
-            self.busy = True
             if write.moves:
                 self._phase = PROBING
                 control.moving = True
@@ -111,7 +109,7 @@ class Writer:
 
     def takes(self, address):
         """Whether a drive is just being given this address."""
-        return self.busy and self._write.moves and self._write.value == address
+        return self._phase != IDLE and self._write.moves and self._write.value == address
 
     def take_ended(self):
         """The `Write` that has ended, once; None otherwise."""
@@ -147,9 +145,8 @@ class Writer:
     def _finish(self, now):
         job, write = self._job, self._write
         drive = write.control.drive
-        if job.state == pkw.REFUSED:
-            self._end(*failure(job))
-        elif job.state == pkw.DONE:
+        may_have_moved = write.moves and job.state != pkw.REFUSED
+        if job.state == pkw.DONE:
             if job.low == write.value:
                 self._confirm()
             elif self._tries < _TRIES_MAX:  # that was an old answer to a reading
@@ -157,11 +154,11 @@ class Writer:
                 self._ask()
             else:
                 self._end(texts.NOT_WRITTEN)
-        elif write.moves and drive.silent:
+        elif may_have_moved and drive.silent:
             self._phase = LOOKING
             self._since = now
             self._go_to(write.value)
-        elif write.moves and drive.answered_address == write.value:
+        elif may_have_moved and drive.answered_address == write.value:
             self._confirm()
         else:
             self._end(*failure(job))
@@ -178,7 +175,6 @@ class Writer:
 
     def _end(self, *outcome):
         self._phase = IDLE
-        self.busy = False
         self._ended = write = self._write
         write.outcome = outcome
         write.control.moving = False
@@ -209,11 +205,9 @@ class Writer:
         elif drive.urgent == drive.served:
             drive.hurry()
 
-    def _give_up_probe(self, row):
-        drive = self._write.control.drive
-        self._bus.turns.readdress(drive, self._write.old_address)
-        drive.hurry()
-        self._end(row)
+    def _give_up_probe(self, outcome):
+        self._go_to(self._write.old_address)
+        self._end(outcome)
 
     def _follow_silence(self):
         """A drive that falls silent while it is told its new address may be there already, or not

@@ -46,18 +46,10 @@ class Parameters(Page):
     def __init__(self, panel):
         Page.__init__(self, panel)
         self._row = 0
-        self._control = None  # the drive that what follows belongs to
-        self._value = None  # as last told by the drive
-        self._refused = False  # it does not tell it
-        self._editing = False
         self._edited = 0
         self._reading = Reading()
-        self._due = True  # ask at once
         self._read_at_ms = 0
-        self._wish = None  # what SET was pressed for: control, number, index, value
-        self._write = None  # the `Write` of it that is on its way
-        # A SET that is held makes a write permanent once it is confirmed.
-        self._set_at_ms = None  # when it went down, None when it is up or was used up
+        self._forget()
 
     def open(self):
         self._forget()
@@ -190,14 +182,15 @@ class Parameters(Page):
 
     def _forget(self):
         """Another parameter or another drive: nothing is known of it yet, nothing is edited."""
-        self._control = self.panel.selected
-        self._value = None
-        self._refused = False
+        self._control = self.panel.selected  # the drive that what follows belongs to
+        self._value = None  # as last told by the drive
+        self._refused = False  # it does not tell it
         self._editing = False
-        self._write = None
-        self._wish = None
-        self._set_at_ms = None
-        self._due = True
+        self._wish = None  # what SET was pressed for: control, number, index, value
+        self._write = None  # the `Write` of it that is on its way
+        # A SET that is held makes a write permanent once it is confirmed.
+        self._set_at_ms = None  # when it went down, None when it is up or was used up
+        self._due = True  # ask at once
         self._reading.drop()
 
     def draw(self, screen, now_ms):
