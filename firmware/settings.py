@@ -50,6 +50,8 @@ class Settings:
     suspect     None, or what the complaint is about: the name of a setting, UNREADABLE ...
     damaged     True: the file holds what was not taken over and is not yet set aside
     dirty       True: something was changed and is not saved yet
+
+    Nobody else writes any of these, but `save` puts damaged and dirty back.
     """
 
     def __init__(self):
@@ -186,20 +188,14 @@ def load(store):
     settings = Settings()
     try:
         data = store.read(SIZE_MAX + 1)
+        if data is not None and len(data) > SIZE_MAX:
+            settings.complain(TOO_BIG, "the settings file has more than %d bytes" % SIZE_MAX)
+        elif data is not None:
+            settings.take_file(_fields(data))
     except OSError:
         settings.complain(UNREADABLE, "the settings file cannot be read")
-        return settings
-    if data is None:
-        return settings
-    if len(data) > SIZE_MAX:
-        settings.complain(TOO_BIG, "the settings file has more than %d bytes" % SIZE_MAX)
-        return settings
-    try:
-        found = _fields(data)
     except ValueError as error:
         settings.complain(NO_JSON, "the settings file is damaged (%s)" % error)
-    else:
-        settings.take_file(found)
     return settings
 
 

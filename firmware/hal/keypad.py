@@ -52,20 +52,17 @@ class Keypad:
             down = _low(self._direct) ^ self._closed
         else:
             levels = self._levels()
-            down = self._down if levels == self._seen else self._take_levels(levels)
+            if levels != self._seen:
+                # Nothing but the levels decides: a pin that is asked again may have bounced since.
+                self._seen = levels
+                self._down = self._closed
+                for bit, mask in self._masks:
+                    if not levels & mask:
+                        self._down ^= bit
+            down = self._down
         if self._matrix:
             down |= self._matrix.read() << self._shift
             self.unclear = self._matrix.unclear << self._shift
-        return down
-
-    def _take_levels(self, levels):
-        """Nothing but the levels decides: a pin that is asked once more may have bounced since."""
-        low = 0
-        for bit, mask in self._masks:
-            if not levels & mask:
-                low |= bit
-        self._down = down = low ^ self._closed
-        self._seen = levels
         return down
 
 

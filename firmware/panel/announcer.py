@@ -47,7 +47,7 @@ class Announcer:
 
     kind: what is said now; NOTHING while it is the page's turn. control: of which drive; None: of
     all those of that kind together. page_turns: how often a page that says one thing after the
-    other has gone on since it came.
+    other has gone on since it came. Nobody else writes a field of it.
     """
 
     def __init__(self, controls, mask):

@@ -3,8 +3,8 @@
 
 In use:
 
-    command = Command(drive, survey, bus, mask)
-    command.give(now)                       # the key was obeyed
+    command = Command(drive, survey, desk, now)     # the key was obeyed
+    command.give(now)                       # likewise, another time
     command.send(now)                       # ON goes out from now on
     notice = command.why_in_vain(jogs, now) # again and again while it is sent; or NOTHING
     notice = command.why_stopped()          # the engine has taken it back
@@ -21,33 +21,28 @@ _START_US = const(5_000_000)  # a drive that does not run by then is told to sto
 
 
 class Command:
-    """drive: `uss.drive.Drive`. survey: its `Survey`. bus: the `Master`. mask: of the clock.
+    """drive: `uss.drive.Drive`. survey: its `Survey`. desk: the `Desk` of its control.
 
-    For `Control`: risk, the row of risks.RISKS that a START is to be asked about next; question,
-    that it was asked about last; accepted,
-    by row the value with which the operator takes that risk; exposure_ms, how long the motor
-    would run on too long, when it was started; exposure_version, of the survey when that was
-    looked at last.
+    `Control` writes these fields, and the command only sets `risk` back: risk, the row of
+    risks.RISKS that a START is to be asked about next; question, that it was asked about last;
+    accepted, by row the value with which the operator takes that risk; exposure_ms, how long the
+    motor would run on too long, when it was started; exposure_version, of the survey when that was
+    looked at last. Nobody but the command writes the others.
     """
 
-    def __init__(self, drive, survey, bus, mask):
-        self.risk = 0
+    def __init__(self, drive, survey, desk, now):
         self.question = 0
         self.accepted = [risks.NONE] * len(risks.RISKS)
         self.exposure_ms = 0
         self.exposure_version = _NONE
         self._drive = drive
         self._survey = survey
-        self._bus = bus
-        self._mask = mask
-        self._since = 0
-        self._ran = False
-        self._contacts = 0  # drive.contacts, bus.dead_man_trips and bus.failures when it was given
-        self._dead_man_trips = 0
-        self._failures = 0
+        self._bus = desk.bus
+        self._mask = desk.mask
         self._version = _NONE  # of the survey, as judged last
         self._is_local = False  # commands, and setpoints, come from elsewhere
         self._is_foreign = False
+        self.give(now)
 
     def give(self, now):
         self.risk = 0

@@ -88,8 +88,7 @@ class Control:
         self._quiet_zsw = _UNKNOWN  # drive.zsw when there was nothing to watch
         self._jogged = False  # what turns, or ramps down, is a jog of this panel
         self._judged = -1  # version of the survey when its status word was judged
-        self._stirred = False  # it ran, or may have: its rest is still to be known for sure,
-        self._stirred_at = 0  # and when it last did
+        self._stirred_at = None  # when it last ran, or may have, until its rest is known for sure
 
     # --- what an operator does ------------------------------------------------------------------
 
@@ -190,10 +189,6 @@ class Control:
         """Nobody takes the risk."""
         if self.phase == ASKING:
             self.phase = IDLE
-
-    def learn_anew(self):
-        """Have all settings of the drive read again soon: it is shown from now on."""
-        self.survey.recheck()
 
     # --- what is known --------------------------------------------------------------------------
 
@@ -316,7 +311,7 @@ class Control:
             zsw & (pzd.ZSW_RUNNING | pzd.ZSW_FAULT)
             or drive.wanted
             or self.lost_running
-            or self._stirred
+            or self._stirred_at is not None
             or drive.off != pzd.OFF1
             or self._may_run()  # ON was sent, and its answer is still to come
         )
@@ -338,8 +333,9 @@ class Control:
         self.remark = texts.NOTHING
         self._quiet_zsw = _UNKNOWN
         if self._command is None:
-            self._command = Command(self.drive, self.survey, self.desk.bus, self.desk.mask)
-        self._command.give(self._now)
+            self._command = Command(self.drive, self.survey, self.desk, self._now)
+        else:
+            self._command.give(self._now)
 
     def _finish_check(self, now):
         """ON, if the drive has told its settings and there is nothing against it."""
@@ -408,10 +404,10 @@ class Control:
         elif not self.drive.wanted and (self._runs_against_off() or self._is_in_doubt()):
             watch = self._begin_stop_watch()
         if watch.active or self.drive.wanted:
-            self._stirred = True
             self._stirred_at = now
-        elif self._stirred and elapsed(now, self._stirred_at, self.desk.mask) >= _DOUBT_US:
-            self._stirred = False
+        elif self._stirred_at is not None:
+            if elapsed(now, self._stirred_at, self.desk.mask) >= _DOUBT_US:
+                self._stirred_at = None
         if self._jogged and not (self.phase == JOGGING or watch.active):
             self._jogged = False
 
@@ -428,7 +424,7 @@ class Control:
 
     def _is_in_doubt(self):
         """Whether it came to rest by words that may have been none: the STOP is to be watched."""
-        return self._stirred and not self.drive.tells_status
+        return self._stirred_at is not None and not self.drive.tells_status
 
     def _take_back(self, notice):
         self.drive.stop(self.drive.off)

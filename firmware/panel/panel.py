@@ -54,7 +54,8 @@ class Panel:
 
     For pages and view: `selected`, the control that is shown; `warning`, its `Report`; `message`,
     words that are shown for a while, or None; `stop_key`; `announcer`; `setpoint_step` in
-    centihertz; `off_time_ms`, a P2014 that fits this bus; `mask`.
+    centihertz; `off_time_ms`, a P2014 that fits this bus; `mask`. Nobody else writes a
+    field of it: pages call `say`, `cover`, `uncover` and `write`.
     """
 
     def __init__(self, controls, bus, key_names, settings, mask, notice=texts.NOTHING):
@@ -197,19 +198,16 @@ class Panel:
         if drawn_at_ms is None or (
             view.is_done() and elapsed(now_ms, drawn_at_ms, self.mask) >= _DRAW_MS
         ):
+            # What it tells is settled now: drawing changes nothing but the picture.
             self._drawn_at_ms = now_ms
-            self._begin_picture(now_ms)
+            page = self._cover or self._page
+            if page.announces:
+                self.announcer.begin(self._position, page, view.tells_state(page), now_ms)
+            view.begin(page)
             self.warning.step(now_us)
         else:
             view.step(now_ms)
         return False
-
-    def _begin_picture(self, now_ms):
-        """What it tells is settled here: drawing changes nothing but the picture."""
-        page, view = self._cover or self._page, self._view
-        if page.announces:
-            self.announcer.begin(self._position, page, view.tells_state(page), now_ms)
-        view.begin(page)
 
     def _leave(self, _now_ms, _now_us):
         return not self._puts_off()
@@ -279,7 +277,7 @@ class Panel:
         self.selected.keep_quiet()
         self._position = (self._position + direction) % len(self.controls)
         self.selected = self.controls[self._position]
-        self.selected.learn_anew()
+        self.selected.survey.recheck()
         self.warning.turn_to(self.selected.drive)
         self._neighbours.show(self._position)
 
@@ -304,12 +302,12 @@ class Panel:
 
 def _about(settings):
     """What is wrong with the settings file: texts, with their values, said one after the other."""
-    suspect = settings.suspect
     if settings.complaint is None:
         return []
-    if suspect in texts.SETTINGS_SUSPECTS:
-        return [(texts.SETTINGS_DAMAGED,), (texts.SETTINGS_SUSPECTS[suspect],)]
-    return [(texts.SETTINGS_DAMAGED,), (texts.SETTING, _start_of(suspect, texts.ROW_WIDTH))]
+    about = (texts.SETTING, _start_of(settings.suspect, texts.ROW_WIDTH))
+    if settings.suspect in texts.SETTINGS_SUSPECTS:
+        about = (texts.SETTINGS_SUSPECTS[settings.suspect],)
+    return [(texts.SETTINGS_DAMAGED,), about]
 
 
 def _start_of(name, width):

@@ -15,7 +15,8 @@ class Setpoint:
     """settings: has setpoint_centihertz, lowest_centihertz, highest_centihertz.
 
     centihertz: in 0.01 Hz, never negative; the direction is a bit of the control word and belongs
-    to `Control`. Writes drive.hsw, which goes out with ON only.
+    to `Control`. Nobody else writes a field of it, and nobody else writes drive.hsw, which goes
+    out with ON only.
     """
 
     def __init__(self, drive, survey, settings):

@@ -41,7 +41,7 @@ class Write:
     """A parameter that is to be written. value: 16 bits. moves: it is the drive's address.
 
     outcome: how it ended, a text and the values in it; None while it is on its way. done:
-    the drive has confirmed it.
+    the drive has confirmed it. The writer writes both; nobody writes any other field.
     """
 
     def __init__(self, control, number, index, value, eeprom):

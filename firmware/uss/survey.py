@@ -63,6 +63,7 @@ class Survey:
     of all this.
     unchecked: how many rows `recheck` has still to read.
     count: the `TelegramCount`; None before the first START, for most drives need none.
+    Nobody else writes a field of it.
     """
 
     latest_scaling = None  # of any drive: most drives of a bus have the same, and share it

@@ -57,12 +57,9 @@ class TelegramCount:
         return restarted
 
     def take(self, before, count):
-        """Note whether the drive has been reset since the last count."""
-        if self._tells_reset(before, count):
-            self.restarted = self._drive.wanted != 0
-
-    def _tells_reset(self, before, count):
-        """One that never moves tells nothing."""
+        """Find out whether the drive has been reset since the last count. One that never moves
+        tells nothing.
+        """
         exchanges = 0
         for counted in self._drive.counters:
             exchanges += counted
@@ -74,9 +71,10 @@ class TelegramCount:
         self._moves = self._moves or before > 0 and grown > 0
         begun, self._begun = self._begun, True
         if not begun:
-            return False
+            return
         if count >= before and grown > since + (_BESIDE >> 2):
             self._counts_all = True
         most = (since * NODES if self._counts_all else since) + _BESIDE
         least = answered - (answered >> 3) - _LATE
-        return count < before and grown > most or self._moves and grown < least
+        if count < before and grown > most or self._moves and grown < least:
+            self.restarted = self._drive.wanted != 0
