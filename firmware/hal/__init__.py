@@ -37,7 +37,7 @@ link                    half duplex; the driver enable is the link's affair
                         handler that raises is gone for good
     send(buffer, count) interrupt. Begins to send the first `count` characters; the caller
                         leaves the buffer alone until sending_us answers 0
-    sending_us(now)     interrupt. Microseconds until the last stop bit has left and the driver is
+    sending_us(now_us)  interrupt. Microseconds until the last stop bit has left and the driver is
                         off, at least 1; 0 when that is over
     sent_at             clock.ticks_us() of that instant
     foreseen            optional; True: sent_at holds as soon as `send` has returned

@@ -52,9 +52,9 @@ class Bursts:
         self._fifo_holds, self._clear_fifo = (fifo if interrupts else None) or (None, _leave)
         self._scratch = bytearray(BUFFER)
         self._burst_ended = False
-        self._burst_ended_at = 0
+        self._burst_ended_at_us = 0
         self._coming = False  # characters stood in the FIFO at the last look
-        self._coming_since = 0
+        self._coming_since_us = 0
         self._half_full_us = HALF_FULL * _BITS_PER_CHARACTER * 1_000_000 // baud
         if interrupts:
             uart.irq(handler=self._on_idle, trigger=uart.IRQ_RXIDLE, hard=hard)
@@ -76,7 +76,7 @@ class Bursts:
                 self._copy(self._scratch, buffer, at, count)
         else:
             count = uart.readinto(buffer, count)  # as far as there is room
-        self.received_at = self._burst_ended_at if ended else self._ticks_us()
+        self.received_at = self._burst_ended_at_us if ended else self._ticks_us()
         return count
 
     def _is_coming(self):
@@ -84,17 +84,17 @@ class Bursts:
         if self._fifo_holds is None or not self._fifo_holds():
             self._coming = False
             return False
-        now = self._ticks_us()
+        now_us = self._ticks_us()
         if not self._coming:
             self._coming = True
-            self._coming_since = now
-        elif (now - self._coming_since) & self._mask >= self._half_full_us:
+            self._coming_since_us = now_us
+        elif (now_us - self._coming_since_us) & self._mask >= self._half_full_us:
             self._coming = False
         return self._coming
 
     def _on_idle(self, _uart):
         # No jump in here: a pending Ctrl-C would be raised at it and end this handler for good.
-        self._burst_ended_at = (self._ticks_us() - self._idle_us) & self._mask
+        self._burst_ended_at_us = (self._ticks_us() - self._idle_us) & self._mask
         self._burst_ended = True
         self.on_activity()
         self._clear_fifo(self._uart)  # after the engine, which may have sent by now

@@ -80,7 +80,7 @@ class CharacterDisplay:
 
     def show(self, picture):
         """Bring the display a piece nearer to `picture`, 32 codes; whether it shows it all."""
-        if (self._ticks_us() - self._since) & self._mask > self._wait_us:
+        if (self._ticks_us() - self._since_us) & self._mask > self._wait_us:
             self._put_in_order()
         if self._in_order and (self._unsure or self._shown != picture):
             self._write(picture)
@@ -119,7 +119,7 @@ class CharacterDisplay:
             self._come_back_after(wait_us)
 
     def _come_back_after(self, wait_us):
-        self._since = self._ticks_us()
+        self._since_us = self._ticks_us()
         self._wait_us = wait_us
 
     def _write(self, picture):

@@ -23,7 +23,8 @@ ROUNDS_MAX = const(4)  # entries in a row for events that came meanwhile; the ti
 
 
 class Pacer:
-    """engine: has poll(now) -> microseconds, and recover(now). link, clock, timer: see `hal`.
+    """engine: has poll(now_us) -> microseconds, and recover(now_us). link, clock, timer: of
+    `hal`.
 
     Fields to look at: `runs` (entries into the engine, 16 bit, wraps) and `failure` (the exception
     caught last; the engine counts them).
@@ -40,9 +41,9 @@ class Pacer:
         # Whoever interrupts is through before the interrupted goes on: for a flag that is enough.
         self._inside = True  # until `start`, and from `stop` on: then nobody comes in
         self._again = False
-        self._asked_at = 0  # when the engine asked to be entered
+        self._asked_at_us = 0  # when the engine asked to be entered
         self._due_us = 0  # so long after that
-        self._armed_at = 0  # when the timer was set
+        self._armed_at_us = 0  # when the timer was set
         self._armed_us = 0  # to come so long after that
         self._thrown = None  # what the main loop is to hear of: Ctrl-C
         self._on_timer = self._timer_came  # bound once: binding allocates
@@ -65,7 +66,7 @@ class Pacer:
 
         Raises the KeyboardInterrupt that came while somebody was inside the engine.
         """
-        late_us = ((self._ticks_us() - self._asked_at) & self._mask) - self._due_us
+        late_us = ((self._ticks_us() - self._asked_at_us) & self._mask) - self._due_us
         if self._timer is None or late_us > OVERDUE_US:
             self.run()
         if self._thrown is not None:
@@ -93,8 +94,8 @@ class Pacer:
                     self._arm(early_us)
                 else:
                     try:
-                        now = self._ticks_us()
-                        self._plan(self._engine.poll(now), now)
+                        now_us = self._ticks_us()
+                        self._plan(self._engine.poll(now_us), now_us)
                     except Exception as failure:
                         self.failure = failure
                         self._recover()
@@ -119,21 +120,21 @@ class Pacer:
 
     def _recover(self):
         try:
-            now = self._ticks_us()
-            self._engine.recover(now)
-            self._plan(_RETRY_US, now)
+            now_us = self._ticks_us()
+            self._engine.recover(now_us)
+            self._plan(_RETRY_US, now_us)
         except Exception as failure:  # nothing works: the main loop tries again, or the watchdog
             self.failure = failure
 
-    def _plan(self, after_us, now):
-        """Have the engine entered `after_us` behind `now`.
+    def _plan(self, after_us, now_us):
+        """Have the engine entered `after_us` behind `now_us`.
 
         To set the timer takes long. Each exchange moves the instant a little further away: a timer
         that will come earlier is left as it is, and set again when it comes.
         """
-        self._asked_at = now
+        self._asked_at_us = now_us
         self._due_us = after_us
-        comes_us = self._armed_us - ((now - self._armed_at) & self._mask)
+        comes_us = self._armed_us - ((now_us - self._armed_at_us) & self._mask)
         if comes_us <= 0 or comes_us > after_us:
             self._arm(after_us)
 
@@ -142,7 +143,7 @@ class Pacer:
         if not timer:
             return
         self._armed_us = 0  # in case it fails
-        self._armed_at = self._ticks_us()
+        self._armed_at_us = self._ticks_us()
         timer.init(
             mode=timer.ONE_SHOT,
             period=after_us if after_us > _PERIOD_MIN_US else _PERIOD_MIN_US,
@@ -153,7 +154,7 @@ class Pacer:
 
     def _early_us(self):
         """How long there is until the engine wants to be entered; below 0, how late it is."""
-        return self._due_us - ((self._ticks_us() - self._asked_at) & self._mask)
+        return self._due_us - ((self._ticks_us() - self._asked_at_us) & self._mask)
 
     def _timer_came(self, _timer):
         self.run(True)

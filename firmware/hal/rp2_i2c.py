@@ -56,7 +56,7 @@ class PostedI2C:
         memory[register] = buffer[last] | _STOP
 
     def _wait_for(self, last):
-        began_at = self._ticks_us()
+        began_at_us = self._ticks_us()
         while self._memory[self._level] + last >= _FIFO_LENGTH:
-            if (self._ticks_us() - began_at) & self._mask > _WAIT_MAX_US:
+            if (self._ticks_us() - began_at_us) & self._mask > _WAIT_MAX_US:
                 raise OSError(_ETIMEDOUT)

@@ -117,7 +117,7 @@ class Rp2Link(Bursts):
         # or two and fits a small integer at every rate.
         self._lead_us = -(-_LEAD_CYCLES * 1_000_000 // self._frequency) + 1
         self._sixty_four_us = -(-64 * _BITS_PER_CHARACTER * 1_000_000 // baud)
-        self._started_at = 0
+        self._started_at_us = 0
         self._duration_us = 0
         self._words = array("H", bytes(2 * (_SIZE_MAX + 1)))
         self._state_machine = rp2.StateMachine(state_machine)
@@ -134,14 +134,14 @@ class Rp2Link(Bursts):
             self._set_up()
         self._burst_ended = False
         duration_us = (count * self._sixty_four_us >> 6) + self._lead_us
-        self._started_at = started_at = self._ticks_us()
+        self._started_at_us = started_at_us = self._ticks_us()
         _transmit(buffer, count, self._words, self._channel)
         self._duration_us = duration_us
-        self.sent_at = (started_at + duration_us) & self._mask
+        self.sent_at = (started_at_us + duration_us) & self._mask
 
-    def sending_us(self, now):
-        passed_us = (now - self._started_at) & self._mask
-        if passed_us > self._mask >> 1:  # `now` was read before the sending began
+    def sending_us(self, now_us):
+        passed_us = (now_us - self._started_at_us) & self._mask
+        if passed_us > self._mask >> 1:  # `now_us` was read before the sending began
             passed_us = 0
         if passed_us < self._duration_us:
             return self._duration_us - passed_us

@@ -39,7 +39,7 @@ class Rs485Link(Bursts):
         # A table, because the product does not fit a small integer at every rate.
         self._durations_us = [-(-11_000_000 * count // baud) for count in range(257)]
         self._sending = False
-        self._started_at = 0
+        self._started_at_us = 0
         self._duration_us = 0
         self._releases = 0
         self._on_timer = self._release  # bound once: binding allocates
@@ -52,15 +52,15 @@ class Rs485Link(Bursts):
         self._releases = 0
         self._duration_us = self._durations_us[count]
         self._driver_enable.value(1)
-        self._started_at = self._ticks_us()
+        self._started_at_us = self._ticks_us()
         self._uart.write(buffer, count)
         self._arm(self._duration_us)
 
-    def sending_us(self, now):
+    def sending_us(self, now_us):
         if not self._sending:
             return 0
-        passed_us = (now - self._started_at) & self._mask
-        if passed_us > self._mask >> 1:  # `now` was read before the sending began
+        passed_us = (now_us - self._started_at_us) & self._mask
+        if passed_us > self._mask >> 1:  # `now_us` was read before the sending began
             passed_us = 0
         return max(self._duration_us - passed_us, 1)
 

@@ -3,10 +3,10 @@
 
 In use:
 
-    command = Command(drive, survey, desk, now)     # the key was obeyed
-    command.give(now)                       # likewise, another time
-    command.send(now)                       # ON goes out from now on
-    notice = command.why_in_vain(jogs, now) # again and again while it is sent; or NOTHING
+    command = Command(drive, survey, desk, now_us)  # the key was obeyed
+    command.give(now_us)                    # likewise, another time
+    command.send(now_us)                    # ON goes out from now on
+    notice = command.why_in_vain(jogs, now_us)  # again and again while it is sent, or NOTHING
     notice = command.why_stopped()          # the engine has taken it back
 """
 
@@ -30,7 +30,7 @@ class Command:
     looked at last. Nobody but the command writes the others.
     """
 
-    def __init__(self, drive, survey, desk, now):
+    def __init__(self, drive, survey, desk, now_us):
         self.question = 0
         self.accepted = [risks.NONE] * len(risks.RISKS)
         self.exposure_ms = 0
@@ -42,28 +42,28 @@ class Command:
         self._version = _NONE  # of the survey, as judged last
         self._is_local = False  # commands, and setpoints, come from elsewhere
         self._is_foreign = False
-        self.give(now)
+        self.give(now_us)
 
-    def give(self, now):
+    def give(self, now_us):
         self.risk = 0
         self._contacts = self._drive.contacts
         self._dead_man_trips = self._bus.dead_man_trips
         self._failures = self._bus.failures
-        self.send(now)
+        self.send(now_us)
 
-    def send(self, now):
-        self._since = now
+    def send(self, now_us):
+        self._since_us = now_us
         self._ran = False
 
     def is_stale(self):
         """Whether the loop has hung since it was given: too old to be obeyed."""
         return self._bus.dead_man_trips != self._dead_man_trips
 
-    def is_overdue(self, now):
+    def is_overdue(self, now_us):
         """Whether the drive has had more time to tell all its settings than it may need."""
         patience_us = 2 * len(self._survey.values) * self._bus.patience_us()
         # A clock of a short period cannot tell more than half of it.
-        return elapsed(now, self._since, self._mask) >= min(patience_us, self._mask >> 2)
+        return elapsed(now_us, self._since_us, self._mask) >= min(patience_us, self._mask >> 2)
 
     def why_stopped(self):
         """What made the engine take it back, as a notice."""
@@ -80,7 +80,7 @@ class Command:
         """Whether `why_in_vain` has judged all that is known of the drive."""
         return self._survey.version == self._version
 
-    def why_in_vain(self, jogs, now):
+    def why_in_vain(self, jogs, now_us):
         """Why it has to be taken back, as a notice, or NOTHING. jogs: no setpoint matters.
 
         ON that leads to nothing must not take effect minutes later; nor may one to a drive that
@@ -96,6 +96,6 @@ class Command:
         if not self._ran:
             if self._drive.state() == pzd.RUNNING:
                 self._ran = True
-            elif elapsed(now, self._since, self._mask) >= _START_US:
+            elif elapsed(now_us, self._since_us, self._mask) >= _START_US:
                 return texts.DID_NOT_START
         return texts.NOTHING

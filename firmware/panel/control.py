@@ -5,8 +5,8 @@ The rules that keep a motor from starting by surprise and a STOP from getting lo
 `permits` and in `uss.drive`; pages only show, keys only ask.
 
     control = Control(drive, survey, Desk(bus, settings, mask))
-    control.ask(now)                    # again and again, in steps of their own:
-    control.watch(now)                  # each takes its time
+    control.ask(now_us)                 # again and again, in steps of their own:
+    control.watch(now_us)               # each takes its time
     control.start()                     # START: asks the drive first, then ON, or `refusal`
     control.stop()                      # STOP
     control.jog(pzd.JOG_LEFT)           # a jog key goes down
@@ -83,12 +83,12 @@ class Control:
         self.lost_running = False
         self.absence_known = False
         self._command = None  # that was obeyed last: a drive that is never started needs none
-        self._now = 0
+        self._now_us = 0
         self._contact = False  # as last seen
         self._quiet_zsw = _UNKNOWN  # drive.zsw when there was nothing to watch
         self._jogged = False  # what turns, or ramps down, is a jog of this panel
         self._judged = -1  # version of the survey when its status word was judged
-        self._stirred_at = None  # when it last ran, or may have, until its rest is known for sure
+        self._stirred_at_us = None  # it last ran, or may have; None: it rests for sure
 
     # --- what an operator does ------------------------------------------------------------------
 
@@ -254,7 +254,7 @@ class Control:
 
     # --- what goes on ---------------------------------------------------------------------------
 
-    def ask(self, now, reread_us=REREAD_US):
+    def ask(self, now_us, reread_us=REREAD_US):
         """Learn the settings of the drive, and keep the setpoint within them.
 
         Answers whether the setpoint had news to take: then it took long, and the step is for
@@ -263,26 +263,26 @@ class Control:
         survey = self.survey
         is_shown = reread_us == REREAD_US
         if self.drive.wanted:
-            survey.step(now, _RUNS_REREAD_US if is_shown else _UNSEEN_REREAD_US)
+            survey.step(now_us, _RUNS_REREAD_US if is_shown else _UNSEEN_REREAD_US)
             survey.settle()
             if survey.has_restarted():
                 self._take_back(texts.DRIVE_RESET)
             return self.setpoint.step()  # at once: a limit may have come down
         if self.setpoint.step() and survey.complete:
             return True
-        survey.step(now, reread_us)
+        survey.step(now_us, reread_us)
         if is_shown:
             survey.settle()
         return False  # what follows from that is for the next turn
 
-    def ask_on(self, now):
+    def ask_on(self, now_us):
         """In between, for somebody waits: what was just answered is not all."""
         if self.phase == CHECKING:
-            self.survey.step(now)
+            self.survey.step(now_us)
 
-    def watch(self, now):
+    def watch(self, now_us):
         """Look what became of the commands, and whether the drive does as it is told."""
-        self._now = now
+        self._now_us = now_us
         drive = self.drive
         survey = self.survey
         if survey.version != self._judged:
@@ -291,19 +291,19 @@ class Control:
                 drive.tells_status = not permits.tells_no_status(survey)
         if drive.zsw & pzd.ZSW_FAULT and self.fault is NO_FAULT:
             self.fault = Fault(drive, self.desk.mask, survey.family.fault_number)
-        self.fault.step(now)
+        self.fault.step(now_us)
         if drive.contact != self._contact:
             self._contact = drive.contact
             self.lost_running = drive.was_running and not drive.contact
             self.absence_known = False
         if self.phase == CHECKING:
-            self._finish_check(now)
+            self._finish_check(now_us)
             return  # that may have taken long
         if self.phase == RUNNING or self.phase == JOGGING:
-            self._watch_command(now)
+            self._watch_command(now_us)
         elif drive.off != pzd.OFF1:
             self._watch_second_stop()
-        self._watch_stop(now)
+        self._watch_stop(now_us)
         if self.moved and not self.desk.settings.dirty:
             self.moved = False
         zsw = drive.zsw
@@ -311,7 +311,7 @@ class Control:
             zsw & (pzd.ZSW_RUNNING | pzd.ZSW_FAULT)
             or drive.wanted
             or self.lost_running
-            or self._stirred_at is not None
+            or self._stirred_at_us is not None
             or drive.off != pzd.OFF1
             or self._may_run()  # ON was sent, and its answer is still to come
         )
@@ -333,18 +333,18 @@ class Control:
         self.remark = texts.NOTHING
         self._quiet_zsw = _UNKNOWN
         if self._command is None:
-            self._command = Command(self.drive, self.survey, self.desk, self._now)
+            self._command = Command(self.drive, self.survey, self.desk, self._now_us)
         else:
-            self._command.give(self._now)
+            self._command.give(self._now_us)
 
-    def _finish_check(self, now):
+    def _finish_check(self, now_us):
         """ON, if the drive has told its settings and there is nothing against it."""
         if self.setpoint.has_news():
             return  # HSW may be another once `ask` has taken them
         command = self._command
         refusal = permits.why_not_start(self)
         if not refusal and (self.survey.unchecked or not self.survey.is_settled()):
-            if not command.is_overdue(now):
+            if not command.is_overdue(now_us):
                 return
             refusal = texts.REFUSED_CHECKING
         if not refusal and command.risk < len(risks.RISKS):  # one in a turn: each takes long
@@ -363,14 +363,14 @@ class Control:
             self.refusal = refusal
             self.notice = texts.DID_NOT_START  # the operator may look at another drive by now
         else:
-            command.send(now)
+            command.send(now_us)
             command.exposure_ms = risks.exposure_ms(self)
             self.stop_watch.end()
             self._jogged = False
             self.phase = RUNNING
             self.drive.start(self.drive.hsw, self._on())
 
-    def _watch_command(self, now):
+    def _watch_command(self, now_us):
         """ON, or JOG, is taken back here when the engine did so or when it leads to nothing."""
         command = self._command
         if self.drive.stopped_by_engine():
@@ -381,7 +381,7 @@ class Control:
             command.exposure_version = self.survey.version  # in a turn of its own
             self._look_at_supervision()
         else:
-            notice = command.why_in_vain(self.phase == JOGGING, now)
+            notice = command.why_in_vain(self.phase == JOGGING, now_us)
             if notice:
                 self._take_back(notice)
 
@@ -395,19 +395,19 @@ class Control:
             else:
                 self.remark = texts.RUNS_LONG if is_long else texts.RUNS_FOR_EVER
 
-    def _watch_stop(self, now):
+    def _watch_stop(self, now_us):
         """Whether a drive that is to stand still comes to rest; a STOP is watched from the key on,
         and one that runs against OFF from when that is seen."""
         watch = self.stop_watch
         if watch.active:
-            watch.step(now)
+            watch.step(now_us)
         elif not self.drive.wanted and (self._runs_against_off() or self._is_in_doubt()):
             watch = self._begin_stop_watch()
         if watch.active or self.drive.wanted:
-            self._stirred_at = now
-        elif self._stirred_at is not None:
-            if elapsed(now, self._stirred_at, self.desk.mask) >= _DOUBT_US:
-                self._stirred_at = None
+            self._stirred_at_us = now_us
+        elif self._stirred_at_us is not None:
+            if elapsed(now_us, self._stirred_at_us, self.desk.mask) >= _DOUBT_US:
+                self._stirred_at_us = None
         if self._jogged and not (self.phase == JOGGING or watch.active):
             self._jogged = False
 
@@ -424,7 +424,7 @@ class Control:
 
     def _is_in_doubt(self):
         """Whether it came to rest by words that may have been none: the STOP is to be watched."""
-        return self._stirred_at is not None and not self.drive.tells_status
+        return self._stirred_at_us is not None and not self.drive.tells_status
 
     def _take_back(self, notice):
         self.drive.stop(self.drive.off)

@@ -4,7 +4,7 @@
 In use:
 
     warning = Report(drive, mask, pzd.ZSW_WARNING, MM4.warning_number)
-    warning.step(now)                   # again and again
+    warning.step(now_us)                # again and again
     warning.number                      # 501 for A0501; 0 while it is not known
     warning.turn_to(other)              # another drive is shown
 
@@ -39,10 +39,10 @@ class Report:
         self._bit = bit
         self._parameter = parameter
         self._reading = Reading()
-        self._asked_at = 0
+        self._asked_at_us = 0
         self._turn(False)
 
-    def step(self, now):
+    def step(self, now_us):
         drive = self._drive
         if not (self.active or drive.zsw & self._bit):
             return  # as it mostly is
@@ -52,7 +52,7 @@ class Report:
         if self._reading.asked:
             self._take()
         elif active:
-            self._ask(now)  # again and again: there may be another one by now
+            self._ask(now_us)  # again and again: there may be another one by now
 
     def turn_to(self, drive):
         """It is about another drive from now on."""
@@ -67,10 +67,10 @@ class Report:
         self._wait_us = 0  # between the last question and the next
         self._reading.drop()
 
-    def _ask(self, now):
-        waited_us = elapsed(now, self._asked_at, self._mask)
+    def _ask(self, now_us):
+        waited_us = elapsed(now_us, self._asked_at_us, self._mask)
         if waited_us >= self._wait_us and self._reading.ask(self._drive, self._parameter):
-            self._asked_at = now
+            self._asked_at_us = now_us
             self._wait_us = _AGAIN_US
 
     def _take(self):
@@ -112,7 +112,7 @@ class NoFault:
     active = False
     number = 0
 
-    def step(self, now):
+    def step(self, now_us):
         pass
 
     def show(self, passed_ms):

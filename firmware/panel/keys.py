@@ -91,11 +91,11 @@ class Keys:
         self._held = self.bits(held)
         self._eager = self.bit("STOP")
         self._raw = 0
-        self._changed_at = {bit: 0 for bit in self._bits.values()}
+        self._changed_at_ms = {bit: 0 for bit in self._bits.values()}
         self._all = (1 << len(names)) - 1
         self._released = 0  # keys that were seen up since the start
         self._last = 0  # the key pressed last, while it is down
-        self._repeat_at = 0
+        self._repeat_at_ms = 0
         self._wait_ms = 0  # from then to the next repeat
         self._first = True
         self.at_rest = False
@@ -129,8 +129,8 @@ class Keys:
         if self._first:
             self._first = False
             self._raw = raw
-            for bit in self._changed_at:
-                self._changed_at[bit] = now_ms
+            for bit in self._changed_at_ms:
+                self._changed_at_ms[bit] = now_ms
         self.pressed = 0
         self.repeated = 0
         if raw != self._raw or raw != were_down or self.unsettled or unclear:
@@ -140,8 +140,8 @@ class Keys:
             if unsettled:
                 self._debounce(changed, unsettled, now_ms)
             self._released &= ~unclear
-        if self._last and (now_ms - self._repeat_at) & self._mask >= self._wait_ms:
-            self._repeat_at = now_ms
+        if self._last and (now_ms - self._repeat_at_ms) & self._mask >= self._wait_ms:
+            self._repeat_at_ms = now_ms
             self._wait_ms = _REPEAT_MS
             self.repeats += 1
             self.repeated = self._last
@@ -151,14 +151,14 @@ class Keys:
 
     def _debounce(self, changed, unsettled, now_ms):
         """unsettled: the keys, as bits, that moved just now or are not yet what they read."""
-        changed_at, raw = self._changed_at, self._raw
+        changed_at_ms, raw = self._changed_at_ms, self._raw
         at_once = raw & self._eager  # what did not move just now is believed
         while unsettled:
             bit = unsettled & -unsettled  # the lowest of them
             unsettled ^= bit
             if changed & bit:
-                changed_at[bit] = now_ms
-            elif at_once & bit or (now_ms - changed_at[bit]) & self._mask >= _DEBOUNCE_MS:
+                changed_at_ms[bit] = now_ms
+            elif at_once & bit or (now_ms - changed_at_ms[bit]) & self._mask >= _DEBOUNCE_MS:
                 self._settle(bit, raw & bit, now_ms)
 
     def _settle(self, bit, is_down, now_ms):
@@ -171,7 +171,7 @@ class Keys:
         if self._released & bit and not self.down & bit:
             self.pressed |= bit
             self._last = bit
-            self._repeat_at = now_ms
+            self._repeat_at_ms = now_ms
             self._wait_ms = _REPEAT_DELAY_MS
             self.repeats = 0
         self.down |= bit

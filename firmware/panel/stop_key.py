@@ -53,14 +53,14 @@ class StopKey:
         self._say = say
         self._stage = RELEASED
         self._control = None  # the drive that was shown when it went down
-        self._pressed_at = 0
+        self._pressed_at_ms = 0
 
     def step(self, keys, control, now_ms):
         """keys: `Keys`, up to date. control: of the drive that is shown."""
         self.is_down = keys.down & self._bit != 0
         if keys.pressed & self._bit:
             self._stage = PRESSED
-            self._pressed_at = now_ms
+            self._pressed_at_ms = now_ms
             self._control = control
             control.stop()
         elif not self.is_down:
@@ -81,7 +81,7 @@ class StopKey:
             control.stop_unseen()
 
     def _hold(self, now_ms):
-        held_ms = elapsed(now_ms, self._pressed_at, self._mask)
+        held_ms = elapsed(now_ms, self._pressed_at_ms, self._mask)
         if self._stage == PRESSED and held_ms >= _SECOND_MS:
             self._stage = SECOND_SENT
             self._control.second_stop()

@@ -9,7 +9,7 @@ that does not send its status are no evidence: its STOP is never confirmed.
     watch = NO_WATCH                # of a drive that nobody has stopped yet
     watch = StopWatch(drive, mask)  # OFF1 is being sent; the time counts from the next step on
     watch.begin()                   # likewise, another time
-    watch.step(now)                 # again and again
+    watch.step(now_us)              # again and again
     watch.unconfirmed               # an alarm
 """
 
@@ -42,7 +42,7 @@ class StopWatch:
         self.unconfirmed = False
         self._slowed = False  # it has been seen to slow down
         self._seems_slower = False  # by less than the word may tremble
-        self._slowed_at = None  # when that was last, at first when the watch began
+        self._slowed_at_us = None  # when that was last, at first when the watch began
         self._off_answers = self._drive.off_answers  # then
         self._speed = 0  # |HIW| then, at first the highest since the watch began
 
@@ -51,11 +51,11 @@ class StopWatch:
         self.active = False
         self.unconfirmed = False
 
-    def step(self, now):
+    def step(self, now_us):
         if not self.active:
             return
-        if self._slowed_at is None:
-            self._slowed_at = now
+        if self._slowed_at_us is None:
+            self._slowed_at_us = now_us
         drive = self._drive
         if drive.contact:
             answers = (drive.off_answers - self._off_answers) & 0xFFFF
@@ -63,22 +63,22 @@ class StopWatch:
                 if drive.state() != pzd.RUNNING:
                     self.end()
                     return
-                self._look_at(abs(pzd.signed(drive.hiw)), now)
+                self._look_at(abs(pzd.signed(drive.hiw)), now_us)
             waits = answers or self._slowed
             if waits and answers < _ANSWERS_MIN and drive.silent < _SILENT_MAX:
                 return
         patience_us = _SLOWING_US if self._slowed or self._seems_slower else _CONFIRM_US
-        if elapsed(now, self._slowed_at, self._mask) < patience_us:
+        if elapsed(now_us, self._slowed_at_us, self._mask) < patience_us:
             return
         if drive.contacts and not drive.may_run():
             self.end()
         else:
             self.unconfirmed = True
 
-    def _look_at(self, speed, now):
+    def _look_at(self, speed, now_us):
         if speed <= self._speed - _SLOWER:
             self._slowed = True
-            self._slowed_at = now
+            self._slowed_at_us = now_us
             self._off_answers = self._drive.off_answers
             self._speed = speed
             self.unconfirmed = False

@@ -4,7 +4,7 @@
 In use:
 
     write = writer.write(control, 1000, 0, 5, False)        # a `Write`, into RAM
-    writer.step(now)                    # again and again, until
+    writer.step(now_us)                 # again and again, until
     write.outcome                       # it is not None any more
 
 A drive that is to have another address is followed there, after a look whether anybody answers
@@ -82,7 +82,7 @@ class Writer:
         self._job = pkw.read(0)
         self._write = None  # the last one
         self._ended = None  # likewise, until somebody has taken it
-        self._since = 0
+        self._since_us = 0
         self._stops = 0  # drive.stops when it was spoken to at the new address first
         self._telegrams = 0  # to the drive, then
         self._tries = 0
@@ -116,7 +116,7 @@ class Writer:
         ended, self._ended = self._ended, None
         return ended
 
-    def step(self, now):
+    def step(self, now_us):
         if self._phase == IDLE:
             return
         if self._phase == WAITING:
@@ -124,9 +124,9 @@ class Writer:
         elif self._phase == PROBING:
             self._probe()
         elif self._phase == LOOKING:
-            self._look(now)
+            self._look(now_us)
         elif self._job.state != pkw.PENDING:
-            self._finish(now)
+            self._finish(now_us)
         elif self._write.moves:
             self._follow_silence()
 
@@ -142,7 +142,7 @@ class Writer:
         self._job.aim(task, write.number, write.index, 0, write.value)
         drive.ask(self._job)
 
-    def _finish(self, now):
+    def _finish(self, now_us):
         job, write = self._job, self._write
         drive = write.control.drive
         may_have_moved = write.moves and job.state != pkw.REFUSED
@@ -156,7 +156,7 @@ class Writer:
                 self._end(texts.NOT_WRITTEN)
         elif may_have_moved and drive.silent:
             self._phase = LOOKING
-            self._since = now
+            self._since_us = now_us
             self._go_to(write.value)
         elif may_have_moved and drive.answered_address == write.value:
             self._confirm()
@@ -222,12 +222,12 @@ class Writer:
             at_new = drive.address == write.value
             self._bus.turns.readdress(drive, write.old_address if at_new else write.value)
 
-    def _look(self, now):
+    def _look(self, now_us):
         write = self._write
         drive = write.control.drive
         if not drive.silent and drive.answered_address == write.value:
             self._confirm()
-        elif elapsed(now, self._since, self._mask) >= self._patience_us:
+        elif elapsed(now_us, self._since_us, self._mask) >= self._patience_us:
             self._bus.turns.readdress(drive, write.old_address)
             self._end(texts.NO_ANSWER)
 

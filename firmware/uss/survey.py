@@ -7,7 +7,7 @@ every REREAD_US from then on, so that it notices a change made at the drive itse
 everything when contact is lost. After `recheck` it reads all rows again soon.
 
     survey = Survey(drive, MM4, clock.ticks_mask, spare_jobs())
-    survey.step(now)                # each step of the loop
+    survey.step(now_us)             # each step of the loop
     if survey.complete: survey.scaling.hsw(1000)
     survey.recheck()                # before a START; survey.unchecked counts down to 0
 """
@@ -91,7 +91,7 @@ class Survey:
         self._row = _FIRST  # that is next in the round
         self._turn = 0  # of the round and of _WATCHED, which take turns
         self._changed = _NOTHING  # this row is new, and still to be judged
-        self._read_at = 0
+        self._read_at_us = 0
         self._contact = 0  # drive.contacts to which the values belong; 0 without contact
 
     def lowest(self):
@@ -126,7 +126,7 @@ class Survey:
         self.unchecked = 0
         self.drive.want_turns(False)
 
-    def step(self, now, reread_us=REREAD_US):
+    def step(self, now_us, reread_us=REREAD_US):
         """Take an answer that has come, ask for the next; allocates only when a value is new.
 
         reread_us: once all is known, a row is read again so long after the one before.
@@ -141,9 +141,9 @@ class Survey:
         elif self._changed != _NOTHING:
             self.settle()
         elif self._asked and self._asked.state != pkw.PENDING:
-            self._read_at = now
+            self._read_at_us = now_us
             self._take()
-        elif self._is_due(now, reread_us):
+        elif self._is_due(now_us, reread_us):
             self._ask(drive.channel)
         if self.unchecked or drive.asking:
             drive.want_turns(self.unchecked > 0)
@@ -184,7 +184,7 @@ class Survey:
             self._judge()
             self.unreadable = False
 
-    def _is_due(self, now, reread_us):
+    def _is_due(self, now_us, reread_us):
         """Whether a row is to be asked for now."""
         asked = self._asked
         if self._asked_next or not self.drive.contact:
@@ -193,7 +193,7 @@ class Survey:
             return False
         if self.unchecked > (asked is not None) or not self.complete:
             return True
-        return not asked and elapsed(now, self._read_at, self._mask) >= reread_us
+        return not asked and elapsed(now_us, self._read_at_us, self._mask) >= reread_us
 
     # --- questions and answers ------------------------------------------------------------------
 
