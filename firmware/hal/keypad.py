@@ -125,8 +125,8 @@ class Matrix:
             self.unclear = (1 << len(self._keys)) - 1
             return 0
         if shorted:
-            self.unclear = self._keys_of(shorted)
-        return self._down()
+            self.unclear = self._keys_in([shorted] * len(self._rows))
+        return self._keys_in(self._seen)
 
     def _is_idle(self):
         """Whether no key is down, as it mostly is: one look at all rows together tells."""
@@ -160,20 +160,13 @@ class Matrix:
                     return True
         return False
 
-    def _keys_of(self, columns):
+    def _keys_in(self, seen):
+        """seen: columns for each row, as bits. The keys that are there, as bits."""
         keys = 0
-        for _, column, bit in self._keys:
-            if column & columns:
-                keys |= bit
-        return keys
-
-    def _down(self):
-        down = 0
-        seen = self._seen
         for row, column, bit in self._keys:
             if seen[row] & column:
-                down |= bit
-        return down
+                keys |= bit
+        return keys
 
 
 def _bits_of(names):

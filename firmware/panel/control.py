@@ -222,8 +222,12 @@ class Control:
     def is_quiet(self):
         """Whether it stands, as when `watch` found nothing that would have to be watched."""
         drive = self.drive
-        is_same = drive.zsw == self._quiet_zsw and drive.contact == self._contact
-        return is_same and not self.moved and self.survey.version == self._judged
+        return (
+            drive.zsw == self._quiet_zsw
+            and drive.contact == self._contact
+            and not self.moved
+            and self.survey.version == self._judged
+        )
 
     def is_starting(self):
         """Whether START has been obeyed: the drive is being asked, or ON is sent."""

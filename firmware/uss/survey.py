@@ -266,7 +266,9 @@ class Survey:
             self._unanswered[row] = 0
         kind = self.family.survey[row][2]
         if kind == rows.COUNT:
-            self._take_count(job.low)
+            before, self.values[row] = self.values[row], job.low
+            if self.count:
+                self.count.take(before, job.low)
             return
         value = job.low
         if kind == rows.CENTIHERTZ:
@@ -295,11 +297,6 @@ class Survey:
             self.unreadable = job.state == pkw.REFUSED or job.state == pkw.UNANSWERED
         if self.values[row] != value or value == _UNKNOWN:
             self._put(row, value)
-
-    def _take_count(self, count):
-        before, self.values[rows.COUNTER] = self.values[rows.COUNTER], count
-        if self.count:
-            self.count.take(before, count)
 
     def _put(self, row, value):
         """A value that is new, and still to be judged. Another data set makes others unknown."""
