@@ -418,8 +418,8 @@ MUTATIONS = (
         ("FLASH",), 2,
         (
             "app.py",
-            "if self.panel.any_runs() or self._just_failed",
-            "if self._just_failed",
+            "if has_just_failed or self.panel.any_runs():",
+            "if has_just_failed:",
         ),
     ),
     Mutation(
