@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 """What a user sets once: the bus, its drives, the limits of the setpoint, what was accepted.
 
-The schema is two tables; the settings stand in a board's store as JSON, a line for each. A file
-that cannot be read or has a value that cannot be gives the default for what is wrong and says so
-in `complaint`. Nothing that was stored is lost by that: loading writes nothing, and the first save
-sets the file aside. What a newer firmware stored and this one does not know is kept as it is.
+The schema is three tables; the settings stand in a board's store as JSON, a line for each. What is
+wrong in the file, or in a file that cannot be read, has its default, and `complaint` says so. That
+loses nothing: loading writes nothing, and the first save sets the file aside. A save keeps what a
+newer firmware stored and this one does not know.
 
     settings = load(board.store)
     settings.readdress(1, 5)

@@ -2,8 +2,8 @@
 """A character display behind a PCF8574 backpack: the HD44780's four data lines through I2C.
 
 Fulfils the contract `display` of `hal`; `hal.character_display` says what is written when. A
-backpack that is unplugged, or whose wires a pulse has upset, is tried again every AGAIN_US and set
-up anew when it answers; the panel goes on meanwhile.
+backpack may be unplugged, or a pulse may upset its wires: the driver tries it again every AGAIN_US
+and sets it up anew when it answers. The panel goes on meanwhile.
 
     display = Backpack(make_i2c, 0x27, clock)
     display.show(picture)               # each step of the loop, until it answers True

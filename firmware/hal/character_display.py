@@ -5,8 +5,8 @@ Fulfils the contract `display` of `hal`, for whoever moves the wires: `hal.hd447
 `hal.rp2_lcd` by the RP2040's PIO, `hal.backpack` through I2C. The controller cannot be read (R/W
 is tied low), so the driver waits as long as the slowest specimen needs, and remembers what it
 wrote to write only what differs. Panels live beside inverters: a pulse on the wires can swap
-nibbles, move the picture or spoil a character. So every REFRESH_US all is set up and written anew,
-which nobody sees.
+nibbles, move the picture or spoil a character. So every REFRESH_US the driver
+sets the controller up and writes everything anew, which nobody sees.
 """
 
 from micropython import const

@@ -3,9 +3,8 @@
 
 The receive interrupt, a one-shot timer and the main loop all end in `run`, which enters the engine
 once at a time and has the timer come when the engine asks for it. So interrupt and polled
-operation share one path. An exception in the engine must not get out: a hard interrupt that raises
-is disabled for good by MicroPython. It is counted, every ON is taken back, and the engine begins
-anew.
+operation share one path. An exception in the engine must not get out: when a hard interrupt
+raises, MicroPython disables it for good. The engine counts it, takes back every ON, begins anew.
 
     pacer = Pacer(bus, link, board.clock, board.timer)
     pacer.start()

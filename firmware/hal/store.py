@@ -4,7 +4,7 @@
 Fulfils the contract `store` of `hal`. New data are written to a file beside the old one, and a
 rename puts it in its place: littlefs, which the ports for the RP2040 and the ESP32 use, promises
 that either the old or the new file is there afterwards (littlefs README, Usage). FAT promises
-nothing of the kind. What a power cut leaves beside the file is never read, and the next writing
+nothing of the kind. Nobody reads what a power cut leaves beside the file, and the next write
 takes its place.
 
     store = FileStore("settings.json", open, os)

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 """What has to be said of the drives besides what the page tells: one trouble after the other.
 
-Of 31 drives none is asked in the moment of drawing, which would take a loop's time several times
-over: the panel hands over one after the other, and what was found out is kept until that drive is
-looked at again. KINDS is the order: the most dangerous kind first, and of each the drives in the
-order of the list. Between two announcements it is the page's turn.
+To ask 31 drives while a picture is drawn would take a loop's time several times over. So the panel
+hands over one drive after the other, and the announcer keeps what it found out until it looks at
+that drive again. KINDS is the order: the most dangerous kind first, and of each kind the drives in
+the order of the list. Between two announcements the page has its turn.
 
     announcer = Announcer(controls, mask)
     announcer.look(position)            # a drive at a time, by its place in the list
@@ -60,8 +60,9 @@ class Announcer:
         self._counts = bytearray(len(KINDS))  # and of how many drives of each kind
         self._counts[NOTHING] = len(controls)
         self._page_ms = _PAGE_MS
-        self._last = UNHEARD  # the kind that was said last,
-        # And of which drive; the number of them: of all; one more: then of the one shown.
+        self._last = UNHEARD  # the kind that was said last
+        # The place of the drive it was said of. How many there are: of all of that kind together.
+        # One more: of the one shown, after that.
         self._position = len(controls)
         self._before = -1  # of which before all
         self._since_ms = 0  # when what is said now, or the page, had its turn

@@ -58,9 +58,9 @@ class Control:
     Fields for a page: `phase`, of `phases`; `setpoint`; `reversed`, the direction START takes;
     `refusal`, why a key was not obeyed, to be shown once; `notice`, why the drive is not on any
     more; `remark`, what has become of its P2014 while it runs: texts, or NOTHING; `lost_running`,
-    when contact was lost it was running, or not heard at rest since the last ON; `absence_known`,
-    STOP was pressed while it was shown and not heard; `stop_watch`, whether a STOP is obeyed;
-    `fault`.
+    contact was lost while it ran, or before it was heard at rest after its last ON;
+    `absence_known`, STOP was pressed while it was shown and silent; `stop_watch`, whether a STOP
+    is obeyed; `fault`.
 
     The writer writes `moving`, it is being given another address, and sets `moved`, it has been.
     Nobody else writes a field of it.
@@ -82,7 +82,7 @@ class Control:
         self.remark = texts.NOTHING
         self.lost_running = False
         self.absence_known = False
-        self._command = None  # that was obeyed last: a drive that is never started needs none
+        self._command = None  # the last one that was obeyed; most drives never need one
         self._now_us = 0
         self._contact = False  # as last seen
         self._quiet_zsw = _UNKNOWN  # drive.zsw when there was nothing to watch
@@ -175,7 +175,7 @@ class Control:
         return refusal
 
     def keep_quiet(self):
-        """Forget what would be said and asked: another drive is shown."""
+        """Forget what it would say and ask: another drive is shown."""
         self.refusal = texts.NOTHING
         self.drop_question()
         if self.phase != CHECKING:
@@ -214,13 +214,14 @@ class Control:
         return not self.drive.contacts and self.drive.silent >= _SILENT_MAX
 
     def is_active(self):
-        """Whether it runs, or is told to, or was and has not been heard at rest since. STOP ends
-        an alarm, but a motor that nobody hears may turn on: a restart of the panel forgets it.
+        """Whether it runs, is told to run, or ran and has not been heard at rest since. STOP ends
+        the alarm, but a motor that nobody hears may still turn: only a restart of the panel
+        forgets that.
         """
         return self.drive.wanted != 0 or self.runs() or self._may_run()
 
     def is_quiet(self):
-        """Whether it stands, as when `watch` found nothing that would have to be watched."""
+        """Whether it stands as it did when `watch` found nothing to watch."""
         drive = self.drive
         return (
             drive.zsw == self._quiet_zsw
@@ -400,8 +401,8 @@ class Control:
                 self.remark = texts.RUNS_LONG if is_long else texts.RUNS_FOR_EVER
 
     def _watch_stop(self, now_us):
-        """Whether a drive that is to stand still comes to rest; a STOP is watched from the key on,
-        and one that runs against OFF from when that is seen."""
+        """Watch whether a drive that must stand comes to rest: after a STOP from the key on, one
+        that runs against OFF from when that is seen."""
         watch = self.stop_watch
         if watch.active:
             watch.step(now_us)
@@ -423,11 +424,11 @@ class Control:
         return self.stop_watch
 
     def _may_run(self):
-        """Whether the motor may turn. Of one that never tells only what has stirred it counts."""
+        """Whether the motor may turn. One that never tells may if anything has stirred it."""
         return self.drive.may_run() if self.drive.tells_status else self._is_in_doubt()
 
     def _is_in_doubt(self):
-        """Whether it came to rest by words that may have been none: the STOP is to be watched."""
+        """Whether it came to rest by words that may be no status: its STOP must be watched."""
         return self._stirred_at_us is not None and not self.drive.tells_status
 
     def _take_back(self, notice):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What a status bit reports and a parameter numbers: the fault of a drive, its warning.
+"""The fault of a drive, and its warning: a status bit reports it, a parameter has its number.
 
 In use:
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""The drives that are not shown: each is looked at again and again, one in a turn.
+"""The drives that are not shown: the panel looks at each again and again, one in a turn.
 
 Such a drive has nothing to say and nothing to ask: START has to be pressed anew, with that drive
-in sight. What there is to announce of it, the announcer hears.
+in sight. The announcer hears what there is to announce of it.
 """
 
 from micropython import const

@@ -6,8 +6,8 @@
     setpoint.change(10)                 # 0.1 Hz up
     setpoint.centihertz                 # what is shown and sent, without its sign
 
-While the drive is wanted to run nothing but a key raises it, in hertz: no limit that goes away, no
-minimum frequency that comes, no other scaling. What lowered it then has done so for good.
+While the drive is wanted to run, only a key raises it in hertz: no limit that goes away does, no
+minimum frequency that comes, no other scaling. What lowers it in that time lowers it for good.
 """
 
 

@@ -72,8 +72,8 @@ class StopKey:
             self._hold(now_ms)
 
     def stop_next(self):
-        """OFF1 to one drive after the other: all at once take too long for a step of the loop, and
-        the line takes them one by one. Once round for those that run, once for all.
+        """Send OFF1 to the next drive. All at once would take too long for a step of the loop, and
+        the line takes them one by one. The first round is for those that run, the second for all.
         """
         self.left -= 1
         control = self._controls[self.left % len(self._controls)]

@@ -3,8 +3,8 @@
 
 An answer alone says that OFF1 was heard, not that it is obeyed: a drive that takes its commands
 from elsewhere answers as well. So its speed is watched until the motor stands still. A drive that
-falls silent need not answer where it was heard at rest after the last ON it was sent. Words of one
-that does not send its status are no evidence: its STOP is never confirmed.
+falls silent need not answer if it was heard at rest after its last ON. A drive that does not send
+its status gives no evidence: its STOP is never confirmed.
 
     watch = NO_WATCH                # of a drive that nobody has stopped yet
     watch = StopWatch(drive, mask)  # OFF1 is being sent; the time counts from the next step on

@@ -12,8 +12,8 @@ Row 1 has 5 places for the setpoint and 6 for the actual frequency. A value that
 gives up decimals (-650.00 is shown as -650.0); without contact the actual frequency is dashes,
 never the last one known.
 
-Nothing here decides anything: when it is time for an announcement, and how long a fault has been
-on the display, is found out between two pictures, by the panel.
+The view decides nothing. Between two pictures the panel finds out when it is time for an
+announcement, and how long a fault has been on the display.
 """
 
 from micropython import const

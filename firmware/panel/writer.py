@@ -7,9 +7,9 @@ In use:
     writer.step(now_us)                 # again and again, until
     write.outcome                       # it is not None any more
 
-A drive that is to have another address is followed there, after a look whether anybody answers
-there already. When the answer to the write is lost, nobody knows where the drive is: it is looked
-for at the new address for a while, and then is taken to be at the old one.
+The writer follows a drive to its new address, after a look whether anybody answers there already.
+When the answer to the write is lost, nobody knows where the drive is: the writer looks for it at
+the new address for a while, and then takes it to be at the old one.
 
     phase       what goes on                                ends when
     PROBING     three telegrams to the new address          nobody answers: WAITING

@@ -44,8 +44,8 @@ _WATCHED = (rows.COUNTER, rows.LOWEST, rows.HIGHEST)  # read more often while it
 def spare_jobs():
     """Second jobs for surveys that ask a lot: those of drives that are shown, or were just now.
 
-    With a second one no telegram goes without a question while somebody waits for the answers. To
-    have one for each survey would take memory for nothing.
+    With a second one no telegram goes without a question while somebody waits for the answers. One
+    for each survey would waste memory.
     """
     return [pkw.read(0) for _ in range(_SPARES)]
 
