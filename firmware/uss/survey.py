@@ -63,7 +63,8 @@ class Survey:
     of all this.
     unchecked: how many rows `recheck` has still to read.
     count: the `TelegramCount`; None before the first START, for most drives need none.
-    Nobody else writes a field of it.
+
+    Nobody else writes a field of the survey.
     """
 
     latest_scaling = None  # of any drive: most drives of a bus have the same, and share it
@@ -215,9 +216,10 @@ class Survey:
 
     def _disown(self):
         """What is on its way was asked too early to count."""
-        for job in (self._asked, self._asked_next):
-            if job:
-                job.tag = _NOTHING
+        if self._asked:
+            self._asked.tag = _NOTHING
+        if self._asked_next:
+            self._asked_next.tag = _NOTHING
 
     def _next_row(self):
         """The round goes on; while the drive runs, every other row is one that is watched."""
