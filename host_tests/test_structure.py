@@ -281,6 +281,14 @@ def test_every_source_file_begins_with_the_licence():
                     assert head[has_shebang] == line.encode(), os.path.join(path, name)
 
 
+def test_no_folder_has_more_files_than_a_reader_takes_in():
+    """Tests are many. The engine's folder has wings, which stand beside it."""
+    for folder in ("firmware", "boards", "tools"):
+        for path, _, names in os.walk(os.path.join(TOP, folder)):
+            code = [name for name in names if name.endswith((".py", ".sh", ".mjs", ".c"))]
+            assert len(code) <= 20, (os.path.relpath(path, TOP), len(code))
+
+
 def test_every_function_fits_a_screen():
     for folder in ("firmware", "boards"):
         for path in python_files(folder):

@@ -3,7 +3,7 @@
 
     panel       the keys that act on every page, and the page that is shown
     keys        what is down now -> pressed, repeated, held
-    stop_key, jog_keys          what these do while they are held
+    keys.stop_key, keys.jog_keys        what these do while they are held
     control     one drive under the operator's hand: start, stop, jog, reverse
     phases      what becomes of a START or a JOG
     permits     why START and JOG are refused

@@ -36,7 +36,7 @@ MUTATIONS = (
         "a jog goes on when its key is let go",
         ("JOG",), 1,
         (
-            "panel/jog_keys.py",
+            "panel/keys/jog_keys.py",
             "if down != self._key or control is not",
             "if down & ~self._key or control is not",
         ),
@@ -46,7 +46,7 @@ MUTATIONS = (
         "two jog keys at once are one",
         ("JOG",), 11,
         (
-            "panel/jog_keys.py",
+            "panel/keys/jog_keys.py",
             "if down != self._key or control is not",
             "if not down & self._key or control is not",
         ),
@@ -119,7 +119,7 @@ MUTATIONS = (
         "STOP stops the first drive, whichever is shown",
         ("STOP", "START"), 2,
         (
-            "panel/stop_key.py",
+            "panel/keys/stop_key.py",
             "            control.stop()\n",
             "            self._controls[0].stop()\n",
         ),
@@ -161,7 +161,11 @@ MUTATIONS = (
         "START without release",
         "a START that was down at power-on counts, sooner or later",
         ("START",), 47,
-        ("panel/keys.py", "self._released = 0  #", "self._released = (1 << len(names)) - 1  #"),
+        (
+            "panel/keys/__init__.py",
+            "self._released = 0  #",
+            "self._released = (1 << len(names)) - 1  #",
+        ),
         (
             "panel/panel.py",
             'elif acts.has("START"):',
@@ -204,14 +208,14 @@ MUTATIONS = (
         "second stop at once",
         "OFF3 is sent before STOP was held",
         ("SECOND STOP",), 2,
-        ("panel/stop_key.py", "SECOND_MS = const(1_500)", "SECOND_MS = const(500)"),
+        ("panel/keys/stop_key.py", "SECOND_MS = const(1_500)", "SECOND_MS = const(500)"),
     ),
     Mutation(
         "STOP ALL forgets drives",
         "STOP held for 4 s stops only what is shown",
         ("STOP ALL",), 11,
         (
-            "panel/stop_key.py",
+            "panel/keys/stop_key.py",
             "            self.left = 2 * len(self._controls)\n",
             "            self.left = 0\n",
         ),
@@ -330,7 +334,7 @@ MUTATIONS = (
         "STOP stops drives that are not shown",
         ("WITHOUT REASON",), 20,
         (
-            "panel/stop_key.py",
+            "panel/keys/stop_key.py",
             "            control.stop()\n",
             "            control.stop()\n"
             "            for other in self._controls:\n"
@@ -341,14 +345,14 @@ MUTATIONS = (
         "all stopped too soon",
         "STOP held for the second stop stops every drive",
         ("WITHOUT REASON",), 3,
-        ("panel/stop_key.py", "_ALL_MS = const(4_000)", "_ALL_MS = const(1_500)"),
+        ("panel/keys/stop_key.py", "_ALL_MS = const(4_000)", "_ALL_MS = const(1_500)"),
     ),
     Mutation(
         "second stop for all",
         "OFF3 goes to drives that are not shown",
         ("SECOND STOP",), 3,
         (
-            "panel/stop_key.py",
+            "panel/keys/stop_key.py",
             "            self._control.second_stop()\n",
             "            for control in self._controls:\n"
             "                control.second_stop()\n",
