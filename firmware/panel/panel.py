@@ -16,15 +16,15 @@ from micropython import const
 from panel import texts
 from panel.announcer import Announcer
 from panel.fault import Report
-from panel.keys.jog_keys import JogKeys
 from panel.keys import Acts, Keys, unknown
+from panel.keys.jog_keys import JogKeys
+from panel.keys.stop_key import StopKey
 from panel.neighbours import Neighbours
 from panel.pages.risk import RiskQuestion
-from panel.phases import ASKING, CHECKING
 from panel.pages.splash import Splash
 from panel.pages.table import PAGES
+from panel.phases import ASKING, CHECKING
 from panel.screen import Screen
-from panel.keys.stop_key import StopKey
 from panel.supervision import off_time_ms
 from panel.view import View
 from panel.writer import Writer
