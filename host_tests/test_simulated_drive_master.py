@@ -88,7 +88,8 @@ def test_the_numbers_that_a_family_names_are_there():
     for simulated in FAMILIES:
         line = Line(family=simulated, parameters={simulated.LINK["off time"]: 0})
         family = line.family(5)
-        numbers = [row[0] for row in family.survey if row is not None]
+        # Of a parameter that may be missing, the family says what that means.
+        numbers = [row[0] for row in family.survey if row and row[3] is None]
         numbers += [family.baud_number, family.address_number, family.off_time_number]
         numbers += [family.fault_number]
         for number in numbers:

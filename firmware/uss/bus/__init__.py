@@ -16,6 +16,9 @@ import it.
 Whoever does not wait calls `step` again and again: without it for 300 ms every motor is stopped.
 """
 
+# From the bottom of the house up: an import inside an import inside an import takes stack.
+from uss.timing import Timing, elapsed
+from uss.drive import COUNTERS
 from uss import bits, families, master, outside, pkw, pzd
 from uss.bus import pkw_errors
 from uss.bus.errors import WHY_SILENT, UssError
@@ -24,9 +27,7 @@ from uss.families.rows import ACTUAL, STATUS
 from uss.layout import Layout
 from uss.leave import leave, persist
 from uss.bus.survey import Survey
-from uss.drive import COUNTERS
 from uss.scaling import Scale, run_words, signed_hiw
-from uss.timing import Timing, elapsed
 
 REST_US = 100  # between two looks at the bus while a call waits
 TRIES = 3  # telegrams without a valid reply: nobody waits for more of them
