@@ -92,6 +92,16 @@ def test_a_closed_bus_ends_after_the_exchange_that_goes_on():
     assert len(bus.sent) == sent
 
 
+def test_a_bus_that_is_closed_again_and_again_is_closed_all_the_same():
+    """Each time was a new STOP for every drive, and none was ever answered in time."""
+    bus = Bus()
+    bus.run(200_000)
+    for _ in range(50):
+        bus.master.close()
+        bus.run(1_000)
+    assert bus.master.phase == CLOSED
+
+
 # --- commands -----------------------------------------------------------------------------------
 
 

@@ -180,9 +180,11 @@ class Master:
     def close(self):
         """Leave the line for good: OFF1 to every drive first, then nothing is sent any more.
 
-        `phase` is CLOSED once it has come so far. See `leave`, which waits for that.
+        `phase` is CLOSED once it has come so far. See `leave`, which waits for that. To say it
+        again changes nothing.
         """
-        self.stop_all()
+        if not self._held & _HELD_BY_CLOSE:
+            self.stop_all()
         self._held |= _HELD_BY_CLOSE
         if self.phase == OFF:
             self.phase = CLOSED
