@@ -69,6 +69,8 @@ class Reader:
         self._unwarned_us = 0  # it had none, or something else was to be seen
         self._subject = None  # of a question, as read last
         self._hz = None  # of the drive shown, then; None: that was too long ago
+        self._state = None  # of the drive shown,
+        self._state_us = 0  # and since when: the display may be a picture behind
         self._unconfirmed_us = 0  # when that was read last
 
     def look(self):
@@ -97,6 +99,10 @@ class Reader:
         if not self.steady or now == self._written_us:
             return
         case = witness.cases[witness.shown]
+        drive = self.drive_at(witness.shown)
+        if drive is not None and drive.state != self._state:
+            self._state = drive.state
+            self._state_us = now
         self._judge_lost(case, now)
         self._judge_unconfirmed(case, now)
         self._judge_warning(case, now)
@@ -106,7 +112,7 @@ class Reader:
                 if now - self._judged_us > 2 * S:
                     self._hz = None
                 self._judged_us = now
-                self._judge_shown()
+                self._judge_shown(now)
 
     def _read(self, rows, now):
         if rows[1] != self.rows[1]:
@@ -226,7 +232,7 @@ class Reader:
             since_ms = (now - stop_us) // MS
             raise Broken("UNCONFIRMED", "STOP of drive %d, %d ms ago" % (address, since_ms))
 
-    def _judge_shown(self):
+    def _judge_shown(self, now):
         """Nothing was done for a while: is the display right?"""
         address = self.witness.shown
         drive = self.drive_at(address)
@@ -247,7 +253,7 @@ class Reader:
                 raise Broken("SHOWN", "%s and it is %s" % (row_2, drive.read(number)))
         for text, state in STATES:
             if row_2.startswith(text):
-                if drive.state != state:
+                if drive.state != state and now - self._state_us > S:
                     raise Broken("SHOWN", "drive %d is %s" % (address, drive.state))
                 break
         case = self.witness.cases[address]
