@@ -16,9 +16,9 @@ from boards.sim.clock import Clock
 from boards.sim.drives import fleet
 from boards.sim.drives.drive import Drive
 from boards.sim.line.wire import Transceiver, Wire
-from hal.bursts import IDLE_BITS
+from hal.link.bursts import IDLE_BITS
+from hal.link.rs485 import Rs485Link
 from hal.pacer import Pacer
-from hal.rs485 import Rs485Link
 from uss import families
 from uss.layout import Layout
 from uss.master import LOST_US, Master

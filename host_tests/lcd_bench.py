@@ -7,9 +7,9 @@ from boards.sim.chip.lcd import POWER_ON_US, Lcd
 from boards.sim.chip.machine import Chip, Pin
 from boards.sim.clock import Clock
 from boards.sim.line.wire import Wire
-from hal.backpack import Backpack
-from hal.hd44780 import Hd44780
-from hal.probe import answers
+from hal.display.backpack import Backpack
+from hal.display.hd44780 import Hd44780
+from hal.display.probe import answers
 
 LOOP_US = 2_000  # from one call of show to the next
 

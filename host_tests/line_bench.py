@@ -18,7 +18,7 @@ from uss.receiver import COMING
 from uss.timing import Timing, characters_us
 
 MASK = (1 << 30) - 1
-POLLED_RESOLUTION_US = 5_000  # as hal.rs485 has it
+POLLED_RESOLUTION_US = 5_000  # as hal.link.rs485 has it
 TIMING = Timing(19200)
 
 

@@ -13,7 +13,7 @@ from pathlib import Path
 
 # Where no line is ever seen, and why.
 UNSEEN = (
-    ("firmware/hal/rp2_*.py", "runs on the chip alone: tier pico"),
+    ("firmware/hal/*/rp2_*.py", "runs on the chip alone: tier pico"),
     ("firmware/uss/fast/viper.py", "machine code"),
 )
 

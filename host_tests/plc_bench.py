@@ -14,8 +14,8 @@ from boards.sim.chip.machine import UART, Chip, Pin
 from boards.sim.clock import Clock
 from boards.sim.drives.drive import Drive
 from boards.sim.line.wire import Transceiver, Wire
+from hal.link.rs485 import Rs485Link
 from hal.pacer import Pacer
-from hal.rs485 import Rs485Link
 from uss.master import Master
 from uss.s7 import TYPES, USS_CTRL, USS_INIT, Port
 from uss.timing import Timing

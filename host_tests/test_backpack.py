@@ -4,9 +4,9 @@
 import random
 
 from boards.sim.chip.machine import heap_lock, heap_unlock
-from hal.backpack import AGAIN_US
-from hal.character_display import REFRESH_US
-from hal.probe import answers
+from hal.display.backpack import AGAIN_US
+from hal.display.character_display import REFRESH_US
+from hal.display.probe import answers
 from lcd_bench import HOURGLASS, LOOP_US, READY, RUNNING, UP_AND_DOWN, BackpackBench
 
 REFRESH_MS = REFRESH_US // 1000

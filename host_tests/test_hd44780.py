@@ -4,8 +4,8 @@
 import random
 
 from boards.sim.chip.machine import heap_lock, heap_unlock
-from hal.character_display import REFRESH_US
-from hal.hd44780 import Hd44780
+from hal.display.character_display import REFRESH_US
+from hal.display.hd44780 import Hd44780
 from lcd_bench import HOURGLASS, LOOP_US, READY, RUNNING, UP_AND_DOWN, LcdBench
 
 REFRESH_MS = REFRESH_US // 1000

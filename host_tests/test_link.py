@@ -5,7 +5,7 @@ from boards.sim.board import HardTimer, clear_fifo
 from boards.sim.chip.machine import UART, Chip, Pin
 from boards.sim.clock import Clock
 from boards.sim.line.wire import Transceiver, Wire
-from hal.rs485 import Rs485Link
+from hal.link.rs485 import Rs485Link
 
 COMING = -1
 RATES = (300, 600, 1200, 2400, 4800, 9600, 19200, 38400, 57600, 76800, 93750, 115200, 187500)

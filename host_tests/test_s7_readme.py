@@ -10,7 +10,7 @@ from boards.sim.clock import Clock
 from boards.sim.drives.drive import Drive as SimulatedDrive
 from boards.sim.line.wire import Transceiver, Wire
 from hal import pacer
-from hal.rs485 import Rs485Link
+from hal.link.rs485 import Rs485Link
 from plc_bench import SCAN_US
 from test_s7_codes import NEVER
 from uss import (

@@ -17,9 +17,9 @@ import micropython
 import rp2
 from machine import I2C, UART, WDT, Pin, Timer
 
+from hal.display.probe import answers
 from hal.keypad import Keypad
-from hal.probe import answers
-from hal.rp2_link import Rp2Link
+from hal.link.rp2_rs485 import Rp2Link
 from hal.store import FileStore
 
 # --- what is wired where: GPIO numbers ----------------------------------------------------------
@@ -154,7 +154,7 @@ def make_i2c():
 
 
 def make_posted_i2c():
-    from hal.rp2_i2c import PostedI2C
+    from hal.display.rp2_i2c import PostedI2C
 
     return PostedI2C(make_i2c(), BACKPACK_REGISTERS, machine.mem32, clock)
 
@@ -165,10 +165,10 @@ def make_display():
     i2c = make_i2c()
     for address in BACKPACK_ADDRESSES:
         if answers(i2c, address):
-            from hal.backpack import Backpack
+            from hal.display.backpack import Backpack
 
             return Backpack(make_posted_i2c, address, clock)
-    from hal.rp2_lcd import PioHd44780
+    from hal.display.rp2_hd44780 import PioHd44780
 
     return PioHd44780(LCD_STATE_MACHINE, Pin(LCD_REGISTER_SELECT), Pin(LCD_ENABLE), clock)
 

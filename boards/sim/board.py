@@ -7,9 +7,9 @@ the chip. Every restart makes a new board, as on the chip.
 
 from boards.sim.chip.machine import UART, WDT, Pin, Timer
 from boards.sim.line.wire import Transceiver
-from hal.hd44780 import Hd44780
+from hal.display.hd44780 import Hd44780
 from hal.keypad import Keypad, Matrix
-from hal.rs485 import Rs485Link
+from hal.link.rs485 import Rs485Link
 
 KEYS = (
     "START",

@@ -103,7 +103,7 @@ MUTATIONS = (
         "the panel holds the line when the drive answers",
         ("LINE",), 1,
         (
-            "hal/rs485.py",
+            "hal/link/rs485.py",
             "        self._arm(self._duration_us)\n",
             "        self._arm(self._duration_us + self._durations_us[2])\n",
         ),
@@ -446,7 +446,7 @@ MUTATIONS = (
         "display hurried",
         "the display is written to while it is still at work",
         ("DISPLAY",), 1,
-        ("hal/character_display.py", "_COMMAND_US = const(53)", "_COMMAND_US = const(20)"),
+        ("hal/display/character_display.py", "_COMMAND_US = const(53)", "_COMMAND_US = const(20)"),
     ),
     Mutation(
         "the first alarm for ever",

@@ -20,7 +20,7 @@ import micropython
 import rp2
 from micropython import const
 
-from hal.bursts import Bursts
+from hal.link.bursts import Bursts
 
 _CYCLES_PER_BIT = const(8)  # of the state machine; its divider allows 239 baud ... 15 Mbaud
 _LEAD_CYCLES = const(4)  # from the DMA's first word to the first start bit, at the most

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """An HD44780 on four data lines of the RP2040: a PIO state machine moves the pins and waits.
 
-Fulfils the contract `display` of `hal` as `hal.hd44780.Hd44780` does, which takes 250 us for each
+Fulfils the contract `display` of `hal` as `hd44780.Hd44780` does, which takes 250 us for each
 byte on this chip, most of it waiting. Here a byte is a word for the state machine, and the loop
 goes on. Register select, enable and D4...D7 are six pins in a row, in this order.
 
@@ -13,7 +13,7 @@ Runs on the chip alone; it is proven on the emulated one.
 import rp2
 from micropython import const
 
-from hal.character_display import CharacterDisplay
+from hal.display.character_display import CharacterDisplay
 
 _CYCLES_HZ = const(1_000_000)  # of the state machine: its waits are microseconds
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The receiving half of a link: what a UART hears, burst by burst.
 
-Not a link: `hal.rp2_link` and `hal.rs485` add the half that sends. A burst is over when the line
+Not a link: `rp2_rs485` and `rs485` add the half that sends. A burst is over when the line
 has been silent for 32 bits; then the UART interrupts (IRQ_RXIDLE, receive time-out of a PL011).
 MicroPython's handler on the RP2040 moves characters from the UART's FIFO of 32 to a buffer of 256,
 and leaves one in the FIFO so that the time-out will come. From that follows:

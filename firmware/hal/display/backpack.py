@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """A character display behind a PCF8574 backpack: the HD44780's four data lines through I2C.
 
-Fulfils the contract `display` of `hal`; `hal.character_display` says what is written when. A
+Fulfils the contract `display` of `hal`; `character_display` says what is written when. A
 backpack may be unplugged, or a pulse may upset its wires: the driver tries it again every AGAIN_US
 and sets it up anew when it answers. The panel goes on meanwhile.
 
@@ -12,8 +12,8 @@ and sets it up anew when it answers. The panel goes on meanwhile.
 
 from micropython import const
 
-from hal.character_display import POWER_ON_US, CharacterDisplay
-from hal.probe import BACKLIGHT
+from hal.display.character_display import POWER_ON_US, CharacterDisplay
+from hal.display.probe import BACKLIGHT
 
 AGAIN_US = const(500_000)
 

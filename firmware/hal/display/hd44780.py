@@ -10,9 +10,9 @@ In use:
 
 from micropython import const
 
-from hal.character_display import CharacterDisplay
+from hal.display.character_display import CharacterDisplay
 
-_PULSE_US = const(1)  # 450 ns by the data sheet, see `hal.character_display`
+_PULSE_US = const(1)  # 450 ns by the data sheet, see `character_display`
 
 
 class Hd44780(CharacterDisplay):

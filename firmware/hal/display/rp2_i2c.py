@@ -2,7 +2,7 @@
 """Writing through I2C of the RP2040 without waiting: the bytes are put into the FIFO, which sends.
 
 A backpack's piece takes 1 ms on the bus; the loop has better things to do. Has the one method of
-machine.I2C that `hal.backpack` uses. Whether a transfer was acknowledged is known at the next one.
+machine.I2C that `backpack` uses. Whether a transfer was acknowledged is known at the next one.
 
     i2c = PostedI2C(machine.I2C(0, ...), 0x4004_4000, machine.mem32, clock)
     i2c.writeto(0x27, buffer)           # OSError: this one, or the one before, has failed

@@ -12,7 +12,7 @@ line.
 
 from micropython import const
 
-from hal.bursts import Bursts
+from hal.link.bursts import Bursts
 
 RELEASES_MAX = const(16)  # looks at the transmitter, a quarter of a character apart
 

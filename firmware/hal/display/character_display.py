@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """A character display of 2 x 16 with the controller HD44780: what is written when.
 
-Fulfils the contract `display` of `hal`, for whoever moves the wires: `hal.hd44780` by four pins,
-`hal.rp2_lcd` by the RP2040's PIO, `hal.backpack` through I2C. The controller cannot be read (R/W
+Fulfils the contract `display` of `hal`, for whoever moves the wires: `hd44780` by four pins,
+`rp2_hd44780` by the RP2040's PIO, `backpack` through I2C. The controller cannot be read (R/W
 is tied low), so the driver waits as long as the slowest specimen needs, and remembers what it
 wrote to write only what differs. Panels live beside inverters: a pulse on the wires can swap
 nibbles, move the picture or spoil a character. So every REFRESH_US the driver
