@@ -485,7 +485,7 @@ PICO_STAND_IN = r"""
 @pytest.fixture
 def pico(machine):
     """The machine, with a small firmware and compilers that take no time."""
-    for folder in ("firmware/uss", "boards/pico"):
+    for folder in ("firmware/uss", "boards/chips", "boards/pico"):
         (machine.top / folder).mkdir(parents=True)
     (machine.top / "firmware" / "app.py").write_text("first\n")
     (machine.top / "firmware" / "version.py").write_text('VERSION = "1.2.3"\n')
@@ -509,6 +509,7 @@ def test_a_firmware_is_built_anew_when_something_in_it_has_changed(pico):
         lambda: (firmware / "uss" / "new.py").rename(firmware / "new.py"),
         lambda: (firmware / "new.py").unlink(),
         lambda: (pico.top / "boards" / "pico" / "board.py").write_text(""),
+        lambda: (pico.top / "boards" / "chips" / "chip.py").write_text(""),
         lambda: (pico.top / "tools" / "fetch" / "pico_requirements.txt").write_text("cmake\n"),
     ]
     for number, change in enumerate(changes):
@@ -730,5 +731,5 @@ def test_the_firmware_is_one_for_the_pico_and_tells_nothing_of_this_machine(name
         assert path.encode() not in image
     firmware = tiers.TOP / "firmware"
     ours = {str(path.relative_to(firmware)) for path in firmware.rglob("*.py")}
-    for frozen in ours - {"main.py"} | {"board.py"}:  # a name that MicroPython knows
+    for frozen in ours - {"main.py"} | {"board.py", "chips/rp2040.py"}:  # a name that MicroPython knows
         assert (b"\0" + frozen.encode() + b"\0" in image) == (name == "panel"), frozen

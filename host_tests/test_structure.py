@@ -37,10 +37,11 @@ RULES = (
     ("boards/sim/drives", ("boards.sim",), None),
     ("boards/sim/line", ("boards.sim",), None),
     ("boards/port", ("boards.port", "boards.sim"), None),
-    ("boards", ("hal",), ("machine", "micropython", "os", "time", "rp2", "esp32")),
+    ("boards/chips", ("hal",), ("machine", "time", "rp2", "esp32")),
+    ("boards", ("chips", "hal"), ("machine", "micropython", "os")),
 )
 PROJECT = (
-    "app", "panel", "settings", "strict_json", "version", "uss", "hal", "boards", "main",
+    "app", "panel", "settings", "strict_json", "version", "uss", "hal", "boards", "chips", "main",
 )  # fmt: skip
 
 # What the engine and the panel do without: only programs beside the panel import these.
@@ -151,6 +152,8 @@ def test_the_rule_would_notice():
         ("firmware/hal/display/rp2_hd44780.py", "board"),
         ("boards/sim/drives/drive.py", "uss.telegram"),
         ("boards/sim/line/wire.py", "hal.link.rs485"),
+        ("boards/chips/rp2040.py", "chips.esp32"),
+        ("boards/pico/board.py", "rp2"),
         ("boards/sim/world.py", "boards.port.line"),
         ("boards/sim/world.py", "app.App"),
         ("firmware/app.py", "boards.sim.board"),

@@ -10,6 +10,7 @@ sooner. main.py and board.py stay as they are: MicroPython starts no main.mpy, a
 what people change on the chip.
 """
 
+import re
 import subprocess
 import tempfile
 from pathlib import Path
@@ -19,6 +20,7 @@ from tools.deploying.errors import DeployError
 MAIN = "main.py"
 BOARD = "board.py"
 STAY_SOURCE = (MAIN, BOARD)
+CHIPS = re.compile(rb"^(?:from|import) chips(?:\.| import )(\w+)", re.MULTILINE)
 
 # Header of an .mpy file (MicroPython, py/persistentcode.c): "M", version, features, bits of a
 # small integer. Features: sub-version in bits 0-1 and architecture from bit 2 on; 0 without
@@ -41,7 +43,15 @@ class Firmware:
             path.relative_to(folder).as_posix(): path.read_bytes()
             for path in sorted(folder.rglob("*.py"))
         }
-        sources[BOARD] = Path(board_file or Path(top) / "boards" / board / BOARD).read_bytes()
+        boards = Path(top) / "boards"
+        own = (boards / board / BOARD).read_bytes()
+        sources[BOARD] = Path(board_file).read_bytes() if board_file else own
+        # The board's own as well: a changed copy that stays on the chip imports the same.
+        for name in sorted({*CHIPS.findall(own), *CHIPS.findall(sources[BOARD])}):
+            path = f"chips/{name.decode()}.py"
+            if not (boards / path).exists():
+                raise DeployError(f"{board_file or board} wants {path}, and boards has none")
+            sources[path] = (boards / path).read_bytes()
         return cls(sources)
 
     def compile(self, compiler):

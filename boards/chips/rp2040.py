@@ -1,0 +1,190 @@
+# SPDX-License-Identifier: MIT
+"""What every board with an RP2040 needs: clock, watchdog, timer, bus, display, keys, registers.
+
+A board file says which pin is what and asks here for the rest. A driver is handed objects of the
+chip; this is the only place that makes them. Names of registers: RP2040 data sheet.
+"""
+
+import time
+
+import machine
+import rp2
+from machine import I2C, UART, WDT, Pin, Timer
+
+from hal.display.probe import answers
+from hal.keypad import Keypad
+from hal.link.rp2_rs485 import Rp2Link
+
+# --- which part of the chip does what ------------------------------------------------------------
+
+BUS_UART = 1  # the one that `Rp2Link` knows
+BUS_STATE_MACHINE = 0  # the first of PIO 0
+LCD_STATE_MACHINE = 4  # the first of PIO 1
+RECEIVE_BUFFER, SEND_BUFFER = 256, 32  # characters; nothing is sent through the UART
+BACKPACK_I2C = 0
+BACKPACK_HZ = 100_000  # the most that a PCF8574 takes
+BACKPACK_TIMEOUT_US = 5_000  # a transfer takes 1 ms; this long only when its wires are shorted
+BACKPACK_CLOCKS, BACKPACK_PULSE_US = 9, 5  # a byte and its acknowledgement, at 100 kHz
+WATCHDOG_MS = 2_000
+
+# --- registers -----------------------------------------------------------------------------------
+
+I2C_REGISTERS = 0x4004_4000  # I2C 0 (4.3.17)
+GPIO_IN = 0xD000_0004  # the levels of all pins (SIO, 2.3.1.7)
+
+# The watchdog (4.7.6). Writing to the second address clears bits.
+WATCHDOG_CONTROL, WATCHDOG_CONTROL_CLEAR = 0x4005_8000, 0x4005_B000
+WATCHDOG_ENABLE = 1 << 30
+WATCHDOG_REASON = 0x4005_8008
+WATCHDOG_SCRATCH_4 = 0x4005_801C
+# What the SDK leaves in SCRATCH_4 when a watchdog is started, and 0 for a reset that is wanted.
+STARTED = 0x6AB7_3121
+
+
+class Clock:
+    """The functions of `time` as they are: their period is 2**30 on this port."""
+
+    ticks_mask = (1 << 30) - 1
+
+    def __init__(self):
+        self.ticks_us = time.ticks_us
+        self.ticks_ms = time.ticks_ms
+        self.sleep_us = time.sleep_us
+
+
+def idle():
+    """The processor sleeps for 1 ms at most; interrupts are served in it."""
+    time.sleep_ms(1)
+
+
+# --- watchdog ------------------------------------------------------------------------------------
+
+
+class Watchdog:
+    """Starts with the first feeding; unfed for WATCHDOG_MS it restarts the chip."""
+
+    def __init__(self):
+        self._wdt = None
+
+    def feed(self):
+        if self._wdt is None:
+            self._wdt = WDT(timeout=WATCHDOG_MS)
+        else:
+            self._wdt.feed()
+
+    def stop(self):
+        """By the bit that machine.WDT does not offer. A restart after this is a wanted one."""
+        machine.mem32[WATCHDOG_CONTROL_CLEAR] = WATCHDOG_ENABLE
+        machine.mem32[WATCHDOG_SCRATCH_4] = 0
+        self._wdt = None
+        return True
+
+
+def why_it_booted():
+    """Either "WATCHDOG", or "" for power-on, the RUN pin and machine.reset()."""
+    bitten = machine.mem32[WATCHDOG_REASON] and machine.mem32[WATCHDOG_SCRATCH_4] == STARTED
+    return "WATCHDOG" if bitten else ""
+
+
+# --- timer ---------------------------------------------------------------------------------------
+
+
+class HardTimer:
+    """machine.Timer with hard callbacks, which the port has from MicroPython 1.26 on."""
+
+    ONE_SHOT = Timer.ONE_SHOT
+
+    def __init__(self, timer):
+        self._init = timer.init
+        self.deinit = timer.deinit
+
+    def init(self, mode, period, tick_hz, callback):
+        self._init(mode=mode, period=period, tick_hz=tick_hz, callback=callback, hard=True)
+
+
+def make_timer():
+    """A timer with hard callbacks, or with soft ones where the port takes no others."""
+    machine_timer = Timer()
+    timer = HardTimer(machine_timer)
+    try:
+        timer.init(Timer.ONE_SHOT, 1_000_000, 1_000_000, print)  # a second: it never comes to that
+    except TypeError:
+        return machine_timer
+    timer.deinit()
+    return timer
+
+
+# --- bus -----------------------------------------------------------------------------------------
+
+
+def make_link(send, receive, driver_enable, clock, baud):
+    """send, receive: numbers of pins. driver_enable: a Pin, which is low by now."""
+    send_pin = Pin(send)
+    # The transceiver lets go of this wire while the driver is on.
+    receive_pin = Pin(receive, Pin.IN, Pin.PULL_UP)
+    uart = UART(
+        BUS_UART,
+        baud,
+        bits=8,
+        parity=0,  # even
+        stop=1,
+        tx=send_pin,
+        rx=receive_pin,
+        rxbuf=RECEIVE_BUFFER,
+        txbuf=SEND_BUFFER,
+    )
+    return Rp2Link(uart, BUS_STATE_MACHINE, rp2.DMA(), send_pin, driver_enable, clock, baud)
+
+
+# --- display -------------------------------------------------------------------------------------
+
+
+def make_display(sda, scl, addresses, register_select, enable, clock):
+    """The backpack that answers; the display on four data lines when none does. The driver that is
+    not needed takes no memory. All but `addresses` and `clock`: numbers of pins."""
+    i2c = make_i2c(sda, scl)
+    for address in addresses:
+        if answers(i2c, address):
+            from hal.display.backpack import Backpack
+
+            return Backpack(lambda: make_posted_i2c(sda, scl, clock), address, clock)
+    from hal.display.rp2_hd44780 import PioHd44780
+
+    return PioHd44780(LCD_STATE_MACHINE, Pin(register_select), Pin(enable), clock)
+
+
+def make_posted_i2c(sda, scl, clock):
+    from hal.display.rp2_i2c import PostedI2C
+
+    return PostedI2C(make_i2c(sda, scl), I2C_REGISTERS, machine.mem32, clock)
+
+
+def make_i2c(sda, scl):
+    """The I2C of the backpack, after its wires were made free: a reset in the middle of a transfer
+    leaves the backpack waiting for a clock, and it holds SDA low.
+    """
+    data = Pin(sda, Pin.IN, Pin.PULL_UP)
+    pulse = Pin(scl, Pin.OPEN_DRAIN, Pin.PULL_UP, value=1)
+    for _ in range(BACKPACK_CLOCKS):
+        time.sleep_us(BACKPACK_PULSE_US)
+        if data.value():
+            break
+        pulse.value(0)
+        time.sleep_us(BACKPACK_PULSE_US)
+        pulse.value(1)
+    return I2C(BACKPACK_I2C, sda=data, scl=pulse, freq=BACKPACK_HZ, timeout=BACKPACK_TIMEOUT_US)
+
+
+# --- keys ----------------------------------------------------------------------------------------
+
+
+def make_keypad(keys, normally_closed):
+    """keys: rows of a name and the number of a pin; each key to ground."""
+    pins = tuple((key, Pin(number, Pin.IN, Pin.PULL_UP)) for key, number in keys)
+    masks = tuple(1 << number for _, number in keys)
+    all_keys = sum(masks)
+
+    def levels():
+        return machine.mem32[GPIO_IN] & all_keys
+
+    return Keypad(pins, closed=normally_closed, levels=levels, masks=masks)
