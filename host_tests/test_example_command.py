@@ -57,7 +57,7 @@ def test_what_there_is_not_is_said_in_a_line():
         (("simulation",), "there is no example simulation"),
         (("/no/such.py",), "/no/such.py cannot be read (ENOENT)"),
         (("no_such_folder/mine.py",), "no_such_folder/mine.py cannot be read"),
-        (("one_drive", "--drives", "1=foo"), "no family foo: there are mm420 mm440"),
+        (("one_drive", "--drives", "1=foo"), "no family foo: there are mm420"),
         (("one_drive", "--drives=x"), "x is no address 0...31"),
         (("one_drive", "--drives", "32"), "32 is no address 0...31"),
         (("one_drive", "--drives", "1,1"), "1 stands there twice"),
