@@ -1,22 +1,23 @@
 # SPDX-License-Identifier: MIT
-"""The bus for a program of one's own: drives that run, stop, are read and written, in a few words.
+"""The bus for your own program: it runs, stops, reads and writes drives in a few words.
 
-In front of the engine (`master`, `drive`): floats, calls that wait, and exceptions that say in
-plain words why something was not done. What only few programs need is found behind `bus.engine`
-and `drive.engine`. It takes heap, so nothing of it belongs into an interrupt. The panel does not
-import it.
+It stands in front of the engine (`master`, `drive`) and adds floats, calls that wait, and
+exceptions that say in plain words why something was not done. What only few programs need is
+behind `bus.engine` and `drive.engine`. It takes heap, so do not call it in an interrupt. The panel
+does not import it.
 
     with Master(link, baud=19200) as bus:       # a link of `hal`; leaving it stops every drive
         drive = bus.add(3, MM440)               # a family of `families`
         drive.run(25.0)                         # Hz, or NotStarted and the reason
-        bus.wait(10)                            # seconds, in which the bus goes on
+        bus.wait(10)                            # seconds; the bus goes on meanwhile
         print(drive.hertz, drive.read(1082))
         drive.stop()
 
-Whoever does not wait calls `step` again and again: without it for 300 ms every motor is stopped.
+A program that does not wait must call `step` again and again. After 300 ms without it the bus
+stops every motor.
 """
 
-# From the bottom of the house up: an import inside an import inside an import takes stack.
+# Lower layers first: an import inside an import inside an import takes stack.
 from uss.timing import Timing, elapsed
 from uss.drive import COUNTERS
 from uss import bits, families, master, outside, pkw, pzd
@@ -30,22 +31,22 @@ from uss.bus.survey import Survey
 from uss.scaling import Scale, run_words, signed_hiw
 
 REST_US = 100  # between two looks at the bus while a call waits
-TRIES = 3  # telegrams without a valid reply: nobody waits for more of them
-LISTEN_US = 1_000_000  # a bus that has just begun, or was put on, sends long before
-START_S = 5.0  # for a drive to run after it was told to
-SETTLE_S = 1.0  # for a drive to lift its inhibit, or a fault to go, before it is started
-OFF_TIME_S = (0.3, 65.0)  # telegram-off times that are taken; a word of ms ends at 65.5
-ROUNDS = 3  # of the bus that a telegram-off time must last
+TRIES = 3  # a wait for contact ends after so many telegrams without a valid reply
+LISTEN_US = 1_000_000  # a bus that has just begun, or was put on, sends long before this is over
+START_S = 5.0  # a drive that was told to run has so long to do it
+SETTLE_S = 1.0  # before a start a drive has so long to lift its inhibit, or to clear a fault
+OFF_TIME_S = (0.3, 65.0)  # the telegram-off times allowed; a word of ms ends at 65.5
+ROUNDS = 3  # a telegram-off time must last so many rounds of the bus
 RETRIES_MAX = 255
 
-# `Drive.state` of a drive that answers, by the numbers of pzd.state; and of one that does not.
+# `Drive.state` of a drive that answers, indexed by pzd.state. Below: of one that does not answer.
 STATES = ("not ready", "ready", "running", "fault", "inhibited")
 NO_CONTACT = "no contact"
 MAY_RUN = "no contact, may run"
 
 LINE_IN_USE = "another master is on the line"
 
-# Why there is no contact with drive %d, by `drive.Drive.trouble`.
+# Why there is no contact with drive %d, indexed by `drive.Drive.trouble`.
 TROUBLES = (
     "drive %d does not answer",
     "drive %d: what comes for an answer is noise",
@@ -58,8 +59,8 @@ TROUBLES = (
 class Drive:
     """One drive, made by `Master.add`. Speeds have a sign: negative turns left.
 
-    What waits lets the bus go on, and raises NoContact when the drive does not answer. `engine` is
-    the `drive.Drive` behind it.
+    A method that waits keeps the bus going, and raises NoContact if the drive does not answer.
+    `engine` is the `drive.Drive` behind it.
     """
 
     def __init__(self, bus, engine, family, scale, unsupervised):
@@ -70,17 +71,17 @@ class Drive:
         self.survey = Survey(self, scale)
         if not family.hiw_is_signed:
             engine.tell_speed(0)
-        self._kinds = {}  # of double words, number -> (contacts, kind), as the drive tells them
+        self._kinds = {}  # double words: number -> (contacts, kind), as the drive describes them
 
     # --- to run and to stop ---------------------------------------------------------------------
 
     def run(self, hertz=None, percent=None, rpm=None):
-        """Have the motor turn at one of the three; percent of the reference, 1/min without slip.
+        """Turn the motor at one of the three: Hz, percent of the reference, or 1/min without slip.
 
-        To a motor that stands it waits until the drive has told its settings, a third of a second
-        at 19200 baud, half a second beside others, and says that it runs. To one that runs the new
-        speed goes with its next telegram. NotStarted; ValueError: a speed beyond the drive's
-        limits, or not one speed.
+        If the motor stands, this reads the drive's settings (a third of a second at 19200 baud,
+        half a second beside other drives) and waits until the drive says that it runs. If it runs,
+        the new speed goes with its next telegram. Raises NotStarted; ValueError if the speed is
+        beyond the drive's limits, or if not exactly one speed is given.
         """
         if self.set(hertz, percent, rpm):
             return
@@ -89,15 +90,16 @@ class Drive:
         self._start(hsw, stw)
 
     def set(self, hertz=None, percent=None, rpm=None):
-        """A new speed, as of run(), for a motor that this bus has told to run; it starts none.
+        """Set a new speed, as run() takes it, if this bus has told the motor to run.
 
-        Answers whether there was such a motor; nothing happens otherwise. ValueError as of run().
+        Returns whether it has. If not, nothing happens: this starts no motor. ValueError as in
+        run().
         """
         _check_speed(hertz, percent, rpm)
         if not self._has_speed():
             return False
         stw, hsw = run_words(self.family, self.survey.setpoint(hertz, percent, rpm))
-        if not self._has_speed():  # it was asked for its settings first, and stopped meanwhile
+        if not self._has_speed():  # `setpoint` may wait for settings; it was stopped meanwhile
             return False
         self.engine.hsw = hsw
         self.engine.turn(stw)
@@ -108,55 +110,56 @@ class Drive:
         self._jog(self.family.jog_right)
 
     def jog_left(self):
-        """As jog_right, the other way."""
+        """As jog_right, in the other direction."""
         self._jog(self.family.jog_left)
 
     def stop(self, off=pzd.OFF1):
-        """Ramp down to a stop, which holds until run() or a jog.
+        """Ramp down to a stop. The drive stays stopped until run() or a jog.
 
-        It waits for nothing: it goes ahead of everything, and again until the drive answers. off:
-        OFF1, OFF2 or OFF3 of `pzd`, ValueError else.
+        This does not wait. The stop goes ahead of everything else on the bus, and again until the
+        drive answers. off: OFF1, OFF2 or OFF3 of `pzd`; anything else is a ValueError.
         """
         self.engine.stop(off)
 
     def off2(self):
-        """Coast to a stop; otherwise likewise."""
+        """Coast to a stop; otherwise as stop()."""
         self.stop(pzd.OFF2)
 
     def off3(self):
-        """Stop as fast as the drive can; otherwise likewise."""
+        """Stop as fast as the drive can; otherwise as stop()."""
         self.stop(pzd.OFF3)
 
     def acknowledge(self):
-        """Acknowledge a fault, while it does not run. Waits for nothing."""
+        """Acknowledge a fault, unless the drive is told to run. Does not wait."""
         self.engine.acknowledge()
 
     def control(self, bits, on):
-        """Have these bits of STW 1, or 0, in every telegram, also while it runs.
+        """Set these bits of STW to 1, or to 0, in every telegram, also while the drive runs.
 
-        bits: any of 3...6, which are 1 otherwise, and 13...15, which are 0. ValueError: others.
+        bits: any of 3...6, which are otherwise 1, and 13...15, which are otherwise 0. ValueError
+        for other bits.
         """
         self.engine.control(bits, on)
 
     def put(self, place, word):
         """Send `word`, 0...FFFFh, as PZD word `place`, 3...16, from the next telegram on.
 
-        ValueError: no such word, or not in its layout.
+        ValueError if there is no such word, or the drive's layout has no such place.
         """
         self.engine.put(place, word)
 
     def supervise(self, seconds):
-        """Have the drive trip when it hears nothing for so long, 0: never; kept in its RAM.
+        """Make the drive trip when it hears nothing for so long; 0: never. Written to its RAM.
 
-        ValueError: nobody knows how, or the time is none of OFF_TIME_S, or shorter than three
-        rounds of the bus. Refused, TimedOut.
+        Raises ValueError if the family's telegram-off time is unknown, if the time is outside
+        OFF_TIME_S, or if it is shorter than three rounds of the bus. Refused, TimedOut.
         """
         family = self.family
         if family.off_time_number is None:
             raise ValueError("nobody knows the telegram-off time of a %s" % family.name)
         least, longest = OFF_TIME_S
         least = max(least, ROUNDS * self.bus.round_us() / 1_000_000)
-        if seconds != 0 and not least <= seconds <= longest:  # nor a NaN
+        if seconds != 0 and not least <= seconds <= longest:  # refuses a NaN too
             raise ValueError(
                 "supervise() takes seconds, %.1f...%.0f on this bus, or 0 for never: not %r"
                 % (least, longest, seconds)
@@ -196,49 +199,49 @@ class Drive:
 
     @property
     def trouble(self):
-        """Which of `receiver.TROUBLES` that mostly was."""
+        """Which of `receiver.TROUBLES` most of these telegrams met with."""
         return self.engine.trouble
 
     @property
     def contact(self):
-        """Whether it answers, and this bus still asks it."""
+        """Whether the drive answers, and this bus still asks it."""
         return self.engine.contact and not self._why_not_asked()
 
     @property
     def zsw(self):
-        """The status word of its last reply; None when it does not answer: nothing is known."""
+        """The status word of its last reply; None while it does not answer."""
         return self.word(1)
 
     @property
     def hiw(self):
-        """The actual value of its last reply, 0...FFFFh; None likewise."""
+        """The actual value of its last reply, 0...FFFFh; None while it does not answer."""
         return self.word(2)
 
     def word(self, place):
-        """PZD word `place` of its last reply, as of `drive.Drive`; None likewise."""
+        """PZD word `place` of its last reply, see `drive.Drive`; None while it does not answer."""
         word = self.engine.word(place)
         return word if self.contact else None
 
     @property
     def state(self):
-        """One of STATES, NO_CONTACT, or MAY_RUN: it ran when contact was lost."""
+        """One of STATES, NO_CONTACT, or MAY_RUN: no contact, but the motor may be running."""
         if self.contact:
             return STATES[pzd.state(self.engine.zsw)]
         return MAY_RUN if self.engine.may_run() else NO_CONTACT
 
     def is_on(self):
-        """Whether it is told to run, and the bus has not taken that back."""
+        """Whether the drive is told to run, and the bus has not taken that back."""
         return self.engine.is_on()
 
     @property
     def is_running(self):
-        """Whether it answers, and says that it runs."""
+        """Whether the drive answers, and says that it runs."""
         return self.contact and self.engine.zsw & pzd.ZSW_RUNNING != 0
 
     @property
     def hertz(self):
-        """The actual frequency. Waits for the drive's settings when they are not known yet;
-        ValueError when they do not tell, as for the next two."""
+        """The actual frequency. Waits for the drive's settings if they are not known yet.
+        ValueError if the settings do not tell the scale; the same holds for percent and rpm."""
         return self.survey.hertz_scale().hertz(self._actual())
 
     @property
@@ -253,8 +256,8 @@ class Drive:
 
     @property
     def fault(self):
-        """0, or the number of the present fault, for which it waits; -1 when the drive has one and
-        cannot tell which. NoContact, TimedOut."""
+        """The number of the present fault, which is read from the drive; 0 if there is none; -1 if
+        there is one and the drive cannot tell which. Waits; NoContact, TimedOut."""
         self._wait_for_contact()
         if not self.engine.zsw & pzd.ZSW_FAULT:
             return 0
@@ -268,23 +271,25 @@ class Drive:
     # --- parameters -----------------------------------------------------------------------------
 
     def read(self, number, index=0, kind=None):
-        """The value of a parameter; waits for it. Refused, TimedOut.
+        """Read the value of a parameter. Waits; Refused, TimedOut.
 
-        A word comes as an int from 0 on. A double word is a float or an int, as the family has it,
-        or else the drive's own description of the parameter; where neither says, an int, or what
-        `kind` says, float or int. ValueError: a kind that it is known not to be.
+        A word comes as an unsigned int. A double word comes as a float or an int: the family says
+        which, or else the drive's own description of the parameter. If neither says it, `kind`
+        (float or int) does, else it is an int. ValueError if the parameter is known not to be of
+        this kind.
         """
         _check_kind(kind)
         job = self.do(self.addressed(pkw.read(number, index)))
         return self._value(job, self._agreed(job, kind))
 
     def write(self, number, value, index=0, eeprom=False, kind=None, sure=False):
-        """Write a parameter into RAM, or RAM and EEPROM; answers what the drive has confirmed.
+        """Write a parameter to RAM, or RAM and EEPROM; return what the drive has confirmed.
 
-        The drive is asked first what it is, a word or a double word; kind: as of read(). sure: to
-        be said for parameters by which this bus may lose the drive, or a speed mean something
-        else: family.ask_first. ValueError without it, and for a value or a kind that does not fit.
-        Waits; Refused, TimedOut; UssError: its address, while the motor may run.
+        This first reads the parameter, to learn whether it is a word or a double word. kind: as in
+        read(). sure: must be True for the parameters in family.ask_first, by which this bus may
+        lose the drive or a speed may change its meaning. ValueError without it, and for a value or
+        a kind that does not fit. UssError for the drive's address while its motor may run. Waits;
+        Refused, TimedOut.
         """
         _check_kind(kind)
         if eeprom and not self.family.has_eeprom_tasks:
@@ -317,29 +322,30 @@ class Drive:
         return self._value(self.do(self.addressed(job)), kind)
 
     def do(self, job):
-        """Carry out any job of `pkw`, wait for its end and answer it.
+        """Carry out any job of `pkw`, wait for its end and return it.
 
-        Refused; TimedOut, and as one FallsSilent; UssError when the drive's telegrams have no PKW
-        words.
+        Raises Refused; TimedOut, or its subclass FallsSilent; UssError if the drive's telegrams
+        have no PKW words.
         """
         self.carry_out(job)
         self.raise_unless_done(job)
         return job
 
     def ask(self, job):
-        """Queue a job of `pkw` and do not wait: its state tells when it is no longer PENDING.
+        """Queue a job of `pkw` and do not wait. It is over when its state is no longer PENDING.
 
-        RuntimeError when 8 wait already, it is pending, or the drive has no parameter channel.
+        RuntimeError if 8 jobs wait already, if this one is pending, or if the drive has no
+        parameter channel.
         """
         self.engine.ask(job)
 
     def carry_out(self, job):
-        """Wait for the end of a job, whatever that is. NoContact: it was not begun, or the bus
-        was put off before it ended."""
+        """Carry out a job and wait for its end, however it ends. NoContact if it was not begun, or
+        if the bus was put off before it ended."""
         self.finish(self.begin(job))
 
     def begin(self, job):
-        """As carry_out, but it waits for contact alone, and answers the job: `finish` is next."""
+        """Wait for contact only, queue the job and return it. Call `finish` next."""
         if not self.layout.pkw_words:
             raise UssError("drive %d has no parameter channel: %r" % (self.address, self.layout))
         self._wait_for_contact()
@@ -357,7 +363,7 @@ class Drive:
             self.engine.want_turns(False)
 
     def raise_unless_done(self, job):
-        """The exception that a job deserves which has ended otherwise."""
+        """Raise the exception that fits a job that has ended in any state but DONE."""
         if job.state == pkw.DONE:
             return
         name = pkw.name(job.number, job.index)
@@ -376,17 +382,17 @@ class Drive:
     # --- behind it ------------------------------------------------------------------------------
 
     def addressed(self, job):
-        """The job, by the task that drives of the family take its index with."""
+        """The job, changed to an array task if the family takes an index by those."""
         if not job.index or not self.family.has_array_tasks:
             return job
-        from uss.tasks import arrays  # here, because most programs need the room that it takes
+        from uss.tasks import arrays  # here, because it takes memory that most programs need
 
         return arrays.with_array_task(job, self.family)
 
     def _agreed(self, job, kind):
-        """What a parameter is that a finished job has read: None, a word; else float or int.
+        """What the parameter is that a finished job has read: None for a word, else float or int.
 
-        kind: what the program says that it is, None for nothing. ValueError: it is not.
+        kind: what the program says it is, or None. ValueError if it is something else.
         """
         found = None if job.width == pkw.WORD else self._kind_of_double(job.number)
         if job.width != pkw.WORD and found is None:
@@ -403,10 +409,10 @@ class Drive:
         return found
 
     def _kind_of_double(self, number):
-        """float or int, as the family or the drive's description says; None: nobody says it."""
+        """float or int, as the family or the drive's description says; None if neither does."""
         if self.family.integer_doubles is not None:
             return float if families.is_float(self.family, number) else int
-        contacts = self.engine.contacts  # behind a loss it may be another drive
+        contacts = self.engine.contacts  # after a loss of contact it may be another drive
         known, kind = self._kinds.get(number, (None, None))
         if known != contacts:
             from uss.tasks import descriptions  # as above
@@ -424,7 +430,7 @@ class Drive:
         return job.float_value() if kind is float else job.integer_value()
 
     def _actual(self):
-        """HIW with its sign. ValueError: it is known not to be the speed."""
+        """HIW with its sign. ValueError if HIW is known not to be the speed."""
         wrong = self.survey.what_is_wrong(ACTUAL)
         if wrong:
             raise ValueError("drive %d %s" % (self.engine.address, wrong))
@@ -443,12 +449,12 @@ class Drive:
         return self.family.jog_right, self.family.jog_left
 
     def _has_speed(self):
-        """Whether it is told to run, and by a setpoint of this bus."""
+        """Whether the drive is told to run with a setpoint of this bus, not to jog."""
         engine = self.engine
         return not self._why_not_asked() and engine.is_on() and engine.wanted not in self._jogs()
 
     def _check_start(self, needs_setpoint):
-        """NotStarted unless everything that must be known of the drive lets it be started now."""
+        """Read what must be known of the drive; raise NotStarted if it must not be started now."""
         self._raise_unless_asked()
         if self.engine.stopped_by_engine():
             self._refuse(
@@ -484,7 +490,8 @@ class Drive:
             self._refuse("was told to stop meanwhile")
 
     def _start(self, hsw, stw):
-        """Start it and wait until it runs. What does not start soon shall not start later."""
+        """Start the drive and wait until it runs. If it does not start soon, stop it again, so
+        that it cannot start later."""
         engine = self.engine
         self._raise_unless_asked()
         engine.start(hsw, stw)
@@ -502,7 +509,7 @@ class Drive:
         self._refuse("did not start: is it being commissioned (P0010), or held by its terminals?")
 
     def keep_within(self, off_time_ms):
-        """The drive's telegram-off time is known, or None: the bus keeps within it from now on."""
+        """Make the bus keep within the drive's telegram-off time from now on; None: not known."""
         if off_time_ms is not None:
             self.bus.engine.deadlines.supervise(self.engine, off_time_ms)
 
@@ -513,8 +520,8 @@ class Drive:
         raise NotStarted("drive %d %s" % (self.engine.address, reason))
 
     def _wait_for_contact(self):
-        """Until it answers, or has failed to a few times from now on: what it did before is old
-        news."""
+        """Wait until the drive answers. Only TRIES failures from now on end the wait: what it did
+        before does not count."""
         self._raise_unless_asked()
         engine = self.engine
         if engine.contact:
@@ -526,13 +533,13 @@ class Drive:
             return engine.contact or failed >= TRIES or self._why_not_asked() is not None
 
         patience_us = LISTEN_US + TRIES * self.bus.engine.turns.longest_cycle_us()
-        engine.ask_soon()  # among other silent ones it may have no turn for long
+        engine.ask_soon()  # one of several silent drives may wait long for its turn
         self.bus.wait(patience_us / 1_000_000, has_answered_or_failed)
         if not self.contact:
             raise self._no_contact()
 
     def _no_contact(self):
-        """The exception that says why."""
+        """The NoContact that says why."""
         reason = self._why_not_asked()
         if self.bus.engine.is_line_in_use():
             reason = LINE_IN_USE
@@ -547,7 +554,7 @@ class Drive:
             raise NoContact(reason)
 
     def _why_not_asked(self):
-        """Why no telegram goes to it any more, in words; None: one does."""
+        """Why the bus sends the drive no telegrams any more, in words; None if it does."""
         bus = self.bus
         if bus.engine.phase != master.CLOSED and self not in bus.drives:
             return "drive %d is not on the bus" % self.engine.address
@@ -555,13 +562,14 @@ class Drive:
 
 
 class Master:
-    """The bus on a link of `hal`, which brings its clock.
+    """The bus on a link of `hal`; the clock comes with the link.
 
-    baud: of the line, a rate of USS. reply_timeout_ms: how long a reply may take to begin; 20 by
-    the specification, adapters may need more. lost_ms: without a valid reply for so long a drive
-    counts as lost. idle: called again and again while a call waits, at least once in 2 ms: to feed
-    a watchdog, say; never while the bus is closed, so that nothing in it keeps a motor turning.
-    ValueError: no rate of USS, or another Master has the link and was not closed.
+    baud: the line's rate, one of USS. reply_timeout_ms: how long a reply may take to begin; 20 by
+    the specification, adapters may need more. lost_ms: a drive counts as lost after so long
+    without a valid reply. idle: a function that is called again and again while a call waits, at
+    least once in 2 ms, for instance to feed a watchdog. It is not called once the bus is being
+    closed, so that nothing in it keeps a motor turning. ValueError if the rate is none of USS, or
+    if another Master has the link and was not closed.
 
     drives: each once, in the order added. engine: the `master.Master` behind it.
     """
@@ -587,15 +595,15 @@ class Master:
     # --- the list -------------------------------------------------------------------------------
 
     def add(self, address, family=None, layout=None, scale=None, unsupervised=False):
-        """Put a drive at the end of the circulating list; answer its `Drive`.
+        """Put a drive at the end of the circulating list; return its `Drive`.
 
         The same address again gives the same drive, unchanged, one more turn. family: of
-        `families`, GENERIC when it is not told. layout: how its telegrams are divided, if not as
-        the family's are. scale: a `scaling.Scale`, for a drive that cannot tell its own: what it
-        tells goes first. unsupervised: it may run although its telegram-off time is 0, or nobody
-        knows it, and nobody would stop it if the program died. ValueError: an address beyond 31, a
-        layout that the family cannot be set to, the list is full, the drive is there already and
-        of another family or layout. TypeError.
+        `families`; GENERIC by default. layout: how its telegrams are divided, if not as the
+        family's usually are. scale: a `scaling.Scale` for a drive that cannot tell its own; what
+        the drive tells goes first. unsupervised: the drive may run although its telegram-off time
+        is 0 or unknown, so that nothing would stop it if the program died. ValueError if the
+        address is beyond 31, the family cannot be set to the layout, the list is full, or the
+        drive is there already with another family or layout. TypeError.
         """
         _check_types(address, family, layout, scale)
         for drive in self.drives:
@@ -614,26 +622,28 @@ class Master:
         return drive
 
     def remove(self, drive):
-        """Take a drive off the bus. ValueError when it is not on it, or may be running."""
+        """Take a drive off the bus. ValueError if it is not on this bus, or may be running."""
         self.engine.turns.remove(drive.engine)
         self.drives = [other for other in self.drives if other is not drive]
 
     def arrange(self, drives):
-        """Make these the circulating list, each drive of the bus at least once, 255 at the most.
+        """Make these the circulating list: each drive of the bus at least once, 255 at
+        the most.
 
-        Who stands in it more often is asked more often. ValueError when one is missing or strange.
+        A drive that stands in it more often is asked more often. ValueError if a drive is missing,
+        or not of this bus.
         """
         self.engine.turns.arrange([drive.engine for drive in drives])
 
     def readdress(self, drive, address):
-        """From now on the drive answers at another address. ValueError: taken, or beyond 31."""
+        """The drive answers at another address from now on. ValueError: taken, or beyond 31."""
         self.engine.turns.readdress(drive.engine, address)
 
     def supervise(self, drive, off_time_ms):
-        """Tell of a drive that cannot be asked after which time without telegrams it trips, in ms,
-        0: never. The bus keeps within a third of that while it may run.
+        """Say after how many ms without telegrams a drive trips, if it cannot tell that; 0: never.
+        While the drive may run, the bus sends it a telegram at least every third of that time.
 
-        Nothing is written to the drive: `Drive.supervise` does that.
+        This writes nothing to the drive; `Drive.supervise` does.
         """
         if not isinstance(off_time_ms, int) or not 0 <= off_time_ms <= 1000 * OFF_TIME_S[1]:
             raise ValueError("a telegram-off time is an integer in ms, not %r" % (off_time_ms,))
@@ -649,7 +659,7 @@ class Master:
 
     @property
     def cycle_us(self):
-        """A round of the list begins so long after the one before; 0: at once. May be set."""
+        """A round of the list begins so long after the round before; 0: at once. May be set."""
         return self.engine.turns.cycle_us
 
     @cycle_us.setter
@@ -674,39 +684,39 @@ class Master:
     # --- time -----------------------------------------------------------------------------------
 
     def pace(self, pacer, timer):
-        """From now on interrupts keep the engine going.
+        """Let interrupts keep the engine going from now on.
 
-        pacer: the class `hal.pacer.Pacer`. timer: that of the board, or None.
+        pacer: the class `hal.pacer.Pacer`. timer: the board's timer, or None.
         """
         self._pacer = pacer(self.engine, self._link, self.clock, timer)
         self._pacer.start()
 
     def step(self):
-        """Say that the program is alive, and do what is due. To be called again and again."""
+        """Say that the program is alive, and do what is due. Call it again and again."""
         engine = self.engine
         now = self.clock.ticks_us()
-        # The engine before it hears that the loop is alive: it must see how long that took.
+        # Poll first, then say that the loop is alive: the engine must see how long that took.
         if self._pacer:
             self._pacer.tend()
         else:
             try:
                 engine.poll(now)
-            except BaseException:  # Ctrl-C as well: it may have struck in the middle
+            except BaseException:  # also Ctrl-C, which may have struck in the middle of `poll`
                 engine.recover(now)
                 raise
         engine.refresh(now)
 
     def rest(self):
-        """A step, and a tenth of a millisecond for everybody else."""
+        """Do a step, then sleep a tenth of a millisecond."""
         self.step()
         if self._idle:
             self._idle()
         self.clock.sleep_us(REST_US)
 
     def wait(self, seconds, until=None):
-        """Let the bus go on for so long, or until `until()` is true; answer whether it is.
+        """Keep the bus going for so long, or until `until()` is true; return whether it is.
 
-        NoContact: the bus is closed.
+        NoContact if the bus is closed.
         """
         if self.engine.phase == master.CLOSED:
             raise NoContact(self.why_silent())
@@ -725,15 +735,15 @@ class Master:
     # --- all together ---------------------------------------------------------------------------
 
     def stop_all(self):
-        """OFF1 to every drive by a telegram each; those that run have theirs first."""
+        """Send OFF1 to every drive, a telegram each; drives that run get theirs first."""
         self.engine.stop_all()
 
     def broadcast_stop(self):
-        """OFF1 to all drives at once, in a single telegram, and then to each by one of its own, as
-        `stop_all` has it.
+        """Send OFF1 to all drives at once in a single telegram, then to each one its own, as
+        `stop_all` does.
 
-        ValueError unless every drive's family takes broadcasts, and all have 4 PKW words and as
-        many PZD words; each is sent its own OFF1 even so.
+        ValueError unless every drive's family takes broadcasts, all have 4 PKW words, and all have
+        the same number of PZD words. Each drive is sent its own OFF1 even then.
         """
         for drive in self.drives:
             if not drive.family.takes_broadcast:
@@ -742,10 +752,11 @@ class Master:
         outside.stop_all(self.engine)
 
     def mirror(self, node, net_count=12):
-        """Whether a node sends back a telegram of so many net characters, which it does not obey.
+        """Whether a node sends back a mirror telegram of so many net characters. It does not obey
+        such a telegram.
 
-        A drive of fixed length answers none but its own length, which is taken for those of this
-        bus. Waits; NoContact: nothing is sent on this bus.
+        A drive of fixed length answers only its own length; for drives of this bus that length is
+        used instead of `net_count`. Waits; NoContact if this bus sends nothing.
         """
         for drive in self.drives:
             if drive.address == node:
@@ -759,9 +770,10 @@ class Master:
         return probe.state == pkw.DONE
 
     def post(self, telegram_outside):
-        """Send a telegram outside the list once (see `outside`), which tells what became of it.
+        """Send a telegram outside the list once (see `outside`). Its state tells what became of
+        it.
 
-        NoContact: nothing is sent on this bus. RuntimeError when 8 wait, or it does.
+        NoContact if this bus sends nothing. RuntimeError if 8 wait already, or this one does.
         """
         reason = self.why_silent()
         if reason:
@@ -783,42 +795,43 @@ class Master:
     # --- the line -------------------------------------------------------------------------------
 
     def off(self):
-        """Leave the line to others: OFF1 to every drive first, then nothing is sent until on().
+        """Leave the line to others: send OFF1 to every drive, then nothing until on().
 
-        It does not wait; is_silent() tells when it has come so far.
+        This does not wait; is_silent() tells when the bus sends nothing any more.
         """
         self.engine.off()
 
     def on(self):
-        """Take the line again: listen first, as at the beginning. What ran needs a new run()."""
+        """Take the line again: listen first, as at the beginning. A drive that ran needs a new
+        run()."""
         self.engine.on()
 
     @property
     def foreign(self):
-        """Heard from another master: bursts before the first telegram, telegrams after it."""
+        """Heard from another master: bursts before our first telegram, telegrams after it."""
         return self.engine.foreign
 
     def is_line_in_use(self):
-        """Whether another master was heard and is listened to instead of talking."""
+        """Whether another master was heard, so that this bus listens and does not send."""
         return self.engine.is_line_in_use()
 
     def has_echo(self):
-        """Whether what is sent comes back: two wires, and a receiver that stays on."""
+        """Whether the line echoes what is sent: two wires, and a receiver that stays on."""
         return self.engine.has_echo()
 
     def why_silent(self):
-        """Why nothing is sent any more, in words; None: something is."""
+        """Why the bus sends nothing any more, in words; None if it sends."""
         return WHY_SILENT.get(self.engine.phase)
 
     def is_silent(self):
-        """Whether nothing is sent any more, after off() or close()."""
+        """Whether the bus has stopped sending, after off() or close()."""
         return self.engine.phase in WHY_SILENT
 
     def close(self):
-        """Stop every drive, wait for the answers, and leave the line and the link alone.
+        """Stop every drive, wait for the answers, then leave the line and the link.
 
-        Ctrl-C does not cut this short: it takes a second and a round of the bus at the most, and a
-        motor may be turning. `idle` is not called any more.
+        Ctrl-C does not cut this short, because a motor may be turning. It takes at most a second
+        and a round of the bus. `idle` is not called any more.
         """
         self._idle = None
         try:
@@ -835,18 +848,18 @@ def _check_kind(kind):
 
 
 def _check_speed(hertz, percent, rpm):
-    """ValueError, TypeError: not one speed, or none that is a number."""
+    """ValueError, TypeError unless exactly one speed is given, and is a finite number."""
     speeds = [speed for speed in (hertz, percent, rpm) if speed is not None]
     if len(speeds) != 1:
         raise ValueError("say one speed: hertz, percent or rpm")
     if not isinstance(speeds[0], (int, float)):
         raise TypeError("a speed is a number, not %r" % (speeds[0],))
-    if speeds[0] - speeds[0] != 0:  # of a NaN and of what is infinite it is a NaN
+    if speeds[0] - speeds[0] != 0:  # for a NaN or an infinity the difference is a NaN
         raise ValueError("a speed of %r" % speeds[0])
 
 
 def _check_types(address, family, layout, scale):
-    """TypeError: an argument of `Master.add` is none."""
+    """TypeError if an argument of `Master.add` is of the wrong type."""
     if not isinstance(address, int):
         raise TypeError("an address is an integer 0...31, not %r" % (address,))
     if family is not None and not hasattr(family, "survey"):

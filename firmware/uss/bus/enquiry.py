@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: MIT
-"""Asks a node that was found what it is: its layout, its family, when it trips. For `scan`.
+"""Asks a node that was found for its layout, its family and when it trips. For `scan`.
 
-A node's telegrams have a length, but not every length has one meaning: 12 net characters are 4 + 2
-words, 3 + 3, or none and 6. So the drive is asked for the parameters that hold its layout, in each
-of these forms, until it confirms one; which other parameters it has tells the family. Each
-question is an ordinary telegram with OFF1, so that a motor that somebody left running stops; in a
-form that is wrong, bit 10 is 0 where the drive looks for its control word, and it obeys nothing.
+The length of a node's telegrams may have several meanings: 12 net characters are 4 + 2 words,
+3 + 3, or 0 + 6. So the enquiry asks for the parameters that hold the layout, in each of these
+forms, until the drive confirms one. Which other parameters the drive has tells its family. Each
+question is an ordinary telegram with OFF1, so that it stops a motor that somebody left running. In
+a wrong form, bit 10 is 0 where the drive looks for its control word, so the drive obeys nothing.
 
     node = Node(12, False)
-    questions = enquiry(node)           # a generator: (layout, number) each, the value goes in
+    questions = enquiry(node)           # a generator: yields (layout, number), is sent the value
     layout, number = next(questions)
     layout, number = questions.send(4)  # ... until StopIteration
     node.family, node.layout, node.off_time_ms
@@ -21,10 +21,10 @@ from uss.outside import DONE, TIMED_OUT, OutsideTelegram
 from uss.telegram import GOOD, NET, put_word
 
 FRAME = 4  # characters of a telegram that are not net data
-NO_CHANNEL = -1  # instead of a value: where that should stand is no parameter channel
+NO_CHANNEL = -1  # instead of a value: the reply has no parameter channel in that place
 
-# In the order of trying: a family; one whose parameters tell the layout and the telegram-off time;
-# and a parameter that it has and those further down lack, or None.
+# In the order of trying: the family; a family whose parameters tell the layout and the
+# telegram-off time; a parameter that this family has and those further down lack, or None.
 SIGNS = (
     (MM4, MM4, 2009),
     (MM440, MM4, 2009),  # with more PZD words
@@ -40,11 +40,12 @@ USUAL_PZD_WORDS = (2, 4, 8, 1, 3, 5, 6, 7, 0, 16, 12, 10, 9, 11, 13, 14, 15)
 
 
 class Node:
-    """What answers at an address. net_count: net characters that it takes. variable: any number.
+    """What answers at an address. net_count: the net characters that it takes. variable: it takes
+    any number.
 
-    layout, family: as `bus.add` takes them. off_time_ms: after so long without a telegram it
-    trips; 0 never, None: it does not tell. A layout that the drive does not confirm is the most
-    usual one of its length, and its family is GENERIC.
+    layout, family: as `bus.add` takes them. off_time_ms: the node trips after so long without a
+    telegram; 0: never, None: it does not tell. If the drive confirms no layout, `layout` is the
+    most usual one of its length and `family` is GENERIC.
     """
 
     def __init__(self, net_count, variable):
@@ -59,7 +60,7 @@ class Node:
 
 
 def layouts(net_count, variable):
-    """The layouts that may be meant, the most usual first, a list."""
+    """A list of the layouts that this length may mean, the most usual first."""
     if variable:
         return [Layout(VARIABLE, pzd_words) for pzd_words in USUAL_PZD_WORDS]
     words = net_count // 2
@@ -68,9 +69,9 @@ def layouts(net_count, variable):
 
 
 def enquiry(node):
-    """A generator of (layout, number) to be read; it is sent the value, None where there is none,
-    or NO_CHANNEL. number None: a telegram without a task. At its end the fields of `node` are what
-    is known.
+    """A generator of (layout, number) to read; number None: a telegram without a task. Send it the
+    value, None if there is none, or NO_CHANNEL. At its end the fields of `node` hold what is
+    known.
     """
     usual = None
     for layout in layouts(node.net_count, node.variable):
@@ -108,16 +109,16 @@ def enquiry(node):
 
 
 class Question(OutsideTelegram):
-    """An ordinary telegram to a node outside the list: OFF1, and a parameter to be read, or None.
+    """An ordinary telegram to a node outside the list, with OFF1 and a parameter to read, or None.
 
-    DONE: it has answered it; `job` holds the answer, or the refusal. TIMED_OUT: it was silent, or,
-    where `finding` is GOOD, said something older.
+    DONE: the node has answered; `job` holds the answer, or the refusal. TIMED_OUT: the node was
+    silent, or, if `finding` is GOOD, its answer belongs to an older question.
     """
 
     def __init__(self, address, layout, number):
         self.job = None if number is None else pkw.read(number)
         self._layout = layout
-        self._speaks = True  # what came may be the reply of a parameter channel
+        self._speaks = True  # the reply may be that of a parameter channel
         self._form = layout.pkw_words * 2
         if layout.variable:
             self._form = pkw.VARIABLE_LENGTH | 2 * layout.longest
@@ -133,11 +134,11 @@ class Question(OutsideTelegram):
         return self._layout.fits(net_count)
 
     def may_reply_alike(self):
-        """Whether the reply may be the very request."""
+        """Whether the reply may be equal to the request."""
         return not self._layout.pzd_words
 
     def value(self):
-        """The value that was read; None where there is none; NO_CHANNEL."""
+        """The value that was read, None if there is none, or NO_CHANNEL."""
         job = self.job
         if job is not None and job.state == pkw.DONE:
             return job.integer_value()
@@ -150,5 +151,5 @@ class Question(OutsideTelegram):
         if job is None or job.answer(buffer, NET, pkw_count, self._form):
             self.state = DONE
         else:
-            self._speaks = buffer[NET] == buffer[NET + 1] == 0  # AK 0, no reply yet
+            self._speaks = buffer[NET] == buffer[NET + 1] == 0  # AK 0: no reply yet
             self.state = TIMED_OUT

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""What a program of one's own gets instead of what it wanted: exceptions in plain words.
+"""The exceptions of `bus` and `scan`, which say in plain words why something was not done.
 
-For `bus` and `scan`. What is no fault of line or drive but of the program is a ValueError or a
-TypeError.
+A mistake in the program, not a fault of line or drive, is a ValueError or a TypeError.
 
     try:
         drive.run(25.0)
@@ -12,19 +11,19 @@ TypeError.
 
 from uss.master import CLOSED, OFF
 
-# Why nothing is sent any more, by the phase of the engine.
+# Why the bus sends nothing any more, by the phase of the engine.
 WHY_SILENT = {OFF: "the bus is off", CLOSED: "the bus is closed"}
 
 
 class UssError(Exception):
-    """What was wanted of a drive was not done."""
+    """The drive did not do what the program asked for."""
 
 
 class NoContact(UssError):
-    """The drive does not answer, or nothing is sent to it.
+    """The drive does not answer, or the bus sends it nothing.
 
     trouble: what came instead of valid answers, one of SILENCE, NOISE, OTHER_LENGTH, OTHER_ADDRESS
-    and WRONG_CHECK of `receiver`; None when nothing is sent.
+    and WRONG_CHECK of `receiver`; None if the bus sends nothing.
     """
 
     def __init__(self, text, trouble=None):
@@ -37,8 +36,8 @@ class TimedOut(UssError):
 
 
 class FallsSilent(TimedOut):
-    """The drive answers telegrams without this parameter task, but none with it. The task was
-    withdrawn, so that the drive is not lost by it. Whether it has written, nobody knows."""
+    """The drive answers telegrams without this parameter task, but none with it. The bus withdrew
+    the task, so that it does not lose the drive. A write may or may not have been carried out."""
 
 
 class NotStarted(UssError):
@@ -48,7 +47,7 @@ class NotStarted(UssError):
 class Refused(UssError):
     """The drive refused a parameter task.
 
-    number: see `pkw_errors`; -1 when others have the right to change parameters. job: the task,
+    number: see `pkw_errors`; -1 if this master has no right to change parameters. job: the task,
     with what the drive offers instead.
     """
 

@@ -8,8 +8,8 @@ In use:
 
 from uss.pkw import NO_CHANGE_RIGHTS
 
-# Up to 7 from the specification (table 4.9), up to 100 the PROFIBUS profile, beyond what each
-# drive makes of them (MICROMASTER, V20, MASTERDRIVES, SIMOREG).
+# Numbers up to 7 are from the specification (table 4.9), up to 100 from the PROFIBUS profile.
+# Above that each drive has its own (MICROMASTER, V20, MASTERDRIVES, SIMOREG).
 ERRORS = (
     (0, "no such parameter"),
     (1, "read-only parameter"),

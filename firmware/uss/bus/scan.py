@@ -1,22 +1,24 @@
 # SPDX-License-Identifier: MIT
-"""Finds who is on the line, and at which baud rate, by mirror telegrams, which nobody acts on.
+"""Finds which drives are on the line, and at which baud rate, by mirror telegrams.
 
 A node sends a mirror telegram back as it came and does nothing else with it (specification A-4.3,
-A-5.3). The net data are zeros: no parameter task, and wherever a control word may stand its bit 10
-is 0, so that even a node that took it for an ordinary telegram would obey nothing in it.
+A-5.3). The net data are zeros: they hold no parameter task, and bit 10 is 0 wherever a control
+word may stand. So even a node that took it for an ordinary telegram would obey nothing in it.
 
-A drive that has heard a telegram may trip when it hears no more (P2014). So whoever was found and
-is not on the bus is asked again and again until the scan is over. Before that each of them gets
-OFF1 and says what it is (`enquiry`), and when it will trip unless it is added to the bus.
+A drive that has heard a telegram may trip when it hears no more (P2014). So the scan asks every
+node that it found, and that is not on the bus, again and again until it is over. Before it ends it
+sends each of them OFF1 and asks what it is (`enquiry`), and when it will trip unless you add it to
+the bus.
 
     scan = Scan(bus, clock.ticks_mask)
-    while not scan.step(clock.ticks_us()):      # in the own loop, which keeps the bus going
+    while not scan.step(clock.ticks_us()):      # in your loop, which keeps the bus going
         ...
     for address, node in scan.nodes.items():
         bus.add(address, node.family, node.layout)
 
-A node of fixed length answers only its own one: most usual first, NET_COUNTS are tried at every
-address. Whoever is silent costs a reply time-out each time; `longest_ms` says it all together.
+A node of fixed length answers only its own length. So the scan tries NET_COUNTS at every address,
+the most usual length first. Each silent address costs a reply time-out each time; `longest_ms` is
+the sum.
 """
 
 from micropython import const
@@ -40,12 +42,12 @@ EVERY_NET_COUNT = range(2, 42, 2)  # of all fixed layouts: PKW 0, 3, 4 and PZD 0
 # The rates in the order in which they are worth trying; those of every interface first.
 RATES = (9600, 19200, 38400, 57600, 115200, 187500, 4800, 2400, 76800, 93750, 1200, 600, 300)
 
-TRIES = const(3)  # when something came back, but not the telegram
-ACCOUNT_US = const(10_000)  # the bus takes so long to charge a silence to that share
+TRIES = const(3)  # telegrams to an address, if something came back, but not the telegram
+ACCOUNT_US = const(10_000)  # the bus takes so long to charge a silence to the silent drives' share
 KEEP_US = const(100_000)  # a node that was found is asked again after so long,
-KEEP_MAX = const(2)  # but so many of them in a row at the most
-QUESTION_TRIES = const(6)  # for an answer: a drive may lag
-SILENCES = const(2)  # to a question: it has no answer
+KEEP_MAX = const(2)  # but at most so many such nodes in a row
+QUESTION_TRIES = const(6)  # of one question: a drive's answers may lag
+SILENCES = const(2)  # after so many silences to a question the drive has no answer to it
 
 
 class Scan:
@@ -53,16 +55,21 @@ class Scan:
     in the order of asking. net_counts: the lengths to try, in net characters, even, 2...250.
     enquire: False sends mirror telegrams only, and `nodes` and `will_trip` stay empty.
 
-    Fields to look at: `found`, a dictionary address -> net characters; `variable`, a set of those
-    that take any length; `unclear`, address -> finding of `receiver`, where something came that
-    was no answer: two nodes of one address, or a fault on the line; `asked`, telegrams so far;
-    `nodes`, address -> `enquiry.Node`, of those that are not on the bus; `will_trip`, address ->
-    milliseconds, those of them that trip when they hear no more, None where the drive does not
-    tell; `over`, all is asked; `stopped`, a stop or `end` ended it.
+    Fields to look at:
+    found      a dictionary: address -> net characters
+    variable   a set of the addresses that take any length
+    unclear    address -> finding of `receiver`, where something came that was no answer: two nodes
+               have this address, or the line has a fault
+    asked      mirror telegrams so far
+    nodes      address -> `enquiry.Node`, of nodes that are not on the bus
+    will_trip  address -> milliseconds, of those nodes that trip when they hear no more; None if
+               the drive does not tell
+    over       there is nothing more to ask
+    stopped    a stop or `end` ended it
 
-    Drives of the bus are found without being asked as long as they answer. While one of them does,
-    the scan asks whoever may not be there only in the share of the line's time that silent drives
-    have, see `silence`; where those that run leave none, it waits. A stop of any of them ends the
+    The scan does not ask drives of the bus as long as they answer; they count as found. While one
+    of them answers, the scan probes only in the share of the line's time that silent drives have,
+    see `silence`; if the drives that run leave none, it waits. A stop of any of them ends the
     scan.
     """
 
@@ -81,31 +88,32 @@ class Scan:
         self._net_counts = net_counts
         self._enquires = enquire
         self._stops = self._count_stops()
-        self._position = 0  # in the addresses, once for every length
+        self._position = 0  # counts through the addresses, once for every length
         self._tries = 0
         self._silences = 0
         self._another_length = False  # the next telegram is to show whether any length will do
-        self._telegram = None  # the one that is under way, and who takes what became of it
-        self._take = None
-        self._silent_at = None  # when the last one that nobody answered was through
-        self._kept = {}  # address -> when it was asked last: found, and not on the bus
+        self._telegram = None  # the telegram that is under way
+        self._take = None  # what is called with it when it is over
+        self._silent_at = None  # when the last telegram that nobody answered was over
+        self._kept = {}  # nodes found that are not on the bus: address -> when it was asked last
         self._kept_in_a_row = 0
-        self._enquiring = None  # the address whose turn it is,
-        self._questions = None  # those to it,
-        self._question = None  # and the one that waits for an answer
+        self._enquiring = None  # the address that is being asked what it is,
+        self._questions = None  # the generator of the questions to it,
+        self._question = None  # and the question that waits for an answer
 
     @property
     def longest_ms(self):
-        """How long it takes to ask everybody, in ms, when nobody answers; with what the drives
-        take. Those who are found are asked in between: that takes up to three times as long."""
+        """How long it takes, in ms, to probe every address if none answers, with the time that the
+        drives of the bus take. The scan asks nodes that it found in between: then it takes up to
+        three times as long."""
         longest_us = _longest_us(self._bus.timing, self._addresses, self._net_counts)
         return longest_us * (SHARE if self._has_contact() else 1) // 1000
 
     def step(self, now):
-        """Do what is next, which never takes long; True when all is asked.
+        """Do what is next, which never takes long; True when the scan is over.
 
-        now: reading of the clock in microseconds. Nothing is asked as long as the bus listens.
-        NoContact: the bus is off, or closed.
+        now: reading of the clock in microseconds. The scan asks nothing as long as the bus
+        listens. NoContact if the bus is off, or closed.
         """
         if self._bus.phase in WHY_SILENT and not self.over:
             raise NoContact(WHY_SILENT[self._bus.phase])
@@ -124,14 +132,14 @@ class Scan:
         return self.over
 
     def end(self):
-        """Ask nobody any more, at once. Whoever was found and not asked what it is may trip."""
+        """End the scan at once. A node that was found and not asked what it is may trip."""
         if not self.over:
             for address in self._kept:
                 self.will_trip.setdefault(address, None)
             self.over = self.stopped = True
 
     def _go_on(self, now):
-        """The next telegram: to somebody who was found, or to look for others."""
+        """Send the next telegram: to a node that was found, or to look for others."""
         if self._keep(now):
             return
         if self._silent_at is not None:
@@ -146,7 +154,7 @@ class Scan:
             self.over = True
 
     def _send(self, telegram, take):
-        """Hand in a telegram; `take` is told of its end. False: others wait already."""
+        """Post a telegram; `take` is called when it is over. False: too many wait already."""
         try:
             self._bus.turns.post(telegram)
         except RuntimeError:
@@ -161,7 +169,7 @@ class Scan:
         return self._position >= len(self._addresses) * len(self._net_counts)
 
     def _ask(self):
-        """Send the next telegram that is worth it."""
+        """Send the next mirror telegram that can find something new."""
         while not self._is_searched():
             row, place = divmod(self._position, len(self._addresses))
             address, net_count = self._addresses[place], self._net_counts[row]
@@ -179,14 +187,14 @@ class Scan:
                 if drive.layout.variable:
                     self.variable.add(address)
             else:
-                return  # it was not asked yet; the list will soon have come round to it
+                return  # a drive of the bus that had no turn yet: the list asks it soon
 
     def _probe(self, address, net_count):
         if self._send(Mirror(address, bytes(net_count)), self._judge):
             self.asked += 1
 
     def _judge(self, mirror, now):
-        """What came back, and what to ask next."""
+        """Judge what came back, and decide what to ask next."""
         address = mirror.node
         self._note_silence(mirror, now)
         self._tries += 1
@@ -219,7 +227,7 @@ class Scan:
     # --- who was found: none is to trip while this goes on --------------------------------------
 
     def _keep(self, now):
-        """Ask whoever was found and waits longest, if it is high time; whether one is asked."""
+        """Ask the node that waits longest again, if it is time; return whether one was asked."""
         waits = [(elapsed(now, at, self._mask), address) for address, at in self._kept.items()]
         waited_us, address = max(waits or [(0, None)])
         if waited_us < KEEP_US or self._kept_in_a_row >= KEEP_MAX:
@@ -234,7 +242,7 @@ class Scan:
         self._note_silence(mirror, now)
 
     def _enquire(self):
-        """The next question to somebody who was found; False when nobody is left to be asked."""
+        """Send the next question to a node that was found; False if none is left to ask."""
         if self._questions is None:
             left = [address for address in sorted(self._kept) if address not in self.nodes]
             if not left:
@@ -256,7 +264,7 @@ class Scan:
             if question.finding == SILENT:
                 self._silences += 1
             if self._silences < SILENCES and self._tries < QUESTION_TRIES:
-                return  # once more
+                return  # the question is sent once more
         self._tries = self._silences = 0
         try:
             self._question = self._questions.send(question.value())
@@ -282,27 +290,26 @@ class Scan:
 
 
 class RateScan:
-    """Looks for the baud rate of a line on which nothing is known, and who is there.
+    """Looks for the baud rate of an unknown line, and for the drives on it.
 
     open_bus: function baud -> a `Master` without drives, on a link of that rate; the caller lets
-    go of the one before and keeps the new one going. nothing_runs: ValueError unless it is True. A
-    drive hears noise at any rate but its own, and one that runs may trip for want of telegrams.
-    bus: the `Master` whose line it is so far, if there is one, kept going by the caller until its
-    phase is OFF. UssError unless each of its drives is seen to stand, and no other master is heard
-    there; it is put off before the first rate is tried, and those of its drives trip whose P2014
-    is set. The others are as of `Scan`.
+    go of the one before and keeps the new one going. nothing_runs: ValueError unless it is True,
+    because a drive hears noise at any rate but its own, and one that runs may trip for want of
+    telegrams. bus: the `Master` that has the line so far, if there is one; the caller keeps it
+    going until its phase is OFF. UssError unless each of its drives is seen to stand, and no other
+    master is heard there. The scan puts it off before it tries the first rate; then those of its
+    drives trip whose P2014 is set. The other arguments are those of `Scan`.
 
         scan = RateScan(open_bus, clock.ticks_mask, nothing_runs=True)
         while not scan.step(clock.ticks_us()): ...
         scan.baud, scan.found               # 19200, {3: 12}; None, {} when nobody answered
 
-    At each rate the bus listens before it sends. When it hears anybody talk, the scan is over and
-    `line_in_use` is True. It ends at the first rate at which somebody answers. As of `Scan`, of
-    the rate that is tried: `found`, who answered, address -> net characters; `nodes`, what those
-    are, address -> `enquiry.Node`; `will_trip`, who of them trips when he hears no more, address
-    -> milliseconds. `unclear` tells of
-    the rates before it at which something came that was no answer, rate -> `Scan.unclear`: where
-    all drives have the address that they are delivered with, for instance.
+    At each rate the bus listens before it sends. If it hears another master, the scan is over and
+    `line_in_use` is True. The scan ends at the first rate at which a node answers. `found`,
+    `nodes` and `will_trip` are those of the `Scan` at the rate that is tried: address -> net
+    characters, address -> `enquiry.Node`, address -> milliseconds. `unclear` tells of the rates at
+    which something came that was no answer, rate -> `Scan.unclear`: for instance because all
+    drives have the address that they are delivered with.
     """
 
     def __init__(
@@ -328,20 +335,20 @@ class RateScan:
         self._net_counts = net_counts
         self._enquires = enquire
         self._bus = None
-        self._left = engine_of(bus)  # until it is off
+        self._left = engine_of(bus)  # the bus before, until it is off
         self._is_leaving = False
-        self._foreign = 0  # what the bus had counted when it sent its first telegram
+        self._foreign = 0  # `foreign` of the bus when it sent its first telegram
 
     @property
     def longest_ms(self):
-        """How long it takes at the most, in ms, besides listening: when nobody answers at all."""
+        """How long it takes at the most, in ms, without the listening: when no node answers."""
         timings = [Timing(rate) for rate in self._rates]
         addresses, net_counts = self._addresses, self._net_counts
         return sum([_longest_us(timing, addresses, net_counts) for timing in timings]) // 1000
 
     def step(self, now):
-        """Do what is next; True when it is over. ValueError: the bus opened has drives. UssError:
-        a drive of the bus before is not seen to stand, or another master is heard."""
+        """Do what is next; True when it is over. ValueError if the bus that was opened has drives.
+        UssError if a drive of the bus before is not seen to stand, or another master is heard."""
         if self.over:
             return True
         if self._left is not None:
@@ -357,13 +364,13 @@ class RateScan:
         return self.over
 
     def end(self):
-        """Try no further rate, ask nobody any more, at once."""
+        """End the scan at once; try no further rate."""
         self.over = True
         if self.scan:
             self.scan.end()
 
     def _leave(self):
-        """Put the bus off whose drives all stand."""
+        """Put the bus before off, if all its drives stand."""
         bus = self._left
         if bus.phase == OFF and (self._is_leaving or not bus.turns.drives):
             self._left = None
@@ -377,7 +384,7 @@ class RateScan:
             self._is_leaving = True
 
     def _hears_a_master(self):
-        """Whether one talks before the first telegram, or was heard since."""
+        """Whether another master was heard, before the first telegram or since."""
         bus = self._bus
         if not self.scan.asked:
             self._foreign = bus.foreign
@@ -410,7 +417,7 @@ def engine_of(bus):
 
 
 def _longest_us(timing, addresses, net_counts):
-    """What mirror telegrams cost that nobody answers; on an idle bus they are noticed late."""
+    """The time of mirror telegrams that nobody answers; an idle bus notices them late."""
     waiting_us = PAUSE_LOOK_US + timing.start_interval_us
     waiting_us += timing.reply_timeout_us + timing.character_us
     probes_us = sum([waiting_us + timing.telegram_us(net_count) for net_count in net_counts])

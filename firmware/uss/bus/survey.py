@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 """What a drive tells of itself: who may command it, what 100 % is, how fast it may turn.
 
-For `bus`: it is asked before a start, and when a speed is wanted in Hz or 1/min. What is asked for
-are the rows of the family's survey, a value each; `families.rows` judges them. Nothing of this is
-kept over a loss of contact, for it may be another drive that answers then. The panel has
-`uss.survey` for it, which never waits.
+`bus` asks before a start, and when you want a speed in Hz or 1/min. It reads the rows of the
+family's survey, one value each; `families.rows` judges them. It keeps nothing over a loss of
+contact, because another drive may answer afterwards. The panel uses `uss.survey` instead, which
+never waits.
 
     survey = Survey(drive, None)
     survey.ask()                        # waits
@@ -19,13 +19,13 @@ from uss.pkw import NO_INDEX, NO_PARAMETER
 from uss.pzd import FULL_SCALE
 from uss.scaling import CENTIHERTZ_PER_HERTZ, Scale, pole_pairs
 
-TOLERANCE = 1.001  # a limit that was rounded to a word of PZD2 is still within itself
+TOLERANCE = 1.001  # a limit rounded to a word of PZD2 must not count as beyond itself
 
-FIRST = (rows.COMMAND_SET, rows.DRIVE_SET, rows.ABSOLUTE)  # by them others are asked for or read
-LEFT_OUT = (rows.RESTART, rows.COUNTER)  # nobody asks here
+FIRST = (rows.COMMAND_SET, rows.DRIVE_SET, rows.ABSOLUTE)  # the other rows depend on these
+LEFT_OUT = (rows.RESTART, rows.COUNTER)  # `bus` does not need these
 _ABSENT = (NO_PARAMETER, NO_INDEX)  # the drive has no such parameter
 
-# What a drive does where a row of the subject is wrong.
+# What to say of a drive in which a row of the subject is wrong.
 WRONGS = {
     COMMAND: "is not under USS control",
     SETPOINT: "is not under USS control",
@@ -35,12 +35,12 @@ WRONGS = {
 
 
 class Survey:
-    """drive: a `bus.Drive`. scale: a `scaling.Scale` that its owner knows, or None; what the drive
-    tells goes before it.
+    """drive: a `bus.Drive`. scale: a `scaling.Scale` that the program knows, or None; what the
+    drive tells goes before it.
 
-    values: for each row of the family's survey what was read, UNKNOWN where nobody knows it.
-    scale: None as long as it is not known. told_off_time_ms: what the owner says of a drive that
-    does not tell it, None as long as nothing was said.
+    values: what was read for each row of the family's survey, UNKNOWN if it is not known. scale:
+    None as long as it is not known. told_off_time_ms: the telegram-off time that the program says
+    of a drive that does not tell it, None as long as it has said nothing.
     """
 
     def __init__(self, drive, scale):
@@ -48,10 +48,10 @@ class Survey:
         self.values = [UNKNOWN] * rows.COUNT_OF_ROWS
         self.told_off_time_ms = None
         self._told_scale = scale
-        self._wrong = rows.NOTHING_WRONG  # as far as anybody knows
-        self._is_fine = False  # words that are frequencies count in 0.01 Hz
+        self._wrong = rows.NOTHING_WRONG  # as far as is known
+        self._is_fine = False  # a word that holds a frequency counts in 0.01 Hz
         self._drive = drive
-        self._contact = None  # contacts of the drive when it was asked
+        self._contact = None  # `contacts` of the drive when it was asked
 
     def ask(self):
         """Read all that is needed. Waits; NoContact, Refused, TimedOut."""
@@ -70,21 +70,21 @@ class Survey:
         self._contact = drive.engine.contacts
 
     def forget(self):
-        """It may have changed: ask anew when it is needed."""
+        """A setting may have changed: ask anew when it is needed."""
         self._contact = None
 
     def off_time_ms(self):
-        """The drive's telegram-off time; None when it is not known, nor was told."""
+        """The drive's telegram-off time; None if neither the drive nor the program tells it."""
         value = self.values[rows.SUPERVISION]
         if value == UNKNOWN:
             return self.told_off_time_ms
         return round(value * self._drive.family.off_time_unit_ms)
 
     def obstacle(self, needs_setpoint, unsupervised):
-        """Why the drive must not be started as it is set up, in words; None when it may.
+        """Why the drive must not be started as it is set up, in words; None if it may be.
 
-        needs_setpoint: the speed comes from this bus. unsupervised: it may run although it would
-        not notice that nobody is there any more.
+        needs_setpoint: the speed comes from this bus. unsupervised: the drive may run although it
+        would not notice the end of the telegrams.
         """
         wrong = self.what_is_wrong(COMMAND) or needs_setpoint and self.what_is_wrong(SETPOINT)
         if wrong:
@@ -105,7 +105,7 @@ class Survey:
         )
 
     def what_is_wrong(self, subject):
-        """What a wrong row of this subject makes of the drive, in words; None: none is wrong."""
+        """What is wrong with the drive by a row of this subject, in words; None if nothing is."""
         row = self._wrong[subject]
         if row == RIGHT:
             return None
@@ -118,9 +118,10 @@ class Survey:
     # --- speeds ---------------------------------------------------------------------------------
 
     def setpoint(self, hertz, percent, rpm):
-        """The setpoint word, 0...FFFFh with its sign, for the one of the three that is no None.
+        """The setpoint word, 0...FFFFh with its sign, for the one of the three that is not None.
 
-        ValueError: beyond the drive's limits, or the unit is none that the drive tells of.
+        ValueError if it is beyond the drive's limits, or the drive does not tell enough for this
+        unit.
         """
         if hertz is not None:
             word = self.hertz_scale().from_hertz(hertz)
@@ -134,7 +135,7 @@ class Survey:
         return word
 
     def known_scale(self):
-        """The scale, asked for if need be. ValueError when the drive cannot tell it."""
+        """The scale; asks the drive if need be. ValueError if the drive cannot tell it."""
         if self._contact is None or self._contact != self._drive.engine.contacts:
             self.ask()
         if self.scale is None:
@@ -152,7 +153,7 @@ class Survey:
         return self._with_motor(scale) if scale.reference_rpm is None else scale
 
     def _read(self, asked):
-        """Read these rows; while one is on the line, the next waits behind it."""
+        """Read these rows. The next job is queued while one is on the line."""
         drive, before = self._drive, None
         for row in asked:
             job = drive.begin(drive.addressed(pkw.read(*self._place(row))))
@@ -164,12 +165,12 @@ class Survey:
             self._take(before)
 
     def _take(self, job):
-        """Its answer; what a drive without such a parameter is meant to have."""
+        """Wait for the job; keep its answer, or the default of a drive without the parameter."""
         row = job.tag
         self._drive.finish(job)
         _, _, kind, missing = self._drive.family.survey[row]
         if row == rows.SUPERVISION:
-            missing = None  # its owner may tell it
+            missing = None  # the program may tell it
         error = job.error if job.state == pkw.REFUSED else None
         if job.state == pkw.DONE:
             self.values[row] = families.value(job, kind, self._is_fine)
@@ -179,7 +180,7 @@ class Survey:
             self._drive.raise_unless_done(job)
 
     def _place(self, row):
-        """The number and the index of a row."""
+        """The parameter number and the index of a row."""
         asked = self._drive.family.survey[row]
         return asked[0], rows.index_of(asked, self.values)
 
@@ -190,7 +191,7 @@ class Survey:
         return scale if tells or self._told_scale is None else self._told_scale
 
     def _tell_speed(self):
-        """Let the engine know what 100 % of the actual value is, where that tells the speed."""
+        """Tell the engine what 100 % of the actual value is, if HIW tells the speed."""
         drive, scale = self._drive, self.scale
         if scale is not None and drive.family.hiw_is_signed:
             is_hertz = scale.absolute and scale.reference_hertz
@@ -198,7 +199,7 @@ class Survey:
             drive.engine.tell_speed(0 if self.what_is_wrong(ACTUAL) else round(full))
 
     def _own_scale(self):
-        """What the values say of the scale; None when they lack what could change it."""
+        """The scale by the values that were read; None if one that decides it is unknown."""
         family = self._drive.family
         values = self.values
         if family.survey[rows.ABSOLUTE] and values[rows.ABSOLUTE] == UNKNOWN:
@@ -212,12 +213,12 @@ class Survey:
         return Scale(reference_hertz=reference, absolute=absolute)
 
     def _with_motor(self, scale):
-        """The scale with both references: the motor's rating leads from one to the other."""
+        """The scale with both references: the motor's rating converts one to the other."""
         drive = self._drive
         if not drive.family.motor or not drive.layout.pkw_words:
             return scale
         frequency, speed = drive.family.motor
-        kind = drive.family.survey[rows.REFERENCE][2]  # that of its other frequencies
+        kind = drive.family.survey[rows.REFERENCE][2]  # its other frequencies are of this kind
         rated_hertz = families.value(drive.do(pkw.read(frequency)), kind, self._is_fine)
         pairs = pole_pairs(rated_hertz, drive.read(speed))
         self.scale = Scale(scale.reference_hertz, scale.reference_rpm, pairs, scale.absolute)
