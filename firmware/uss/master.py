@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: MIT
-"""The USS master: telegrams to the drives one after the other, and what becomes of each.
+"""The USS master: it sends telegrams to the drives one after the other and judges the replies.
 
-Whose turn it is, is the subject of `turns`; this is the exchange: silence, request, reply.
+This is the exchange: silence, request, reply. `turns` decides whose turn it is.
 
 `poll(now)` does whatever is due - take received characters, judge them, choose the next drive,
 build and send its telegram, time out - and answers in how many microseconds it has something to do
-again. It may be called at any time by anyone: the receive interrupt, a timer, the main loop. It
-allocates nothing, uses no float, and must not be entered twice at once (`hal.pacer` sees to that).
+again. The receive interrupt, a timer or the main loop may call it at any time. It allocates
+nothing, uses no float, and must not be entered twice at once (`hal.pacer` sees to that).
 
-Not a clock and not a driver: the time is an argument, and the link is a duck type of `hal`.
+It has no clock and no driver: the time is an argument, and the link is a duck type of `hal`.
 
     bus = Master(link, Timing(19200), clock.ticks_mask)
     drive = bus.turns.add(1)
@@ -18,7 +18,7 @@ Not a clock and not a driver: the time is an argument, and the link is a duck ty
 
 from micropython import const
 
-# From the bottom of the house up: an import inside an import inside an import takes stack.
+# Lower layers first: an import inside an import inside an import takes stack.
 from uss import pkw, telegram
 import uss.drive  # noqa: F401
 from uss.deadlines import LOOK_US
@@ -27,19 +27,19 @@ from uss.receiver import COMING, SILENT, WAITING, Receiver
 from uss.timing import elapsed
 from uss.turns import Turns
 
-LOST_US = const(1_000_000)  # without a valid reply for so long, contact with a drive is lost
+LOST_US = const(1_000_000)  # after so long without a valid reply, contact with a drive is lost
 DEAD_MAN_US = const(300_000)  # without `refresh` for so long, the loop is taken for dead
 LISTEN_US = const(100_000)  # silence that must be heard before the first telegram
-_BABBLE_US = const(500_000)  # a line that never falls silent is sent on all the same after this
+_BABBLE_US = const(500_000)  # after this the master sends even if the line never falls silent
 _STUCK_US = const(50_000)  # a transmission that takes so much longer than it should has failed
-_PAUSE_US = const(1_000_000)  # a pause ends after so long, whether or not anybody ends it
-PAUSE_LOOK_US = const(5_000)  # how soon its end, or a command, is noticed
+_PAUSE_US = const(1_000_000)  # a pause ends after so long, even if `resume` is not called
+PAUSE_LOOK_US = const(5_000)  # how soon the end of a pause, or a command, is noticed
 _SHARED_EXCHANGES = const(1_000)  # so many after its last telegram another master counts as gone
-_FAILURES_MAX = const(3)  # exceptions in a row after which nothing is known of the drives any more
+_FAILURES_MAX = const(3)  # after so many exceptions in a row contact with all drives is lost
 
-_GOOD = const(0)  # of `telegram`, for the compiler: needed in every exchange
+_GOOD = const(0)  # a copy from `telegram` for the compiler: every exchange needs it
 
-# What the engine is doing: `phase`. One that ends goes over to the next in the same `poll`.
+# What the engine is doing: `phase`. When one phase ends, the next begins in the same `poll`.
 #
 # phase        what ends it                                                 next
 LISTENING = const(0)  # 100 ms of silence                                   RESTING
@@ -55,38 +55,38 @@ OFF = const(5)  #       on                                                  LIST
 #                       close                                               CLOSED
 CLOSED = const(4)  #    nothing
 #
-# An exception in SENDING or AWAITING leads to RESTING as well (`recover`). From AWAITING the next
-# telegram is sent at once where the start interval has passed already.
+# An exception in SENDING or AWAITING also leads to RESTING (`recover`). From AWAITING the master
+# sends the next telegram at once if the start interval has passed already.
 
-# What keeps the next exchange from beginning, bits of `_held`.
+# Bits of `_held`: why the next exchange does not begin.
 _HELD_BY_PAUSE = const(1)
 _HELD_BY_OFF = const(2)
 _HELD_BY_CLOSE = const(4)
-_GIVEN_UP = const(8)  # nobody waits for the drives any more
+_GIVEN_UP = const(8)  # the master no longer waits for the drives' answers
 
 
 class Master:
     """The bus: whose turn it is (`turns`), and the exchanges with its drives.
 
-    link: what is sent on and received from. timing: `Timing` of its baud rate. mask: the clock's
-    period - 1, at most 2**30 - 1. All figures of counters are unsigned 16-bit and wrap.
+    link: it sends and receives. timing: `Timing` of its baud rate. mask: the clock's period - 1,
+    at most 2**30 - 1. All counters are unsigned 16-bit and wrap.
 
-    Fields to look at: `phase`; `turns`, the drives and the circulating list; `deadlines`, what
-    they are promised; `progress`, which moves as long as the engine gets anything done;
-    `dead_man_trips`; `failures` (exceptions in `poll`); `foreign` (heard from another master:
-    bursts before the first telegram, telegrams after it); `paused` (nothing is sent and nothing
-    awaited, by order of `pause`). A setting, at any time: `retries`, how often an exchange without
-    a valid reply is repeated at once.
+    Fields to look at: `phase`; `turns`, the drives and the circulating list; `deadlines`, how far
+    apart the telegrams to a drive may be; `progress`, which moves as long as the engine gets
+    anything done; `dead_man_trips`; `failures` (exceptions in `poll`); `foreign` (heard from
+    another master: bursts before the first telegram, telegrams after it); `paused` (because of
+    `pause` the master sends and awaits nothing). A setting, at any time: `retries`, how often the
+    master repeats an exchange at once that brought no valid reply.
 
-    Written by the loop: _refreshed_at, retries, _held. By the engine: all else. By both: `phase`
-    (the loop when it is OFF, where the engine does nothing), what follows from that (_first,
+    The loop writes _refreshed_at, retries, _held. The engine writes all else. Both write: `phase`
+    (the loop when it is OFF and the engine does nothing), what follows from that (_first,
     foreign), `paused` and _shared (the loop to False), _dead_man (the loop to False, in `refresh`;
     the engine to True).
     """
 
     def __init__(self, link, timing, mask, lost_us=LOST_US):
-        # What every step of the loop asks for comes first: an object with many fields finds those
-        # soonest that it had when it was small.
+        # Fields that every step of the loop needs come first: an object with many fields finds the
+        # first ones fastest.
         self._refreshed_at = 0
         self._dead_man = True  # tripped until the loop refreshes for the first time
         self.phase = LISTENING
@@ -100,20 +100,20 @@ class Master:
         self.retries = 0
         self.paused = False
         self._mask = mask
-        self._choose = turns.choose  # a method that is found once is not looked for in every turn
-        self._shared = False  # with another master, lately
-        self._foreign_at = 0  # exchanges then
+        self._choose = turns.choose  # looked up once here, not in every turn
+        self._shared = False  # another master was heard lately
+        self._foreign_at = 0  # `exchanges` when it was heard last
         self._link = link
         self._receiver = Receiver(timing, mask)
         self._foreseen = link.interrupts and getattr(link, "foreseen", False)
         self._reply_window_us = self._receiver.window_us
         self._character_us = timing.character_us
-        self._drive = None  # the one whose turn it is, or a telegram outside the list
+        self._drive = None  # the drive whose turn it is, or a telegram outside the list
         self._failures_in_row = 0
-        self._first = True  # poll was never called
+        self._first = True  # poll was not called yet
         self._held = 0
         self._paused_since = 0
-        self._quiet_since = 0  # the last character on the line, either direction
+        self._quiet_since = 0  # when the last character was on the line, in either direction
         self._resting_since = 0
         self._start_interval_us = timing.start_interval_us
         self._rest_us = timing.start_interval_us
@@ -122,9 +122,9 @@ class Master:
     # --- for the loop ---------------------------------------------------------------------------
 
     def refresh(self, now, looks=True):
-        """The loop says that it is alive. Whatever ran when it was not stays stopped.
+        """The loop says that it is alive. Motors that were stopped while it was not stay stopped.
 
-        looks: there is time to look after drives that are silent or wait too long, where due.
+        looks: there is time to look after drives that are silent or wait too long, if that is due.
         """
         self._refreshed_at = now
         self._dead_man = False
@@ -139,38 +139,39 @@ class Master:
         return self._drive is drive and self.phase in (SENDING, AWAITING)
 
     def patience_us(self):
-        """How long `progress` may stand still on a bus that works."""
+        """How long `progress` may stay the same on a bus that works."""
         return _BABBLE_US + _STUCK_US + self.turns.longest_exchange_us
 
     def is_line_in_use(self):
-        """Whether another master was heard and is listened to instead of talking."""
+        """Whether another master was heard, so that this one listens and does not send."""
         return self.phase == LISTENING and self.foreign > 0
 
     def is_line_shared(self):
-        """Whether another master has spoken lately while this one does: its telegrams came in
-        between, or instead of a reply. Both will be misunderstood; nothing is done about it.
+        """Whether another master has lately sent telegrams between ours, or instead of a reply.
+        Drives will misunderstand both masters; this one does nothing about it.
         """
         return self._shared
 
     def has_echo(self):
-        """Whether what is sent comes back: two wires, and a receiver that stays on."""
+        """Whether the line echoes what is sent: two wires, and a receiver that stays on."""
         return self._receiver.echo
 
     def stop_all(self):
-        """OFF1 to every drive by a telegram each; those that run have theirs first."""
+        """Send OFF1 to every drive, a telegram each; drives that run get theirs first."""
         for drive in self.turns.drives:
             drive.stop()
 
     def off(self):
-        """Leave the line to others: OFF1 to every drive first, then nothing is sent until `on`.
+        """Leave the line to others: send OFF1 to every drive, then nothing until `on`.
 
-        `phase` is OFF once it has come so far. Contact with every drive is lost then.
+        Once that is done `phase` is OFF, and contact with every drive is lost.
         """
         self.stop_all()
         self._held |= _HELD_BY_OFF
 
     def on(self):
-        """Take the line again: listen first, as at the beginning. What ran needs a new `start`."""
+        """Take the line again: listen first, as at the beginning. A drive that ran needs a new
+        `start`."""
         self._held &= ~_HELD_BY_OFF
         if self.phase == OFF:
             self._first = True
@@ -178,10 +179,10 @@ class Master:
             self.phase = LISTENING
 
     def close(self):
-        """Leave the line for good: OFF1 to every drive first, then nothing is sent any more.
+        """Leave the line for good: send OFF1 to every drive, then nothing any more.
 
-        `phase` is CLOSED once it has come so far. See `leave`, which waits for that. To say it
-        again changes nothing.
+        Once that is done `phase` is CLOSED; `leave` waits for it. To call this again changes
+        nothing.
         """
         if not self._held & _HELD_BY_CLOSE:
             self.stop_all()
@@ -190,27 +191,28 @@ class Master:
             self.phase = CLOSED
 
     def give_up(self):
-        """After `close`: wait for no drive any more, only for the end of the exchange."""
+        """After `close`: do not wait for the drives any more, only for the end of the exchange."""
         self._held |= _GIVEN_UP
 
     def pause(self):
-        """Begin no exchange until `resume`, 1 s at the most; `paused` tells when it has come so
-        far. Commands go first, also later ones: whoever must not hear them late asks them first.
+        """Begin no exchange until `resume`, for at most 1 s; `paused` tells that the pause has
+        begun. Commands go first, also those given during the pause. A caller that is about to block
+        looks for new commands itself first.
         """
         self._held |= _HELD_BY_PAUSE
 
     def resume(self):
-        """Go on; when nothing was paused that is no change."""
+        """End a pause; without one this changes nothing."""
         self._held &= ~_HELD_BY_PAUSE
         self.paused = False
 
     # --- the engine -----------------------------------------------------------------------------
 
     def poll(self, now):
-        """Do what is due; answer the microseconds until something is due again, at least 1."""
+        """Do what is due; return the microseconds until something is due again, at least 1."""
         if self._dead_man or (now - self._refreshed_at) & self._mask > DEAD_MAN_US:
             self._check_dead_man(now)
-        phase = self.phase  # each step goes over to the next one when that can follow at once
+        phase = self.phase  # each step calls the next one if that can follow at once
         if phase == AWAITING:
             return self._await(now)
         if phase == SENDING:
@@ -225,8 +227,8 @@ class Master:
         return DEAD_MAN_US
 
     def recover(self, now):
-        """After an exception in `poll`: take ON back from every drive and begin with a silence in
-        which whatever was under way comes to its end. Several in a row, and contact is lost.
+        """After an exception in `poll`: take ON back from every drive and begin with a silence
+        that outlasts any telegram under way. After several exceptions in a row contact is lost.
         """
         self.failures = (self.failures + 1) & 0xFFFF
         self._failures_in_row += 1
@@ -234,19 +236,20 @@ class Master:
             drive.revoke()
             if self._failures_in_row >= _FAILURES_MAX:
                 drive.lose()
-            drive.call()  # its call may have been taken, and nothing come of it
+            drive.call()  # the engine may have taken its call without acting on it
         self._quiet_since = now
         if self.phase in (RESTING, SENDING, AWAITING):
             drive = self._drive
             if self.phase != RESTING and drive.outside:
-                drive.miss(SILENT, now, 0, self._mask)  # it comes to an end
+                drive.miss(SILENT, now, 0, self._mask)  # a telegram outside the list ends so
             self._begin_rest(now)
             if drive is not None:
                 reply_us = self.timing.reply_timeout_us + 2 * drive.size * self._character_us
                 self._rest_us = reply_us
 
     def _check_dead_man(self, now):
-        """Take ON back from all drives, also one started later, until the loop is back."""
+        """If the loop is dead, take ON back from all drives, also from one started later, until
+        the loop is back."""
         if not self._dead_man:
             if elapsed(now, self._refreshed_at, self._mask) <= DEAD_MAN_US:
                 return
@@ -259,7 +262,7 @@ class Master:
         self.progress = (self.progress + 1) & 0xFFFF
 
     def _listen(self, now):
-        """Before the first telegram: traffic not asked for means that another master is there."""
+        """Listen before the first telegram: any traffic means that another master is there."""
         self._get_on()
         if self._first:
             self._first = False
@@ -268,11 +271,11 @@ class Master:
             self._count_foreign()
         held = self._held
         if held & (_HELD_BY_OFF | _GIVEN_UP) or held & _HELD_BY_CLOSE and self.foreign:
-            self.phase = CLOSED if held & _HELD_BY_CLOSE else OFF  # nobody was told anything yet
+            self.phase = CLOSED if held & _HELD_BY_CLOSE else OFF  # no drive was told anything yet
             return DEAD_MAN_US
         left_us = LISTEN_US - elapsed(now, self._quiet_since, self._mask)
         if left_us > 0:
-            # Nothing is sent anyway, however long that takes.
+            # While listening the bus is paused anyway, for as long as it listens.
             self.paused = self._held & _HELD_BY_PAUSE != 0
             self._paused_since = now
             return left_us
@@ -285,8 +288,8 @@ class Master:
         self.phase = RESTING
 
     def _rest(self, now):
-        """The start interval: the line is silent for two characters before every telegram."""
-        if now != self._resting_since:  # what had come by then is taken already
+        """Wait for the start interval: two characters of silence before every telegram."""
+        if now != self._resting_since:  # else all that has come was taken just now
             heard = self._swallow(now)
             if heard and self._is_foreign(heard):
                 self._count_foreign()
@@ -303,20 +306,21 @@ class Master:
         return self._send(drive, now)
 
     def _wait(self, now):
-        """There is nothing to send: the list is empty, or the round is over before its time."""
+        """There is nothing to send: the list is empty, or the round took less than its cycle
+        time."""
         self._get_on()
         self._begin_rest(now)
         self._quiet_since = (now - self._rest_us) & self._mask  # at the latest
         return min(self.turns.wait_us(), PAUSE_LOOK_US) or PAUSE_LOOK_US
 
     def _hold(self, now):
-        """By order of close, off or pause: how long nothing is sent, 0 when something is."""
+        """How long close, off or pause keep the master from sending; 0: it may send now."""
         held = self._held
         if not held & (_HELD_BY_OFF | _HELD_BY_CLOSE):
             return PAUSE_LOOK_US if self._keeps_pausing(now) else 0
         for drive in self.turns.drives:
             if drive.wanted:
-                drive.revoke()  # started since then
+                drive.revoke()  # it was started since `close` or `off`
         if not held & _GIVEN_UP and not self.turns.all_told():
             return 0
         if held & _HELD_BY_CLOSE:
@@ -340,7 +344,7 @@ class Master:
         return self.paused
 
     def _swallow(self, now):
-        """Take characters that nobody awaits; they move the beginning of the silence. How many."""
+        """Take characters that are not awaited; the silence begins after them. Return how many."""
         receiver = self._receiver
         link = self._link
         heard = link.receive(receiver.buffer, 0)
@@ -352,9 +356,9 @@ class Master:
         return 0
 
     def _is_foreign(self, count):
-        """Whether these characters begin a telegram that none of us sent or asked for.
+        """Whether these characters begin a telegram that this bus neither sent nor asked for.
 
-        What comes late from the drive that was asked last, or back from the line, is none.
+        A late reply of the drive that was asked last does not count, nor does an echo.
         """
         buffer = self._receiver.buffer
         if count < 3 or buffer[0] != telegram.STX or buffer[1] & 1 or not 4 <= buffer[1] <= 254:
@@ -384,7 +388,7 @@ class Master:
         self._quiet_since = sent_at = link.sent_at
         self._receiver.open(drive, sent_at)
         self.phase = AWAITING
-        # The link reports the reply: there is nothing to do until that is late.
+        # The link reports the reply: there is nothing to do until the reply is late.
         return ((sent_at - now) & self._mask) + self._reply_window_us
 
     def _finish_sending(self, now):
@@ -401,13 +405,14 @@ class Master:
         return self._await(now)
 
     def _sending_due_us(self, left_us):
-        """A link with interrupts reports the reply: there is nothing to do until that is late."""
+        """When to look again. A link with interrupts reports the reply: then it is soon enough
+        when the reply is late."""
         if self._link.interrupts:
             return left_us + self._reply_window_us
         return max(left_us, self.timing.character_us)
 
     def _give_up(self, now):
-        """The link does not get rid of a telegram. Try again; this is no progress."""
+        """The link cannot send its telegram. Try again; this does not count as progress."""
         self._drive.miss(SILENT, now, self.turns.lost_us, self._mask)
         self._begin_rest(now)
         self._quiet_since = now
@@ -436,7 +441,7 @@ class Master:
         return self._rest(now)
 
     def _miss(self, finding, now):
-        """There was no valid reply: it is counted, and the exchange repeated if it is to be."""
+        """There was no valid reply: count that, and repeat the exchange if `retries` says so."""
         drive = self._drive
         drive.miss(finding, now, self.turns.lost_us, self._mask)
         if finding == telegram.BAD_ADDRESS:
@@ -447,5 +452,5 @@ class Master:
             self.deadlines.silence.charge(drive, spent_us)
         if drive.silent <= self.retries:
             if drive.outside:
-                drive.state = pkw.PENDING  # it is not over yet
+                drive.state = pkw.PENDING  # it is repeated, so it is not over yet
             self.turns.repeat(drive)

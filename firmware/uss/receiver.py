@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: MIT
-"""From the bursts that a link delivers to the one telegram that is awaited.
+"""Puts together the one awaited telegram from the bursts that a link delivers.
 
 A link hands over characters in bursts of any size and says when the last of them came, as exactly
 as it knows. The receiver puts them together, watches the response delay and the residual run time
 (specification A-5.2.1), and has `telegram.judge` look at the result. It keeps nothing after an
-error: `open` begins anew each time. A line with two wires brings back what was sent: that echo is
-recognised and skipped.
+error: `open` begins anew each time. A line with two wires brings back what was sent; the receiver
+recognises that echo and skips it.
 
-    receiver.open(drive, sent_at)                   # its request has just left
+    receiver.open(drive, sent_at)                   # the drive's request has just left
     finding = receiver.take(link, now)              # WAITING until there is something to say
 """
 
@@ -18,15 +18,15 @@ from uss.fast import agreeing, is_reply
 from uss.timing import BITS_PER_CHARACTER, elapsed
 
 WAITING = const(-1)  # nothing to say yet
-# 0 is telegram.GOOD, 1...4 are the BAD_ findings of telegram.judge; BAD_LENGTH: it is whole.
+# 0 is telegram.GOOD, 1...4 are the BAD_ findings of telegram.judge. BAD_LENGTH: a whole telegram.
 SILENT = const(5)  # no STX within the response delay
 CUT_OFF = const(6)  # the residual run time passed before the telegram was complete
-GARBLED = const(7)  # LGE is not the agreed one, and what came is no telegram of that length either
+GARBLED = const(7)  # LGE is not the agreed one, and what came is no telegram of its length either
 
 FINDINGS = telegram.FINDINGS + ("no reply", "residual time expired", "wrong length and content")
 
-# What a finding amounts to for somebody who looks for the fault. A whole telegram of another
-# length is another thing than noise: its drive has another P2013, or P2012, than it should.
+# What a finding means to a person who looks for the fault. A whole telegram of another length is
+# not noise: the drive's P2013, or P2012, is not what it should be.
 SILENCE = const(0)
 NOISE = const(1)
 OTHER_LENGTH = const(2)
@@ -34,15 +34,15 @@ OTHER_ADDRESS = const(3)
 WRONG_CHECK = const(4)
 TROUBLES = (SILENCE, NOISE, OTHER_LENGTH, WRONG_CHECK, OTHER_ADDRESS, SILENCE, NOISE, NOISE)
 
-COMING = const(-1)  # what a link says of characters that it will announce when they are over
+COMING = const(-1)  # a link says so of characters that it will announce when they are over
 
 _POLL_US = const(1_000)  # how often a link without interrupts is looked at
-# Of `telegram`, for the compiler: these are needed in every exchange.
+# Copies from `telegram` for the compiler: every exchange needs them.
 _STX = const(0x02)
 _GOOD = const(0)
 _FRAME = const(4)  # characters of a telegram that are not net data
 
-_ROUNDING_US = const(2)  # two instants, each rounded to a microsecond
+_ROUNDING_US = const(2)  # of two instants, each rounded to a microsecond
 
 
 class Receiver:
@@ -51,36 +51,37 @@ class Receiver:
     timing: the line's `Timing`. mask: the clock's period - 1.
     After `take` said GOOD the telegram is `buffer[:count]`; `heard_at` is when its last character
     came. `heard_at` is also kept after an error, because the line must be silent before the next
-    telegram whoever spoke last. `window_us` after the request a reply is too late. `echo`: what is
-    sent comes back on this line.
+    telegram, whoever spoke last. A reply that begins later than `window_us` after the request is
+    too late. `echo`: what is sent comes back on this line.
     """
 
     def __init__(self, timing, mask):
         self.buffer = bytearray(telegram.SIZE_MAX + 8)
         self.count = 0
         self.heard_at = 0
-        self.stray = False  # characters came since `open` that begin no telegram
+        self.stray = False  # since `open`, characters came that begin no telegram
         self.echo = False
         self._timing = timing
         self._start_interval_us = timing.start_interval_us
-        # The first bit of STX may come at the very end of the response delay; it is seen a
+        # The first bit of STX may come at the very end of the response delay; STX is seen one
         # character later.
         self.window_us = timing.reply_timeout_us + timing.character_us + _ROUNDING_US
-        # Rounded down: no pause is taken for shorter than it was.
+        # Rounded down, so that no pause counts as shorter than it was.
         self._sixteen_us = 16 * BITS_PER_CHARACTER * 1_000_000 // timing.baud
         self._mask = mask
         self._awaited = None
         self.sent_at = 0
         self._began_at = 0
         self._echoed = 0  # characters of the request that have come back
-        self._coming = False  # the link has announced nothing yet, but will
+        self._coming = False  # the link will announce characters, but has not yet
 
     def open(self, awaited, sent_at):
         """Await the reply to `awaited`, a `Drive` or a telegram outside the list (`outside`).
 
-        Of it are needed: `address`, the ADR of the reply; `request` and `size`, the characters
-        sent, as many as the reply probably has; `fits(net_count)`, whether it may have so many net
-        characters; `may_reply_alike()`. sent_at: when the last stop bit of the request had left.
+        It must have: `address`, the ADR of the reply; `request` and `size`, the characters sent,
+        and the reply probably has as many; `fits(net_count)`, whether the reply may have so many
+        net characters; `may_reply_alike()`. sent_at: when the last stop bit of the request had
+        left.
         """
         self._awaited = awaited
         self.sent_at = sent_at
@@ -91,7 +92,7 @@ class Receiver:
         self._coming = False
 
     def take(self, link, now):
-        """Take what the link has; answer WAITING, GOOD, or why there will be no telegram.
+        """Take what the link has; return WAITING, GOOD, or why there will be no telegram.
 
         Characters that begin no telegram (a spike when the line turns round) set `stray` and are
         skipped up to the next pause; the reply may still follow in its time.
@@ -107,9 +108,9 @@ class Receiver:
             since_us = (received_at - self.heard_at) & mask
             length_us = added * self._sixteen_us >> 4
             pause_us = since_us - length_us + _ROUNDING_US
-            # A link that sees late says so by its resolution: only a pause that was certainly too
-            # short is held against the telegram. Behind stray characters it must be a certain one:
-            # a look may have fallen between them and what follows without a pause.
+            # A link that sees late says so by its resolution. So the telegram is refused only if
+            # the pause was certainly too short. But after stray characters there must certainly
+            # have been a pause: a look may have separated them from what follows without one.
             if not self.stray:
                 pause_us += link.resolution_us
             if pause_us < self._start_interval_us or buffer[0] != _STX or since_us > mask >> 1:
@@ -118,7 +119,7 @@ class Receiver:
             awaited = self._awaited
             if added == awaited.size and is_reply(buffer, added, awaited.request):
                 self.count = added
-                return _GOOD  # in one go, as nearly always
+                return _GOOD  # it came in one burst, as nearly always
             least_us = since_us - length_us - link.resolution_us
             if not self._echoed and self._is_echo(added, least_us):
                 return self._take_other(link, added, since_us)
@@ -128,7 +129,7 @@ class Receiver:
         return self._judge(link, count)
 
     def _judge(self, link, count):
-        """What the characters that came make: they began with STX after a pause."""
+        """The finding on the characters that came; they began with STX after a pause."""
         buffer = self.buffer
         awaited = self._awaited
         if count < 2:
@@ -143,11 +144,11 @@ class Receiver:
             return CUT_OFF
         if count > size:
             return GARBLED
-        # The ADR of the request: the drive may have been given another address since.
+        # The ADR of the request, because the drive may have been given another address since.
         return telegram.judge(buffer, count, awaited.request[2], size - _FRAME)
 
     def _judge_other(self, count, size):
-        """LGE is none that is awaited: it may be a telegram of another length, or noise."""
+        """The finding if LGE is not an awaited one: a telegram of another length, or noise."""
         buffer = self.buffer
         if not 5 <= size <= telegram.SIZE_MAX or count > size:
             return GARBLED
@@ -159,18 +160,19 @@ class Receiver:
         return finding or telegram.BAD_LENGTH
 
     def _is_other(self):
-        """Whether what has begun is none of the lengths that are awaited."""
+        """Whether what has begun has none of the awaited lengths."""
         return self.count >= 2 and not self._awaited.fits(self.buffer[1] + 2 - _FRAME)
 
     def _ended_us(self, link):
-        """So long after its last character what is not awaited is over: nobody waits for it."""
+        """How long after its last character a telegram that is not awaited counts as over."""
         return self._start_interval_us + link.resolution_us + 1
 
     def _is_echo(self, added, pause_us):
-        """Whether the first characters are the request come back. pause_us: before them, at least.
+        """Whether the first characters are the echo of the request. pause_us: the pause before
+        them, at least.
 
-        A reply may be the same (mirror, or no words but an empty parameter channel). It is one
-        when there certainly was a pause; in doubt, when this line has not been heard to echo.
+        A reply may be equal to the request (mirror, or only an empty parameter channel). It counts
+        as a reply if there certainly was a pause; in doubt, if this line has shown no echo so far.
         """
         awaited = self._awaited
         size = awaited.size
@@ -181,10 +183,10 @@ class Receiver:
         return self.echo or not awaited.may_reply_alike()
 
     def _take_other(self, link, added, since_us):
-        """Characters that begin no reply: what was sent has come back, or they are stray.
+        """Take characters that begin no reply: they are the echo of the request, or stray.
 
-        Behind an echo the reply may follow in the same burst. Of a telegram that is to come back
-        (mirror) the first copy is the echo where there is one.
+        After an echo the reply may follow in the same burst. Where a line echoes, the first copy
+        of a mirror telegram is the echo.
         """
         buffer = self.buffer
         awaited = self._awaited
@@ -194,7 +196,7 @@ class Receiver:
             if self._echoed == awaited.size:
                 return self._end_echo(link, added, count)
         self.stray = True
-        if since_us <= self._mask >> 1:  # else it was over before the request was
+        if since_us <= self._mask >> 1:  # else it ended before the request did
             self.heard_at = link.received_at
         return WAITING
 
@@ -222,8 +224,9 @@ class Receiver:
     def _limit_us(self):
         """Residual run time of the telegram that is coming in, the time of STX included.
 
-        One and a half times what follows STX takes without gaps (specification A-6.3); as long as
-        a telegram of variable length has not told its LGE, that of the longest (A-5.2.1.2).
+        One and a half times the time that the characters after STX take without gaps
+        (specification A-6.3). Until the LGE of a telegram of variable length has come, that of the
+        longest telegram (A-5.2.1.2).
         """
         if self.count >= 2:
             size = self.buffer[1] + 2
@@ -236,8 +239,9 @@ class Receiver:
     def due_us(self, link, now):
         """Microseconds until `take` has something to say, at least 1.
 
-        A link with interrupts announces what it hears, so that only the time-outs are due. Another
-        one is looked at when the telegram can be complete at the earliest, then every _POLL_US.
+        A link with interrupts announces what it hears, so only the time-outs are due. The receiver
+        looks at another link when the telegram can be complete at the earliest, then every
+        _POLL_US.
         """
         passed_us = elapsed(now, self.sent_at, self._mask)
         if self.count:
@@ -257,7 +261,7 @@ class Receiver:
         return max(left, 1)
 
     def _judge_silence(self, link, now, added):
-        """Nothing to take: whether it is too late for what may still come, or is just coming."""
+        """The finding while there is nothing to take: WAITING, or that it is too late."""
         self._coming = added == COMING
         if self.count:
             passed_us = elapsed(now, self._began_at, self._mask)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """The blocks of the S7-200's USS library: USS_INIT, USS_CTRL, USS_RPM_W/D/R, USS_WPM_W/D/R.
 
-For people who know them: each block is an object that is called once a scan, with its inputs by
-name; its outputs are its attributes. On top of the engine, which goes on by itself between the
-calls. Never imported by the panel. README.md says where each pin and code went.
+For people who know that library. Each block is an object that you call once a scan, with its
+inputs by name; its outputs are its attributes. The blocks stand on top of the engine, which goes
+on by itself between the calls. The panel never imports them. README.md lists each pin and code.
 
     with Port(open_bus, board.clock) as port:   # open_bus(baud) answers a `master.Master`
         init, motor, frequency = USS_INIT(port), USS_CTRL(port), USS_RPM_R(port)
@@ -14,10 +14,10 @@ calls. Never imported by the panel. README.md says where each pin and code went.
             frequency(EN=True, XMT_REQ=button(), DRIVE=1, PARAM=21)
             if motor.ERROR: print(codes.text(motor.ERROR))
 
-RUN makes a motor run by its rising edge only, and only a drive that could run at that moment.
-Power that comes back, a drive that answers again, a fault that is acknowledged or a scan that goes
-on start nothing: RUN has to go off and on. No input raises an exception: what it cannot be is a
-code in ERROR. Source: S7-200 system manual, USS library.
+Only the rising edge of RUN makes a motor run, and only if the drive can run at that moment. No
+motor starts because power comes back, a drive answers again, a fault is acknowledged or the scan
+goes on: RUN has to go off and on. No input raises an exception: a wrong value gives a code in
+ERROR. Source: S7-200 system manual, USS library.
 """
 
 from micropython import const
@@ -42,12 +42,12 @@ from uss.timing import BAUD_RATES, elapsed
 from uss.bits import may_start
 
 USS = const(1)  # MODE of USS_INIT
-PPI = const(0)  # the port is for something else
+PPI = const(0)  # the port is used for something else
 
 TYPES = (MM3, MM4)  # what TYPE of USS_CTRL means: 0 and 1
-DEFAULT_TYPE = const(1)  # of an active drive that no USS_CTRL has named yet
+DEFAULT_TYPE = const(1)  # TYPE of an active drive that no USS_CTRL has named yet
 
-REST_US = const(100)  # between two looks at the bus while it is left
+REST_US = const(100)  # between two looks at the bus in `close`
 
 SPEED_LIMIT = const(200)  # percent
 PERCENT = Scale()  # of full speed, 4000h
@@ -58,9 +58,9 @@ class Port:
 
     open_bus: function, baud -> a `Master` without drives on a link of that rate; it lets go of the
         one before, whose phase is OFF or CLOSED then. clock: of the board, see `hal`.
-    types: the family for each value of TYPE; one that differs is a class more, see `families`.
+    types: the family for each value of TYPE, see `families`.
     polled: `scan` makes the engine go on. False: something else does, such as `hal.pacer`, which
-        also goes on, and stops the motors, when the scan does not.
+        goes on even if the scan does not, and then stops the motors.
 
     Leaving `with` stops the motors, see `close`. Fields to look at: `bus` (None while the port is
     not set up for USS), `drives` and `families` (by address), `now` (the instant of this scan).
@@ -80,7 +80,7 @@ class Port:
         self._polled = polled
         self._baud = 0
         self._leaving = None  # the bus that is being left
-        self._following = None  # (baud, active) of the one after it
+        self._following = None  # (baud, active) of the bus after it
 
     def __enter__(self):
         return self
@@ -89,10 +89,10 @@ class Port:
         self.close()
 
     def scan(self):
-        """Once at the beginning of every scan.
+        """Call this once at the beginning of every scan.
 
-        Motors are stopped when it is not called for 300 ms, and so is the one whose USS_CTRL is
-        not; where `polled`, not before it is called again.
+        If you do not call it for 300 ms, every motor is stopped; if you do not call a USS_CTRL for
+        300 ms, its motor is. If `polled`, that happens only when you call `scan` again.
         """
         self.now = self._clock.ticks_us()
         bus = self._leaving or self.bus
@@ -107,9 +107,10 @@ class Port:
     def close(self):
         """Stop every motor, wait for the drives' answers, and send nothing any more.
 
-        It takes a second and a round of the bus at the most; Ctrl-C does not cut it short. The
-        blocks say PORT_NOT_USS then, and USS_INIT may begin anew. Where not `polled` the engine
-        has to go on meanwhile: a pacer has a timer and is stopped afterwards. The link stays open.
+        It takes a second and a round of the bus at the most; Ctrl-C does not cut it short. After
+        that the blocks say PORT_NOT_USS, and USS_INIT may begin anew. If not `polled`, the engine
+        has to go on meanwhile: give the pacer a timer, and stop it afterwards. The link stays
+        open.
         """
         persist(self._close)
 
@@ -139,16 +140,17 @@ class Port:
         return self.job is not None and self.job.state == pkw.PENDING
 
     def is_waiting_for(self, job):
-        """Whether this one is; it is not when the line was left before it ended."""
+        """Whether this job is under way; not if the line was left before the job ended."""
         return self.job is job and job.state == pkw.PENDING
 
     def ask(self, drive, job):
-        """Have a parameter job carried out. RuntimeError when the drive takes none."""
+        """Queue a parameter job. RuntimeError if the drive takes none."""
         drive.ask(job)
         self.job = job
 
     def set_up(self, mode, baud, active):
-        """Begin what USS_INIT is for; a code when that cannot be. `is_set_up` tells the end."""
+        """Begin to set the port up; return a code of `codes`. `is_set_up` tells when it is
+        done."""
         refusal = self._refuses(mode, baud, active)
         if refusal:
             return refusal
@@ -179,8 +181,8 @@ class Port:
     def _go_on(self, bus, now):
         if self._polled:
             try:
-                bus.poll(now)  # before `refresh`, or a scan that hung would go unnoticed
-            except BaseException:  # Ctrl-C as well: it may have struck in the middle
+                bus.poll(now)  # before `refresh`, or the engine would not notice a scan that hung
+            except BaseException:  # also Ctrl-C, which may have struck in the middle of `poll`
                 bus.recover(now)
                 raise
         bus.refresh(now)
@@ -254,10 +256,10 @@ class Port:
 
 
 class USS_INIT(Block):
-    """Sets up the port; once for each change, by the rising edge of EN.
+    """Sets up the port, once for each rising edge of EN.
 
     MODE: 1 USS, 0 the port is for something else. BAUD: bits per second. ACTIVE: bit n is drive n.
-    DONE: what was asked for last is over; it may take a scan or more. ERROR: a code of `codes`;
+    DONE: the last request is over; that may take a scan or more. ERROR: a code of `codes`;
     STATUS_WORD: that of the S7-1200. With an error nothing has changed.
     """
 
@@ -279,19 +281,20 @@ class USS_INIT(Block):
 
 
 class USS_CTRL(Block):
-    """Commands one active drive and shows its state; to be called in every scan.
+    """Commands one active drive and shows its state. Call it in every scan.
 
-    RUN: run, by its rising edge; off is OFF1, down the ramp. OFF2: coast; OFF3: as fast as the
-    drive can; both stop while they are on, and RUN counts anew after them. F_ACK: its rising edge
-    acknowledges a fault. DIR: the other direction. DRIVE: 0...31. TYPE: 0 MICROMASTER 3, 1
-    MICROMASTER 4. SPEED_SP: percent of full speed, -200...200; negative turns the direction round.
-    EN off: the block does nothing, and after 300 ms its motor is stopped.
+    RUN: its rising edge starts the motor; off is OFF1, down the ramp. OFF2: coast; OFF3: stop as
+    fast as the drive can. Both stop the motor while they are on; after them RUN needs a new edge.
+    F_ACK: its rising edge acknowledges a fault. DIR: the other direction. DRIVE: 0...31. TYPE: 0
+    MICROMASTER 3, 1 MICROMASTER 4. SPEED_SP: percent of full speed, -200...200; a negative value
+    reverses the direction. EN off: the block does nothing, and after 300 ms its motor is stopped.
 
-    RESP_R: on for one scan when the drive has answered; only then do the following change. STATUS:
-    ZSW. SPEED: percent. RUN_EN, INHIBIT, FAULT: bits of it; D_DIR: its bit 14, runs right.
-    ERROR: a code of `codes`, of the inputs or of the last telegram; STATUS_WORD: the S7-1200's.
-    An error of the inputs stops the motor, but for SPEED_RANGE: it keeps its speed and direction.
-    RUN_VOID, which Siemens has not: RUN is on and makes nothing run; it has to go off and on.
+    RESP_R: on for one scan when the drive has answered; only then do the next outputs change.
+    STATUS: ZSW. SPEED: percent. RUN_EN, INHIBIT, FAULT: bits of ZSW; D_DIR: its bit 14, runs
+    right. ERROR: a code of `codes`, of the inputs or of the last telegram; STATUS_WORD: the
+    S7-1200's. An error of the inputs stops the motor, except SPEED_RANGE, with which the motor
+    keeps its speed and direction. RUN_VOID, which Siemens does not have: RUN is on but starts
+    nothing; it has to go off and on.
     """
 
     def __init__(self, port):
@@ -307,9 +310,9 @@ class USS_CTRL(Block):
         self._port = port
         self._drive = None
         self._family = None  # of this drive
-        self._run = True  # as of the last scan
+        self._run = True  # RUN in the last scan
         self._f_ack = True
-        self._counters = None  # of the drive, as of the last scan
+        self._counters = None  # of the drive, in the last scan
         self._reply_code = codes.NO_ERROR
 
     def __call__(
@@ -342,7 +345,7 @@ class USS_CTRL(Block):
         self._drive = None
 
     def _take_drive(self, address, type_number):
-        """Command the drive at this address and no other; a code when that cannot be."""
+        """Command the drive at this address and no other; return a code."""
         port = self._port
         self.called_at = port.now
         error = port.refusal_to(self, address, type_number)
@@ -357,19 +360,20 @@ class USS_CTRL(Block):
         self._drive = drive
         self._family = self._port.families[drive.address]
         self._port.controls[drive.address] = self
-        # An input that is on already has no rising edge: it may have been on before power came.
+        # An input that is already on has no rising edge: it may have been on since before
+        # power-on.
         self._run = True
         self._f_ack = True
         self._reply_code = codes.NO_ERROR
         self._counters = list(drive.counters)
 
     def _command(self, run, off, reverse, speed):
-        """What the inputs say, to the drive; a code when the setpoint cannot be followed."""
+        """Pass the inputs on to the drive; return a code: SPEED_RANGE for a bad setpoint."""
         drive = self._drive
         rises = run and not self._run
         self._run = bool(run)
         is_number = isinstance(speed, (int, float))
-        in_range = is_number and -SPEED_LIMIT <= speed <= SPEED_LIMIT  # a NaN is not
+        in_range = is_number and -SPEED_LIMIT <= speed <= SPEED_LIMIT  # False for a NaN
         run_allowed = run and off == pzd.OFF1
         if off != drive.off or (drive.wanted and not run_allowed):
             drive.stop(off)
@@ -389,9 +393,9 @@ class USS_CTRL(Block):
         return self._drive.wanted != 0 and not self._drive.stopped_by_engine()
 
     def _report(self):
-        """The outputs, as far as there is news of the drive."""
+        """Set the outputs, as far as there is news of the drive."""
         drive = self._drive
-        counters = list(drive.counters)  # what comes meanwhile is for the next scan
+        counters = list(drive.counters)  # replies that come from now on are for the next scan
         if drive.silent:
             self._reply_code = codes.of_reply(counters, self._counters) or self._reply_code
         elif self._port.bus.is_line_in_use():

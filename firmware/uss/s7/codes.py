@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Status codes 0...22, numbered as in the S7-200's USS library; the S7-1200's words beside them.
 
-For programs that were written for these libraries: where the engine has findings, jobs end and
-arguments are refused, this says which code that is. It decides nothing; `s7` uses it.
+For programs that were written for these libraries. This turns the engine's findings, the ends of
+jobs and refused arguments into codes. It decides nothing; `s7` uses it.
 
     text(NO_ANSWER)                         # "the drive did not respond"
     word(NO_ANSWER)                         # 818Bh
@@ -16,7 +16,7 @@ from micropython import const
 
 from uss import pkw
 
-# In the order of their numbers, as the table below.
+# In the order of their numbers, as in the table below.
 (
     NO_ERROR,  # 0
     NO_ANSWER,
@@ -43,8 +43,8 @@ from uss import pkw
     WIDTH_WORD,
 ) = range(23)
 
-# The S7-200's text of each code, its number being the index, and the S7-1200's word of the same
-# cause; None where that library has none.
+# By code number: the S7-200's text, and the S7-1200's word for the same cause, or None if that
+# library has none.
 CODES = (
     ("no error", 0x0000),
     ("the drive did not respond", 0x818B),
@@ -75,8 +75,8 @@ CODES = (
 WRONG_VALUE_TYPE = const(0x8181)  # ILLEGAL_COMMAND: VALUE does not fit the width
 ACCESS_REFUSED = const(0x818D)  # PARAMETER_REPLY: reply 8, no rights to change it
 
-# All words of the S7-1200's USS library. 8188h comes from no block: the layout of a drive is part
-# of its family, and `Layout` refuses a wrong one with a ValueError.
+# All words of the S7-1200's USS library. No block gives 8188h: the layout of a drive is part of
+# its family, and `Layout` refuses a wrong one with a ValueError.
 WORDS = {
     0x0000: "no error",
     0x8180: "length of the reply does not fit the characters received",
@@ -96,8 +96,8 @@ WORDS = {
     0x818E: "the drive is not initialised",
 }
 
-# The code of each of `drive.COUNTERS`, in their order: what a reply that was counted there was.
-# CHECKSUM stands for a parity error too, where the UART hands such characters over unmarked.
+# For each of `drive.COUNTERS`, in their order: the code of the replies that it counts. CHECKSUM
+# stands for a parity error too, because a UART may hand such characters over unmarked.
 COUNTER_CODES = (
     NO_ERROR,
     FIRST_CHARACTER,
@@ -122,8 +122,8 @@ def word(code):
 def of_reply(counters, before):
     """The code of what was counted since `before`, a copy of a drive's `counters`.
 
-    NO_ERROR when nothing was, or nothing but valid replies. Of several, the one that says most:
-    a drive that was silent as well may have been so for the same reason.
+    NO_ERROR if that was nothing, or only valid replies. Of several codes, the one that says most:
+    a drive may also have been silent for the same reason.
     """
     code = NO_ERROR
     for index in range(1, len(COUNTER_CODES)):
@@ -135,9 +135,9 @@ def of_reply(counters, before):
 def of_job(job, width, reply_code):
     """The code of a parameter job that ended.
 
-    width: pkw.WORD or pkw.DOUBLE, what was expected. reply_code: what the drive's last reply was
-    worth, for a job that timed out: the drive was silent, or did answer, but something else. One
-    on which alone the drive is silent is NO_ANSWER.
+    width: pkw.WORD or pkw.DOUBLE, what was expected. reply_code: the code of the drive's last
+    reply; it decides for a job that timed out, whether the drive was silent or answered something
+    else. A job on which alone the drive is silent is NO_ANSWER.
     """
     if job.state == pkw.TIMED_OUT:
         return reply_code or PARAMETER_REPLY

@@ -2,7 +2,7 @@
 """The blocks for parameters of the S7-200's USS library: USS_RPM_W/D/R, USS_WPM_W/D/R.
 
 W: a word; D: a double word; R: floating point. RPM reads, WPM writes. A part of `s7`, which has
-the port that they share; one of them at a time is at work there.
+the port that they share; only one of them at a time works there.
 
     frequency = USS_RPM_R(port)
     frequency(EN=True, XMT_REQ=button(), DRIVE=1, PARAM=21)     # once a scan, until DONE
@@ -31,14 +31,14 @@ class Block:
 
 
 class Parameter(Block):
-    """What the blocks for parameters share; one of them at a time on a port.
+    """What the blocks for parameters share. Only one of them at a time works on a port.
 
-    EN: on until DONE. XMT_REQ: the request, once for each time that it and EN become on. DRIVE:
-    0...31. PARAM: 0...127999; INDEX: 0...254. Another edge is no request as long as one goes on.
+    EN: on until DONE. XMT_REQ: makes one request each time that it and EN become on; another edge
+    makes none while a request goes on. DRIVE: 0...31. PARAM: 0...127999; INDEX: 0...254.
 
-    DONE: it is over; until the next request. ERROR: a code of `codes`; STATUS_WORD: that of the
-    S7-1200. PKW_ERROR: with PARAMETER_REPLY the number with which the drive refused, see
-    `pkw_errors.error_text`; else None.
+    DONE: the request is over; stays on until the next one. ERROR: a code of `codes`; STATUS_WORD:
+    that of the S7-1200. PKW_ERROR: with PARAMETER_REPLY the number with which the drive refused,
+    see `pkw_errors.error_text`; else None.
     """
 
     width = pkw.WORD
@@ -50,7 +50,7 @@ class Parameter(Block):
         self._was_requested = False
         self._job = None
         self._drive = None
-        self._counters = None  # of the drive, when it was asked
+        self._counters = None  # the drive's, when it was asked
 
     def _serve(self, enabled, request, address, number, index, value=None, eeprom=False):
         rises = enabled and request and not self._was_requested
@@ -90,7 +90,7 @@ class Parameter(Block):
             return
         try:
             self._port.ask(drive, job)
-        except RuntimeError:  # others than these blocks have filled its queue
+        except RuntimeError:  # the drive's queue is full, but not by these blocks
             self._end(codes.PORT_BUSY)
             return
         self._job = job
@@ -123,7 +123,7 @@ class Parameter(Block):
         return pkw.read(number, index)
 
     def _take(self, job):
-        """The value that was confirmed."""
+        """Keep the value that was confirmed."""
 
 
 def _is_parameter(number, index):
@@ -132,7 +132,7 @@ def _is_parameter(number, index):
 
 
 class USS_RPM_W(Parameter):
-    """Reads a parameter of 16 bits. VALUE: 0...65535, as of the last DONE without ERROR."""
+    """Reads a parameter of 16 bits. VALUE: 0...65535, by the last DONE without ERROR."""
 
     def __init__(self, port):
         super().__init__(port)
@@ -163,7 +163,7 @@ class USS_RPM_R(USS_RPM_W):
 class USS_WPM_W(Parameter):
     """Writes a parameter of 16 bits. VALUE: -32768...65535.
 
-    EEPROM: for good, not in RAM alone; not with TYPE 0.
+    EEPROM: write to EEPROM, not to RAM alone; not with TYPE 0.
     """
 
     def __call__(self, EN=True, XMT_REQ=False, EEPROM=False, DRIVE=0, PARAM=0, INDEX=0, VALUE=0):
@@ -188,6 +188,6 @@ class USS_WPM_R(USS_WPM_W):
     width = pkw.DOUBLE
 
     def _make_job(self, number, index, value, eeprom):
-        if not -FLOAT_MAX <= value <= FLOAT_MAX:  # nor is a NaN
+        if not -FLOAT_MAX <= value <= FLOAT_MAX:  # true of a NaN too
             raise ValueError("%r for a parameter" % (value,))
         return pkw.write_float(number, value, index, eeprom)
