@@ -15,7 +15,7 @@ The engine, which may run in interrupts:
     master           the exchange: silence, request, reply; supervision of the loop
     turns            who talks when: the circulating list, and what goes before it
     deadlines        drives that need more turns
-    silence          what the silent ones may cost
+    silence          how much of the line's time silent drives may cost
     receiver         bursts of a link -> the one telegram awaited
     drive            one slave: commands, process image, counters
     channel          the parameter channel of one drive: jobs wait, one task is on the line
@@ -32,7 +32,7 @@ For programs that need more than the panel:
     bits             the bits of control and status words by name
     scaling          PZD2 in percent, Hz and 1/min, floating point
 
-Wings on top of that. The panel imports none of them, and what is above neither:
+Wings on top of that. Neither the panel nor the modules above import them:
     bus              for people who write Python: the master in a few words, plain errors, a scan
     s7               for people who write PLC programs: the blocks of the S7-200's USS library
     tasks            jobs of more than one value, for both: arrays, descriptions, texts; change

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """The parameter channel of one drive: jobs wait their turn, one task at a time is on the line.
 
-The loop puts jobs in, the engine carries them out: a task is repeated in every telegram until the
-fitting reply comes, then "no task" follows (specification C-4.2.1.1). The queue is a ring with one
-writer at each end, so that neither side waits for the other.
+The loop queues jobs and the engine carries them out: it repeats a task in every telegram until the
+fitting reply comes, then sends "no task" (specification C-4.2.1.1). The queue is a ring with one
+writer at each end, so neither side waits for the other.
 
 A drive may fall silent on a task that it does not know. The bus must not lose it by that, or it
 would stop its motor. So when telegrams with a task stay unanswered, the bus sends one without it.
@@ -13,7 +13,7 @@ sent again, because the drive might carry it out twice.
 
     channel.ask(pkw.read(700))                  # loop
     channel.fill(net, at, now)                  # engine: the PKW words of the next request, 8
-    channel.take(net, at, count)                # engine: those of the reply
+    channel.take(net, at, count)                # engine: the PKW words of the reply
 """
 
 from micropython import const
@@ -23,11 +23,11 @@ from uss.fast import copy
 from uss.timing import elapsed
 
 NO_TASK = bytes(8)
-JOBS_MAX = const(8)  # of a drive, with the one on the line; a power of two
-REST_MAX = const(20)  # telegrams without a task that are tried before the next one is sent anyway
+JOBS_MAX = const(8)  # of a drive, the one on the line included; a power of two
+REST_MAX = const(20)  # after so many telegrams without a task the next task is sent anyway
 _TRIES_MIN = const(5)  # a task is sent at least so often: a drive may lag three, one may be lost
 _SILENCES_MAX = const(3)  # telegrams with a task in a row that may stay unanswered
-_WORK_TIMEOUT_US = const(2_000_000)  # a reply may lag some cycles
+_WORK_TIMEOUT_US = const(2_000_000)  # long, because a reply may lag some cycles
 _EEPROM_TIMEOUT_US = const(5_000_000)
 
 NO_QUEUE = (None,)  # of a drive without PKW words
@@ -35,14 +35,14 @@ _ANY = const(-1)
 
 _VARIABLE = const(127)  # of `layout`, which would be an import too deep for the 32-bit port
 
-# Of `pkw`, for the compiler.
+# Copies from `pkw`, for the compiler.
 _THREE_WORDS = const(6)
 _FOUR_WORDS = const(8)
 _VARIABLE_LENGTH = const(0x100)
-_FOLLOWED = const(0x200)  # in _form: somebody follows change reports
+_FOLLOWED = const(0x200)  # bit of _form: `follow` has set where change reports go
 _POSITION = const(7)  # bits of a place in the queue
-_LAGS_MAX = const(4)  # old answers in a row that count
-_WAITING = const(-1)  # tries of a job whose turn has not come
+_LAGS_MAX = const(4)  # so many old answers in a row are counted
+_WAITING = const(-1)  # `tries` of a job whose turn has not come
 _PENDING = const(1)
 _FIRST_PERMANENT = const(11)
 
@@ -51,14 +51,13 @@ class Channel:
     """mask: the clock's period - 1. pkw_words: 0, 3, 4 or layout.VARIABLE. longest: with VARIABLE
     the most PKW words that a request has room for.
 
-    idle: nothing is asked, and the words in the telegram say so: neither `fill` nor `take` would
-    do anything.
+    idle: there is no task, and the telegram says so: neither `fill` nor `take` would do anything.
 
-    Written by the loop: _in, _form, and idle to False. By the engine: everything else. A Job
-    belongs to the loop, but to the engine from `ask` until its state is no longer PENDING.
+    The loop writes _in, _form, and idle to False; the engine writes everything else. A Job belongs
+    to the loop, but to the engine from `ask` until its state is no longer PENDING.
     """
 
-    # Eight fields: with one more each drive would take 16 bytes more.
+    # Eight fields. One more would take 16 bytes more of each drive.
 
     def __init__(self, mask, pkw_words=4, longest=10):
         variable = pkw_words == _VARIABLE
@@ -66,20 +65,22 @@ class Channel:
         self._form = _VARIABLE_LENGTH | 2 * longest if variable else 2 * pkw_words
         self._mask = mask
         self._queue = [None] * JOBS_MAX if pkw_words else NO_QUEUE
-        self._in = 0  # the place of the next job in it,
+        self._in = 0  # the place of the next job in the queue,
         self._out = 0  # and of the one on the line
-        # Telegrams go without a task: above 0, until one is answered with AK 0, so many at the
-        # most; below 0, because the task stays unanswered, and so many did.
+        # If not 0, telegrams go without a task. Above 0: at most so many more, until the drive
+        # answers one with AK 0. Below 0: minus the number sent because the task stays unanswered.
         self._without = 0
-        self._ended = _ANY  # the key of the job that must be told apart from the next, or _ANY
+        # The key of the job that ended last: only a job with the same key must wait for AK 0.
+        # _ANY: any job must.
+        self._ended = _ANY
 
     def is_full(self):
-        """Whether `ask` would be refused, for want of room or of PKW words."""
+        """Whether `ask` would be refused, because there is no room or there are no PKW words."""
         return not self._form or self._queue[self._in] is not None
 
     def ask(self, job):
-        """Queue a job. RuntimeError when JOBS_MAX wait already, it is pending, or the drive has no
-        parameter channel. One that the channel is too small for is REFUSED at once.
+        """Queue a job. RuntimeError if JOBS_MAX wait already, it is pending, or the drive has no
+        parameter channel. A job that does not fit the channel is REFUSED at once.
         """
         form = self._form
         position = self._in
@@ -117,7 +118,7 @@ class Channel:
     # --- for the engine: allocates nothing ------------------------------------------------------
 
     def fill(self, net, at, now):
-        """Write the PKW words of the next request into `net` from index `at` on; how many
+        """Write the PKW words of the next request into `net` from index `at` on; return how many
         characters they are.
         """
         job = self._queue[self._out]
@@ -130,7 +131,8 @@ class Channel:
             if tries == _WAITING:
                 tries = 0
                 job.since = now
-                # Mostly only to the same question could an old reply be taken for the answer.
+                # An old reply can mostly be taken for the answer only to the same question. So any
+                # other question need not wait for "no task".
                 if self._ended != _ANY and self._ended != job.key:
                     self._without = without = 0
             elif tries >= _TRIES_MIN:
@@ -147,13 +149,15 @@ class Channel:
         return self._place(job, words, net, at)
 
     def _place(self, job, words, net, at):
-        """Write words where other than four fixed ones have their place, and the report bit."""
+        """Write the words in the form of a channel other than four fixed words, and the report
+        bit.
+        """
         form = self._form
         size = form & 0xFF
         if form & _VARIABLE_LENGTH:
             size = _THREE_WORDS if words is NO_TASK else job.size()
         copy(words, net, at, size)
-        if size == _THREE_WORDS:  # the one word of a value stands where the high one was
+        if size == _THREE_WORDS:  # the word of a value goes where the high word was
             net[at + 4] = words[6]
             net[at + 5] = words[7]
         if form & _FOLLOWED:
@@ -173,7 +177,7 @@ class Channel:
             if without < 0:
                 self._judge(job)
                 return
-            # The task was withdrawn; until the drive says AK 0 an old reply may still come.
+            # The task is over. Until the drive says AK 0, an old reply may still come.
             self._without = without = 0 if net[at] < 0x10 else without - 1
             if job is None and not without and self._form < _FOLLOWED:
                 self.idle = True
@@ -189,15 +193,15 @@ class Channel:
                 job.lags = min(job.lags + 1, _LAGS_MAX)
 
     def miss(self, now, silent=0, pressing=False):
-        """There was no valid reply. silent: telegrams in a row without one. pressing: with one
-        more, half of the time after which the drive counts as lost would be over.
+        """There was no valid reply. silent: telegrams in a row without one. pressing: one more
+        would take longer than half of the time after which the drive counts as lost.
         """
         job = self._queue[self._out]
         without = self._without
         if without < 0:
             if -without > job.lags:
-                job.silences = 0  # it is not for the task
-            else:  # a drive that lags is at the task for as many telegrams more
+                job.silences = 0  # the task is not the reason for the silence
+            else:  # a drive that lags works on the task for so many telegrams more
                 self._without = without - 1
             job.tries = min(job.tries + 1, _TRIES_MIN)
         elif without:
@@ -215,7 +219,8 @@ class Channel:
         """The drive answers a telegram without the task: is the task to blame?"""
         writes = job.writes()
         silences = job.silences
-        # A drive that lags does so each time that it is asked: its silences do not add up.
+        # A drive that lags does so on every task, and its old answers reset `silences`: so one
+        # silence less is enough.
         if silences >= _SILENCES_MAX - (job.lags > 0) or writes and silences:
             job.state = pkw.UNANSWERED
             self._end(job, writes)
@@ -223,7 +228,7 @@ class Channel:
             job.state = pkw.TIMED_OUT
             self._end(job, True)
         else:
-            self._without = 0  # it goes on
+            self._without = 0  # the task goes on
 
     def _watch(self, job, now):
         """Time out a job that takes long."""
@@ -233,9 +238,10 @@ class Channel:
             self._end(job, job.writes())
 
     def _end(self, job, strictly):
-        # A task is never left standing. Two of the same parameter must be told apart
-        # (specification C-4.2.1.1): "no task" stands between them until the drive has answered it.
-        # strictly: it stands before any other, for what wears out or may still be carried out.
+        # Two tasks on the same parameter must be told apart (specification C-4.2.1.1): the bus
+        # sends "no task" between them until the drive has answered that. strictly: it sends "no
+        # task" before any other task, because this one wears the EEPROM or may still be carried
+        # out.
         self._ended = _ANY if strictly else job.key
         self._queue[self._out] = None
         self._out = self._out + 1 & _POSITION

@@ -18,7 +18,7 @@ VARIABLE = const(127)
 PKW_WORDS = (0, 3, 4, VARIABLE)
 PZD_WORDS_MAX = const(16)
 WORDS_MAX = const(126)
-_LEAST_PKW_WORDS = const(3)  # PKE, IND and one word of PWE: every task and every reply has them
+_LEAST_PKW_WORDS = const(3)  # every task and reply has PKE, IND and one word of PWE
 _TEXT_PKW_WORDS = const(10)  # PKE, IND and a text of 16 characters
 ENABLE_WORDS = const(4)  # the PKW area of a broadcast holds the enable array (appendix)
 
@@ -26,10 +26,10 @@ ENABLE_WORDS = const(4)  # the PKW area of a broadcast holds the enable array (a
 class Layout:
     """pkw_words: 0, 3, 4 or VARIABLE. pzd_words: 0...16.
 
-    longest: with VARIABLE, the most PKW words of a request, 3...126; the buffer of the drive's
-    telegram is made for them. What the drive answers may be as long as it likes.
+    longest: with VARIABLE, the most PKW words of a request, 3...126; the drive's request buffer
+    has room for them. The drive's answer may have any length.
 
-    ValueError when there is no such layout, or nothing to send.
+    ValueError if there is no such layout, or it has no words.
 
     net_count: net characters of a request without a task. pzd_count: characters of the PZD.
     net_max: net characters of the longest request.
@@ -60,11 +60,11 @@ class Layout:
         return net_count & 1 == 0 and net_count >= self.net_count
 
     def is_like(self, other):
-        """Whether drives set up so take the same telegrams."""
+        """Whether drives with the two layouts take the same telegrams."""
         return self.pkw_words == other.pkw_words and self.pzd_words == other.pzd_words
 
     def takes_broadcast(self):
-        """Whether the enable array of a broadcast has its place: a PKW area of four words."""
+        """Whether the enable array of a broadcast fits: it needs a PKW area of four words."""
         return self.pkw_words == ENABLE_WORDS and self.pzd_words > 0
 
     def __repr__(self):

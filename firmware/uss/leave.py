@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""How a program leaves the line: every drive is stopped, and has said so, before nobody asks it.
+"""How a program leaves the line: every drive is stopped and has answered before telegrams end.
 
-For the panel, `bus` and `s7` alike. What the engine does for it is `Master.close`; this waits.
+The panel, `bus` and `s7` use it. The engine's part is `Master.close`; this waits for its end.
 
     leave(bus, clock, go_on)        # bus: a `master.Master`
-    persist(pacer.stop)             # whatever else must not be cut short
+    persist(pacer.stop)             # for anything else that must not be cut short
 """
 
 from micropython import const
@@ -16,19 +16,19 @@ _PATIENCE_US = const(1_000_000)  # for the answers to OFF1, and a round of the b
 
 
 def leave(bus, clock, go_on):
-    """Return when every drive in contact has answered OFF1, the others were sent it, and nothing
-    is sent any more: in a second and a round of the bus, mostly. At once where another master is
-    listened to, or the bus is off.
+    """Return when every drive in contact has answered OFF1, the others were sent it, and the bus
+    sends nothing any more: mostly within a second and a round of the bus. At once if the bus is
+    off, or listens because another master was heard.
 
-    clock: as of `hal`. go_on: called again and again meanwhile; it has the engine work, feeds a
-    watchdog, sleeps. Ctrl-C does not cut this short: a motor may be turning.
+    clock: as of `hal`. go_on: a function called again and again meanwhile; it makes the engine go
+    on, feeds a watchdog, sleeps. Ctrl-C does not cut this short, because a motor may be turning.
     """
     persist(bus.close)
     persist(_wait, bus, clock, go_on)
 
 
 def persist(action, *arguments):
-    """Do it once more from the beginning when Ctrl-C strikes in the middle."""
+    """Call `action`; if Ctrl-C strikes in the middle, call it once more from the beginning."""
     while True:
         try:
             return action(*arguments)
@@ -38,7 +38,7 @@ def persist(action, *arguments):
 
 def _wait(bus, clock, go_on):
     patience_us = _PATIENCE_US + bus.turns.longest_cycle_us()
-    left_us = 2 * patience_us  # as much again for the exchange that goes on, or a link that hangs
+    left_us = 2 * patience_us  # as much again for an exchange under way, or a link that hangs
     before = clock.ticks_us()
     while bus.phase != CLOSED and left_us > 0:
         try:

@@ -196,8 +196,8 @@ class Master:
 
     def pause(self):
         """Begin no exchange until `resume`, for at most 1 s; `paused` tells that the pause has
-        begun. Commands go first, also those given during the pause. A caller that is about to block
-        looks for new commands itself first.
+        begun. Commands go first, also later ones: `paused` is False until they are sent. So take
+        new commands from the operator before you act on `paused`.
         """
         self._held |= _HELD_BY_PAUSE
 

@@ -24,31 +24,32 @@ __all__ = ("DONE", "NEW", "PENDING", "TIMED_OUT", "Mirror", "Broadcast", "Specia
 
 PROBE = bytes(12)  # net data that name no task and, bit 10 of STW being 0, command nothing
 STW_CONTROL = const(0x0400)
-OFTEN = const(0xFFFF)  # `silent` of what nobody answers: it is not repeated for that
+OFTEN = const(0xFFFF)  # `silent` of a telegram without a reply, so that it is not repeated
 
-# The enable array of a broadcast (appendix): a, b, c and d, in the places of the PKW words.
+# The enable array of a broadcast (appendix): its words a, b, c and d stand in place of the PKW
+# words.
 ENABLE_FLAG = const(0x0001)  # in a: this is a broadcast; bit i: PZD i may be taken over
 UNMASKED = const(0xFFFF)
 ENABLED_PLACES = const(15)  # PZD 16 is never taken over
 
 
 class OutsideTelegram:
-    """The telegram with these net data to this ADR. ValueError when it cannot be one.
+    """The telegram with these net data to this ADR. ValueError if there is no such telegram.
 
-    state: what became of it. finding: of the receiver, why there was no reply. The engine uses
-    the other fields as those of a drive.
+    state: what became of it. finding: the receiver's, why there was no reply. The engine uses the
+    other fields as those of a drive.
     """
 
-    outside = True  # of the list
+    outside = True  # it is outside the list
 
     def __init__(self, address, net):
         self.request = bytearray(len(net) + 4)
         self.request[NET : NET + len(net)] = net
         self.size = telegram.seal(self.request, address, len(net))
         self.address = address
-        self.ahead = False  # of all other telegrams; otherwise it waits its turn
+        self.ahead = False  # it goes ahead of all other telegrams; otherwise it waits its turn
         self.sealed = True
-        self.silent = 0  # times in a row
+        self.silent = 0  # times in a row without a reply
         self.state = NEW
         self.finding = telegram.GOOD
 
@@ -57,13 +58,13 @@ class OutsideTelegram:
         return net_count == self.size - 4
 
     def may_reply_alike(self):
-        """Whether the reply may be the very request."""
+        """Whether the reply may be equal to the request."""
         return True
 
     # --- for the engine: allocates nothing ------------------------------------------------------
 
     def fill(self, now):
-        """The telegram stands as it is."""
+        """Nothing to do: the telegram does not change."""
 
     def take(self, buffer, count, now):
         self.state = DONE
@@ -78,10 +79,10 @@ class OutsideTelegram:
 
 
 class Mirror(OutsideTelegram):
-    """Asks a node to send the telegram back as it is (A-5.3). It acts on nothing in it.
+    """Asks a node to send the telegram back as it is (A-5.3). The node acts on nothing in it.
 
-    node: 0...31. net: what is sent; a drive of fixed length answers only its own length. DONE when
-    it came back unchanged; `finding` tells what came instead.
+    node: 0...31. net: what is sent; a drive of fixed length answers only its own length. DONE if
+    it came back unchanged; otherwise `finding` tells what came instead.
     """
 
     def __init__(self, node, net=PROBE):
@@ -103,10 +104,10 @@ class Broadcast(OutsideTelegram):
     """Process data for all drives of one layout at the same time (A-3, C-5.2.3 and appendix).
 
     words: 1...16 PZD words, STW first; every drive must have so many, and 4 PKW words. takes: what
-    they may take over of it, {place: mask}, place 1...15; of PZD 1, 4 and 5 bit by bit, of the
-    others only UNMASKED. All else they keep. Nobody answers: DONE says that it was sent and that
-    the line was left alone for the response delay after it. ValueError: it would start motors,
-    take control away, or cannot be sent so.
+    the drives take over of them, {place: mask}, place 1...15; of PZD 1, 4 and 5 bit by bit, of the
+    others only UNMASKED. They keep all their other words and bits. No drive answers: DONE says
+    that the telegram was sent and that the line was left alone for the response delay after it.
+    ValueError if it would start motors or take control away, or if it cannot be sent so.
     """
 
     def __init__(self, words, takes):
@@ -133,11 +134,11 @@ class Broadcast(OutsideTelegram):
         OutsideTelegram.__init__(self, BROADCAST, net)
 
     def fits(self, net_count):
-        """Nothing does: nobody answers."""
+        """Never: no drive answers."""
         return False
 
     def may_reply_alike(self):
-        """What comes is no reply, but may be an echo."""
+        """Never: what comes is not a reply, but may be an echo."""
         return False
 
     def miss(self, finding, now, lost_us, mask):
@@ -148,10 +149,10 @@ class Broadcast(OutsideTelegram):
 class Special(OutsideTelegram):
     """Net data of a kind of its own, for a node that knows them (A-5.3.1).
 
-    node: 0...31, or None for all of that kind, which do not answer. net: 1...252 characters.
-    reply_count: net characters of the reply, None for any number. hook(net, count), when given, is
-    called in the engine with the reply's net data in the first `count` characters of `net`; it
-    must not allocate. Once DONE, `reply_count` says how many characters of `reply` came.
+    node: 0...31, or None for all nodes of that kind, which then do not answer. net: 1...252
+    characters. reply_count: net characters of the reply, None for any number. hook(net, count):
+    the engine calls it, if given, with the reply's net data in the first `count` characters of
+    `net`; it must not allocate. Once DONE, `reply_count` says how many characters of `reply` came.
     """
 
     def __init__(self, node, net, reply_count=None, hook=None):
@@ -192,10 +193,10 @@ class Special(OutsideTelegram):
 
 
 def stop_all(bus):
-    """OFF1 to every drive in a single telegram ahead of all others, then by a telegram to each.
+    """Send OFF1 to every drive in a single telegram ahead of all others, then to each one its own.
 
     For drives that take broadcasts, which few document. ValueError unless all have 4 PKW words and
-    the same PZD words; each is sent its own OFF1 even so.
+    the same PZD words; each drive is sent its own OFF1 even then.
     """
     bus.stop_all()
     layouts = [drive.layout for drive in bus.turns.drives]
@@ -209,4 +210,4 @@ def stop_all(bus):
         try:
             bus.turns.post(broadcast)
         except RuntimeError:
-            pass  # one like it is about to be sent
+            pass  # such a broadcast already waits to be sent

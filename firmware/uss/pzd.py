@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Process data: control word STW, status word ZSW, and the scaling of setpoint and actual value.
 
-Facts as tables; no telegram, no drive object. STW travels with the main setpoint HSW to the drive,
-ZSW with the main actual value HIW back (specification C-5). What each bit is called stands in
-`bits`.
+This holds facts as tables; no telegram, no drive object. The master sends STW with the main
+setpoint HSW, the drive sends ZSW with the main actual value HIW (specification C-5). `bits` names
+each bit.
 
     ON, OFF1                          # whole control words a master sends
     state(0xFB34)                     # RUNNING
@@ -20,7 +20,7 @@ STW_REVERSE = const(0x0800)
 STW_RUN = const(0x0301)  # ON, JOG_RIGHT, JOG_LEFT: each of them turns the motor
 
 # Whole control words. Bit 10 is never 0. With ON a MICROMASTER 4 ignores the jogs.
-OFF1 = const(0x047E)  # ramp down; the first word any drive is sent
+OFF1 = const(0x047E)  # ramp down; the first word that a drive is sent
 OFF2 = const(0x047C)  # coast
 OFF3 = const(0x047A)  # ramp down as fast as the drive can
 ON = const(0x047F)
@@ -35,12 +35,12 @@ ZSW_FAULT = const(0x0008)
 ZSW_INHIBIT = const(0x0040)
 ZSW_WARNING = const(0x0080)
 
-# What a status word says, in words. Whatever matches none of the rows is NOT_READY.
+# The states that a status word may tell. One that matches no row of STATES is NOT_READY.
 NOT_READY, READY, RUNNING, FAULT, INHIBITED = range(5)
 
 # The first row that matches counts: a fault outranks all, then the inhibit. MM4 shows 31h when
-# ready and 34h when running, G120 31h and 37h: bits 0 to 2 are exclusive on the one, cumulative on
-# the other, so only the highest of them that is set is looked at.
+# ready and 34h when running, G120 31h and 37h: bits 0 to 2 are exclusive on the MM4, cumulative on
+# the G120. So only the highest of them that is set counts.
 STATES = (  # mask, value, state
     (0x0008, 0x0008, FAULT),
     (0x0040, 0x0040, INHIBITED),
@@ -56,7 +56,7 @@ def _look_up(zsw):
     return NOT_READY
 
 
-# The state for each value of the bits that STATES looks at: the panel asks many times a second.
+# The state for each value of the bits in STATES, because the panel asks many times a second.
 _STATE_BITS = const(0x7F)
 _STATE_OF = bytes(_look_up(zsw) for zsw in range(_STATE_BITS + 1))
 
@@ -73,7 +73,7 @@ REFERENCE_MIN = const(100)  # P2000 in centihertz (MICROMASTER 4 parameter list)
 REFERENCE_MAX = const(65000)
 HSW_MIN = const(-0x8000)
 HSW_MAX = const(0x7FFF)
-BEYOND = (0x7FFF, 0x8000)  # where a drive stops counting: the value may be any beyond this one
+BEYOND = (0x7FFF, 0x8000)  # a drive stops counting here: the true value may be any beyond it
 
 
 def signed(word):
@@ -97,7 +97,7 @@ class Scaling:
         self.absolute = absolute
 
     def is_of(self, reference_centihertz, absolute):
-        """Whether it was made of these."""
+        """Whether it was made with these arguments."""
         return self.reference_centihertz == reference_centihertz and self.absolute == absolute
 
     def full_scale(self):
@@ -111,12 +111,12 @@ class Scaling:
         return 2 * self.reference_centihertz - 1
 
     def hsw(self, centihertz):
-        """The unsigned word for a frequency, rounded; beyond the word's range it is limited."""
+        """The unsigned word for a frequency, rounded, and limited to the word's range."""
         if self.absolute:
             count = centihertz
         else:
             magnitude = min(abs(centihertz), 2 * self.reference_centihertz)
-            # At most 65000 * 16384 fits a small integer; twice that is reached in two halves.
+            # At most 65000 * 16384 fits a small integer, so twice that is computed in two halves.
             reference = self.reference_centihertz
             whole = FULL_SCALE if magnitude >= reference else 0
             rest = magnitude - reference if whole else magnitude

@@ -16,22 +16,23 @@ from micropython import const
 from uss.drive import NODES, SILENT_MAX
 from uss.fast import greatest
 
-SHARE = const(5)  # one part in so many
-_ROUND_US = const(700_000)  # few silent ones are asked no oftener than once in this: it will do
-_OWED_MAX = const(2)  # silences; a STOP to many at once is not made up for by asking nobody
-SPENT_MASK = const(0x3FFFFFFF)  # of sums of microseconds
+SHARE = const(5)  # the silent drives have one part in so many
+_ROUND_US = const(700_000)  # if few are silent, they are not asked more often than once in this
+_OWED_MAX = const(2)  # silences owed at most, or a STOP to many would keep them unasked for long
+SPENT_MASK = const(0x3FFFFFFF)  # sums of microseconds wrap so
 
 
 class Silence:
     """turns: the `Turns` that it belongs to.
 
-    The engine counts telegrams that brought no valid reply, those to drives without contact and
-    those outside the list: `count`, 16 bit; `spent_us`, how long they took; `shared_us`, the same
-    without drives that may run, whose turns are their own. It writes these three in `charge`.
+    The engine counts the telegrams without a valid reply that went to drives without contact or
+    outside the list: `count`, 16 bit; `spent_us`, how long they took; `shared_us`, the same
+    without drives that may run, which do not use the share. It writes these three in `charge`.
 
-    `rests`: by address, whether a drive rests. `resting`: how many do. `wait_us`: until the share
-    has room for one more silence; `Deadlines` counts it down, below 0 it has had room for so long.
-    `charged_us`: of `shared_us`. The loop writes these, and all else.
+    `rests`: by address, whether a drive rests. `resting`: how many do. `wait_us`: how long until
+    the share has room for one more silence; `Deadlines` counts it down, and below 0 there has been
+    room for so long. `charged_us`: how much of `shared_us` is settled. The loop writes these, and
+    all else.
     """
 
     def __init__(self, turns):
@@ -42,21 +43,21 @@ class Silence:
         self.resting = 0
         self.wait_us = 0
         self.charged_us = 0
-        self.silent_exchange_us = 0  # what a telegram takes that nobody answers, at the most
+        self.silent_exchange_us = 0  # how long a telegram without a reply takes at the most
         self._turns = turns
-        self._asked = None  # who was given a turn last
-        self._is_asked = False  # and has not had it
-        self._witness = None  # a drive for whose sake others rest
+        self._asked = None  # the drive that was given a turn last
+        self._is_asked = False  # it has not had that turn yet
+        self._witness = None  # a drive that answers or may run, so that others must rest
 
     def charge(self, drive, spent_us):
-        """From the engine: it answered nothing, and cost the others so much of the line's time."""
+        """From the engine: the drive did not answer, and that took so much of the line's time."""
         self.count = (self.count + 1) & 0xFFFF
         self.spent_us = (self.spent_us + spent_us) & SPENT_MASK
         if drive.outside or not drive.was_running:
             self.shared_us = (self.shared_us + spent_us) & SPENT_MASK
 
     def list_changed(self, net_count):
-        """There is another list. net_count: net characters of its longest telegram."""
+        """The list has changed. net_count: net characters of its longest telegram."""
         timing = self._turns.timing
         sending_us = timing.start_interval_us + timing.telegram_us(net_count)
         waiting_us = timing.reply_timeout_us + timing.character_us
@@ -64,7 +65,7 @@ class Silence:
         self._witness = None
 
     def forget(self, drive):
-        """It is not on the bus any more."""
+        """The drive is not on the bus any more."""
         if self.rests[drive.address]:
             self._set(drive.address, 0)
         if self._asked is drive:
@@ -75,24 +76,25 @@ class Silence:
         self.rests[new], self.rests[old] = self.rests[old], 0
 
     def settle(self):
-        """Time was spent in vain."""
+        """Charge the share with the time that silent drives have taken."""
         shared_us = self.shared_us
         spent_us = (shared_us - self.charged_us) & SPENT_MASK
         self.charged_us = shared_us
         if not self._is_anyone_there():
-            return  # nobody whom it might cost anything
+            return  # no other drive loses time by it
         most_us = _OWED_MAX * SHARE * self.silent_exchange_us
-        # Being late with one telegram is made up with the next, or the share would not be had.
+        # If one telegram is late, the next may come sooner, or the drives would not get their
+        # share.
         wait_us = max(self.wait_us, -2 * self.silent_exchange_us)
         self.wait_us = min(wait_us + SHARE * min(spent_us, most_us), most_us)
         if self._asked is not None and self._asked.silent > SILENT_MAX:
             self.wait_us = max(self.wait_us, _ROUND_US // max(self.resting, 1))
 
     def look_after(self, drive):
-        """Is it to rest, or to come back into the round?"""
+        """Let the drive rest, or bring it back into the round, as it should be."""
         rests = 0
         if drive.may_rest():
-            # One that was never asked has its turn first, unless others are owed time.
+            # A drive that was never asked has a turn before it rests, unless time is owed.
             rests = self.rests[drive.address] or drive.silent or self.wait_us > 0
             rests = 1 if rests and self._is_anyone_there() else 0
         if rests != self.rests[drive.address]:
@@ -103,10 +105,11 @@ class Silence:
                 self._turns.join_round(drive)
 
     def give_turn(self):
-        """One that rests has a turn, if none of them has."""
+        """Give one resting drive a turn, if none of them has one."""
         asked = self._asked
         if self._is_asked:
-            # What it took is known at the next look. One that answers may be under way for ever.
+            # The next look knows how long it took. If the drive answers, an exchange with it may
+            # be under way at every look, so contact ends the wait too.
             waits = asked.insist > 0 or self._turns.is_under_way(asked)
             self._is_asked = waits and not asked.contact
             if asked.contact:
@@ -118,7 +121,8 @@ class Silence:
             asked.ask_soon()
 
     def _is_anyone_there(self):
-        """1 if a drive answers, or may run: without one the silent ones cost nobody anything."""
+        """1 if a drive answers, or may run. Without one, no drive loses time to the silent
+        ones."""
         witness = self._witness
         if witness is not None and (witness.contact or witness.was_running):
             return 1

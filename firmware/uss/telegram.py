@@ -4,8 +4,8 @@
     STX  LGE  ADR  net[0] ... net[n-1]  BCC        LGE = n + 2, at most 254
     02h              words, high byte first        BCC = exclusive or of all before it
 
-Knows neither time nor line: a burst of characters is judged when it is complete. What the net
-data mean is the subject of `pkw` and `pzd`. Source: specification A-4 and A-5.2.
+It knows neither time nor line: it judges a burst of characters that is complete. `pkw` and `pzd`
+say what the net data mean. Source: specification A-4 and A-5.2.
 
     count = seal(buffer, address, 12)     # net data already stand at buffer[NET:]
     judge(buffer, count, address, 12)     # GOOD, or what is wrong with it
@@ -20,16 +20,16 @@ NET = const(3)  # net data begin here
 NET_COUNT_MAX = const(252)
 SIZE_MAX = const(256)  # the longest telegram, all characters counted
 
-# ADR: bits 0-4 are the node, the others say how the telegram is meant (specification A-4.3).
+# ADR: bits 0-4 are the node, the others the kind of telegram (specification A-4.3).
 NODE_MAX = const(31)
 BROADCAST = const(0x20)
 MIRROR = const(0x40)
 SPECIAL = const(0x80)
 
-# What `judge` finds, in the order in which specification A-5.2 looks.
+# What `judge` finds, in the order of the checks in specification A-5.2.
 GOOD = const(0)
-BAD_START = const(1)  # the first character is no STX
-BAD_LENGTH = const(2)  # LGE is not the agreed one, or other than so many characters came
+BAD_START = const(1)  # the first character is not STX
+BAD_LENGTH = const(2)  # LGE is not the agreed one, or does not fit the characters that came
 BAD_BCC = const(3)
 BAD_ADDRESS = const(4)  # somebody else's telegram, or the flag bits differ
 
@@ -47,13 +47,13 @@ def get_word(buffer, at):
     return buffer[at] << 8 | buffer[at + 1]
 
 
-# Over all characters before it this is the BCC, STX included (specification A-4.4). Over a whole
+# The BCC is this over all characters before it, STX included (specification A-4.4). Over a whole
 # telegram with its BCC it is 0.
 bcc = exclusive_or
 
 
 def seal(buffer, address, net_count):
-    """Put STX, LGE, ADR and BCC around the net data in `buffer`; answer the telegram's size.
+    """Put STX, LGE, ADR and BCC around the net data in `buffer`; return the telegram's size.
 
     buffer: at least net_count + 4 characters, net data from index NET on.
     address: ADR with its flag bits, 0...255.
@@ -67,11 +67,11 @@ def seal(buffer, address, net_count):
 
 
 def judge(buffer, count, address, net_count):
-    """What the `count` characters in `buffer` are worth as the telegram that is awaited.
+    """Judge whether the `count` characters in `buffer` are the awaited telegram.
 
     address: the ADR that must stand in it, flag bits included; None accepts any.
     net_count: the agreed number of net characters; None accepts what LGE says.
-    Answers GOOD or one of the BAD_ findings. Nothing of a telegram that is not GOOD may be used.
+    Returns GOOD or one of the BAD_ findings. Use nothing of a telegram that is not GOOD.
     """
     if count < 1 or buffer[0] != STX:
         return BAD_START

@@ -5,10 +5,10 @@ The count starts at 0 when the drive powers up. So the drive was reset when the 
 back, or when it lacks telegrams that the drive has answered.
 
     count = TelegramCount(drive)
-    count.asked()                       # r2024 is being asked for
-    count.take(before, now)             # its answer, and the one before
-    count.take_restart()                # whether it was reset while it was wanted to run
-    count.begin()                       # another run begins: nothing has been counted yet
+    count.asked()                       # a job that reads r2024 was queued
+    count.take(before, now)             # the count before, and the count that was just read
+    count.take_restart()                # whether the drive was reset while it was wanted to run
+    count.begin()                       # another run begins: start counting anew
     count.forget()                      # contact was lost
 """
 
@@ -17,32 +17,32 @@ from micropython import const
 from uss.drive import COUNTERS, NODES
 
 _GOOD = COUNTERS.index("good")
-_BESIDE = const(64)  # telegrams that a drive may count and this master does not,
-_LATE = const(32)  # and that it may count later than it answers them
+_BESIDE = const(64)  # a drive may count so many telegrams that this master does not count,
+_LATE = const(32)  # and may count so many later than it answers them
 
 
 class TelegramCount:
-    """drive: a `Drive`. Its counters of exchanges are what the count is held against.
+    """drive: a `Drive`. The count is compared with its counters of exchanges.
 
-    restarted: since `begin` the drive was reset while it was wanted to run. is_told: it answers
-    when it is asked for its count, as far as anybody knows; for the survey to write.
+    restarted: since `begin` the drive was reset while it was wanted to run. is_told: as far as is
+    known the drive answers when it is asked for its count; the survey writes this.
     """
 
     def __init__(self, drive):
         self._drive = drive
-        self._exchanges = 0  # with the drive, when its count was read,
-        self._answers = 0  # and those of them that it has answered,
-        self._answers_asked = 0  # and had, when it was asked for the present count
+        self._exchanges = 0  # with the drive, when its last count was taken,
+        self._answers = 0  # and those of them that it had answered then
+        self._answers_asked = 0  # those that it had answered when it was asked for this count
         self.forget()
 
     def forget(self):
         """Contact was lost: it may be another drive."""
-        self._counts_all = False  # the telegrams to others as well
+        self._counts_all = False  # the drive counts telegrams to other drives too
         self._moves = False
         self.begin()
 
     def begin(self):
-        """From the next count on fewer telegrams mean that the drive was reset."""
+        """Start anew: from the next count on a count that lacks telegrams means a reset."""
         self.restarted = False
         self.is_told = True
         self._begun = False
@@ -52,18 +52,18 @@ class TelegramCount:
         self._answers_asked = self._drive.counters[_GOOD]
 
     def take_restart(self):
-        """`restarted`, which is forgotten by this."""
+        """Return `restarted` and clear it."""
         restarted, self.restarted = self.restarted, False
         return restarted
 
     def take(self, before, count):
-        """Find out whether the drive has been reset since the last count. One that never moves
+        """Find out whether the drive has been reset since the last count. A count that never moves
         tells nothing.
         """
         exchanges = 0
         for counted in self._drive.counters:
             exchanges += counted
-        # The loop may be late: what was answered since the question is none of this count's.
+        # The loop may be late: this count does not include what was answered after the question.
         since = (exchanges - self._exchanges) & 0xFFFF
         answered = (self._answers_asked - self._answers) & 0xFFFF
         self._exchanges, self._answers = exchanges, self._drive.counters[_GOOD]

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """The times of the USS line, all derived from the baud rate, all integers in microseconds.
 
-Not a clock: nothing here knows what time it is. `Timing` answers how long something takes or may
-take; `elapsed` measures between two readings of a counter that wraps.
+This is not a clock. `Timing` tells how long something takes or may take; `elapsed` measures the
+time between two readings of a counter that wraps.
 
     line = Timing(19200)
     line.start_interval_us          # 1146: silence that must precede every STX
@@ -11,7 +11,7 @@ take; `elapsed` measures between two readings of a counter that wraps.
 
 BITS_PER_CHARACTER = 11  # start, 8 data, even parity, stop (specification B-3.2)
 START_INTERVAL_CHARACTERS = 2  # silence before STX (specification A-5.1.2)
-RESPONSE_DELAY_US = 20_000  # request's last bit to reply's STX, at most (specification A-5.2.1.1)
+RESPONSE_DELAY_US = 20_000  # at most, from request to STX of the reply (specification A-5.2.1.1)
 FRAME_CHARACTERS = 4  # STX, LGE, ADR and BCC stand around the net characters
 
 # Every rate of specification B-2.4. 9600, 19200, 38400 and 187500 are those of every interface.
@@ -34,7 +34,8 @@ class Timing:
     baud: bits per second; ValueError unless it is one of BAUD_RATES.
     reply_timeout_us: how long the master waits for the first character of a reply. The
         specification says 20 ms; adapters that delay need more. Below 2400 baud the pause that the
-        drive must keep before its reply exceeds that or comes near: it is waited twice as long.
+        drive must keep before its reply comes near that or exceeds it: then the master waits twice
+        that pause.
     """
 
     def __init__(self, baud, reply_timeout_us=RESPONSE_DELAY_US):
@@ -59,7 +60,8 @@ class Timing:
         return (3 * compressed_us >> 5) + self.character_us
 
     def exchange_us(self, net_count, reply_delay_us, link_delay_us=0):
-        """One request and its reply, both `net_count` long, with what has to be silent between.
+        """One request and its reply, both with `net_count` net characters, and the silences
+        between.
 
         link_delay_us: how long after the end of a reply the link reports it; the RP2040 takes 32
         bits (`idle_us` of its link), which is longer than the start interval.
@@ -67,11 +69,11 @@ class Timing:
         return self.cycle_us(((net_count, net_count, reply_delay_us),), link_delay_us)
 
     def cycle_us(self, exchanges, link_delay_us=0):
-        """A round of the circulating list (specification A-5.1.1), the master's own time apart.
+        """A round of the circulating list (specification A-5.1.1), without the master's own time.
 
         exchanges: for each entry (net characters of the request, of the reply, reply delay in
-        microseconds). A reply delay of None is a broadcast, or a drive that does not answer: the
-        response delay is waited for.
+        microseconds). Reply delay None: a broadcast, or a drive that does not answer; the master
+        waits for the response delay.
         """
         pause_us = max(self.start_interval_us, link_delay_us)
         cycle_us = 0
@@ -88,8 +90,8 @@ def elapsed(now, since, mask):
     """Microseconds from the reading `since` to the reading `now` of one wrapping counter.
 
     mask: the counter's period - 1, at most 2**30 - 1 so that nothing leaves the small integers.
-    A `since` that lies ahead of `now` (an interrupt was faster than its reader) counts as 0.
-    More than half a period cannot be told from that: whoever waits so long latches a flag.
+    If `since` lies ahead of `now` (an interrupt was faster than its reader), the answer is 0. More
+    than half a period looks the same, so code that waits so long must latch a flag.
     """
     difference = (now - since) & mask
     return difference if difference <= mask >> 1 else 0

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: MIT
 """The loops over characters that the bus engine runs in every exchange, as fast as can be.
 
-In machine code (`viper`) where the interpreter has it, or else, the same in plain Python
-(`python`, which says what each of them means): under CPython, and on ports of MicroPython
-that compile no machine code.
+They are in machine code (`viper`) if the interpreter has it. Under CPython, and on ports of
+MicroPython that compile no machine code, the same loops run in plain Python (`python`, which says
+what each of them means).
 """
 
-# What importing it raises: CPython knows no viper; no emitter in a port that compiles the source,
-# or one for another processor in a port that is handed bytecode.
+# The import may raise: CPython knows no viper; a port that compiles the source may have no
+# emitter; a port that is handed bytecode may get that of another processor.
 try:
     from uss.fast.viper import (
         agreeing, calling, copy, exclusive_or, frame, get_words, greatest, is_reply, reply_about,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The loops behind `fast` in plain Python: what they mean, and what runs where no viper is.
+"""The loops behind `fast` in plain Python. They define the meaning, and run if there is no viper.
 
 Each has a twin in machine code in `viper`.
 """
@@ -25,7 +25,7 @@ def is_reply(buffer, count, request):
     """Whether the `count` characters are a whole telegram with the ADR of `request`, but not that
     request itself, which a line with two wires may bring back.
 
-    STX and LGE stand where they should and the BCC is right; `telegram.judge` says what is wrong.
+    STX, LGE and BCC must be right. If not, `telegram.judge` says what is wrong.
     """
     return (
         count >= 5
@@ -40,7 +40,7 @@ def is_reply(buffer, count, request):
 def agreeing(buffer, at, other, other_at, count):
     """How many of `count` characters agree, from these indices on, until the first that differs.
 
-    The caller sees to it that both are long enough.
+    The caller makes sure that both are long enough.
     """
     index = 0
     while index < count and buffer[at + index] == other[other_at + index]:
@@ -49,7 +49,7 @@ def agreeing(buffer, at, other, other_at, count):
 
 
 def get_words(buffer, at, words, to, count):
-    """Bring `count` words, high byte first, from buffer[at:] to words[to:], an array("H")."""
+    """Copy `count` words, high byte first, from buffer[at:] to words[to:], an array("H")."""
     for index in range(count):
         words[to + index] = buffer[at + 2 * index] << 8 | buffer[at + 2 * index + 1]
 
@@ -61,9 +61,9 @@ def copy(source, target, at, count):
 
 
 def greatest(values, at, count, start):
-    """Which of the `count` characters from values[at:] on is the greatest, or -1 if all are 0.
+    """The number of the greatest of `count` characters from values[at:] on; -1 if all are 0.
 
-    Of equal ones the first behind number `start`, going round.
+    Of equal ones it is the first after number `start`, going round.
     """
     found = -1
     highest = 0
@@ -76,8 +76,8 @@ def greatest(values, at, count, start):
 
 
 def calling(values, size, count):
-    """In which rows of `size` there is anything but 0 among the first `count` values: bit 0 is for
-    the first row."""
+    """Which rows of `size` hold anything but 0 among the first `count` values: a bit for each row,
+    bit 0 for the first."""
     rows = 0
     for row in range(count // size):
         for index in range(size):
@@ -87,8 +87,8 @@ def calling(values, size, count):
 
 
 def reply_about(net, at, words):
-    """AK of the parameter reply that stands in `net` from index `at` on, when PNU and IND are
-    those of the task `words`; 0 when it is about something else. Bit 11 of PKE belongs to neither.
+    """AK of the parameter reply in `net` from index `at` on, if its PNU and IND are those of the
+    task `words`; else 0. Bit 11 of PKE belongs to neither AK nor PNU.
     """
     same = not (net[at] ^ words[0]) & 0x07
     for index in range(1, 4):

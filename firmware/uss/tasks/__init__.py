@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Parameter jobs of more than one value, and what else few programs need of the channel.
 
-    arrays           an element of an array, all of them, their number
+    arrays           one element of an array, all elements, their number
     descriptions     limits, name, unit of a parameter
     texts            what a text parameter says
     long_jobs        what these three share

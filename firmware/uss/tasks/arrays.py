@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Parameters that are arrays: one element, all of them, how many there are (tasks 6...9, 11, 12).
 
-The panel does without: a MICROMASTER 4 gives one element to `pkw.read(number, index)` as well. By
-the specification (C-4.2.2) an index belongs to these tasks alone, and a G120 prefers them: what
-`families` says of a drive decides in `bus` and `s7`, by `with_array_task`. All elements at once
-need variable length (P2013 = 127). Their index counts as the drive does, from 0 or from 1.
+The panel does not need this: a MICROMASTER 4 gives one element to `pkw.read(number, index)` too.
+By the specification (C-4.2.2) only these tasks have an index, and a G120 prefers them: `bus` and
+`s7` choose by what `families` says of a drive, with `with_array_task`. All elements at once need
+variable length (P2013 = 127). The index counts as the drive does, from 0 or from 1.
 
     job = read_all(304)                         # or write_element_word(304, 2, 230)
     drive.ask(job)                              # ... later:
@@ -16,9 +16,9 @@ from micropython import const
 from uss import pkw
 from uss.tasks.long_jobs import LongJob
 
-WORDS_MAX = const(124)  # of an answer, behind PKE and IND
+WORDS_MAX = const(124)  # of an answer, after PKE and IND
 
-# For one value -> for an element of an array.
+# Task for a single value -> task for an element of an array.
 _ARRAY_TASKS = {
     pkw.READ: pkw.READ_ELEMENT,
     pkw.WRITE_WORD: pkw.WRITE_ELEMENT_WORD,
@@ -29,7 +29,7 @@ _ARRAY_TASKS = {
 
 
 def with_array_task(job, family):
-    """Aim a job of `pkw` by the task that drives of the family take its index with; answer it."""
+    """Change a job of `pkw` to an array task if the family takes an index by those; return it."""
     if job.index and family.has_array_tasks and job.task in _ARRAY_TASKS:
         _aim_at_element(job)
     return job
@@ -94,7 +94,7 @@ def _write_pairs(number, pairs, eeprom):
 class ArrayJob(LongJob):
     """All elements of an array at once, read or written. Needs variable length.
 
-    words: those of the values to write, ValueError when there are none; or none to read.
+    words: the words of the values to write, ValueError if there are none; or None to read.
     """
 
     def __init__(self, task, number, words, room=0):

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """Parameters of a drive that somebody else has changed, as it reports them (replies 9...12).
 
-The drive reports in place of its answers, the master acknowledges each report by sending its bit
-11 of PKE back (specification C-4.2.1.2). Drives report only where they are set up so; no
-MICROMASTER, G110 or V20 does. Jobs go on as ever.
+The drive sends a report instead of an answer; the master acknowledges it by sending bit 11 of its
+PKE back (specification C-4.2.1.2). A drive reports only if it is set up to; no MICROMASTER, G110
+or V20 does. Jobs go on as usual.
 
     reports = Reports(drive.channel)
     report = reports.get()              # the oldest, or None
@@ -17,7 +17,7 @@ from micropython import const
 from uss import pkw
 
 REPORT, REPORT_DOUBLE, REPORT_ELEMENT, REPORT_ELEMENT_DOUBLE = range(9, 13)  # AK
-REPORTS_MAX = const(8)  # that wait; a power of two
+REPORTS_MAX = const(8)  # so many may wait; a power of two
 
 _FIELDS = const(5)  # of a report in the ring: PKE, IND, width, high word, low word
 _TOGGLE = const(0x08)  # bit 11 of PKE
@@ -26,8 +26,9 @@ _TOGGLE = const(0x08)  # bit 11 of PKE
 class Report:
     """A parameter that somebody else has changed.
 
-    number, index: which; index pkw.ALL is the whole array. width: pkw.WORD or pkw.DOUBLE, the
-    value as in a `Job`; or 0 when the report has none, as of a whole array: it must be read.
+    number, index: of the parameter; index pkw.ALL is the whole array. width: pkw.WORD or
+    pkw.DOUBLE, with the value as in a `Job`; or 0 if the report has no value, as for a whole
+    array: then read the parameter.
     """
 
     def __init__(self, words):
@@ -45,10 +46,11 @@ class Report:
 class Reports:
     """Takes the change reports of a drive, and acknowledges each by sending its bit 11 back.
 
-    channel: the drive's. RuntimeError when it has no PKW words. As long as REPORTS_MAX wait, the
-    next is not acknowledged: the drive repeats it, and answers no task before. `close` ends it.
+    channel: the drive's. RuntimeError if it has no PKW words. As long as REPORTS_MAX wait, the
+    next report is not acknowledged: the drive repeats it, and answers no task before. `close` ends
+    it.
 
-    Written by the loop: _out. By the engine: everything else.
+    The loop writes _out, the engine everything else.
     """
 
     def __init__(self, channel):
@@ -61,7 +63,7 @@ class Reports:
         channel.follow(self)
 
     def get(self):
-        """The oldest `Report` that waits, once; None when there is none."""
+        """Take the oldest `Report` that waits; None if there is none."""
         out = self._out
         if out == self._in:
             return None
@@ -71,7 +73,7 @@ class Reports:
         return report
 
     def close(self):
-        """Follow no reports any more."""
+        """Stop following reports."""
         self._channel.follow(None)
 
     # --- for the engine: allocates nothing ------------------------------------------------------
@@ -80,13 +82,13 @@ class Reports:
         """Look at the PKW words of a reply, `count` characters in `net` from index `at` on."""
         bit = net[at] & _TOGGLE
         if REPORT <= net[at] >> 4 <= REPORT_ELEMENT_DOUBLE:
-            # One that was seen before is repeated with the same bit until its echo has come.
+            # The drive repeats a report with the same bit until that bit comes back to it.
             if self._known and bit == self.bit:
                 return
             if (self._in - self._out) % (2 * REPORTS_MAX) == REPORTS_MAX:
                 return
             self._keep(net, at, count, form)
-        self.bit = bit  # in other replies it is the last that was acknowledged
+        self.bit = bit  # other replies carry the bit that was acknowledged last
         self._known = True
 
     def _keep(self, net, at, count, form):

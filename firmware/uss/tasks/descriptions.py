@@ -2,9 +2,9 @@
 """What a drive says of a parameter: its limits, name, unit, data type ... (tasks 4 and 5).
 
 The description elements of specification C-6. Not every drive has them, or all of them; with
-fixed length it tells one at a time. The panel knows its parameters and does without.
+fixed length it tells one at a time. The panel knows its parameters and does not need this.
 
-    job = read_description(2010, LOWER_LIMIT)   # without an element: all of it
+    job = read_description(2010, LOWER_LIMIT)   # without an element: all of them
     drive.ask(job)                              # ... later:
     if job.state == pkw.DONE: print(job.description().lower)
 """
@@ -19,8 +19,8 @@ from uss.tasks.long_jobs import LongJob, characters_of, number_of, text_of, word
 IDENTIFIER, ELEMENTS, FACTOR, QUANTITY, ACCESS, NAME = range(1, 7)
 LOWER_LIMIT, UPPER_LIMIT, DEFAULT, EXTENSION = range(7, 11)
 
-# In the order of the complete description, which goes without DEFAULT (SIDOOR has that). A size of
-# 0 is that of the parameter's value.
+# In the order of the complete description, which lacks DEFAULT (SIDOOR has that element). Size 0
+# means the size of the parameter's value.
 DESCRIPTION = (  # element, its characters, `Description` field
     (IDENTIFIER, 2, "identifier"),
     (ELEMENTS, 2, "elements"),
@@ -33,15 +33,15 @@ DESCRIPTION = (  # element, its characters, `Description` field
     (DEFAULT, 0, "default"),
     (EXTENSION, 2, "extension"),
 )
-NARROW_SIZE = const(36)  # characters of it when the value is a word; four more for a double word
+NARROW_SIZE = const(36)  # characters of it if the value is a word; four more for a double word
 WIDE_SIZE = const(40)
 
-# Identifier: bits 0-7 data type, the others as SIDOOR and TR have them. Bit 8 (scaling) means the
-# opposite with each of the two.
+# Identifier: bits 0-7 are the data type, the others are as SIDOOR and TR have them. Bit 8
+# (scaling) means one thing with SIDOOR and the opposite with TR.
 I16, I32, U8, U16, U32, FLOAT, STRING = range(3, 10)
 WRITE_PROTECTED = const(1 << 9)
 HAS_TEXTS = const(1 << 10)
-CHANGED = const(1 << 12)  # from the factory setting
+CHANGED = const(1 << 12)  # it differs from the factory setting
 ONLY_RESETTABLE = const(1 << 13)
 ARRAY = const(1 << 14)
 
@@ -78,7 +78,7 @@ class Description:
         return None if self.identifier is None else self.identifier & 0xFF
 
     def take(self, element, characters):
-        """Take one element as it came; nothing when it is none of DESCRIPTION."""
+        """Take one element as it came; ignore one that is not in DESCRIPTION."""
         for row, size, field in DESCRIPTION:
             if row == element:
                 setattr(self, field, self._value(element, characters[-size:]))
@@ -97,7 +97,7 @@ class Description:
 
 
 def typed(value, size, data_type):
-    """An unsigned number of `size` characters as what its data type says it is."""
+    """An unsigned number of `size` characters, converted to its data type."""
     if data_type == FLOAT and size == 4:
         return pkw.words_to_float(value >> 16, value & 0xFFFF)
     half = 1 << 8 * size - 1
@@ -107,9 +107,9 @@ def typed(value, size, data_type):
 class DescriptionJob(LongJob):
     """Reads or writes description elements. element: 1...10, or pkw.ALL, the whole description.
 
-    characters: to write them; None reads. An element of two characters fits every channel, one of
-    four needs four words; names and the whole need variable length, or the drive refuses.
-    ValueError when an element has not so many characters.
+    characters: what to write; None reads. An element of two characters fits every channel, one of
+    four needs four words. Names and the whole description need variable length, or the drive
+    refuses. ValueError if the element does not have so many characters.
     """
 
     def __init__(self, number, element, characters=None):

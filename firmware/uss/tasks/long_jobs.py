@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Jobs whose task or answer is longer than a double word, and words as the characters they are.
+"""Jobs whose task or answer is longer than a double word; words to characters and back.
 
-What they are about is in `arrays`, `descriptions` and `texts`, each a kind of `LongJob`;
-here is what these share. The panel needs none of them and imports none.
+`arrays`, `descriptions` and `texts` each have a kind of `LongJob`; here is what these share. The
+panel needs none of them and imports none.
 
     words_of(b"AB")                     # [0x4142]
     text_of(b"RAMP TIME  ")             # "RAMP TIME"
@@ -19,19 +19,19 @@ class LongJob(pkw.Job):
     """A job whose task or answer may be longer than a double word.
 
     task: AK. index: 0...255. words: those of the value to write. room: the most words of the
-    answer; one that is longer ends the job as REFUSED, error 21.
+    answer; a longer answer ends the job as REFUSED, error 21.
 
-    When DONE the answer is the first `count` words of `data`, an array, and the first two of them
-    are `high` and `low`, as in a `Job`. Of a drive with four fixed words it is only there, and
-    `count` is 0. Not to be aimed at anything else. What kind of job it is says _is_whole(reply,
-    words): whether an answer with this AK may have so many words.
+    When DONE the answer is the first `count` words of the array `data`; the first two of them are
+    also `high` and `low`, as in a `Job`. From a drive with four fixed words the answer is only in
+    `high` and `low`, and `count` is 0. Do not `aim` such a job at anything else. Each kind of job
+    defines _is_whole(reply, words): whether an answer with this AK may have so many words.
     """
 
     def __init__(self, task, number, index, words, room):
         self.data = array("H", [0] * room)
         self.count = 0
         self._size = 2 * (2 + max(1, len(words)))
-        padded = [0] * (2 - len(words)) + list(words)  # a word stands last, as in a `Job`
+        padded = [0] * (2 - len(words)) + list(words)  # a single word stands last, as in a `Job`
         super().__init__(task, number, index, padded[0], padded[1])
         head = self.words
         self.words = bytearray(2 * (2 + len(padded)))
@@ -47,7 +47,7 @@ class LongJob(pkw.Job):
         return self._size
 
     def _keep_value(self, reply, net, at, count, form):
-        """Keep the words that stand from index `at` on; whether their number fits the reply."""
+        """Keep the words from index `at` on; return whether their number fits the reply."""
         words = count >> 1
         if not self._is_whole(reply, words):
             return False
@@ -67,7 +67,7 @@ class LongJob(pkw.Job):
 
 
 def characters_of(words):
-    """Words as the characters that they travel as."""
+    """Words as the characters that go over the line."""
     return b"".join([struct.pack(">H", word) for word in words])
 
 
@@ -77,10 +77,10 @@ def words_of(characters):
 
 
 def number_of(characters):
-    """The unsigned number that characters are, the high one first."""
+    """Characters as an unsigned number, the high one first."""
     return int.from_bytes(characters, "big")
 
 
 def text_of(characters):
-    """Characters as a text, without the blanks behind it."""
+    """Characters as a text, without the blanks at its end."""
     return "".join([chr(character) for character in characters]).rstrip(" \0")

@@ -22,9 +22,10 @@ _SECOND_FIELD = const(1 << 9)
 class TextJob(LongJob):
     """Reads or writes a text of 16 characters.
 
-    field 1: of an array, the meaning of each index (element = index); of a number, that of each
-    value (element = value + 1). field 2: of an array, that of each value (element = value + 1).
-    ValueError: no such field or element, or characters that no drive can have.
+    field 1: for an array, the meaning of each index (element = index); for a single number, the
+    meaning of each value (element = value + 1). field 2: for an array, the meaning of each value
+    (element = value + 1). ValueError if there is no such field or element, or if a drive cannot
+    have these characters.
     """
 
     def __init__(self, number, element, field, characters=None):
@@ -41,7 +42,7 @@ class TextJob(LongJob):
         return bool(form & pkw.VARIABLE_LENGTH) and super().fits(form)
 
     def text(self):
-        """The text, without the blanks behind it."""
+        """The text, without the blanks at its end."""
         return text_of(characters_of(self.data[: self.count]))
 
     def _is_whole(self, reply, words):
