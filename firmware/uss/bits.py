@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: MIT
-"""Every bit of the control and status words by its name, for programs that show or ask for them.
+"""Every bit of the control and status words by its name, for programs that show or test them.
 
 Tables of rows (bit, name, whether 0 is the remarkable value), for each family. To run a drive
-`pzd` is enough, and the panel does without this file.
+`pzd` is enough; the panel does not use this file.
 
     names(0xFB34, ZSW_BITS)             # ["RUNNING", "CONTROL_REQUESTED", "BRAKE", "RUNS_RIGHT"]
     drive.zsw & bit("WARNING", ZSW_BITS)
     may_start(drive.zsw)
 
-Nothing known is not zero, in which bits that are active at 0 would be set: a `bus.Drive` without
-contact has None, whose only name is UNKNOWN, and which is no permission to start. A `drive.Drive`
-has a word at any time; ask its `contact`.
+An unknown word is not 0, because in a 0 the bits that are active at 0 would be set. A `bus.Drive`
+without contact has None instead: its only name is UNKNOWN, and `may_start` is False for it. A
+`drive.Drive` has a word at any time; check its `contact`.
 """
 
 # Bit, name, whether 0 is the remarkable value (here never: the name says what 1 does).
@@ -53,11 +53,11 @@ ZSW_BITS = (
     (15, "INVERTER_OVERLOAD", True),
 )
 
-# Bits 0...10 are the specification's (C-5.2.1); what is above them each family has for itself.
+# Bits 0...10 are the specification's (C-5.2.1); each family has its own bits above them.
 STW_BITS_PROFILE = STW_BITS[:11]
 ZSW_BITS_PROFILE = ZSW_BITS[:11]
 
-STW_BITS_MM3 = STW_BITS_PROFILE + (  # unverified but for the first
+STW_BITS_MM3 = STW_BITS_PROFILE + (  # unverified except the first
     (11, "RUN_RIGHT", False),
     (12, "RUN_LEFT", False),
     (13, "MOP_UP", False),
@@ -75,7 +75,7 @@ STW_BITS_G120 = (
         (15, "DATA_SET_BIT_0", False),
     )
 )
-ZSW_BITS_G120 = ZSW_BITS_PROFILE + (  # from 11 on unverified
+ZSW_BITS_G120 = ZSW_BITS_PROFILE + (  # unverified from bit 11 on
     (11, "CURRENT_LIMIT", True),
     (12, "BRAKE_OPEN", False),
     (13, "MOTOR_OVERLOAD", True),
@@ -99,7 +99,7 @@ STW2_BITS = (
     (15, "COMMAND_DATA_SET_BIT_1", False),
 )
 
-# PZD word 4 from it: r0053. Unverified too; 06E0h was seen of one that stood.
+# PZD word 4 from it: r0053. Unverified too; a drive that stood sent 06E0h.
 ZSW2_BITS = (
     (0, "DC_BRAKE_ACTIVE", False),
     (1, "ABOVE_OFF_FREQUENCY", False),  # |f| > P2167
@@ -125,13 +125,14 @@ _START_VALUE = 0x0030
 
 
 def rows(table):
-    """The rows of a table that is told as a family has it: itself, or its name here."""
+    """The rows of a table. table: the rows themselves, or the table's name here, as a family has
+    it."""
     return globals()[table] if isinstance(table, str) else table
 
 
 def names(word, table):
-    """The names of the remarkable bits of a word, a list. table: as of `rows`. Of None, which is
-    no word: [UNKNOWN].
+    """A list of the names of the remarkable bits of a word. table: as in `rows`. For None, which
+    is no word: [UNKNOWN].
     """
     if word is None:
         return [UNKNOWN]
@@ -139,7 +140,8 @@ def names(word, table):
 
 
 def bit(name, table):
-    """The bit of that name as a mask: 0x0008 for "FAULT". ValueError when the table has none."""
+    """The bit of that name as a mask: 0x0008 for "FAULT". ValueError if the table has no such
+    bit."""
     for place, candidate, _ in rows(table):
         if candidate == name:
             return 1 << place

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Gives more turns to drives that would trip for want of telegrams: the loop's part in `turns`.
+"""Gives more turns to drives that would trip for want of telegrams. The loop's part of `turns`.
 
 A drive trips when it has heard no telegram for its telegram-off time, P2014 of a MICROMASTER 4.
 So two telegrams to a drive that may run are less than a third of that time apart. Where the list
@@ -21,24 +21,24 @@ from uss.drive import NODES
 from uss.pzd import ZSW_RUNNING
 from uss.silence import SHARE, SPENT_MASK, Silence
 
-LOOK_US = const(4_000)  # how often drives are looked after
-_SWEEP_US = const(130_000)  # in which each of them has been
-_SLOW_US = const(50_000)  # between two looks: a loop that is so slow does all of it in each,
-_SLOWISH_US = const(25_000)  # and such a one half of it
-_PRESS_US = const(16_000)  # in which each of those that may run has been
-_MEASURE_US = const(250_000)  # how often the duration of an exchange is measured
-_MEASURED_MAX_US = const(1_000_000)  # nobody measured meanwhile: it tells nothing
-_EXCHANGES_MIN = const(4)  # that are measured
-_RARE_US = const(1_000_000)  # from one silence to the next that makes a drive that runs late
+LOOK_US = const(4_000)  # from one look at the drives to the next
+_SWEEP_US = const(130_000)  # in so long each drive is looked after
+_SLOW_US = const(50_000)  # a loop with so long between two looks does all four things in each,
+_SLOWISH_US = const(25_000)  # and with so long, two of them
+_PRESS_US = const(16_000)  # in so long each drive that may run is looked after
+_MEASURE_US = const(250_000)  # from one measurement of an exchange's duration to the next
+_MEASURED_MAX_US = const(1_000_000)  # a longer measurement was interrupted and tells nothing
+_EXCHANGES_MIN = const(4)  # a measurement needs so many
+_RARE_US = const(1_000_000)  # between two silences that make a running drive's telegram late
 _LONGEST_US = const(100_000_000)  # small enough to be multiplied
 
 
 class Deadlines:
     """turns: the `Turns` that it belongs to. mask: the clock's period - 1.
 
-    looked_at: when `look` was called last; it is due after LOOK_US. silence: what is known of
-    those that do not answer. The loop writes all fields of this class; of `Turns` it writes
-    `lists_between`, of `Silence` it counts `wait_us` down.
+    looked_at: when `look` was called last; it is due after LOOK_US. silence: the `Silence` of the
+    drives that do not answer. The loop writes all fields of this class, and `lists_between` of
+    `Turns`; it counts `wait_us` of `Silence` down.
     """
 
     def __init__(self, turns, mask):
@@ -47,51 +47,51 @@ class Deadlines:
         self._turns = turns
         self._mask = mask
         self._bounds_us = array("i", bytes(4 * NODES))  # by address: a third of P2014; 0: none
-        # Those that may run, as of the last sweep.
-        self._hurried = [None] * NODES  # the first
+        # The drives that may run, as of the last sweep.
+        self._hurried = [None] * NODES  # the first `_hurried_count` count
         self._hurried_count = 0
-        self._hurried_us = 0  # an exchange with each of them
-        self._least_us = _LONGEST_US  # the narrowest bound of them,
-        self._trips_us = _LONGEST_US  # and of those that trip
+        self._hurried_us = 0  # the time of an exchange with each of them
+        self._least_us = _LONGEST_US  # the shortest bound of them,
+        self._trips_us = _LONGEST_US  # and of those of them that trip
         self._needed_us = 0  # between two telegrams to one of them, if all are answered
-        self._gap_us = 0  # if not
-        self._list_does = True  # none of them needs more, or so many that it does better alone
-        self._latest_us = array("i", bytes(4 * NODES))  # of each: when it is to be pressed
-        self._pressed = 0  # of these, so many were looked after,
+        self._gap_us = 0  # the same with silences
+        self._list_does = True  # the list is enough: none needs more turns, or most do
+        self._latest_us = array("i", bytes(4 * NODES))  # by place: how long until it is pressed
+        self._pressed = 0  # so many of them were looked after,
         self._press_us = 0  # in so long
-        # The sweep that goes on.
+        # The sweep under way.
         self._swept = 0  # so many drives were looked after,
         self._sweep_us = 0  # in so long
         self._running = 0
-        self._running_us = 0  # an exchange with each of them
-        self._needy = 0  # those whose turns in the list may be too far apart
-        self._in_vain = 0  # those that are told to stop and do not answer,
-        self._stops_in_vain = False  # of the last sweep: several, one may just have its turn
+        self._running_us = 0  # the time of an exchange with each of them
+        self._needy = 0  # drives whose turns in the list may be too far apart
+        self._in_vain = 0  # drives that are told to stop and do not answer
+        self._stops_in_vain = False  # the last sweep found several; a single one may have its turn
         self._least_so_far_us = self._trips_so_far_us = _LONGEST_US
         self._round_us = _LONGEST_US  # between two turns in the list, at the most
         self._loop_us = LOOK_US  # how far apart looks are
-        self._next = 0  # of four things, which is done next
-        # The duration of an exchange that is answered.
+        self._next = 0  # which of four things a look does next
+        # How long an exchange takes that is answered.
         self._exchange_us = 0
         self._quickest_us = 0
         self._measured_at = 0
-        self._exchanges = 0  # of the bus, when it was measured last
+        self._exchanges = 0  # those of the bus at the last measurement
         self._silences = 0
         self._silences_us = 0
 
     # --- what may be asked ----------------------------------------------------------------------
 
     def supervise(self, drive, off_time_ms):
-        """Keep two telegrams to a drive that may run less than a third of `off_time_ms` apart: the
-        time without telegrams after which it trips, P2014 of a MICROMASTER 4. 0, it never does,
-        counts as the time after which it is lost; so does a drive of which nobody has told.
+        """Keep two telegrams to a drive that may run less than a third of `off_time_ms` apart.
 
-        Where its turns in the list are further apart, `look` gives it more.
+        The drive trips after this time without telegrams, P2014 of a MICROMASTER 4. 0, for never,
+        counts as the time after which the drive is lost; so does a drive that is not supervised.
+        If its turns in the list are further apart, `look` gives it more.
         """
         bound_us = off_time_ms * 1000 // 3
         if bound_us != self._bounds_us[drive.address]:
             self._bounds_us[drive.address] = bound_us
-            self._sweep_us = _SWEEP_US  # it counts from the next looks on
+            self._sweep_us = _SWEEP_US  # finish this sweep in the next looks
 
     def bound_us(self, drive):
         return self._bounds_us[drive.address] or self._turns.lost_us // 3
@@ -101,8 +101,8 @@ class Deadlines:
         that runs, that this line can promise once `drive` runs beside them. One exchange in that
         gap may stay unanswered. A drive counts as running a tenth of a second after its start.
         """
-        # Those that run as the last sweep found them: to walk the drives takes as long as a step
-        # of the loop may.
+        # This uses the drives that ran in the last sweep: a walk over all drives would take as
+        # long as a whole step of the loop may.
         running, running_us = self._hurried_count, self._hurried_us
         if not drive.may_run():
             running += 1
@@ -110,12 +110,12 @@ class Deadlines:
         return self._with_silences(self._needed(running, running_us))
 
     def first_late(self, drive):
-        """Whom its telegrams would reach too late for `supervise` if `drive` ran beside those that
-        run now: `drive` or one of them. None: nobody. One that never trips, or of which nobody
-        has told when it does, is never late.
+        """The drive that would get its telegrams too late for `supervise` if `drive` ran beside
+        those that run now: `drive` or one of them; None if there is none. A drive that never
+        trips, or that is not supervised, is never late.
         """
         gap_us = self.gap_us(drive)
-        bounds_us = self._bounds_us  # of one that never trips 0: it is never late
+        bounds_us = self._bounds_us  # 0 for a drive that never trips, which is never late
         if 0 < bounds_us[drive.address] <= gap_us:
             return drive
         if self._least_us <= gap_us:
@@ -126,8 +126,8 @@ class Deadlines:
         return None
 
     def silence_wait_us(self):
-        """How long to wait, in microseconds, before one more telegram that perhaps nobody answers:
-        until the share of the silent drives has room for it. The telegram takes of their share.
+        """How long to wait, in microseconds, before one more telegram that may stay unanswered:
+        until the share of the silent drives has room for it. The telegram uses up some of it.
         """
         if not self._has_room():
             return _LONGEST_US
@@ -136,7 +136,7 @@ class Deadlines:
     # --- what changes ---------------------------------------------------------------------------
 
     def forget(self, drive):
-        """It is not on the bus any more."""
+        """The drive is not on the bus any more."""
         self.silence.forget(drive)
         self._bounds_us[drive.address] = 0
 
@@ -147,7 +147,7 @@ class Deadlines:
         self._bounds_us[old] = 0
 
     def list_changed(self):
-        """There is another list: what follows from that."""
+        """The list has changed: compute what depends on it."""
         net_count = max([drive.layout.net_count for drive in self._turns.drives] or [0])
         self.silence.list_changed(net_count)
         timing = self._turns.timing
@@ -155,13 +155,13 @@ class Deadlines:
         self._quickest_us = self._exchange_us
 
     def look(self, now):
-        """From the loop: a little of what is due."""
+        """From the loop: do a little of what is due."""
         passed_us = (now - self.looked_at) & self._mask
         self.looked_at = now
         if passed_us > self._loop_us:
             self._loop_us = min(passed_us, _SWEEP_US)
         else:
-            self._loop_us -= self._loop_us >> 5  # a loop that was slow once is soon forgiven
+            self._loop_us -= self._loop_us >> 5  # a single slow step is soon forgotten
         if self.silence.wait_us > -_LONGEST_US:
             self.silence.wait_us -= passed_us
         self._sweep_us += passed_us
@@ -174,7 +174,7 @@ class Deadlines:
     # --- behind it ------------------------------------------------------------------------------
 
     def _do_next(self, now):
-        """One thing in a look: the loop's steps are to be short."""
+        """Do one thing in each look, because the loop's steps must be short."""
         silence = self.silence
         self._next = following = self._next + 1 & 3
         if following & 1 and (self._stops_in_vain or not self._list_does):
@@ -189,7 +189,7 @@ class Deadlines:
             self._sweep(now)
 
     def _cost_us(self, drive):
-        """What an exchange with it takes."""
+        """How long an exchange with the drive takes."""
         return self._exchange_us if drive.contact else self.silence.silent_exchange_us
 
     def _sweep(self, now):
@@ -197,7 +197,7 @@ class Deadlines:
         count = len(drives)
         swept = self._swept
         if swept >= count:
-            self._end_sweep()  # that takes long enough
+            self._end_sweep()  # nothing else in this look: this takes long enough
             return
         until = _share(count, self._sweep_us, _SWEEP_US)
         if swept >= until:
@@ -212,7 +212,7 @@ class Deadlines:
                     self._in_vain += 1
             elif self._stops_in_vain:
                 self._press_if_late(drive, now)
-            # What most drives are is seen without a call: standing.
+            # Most drives stand. This test sees that without a call.
             if drive.wanted or drive.was_running or drive.zsw & ZSW_RUNNING:
                 if drive.may_run():
                     self._hurry(drive)
@@ -233,10 +233,10 @@ class Deadlines:
             cost_us = self._exchange_us
             if bound_us < self._least_so_far_us:
                 self._least_so_far_us = bound_us
-        else:  # nobody else needs to wait for its sake
+        else:  # its bound does not limit what others may take
             cost_us = self.silence.silent_exchange_us
         self._hurried[running] = drive
-        # While the one after it is asked, at the earliest: it is to be the next but one.
+        # At the earliest during the exchange after its own, so that it is the next but one.
         self._latest_us[running] = max(bound_us - self._gap_us, cost_us >> 1)
         self._running = running + 1
         self._running_us += cost_us
@@ -244,7 +244,7 @@ class Deadlines:
             self._needy += 1
 
     def _end_sweep(self):
-        """All have been looked after: what their turns come to."""
+        """All drives have been looked after: compute what their turns add up to."""
         turns = self._turns
         running = self._running
         self._hurried_count = running
@@ -253,7 +253,7 @@ class Deadlines:
         self._trips_us = self._trips_so_far_us
         self._needed_us = self._needed(running, self._running_us)
         self._gap_us = self._with_silences(self._needed_us)
-        # With two thirds of the list in need nobody waits shorter for being pressed.
+        # If two thirds of the list are in need, pressing makes no drive wait less.
         needy = self._needy
         crowded = 3 * needy >= 2 * turns.round_count > 0 and not turns.cycle_us
         turns.lists_between = 3 if crowded else 1
@@ -261,8 +261,8 @@ class Deadlines:
         self._stops_in_vain = self._in_vain > 1
         self._in_vain = 0
         if self._list_does and not self._stops_in_vain:
-            self._press_us = 0  # nobody is pressed
-        # Every second telegram may be one that is not in the list.
+            self._press_us = 0  # no drive is pressed
+        # Every second telegram may be one outside the list.
         exchanges_us = (2 * turns.round_count + 1) * self._exchange_us
         self._round_us = max(exchanges_us, turns.cycle_us) + self.silence.silent_exchange_us
         self._needy = 0
@@ -273,7 +273,7 @@ class Deadlines:
         self._least_so_far_us = self._trips_so_far_us = _LONGEST_US
 
     def _press(self, now):
-        """Those whose next telegram would be late if something else still went before it."""
+        """Press the drives whose next telegram would be late if another one went before it."""
         count = self._hurried_count
         pressed = self._pressed
         until = _share(count, self._press_us, min(_PRESS_US, self._least_us >> 2))
@@ -289,10 +289,11 @@ class Deadlines:
         self._pressed = pressed
 
     def _needed(self, running, running_us):
-        """The gap between two telegrams to each of so many drives, with none that is not answered.
+        """The gap between two telegrams to each of so many drives, if all telegrams are answered.
 
-        Two telegrams out of three are theirs, and one may just have begun; or all have their turns
-        in the list, with a telegram besides after every third. The loop has to see it first.
+        Either they get two telegrams out of three, another exchange may just have begun, and the
+        loop must notice first that they are late; or all have their turns in the list, with an
+        extra telegram after every third.
         """
         exchange_us = self._exchange_us
         turns = self._turns
@@ -304,15 +305,17 @@ class Deadlines:
         return seen_us + running_us + ((running_us + exchange_us) >> 1) + exchange_us
 
     def _with_silences(self, needed_us):
-        """That gap with the share of those that rest in it, and with one that falls silent."""
+        """That gap with the share of the resting drives in it, and with one drive that falls
+        silent.
+        """
         if self.silence.resting:
             needed_us += needed_us // (SHARE - 1)
         return needed_us + self.silence.silent_exchange_us
 
     def _has_room(self):
-        """Whether the drives that run still have their telegrams in time after one more silence.
-        Where there are too many of them for that anyway, a silence may take a quarter of what they
-        need: it trips none. Where only a drive that never trips would be late, and not lost, a
+        """Whether the drives that run still get their telegrams in time after one more silence.
+        If there are too many of them for that anyway, a silence may take a quarter of what they
+        need, which trips none. If only a drive that never trips would be late, and not lost, a
         silence is allowed now and then.
         """
         needed_us = self._needed_us
@@ -323,7 +326,7 @@ class Deadlines:
         return self.silence.silent_exchange_us < room_us
 
     def _measure(self, now):
-        """How long exchanges take that are answered."""
+        """Measure how long answered exchanges take."""
         turns, silence = self._turns, self.silence
         passed_us = (now - self._measured_at) & self._mask
         silences = (silence.count - self._silences) & 0xFFFF
@@ -333,7 +336,7 @@ class Deadlines:
         self._exchanges = turns.exchanges
         self._silences = silence.count
         self._silences_us = silence.spent_us
-        # What waits for its cycle takes no longer for that.
+        # With a cycle time the bus waits between rounds; that time does not count as exchanges.
         if _EXCHANGES_MIN <= count and 0 < passed_us < _MEASURED_MAX_US and not turns.cycle_us:
             longest_us = self._quickest_us + turns.timing.reply_timeout_us
             measured_us = min(max(passed_us // count, self._quickest_us), longest_us)
@@ -341,5 +344,5 @@ class Deadlines:
 
 
 def _share(count, passed_us, period_us):
-    """How many of `count` are to have been looked after by now, so that all have at the end."""
+    """How many of `count` should be looked after by now, so that all are at the end."""
     return count if passed_us >= period_us else count * passed_us // period_us

@@ -1,20 +1,19 @@
 # SPDX-License-Identifier: MIT
 """One drive on the bus, as the master keeps it: commands, process image, counters.
 
-Two sides share a drive: the *loop* (panel, own program) and the *engine* (`master.poll`, possibly
+Two sides share a drive: the *loop* (panel, your program) and the *engine* (`master.poll`, possibly
 in an interrupt). They share words, not structures; each field has one writer:
 
     loop     wanted, off, ticket, stops, hsw, urgent, asking, acknowledgements, near, tells_status,
              further words on their way out
     engine   void, zsw, hiw, contact, contacts, was_running, silent, served, counters and the rest
-    both     steady: False by whoever changes something, at last; True by the engine alone
+    both     steady: either side sets it False after any change; only the engine sets it True
 
-ON and JOG are sent only on a ticket. Every `start` draws a new one; the engine voids the one in
-force when the drive is lost, faults, stops of its own accord, stands still though it was not told
-to, or the loop stops refreshing. A void
-ticket stays void: whatever happens to the line or the loop, only a fresh `start` makes a drive run
-again. Every STOP is sent: one telegram at least carries OFF before the next ON, however soon that
-comes.
+ON and JOG are sent only on a ticket. Every `start` draws a new one. The engine voids the ticket in
+force if the drive is lost, faults, stops of its own accord or stands still although it was not
+told to, or if the loop stops refreshing. A void ticket stays void: whatever happens to the line or
+the loop, only a fresh `start` makes a drive run again. Every STOP is sent: at least one telegram
+carries OFF before the next ON, however soon that comes.
 
     drive.start(0x0CCD)                 # ON, setpoint HSW, from the next telegram on
     drive.start(0, pzd.JOG_LEFT)        # JOG, until `stop`
@@ -41,24 +40,25 @@ from uss.timing import elapsed
 
 _TICKET_MASK = const(0xFFFF)
 _INSIST_MAX = const(10)  # telegrams out of turn that an OFF1 may take until the drive answers one,
-_RESTING_INSIST_MAX = const(3)  # and if it did not answer before: there may be 30 of those
-SILENT_MAX = const(3)  # so often silent in a row, a drive is not just disturbed
-_SURE = const(2)  # telegrams that may meet with something else before `trouble` says so
+_RESTING_INSIST_MAX = const(3)  # and if it did not answer before: 30 drives may be silent
+SILENT_MAX = const(3)  # a drive that is silent so often in a row is not just disturbed
+_SURE = const(2)  # so many telegrams may meet with another trouble before `trouble` changes
 _SURE_MAX = const(3)
-_AHEAD_US = const(100_000)  # so far an interrupt may have been ahead of who asks for the time
+_AHEAD_US = const(100_000)  # an interrupt may be so far ahead of the loop's reading of the time
 _UNKNOWN = const(-1)  # no control word
 _NO_EDGE = const(-1)  # no acknowledgement on its way
-_ANSWERED = const(-2)  # one was confirmed: a word without bit 7 must follow
-_NO_ORDER = const(-1)  # nothing by which a standstill could be told
+_ANSWERED = const(-2)  # an acknowledgement was confirmed: a word without bit 7 must follow
+_NO_ORDER = const(-1)  # HIW is expected to become nothing: a standstill tells nothing
 _ORDER = const(0x0071)  # STW bits of an ON whose setpoint counts: 0, 4, 5 and 6
 _PERCENT = const(100)
-_TROUBLE = const(0x0048)  # ZSW_FAULT, ZSW_INHIBIT; a const that is imported is none here
+_TROUBLE = const(0x0048)  # ZSW_FAULT, ZSW_INHIBIT; the compiler does not know an imported const
 _MOTION = const(0x004C)  # and ZSW_RUNNING
 _COUNTER_MASK = const(0xFFFF)  # counters wrap like the drive's own (specification A-5.2.3)
 
-# What each receiver finding is counted as, and its bit of the error status word. Both named as in
-# specification A-5.2.3. Characters with a wrong parity or stop bit, and lost ones, have no place:
-# no UART of MicroPython tells of them; they show as telegrams too short or with a wrong BCC.
+# The counter of each receiver finding, and its bit of the error status word, both named as in
+# specification A-5.2.3. Characters that are lost, or have a wrong parity or stop bit, have no
+# counter: no UART of MicroPython tells of them. They show as telegrams too short or with a wrong
+# BCC.
 COUNTERS = (
     "good",  # answered without an error
     "start",  # telegram start not identified
@@ -69,11 +69,11 @@ COUNTERS = (
     "residual",  # residual run time expired
 )
 STATUS_BITS = (0x00, 0x08, 0x40, 0x10, 0x08, 0x80, 0x20, 0x40)
-_GARBLED_COUNTER = const(2)  # "length": it has no counter of its own
+_GARBLED_COUNTER = const(2)  # "length", because GARBLED has no counter of its own
 
-# What the drives of a bus let the engine know, three rows by address: the urgency of a command;
-# that its next turn would be too late; that it is to have more than its turn. At ANY, whether
-# there may be anything to see. The engine alone clears them.
+# What the drives of a bus tell the engine, in three rows by address: how urgent a command is; that
+# the drive's next turn would be too late; that the drive wants more than its turn. At ANY: whether
+# any of them may be set. Only the engine clears them.
 NODES = const(32)
 COMMANDS = const(0)
 OVERDUE = const(32)
@@ -93,15 +93,15 @@ class Drive:
     """address: node 0...31, ValueError beyond. mask: the clock's period - 1. layout: a `Layout`.
 
     attention: shared by the drives of a bus, see ATTENTION, so that the engine need not ask each
-    of them before every telegram.
+    drive before every telegram.
 
     Fields to look at: `zsw`, `hiw`, `contact`, `was_running`; `silent`, telegrams without a valid
     reply in a row; `counters`, see COUNTERS; `status`, the error status word: what went wrong
-    since the last valid reply, 0 after one; `trouble`, which of `receiver.TROUBLES` that mostly
-    was: it stays what it is while others mix in.
+    since the last valid reply, 0 after one; `trouble`, which of `receiver.TROUBLES` most of that
+    was. A few others in between do not change it.
     """
 
-    outside = False  # of the list; a telegram that is outside has a state, see `outside`
+    outside = False  # it is in the list; for telegrams outside it see `outside`
 
     def __init__(self, address, mask, attention=None, layout=STANDARD):
         if not 0 <= address <= NODE_MAX:
@@ -109,10 +109,10 @@ class Drive:
         self.address = address
         self.layout = layout
         self.channel = Channel(mask, layout.pkw_words, layout.longest)
-        self.request = bytearray(NET + layout.net_max + 1)  # the telegram to it
-        self.size = NET + layout.net_count + 1  # characters of it
-        self.sealed = False  # it is whole: frame and BCC fit its words
-        self.steady = False  # nothing has happened that would change its words, but perhaps `hsw`
+        self.request = bytearray(NET + layout.net_max + 1)  # the telegram to the drive
+        self.size = NET + layout.net_count + 1  # of the request, in characters
+        self.sealed = False  # the request is whole: frame and BCC fit its words
+        self.steady = False  # nothing would change the words of the request, except perhaps `hsw`
         self._attention = attention or bytearray(ATTENTION)
         # Written by the loop.
         self.wanted = 0  # the control word that makes it run, 0 for none
@@ -121,10 +121,10 @@ class Drive:
         self.stops = 0
         self.hsw = 0
         self.urgent = 0
-        self.asking = False  # somebody waits for its parameters
+        self.asking = False  # the program waits for its parameters
         self.acknowledgements = 0  # of faults
         self.near = pzd.FULL_SCALE // _PERCENT * 2  # 2 % of HIW's full scale, even; 0: no speed
-        self.tells_status = True  # ZSW is its status word; False: it says nothing of the motor
+        self.tells_status = True  # ZSW is its status word; False: ZSW says nothing of the motor
         self.further = None  # PZD words beyond two: those to the drive, then those from it
         # Written by the engine.
         self.void = 0
@@ -132,7 +132,7 @@ class Drive:
         self.hiw = 0
         self.contact = False  # a valid reply came within the lost time
         self.contacts = 0  # how often contact was made
-        self.was_running = False  # when contact was lost: it may run still
+        self.was_running = False  # it ran when contact was lost, so it may still run
         self.ran = False  # seen running on the ticket in force
         self.off_answers = 0  # valid replies to telegrams without ON; wraps
         self.answered_stw = 0  # the control word of that telegram; 0 without contact
@@ -140,31 +140,31 @@ class Drive:
         self.silent = 0
         self.status = 0
         self.trouble = SILENCE
-        self._sure = 0  # how much of it is to be outweighed before it is another
+        self._sure = 0  # so many other troubles must come before `trouble` changes
         self.served = 0
         self.stops_sent = 0  # `stops` when the last telegram was built
-        self.insist = 0  # telegrams out of turn left to an OFF1 that no answer has confirmed
+        self.insist = 0  # telegrams out of turn left for an OFF1 that no answer has confirmed
         self.counters = array("H", bytes(2 * len(COUNTERS)))
         self.acknowledged = 0  # `acknowledgements` that a valid reply has confirmed
         self._tried_at = 0  # the last valid reply; without contact, the last telegram
-        self._toggled = 0  # bits of STW that are other than usual
+        self._toggled = 0  # bits of STW that are inverted by `control`
         self._behind = layout.pzd_count + 1  # characters of a telegram from its PZD on
         self._sent_stw = 0
         self._hsw = 0  # `hsw` when the telegram was built
-        self._edge = _NO_EDGE  # of bit 7: `acknowledgements` when it was sent
+        self._edge = _NO_EDGE  # `acknowledgements` when bit 7 was sent
         self._may_run = False  # sent ON or seen running, and not seen standing after OFF1
-        self._order = _NO_ORDER  # the word that HIW is to become
-        self._arrived = False  # and has become
+        self._order = _NO_ORDER  # the word that HIW should become
+        self._arrived = False  # HIW has become that word
         if layout.pzd_words > 2:
             self.further = array("H", bytes(4 * (layout.pzd_words - 2)))
 
     # --- for the loop ---------------------------------------------------------------------------
 
     def start(self, hsw, stw=pzd.ON):
-        """Have the drive run with setpoint word `hsw` (0...FFFFh) on a new ticket.
+        """Make the drive run with setpoint word `hsw` (0...FFFFh) on a new ticket.
 
         stw: pzd.ON, ON_REVERSE, JOG_RIGHT or JOG_LEFT; a jog has its speed from the drive.
-        ValueError: no such word, or a layout without PZD. TypeError: no integer.
+        ValueError if there is no such word, or the layout has no PZD. TypeError: not an integer.
         """
         if hsw & 0xFFFF != hsw:
             raise ValueError("HSW %r is not 0...FFFFh" % hsw)
@@ -173,25 +173,26 @@ class Drive:
         self.hsw = hsw
         self.off = pzd.OFF1
         ticket = (self.ticket + 1) & _TICKET_MASK
-        if ticket == self.void:  # after 65536 starts the old void one comes round
+        if ticket == self.void:  # tickets wrap after 65536 starts: skip the void one
             ticket = (ticket + 1) & _TICKET_MASK
-        # The engine may come in between any two of these: the word stands before its ticket does,
-        # and the ticket is written once, so that what the engine voids stays void.
+        # The engine may come in between any two of these lines. There is no control word while the
+        # ticket is new, and the ticket is written once, so that what the engine voids stays void.
         self.wanted = 0
         self.ticket = ticket
         self.wanted = stw
         self.hurry()
 
     def turn(self, stw):
-        """Another control word for a drive that is wanted to run; it starts none that is not."""
+        """Change the control word of a drive that is wanted to run. This does not start a
+        drive."""
         if self.wanted:
             self.wanted = stw
             self.steady = False
 
     def stop(self, off=pzd.OFF1):
-        """OFF, whatever state the drive is in, ahead of the list. It stays OFF until `start`.
+        """Send OFF ahead of the list, whatever state the drive is in. It stays OFF until `start`.
 
-        off: pzd.OFF1, OFF2 or OFF3, ValueError else. The latter two inhibit the drive until OFF1
+        off: pzd.OFF1, OFF2 or OFF3; else ValueError. OFF2 and OFF3 inhibit the drive until OFF1
         follows.
         """
         if off not in OFFS:
@@ -208,20 +209,20 @@ class Drive:
 
     def hurry(self):
         """Let the next telegram on the line be one to this drive."""
-        # Behind what has changed, because the engine may come in between: it would find nothing to
-        # change, or not be called for it.
+        # Call this after the change, never before it: the engine may come in between, and would
+        # find nothing changed.
         self.urgent = (self.served + 1) & _TICKET_MASK
         self.steady = False
         self.call()
 
     def move(self, address):
-        """From now on it answers at another address; the master sees that it is free."""
+        """The drive answers at another address from now on; `Turns` checks that it is free."""
         self.address = address
-        self.call()  # what called at the old one
+        self.call()  # it may have called at the old address
         self._call_for_turns()
 
     def call(self):
-        """Let the engine look how urgent this drive is."""
+        """Make the engine look how urgent this drive is."""
         attention = self._attention
         urgency = self.urgency()
         if urgency > 1:
@@ -234,15 +235,16 @@ class Drive:
         attention[ANY] = 1
 
     def want_turns(self, asking):
-        """Whether it is to have more than its turn in the list, for its parameters."""
+        """Set whether it gets more than its turn in the list, for its parameters."""
         self.asking = asking
         if asking:
             self._call_for_turns()
 
     def control(self, bits, on):
-        """Have these bits of STW 1, or 0, in every telegram, also while it runs.
+        """Set these bits of STW to 1, or to 0, in every telegram, also while the drive runs.
 
-        bits: any of 3...6, which are 1 otherwise, and 13...15, which are 0. ValueError: others.
+        bits: any of 3...6, which are otherwise 1, and 13...15, which are otherwise 0. ValueError
+        for other bits.
         """
         if bits & _CONTROL_BITS != bits:
             raise ValueError("STW bits %04Xh are no matter of control()" % (bits & ~_CONTROL_BITS))
@@ -251,10 +253,10 @@ class Drive:
         self.steady = False
 
     def tell_speed(self, full_scale):
-        """How HIW tells the speed: the count that stands for 100 %, negative to the left.
+        """Say which count of HIW stands for 100 % speed; HIW is negative to the left.
 
-        4000h unless told otherwise; 0: HIW is no speed with a sign. By it a motor that stands
-        still though nobody told it to is noticed, and ON taken back.
+        4000h by default; 0: HIW is no speed with a sign. By HIW the engine notices a motor that
+        stands still although it was not told to, and takes ON back.
         """
         self.near = full_scale // _PERCENT * 2
         self.steady = False
@@ -262,8 +264,8 @@ class Drive:
     def put(self, place, word):
         """Send `word`, 0...FFFFh, as PZD word `place` from the next telegram on.
 
-        place: 3...16; the first two are STW and HSW, 4 is mostly STW2. ValueError: no such word,
-        or not in its layout.
+        place: 3...16; the first two are STW and HSW, 4 is mostly STW2. ValueError if there is no
+        such word, or the layout has no such place.
         """
         if not 3 <= place <= self.layout.pzd_words or word & 0xFFFF != word:
             raise ValueError("PZD%r = %r to drive %d" % (place, word, self.address))
@@ -273,7 +275,7 @@ class Drive:
     def word(self, place):
         """PZD word `place`, 1...16, of the last valid reply; 1 is ZSW, 2 HIW, 4 mostly ZSW2.
 
-        ValueError: not in its layout. Means nothing without contact.
+        ValueError if the layout has no such place. The word means nothing without contact.
         """
         words = self.layout.pzd_words
         if not 1 <= place <= words:
@@ -282,15 +284,16 @@ class Drive:
             return self.zsw if place == 1 else self.hiw
         return self.further[words - 2 + place - 3]
 
-    # A method, not a property: with one in its class, storing any attribute of an object takes
-    # MicroPython three times as long, in the interrupts too.
+    # A method, not a property: if a class has a property, MicroPython takes three times as long to
+    # store any attribute of its objects, in the interrupts too.
 
     def answered_off(self):
         """Whether the last valid reply was one to a telegram without ON."""
         return self.contact and not self.answered_stw & STW_RUN
 
     def may_run(self):
-        """Whether the motor may turn: told to, seen to, lost while it did, or nothing tells."""
+        """Whether the motor may turn: it was told to, is seen to, was lost while it did, or its
+        ZSW does not tell."""
         return self._may_run or self.was_running or not self.tells_status or self.is_on()
 
     def is_on(self):
@@ -303,16 +306,16 @@ class Drive:
         )
 
     def stopped_by_engine(self):
-        """Whether ON was wanted and the engine took it back; `stop` or `start` clear it."""
+        """Whether ON was wanted and the engine took it back; `stop` and `start` clear this."""
         return self.wanted != 0 and self.ticket == self.void
 
     def state(self):
-        """What the last status word says: pzd.READY ... Means nothing without contact."""
+        """What the last status word says: pzd.READY ... It means nothing without contact."""
         return pzd.state(self.zsw)
 
     def ask(self, job):
-        """Queue a parameter job. RuntimeError when too many wait already, it is pending, or the
-        drive has no parameter channel. One that its layout has no room for is REFUSED at once.
+        """Queue a parameter job. RuntimeError if too many wait already, it is pending, or the
+        drive has no parameter channel. A job that does not fit its layout is REFUSED at once.
         """
         self.channel.ask(job)
 
@@ -329,7 +332,7 @@ class Drive:
             self.call()
 
     def ask_soon(self):
-        """From the loop: it is to be asked once besides its turns in the list."""
+        """From the loop: give it one telegram besides its turns in the list."""
         if not self.insist:
             self.insist = 1
         self.steady = False
@@ -337,22 +340,22 @@ class Drive:
 
     def press(self, urgency=2):
         """From the loop: its next turn in the list would be too late. urgency: 1 for a drive at
-        rest, which goes behind those that may run.
+        rest, which goes after those that may run.
         """
         attention = self._attention
         attention[OVERDUE + self.address] = urgency
         attention[ANY] = 1
 
     def is_told_in_vain(self):
-        """Whether it does not answer, and has still to be told to stop or asked once more."""
+        """Whether it does not answer, and must still be told to stop or asked once more."""
         return not self.contact and (self.insist > 0 or self.stops != self.stops_sent)
 
     def urgency(self):
-        """How much this drive is in a hurry.
+        """How urgent the next telegram to this drive is.
 
-        0: its turn in the list will do. 1: more often than its turn: an OFF1 is repeated until it
-        is answered, or parameters are waited for. 2: a command. 3: a stop. 4: a stop of a drive
-        that runs, or may run.
+        0: its turn in the list will do. 1: it needs more than its turn, to repeat an OFF1 until it
+        is answered, or because the program waits for parameters. 2: a command. 3: a stop. 4: a
+        stop of a drive that runs, or may run.
         """
         if self.urgent == self.served and self.stops == self.stops_sent:
             return 1 if self.insist or self.asking and self.contact else 0
@@ -361,7 +364,7 @@ class Drive:
         return 4 if self._may_run or self.zsw & ZSW_RUNNING or not self.tells_status else 3
 
     def fill(self, now):
-        """Bring the words of the request up to date. What changes in it breaks its seal."""
+        """Bring the words of the request up to date. A change makes it unsealed."""
         channel = self.channel
         if not channel.idle:
             self.sealed = False
@@ -374,7 +377,7 @@ class Drive:
             return
         self._hsw = hsw
         self.served = self.urgent
-        self._attention[self.address] = 0  # with this telegram it is served
+        self._attention[self.address] = 0  # this telegram carries its command
         on = self.wanted and self.is_on()
         if self.stops != self.stops_sent:
             self.stops_sent = self.stops
@@ -385,7 +388,7 @@ class Drive:
         if on:
             self._may_run = True
             self.insist = 0
-            self.acknowledged = self.acknowledgements  # never with ON, nor much later
+            self.acknowledged = self.acknowledgements  # drop it: never with ON, nor much later
             stw = self.wanted
         else:
             self.ran = False
@@ -397,7 +400,7 @@ class Drive:
         stw ^= self._toggled
         if on or self._order != _NO_ORDER:
             self._note_order(stw, hsw)
-        self.sealed = self.steady = False  # should this fail half way, it is done anew
+        self.sealed = self.steady = False  # if this fails half way, the next `fill` does it anew
         self._sent_stw = _UNKNOWN
         behind = self._behind
         if behind >= 3:
@@ -414,11 +417,11 @@ class Drive:
         self.steady = not self.insist and self.acknowledgements == self.acknowledged
 
     def _note_order(self, stw, hsw):
-        """What HIW is to become by this telegram. Another order has still to be carried out."""
+        """Note what HIW should become by this telegram. A new value has not arrived yet."""
         order = hsw
         if stw & pzd.STW_REVERSE:
             order = -hsw & 0xFFFF
-        # Below 5 % a standstill is what was told. A jog has no setpoint.
+        # A setpoint below 5 % may mean a standstill. A jog has no setpoint.
         least = 5 * self.near >> 1
         if stw & _ORDER != _ORDER or not least or (order + least - 1) & 0xFFFF < 2 * least - 1:
             order = _NO_ORDER
@@ -440,7 +443,7 @@ class Drive:
         counters = self.counters
         counters[0] = (counters[0] + 1) & _COUNTER_MASK
         if not self.contact:
-            # Contact is made before anything is sent on it, and what was wanted before is void.
+            # On new contact, what was wanted before is void, so that it is not sent.
             self.revoke()
             self.contacts = (self.contacts + 1) & _COUNTER_MASK
             self.was_running = False
@@ -490,8 +493,8 @@ class Drive:
             self.channel.miss(now, self.silent, pressing)
 
     def _weigh(self, trouble):
-        """What the telegrams without a valid reply have mostly met with since the last one: two
-        kinds that take turns do not take turns on the display.
+        """Find the trouble that most telegrams have met with since the last valid reply. So two
+        kinds that alternate on the line do not alternate on the display.
         """
         if self.silent and trouble == self.trouble:
             self._sure = min(self._sure + 1, _SURE_MAX)
@@ -506,8 +509,8 @@ class Drive:
         return self.layout.fits(net_count)
 
     def may_rest(self):
-        """Whether it need not have every turn: it does not answer, and nobody can have told it to
-        run. One that was running when contact was lost keeps its turns.
+        """Whether it may miss turns: it does not answer, and was not told to run. A drive that was
+        running when contact was lost keeps its turns.
         """
         return not self.contact and not self.was_running
 
@@ -517,8 +520,8 @@ class Drive:
         return passed_us if passed_us < mask - _AHEAD_US else 0
 
     def may_reply_alike(self):
-        """Whether its reply may be the very request: not where a control word meets a status word,
-        which has bit 9 set when bit 3 is not.
+        """Whether its reply may be equal to the request. With PZD it may not: a status word has
+        bit 9 set when bit 3 is not, a control word does not.
         """
         return not self.layout.pzd_words
 
@@ -534,7 +537,7 @@ class Drive:
     def _acknowledge_bit(self):
         """Bit 7 for an acknowledgement until a reply has confirmed it, or 0.
 
-        It acts by its rising edge: after one that was confirmed a word goes without.
+        The bit acts by its rising edge. So after a confirmed one, a word without the bit is sent.
         """
         if self._edge == _ANSWERED:
             self._edge = _NO_EDGE
@@ -543,14 +546,14 @@ class Drive:
         return pzd.STW_ACKNOWLEDGE
 
     def _watch_running(self, zsw):
-        # A drive that ran on this ticket and runs no more, trips or inhibits itself has stopped of
-        # its own accord. It must not start again of its own accord when the cause goes away.
+        # A drive that ran on this ticket and no longer runs, or that trips or inhibits itself, has
+        # stopped of its own accord. It must not start by itself when the cause goes away.
         if zsw & _MOTION == ZSW_RUNNING:
             self.ran = True
         elif self.ran or zsw & _TROUBLE:
             self.revoke()
-        # So has one that had its speed and stands still while nothing else was told: its mains
-        # were away, and it powered up and runs again before anything else could show it.
+        # A drive that had its speed and stands still, although it was told nothing else, has also
+        # stopped: its mains were off, and it may power up and run again before any other sign.
         order = self._order
         if order >= 0:
             near = self.near

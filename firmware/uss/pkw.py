@@ -8,8 +8,8 @@ A request and its reply begin with PKE, IND and the value, whose place depends o
                                                        0           the word    4 words, fixed
                                                        the word    -           3 words, or variable
 
-A `Job` is one task for one drive and, later, its result. Who carries it there is `channel`; what
-goes beyond one value is in `tasks`.
+A `Job` is one task for one drive and, later, its result. `channel` carries it to the drive; jobs
+of more than one value are in `tasks`.
 
     job = read(2000)                     # or write_word(700, 5), write_float(1082, 40.5)
     drive.ask(job)                       # ... later:
@@ -51,7 +51,7 @@ REFUSED_REPLY = const(7)
 NO_RIGHTS_REPLY = const(8)
 TEXT_REPLY = const(15)
 
-_NO_RIGHTS = const(1 << NO_RIGHTS_REPLY)  # of all tasks that write
+_NO_RIGHTS = const(1 << NO_RIGHTS_REPLY)  # in FITTING of all tasks that write
 _REFUSED = const(1 << REFUSED_REPLY)
 _WORD = const(1 << WORD)
 _DOUBLE = const(1 << DOUBLE)
@@ -89,13 +89,13 @@ _DOUBLE_TASKS = const(
 )
 # Their answer may be longer than a double word.
 _LONG_TASKS = const(1 << READ_DESCRIPTION | 1 << WRITE_DESCRIPTION | 1 << TEXT)
-FIRST_PERMANENT = const(11)  # this task and those behind it may write what outlives the power
+FIRST_PERMANENT = const(11)  # this task and higher ones may write to the EEPROM
 
 _WIDTHS = (0, 1, 2, 0, 1, 2, 1)  # by reply: words of its value, WORD or DOUBLE
 
 # --- errors -------------------------------------------------------------------------------------
 
-# Error numbers of reply 7 that the code knows; all of them in words: `bus.pkw_errors`.
+# Error numbers of reply 7 that the code uses; `bus.pkw_errors` has all of them in words.
 NO_CHANGE_RIGHTS = const(-1)  # what `Job.error` holds after reply 8, which carries no number
 NO_PARAMETER = const(0)
 BEYOND_LIMITS = const(2)
@@ -135,9 +135,9 @@ def name(number, index=0):
 
 # --- jobs ---------------------------------------------------------------------------------------
 
-# States of a job. While PENDING it belongs to the engine, before and after to the loop.
-# UNANSWERED: the drive answers telegrams without the task, but not those with it. Whether a write
-# that ended as TIMED_OUT or UNANSWERED was carried out, nobody knows.
+# States of a job. While PENDING it belongs to the engine, before and after that to the loop.
+# UNANSWERED: the drive answers telegrams without the task, but not those with it. A write that
+# ended as TIMED_OUT or UNANSWERED may or may not have been carried out.
 NEW, PENDING, DONE, REFUSED, TIMED_OUT, UNANSWERED = range(6)
 STATE_TEXTS = ("new", "pending", "done", "refused", "timed out", "unanswered")
 
@@ -154,14 +154,14 @@ class Job:
     """One parameter task and its result.
 
     task: READ, WRITE_... . number: 0...127999. index: 0...254, counted as the drive does. high,
-    low: the value to write, as two words. ValueError when one of them is out of range, or the task
+    low: the value to write, as two words. ValueError if one of them is out of range, or the task
     is one for a `tasks.long_jobs.LongJob`.
 
-    After it left PENDING: `state`. When DONE `width` (WORD or DOUBLE) and the words `high` and
-    `low`, which for a write are what the drive confirmed. When REFUSED `error` (see
+    After it left PENDING, look at `state`. When DONE: `width` (WORD or DOUBLE) and the words
+    `high` and `low`; for a write they are what the drive confirmed. When REFUSED: `error` (see
     `bus.pkw_errors`) and what a drive with variable length offers instead, else None: `next` and
-    `previous`, after error 0 a parameter that exists, after error 2 a legal value of 16 bits. It
-    may be asked again, with the same value, when it is not PENDING.
+    `previous`, after error 0 a parameter that exists, after error 2 a legal value of 16 bits. A
+    job that is not PENDING may be asked again, with the same value.
     """
 
     data = None  # room for an answer that is longer than a double word: see `tasks.long_jobs`
@@ -172,11 +172,11 @@ class Job:
         self.tries = 0  # how often it was sent, as far as that matters,
         self.silences = 0  # how often in a row the drive was silent on it,
         self.lags = 0  # and how often before that it gave an old answer
-        self.tag = 0  # for whoever asks: which of its questions this is
+        self.tag = 0  # for the caller: which of its questions this is
         self.aim(task, number, index, high, low)
 
     def aim(self, task, number, index=0, high=0, low=0):
-        """Make this another job, as if new; for whoever asks often and must not allocate."""
+        """Make this another job, as if new; for callers that ask often and must not allocate."""
         fitting = FITTING[task] if 0 <= task <= TEXT else 0
         if not fitting or _LONG_TASKS >> task & 1 and self.data is None:
             raise ValueError("task %r" % (task,))
@@ -198,7 +198,7 @@ class Job:
             pnu = number % PNU_PER_PAGE
             page = ind(number, index)
         struct.pack_into(">HHHH", self.words, 0, task << 12 | pnu, page, high, low)
-        self.key = pnu << 16 | page  # what a reply has to be about
+        self.key = pnu << 16 | page  # the parameter that a reply must be about
         self.state = NEW
         self.width = 0
         self.error = 0
@@ -206,11 +206,11 @@ class Job:
         self.previous = None
 
     def size(self):
-        """Characters of the task with variable length; with fixed length at least so many."""
+        """Characters of the task with variable length; fixed length needs at least so many."""
         return FOUR_WORDS if _DOUBLE_TASKS >> self.task & 1 else THREE_WORDS
 
     def writes(self):
-        """Whether it changes something."""
+        """Whether the task writes."""
         return FITTING[self.task] & _NO_RIGHTS != 0
 
     def fits(self, form):
@@ -241,9 +241,9 @@ class Job:
     def answer(self, net, at, count, form):
         """Take the PKW words of a reply, `count` characters in `net` from index `at` on.
 
-        True when they end this job. A reply to an older task, or none, is no error (specification
+        True if they end this job. A reply to an older task, or AK 0, is no error (specification
         C-4.2.1.1): it is ignored, and so is one whose length does not fit its AK. Bit 11 of PKE
-        (change report) is no part of PNU.
+        (change report) is not part of PNU.
         """
         reply = reply_about(net, at, self.words)
         if not FITTING[self.task] >> reply & 1:
@@ -262,7 +262,7 @@ class Job:
         return True
 
     def _keep_value(self, reply, net, at, count, form):
-        """Keep the value that stands from index `at` on; whether its length fits the reply."""
+        """Keep the value from index `at` on; return whether its length fits the reply."""
         width = _WIDTHS[reply]
         if count != 2 * width:
             return False
@@ -273,7 +273,7 @@ class Job:
         return True
 
     def _keep_error(self, net, at, count, form):
-        """Keep the error number and what a drive with variable length says behind it."""
+        """Keep the error number and what a drive with variable length says after it."""
         if form == FOUR_WORDS:
             self.refuse(net[at + 2] << 8 | net[at + 3])
             return
@@ -283,7 +283,7 @@ class Job:
         if error == NO_PARAMETER or error == BEYOND_LIMITS:
             if count >= 4:
                 following = net[at + 2] << 8 | net[at + 3]
-                # 0 comes behind no parameter: it says that there is none.
+                # 0 is no parameter number: it says that there is none.
                 self.next = following if following or error == BEYOND_LIMITS else None
             if count >= 6:
                 self.previous = net[at + 4] << 8 | net[at + 5]

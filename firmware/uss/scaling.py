@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""Between the words of PZD2 and percent, Hz and 1/min, in floating point; which way a drive turns.
+"""Converts words of PZD2 to percent, Hz and 1/min and back, in floating point, with direction.
 
-For programs that work in a loop: everything here takes memory, and nothing belongs into an
-interrupt. The panel works in integers, with `pzd.Scaling`.
+For programs that work in a loop: everything here takes memory, so do not call it in an interrupt.
+The panel works in integers, with `pzd.Scaling`.
 
     scale = Scale(reference_hertz=50.0, pole_pairs=2)
     scale.from_rpm(-750.0)              # 0xE000
@@ -15,20 +15,20 @@ from uss.pzd import FULL_SCALE, HSW_MAX, HSW_MIN, signed
 CENTIHERTZ_PER_HERTZ = 100
 SECONDS_PER_MINUTE = 60
 RUNS_RIGHT = 0x4000  # bit 14 of ZSW
-RATED_ROUNDING = 0.01  # a motor's plate rounds its frequency by at most so much of it
+RATED_ROUNDING = 0.01  # a motor's plate rounds its frequency by at most this fraction
 
 
 class Scale:
     """What PZD2 of one drive means, both ways. Every value has a sign: negative turns left.
 
-    reference_hertz: the frequency that is 100 %, 4000h: P2000, of an MM3 P094.
-    reference_rpm: instead of it the speed that is 100 %: p2000 of a G120.
-    pole_pairs: of the motor, lead from the one to the other.
-    absolute: PZD2 is in 0.01 Hz (P2009 = 1, of an MM3 P095 = 2).
+    reference_hertz: the frequency that is 100 %, 4000h: P2000; P094 of an MM3.
+    reference_rpm: instead of that the speed that is 100 %: p2000 of a G120.
+    pole_pairs: of the motor; they convert one to the other.
+    absolute: PZD2 is in 0.01 Hz (P2009 = 1; P095 = 2 of an MM3).
 
-    A value that needs what was not told is a ValueError, and so is one that no word can carry:
-    beyond -200 ... 200 % of the reference, or -327.68 ... 327.67 Hz when absolute. 200 % itself
-    becomes 199.994 %, the largest word.
+    ValueError if a value needs an argument that was not given, or if no word can carry it: beyond
+    -200 ... 200 % of the reference, or -327.68 ... 327.67 Hz when absolute. 200 % itself becomes
+    199.994 %, the largest word.
     """
 
     def __init__(self, reference_hertz=None, reference_rpm=None, pole_pairs=None, absolute=False):
@@ -54,21 +54,21 @@ class Scale:
         return self._word(hertz / self._needed(self.reference_hertz))
 
     def from_rpm(self, rpm):
-        """The setpoint word for a speed in 1/min; of an asynchronous motor without its slip."""
+        """The setpoint word for a speed in 1/min; for an asynchronous motor without slip."""
         return self._word(rpm / self._needed(self.reference_rpm))
 
     def percent(self, word):
-        """What an actual value is in percent of the reference."""
+        """An actual value in percent of the reference."""
         return 100 * self._fraction(word)
 
     def hertz(self, word):
-        """What an actual value is in Hz."""
+        """An actual value in Hz."""
         if self.absolute:
             return signed(word) / CENTIHERTZ_PER_HERTZ
         return self._fraction(word) * self._needed(self.reference_hertz)
 
     def rpm(self, word):
-        """What an actual value is in 1/min; of an asynchronous motor without its slip."""
+        """An actual value in 1/min; for an asynchronous motor without slip."""
         return self._fraction(word) * self._needed(self.reference_rpm)
 
     def _word(self, fraction):
@@ -92,10 +92,10 @@ class Scale:
 
 
 def run_words(family, hsw, reverse=False):
-    """(STW, HSW) that make a drive of the family run.
+    """The (STW, HSW) that make a drive of the family run.
 
-    hsw: a setpoint word with its sign. reverse: turn the other way than that says; a negative
-    setpoint and `reverse` cancel each other, as in the drive.
+    hsw: a setpoint word with its sign. reverse: turn the other way; a negative setpoint and
+    `reverse` cancel each other, as in the drive.
     """
     if family.hsw_is_signed and family.on_reverse:
         return (family.on_reverse if reverse else family.on), hsw
@@ -108,8 +108,8 @@ def run_words(family, hsw, reverse=False):
 def signed_hiw(family, hiw, zsw):
     """The actual value of a drive of the family as a word with a sign.
 
-    Where HIW is only a magnitude, bit 14 of ZSW tells the direction. A value that is negative
-    already stays so.
+    If HIW is only a magnitude, bit 14 of ZSW tells the direction. A value that is already negative
+    stays negative.
     """
     if family.hiw_is_signed or zsw & RUNS_RIGHT or hiw & 0x8000:
         return hiw
@@ -117,9 +117,9 @@ def signed_hiw(family, hiw, zsw):
 
 
 def pole_pairs(frequency_hertz, speed_rpm):
-    """Of a motor, from its rated frequency and its rated speed, which slip may have lowered.
+    """A motor's pole pairs, from its rated frequency and its rated speed, which slip may lower.
 
-    ValueError when they belong to no motor; a rated speed of 0 means that nobody entered it.
+    ValueError if no motor has these; a rated speed of 0 means that it was not entered.
     """
     one_pair_rpm = SECONDS_PER_MINUTE * frequency_hertz
     if not 0 < speed_rpm <= one_pair_rpm * (1 + RATED_ROUNDING):
@@ -128,6 +128,6 @@ def pole_pairs(frequency_hertz, speed_rpm):
 
 
 def _limited(count):
-    if not HSW_MIN <= count <= HSW_MAX + 1:  # also true of a NaN, which compares with nothing
+    if not HSW_MIN <= count <= HSW_MAX + 1:  # true of a NaN, too
         raise ValueError("more than a telegram can carry: 200 % of the reference, or 327.67 Hz")
     return min(round(count), HSW_MAX) & 0xFFFF

@@ -14,7 +14,7 @@ everything when contact is lost. After `recheck` it reads all rows again soon.
 
 from micropython import const
 
-# From the bottom of the house up: an import inside an import inside an import takes stack.
+# Lower layers first: an import inside an import inside an import takes stack.
 from uss.timing import elapsed
 from uss import pkw, pzd
 from uss.families import rows
@@ -23,51 +23,51 @@ from uss.telegram_count import TelegramCount
 
 REREAD_US = const(100_000)
 _UNKNOWN = const(-1)
-_SPARES = const(4)  # a list of four is never made smaller, so it takes no memory
+_SPARES = const(4)  # a list of four is never resized, so taking from it takes no memory
 _NOTHING = const(-1)  # no row
 
-# Of the frequencies that a drive can have, as floating-point singles: the exponents as they are
-# coded, those that differ from 0.00 and from infinity.
+# The coded exponents of the frequencies that a drive can have, as floating-point singles, from the
+# first that is not 0.00 Hz to the largest.
 _EXPONENT_MIN = const(119)  # 2**-8 Hz and more
 _EXPONENT_MAX = const(136)  # less than 2**10 Hz
 _MANTISSA_BITS = const(148)  # mantissa * 25 >> 148 - exponent is in 0.01 Hz
 _CENTI = const(100)
 _CENTIHERTZ_MAX = const(65_000)
 
-_UNANSWERED_MAX = const(2)  # then it is taken to be missing, and asked for before a START alone
+_UNANSWERED_MAX = const(2)  # then the row counts as missing, and is read only before a START
 _ABSENT = (pkw.NO_PARAMETER, pkw.NO_INDEX)  # the drive has no such parameter
-_FIRST = rows.COMMAND_SET  # of a round: with it the indices of others are known
-_LATER = (rows.RESTART, rows.COUNTER)  # START alone needs them, and reads them
+_FIRST = rows.COMMAND_SET  # a round begins with it, because it tells the indices of others
+_LATER = (rows.RESTART, rows.COUNTER)  # only START needs them, and has them read
 _WATCHED = (rows.COUNTER, rows.LOWEST, rows.HIGHEST)  # read more often while it runs
 
 
 def spare_jobs():
     """Second jobs for surveys that ask a lot: those of drives that are shown, or were just now.
 
-    With a second one no telegram goes without a question while somebody waits for the answers. One
-    for each survey would waste memory.
+    With a second job every telegram carries a question while the operator waits for the answers. A
+    second job for each survey would waste memory.
     """
     return [pkw.read(0) for _ in range(_SPARES)]
 
 
 class Survey:
-    """drive: a `Drive`. family: what it is, of `families`. mask: the clock's period - 1. spares:
-    `spare_jobs()`, those of several surveys.
+    """drive: a `Drive`. family: the drive's, of `families`. mask: the clock's period - 1. spares:
+    `spare_jobs()`, shared by several surveys.
 
-    values: for each row of family.survey the number read, or rows.UNKNOWN; 0 for _LATER as long as
-    nobody has read them.
+    values: for each row of family.survey the number read, or rows.UNKNOWN; 0 for _LATER until they
+    are read.
     complete: all rows are known. scaling: a `pzd.Scaling` of the setpoint, or None while it is not
-    known; actual: that of HIW, or None while nobody knows that HIW tells the frequency.
+    known; actual: that of HIW, or None while it is not known that HIW tells the frequency.
     wrong: for each subject of family.meaning the row that is known and wrong, or RIGHT.
     unreadable: the drive refused one of them, or fell silent on it. version: counts the changes
     of all this.
     unchecked: how many rows `recheck` has still to read.
-    count: the `TelegramCount`; None before the first START, for most drives need none.
+    count: the `TelegramCount`; None before the first START, because most drives need none.
 
-    Nobody else writes a field of the survey.
+    Only the survey writes its fields.
     """
 
-    latest_scaling = None  # of any drive: most drives of a bus have the same, and share it
+    latest_scaling = None  # the newest of any drive: most drives of a bus have the same, shared
 
     def __init__(self, drive, family, mask, spares):
         self.drive = drive
@@ -84,27 +84,27 @@ class Survey:
         self.unchecked = 0
         self.count = None
         self._mask = mask
-        self._job = pkw.read(0)  # its own; a second one is a spare one
+        self._job = pkw.read(0)  # the survey's own job; a second one comes from the spares
         self._spares = spares
         self._asked = None  # the job on its way that was asked first,
         self._asked_next = None  # and the one after it
-        self._unanswered = None  # by row, so often the drive fell silent on it: most never do
-        self._row = _FIRST  # that is next in the round
-        self._turn = 0  # of the round and of _WATCHED, which take turns
-        self._changed = _NOTHING  # this row is new, and still to be judged
+        self._unanswered = None  # by row: how often the drive fell silent on it; mostly None
+        self._row = _FIRST  # the next row of the round
+        self._turn = 0  # counts; rows of the round and of _WATCHED take turns
+        self._changed = _NOTHING  # the row whose value is new and not judged yet
         self._read_at_us = 0
-        self._contact = 0  # drive.contacts to which the values belong; 0 without contact
+        self._contact = 0  # the values belong to this drive.contacts; 0 without contact
 
     def lowest(self):
-        """The lowest frequency of the drive, P1080, in centihertz. Once complete."""
+        """The lowest frequency of the drive, P1080, in centihertz. Only when complete."""
         return self.values[rows.LOWEST]
 
     def highest(self):
-        """The highest frequency that can be had of it, in centihertz. Once complete."""
+        """The highest frequency of the drive, in centihertz. Only when complete."""
         return min(self.values[rows.HIGHEST], self.scaling.limit_centihertz())
 
     def recheck(self):
-        """Have every row read again soon: the drive gets more than its turn meanwhile."""
+        """Read every row again soon; the drive gets more than its turn meanwhile."""
         if self.drive.contact:
             self.unchecked = len(self.values)
         if self.count:
@@ -114,30 +114,30 @@ class Survey:
         self._disown()
 
     def count_anew(self):
-        """From the next count of telegrams on fewer of them mean that the drive was reset."""
+        """Count telegrams anew: after the next count, one that lacks telegrams means a reset."""
         self.count = self.count or TelegramCount(self.drive)
         self.count.begin()
 
     def has_restarted(self):
-        """Whether the drive was without its mains while it was wanted to run. Says so once."""
+        """Whether the drive was without its mains while it was wanted to run. True only once."""
         return self.count is not None and self.count.take_restart()
 
     def drop_recheck(self):
-        """Nobody waits for it any more."""
+        """Give up the recheck: the operator does not wait for it any more."""
         self.unchecked = 0
         self.drive.want_turns(False)
 
     def step(self, now_us, reread_us=REREAD_US):
         """Take an answer that has come, ask for the next; allocates only when a value is new.
 
-        reread_us: once all is known, a row is read again so long after the one before.
+        reread_us: once all rows are known, the time from one reread row to the next.
         """
         drive = self.drive
         contact = drive.contacts if drive.contact else 0
         if contact != self._contact:
             self._contact = contact
-            self._forget()  # that takes long enough
-            if contact and reread_us == REREAD_US:  # it is shown: somebody waits
+            self._forget()  # nothing else in this step: this takes long enough
+            if contact and reread_us == REREAD_US:  # the drive is shown: the operator waits
                 self.unchecked = len(self.values)
         elif self._changed != _NOTHING:
             self.settle()
@@ -154,9 +154,7 @@ class Survey:
         return self._changed == _NOTHING
 
     def settle(self):
-        """Find out what a value that is new amounts to; else the next step begins with it, because
-        it takes long.
-        """
+        """Judge a new value now; otherwise the next step begins with that, as it takes long."""
         row, self._changed = self._changed, _NOTHING
         if row == _NOTHING:
             return
@@ -186,7 +184,7 @@ class Survey:
             self.unreadable = False
 
     def _is_due(self, now_us, reread_us):
-        """Whether a row is to be asked for now."""
+        """Whether to ask for a row now."""
         asked = self._asked
         if self._asked_next or not self.drive.contact:
             return False
@@ -200,7 +198,7 @@ class Survey:
 
     def _ask(self, channel):
         if channel.is_full():
-            return  # others ask as well: later
+            return  # the queue is full, because others ask too: try later
         row = self._next_row()
         wanted = self.family.survey[row]
         job = self._spares.pop() if self._asked is self._job else self._job
@@ -215,14 +213,14 @@ class Survey:
             self._asked = job
 
     def _disown(self):
-        """What is on its way was asked too early to count."""
+        """Ignore the answers on their way: they were asked for too early to count."""
         if self._asked:
             self._asked.tag = _NOTHING
         if self._asked_next:
             self._asked_next.tag = _NOTHING
 
     def _next_row(self):
-        """The round goes on; while the drive runs, every other row is one that is watched."""
+        """Go on with the round; while the drive runs, every other row is one of _WATCHED."""
         self._turn = (self._turn + 1) % (2 * len(_WATCHED))
         if self._turn & 1 and self.drive.wanted and self.complete and not self.unchecked:
             row = _WATCHED[self._turn >> 1]
@@ -237,7 +235,7 @@ class Survey:
         return row
 
     def _is_left_out(self, row):
-        """Whether the round goes on without it: START alone asks for it, or it is watched."""
+        """Whether the round leaves the row out: only START needs it, or it is in _WATCHED."""
         missing = self.family.survey[row][3]
         if self._is_unanswered(row) and self.values[row] == missing:
             return True
@@ -246,11 +244,11 @@ class Survey:
         return self.drive.wanted != 0 and self.complete and row in _WATCHED
 
     def _is_unanswered(self, row):
-        """Whether the drive has fallen silent on it so often that it seems to lack it."""
+        """Whether the drive has fallen silent on the row so often that it seems to lack it."""
         return self._unanswered is not None and self._unanswered[row] == _UNANSWERED_MAX
 
     def _take(self):
-        """The answer to the question that was asked first."""
+        """Take the answer to the question that was asked first."""
         job = self._asked
         row = job.tag
         if job is not self._job:
@@ -284,7 +282,7 @@ class Survey:
         value = _UNKNOWN
         if row == rows.COUNTER:
             if job.state == pkw.TIMED_OUT:
-                return  # the line was bad: the count that comes next tells as much
+                return  # the line was bad; the next count tells as much
             if self.count:
                 self.count.is_told = False
         is_absent = job.state == pkw.REFUSED and job.error in _ABSENT
@@ -301,7 +299,7 @@ class Survey:
             self._put(row, value)
 
     def _put(self, row, value):
-        """A value that is new, and still to be judged. Another data set makes others unknown."""
+        """Keep a new value, to be judged later. Another data set makes other values unknown."""
         self.values[row] = value
         self._changed = row
         if row == rows.COMMAND_SET or row == rows.DRIVE_SET:
@@ -309,12 +307,12 @@ class Survey:
                 if self.family.survey[other][1] < 0:
                     self.values[other] = _UNKNOWN
             self.scaling = None
-            self.complete = False  # at once: who looks before that is judged finds no scaling
+            self.complete = False  # at once, so that nothing uses a scaling that is not judged yet
 
     # --- what it amounts to ---------------------------------------------------------------------
 
     def _judge(self):
-        """What all values together amount to, after one of them changed."""
+        """Judge all values together, after one of them changed."""
         values = self.values
         self.version += 1
         tells = values[rows.ACTUAL_SENT] != _UNKNOWN and self.wrong[rows.ACTUAL] == rows.RIGHT
@@ -336,8 +334,8 @@ class Survey:
 
 
 def centihertz(high, low):
-    """An IEEE-754 single in hertz, as two words, in 0.01 Hz; -1 when a drive can have no such
-    frequency. Without a floating-point number, which would take memory each time.
+    """Convert an IEEE-754 single in hertz, two words, to 0.01 Hz; -1 if a drive cannot have this
+    frequency. This uses no floating-point number, which would take memory each time.
     """
     exponent = high >> 7  # with the sign
     if exponent > _EXPONENT_MAX:

@@ -1,23 +1,23 @@
 # SPDX-License-Identifier: MIT
 """Whose turn it is on the bus: the circulating list, and what goes before it.
 
-The list is worked through entry by entry (specification A-5.1): a drive that stands in it twice is
-asked twice as often. Before it goes, in this order,
+The bus works through the list entry by entry (specification A-5.1): a drive that stands in it
+twice is asked twice as often. Before the list go, in this order:
 
     a telegram outside the list that is `ahead`: a broadcast stop
     a command that matters: a stop of a drive that runs, another stop, anything else
     a drive whose next turn would be too late (two telegrams out of three, and between commands to
         drives without contact)
     an exchange that is repeated because no valid reply came
-    one outside the list, or a drive that is to have more than its turn (every second telegram)
+    another telegram outside the list, or a drive that wants more than its turn (every second
+        telegram)
 
 The bus counts and shows a drive that stays silent, and never takes it off the list. `silence` says
-which of these rest, `deadlines` which drives need more turns. Nothing is sent here: `master` does
-that.
+which of these rest, `deadlines` which drives need more turns. `master` does the sending.
 
     turns = Turns(Timing(19200), mask, 1_000_000, is_under_way)
     drive = turns.add(1)            # loop: or turns.add(1, Layout(VARIABLE, 4))
-    turns.choose(now)               # engine: that drive, or None when nobody is to be asked now
+    turns.choose(now)               # engine: that drive, or None if there is none to ask now
 """
 
 from micropython import const
@@ -29,71 +29,70 @@ from uss.fast import calling, greatest
 from uss.layout import STANDARD
 
 _LIST_MAX = const(255)  # entries of the circulating list
-_OUTSIDE_MAX = const(8)  # telegrams outside the list that wait
+_OUTSIDE_MAX = const(8)  # so many telegrams outside the list may wait
 _OVERDUE_IN_A_ROW = const(2)
 _OVERDUE_BETWEEN = const(3)  # commands to drives without contact
 # Rows of the drives' attention, as bits of `calling`.
 _COMMANDS = const(1)
 _OVERDUE = const(2)
 _WANTS = const(4)
-_FORGOTTEN_MAX = const(4)  # drives in one look that want no turn any more
+_FORGOTTEN_MAX = const(4)  # in one look, so many drives are cleared that want no turn any more
 
 
 class Turns:
-    """timing: `Timing` of the line. mask: the clock's period - 1. lost_us: without a valid reply
-    for so long, contact with a drive is lost. is_under_way: function drive -> whether an exchange
+    """timing: `Timing` of the line. mask: the clock's period - 1. lost_us: contact with a drive is
+    lost after so long without a valid reply. is_under_way: function drive -> whether an exchange
     with it has begun and not ended.
 
     Fields to look at: `drives`, each once, in the order added; `list`, the circulating list, see
     `arrange`; `exchanges`, how often there was a turn, 16 bit; `deadlines`, which looks after
-    those that have too few. A setting, at any time: `cycle_us`, a round of the list begins so long
-    after the one before, 0 for at once.
+    drives that need more turns. A setting, at any time: `cycle_us`, a round of the list begins so
+    long after the round before, 0 for at once.
 
-    Written by the loop: the list and the round with all that follows from them, _outside_in. By
-    `deadlines`: lists_between. By the engine: all else. By both: following (the loop when it
-    changes the round or the list); _ahead and _again (the loop puts one in, or takes out the drive
-    that is removed); the attention (each of its rows is set by whoever calls, cleared by the
-    engine).
+    The loop writes the list and the round with all that follows from them, and _outside_in;
+    `deadlines` writes lists_between; the engine writes all else. Both write: following (the loop
+    when it changes the round or the list); _ahead and _again (the loop puts one in, or takes out
+    the drive that is removed); the attention (any caller sets its rows, the engine clears them).
     """
 
     def __init__(self, timing, mask, lost_us, is_under_way):
-        # What every exchange asks for comes first, as in `Master`.
+        # Fields that every exchange needs come first, as in `Master`.
         self._attention = bytearray(ATTENTION)
-        self.following = _LIST_MAX  # place in the round of the next; behind its end one begins
-        self.round_count = 0  # so many of these are in the round,
-        self.round = []  # the list without those that rest
+        self.following = _LIST_MAX  # the next drive's place in the round; beyond it a round begins
+        self.round_count = 0  # so many entries of `round` count
+        self.round = []  # the list without the drives that rest
         self.exchanges = 0
         self.cycle_us = 0
         self.drives = []
         self.list = []
-        self.by_address = [None] * NODES  # the same drives
+        self.by_address = [None] * NODES  # the same drives, by address
         self.timing = timing
         self.lost_us = lost_us
         self.is_under_way = is_under_way
-        self.longest_exchange_us = 0  # when the reply comes, and ends, at the last moment
-        self.lists_between = 1  # from one telegram that is extra to the next, so many of the list
+        self.longest_exchange_us = 0  # if the reply begins and ends at the last moment
+        self.lists_between = 1  # so many telegrams of the list between two extra ones
         self._mask = mask
         self._round_began_at = None
-        self._round_left_us = 0  # of the cycle time, when the round was over before it
-        self._again = None  # whose exchange is to be repeated
+        self._round_left_us = 0  # what is left of the cycle time at the end of the round
+        self._again = None  # the drive whose exchange is repeated
         self._ahead = None  # a telegram outside the list that goes before everything
         self._outside = [None] * (_OUTSIDE_MAX + 1)  # the others: a ring, one writer at each end
         self._outside_in = 0
         self._outside_out = 0
-        self._outside_last = False  # of both, a telegram outside the list had the last such turn
-        self._overdue = 0  # turns in a row that overdue drives had; below 0: that they have first
+        self._outside_last = False  # a telegram outside the list had the last extra turn, no drive
+        self._overdue = 0  # turns in a row that overdue drives had; below 0: turns they now get
         self._lists_left = 0
-        self._look_from = 0  # behind which address the search for one with a hurry begins,
-        self._overdue_from = 0  # and for one that is overdue
+        self._look_from = 0  # the search for an urgent drive begins after this address,
+        self._overdue_from = 0  # and the search for an overdue one after this
         self.deadlines = Deadlines(self, mask)
 
     # --- for the loop ---------------------------------------------------------------------------
 
     def add(self, address, layout=None):
-        """Put a drive at the end of the circulating list; answer its `Drive`.
+        """Put a drive at the end of the circulating list; return its `Drive`.
 
         layout: how its telegrams are divided, STANDARD if not given. The same address again gives
-        the same drive one more turn. ValueError when the address is not 0...31, the list is full,
+        the same drive one more turn. ValueError if the address is not 0...31, the list is full,
         or the drive has another layout already.
         """
         if len(self.list) >= _LIST_MAX:
@@ -101,7 +100,7 @@ class Turns:
         drive = self.by_address[address] if address in range(NODES) else None
         if drive is None:
             drive = Drive(address, self._mask, self._attention, layout or STANDARD)
-            # New lists, because an interrupt may be walking the old ones.
+            # New lists, because an interrupt may have come in while it walks the old ones.
             self.by_address[address] = drive
             self.drives = self.drives + [drive]
         elif layout and not layout.is_like(drive.layout):
@@ -110,9 +109,9 @@ class Turns:
         return drive
 
     def remove(self, drive):
-        """Take a drive off the bus: it is not spoken to any more.
+        """Take a drive off the bus: it gets no telegrams any more.
 
-        ValueError when it is not on it, or may be running.
+        ValueError if it is not on this bus, or may be running.
         """
         if drive not in self.drives:
             raise ValueError("drive %d is not on this bus" % drive.address)
@@ -162,8 +161,8 @@ class Turns:
         self.by_address[old] = None
 
     def post(self, telegram_outside):
-        """Send a telegram outside the list once (see `outside`): at the next but one telegram at
-        the latest when nothing else is in a hurry. RuntimeError when 8 wait, or it does.
+        """Send a telegram outside the list once (see `outside`). It is the next telegram but one
+        at the latest, if nothing else is urgent. RuntimeError if 8 wait already, or this one does.
         """
         if telegram_outside.state == pkw.PENDING:
             raise RuntimeError("%r is pending already" % (telegram_outside,))
@@ -183,7 +182,7 @@ class Turns:
         self._attention[ANY] = 1
 
     def longest_cycle_us(self):
-        """How long a round of the list takes when every drive is silent till the last moment."""
+        """How long a round of the list takes if every drive replies at the last moment."""
         counts = [drive.layout.net_max for drive in self.list]
         return sum([self._longest_us(count, count) for count in counts])
 
@@ -202,20 +201,20 @@ class Turns:
             longest_us = max(longest_us, self._longest_us(layout.net_max, reply_count))
         self.longest_exchange_us = longest_us
         self.deadlines.list_changed()
-        self.round_count = 0  # nobody has a turn until it is filled
+        self.round_count = 0  # no drive has a turn until the round is filled
         self.round = list(entries)
         self._fill_round()
 
     # --- for `silence`, from the loop -----------------------------------------------------------
 
-    # `following` moves with the round, or the next drive would lose its turn: one that stands
-    # behind a drive that answers every second telegram would never be asked. An interrupt that
-    # takes a turn between the two steps asks one drive twice, and leaves none out.
+    # `following` moves with the round, or the next drive would lose its turn: a drive that stands
+    # after one that answers every second telegram would never be asked. If an interrupt takes a
+    # turn between the two steps, it asks one drive twice and leaves none out.
 
     def leave_round(self, drive):
-        """It rests from now on."""
+        """The drive rests from now on."""
         drives = self.round
-        places = 0  # of this drive, among those that have had their turn
+        places = 0  # of this drive, among the places that have had their turn
         for place in range(min(self.following, self.round_count)):
             if drives[place] is drive:
                 places += 1
@@ -223,7 +222,7 @@ class Turns:
         self._fill_round()
 
     def join_round(self, drive):
-        """It does not rest any more."""
+        """The drive does not rest any more."""
         self._fill_round()
         drives = self.round
         passed = min(self.following, self.round_count)
@@ -235,8 +234,9 @@ class Turns:
             place += 1
 
     def _fill_round(self):
-        """The list without those that rest. In place: it takes no heap, and an interrupt that
-        walks it meanwhile finds a drive everywhere, the one before or the one after.
+        """Fill the round with the list without the drives that rest. It is filled in place: that
+        takes no heap, and an interrupt meanwhile finds a drive in every place, the old or the new
+        one.
         """
         rests = self.deadlines.silence.rests
         drives = self.round
@@ -252,7 +252,7 @@ class Turns:
     def choose(self, now):
         """The next drive: a command that matters goes before the list, a stop before a start.
 
-        None when nobody is to be asked now; `wait_us` tells for how long.
+        None if there is none to ask now; `wait_us` tells for how long.
         """
         drive = self._most_urgent() if self._attention[ANY] else None
         if drive is None:
@@ -267,23 +267,23 @@ class Turns:
         return drive
 
     def wait_us(self):
-        """`choose` has found nobody: what is left of the cycle time; 0: the list is empty."""
+        """After `choose` has found none: what is left of the cycle time; 0: the list is empty."""
         left_us, self._round_left_us = self._round_left_us, 0
         return left_us
 
     def repeat(self, drive):
-        """There was no valid reply: once more, unless the drive was removed meanwhile."""
+        """Repeat an exchange without a valid reply, unless the drive was removed meanwhile."""
         if drive.outside or drive in self.drives:
             self._again = drive
             self._attention[ANY] = 1
 
     def has_command(self):
-        """Whether somebody has to be told something that does not wait for its turn."""
+        """Whether there is a command that does not wait for its turn."""
         return self._ahead is not None or greatest(self._attention, COMMANDS, NODES, 0) >= 0
 
     def all_told(self):
-        """Whether every drive in contact has answered its OFF1 and the others were sent it; those
-        that may run, some times.
+        """Whether every drive in contact has answered its OFF1 and the others were sent it; drives
+        without contact that may run were sent it several times.
         """
         for drive in self.drives:
             if drive.contact:
@@ -295,29 +295,30 @@ class Turns:
         return self._ahead is None
 
     def _begin_round(self, now):
-        """At the end of the list: whether the cycle time is over and it may begin anew."""
+        """At the end of the list: whether the cycle time is over, so that the next round
+        begins."""
         began_at = self._round_began_at
-        cycle_us = min(self.cycle_us, self._mask >> 2)  # longer, and misses could not be timed
+        cycle_us = min(self.cycle_us, self._mask >> 2)  # with a longer one, misses cannot be timed
         if began_at is not None:
             passed_us = (now - began_at) & self._mask
             if passed_us < cycle_us:
                 self._round_left_us = cycle_us - passed_us
                 return False
-            if passed_us < 2 * cycle_us:  # in step with the rounds before
+            if passed_us < 2 * cycle_us:  # keep in step with the rounds before
                 now = (began_at + cycle_us) & self._mask
         self._round_began_at = now
         return True
 
     def _most_urgent(self):
-        """Who is in the greatest hurry; None when the list may go on.
+        """The most urgent drive or telegram; None if the list may go on.
 
         A drive that only wants more than its turn gets every second telegram at the most. Overdue
         drives get two in a row, so that the list goes on in between. A command to a drive without
-        contact takes long: after one of these, three drives that are overdue and not told to run
+        contact takes long. So after such a command, three overdue drives that are not told to run
         go before the next.
         """
         attention = self._attention
-        attention[ANY] = 0  # before looking: whoever calls from now on is not missed
+        attention[ANY] = 0  # cleared before the look, so that a drive that calls now is not missed
         if self._ahead is not None:
             drive, self._ahead = self._ahead, None
             attention[ANY] = 1
@@ -358,7 +359,9 @@ class Turns:
         return drive
 
     def _overdue_is_on(self):
-        """Whether the next one that is overdue is told to run: no such telegram before a stop."""
+        """Whether the next overdue drive is told to run: such a telegram must not go before a
+        stop.
+        """
         drive = self.by_address[greatest(self._attention, OVERDUE, NODES, self._overdue_from)]
         return drive is not None and drive.wanted != 0
 
@@ -371,9 +374,9 @@ class Turns:
         return self.by_address[address]
 
     def _find(self, row, least):
-        """Of the drives that have called in this row, the one that is in the greatest hurry, and
-        at least so much; None if none is. Those that were served meanwhile are forgotten, a few
-        each time: an interrupt must not take long.
+        """The most urgent of the drives that have called in this row, if its urgency is at least
+        `least`; else None. Calls of drives that were served meanwhile are cleared, only a few each
+        time, because an interrupt must not take long.
         """
         attention = self._attention
         for _ in range(NODES if row == COMMANDS else _FORGOTTEN_MAX):
