@@ -6,18 +6,20 @@ A driver is handed the objects of the chip (UART, Pin, Timer ...) and uses them;
 (`boards/<name>/board.py`) builds the objects and is the only place that knows pins. The app takes
 the board as it is and builds no hardware.
 
-A contract is a duck type: whatever has these names and keeps these promises will do. "Interrupt"
-means that the caller may be a hard interrupt: such a method allocates nothing and uses no float.
+A contract is a duck type: any object with these names that keeps these promises will do.
+"Interrupt" means that the caller may be a hard interrupt: the method allocates nothing and uses no
+float.
 
 board
     name                text, at most 16 characters
     reset_cause         "" after power-on or a restart that was wanted, "WATCHDOG" after it bit
     clock               see below
     display, keypad, store, watchdog   see below
-    timer               a machine.Timer of its own for the bus; None: the main loop paces it, and
-                        while that hangs nothing stops the drives before the watchdog does
+    timer               a machine.Timer for the bus alone; None: the main loop paces the bus, and
+    if
+                        it hangs, only the watchdog stops the drives
     make_link(baud)     builds the link for that baud rate; called once
-    idle()              end of a step of the main loop: lets the machine work, 2 ms at most
+    idle()              at the end of each main loop step: lets the machine work, 2 ms at most
 
 clock
     ticks_us() -> int   interrupt. Microseconds since some instant; wraps to 0 after ticks_mask
@@ -30,11 +32,11 @@ link                    half duplex; the driver enable is the link's affair
     clock               the board's: that of sent_at and received_at
     interrupts          True: on_activity is called without anyone asking; False: it must be polled
     resolution_us       how late received_at and sent_at may be, at the most
-    on_activity         a function of no arguments, at first one that does nothing; called
-                        (interrupt) when a burst of characters has ended; when sending has ended
-                        only by a link that is not `foreseen`. There is no jump before the call:
-                        MicroPython raises a pending Ctrl-C at the next jump, and an interrupt
-                        handler that raises is gone for good
+    on_activity         a function of no arguments, at first one that does nothing. The link calls
+                        it (interrupt) when a burst of characters has ended, and, if it is not
+                        `foreseen`, when sending has ended. No jump comes before the call:
+                        MicroPython raises a pending Ctrl-C at the next jump, and disables an
+                        interrupt handler that raises for good
     send(buffer, count) interrupt. Begins to send the first `count` characters; the caller
                         leaves the buffer alone until sending_us answers 0
     sending_us(now_us)  interrupt. Microseconds until the last stop bit has left and the driver is
@@ -42,10 +44,10 @@ link                    half duplex; the driver enable is the link's affair
     sent_at             clock.ticks_us() of that instant
     foreseen            optional; True: sent_at holds as soon as `send` has returned
     receive(buffer, at) -> int   interrupt. Moves what was received to buffer[at:], as far as there
-                        is room, and answers how many characters. Whoever calls it processes them:
-                        a look may use up the interrupt that would have announced them. -1:
-                        characters are coming in, and on_activity will announce their end; none is
-                        handed over before.
+                        is room, and answers how many characters. The caller must process them: a
+                        look may use up the interrupt that would have announced them. -1:
+                        characters are coming in, and on_activity will announce their end; the link
+                        hands over none before.
     received_at         clock.ticks_us() of the end of the last of them
     close()             driver off, nothing sent any more, no interrupt left
 
@@ -61,9 +63,10 @@ display
 
 keypad
     names               names of the keys, in the order of their bits: "START", "STOP", ...
-    read() -> int       the keys that are down now, as bits. Of an ambiguous reading of a matrix
-                        none; keys with a pin of their own, STOP first of all, stay.
-    unclear             the keys, as bits, of which the last reading could not tell; mostly 0
+    read() -> int       the keys that are down now, as bits. If the reading of a matrix is
+                        ambiguous, none of its keys count; keys with a pin of their own, such as
+                        STOP, still do.
+    unclear             the keys, as bits, that the last reading could not determine; mostly 0
 
 store                   keeps one small file over power cuts; any method may raise OSError
     read(most=-1) -> bytes or None   the first `most` bytes; -1: all
@@ -72,5 +75,5 @@ store                   keeps one small file over power cuts; any method may rai
 
 watchdog
     feed()              the first call starts it; 2 s without a further call restart the chip
-    stop() -> bool      no restart any more, until the next feed(); False where the chip cannot
+    stop() -> bool      no restart until the next feed(); False if the chip cannot do that
 """

@@ -10,15 +10,15 @@ closed. A wire to ground is not noticed there: it reads as a closed contact.
     keypad.names        # ("START", "STOP", "UP", "DOWN", "SET")
     keypad.read()       # 0b00010: STOP is down
 
-Nothing is debounced here: that is `panel.keys`.
+This does not debounce: `panel.keys` does.
 """
 
 from micropython import const
 
 _KEYS_MAX = const(30)  # bits of a small integer that is not negative, on 32-bit ports
 
-# A column rises through the chip's pull-up against its cable: 8 us with 80 kohm (RP2040 data
-# sheet, pads) and 100 pF, to 2.0 of 3.3 V. Twice that, and a little.
+# A column rises through the chip's pull-up against its cable's capacitance: 8 us with 80 kohm
+# (RP2040 data sheet, pads) and 100 pF, to 2.0 of 3.3 V. This is twice that, and a little more.
 _SETTLE_US = const(20)
 
 
@@ -36,15 +36,15 @@ class Keypad:
         own = tuple(name for name, _ in direct)
         self.names = own + (matrix.names if matrix else ())
         check_names(self.names, own, closed)
-        # Bound once; calling a Pin itself would look the method up each time.
+        # Bound once, because calling a Pin itself would look the method up each time.
         self._direct = tuple((1 << bit, pin.value) for bit, (_, pin) in enumerate(direct))
         self._closed = sum(1 << own.index(name) for name in closed)
         self._matrix = matrix
         self._shift = len(own)
         self._levels = levels
         self._masks = tuple((1 << bit, mask) for bit, mask in enumerate(masks))
-        self._seen = -1  # what `levels` answered last, at first no level
-        self._down = self._closed  # what that means
+        self._seen = -1  # what `levels` answered last; at first -1, which is never an answer
+        self._down = self._closed  # the keys that are down by that
         self.unclear = 0
 
     def read(self):
@@ -53,7 +53,7 @@ class Keypad:
         else:
             levels = self._levels()
             if levels != self._seen:
-                # Nothing but the levels decides: a pin that is asked again may have bounced since.
+                # Use only these levels: a pin that is asked again may have bounced since.
                 self._seen = levels
                 self._down = self._closed
                 for bit, mask in self._masks:
@@ -67,7 +67,7 @@ class Keypad:
 
 
 def _low(pins):
-    """Those that are low, as bits."""
+    """The pins that are low, as bits."""
     low = 0
     for bit, level in pins:
         if not level():
@@ -88,7 +88,7 @@ def check_names(names, own, closed):
 
 
 class Matrix:
-    """Rows are driven one after the other, columns tell which of the row's keys are closed.
+    """Drives the rows one after the other; the columns tell which of the row's keys are closed.
 
     rows: open-drain outputs, high. columns: inputs with pull-ups. names: for each row the name of
     the key at each column, None where there is none. clock: contract of `hal`. ValueError: names
@@ -101,7 +101,7 @@ class Matrix:
 
     A column that is low while no row is driven is shorted to ground: its keys do not count.
 
-    unclear: the keys, as bits, of which the last reading could not tell.
+    unclear: the keys, as bits, that the last reading could not determine.
     """
 
     def __init__(self, rows, columns, names, clock):
@@ -116,7 +116,8 @@ class Matrix:
         self._sleep_us = clock.sleep_us
 
     def read(self):
-        """The keys that are down, as bits in the order of `names`; 0 of an ambiguous reading."""
+        """The keys that are down, as bits in the order of `names`; 0 if the reading is
+        ambiguous."""
         self.unclear = 0
         if self._is_idle():
             return 0
@@ -129,7 +130,7 @@ class Matrix:
         return self._keys_in(self._seen)
 
     def _is_idle(self):
-        """Whether no key is down, as it mostly is: one look at all rows together tells."""
+        """Whether no key is down, as is usual: one look at all rows together tells."""
         for put in self._rows:
             put(0)
         self._sleep_us(_SETTLE_US)
@@ -139,7 +140,7 @@ class Matrix:
         return not low
 
     def _scan(self):
-        """Look at every row; answer the columns that are shorted."""
+        """Look at every row; return the columns that are shorted."""
         self._sleep_us(_SETTLE_US)
         shorted = _low(self._columns)
         row = 0
@@ -161,7 +162,7 @@ class Matrix:
         return False
 
     def _keys_in(self, seen):
-        """seen: columns for each row, as bits. The keys that are there, as bits."""
+        """The keys that are closed, as bits. seen: the low columns of each row, as bits."""
         keys = 0
         for row, column, bit in self._keys:
             if seen[row] & column:

@@ -2,9 +2,9 @@
 """Calls the bus engine when something is due, from whatever the port offers.
 
 The receive interrupt, a one-shot timer and the main loop all end in `run`, which enters the engine
-once at a time and has the timer come when the engine asks for it. So interrupt and polled
-operation share one path. An exception in the engine must not get out: when a hard interrupt
-raises, MicroPython disables it for good. The engine counts it, takes back every ON, begins anew.
+once at a time and sets the timer for when the engine wants to be called. So interrupt and polled
+operation share one path. An exception in the engine must not get out: if a hard interrupt raises,
+MicroPython disables it for good. The engine counts it, takes back every ON and begins anew.
 
     pacer = Pacer(bus, link, board.clock, board.timer)
     pacer.start()
@@ -17,7 +17,7 @@ from micropython import const
 _RETRY_US = const(1_000)  # after an exception in the engine
 WAKE_US = const(1_000)
 _PERIOD_MIN_US = const(20)  # or the timer would fire before it is armed
-OVERDUE_US = const(50_000)  # a timer that is so late is not waited for any more
+OVERDUE_US = const(50_000)  # a timer that is so late is set again
 ROUNDS_MAX = const(4)  # entries in a row for events that came meanwhile; the timer takes the rest
 
 
@@ -37,14 +37,14 @@ class Pacer:
         self._ticks_us = clock.ticks_us
         self._mask = clock.ticks_mask
         self._timer = timer
-        # Whoever interrupts is through before the interrupted goes on: for a flag that is enough.
-        self._inside = True  # until `start`, and from `stop` on: then nobody comes in
+        # A plain flag is enough: an interrupt ends before the interrupted code goes on.
+        self._inside = True  # also before `start` and after `stop`, so that `run` does nothing
         self._again = False
-        self._asked_at_us = 0  # when the engine asked to be entered
-        self._due_us = 0  # so long after that
-        self._armed_at_us = 0  # when the timer was set
-        self._armed_us = 0  # to come so long after that
-        self._thrown = None  # what the main loop is to hear of: Ctrl-C
+        self._asked_at_us = 0  # when the engine asked to be entered,
+        self._due_us = 0  # and how long after that
+        self._armed_at_us = 0  # when the timer was set,
+        self._armed_us = 0  # and how long after that it comes
+        self._thrown = None  # the Ctrl-C that the main loop must raise
         self._on_timer = self._timer_came  # bound once: binding allocates
 
     def start(self):
@@ -61,9 +61,9 @@ class Pacer:
         self._link.close()
 
     def tend(self):
-        """From the main loop: drives the engine where there is no timer, and wakes a stuck one.
+        """From the main loop: drives the engine if there is no timer, and wakes a stuck timer.
 
-        Raises the KeyboardInterrupt that came while somebody was inside the engine.
+        Raises the KeyboardInterrupt that came while the engine was running.
         """
         late_us = ((self._ticks_us() - self._asked_at_us) & self._mask) - self._due_us
         if self._timer is None or late_us > OVERDUE_US:
@@ -73,10 +73,10 @@ class Pacer:
             raise thrown
 
     def run(self, only_if_due=False):
-        """Enter the engine unless somebody is inside; then have it entered once more.
+        """Enter the engine. If it is running already, let it be entered once more afterwards.
 
-        only_if_due: when nothing is, the timer is only set again. Raises nothing: it may be a
-        handler, and MicroPython may raise a pending Ctrl-C wherever it happens to be.
+        only_if_due: if nothing is due, only set the timer again. This raises nothing: it may run
+        in a handler, and MicroPython may raise a pending Ctrl-C anywhere in it.
         """
         inside = self._inside
         try:  # before the first jump: a pending Ctrl-C is raised at jumps
@@ -84,8 +84,9 @@ class Pacer:
                 self._again = True
                 return
             for _ in range(ROUNDS_MAX):
-                # In this order, or an interrupt in between is forgotten: it either comes in by
-                # itself, or is noted. What is due is asked after that, for it may change it.
+                # The order matters, or an interrupt in between would be forgotten: it either
+                # enters by itself, or is noted. Look at what is due after that, as it may change
+                # it.
                 self._again = False
                 self._inside = True
                 early_us = self._early_us() if only_if_due else 0
@@ -100,7 +101,7 @@ class Pacer:
                         self._recover()
                     self.runs = (self.runs + 1) & 0xFFFF
                 only_if_due = False
-                self._inside = False  # from here on an interrupt finds its way in by itself
+                self._inside = False  # from here on an interrupt enters by itself
                 if not self._again:
                     return
             self._inside = True
@@ -110,8 +111,8 @@ class Pacer:
             self._thrown = thrown
             self._again = True
             if inside:
-                return  # whoever is inside enters once more
-            self._inside = True  # no interrupt may come in on half of it
+                return  # the run that is inside enters once more
+            self._inside = True  # no interrupt may enter while this is half done
             try:
                 self._recover()
             finally:
@@ -126,10 +127,10 @@ class Pacer:
             self.failure = failure
 
     def _plan(self, after_us, now_us):
-        """Have the engine entered `after_us` behind `now_us`.
+        """Let the engine be entered `after_us` after `now_us`.
 
-        To set the timer takes long. Each exchange moves the instant a little further away: a timer
-        that will come earlier is left as it is, and set again when it comes.
+        Setting the timer takes long, and each exchange moves the instant a little further away. So
+        a timer that will come earlier is left as it is, and set again when it comes.
         """
         self._asked_at_us = now_us
         self._due_us = after_us
@@ -141,7 +142,7 @@ class Pacer:
         timer = self._timer
         if not timer:
             return
-        self._armed_us = 0  # in case it fails
+        self._armed_us = 0  # in case `init` fails
         self._armed_at_us = self._ticks_us()
         timer.init(
             mode=timer.ONE_SHOT,

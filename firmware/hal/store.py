@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
 """A small file that survives power cuts, on a file system whose rename overwrites at once.
 
-Fulfils the contract `store` of `hal`. New data are written to a file beside the old one, and a
-rename puts it in its place: littlefs, which the ports for the RP2040 and the ESP32 use, promises
+Fulfils the contract `store` of `hal`. It writes new data to a file beside the old one, and a
+rename puts that in its place: littlefs, which the ports for the RP2040 and the ESP32 use, promises
 that either the old or the new file is there afterwards (littlefs README, Usage). FAT promises
-nothing of the kind. Nobody reads what a power cut leaves beside the file, and the next write
-takes its place.
+nothing of the kind. If a power cut leaves a file beside the old one, it is never read, and the
+next write replaces it.
 
     store = FileStore("settings.json", open, os)
     store.replace(b"{}")
@@ -21,8 +21,8 @@ _COPY_MAX = const(4096)  # bytes: a chip has to hold it
 class FileStore:
     """path: of the file, in a folder that is there. open, os: those of Python.
 
-    Beside the file there may be path + ".new", which was not finished, and path + ".bad", which
-    was set aside.
+    Beside the file there may be path + ".new", an unfinished one, and path + ".bad", one that was
+    set aside.
     """
 
     def __init__(self, path, open, os):
@@ -39,8 +39,8 @@ class FileStore:
     def set_aside(self):
         """Keep a copy as path + ".bad", in place of an earlier one.
 
-        A copy, because between moving the file away and writing the next one power may be cut.
-        Only what cannot be read, or is too big to be copied, is moved.
+        A copy, because power may be cut between moving the file away and writing the next one.
+        Only a file that cannot be read, or is too big to copy, is moved.
         """
         try:
             data = self.read(_COPY_MAX + 1)
@@ -63,20 +63,20 @@ class FileStore:
 
     def _put(self, path, data):
         if self._holds(path, data):
-            return  # flash wears out
+            return  # the same data: do not wear the flash
         new = self._path + ".new"
         try:
             with self._open(new, "wb") as file:
                 file.write(data)
             self._os.rename(new, path)
         except OSError:
-            self._remove(new)  # it takes room that is short
+            self._remove(new)  # there is little room
             raise
 
     def _holds(self, path, data):
         try:
             return self._read(path, len(data) + 1) == data
-        except OSError:  # it cannot be read: certainly not
+        except OSError:  # a file that cannot be read does not hold these data
             return False
 
     def _remove(self, path):
@@ -87,8 +87,9 @@ class FileStore:
 
 
 def _whole(file, most):
-    """What is in a file, `most` bytes of it unless that is below 0: in pieces, because a read
-    takes room for all that it may bring, in one piece, and a chip may not have that."""
+    """The content of a file, at most `most` bytes of it; below 0: all. It is read in pieces,
+    because a read takes one piece of memory for all that it may bring, and a chip may not have
+    that."""
     data = b""
     while len(data) != most:
         piece = file.read(_PIECE if most < 0 else min(_PIECE, most - len(data)))

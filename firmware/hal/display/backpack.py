@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """A character display behind a PCF8574 backpack: the HD44780's four data lines through I2C.
 
-Fulfils the contract `display` of `hal`; `character_display` says what is written when. A
-backpack may be unplugged, or a pulse may upset its wires: the driver tries it again every AGAIN_US
+Fulfils the contract `display` of `hal`; `character_display` decides what to write, and when.
+If a backpack is unplugged, or a pulse upsets its wires, the driver tries it again every AGAIN_US
 and sets it up anew when it answers. The panel goes on meanwhile.
 
     display = Backpack(make_i2c, 0x27, clock)
@@ -22,8 +22,8 @@ _REGISTER_SELECT = const(0x01)
 _ENABLE = const(0x04)
 _DATA = const(0xF0)  # D4...D7
 
-# Two bytes for the controller, each 4 on the bus, and one before them when the register changes.
-# With the address that is 1 ms at 100 kHz.
+# Two bytes for the controller, each 4 on the bus, and one before each when the register changes.
+# With the address they take 1 ms at 100 kHz.
 _LONGEST = const(10)
 
 
@@ -40,7 +40,7 @@ class Backpack(CharacterDisplay):
         self._i2c_address = address
         self._write_to = make_i2c().writeto
         self._buffer = bytearray(_LONGEST)
-        # Slices made once: making one takes heap.
+        # The slices are made here once, because making one takes heap.
         self._pieces = tuple(memoryview(self._buffer)[:end] for end in range(_LONGEST + 1))
         self._count = 0
         self._register = -1  # what P0 was last set for; -1 unknown
@@ -60,11 +60,11 @@ class Backpack(CharacterDisplay):
         self._count = count + 2
 
     def _pause(self, us):
-        """From one nibble to the next two bytes on the bus take 180 us: longer than any pause."""
+        """Nothing: two bytes on the bus between nibbles take 180 us, longer than any pause."""
 
     def _end_piece(self):
         count, self._count = self._count, 0
-        if self._lost:  # only a look whether it is there again: the display may just get power
+        if self._lost:  # only look whether it is there again: the display may just have got power
             self._buffer[0] = BACKLIGHT
             count = 1
         try:

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
 """A character display of 2 x 16 with the controller HD44780: what is written when.
 
-Fulfils the contract `display` of `hal`, for whoever moves the wires: `hd44780` by four pins,
-`rp2_hd44780` by the RP2040's PIO, `backpack` through I2C. The controller cannot be read (R/W
-is tied low), so the driver waits as long as the slowest specimen needs, and remembers what it
-wrote to write only what differs. Panels live beside inverters: a pulse on the wires can swap
-nibbles, move the picture or spoil a character. So every REFRESH_US the driver
-sets the controller up and writes everything anew, which nobody sees.
+Fulfils the contract `display` of `hal`, for the drivers that move the wires: `hd44780` by four
+pins, `rp2_hd44780` by the RP2040's PIO, `backpack` through I2C. The controller cannot be read
+(R/W is tied low), so the driver waits as long as the slowest specimen needs. It remembers what it
+wrote and writes only what differs. Panels live beside inverters: a pulse on the wires can swap
+nibbles, move the picture or spoil a character. So every REFRESH_US the driver sets the controller
+up and writes everything anew; this is not visible.
 """
 
 from micropython import const
@@ -22,7 +22,7 @@ _COMMAND_US = const(53)  # 37 us
 _DATA_US = const(61)  # the same, and 1.5 clocks until the address has moved
 _HOME_US = const(2_160)  # 1.52 ms
 POWER_ON_US = const(40_000)
-_SLEEP_LIMIT_US = const(100)  # whoever must wait longer comes back later
+_SLEEP_LIMIT_US = const(100)  # for a longer wait the driver returns and goes on later
 _NEXT_PIECE_US = const(101)
 
 _FIRST_ROW = const(0x80)  # "set DDRAM address"
@@ -30,11 +30,12 @@ _SECOND_ROW = const(0xC0)
 _GLYPHS = const(0x40)  # "set CGRAM address"
 _DISPLAY_ON = const(0x0C)  # no cursor
 
-# What puts the controller in order, whatever nibble of whatever it waits for, and whether or not
-# it has just got power: code, whole byte or high nibble only, time until the next one.
-# There is no "clear" among it: the old picture stays until the new one is written over it. "Home"
-# is, because nothing else brings a picture back that a pulse has moved; else it changes nothing.
-# From the second 0x30 to 0x28 the second row may be dark: nobody sees that in a single piece.
+# This sequence puts the controller in order, whichever nibble it waits for, and whether or not it
+# has just got power: code, whole byte or high nibble only, time until the next one.
+# It has no "clear": the old picture stays until the new one is written over it. It has a "home",
+# because nothing else brings a picture back that a pulse has moved; else "home" changes nothing.
+# From the second 0x30 to 0x28 the second row may be dark: within a single piece that is too short
+# to see.
 _SEQUENCE = (
     (0x30, False, 4_100),  # may be the second nibble of a "home", then this takes long
     (0x30, False, 100),
@@ -47,12 +48,12 @@ _SEQUENCE = (
 
 
 class CharacterDisplay:
-    """Whoever brings nibbles to the controller inherits this. clock: contract of `hal`.
+    """Drivers that bring nibbles to the controller inherit this. clock: contract of `hal`.
 
-    bytes_per_piece     2 at least; what `show` writes at the most
-    cells_per_piece     2 at least; so many are looked at for what differs
+    bytes_per_piece     2 at least; `show` writes at most so many
+    cells_per_piece     2 at least; `show` compares so many
     _nibble(register, code)     bits 7...4 of `code`. register: 0 instruction, 1 data
-    _byte(register, code)       both nibbles and a pause, where there is a better way than this one
+    _byte(register, code)       both nibbles and a pause, if the driver has a better way than this
     _pause(us)                  nothing may reach the controller for so long
     _end_piece()                writes what these two have only collected; False when that failed,
                                 and then it has called `_start_over`
@@ -69,7 +70,7 @@ class CharacterDisplay:
         self._mask = clock.ticks_mask
         self._glyphs = b""
         self._shown = bytearray(_CELLS)
-        self._cell = 0  # the one that is looked at next
+        self._cell = 0  # the next one to compare
         self._start_over(POWER_ON_US)
 
     def define(self, glyphs):
@@ -87,9 +88,9 @@ class CharacterDisplay:
         return self._is_on and self._shown == picture
 
     def _start_over(self, after_us):
-        """All is set up anew, not before so many microseconds; nothing is claimed to be seen."""
+        """Set everything up anew, not before so many microseconds; assume nothing is shown."""
         self._step = 0  # of _SEQUENCE
-        self._in_order = False  # the sequence is over: bytes can be written
+        self._in_order = False  # True once the sequence is over and bytes can be written
         self._unsure = 0  # bytes that must be written whatever the display seems to show
         self._leads_to = -1  # the controller's address: a cell, or _CELLS + index of dots
         self._is_on = False
@@ -97,7 +98,7 @@ class CharacterDisplay:
         self._come_back_after(after_us)
 
     def _put_in_order(self):
-        """The next steps of the sequence, up to one that must be waited for longer."""
+        """Do the next steps of the sequence, up to one with a longer wait."""
         self._in_order = False
         if self._step == len(_SEQUENCE):
             self._step = 0
@@ -123,10 +124,10 @@ class CharacterDisplay:
         self._wait_us = wait_us
 
     def _write(self, picture):
-        """A piece of what differs; in a refresh, of the dots, then of all cells.
+        """Write a piece of what differs; in a refresh, of the dots, then of all cells.
 
         What differs goes ahead of a refresh. It takes two of three pieces at the most, so that a
-        picture that never rests is refreshed as well.
+        picture that changes all the time is refreshed too.
         """
         left = self.bytes_per_piece
         if self._unsure > 1 and self._is_on and self._ahead < 2 and self._shown != picture:
@@ -137,7 +138,7 @@ class CharacterDisplay:
             while left and self._unsure > _CELLS + 1:
                 left -= self._write_dots(len(self._glyphs) + _CELLS + 1 - self._unsure)
                 self._unsure -= 1
-            if self._unsure == 1:  # before what differs, which may leave nothing for it
+            if self._unsure == 1:  # first, because what differs may leave no room for it
                 self._byte(0, _DISPLAY_ON)
                 self._unsure = 0
                 self._is_on = True
@@ -146,7 +147,7 @@ class CharacterDisplay:
         self._end_piece()
 
     def _write_ahead(self, picture, left):
-        """What differs, from the first cell on. The refresh writes these cells once more."""
+        """Write what differs, from the first cell on. The refresh writes these cells once more."""
         shown = self._shown
         for at in range(_CELLS):
             if shown[at] != picture[at]:
@@ -166,7 +167,7 @@ class CharacterDisplay:
         return cost
 
     def _write_cells(self, picture, left):
-        """What differs in the next cells, in a refresh all of them, with `left` bytes at the most.
+        """Write what differs in the next cells, in a refresh all of them, in at most `left` bytes.
 
         It goes round from where it stopped.
         """
@@ -191,7 +192,7 @@ class CharacterDisplay:
             self._byte(0, _FIRST_ROW + at if at < _COLUMNS else _SECOND_ROW - _COLUMNS + at)
         self._byte(1, code)
         self._shown[at] = code
-        # Behind the last column the controller has 24 cells more, which nobody sees.
+        # After the last column the controller has 24 more cells, which are not visible.
         self._leads_to = at + 1 if at != _COLUMNS - 1 and at != _CELLS - 1 else -1
 
     def _byte(self, register, code):

@@ -31,7 +31,7 @@ class Hd44780(CharacterDisplay):
         CharacterDisplay.__init__(self, clock)
 
     def _nibble(self, register, code):
-        """A data line that stays as it is costs nothing."""
+        """Set the lines, only those that change, and pulse E."""
         self._set_register_select(register)
         changed = code ^ self._lines
         self._lines = code

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Whether a display's backpack is there: asked before its driver takes memory.
+"""Finds out whether a display's backpack is there, before its driver takes memory.
 
 In use:
 

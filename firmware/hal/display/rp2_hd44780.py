@@ -17,10 +17,10 @@ from hal.display.character_display import CharacterDisplay
 
 _CYCLES_HZ = const(1_000_000)  # of the state machine: its waits are microseconds
 
-# The wait behind a byte, and behind a nibble while the controller is set up.
+# The wait after a byte, and after a nibble while the controller is set up.
 _BYTE_US = const(61)
 _NIBBLE_US = const(100)
-_BACKLOG_US = const(700)  # what a full FIFO takes: a wait for a command may begin so late
+_BACKLOG_US = const(700)  # a full FIFO takes so long, so the wait for a command may begin so late
 
 
 @rp2.asm_pio(
@@ -48,7 +48,7 @@ def nibbles():
 class PioHd44780(CharacterDisplay):
     """state_machine_number: 0...7. register_select, enable: Pins. clock: contract of `hal`."""
 
-    bytes_per_piece = 5  # 0.5 ms of computing; the FIFO takes 8, more would be waited for
+    bytes_per_piece = 5  # 0.5 ms of computing; the FIFO takes 8, more would have to wait
     cells_per_piece = 16  # another 0.2 ms
 
     def __init__(self, state_machine_number, register_select, enable, clock):
@@ -72,7 +72,7 @@ class PioHd44780(CharacterDisplay):
         self._put((register | code >> 2 & 0x3C) << 1 | _NIBBLE_US << 7)
 
     def _pause(self, us):
-        """The state machine has done it by then."""
+        """Nothing: the state machine makes the pauses itself."""
 
     def _come_back_after(self, wait_us):
         CharacterDisplay._come_back_after(self, wait_us + _BACKLOG_US)

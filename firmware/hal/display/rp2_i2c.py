@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: MIT
-"""Writing through I2C of the RP2040 without waiting: the bytes are put into the FIFO, which sends.
+"""Writes through I2C of the RP2040 without waiting: it puts the bytes into the FIFO, which sends.
 
-A backpack's piece takes 1 ms on the bus; the loop has better things to do. Has the one method of
-machine.I2C that `backpack` uses. Whether a transfer was acknowledged is known at the next one.
+A piece for a backpack takes 1 ms on the bus, and the loop must not wait so long. This has the one
+method of machine.I2C that `backpack` uses. The next transfer tells whether the one before was
+acknowledged.
 
     i2c = PostedI2C(machine.I2C(0, ...), 0x4004_4000, machine.mem32, clock)
     i2c.writeto(0x27, buffer)           # OSError: this one, or the one before, has failed
 
-One device only: the first transfer, which the port makes, sets its address. After an OSError the
-machine.I2C is to be made anew, and this with it. Runs on the chip alone.
+For one device only: the first transfer, which the port makes, sets its address. After an OSError
+make the machine.I2C anew, and this with it. It runs on the chip only.
 """
 
 from micropython import const
@@ -40,7 +41,7 @@ class PostedI2C:
         self._is_first = True
 
     def writeto(self, address, buffer):
-        """Send at most _FIFO_LENGTH bytes. OSError: nobody acknowledges, or the bus is stuck."""
+        """Send at most _FIFO_LENGTH bytes. OSError: no acknowledgement, or the bus is stuck."""
         if self._is_first:
             self._i2c.writeto(address, buffer)
             self._is_first = False

@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: MIT
 """The receiving half of a link: what a UART hears, burst by burst.
 
-Not a link: `rp2_rs485` and `rs485` add the half that sends. A burst is over when the line
-has been silent for 32 bits; then the UART interrupts (IRQ_RXIDLE, receive time-out of a PL011).
+`rp2_rs485` and `rs485` add the half that sends. A burst is over when the line has been
+silent for 32 bits; then the UART interrupts (IRQ_RXIDLE, receive time-out of a PL011).
 MicroPython's handler on the RP2040 moves characters from the UART's FIFO of 32 to a buffer of 256,
-and leaves one in the FIFO so that the time-out will come. From that follows:
+and leaves one in the FIFO so that the time-out will come. This has two consequences:
 
-* To look (`any`) in the middle of a burst empties the FIFO and uses the time-out up. So nobody
-  looks while characters stand in the FIFO, except after HALF_FULL characters: a time-out may have
-  got lost, and with it the announcement of its burst.
+* A look (`any`) in the middle of a burst empties the FIFO and uses the time-out up. So the link
+  does not look while characters stand in the FIFO, except after HALF_FULL characters: a time-out
+  may have got lost, and with it the announcement of its burst.
 * While the buffer is full, the FIFO cannot be emptied. If the time-out then comes again as soon as
-  it is acknowledged (the documents leave that open), the chip never leaves its handler. So what
-  found no room is dropped at once: no telegram is that long.
+  it is acknowledged (the documents leave that open), the chip never leaves its handler. So the
+  link drops characters that find no room at once: no telegram is that long.
 """
 
 from micropython import const
@@ -21,21 +21,21 @@ POLLED_RESOLUTION_US = const(5_000)  # how late a link without interrupts may be
 BUFFER = const(256)  # characters: as many as the longest telegram has
 HALF_FULL = const(128)
 _BITS_PER_CHARACTER = const(11)
-_COMING = const(-1)  # what `receive` says of characters whose end will be announced
+_COMING = const(-1)  # `receive` answers so while characters come in, to be announced at their end
 
 
 def _nobody():
-    """Whom the link tells of what it hears, until somebody wants to know."""
+    """What the link calls until `on_activity` is set."""
 
 
 class Bursts:
     """uart: 8E1 at `baud`, with a receive buffer of BUFFER. interrupts: it has IRQ_RXIDLE; hard:
     as a hard interrupt.
 
-    copy(source, target, at, count): for a burst that is taken in pieces. fifo: where a program can
-    look into the UART's FIFO, two functions: holds(), whether characters stand in it; clear(uart),
+    copy(source, target, at, count): for a burst that is taken in pieces. fifo: two functions, if a
+    program can look into the UART's FIFO: holds(), whether characters stand in it; clear(uart),
     which moves them to the buffer, drops those that find no room, and does not jump (see
-    `_on_idle`). None: then whoever looks takes what there is.
+    `_on_idle`). None: each look takes the characters that there are.
     """
 
     def __init__(self, uart, clock, baud, copy, fifo=None, interrupts=True, hard=True):
@@ -80,7 +80,7 @@ class Bursts:
         return count
 
     def _is_coming(self):
-        """Whether a burst is coming in whose end will be announced."""
+        """Whether a burst is coming in whose end on_activity will announce."""
         if self._fifo_holds is None or not self._fifo_holds():
             self._coming = False
             return False
@@ -101,4 +101,4 @@ class Bursts:
 
 
 def _leave(_uart):
-    """Of a FIFO that nobody can look into."""
+    """The `clear` of a FIFO that a program cannot look into."""

@@ -2,12 +2,13 @@
 """A half-duplex RS-485 link of the RP2040: a PIO state machine sends, UART 1 receives.
 
 Fulfils the contract `link` of `hal`. The state machine puts the characters on the line (8E1) and
-switches the driver, fed by DMA out of a buffer: once `send` has returned nothing depends on Python
-any more, neither a garbage collection nor the writing of flash moves an edge. The driver is on 3/8
-of a bit before the first start bit and off 1/8 of a bit after the last stop bit, at every rate.
+switches the driver; DMA feeds it from a buffer. Once `send` has returned, nothing depends on
+Python any more: neither a garbage collection nor the writing of flash moves an edge. The driver is
+on 3/8 of a bit before the first start bit and off 1/8 of a bit after the last stop bit, at every
+rate.
 
     driver_enable = Pin(6, Pin.OUT, value=0)        # low before anything else
-    rx = Pin(5, Pin.IN, Pin.PULL_UP)                # nobody drives it while the driver is on
+    rx = Pin(5, Pin.IN, Pin.PULL_UP)                # it floats while the driver is on
     uart = UART(1, baud, bits=8, parity=0, stop=1, tx=Pin(4), rx=rx, rxbuf=256, txbuf=32)
     link = Rp2Link(uart, 0, rp2.DMA(), Pin(4), driver_enable, clock, baud)
 
@@ -57,9 +58,9 @@ def transmitter():
 
 @micropython.viper
 def _transmit(buffer: ptr8, count: int, words: ptr16, channel: ptr32):
-    """Put what the state machine wants into `words`, and start the DMA channel that brings it.
+    """Put the state machine's words into `words`, and start the DMA channel that brings them.
 
-    Of each character its 11 bits in the order sent: 0, 8 bits, even parity, 1.
+    Each word has the 11 bits of a character in the order sent: 0, 8 bits, even parity, 1.
     """
     words[0] = count - 1
     index = 0
@@ -81,7 +82,7 @@ def _fifo_holds() -> bool:
 
 @micropython.viper
 def _clear_fifo(uart):
-    """The characters in the FIFO of UART 1 into its buffer; those that find no room are lost."""
+    """Move the characters in the FIFO of UART 1 to its buffer; drop those that find no room."""
     registers = ptr32(0x40038000)
     if registers[6] & 0x10 == 0:
         uart.any()
@@ -129,7 +130,7 @@ class Rp2Link(Bursts):
         Bursts.__init__(self, uart, clock, baud, _copy, (_fifo_holds, _clear_fifo))
 
     def send(self, buffer, count):
-        if self._is_driving():  # the last one never ended; nothing on the chip does that
+        if self._is_driving():  # the last telegram never ended; this does not happen on the chip
             self._dma.active(0)
             self._set_up()
         self._burst_ended = False
@@ -145,11 +146,11 @@ class Rp2Link(Bursts):
             passed_us = 0
         if passed_us < self._duration_us:
             return self._duration_us - passed_us
-        self._duration_us = 0  # or else, much later, the clock would have gone round
+        self._duration_us = 0  # otherwise the clock would wrap, much later, and this seem to last
         return 1 if self._is_driving() else 0
 
     def close(self):
-        self._uart.deinit()  # first, for nobody empties it any more: its interrupts end with it
+        self._uart.deinit()  # first: this ends its interrupts, and nothing empties it any more
         self._driver_enable.init(self._driver_enable.OUT, value=0)
         self._tx_pin.init(self._tx_pin.IN, self._tx_pin.PULL_UP)
         self._state_machine.active(0)
@@ -158,7 +159,7 @@ class Rp2Link(Bursts):
         self._duration_us = 0
 
     def _set_up(self):
-        """The state machine at its beginning, the driver off, nothing in its FIFO."""
+        """Put the state machine at its beginning, the driver off, its FIFO empty."""
         self._state_machine.init(
             transmitter,
             freq=self._frequency,

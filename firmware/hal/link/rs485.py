@@ -2,9 +2,9 @@
 """A half-duplex RS-485 link over a UART, a driver-enable pin and a one-shot timer.
 
 Fulfils the contract `link` of `hal`. The timer ends the transmission: it fires when the last stop
-bit should have left, looks whether it has, and drops the driver enable. That is exact where timer
+bit should have left, looks whether it has, and drops the driver enable. That is exact if timer
 callbacks run at once (the simulated chip, hard timers). A port whose timers wait for the garbage
-collector cannot promise it; wire a transceiver with automatic direction there.
+collector cannot promise it; use a transceiver with automatic direction there.
 
 The pin must be low before the UART is made: a driver that is on while the chip boots blocks the
 line.
@@ -25,8 +25,8 @@ def _copy(source, target, at, count):
 class Rs485Link(Bursts):
     """uart: 8E1 at `baud`, buffers of at least 256 characters. driver_enable: a Pin, 1 sends.
 
-    timer: its own, for the driver enable only. interrupts: False where the UART has none.
-    hard: False where the port takes only soft ones (ESP32). fifo: of `Bursts`.
+    timer: for the driver enable only. interrupts: False if the UART has none. hard: False if the
+    port has only soft interrupts (ESP32). fifo: as in `Bursts`.
     """
 
     def __init__(
