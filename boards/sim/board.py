@@ -40,12 +40,12 @@ WIRINGS = {
     ),
 }
 
-LOOP_US = 2_000  # what a step of the main loop takes at the most on the chip
+LOOP_US = 2_000  # the longest step of the main loop on the chip
 WATCHDOG_MS = 2_000
 
 
 class Watchdog:
-    """Starts with the first feeding; unfed for WATCHDOG_MS it restarts the chip."""
+    """Starts with the first feeding; if unfed for WATCHDOG_MS, it restarts the chip."""
 
     def __init__(self, chip):
         self._chip = chip
@@ -66,7 +66,7 @@ class Watchdog:
 
 
 class HardTimer(Timer):
-    """A timer whose callbacks are hard interrupts, as the chip has them from 1.26 on."""
+    """A timer whose callbacks are hard interrupts, as on the chip since MicroPython 1.26."""
 
     def __init__(self, chip):
         Timer.__init__(self, chip)
@@ -116,7 +116,7 @@ class Board:
 
 
 def clear_fifo(uart):
-    """Move what is in the FIFO into the buffer; what finds no room is lost."""
+    """Move what is in the FIFO to the buffer; what finds no room is lost."""
     uart.any()
     uart.drop_fifo()
 

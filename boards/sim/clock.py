@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Virtual time: one clock for the whole simulated world, in integer microseconds.
 
-It is not a scheduler of tasks: it keeps a list of instants and calls what is due, in order, while
-somebody advances it. Nothing happens between two instants, so an idle second costs nothing, and a
-run repeats to the microsecond. Owners allocate their events once. To arm, move or cancel them then
-takes no heap, as an interrupt handler demands.
+It keeps a list of instants and calls what is due, in order, while a caller advances it. Nothing
+happens between two instants, so an idle second costs nothing, and a run repeats to the
+microsecond. Owners allocate their events once. To arm, move or cancel them then takes no heap, as
+an interrupt handler demands.
 
     blink = Event(led.toggle)
     clock.schedule(blink, clock.now_us + 500_000)
@@ -99,7 +99,7 @@ class Clock:
         event.armed = False
 
     def coming(self):
-        """The instants that are to come, in order: (at_us, callback) of each event."""
+        """The events to come, in order: (at_us, callback) of each."""
         event = self._head.next
         while event is not None:
             yield event.at_us, event.callback
@@ -110,7 +110,7 @@ class Clock:
         self.advance_to(self.now_us + us)
 
     def sleep_us(self, us):
-        """As the chip's: busy waiting, so 100 us at most (ValueError), and never in an event."""
+        """Busy waiting, as on the chip: 100 us at most, else ValueError, and never in an event."""
         if us > SLEEP_LIMIT_US:
             raise ValueError("nobody sleeps for %d us: the limit is %d" % (us, SLEEP_LIMIT_US))
         self.advance_to(self.now_us + us)
@@ -118,8 +118,8 @@ class Clock:
     def advance_to(self, at_us):
         """Let time pass until `at_us`, the events of that very instant included.
 
-        now_us is exact inside each callback. What a callback raises ends the advance at its
-        instant and reaches the caller; the events behind it stay armed.
+        now_us is exact inside each callback. If a callback raises, the advance ends at its instant
+        and the caller gets the exception; the events after it stay armed.
         """
         if self._advancing:
             raise RuntimeError("the clock is being advanced already: an event cannot advance it")

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Random numbers of a seed: the same ones for the same seed on every interpreter, without heap.
 
-If what others draw must not change your numbers, take dice of your own.
+If other draws must not change your numbers, make your own dice.
 
     dice = Dice(4711)
     dice.random(1, 6)

@@ -22,7 +22,7 @@ DAYS_MAX = 100
 MS_MAX = DAYS_MAX * 24 * 3600 * 1000
 COUNT_DIGITS_MAX = 9
 LINE_MAX = 1000  # characters of a command
-DICE = 2  # those of the line: the drives' delays, drawn from others, stay as they are
+DICE = 2  # `which` of the line's dice; the drives' delays come from other dice and do not change
 
 
 class ScriptError(Exception):
@@ -34,7 +34,7 @@ class ExpectationFailed(Exception):
 
 
 class Refused(Exception):
-    """A command understood a value that the drive does not take."""
+    """A command has a value that is well-formed, but that the drive refuses."""
 
 
 class Script:
@@ -47,7 +47,7 @@ class Script:
         self._line = 0
 
     def run(self, lines):
-        """Do what the lines say, one after the other."""
+        """Do the commands of the lines, one after the other."""
         for line in lines:
             name, values = self.understood(line)
             if name:
@@ -115,7 +115,7 @@ class Script:
             raise Refused(error.args[0])
 
     def set_switch(self, drive, setting):
-        """How it behaves where the documents leave it open."""
+        """Set how the drive behaves where the documents leave it open."""
         name, wanted = setting
         if wanted is not None:
             drive.switches.set(name, wanted)
@@ -130,7 +130,7 @@ class Script:
     # --- the line -------------------------------------------------------------------------------
 
     def faults(self):
-        """Those of the line, from the first command on that needs them."""
+        """The faults of the line, made at the first command that needs them."""
         world = self.world
         if world.wire.faults is None:
             dice = Dice(getattr(world, "seed", 0), DICE)
@@ -358,4 +358,4 @@ ORDER = (
     "reset", "power",
     "line", "strike", "late", "babble", "cut", "mend", "dip",
 )  # fmt: skip
-OF_THE_LINE = ORDER[-7:]  # nobody can do them where the line is a real one
+OF_THE_LINE = ORDER[-7:]  # these cannot be done on a real line

@@ -30,7 +30,7 @@ from hal.store import FileStore
 BOOT_US = 100_000  # from reset to the first step of the firmware
 SETTINGS_FILE = "settings.json"
 TAP_MS = 100
-RELEASE_MS = 40  # a key that was let go is up for so long before the hand is at the next one
+RELEASE_MS = 40  # after a key is let go, the hand takes so long to the next one
 HANG_SLICE_US = 1_000
 COMPLAINTS_SHOWN = 5
 
@@ -48,17 +48,17 @@ class Surroundings:
     {3: {"family": g110, "parameters": {2013: 0}, "reply_delay_us": 4_000}}; fleet.py has some.
 
     random    a function of (low, high): the numbers of the seed
-    stored    what the panel's settings file is to say
+    stored    what the panel's settings file should say
     resets    how often the chip has restarted
     place     where the panel runs, for people
     refused   commands of the script language that cannot be done here: name -> why
-    notices   lines for people that nobody has shown yet
+    notices   lines for people that were not shown yet
     port      None: the line is simulated; or the port of the computer that is the line
     """
 
     place = "the virtual board"
     refused = {}
-    run = None  # run(ms): lets time pass, each world in its way
+    run = None  # run(ms): lets time pass; each world defines it
     notices = ()
     port = None
 
@@ -103,7 +103,7 @@ class Surroundings:
     # --- a hand and an eye ----------------------------------------------------------------------
 
     def press(self, key, ms=TAP_MS):
-        """Hold a key down for `ms` milliseconds, let it go, and let that be noticed."""
+        """Hold a key down for `ms` milliseconds, let it go, and wait until that is noticed."""
         self.down(key)
         self.run(ms)
         self.up(key)
@@ -137,7 +137,7 @@ class Surroundings:
             raise AssertionError("seed %d: %s" % (self.seed, "; ".join(shown)))
 
     def complaints(self):
-        """What was done against the rules, as texts."""
+        """The rules that were broken, as texts."""
         complaints = list(self.wire.violations())
         for complaint in self.lcd_chip.complaints():
             complaints.append("display: " + complaint)
@@ -146,10 +146,10 @@ class Surroundings:
 
 class World(Surroundings):
     """start: makes the firmware. polled: no receive interrupt. ticks_start, ticks_mask: of the
-    chip's clock, which `clock` replaces. store: keeps the panel's settings in place of the flash;
-    what it has already is not touched. The others are those of `Surroundings`; in the plain world
-    every step of the loop takes 2 ms, with a seed each its own time. With an odd seed the UART's
-    receive time-out comes again while characters are left (`Chip`).
+    chip's clock; or give a `clock` instead. store: keeps the panel's settings in place of the
+    flash; what it has already is not touched. The others are those of `Surroundings`. In the plain
+    world every step of the loop takes 2 ms; with a seed each step takes its own time. With an odd
+    seed the UART's receive time-out comes again while characters are left (`Chip`).
     """
 
     def __init__(
@@ -227,8 +227,8 @@ class World(Surroundings):
         self.reset()
 
     def dip(self, whose, ms):
-        """The supply of "drives", "panel" or "all" fails. The drives are without for `ms`, the
-        panel restarts when the world has the floor again. Also in an event: `LineFaults.on_dip`.
+        """The supply of "drives", "panel" or "all" fails. The drives have none for `ms`; the panel
+        restarts as soon as no event is running. May be called in an event: `LineFaults.on_dip`.
         """
         if whose != "panel":
             self.mains.dip(ms)
@@ -269,13 +269,13 @@ class World(Surroundings):
         )
 
     def _flash_is_busy(self, us):
-        # The firmware runs from the same flash: nothing of it does meanwhile.
+        # The firmware runs from the same flash, so it stands still meanwhile.
         irq = self.chip.disable_irq()
         self.clock.advance(us)
         self.chip.enable_irq(irq)
 
     def _bite(self):
-        # Inside an event: the world restarts the chip when it has the floor again.
+        # This is inside an event: the world restarts the chip after it.
         self._bitten = True
         self.lcd_chip.let_go()
         self.chip.reset()
@@ -285,7 +285,7 @@ class World(Surroundings):
 
 
 def supervision(family, ms):
-    """The parameter that has a drive of a family supervise its line, at least for so long."""
+    """The parameter that makes a drive of a family supervise its line, for at least so long."""
     unit_us = family.LINK["unit us"]
     return {family.LINK["off time"]: -(-ms * 1000 // unit_us)}
 

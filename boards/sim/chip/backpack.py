@@ -2,8 +2,8 @@
 """The I2C backpack of an LCD: a PCF8574 whose eight outputs are the controller's wires.
 
 A byte that it acknowledges is on its outputs at once, all eight bits together. But a controller
-wants one change after the other. If E moves in the same byte as another wire, nobody knows which
-moves first, so this model takes the worse order.
+wants one change after the other. If E moves in the same byte as another wire, it is not known
+which moves first, so this model takes the worse order.
 
     backpack = Backpack(clock, lcd)         # lcd: a `boards.sim.chip.lcd.Lcd`
     backpack.take(0x0C)                     # E up, backlight on: as acknowledged on the bus
@@ -12,7 +12,7 @@ moves first, so this model takes the worse order.
 """
 
 ADDRESS = 0x27
-ENODEV = 5  # what the RP2040 port raises when nobody acknowledges: EIO
+ENODEV = 5  # the RP2040 port raises this, EIO, if there is no acknowledgement
 
 # The outputs, as these boards are wired.
 RS, RW, E, BACKLIGHT = 0x01, 0x02, 0x04, 0x08
@@ -24,7 +24,7 @@ READS = "the backpack reads the display (R/W is high) while E is high"
 
 
 class Output:
-    """One of the outputs, with the face of a pin for whoever listens to it."""
+    """One of the outputs, with the interface of a pin for its listeners."""
 
     def __init__(self, bit):
         self.bit = bit
@@ -32,7 +32,7 @@ class Output:
 
 
 class Backpack:
-    """address: on the bus. plugged: False when somebody pulled its cable.
+    """address: on the bus. plugged: False while its cable is pulled.
 
     bytes_taken   how many it has acknowledged
     lit           whether the backlight is on
@@ -47,15 +47,15 @@ class Backpack:
         self._clock = clock
         self._lcd = lcd
         self._outputs = {bit: Output(bit) for bit in (RS, E) + DATA}
-        self._level = 0  # what the controller was told; RW and the backlight as well
+        self._level = 0  # the levels that the controller was told, with RW and the backlight
         self.power_on()
 
     def power_on(self):
-        """Power comes, or comes back, for the backpack and for the display behind it."""
+        """Power comes, or comes back, for the backpack and its display."""
         self._lcd.power_on()
         self._lcd.wire(self._outputs[RS], self._outputs[E], [self._outputs[bit] for bit in DATA])
-        # All outputs are high now (data sheet, power-on reset), R/W too: the controller is being
-        # read and takes nothing. What the first byte may do to it, its initialisation undoes.
+        # All outputs are high now (data sheet, power-on reset), R/W too: so the controller is
+        # being read and takes nothing. Its initialisation undoes what the first byte may do to it.
         self._level = 0
 
     @property
@@ -63,13 +63,13 @@ class Backpack:
         return bool(self._level & BACKLIGHT)
 
     def take(self, byte):
-        """A byte that was acknowledged just now."""
+        """Take a byte that was acknowledged just now."""
         self.bytes_taken += 1
         changed = byte ^ self._level
         falls, rises = changed & self._level & E, changed & byte & E
-        if falls:  # the others may have changed before
+        if falls:  # the other wires may have changed before E
             self._change((byte & ~E) | E)
-        elif rises and not changed & RS:  # RS has to be there before E rises, the data have time
+        elif rises and not changed & RS:  # RS must be set before E rises, the data may come later
             self._change(byte & ~E)
         elif rises:
             self._change(self._level | E)
@@ -101,7 +101,7 @@ class I2C:
         return [self._backpack.address] if self._backpack.plugged else []
 
     def writeto(self, address, data, stop=True):
-        """Send all of `data`; answers how many bytes were acknowledged. OSError: nobody did."""
+        """Send all of `data`; return how many bytes were acknowledged. OSError: none."""
         self._clock.advance(self._byte_us)
         if address not in self.scan():
             raise OSError(ENODEV)

@@ -3,11 +3,11 @@
 
 It behaves like littlefs: a file that is written appears with its new content when it is closed,
 all at once, and rename overwrites at once (littlefs README, Usage). It has no folders and never
-wears out. Its steps take as long as on the Pico; everything stands still meanwhile, interrupts as
-well.
+wears out. Its steps take as long as on the Pico; everything stands still meanwhile, interrupts
+too.
 
     flash = Flash()
-    store = FileStore("settings.json", flash.open, flash)      # it stands for `open` and for `os`
+    store = FileStore("settings.json", flash.open, flash)      # in place of `open` and `os`
     flash.cut_at = flash.steps + 2
     try:
         store.replace(b"{}")
@@ -21,25 +21,25 @@ ENOENT = 2
 EIO = 5
 ENOSPC = 28
 
-BLOCK_BYTES = 64  # written in one step; small, so that there are many steps
+BLOCK_BYTES = 64  # are written in one step; small, so that there are many steps
 
 # Winbond W25Q16JV (the Pico's), AC characteristics, typical: 0.4 ms a page, 45 ms a sector erased.
-# littlefs does not erase for each of its commits; here the worst is assumed.
+# littlefs does not erase for each of its commits; this assumes the worst case.
 PROGRAM_US = 400
 ERASE_US = 45_000
 CAPACITY_BYTES = 64 * BLOCK_BYTES
 
 
 class PowerCut(BaseException):
-    """The power is gone: no handler of errors may go on as if it were there."""
+    """The power is gone. It is a BaseException, so that no error handler goes on regardless."""
 
 
 class Flash:
     """torn: if the power is cut while a file is written, a reader sees what had been written by
     then.
 
-    littlefs promises better; a firmware that stands this needs no such promise. busy: called with
-    the microseconds that each step takes.
+    littlefs promises better; a firmware that survives this does not need that promise. busy:
+    called with the microseconds that each step takes.
 
     files        path -> bytes, as a reader finds them; a test may put something there
     unreadable   paths that cannot be read: OSError
@@ -88,7 +88,7 @@ class Flash:
         del self.files[path]
 
     def write_block(self, path, block):
-        """For the writer of a file. OSError: ENOSPC; what was written of the file is given up."""
+        """For the writer of a file. OSError: ENOSPC; what was written so far is given up."""
         if self._blocks_used() == self._blocks_max:
             del self._writing[path]
             raise OSError(ENOSPC)
@@ -98,7 +98,7 @@ class Flash:
         self._writing[path] += block[half:]
 
     def commit(self, path):
-        """For the writer of a file: what it has written takes the place of what was there."""
+        """For the writer of a file: what it has written replaces what was there."""
         self._step()
         self.files[path] = self._writing.pop(path)
 

@@ -3,14 +3,14 @@
 
 It takes nibbles from pins, executes instructions, keeps its memory while the microcontroller
 resets, and complains about what the data sheet forbids (Hitachi, ADE-207-272). It is as slow as
-the slowest specimen, and its memory is full of anything when power comes. You cannot read it: R/W
-is tied low. The data sheet does not say what becomes of a write that comes too soon; here it is
-lost.
+the slowest specimen, and its memory holds random characters when power comes. You cannot read it:
+R/W is tied low. The data sheet does not say what becomes of a write that comes too soon; here it
+is lost.
 
     lcd = Lcd(clock)
     lcd.wire(register_select, enable, (d4, d5, d6, d7))
     lcd.text()                          # ("S: 10.0 F: 10.00", "RUNNING      A1 ")
-    lcd.complaints()                    # ["at 1146 us: ..."] when somebody broke a rule
+    lcd.complaints()                    # ["at 1146 us: ..."] if a rule was broken
 """
 
 COLUMNS = 16
@@ -31,7 +31,7 @@ CYCLE_US = 1  # 1000 ns
 
 COMPLAINT_LIMIT = 16
 
-# What a broken rule reads like.
+# The text of each broken rule.
 TOO_SOON = "written to before its power-on time was over"
 BUSY = "written to while it was busy"
 SHORT_PULSE = "E was high for less than 450 ns"
@@ -43,7 +43,7 @@ NO_CELL = "a character was written to an address that does not exist"
 
 UNREADABLE = "▒"
 
-# ROM A00 where it differs from ASCII, as far as anybody shows it.
+# ROM A00 where it differs from ASCII, for the characters in use.
 ROM = {0x5C: "¥", 0x7E: "→", 0x7F: "←", 0xDF: "°", 0xFF: "█"}
 
 # What a person sees in the dots of a character that the firmware has drawn itself.
@@ -106,7 +106,7 @@ class Lcd:
         self.power_on()
 
     def power_on(self):
-        """Power comes, or comes back: 8 bits wide, off, its memory full of anything."""
+        """Power comes, or comes back: 8 bits wide, off, random characters in its memory."""
         for memory in (self.ddram, self.cgram):
             for index in range(len(memory)):
                 memory[index] = (index * 73 + 41) & 0xFF
@@ -120,8 +120,8 @@ class Lcd:
         self.eight_bits = True
         self.half = -1
         self._is_set = False  # a function set was executed since the width of the bus changed
-        self._has_started = False  # something was executed since power-on
-        self._function_sets = 0  # since power-on, as far as START_US goes
+        self._has_started = False  # an instruction was executed since power-on
+        self._function_sets = 0  # since power-on; counted only as far as START_US needs
         self._busy_us = 0
         self._ready_us = self._clock.now_us + POWER_ON_US
 
@@ -139,7 +139,7 @@ class Lcd:
     def let_go(self):
         """The microcontroller resets and lets go of the wires, so that E falls.
 
-        A pulse that this cuts short counts as a pulse, and nobody is to blame for it.
+        A pulse that this cuts short counts as a pulse, and not as a broken rule.
         """
         for pin in self._pins:
             pin.on_change = None
@@ -169,7 +169,7 @@ class Lcd:
         if self._clock.now_us < self._ready_us:
             self._complain(BUSY if self._has_started else TOO_SOON)
         elif self.eight_bits:
-            self._execute(lines >> 4, (lines & 0x0F) << 4 | 0x0F)  # open inputs are pulled up
+            self._execute(lines >> 4, (lines & 0x0F) << 4 | 0x0F)  # open D0...D3 are pulled up
         elif self.half < 0:
             self.half = lines & 0x0F
         else:
@@ -212,7 +212,7 @@ class Lcd:
         self._move(self.increment)
 
     def _cell(self):
-        """Where in `ddram` the address leads, -1: nowhere."""
+        """The index in `ddram` that the address means; -1: none."""
         row_length = ROW_LENGTH if self.two_lines else 2 * ROW_LENGTH
         if self.address < row_length:
             return self.address
@@ -246,7 +246,7 @@ class Lcd:
 
     def _function_set(self, code):
         eight_bits = bool(code & 0x10)
-        # The number of lines can be set once after a change of the width, then no more.
+        # The number of lines can be set only once after a change of the width.
         if eight_bits != self.eight_bits:
             self.eight_bits = eight_bits
             self.two_lines = bool(code & 0x08)
@@ -261,7 +261,7 @@ class Lcd:
     def _shift(self, code):
         step = 1 if code & 0x04 else -1
         if code & 0x08:
-            self._scroll(-step)  # the picture moves to the right: what was left of it is seen
+            self._scroll(-step)  # the picture moves right, so cells on its left come into view
         else:
             self._move(step)
 

@@ -24,7 +24,7 @@ from boards.sim.line.wire import BURST_LIMIT
 
 try:
     from micropython import heap_lock, heap_unlock
-except ImportError:  # CPython has no heap to lock
+except ImportError:  # CPython cannot lock its heap
 
     def heap_lock():
         pass
@@ -33,8 +33,8 @@ except ImportError:  # CPython has no heap to lock
         pass
 
 
-# Past this instant virtual time is no longer a small integer, so that the simulator itself takes
-# heap: handlers then run with the heap unlocked. 17.5 minutes on the 32-bit build.
+# After this instant virtual time is no longer a small integer, so that the simulator itself takes
+# heap. Handlers then run with the heap unlocked. 17.5 minutes on the 32-bit build.
 _HEAP_LOCK_UNTIL_US = (sys.maxsize >> 1) - 25_000_000
 
 _ERROR_LIMIT = 16
@@ -47,18 +47,18 @@ RX_BUFFER, RX_FIFO = 256, 32
 FULL_FIFO = 24
 RX_LIMIT = RX_BUFFER + RX_FIFO
 
-STORM_US = 50  # what a handler takes that comes again and again
-STORM_LIMIT_US = 10_000_000  # nobody waits longer for the end of that
+STORM_US = 50  # how long each run of a handler takes that comes again and again
+STORM_LIMIT_US = 10_000_000  # the main loop waits no longer for the end of that
 
 
 class Chip:
     """The chip as a whole: its interrupts and its reset.
 
     timeout_again: a receive time-out that was cleared comes again at once as long as characters
-    are left in the FIFO, which no document settles.
-    levels           those of its pins as bits, which a read of its register answers
+    are left in the FIFO. The documents leave that open.
+    levels           the levels of its pins as bits, as its register shows them
     handler_errors   exceptions that interrupt handlers ended with, the first 16
-    on_bite          called when the watchdog bites: a reset, unless somebody puts another function
+    on_bite          called when the watchdog bites: a reset, unless you set another function
     """
 
     def __init__(self, clock, wire, timeout_again=False):
@@ -66,7 +66,7 @@ class Chip:
         self.wire = wire
         self.timeout_again = timeout_again
         self.uarts = []
-        self.storms = False  # an interrupt is there again whenever its handler returns
+        self.storms = False  # an interrupt comes again whenever its handler returns
         self.levels = 0
         self.handler_errors = []
         self.on_bite = self.reset
@@ -78,7 +78,7 @@ class Chip:
         self._last_waiting = None
 
     def reset(self):
-        """All at once: what is being sent stops, pins go low, timers and interrupts are gone.
+        """Reset everything: sending stops, pins go low, timers and interrupts are gone.
 
         Peripherals made before are dead: using them does nothing. The firmware makes new ones.
         """
@@ -168,7 +168,7 @@ class Chip:
 class Interrupt:
     """One interrupt of one peripheral: the handler, and a place in the chip's queue.
 
-    is_due() tells, when the handler's turn comes, whether there is still a reason to call it.
+    is_due() tells, at the handler's turn, whether there is still a reason to call it.
     """
 
     def __init__(self, source, is_due):
@@ -180,7 +180,7 @@ class Interrupt:
         self.next = None
 
     def failure(self):
-        """Run the handler: what it raised, or None."""
+        """Run the handler; return what it raised, or None."""
         try:
             self.handler(self.source)
         except Exception as error:
@@ -239,7 +239,7 @@ class UART:
         if n is not None and n < limit:
             limit = n
         count = self._count - self._in_fifo
-        if count < limit:  # the buffer is empty then
+        if count < limit:  # the buffer is empty now
             count = self._count
             self._in_fifo = 0
         if count > limit:
@@ -260,7 +260,7 @@ class UART:
         self._in_fifo = 0
 
     def collect(self):
-        """Characters that have come by now are in the FIFO, or further."""
+        """Put the characters that have come by now into the FIFO, or the buffer."""
         if self.line is not None:
             self.line.collect()
         if self._in_fifo >= FULL_FIFO and not self._chip.is_masked():
@@ -275,7 +275,7 @@ class UART:
                 self._clock.schedule(self._timeout, self._clock.now_us + self._timeout_us)
 
     def _serve_full(self):
-        """The driver's handler, each time that the FIFO held FULL_FIFO."""
+        """Run the driver's handler each time that the FIFO held FULL_FIFO."""
         times = (self._in_fifo - FULL_FIFO) // (FULL_FIFO - 1) + 1
         room = RX_BUFFER - (self._count - self._in_fifo)
         self._in_fifo -= min(times * (FULL_FIFO - 1), room)
@@ -315,7 +315,7 @@ class UART:
         return self._clock.now_us >= self._sent_us
 
     def deinit(self):
-        """Off: stops sending, drops what waits, calls nobody."""
+        """Turn it off: it stops sending, drops what waits and calls no handler."""
         self._interrupt.handler = None
         self._clock.cancel(self._timeout)
         self._count = 0
@@ -361,7 +361,7 @@ class UART:
             self._chip.interrupt(self._interrupt)
 
     def _is_due(self):
-        """The driver's handler, before it calls the program's."""
+        """Run the driver's handler; return whether it calls the program's."""
         due = self._in_fifo > 0
         if due and self._chip.timeout_again and self._count - self._in_fifo == RX_BUFFER:
             self._chip.storms = True
@@ -384,7 +384,7 @@ class Pin:
 
     An input, and an open-drain output that has let go, read what is applied, else the pull; a wire
     that nothing holds is 0.
-    mask               its bit in `Chip.levels`; 0 for those behind the thirtieth
+    mask               its bit in `Chip.levels`; 0 for pins after the thirtieth
 
     A reset leaves the wire to the board: an output is low, as by a resistor to ground.
     """
@@ -404,16 +404,16 @@ class Pin:
         self.mask = 1 << len(chip.pins) if len(chip.pins) < PINS else 0
         self.output = 1 if mode == self.OPEN_DRAIN else 0
         self._chip = chip
-        # A pin is asked and set thousands of times a second, so both are worked out before.
+        # A pin is read and set thousands of times a second, so both are prepared here.
         self._settable = mode != self.IN
-        self._let_go = 1 if pull == self.PULL_UP else 0  # the level, where the pin does not drive
+        self._let_go = 1 if pull == self.PULL_UP else 0  # the level if the pin does not drive
         self._level = 0  # what value() answers
         chip.pins.append(self)
         self.value(value)
         self._settle()
 
     def value(self, level=None):
-        """Answer the level, or set it. To set the level of an input changes nothing."""
+        """Return the level, or set it. Setting the level of an input changes nothing."""
         if level is None:
             return self._level
         level = 1 if level else 0
@@ -455,7 +455,7 @@ class Pin:
 
 
 class Timer:
-    """machine.Timer, the virtual one: as many as are wanted."""
+    """machine.Timer, the virtual one: there may be any number."""
 
     ONE_SHOT = 0
     PERIODIC = 1
@@ -465,7 +465,7 @@ class Timer:
         self._clock = chip.clock
         self._mode = self.PERIODIC
         self._period_us = 0
-        self._is_hard = False  # whatever `init` is told
+        self._is_hard = False  # whatever `init` says
         self._interrupt = Interrupt(self, self._is_due)
         self._alarm = Event(self._elapsed)
         self._due = False
@@ -482,7 +482,7 @@ class Timer:
         if mode | period | tick_hz < 0:  # only integers can be put together like this
             raise ValueError("negative period")
         self._mode = mode
-        if 1_000_000 % tick_hz == 0:  # without this, 32-bit integers would take heap
+        if 1_000_000 % tick_hz == 0:  # otherwise 32-bit integers would take heap
             period_us = period * (1_000_000 // tick_hz)
         else:
             period_us = period * 1_000_000 // tick_hz
@@ -494,7 +494,7 @@ class Timer:
             self._clock.schedule(self._alarm, self._clock.now_us + self._period_us)
 
     def deinit(self):
-        """Stop; a callback that waits for its turn is forgotten."""
+        """Stop, and forget a callback that waits for its turn."""
         self._clock.cancel(self._alarm)
         self._due = False
 
@@ -526,7 +526,7 @@ class WDT:
         self.feed()
 
     def feed(self):
-        """Another `timeout_ms` from now."""
+        """Start `timeout_ms` anew."""
         if self._alive:
             clock = self._chip.clock
             clock.schedule(self._bite, clock.now_us + self._timeout_us)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """What happens to a real line: interference, bad contacts, bad slaves, mains dips. Seeded.
 
-It stands in the way of every telegram as `Wire.faults`; without it the line is perfect, and costs
+As `Wire.faults` it gets every telegram; without it the line is perfect, and simulation costs
 nothing more. Everything is drawn from one sequence of random numbers, so a run can be repeated.
 
     faults = LineFaults(wire, Dice(7, 1).random, {"flip": 0.001, "late": 0.01})
@@ -10,8 +10,8 @@ nothing more. Everything is drawn from one sequence of random numbers, so a run 
     faults.log                          # [(at_us, kind, detail), ...], the last 100
     faults.count["flip"]
 
-Characters are changed, lost, doubled or added on the way: all stations hear the same. What is
-heard of a telegram never lasts longer than it did.
+Characters are changed, lost, doubled or added on the way; all stations hear the same. A telegram
+is never heard for longer than it was sent.
 """
 
 from boards.sim.clock import Event
@@ -49,28 +49,28 @@ AS_IT_FALLS = -1
 LOG_LIMIT = 100
 ADDRESS_MAX = 31
 
-# Bits of a character that may flip, behind the start bit: data, parity, stop.
+# Bits of a character that may flip, after the start bit: data, parity, stop.
 DATA_BITS = 8
 STOP_BIT = 9
 
-# How bad it is, when nobody says so: from, to.
-LATE_MS = (5, 120)  # later than it would come
+# The default range of a fault's size: from, to.
+LATE_MS = (5, 120)  # so much later than usual
 NOISE_CHARACTERS = (1, 12)
 BABBLE_MS = (50, 3_000)
 BABBLE_CHARACTERS = (1, 40)
 WIRE_CUT_MS = (20, 5_000)
 DIP_MS = (20, 3_000)
-TWIN_US = (0, 15_000)  # how much later than its twin it replies
+TWIN_US = (0, 15_000)  # how much later than its twin a drive replies
 
-# Which wires of a station break: whether it is deaf, whether it is mute.
+# Which wires of a station break: (whether it is deaf, whether it is mute).
 WAYS = {"both": (True, True), "hears": (True, False), "talks": (False, True)}
 
-# Whose supply dips.
+# Which supply dips.
 SUPPLIES = ("all", "drives", "panel")
 
 
 class Weather:
-    """A talker that is no station: interference, or a node gone mad."""
+    """A talker that is not a station: interference, or a defective node."""
 
     is_weather = True
 
@@ -83,7 +83,7 @@ class Weather:
 
 
 class LineFaults:
-    """wire: the line; it becomes its `faults`. random(low, high): both included.
+    """wire: the line, whose `faults` this becomes. random(low, high): both included.
 
     rates     {kind: rate} of KINDS: chances 0...1, times a second or an hour; of the switches,
               "echo" True or False, "twin" an address or None
@@ -105,11 +105,11 @@ class LineFaults:
         self._logged = 0
         self._most = {kind: -1 for kind in OF_CHARACTERS + OF_REPLIES}
         # How many characters or replies there are until the next fault of each kind, that one
-        # included. Of the characters it is right as of when `_calm` was `_calm_from`.
+        # included. For kinds of characters: counted from when `_calm` was `_calm_from`.
         self._left = {kind: NEVER for kind in OF_CHARACTERS + OF_REPLIES}
-        self._calm = self._calm_from = NEVER  # so many characters pass before any kind's next one
-        self._struck = {}  # kind: how many characters of the next telegram, or what to a reply
-        self._struck_whose = {}  # kind: whose reply, None: anybody's
+        self._calm = self._calm_from = NEVER  # so many characters pass before the next fault
+        self._struck = {}  # kind: how many characters of the next telegram, or the size of a fault
+        self._struck_whose = {}  # kind: whose reply; None: any station's
         self._weather = {}  # name: the talker
         self._noise = bytearray(BURST_LIMIT)
         self._noise_count = 0
@@ -132,7 +132,7 @@ class LineFaults:
     # --- what people do -------------------------------------------------------------------------
 
     def set(self, kind, rate):
-        """From now on faults of that kind happen at this rate; 0: none.
+        """Let faults of that kind happen at this rate from now on; 0: none.
 
         KeyError: no such kind. ValueError: no such rate.
         """
@@ -159,7 +159,7 @@ class LineFaults:
                 self._schedule(kind)
 
     def calm(self):
-        """No faults any more; what was cut is mended."""
+        """End all faults, and mend what was cut."""
         for kind in KINDS:
             self.set(kind, None if kind == "twin" else 0)
         self._struck.clear()
@@ -169,12 +169,12 @@ class LineFaults:
         self.mend()
 
     def strike(self, kind, how_much=None, station=None):
-        """One fault of that kind: now, or to the next telegram that it can happen to.
+        """Make one fault of that kind: now, or to the next telegram that it can happen to.
 
         how_much: characters ("flip", "lost", "doubled", "stray": so many of the next telegram;
         "cut": the reply keeps so many; "noise"), milliseconds ("late", "babble", "wire cut",
-        "dip"), or the address ("foreign"); None: as it falls.
-        station: whose reply; None: anybody's.
+        "dip"), or the address ("foreign"); None: random.
+        station: whose reply; None: any station's.
         KeyError: no such kind. ValueError: it is a switch; more characters than a burst holds.
         """
         if KINDS[kind][1] == SWITCH:
@@ -200,7 +200,7 @@ class LineFaults:
         self._note("wire cut", name)
 
     def mend(self):
-        """All wires are whole again."""
+        """Mend all wires."""
         self._clock.cancel(self._mend)
         while self._cut_names:
             self._wire.cut(self._cut_names.pop(), False, False)
@@ -236,7 +236,7 @@ class LineFaults:
         return kind in self._struck and self._struck_whose[kind] in (None, station)
 
     def _told(self, kind, low, high):
-        """What `strike` said of it, else a number from low to high."""
+        """The size that `strike` gave, else a number from low to high."""
         told = self._struck.pop(kind, AS_IT_FALLS)
         return self._random(low, high) if told == AS_IT_FALLS else told
 
@@ -246,7 +246,7 @@ class LineFaults:
         return kept
 
     def _readdressed(self, data, count):
-        """The reply as if from another address, with the BCC that belongs to it."""
+        """The reply with another address, and the BCC that fits it."""
         reply = bytearray(data[:count])
         address = self._told("foreign", 0, ADDRESS_MAX)
         if count > 3:
@@ -276,7 +276,7 @@ class LineFaults:
     # --- characters -----------------------------------------------------------------------------
 
     def append(self, burst, data, count):
-        """Put `count` characters behind those of a burst, as far as they come over."""
+        """Append to a burst what arrives of `count` characters."""
         if count < self._calm and burst.sent is None:
             self._calm -= count
             burst.append(data, count)
@@ -291,7 +291,7 @@ class LineFaults:
         self._reckon()
 
     def _carry_over(self, burst, character, rest):
-        """One character; `rest` are still to come in this telegram, itself among them."""
+        """Carry one character; `rest` are still to come in this telegram, this one included."""
         ends_us = burst.sent_end_us()
         if self._strikes("stray", rest):
             burst.put(self._random(0, 255), ends_us, 0)
@@ -326,14 +326,15 @@ class LineFaults:
         self._left[kind] = self._random(1, most) if most > 0 else NEVER
 
     def _spend(self):
-        """Take the characters that have passed off what was left of each kind."""
+        """Subtract the characters that have passed from what is left of each kind."""
         passed = self._calm_from - self._calm
         for kind in OF_CHARACTERS:
             self._left[kind] -= passed
         self._calm_from = self._calm
 
     def _reckon(self):
-        """How many characters can pass at once: a good telegram then costs one comparison."""
+        """Compute how many characters pass before the next fault, so that a good telegram costs
+        one comparison."""
         calm = NEVER
         for kind in OF_CHARACTERS:
             if self._left[kind] < calm:
@@ -352,7 +353,7 @@ class LineFaults:
         return Event(ring)
 
     def _schedule(self, kind):
-        """The next one: on the average as often as its rate says."""
+        """Schedule the next fault of a kind; on average they come as often as its rate says."""
         period_ms = 1_000 if KINDS[kind][1] == PER_SECOND else 3_600_000
         after_ms = self._random(1, max(1, int(2 * period_ms / self.rates[kind])))
         self._clock.schedule(self._alarms[kind], self._clock.now_us + after_ms * 1000)
@@ -363,7 +364,7 @@ class LineFaults:
         return self._weather[name]
 
     def _be_noisy(self, characters):
-        """As soon as nobody talks, and not always at once."""
+        """Make noise when the line is silent, and not always at once."""
         self._noise_count = characters or self._random(*NOISE_CHARACTERS)
         pause_us = self._random(0, 4 * self._wire.character_us)
         self._clock.schedule(self._noise_later, self._wire.busy_until_us() + pause_us)
@@ -373,7 +374,7 @@ class LineFaults:
         self._talk_rubbish(self._talker("noise"), self._noise_count)
 
     def _talk_rubbish(self, talker, count):
-        """Any characters, every other one with an error. Answers when they are over."""
+        """Send random characters, every other one with an error. Returns when they end."""
         for i in range(count):
             self._noise[i] = self._random(0, 255)
         burst = self._wire.put(talker, self._noise, count)
@@ -390,7 +391,7 @@ class LineFaults:
 
     def _talk_babble(self):
         talker = self._talker("a babbling node")
-        if self._wire.is_talking(talker):  # it is at it, and was told to begin once more
+        if self._wire.is_talking(talker):  # it still talks, and was told to begin once more
             self._clock.schedule(self._babble, self._clock.now_us + self._wire.character_us)
             return
         ends_us = self._talk_rubbish(talker, self._random(*BABBLE_CHARACTERS))
@@ -401,7 +402,7 @@ class LineFaults:
     def _break_wires(self, lasting_ms):
         names = self._wire.names()
         if not names:
-            return  # all are without supply
+            return  # nothing has any supply
         if lasting_ms is None:
             lasting_ms = self._random(*WIRE_CUT_MS)
         ways = sorted(WAYS)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""A second master on the line, where there must be one only: it talks now and then, even while
+"""A second master on the line, where there must be only one. It talks now and then, even while
 others talk.
 
-It is a station that never listens. Whoever makes it decides what it says.
+It is a station that never listens. Its maker decides what it says.
 
     intruder = Intruder(clock, wire, telegram, period_us=400_000)
     intruder.begin()
@@ -33,7 +33,7 @@ class Intruder:
         self._clock.schedule(self._talk, self._clock.now_us + self._period_us)
 
     def end(self):
-        """Talk no more; a telegram that it has begun goes to its end."""
+        """Stop talking, after the end of a telegram under way."""
         self._clock.cancel(self._talk)
 
     def hear(self, burst):

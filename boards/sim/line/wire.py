@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
 """The RS-485 line: who talks when, exact to the character, and the rules of the line.
 
-It carries characters of 11 bits (8E1) between stations and judges their timing; what they mean is
-none of its business. A telegram costs one event, at its end: a station that wants to see single
-characters come in asks the burst how many have arrived by now. What every telegram goes through
-is cut into small functions: MicroPython takes a frame of more than 11 words from the heap, and
-looks for a hole in all of it.
+It carries characters of 11 bits (8E1) between stations and judges their timing, not their meaning.
+A telegram costs one event, at its end: a station that wants to see single characters come in asks
+the burst how many have arrived by now. The code that every telegram runs is cut into small
+functions: MicroPython takes a frame of more than 11 words from the heap, and searches all of the
+heap for a hole.
 
     wire = Wire(clock, 19200)
     wire.attach(drive)
@@ -17,14 +17,14 @@ A station has these attributes, all but the first optional:
     watch(burst)        called when it begins
     name                for the texts of the violations
     hear_itself(burst)  called when its own burst has ended, where `Wire.echo` is on
-    has_driver_enable   True: its driver is switched by Wire.drive, and judged; any other station's
-                        transceiver switches by itself, without fault
+    has_driver_enable   True: Wire.drive switches its driver, and the wire judges that; the
+                        transceiver of any other station switches by itself, without fault
     is_panel            True: its telegrams are the panel's in the log
-    is_weather          True: it is no station, but what happens to a line; see faults.py
+    is_weather          True: it is not a station, but interference; see faults.py
 
-Two stations that talk at once are not the only trouble of a line: `Wire.faults` may hold an object
-that every telegram passes through (faults.py). While there is one, only the panel is judged,
-and by what it could hear; what the faults force on anybody is noted apart, in `weather`.
+`Wire.faults` may hold an object that every telegram passes through (faults.py). While there is
+one, the wire judges only the panel, by what it could hear; breaches that faults of the line forced
+are noted apart, in `weather`.
 """
 
 from array import array
@@ -36,27 +36,27 @@ LOG_TELEGRAMS = 1000
 LOG_CHARACTERS = 32768
 VIOLATION_LIMIT = 100
 
-# Instants are whole microseconds, ends of characters are rounded down: a silence that was measured
-# may be this much shorter than the one that was kept.
+# Instants are whole microseconds, and ends of characters are rounded down: a measured silence may
+# be this much shorter than the true one.
 ROUNDING_US = 1
 
 LONG_AGO_US = -1_000_000  # before the world began the line was quiet for a second
 
-# What a collision changes in each character. No piece of it adds up to nothing in the BCC, as an
-# even number of inverted characters would; every one of them comes with a framing error.
+# What a collision changes in each character. No part of it cancels out in the BCC, as an even
+# number of inverted characters would. Each of the characters has a framing error.
 GARBLE = bytes((181 * i ^ 181 * (i + 1)) & 0xFF for i in range(BURST_LIMIT))
 
-# What a receiver says of a character, bits of `Burst.errors`.
+# The errors that a receiver reports of a character, bits of `Burst.errors`.
 PARITY, FRAME, OVERRUN = 1, 2, 4
 
-# A node that talks without a pause cannot be waited for, STOP has to be sent: after so long the
-# panel may talk into it. Pauses shorter than the other figure, and 4 characters, are none: a link
-# without interrupts does not see them.
+# The panel cannot wait for a node that talks without a pause, because it has to send STOP: after
+# so long it may talk into it. A pause counts only if it is longer than the second figure and 4
+# characters: a link without interrupts does not see shorter ones.
 BABBLE_US = 500_000
 BABBLE_PAUSE_US = 20_000
 
-# The rules of the line: what a breach reads like. {us} is the figure measured, {start} the start
-# interval and {character} one character, both in microseconds.
+# The rules of the line: the text of each breach. {us} is the figure measured, {start} the start
+# interval and {character} one character, all in microseconds.
 SHORT_SILENCE = "{name} talks after {us} us of silence, the start interval is {start} us"
 COLLISION = "{name} talks while {other} talks, {us} us before the end of its last stop bit"
 DRIVER_ON_INTO = "{name} enables its driver while {other} talks, {us} us before its end"
@@ -76,7 +76,7 @@ DRIVER_RULES = (DRIVER_MISSING, DRIVER_CUTS, DRIVER_EARLY, DRIVER_LATE, DRIVER_I
 
 
 def copy(data, count, into, at):
-    """data[:count], to into[at] and what follows it."""
+    """Copy data[:count] to into[at:]."""
     for i in range(count):
         into[at] = data[i]
         at += 1
@@ -85,16 +85,16 @@ def copy(data, count, into, at):
 class Burst:
     """Characters back to back from one talker. It belongs to the wire, which will use it again.
 
-    data        as received: what a collision has garbled is so already
+    data        as received, already garbled if there was a collision
     count       how many characters; a cut burst keeps those that were complete
     errors      None, or bits for each character: PARITY, FRAME, OVERRUN
     start_us    first start bit; end_us: end of the last stop bit, or the cut
-    silence_us  how long nobody had talked before it
+    silence_us  how long the line was silent before it
     ends        ends[i] is the end of character i, in microseconds after start_us
-    garbled     somebody else talked, or held a driver enabled, at the same time
-    inside      it began while somebody else talked
-    sent        None, or what left the talker, where faults of the line have changed it
-    sent_count  how many characters that were
+    garbled     another station talked, or held its driver enabled, at the same time
+    inside      it began while another station talked
+    sent        None, or what left the talker, if faults of the line have changed it
+    sent_count  how many characters those were
     """
 
     def __init__(self, ends, character_us):
@@ -110,7 +110,7 @@ class Burst:
         self.sent = None
         self.sent_count = 0
         self._character_us = character_us
-        # All that faults need is here beforehand: they strike in interrupt handlers as well.
+        # All that faults need is allocated here, because they strike in interrupt handlers too.
         self._even_ends = ends
         self._own_ends = array("i", ends)
         self._flags = bytearray(BURST_LIMIT)
@@ -118,7 +118,7 @@ class Burst:
         self._check = -1
 
     def begin(self, now_us, silence_us):
-        """Empty, from now on."""
+        """Begin anew, empty."""
         self.count = 0
         self.sent_count = 0
         self.start_us = now_us
@@ -145,7 +145,7 @@ class Burst:
         return count
 
     def append(self, data, count):
-        """Take `count` characters behind those that are there."""
+        """Append `count` characters."""
         if self.sent is not None:
             self._append_unchanged(data, count)
             return
@@ -157,7 +157,7 @@ class Burst:
             self._garble_from(at)
 
     def cut(self, now_us):
-        """Only what is complete by now was sent."""
+        """End the burst: only the characters that are complete by now were sent."""
         elapsed = now_us - self.start_us
         while self.sent_count and self._even_ends[self.sent_count - 1] > elapsed:
             self.sent_count -= 1
@@ -171,7 +171,7 @@ class Burst:
             self.garbled = True
 
     def exclusive_or(self):
-        """Of all characters: they are looked at once, however many hear them."""
+        """The exclusive or of all characters, computed once for all stations that hear them."""
         check = self._check
         if check < 0:
             check = 0
@@ -182,13 +182,13 @@ class Burst:
         return check
 
     def heard_us(self):
-        """The end of the last character that can be heard; its start where there is none."""
+        """The end of the last character that can be heard; the burst's start if there is none."""
         return self.start_us + (self.ends[self.count - 1] if self.count else 0)
 
-    # What faults do. First `change`; then for each character `carry`, and `put` what comes of it.
+    # For faults. First call `change`; then for each character `carry`, and `put` for what arrives.
 
     def change(self):
-        """From now on what is heard is not what was sent."""
+        """Let what is heard differ from what was sent from now on."""
         if self.sent is not None:
             return
         self.sent = self._original
@@ -198,7 +198,7 @@ class Burst:
         self.ends = self._own_ends
 
     def carry(self, character):
-        """The talker sends this one, and nobody hears it unless `put` follows."""
+        """The talker sends this character; it is heard only if `put` follows."""
         at = self.sent_count
         self._original[at] = character
         self.sent_count = at + 1
@@ -209,7 +209,7 @@ class Burst:
         return self._even_ends[self.sent_count - 1] if self.sent_count else 0
 
     def put(self, character, end_us, flags):
-        """One character is heard; it ends so long after start_us, not before the one before."""
+        """Let one character be heard. It ends so long after start_us, not before the last one."""
         at = self.count
         if at == BURST_LIMIT:
             return
@@ -229,7 +229,7 @@ class Burst:
             self.put(data[i], self.sent_end_us(), 0)
 
     def blame(self, at, flags):
-        """Character `at` has these errors."""
+        """Mark character `at` with these errors."""
         if self.errors is None:
             self.errors = self._flags
             for i in range(BURST_LIMIT):
@@ -243,7 +243,7 @@ class Burst:
 
 
 class _Tap:
-    """A station's place on the line: its burst, and its driver if that one is switched."""
+    """A station's place on the line: its burst, and its driver if that is switched."""
 
     def __init__(self, wire, station):
         self.wire = wire
@@ -252,7 +252,7 @@ class _Tap:
         self.is_weather = getattr(station, "is_weather", False)
         self.deaf = False  # its receiving wire is cut
         self.mute = False  # its sending wire is cut
-        self.alone = False  # what it sends reaches nobody
+        self.alone = False  # what it sends reaches no other station
         self.hear = station.hear
         self.watch = getattr(station, "watch", None)
         self.attached_us = wire.clock.now_us
@@ -263,7 +263,7 @@ class _Tap:
         self.hear_itself = getattr(station, "hear_itself", None)
         self.driving = False
         self.driver_on_us = 0
-        self.driver_needed_us = 0  # until when there was a reason to have it enabled
+        self.driver_needed_us = 0  # until when the driver had to be enabled
         self.driver_judged = False
 
     def ended(self):
@@ -277,14 +277,14 @@ class Wire:
     character_us        one character, rounded up
     start_interval_us   two characters, rounded up: silence that must precede a telegram (USS
                         specification 5.1.2)
-    echo                True: who can, hears what it sends itself, as on two wires with a receiver
-                        that is never off
+    echo                True: a station that can hears what it sends itself, as on two wires with a
+                        receiver that is never off
     log                 the last 1000 telegrams, as they left their talkers
     faults              None, or what has `talk(station, data, count)`, which every telegram passes
                         through, and `append(burst, data, count)`: see faults.py
 
-    It has methods where others have properties: a class with one property makes every assignment
-    to its objects' fields a search for `__setattr__`, and these are set in each telegram.
+    It has methods instead of properties: with one property in a class, MicroPython searches for
+    `__setattr__` at every assignment to its objects' fields, and these are set in each telegram.
     """
 
     def __init__(self, clock, baud):
@@ -298,15 +298,15 @@ class Wire:
         self.faults = None
         self._taps = {}
         self._attached = []
-        self._hearing = []  # those of them whose receiving wire is whole
+        self._hearing = []  # the stations whose receiving wire is whole
         self._cuts = {}  # name: (deaf, mute)
         self._talkers = 0
         self._drivers = 0
         self._babble_pause_us = max(BABBLE_PAUSE_US, 4 * self.character_us)
         self._idle_since_us = LONG_AGO_US
         self._last_began_us = LONG_AGO_US
-        self._busy_since_us = 0  # no silence since then that would be a start interval
-        self._babble_since_us = 0  # of the weather, without a pause, and what it has run into
+        self._busy_since_us = 0  # since then no silence was as long as a start interval
+        self._babble_since_us = 0  # since then interference, with what it hit, never paused
         self._babble_until_us = LONG_AGO_US
         self._violations = Book()
         self._weather = Book()
@@ -337,8 +337,8 @@ class Wire:
         self._hearing = [other for other in self._hearing if other is not tap]
 
     def cut(self, name, deaf=True, mute=True):
-        """The wires to the station of that name are cut, whether or not it is plugged in: it hears
-        nobody, nobody hears it. One direction only: one of two pairs. Both False: mended.
+        """Cut the wires to the station of that name, whether or not it is plugged in: it does not
+        hear others (deaf), others do not hear it (mute). Both False: mend them.
         """
         self._cuts[name] = (deaf, mute)
         for tap in self._attached:
@@ -350,7 +350,7 @@ class Wire:
         if mute and not tap.mute:
             needed_us = tap.driver_needed_us
             self._cut(tap)
-            tap.driver_needed_us = needed_us  # it knows nothing of it, and goes on
+            tap.driver_needed_us = needed_us  # the station does not notice, and goes on
         if mute != tap.mute and tap.driving:
             self._drivers += -1 if mute else 1
         tap.mute = mute
@@ -361,7 +361,7 @@ class Wire:
     # Looking at it
 
     def names(self):
-        """Of the stations on the line."""
+        """The names of the stations on the line."""
         return [tap.name for tap in self._attached if not tap.is_weather]
 
     def is_talking(self, station):
@@ -383,8 +383,8 @@ class Wire:
         """Send data[:count] from now on, characters back to back; the burst ends by itself.
 
         While the station's own burst is still going, the characters follow it without a gap.
-        Returns the Burst, whose end_us says when the last stop bit is over, also where the
-        characters do not reach the line; None where the station is not attached.
+        Returns the Burst, whose end_us says when the last stop bit is over, also if the characters
+        do not reach the line; None if the station is not attached.
         ValueError: no characters, or more than a burst holds.
         """
         if self.faults is not None:
@@ -392,7 +392,7 @@ class Wire:
         return self.put(station, data, count)
 
     def put(self, station, data, count):
-        """As `talk`, behind the faults that postpone, shorten or replace a telegram."""
+        """As `talk`, after the faults that postpone, shorten or replace a telegram."""
         tap = self._taps.get(station)
         if tap is None:
             return None
@@ -431,8 +431,8 @@ class Wire:
             self._announce(tap)
 
     def _emptied(self, tap):
-        """Its burst, which begins now."""
-        if tap.talking:  # the one before ends at this very instant
+        """The station's burst, emptied, which begins now."""
+        if tap.talking:  # its last burst ends at this very instant
             self._ended(tap)
         now = self.clock.now_us
         silence_us = 0 if self._talkers else now - self._idle_since_us
@@ -483,9 +483,9 @@ class Wire:
             burst.garbled = True
 
     def took_place(self, station, burst):
-        """`station` has sent this on a real line that this one stands for: it is over.
+        """`station` has sent this burst on the real line that this wire stands for; it is over.
 
-        Nothing of it is judged, and faults leave it alone. burst: one of the caller's own, with
+        The wire does not judge it, and faults do not touch it. burst: one of the caller's, with
         the wire's `ends` or its own.
         """
         self._idle_since_us = burst.end_us
@@ -518,7 +518,7 @@ class Wire:
         if not tap.alone:
             self._talkers -= 1
             until_us = burst.end_us
-            if burst.sent is not None:  # for what was lost on the way nobody waits
+            if burst.sent is not None:  # nothing waits for characters that were lost on the way
                 until_us = burst.heard_us() if burst.count else self._idle_since_us
             if until_us > self._idle_since_us:
                 self._idle_since_us = until_us
@@ -532,17 +532,18 @@ class Wire:
         self._tell(tap, burst)
 
     def _tell(self, tap, burst):
-        """To the log, and to everybody who can hear it."""
+        """Hand a burst to the log, and to every station that can hear it."""
         self.log.add(burst, tap.from_panel)
         if tap.alone or not burst.count:
             return
         for other in self._hearing:
-            # Who was plugged in meanwhile has missed the beginning.
+            # A station that was plugged in meanwhile has missed the beginning.
             if other is not tap and other.attached_us <= burst.start_us:
                 other.hear(burst)
 
     def _settle(self, now):
-        """End the bursts that are over at this very instant, though their event is yet to come."""
+        """End the bursts that are over at this very instant, although their event is yet to
+        come."""
         for tap in self._attached:
             if tap.talking and tap.burst.end_us <= now:
                 self._ended(tap)
@@ -612,18 +613,18 @@ class Wire:
         book.note(self.clock.now_us, rule, tap.name, other.name if other is not None else "", us)
 
     def _is_forced(self, rule, tap):
-        """Whether the faults of the line made somebody break a rule.
+        """Whether the faults of the line made a station break a rule.
 
-        Of the stations, only the panel can do better than talk when its time has come. It answers
-        for its driver always, and for the silence before its telegram as far as it could hear:
-        a character that is not over is heard by nobody. Into a node that never stops it may talk.
+        All stations but the panel must talk when their time has come. The panel always answers for
+        its driver, and for the silence before its telegram as far as it could hear: a station does
+        not hear a character before its end. The panel may talk into a node that never stops.
         """
         if not tap.from_panel or tap.deaf:
             return rule not in DRIVER_RULES
         if rule not in SILENCE_RULES:
             return False
         now = self.clock.now_us
-        plugged_us = tap.attached_us  # or its wires were mended: who began before is not heard
+        plugged_us = tap.attached_us  # or mended: it does not hear bursts that began before
         heard_us = self._idle_since_us
         if self._last_began_us < plugged_us:
             heard_us = LONG_AGO_US
@@ -636,12 +637,12 @@ class Wire:
         if now - heard_us >= self.start_interval_us - ROUNDING_US:
             return True
         quiet_us = now - self._babbled_until_us(now)
-        # It counts from when it last found the line silent, and a shorter pause than that is none.
+        # The panel counts from when it last found the line silent; a shorter pause does not count.
         babble_us = now - self._babble_since_us + BABBLE_PAUSE_US
         return quiet_us < self._babble_pause_us and babble_us >= BABBLE_US
 
     def _babbled_until_us(self, now):
-        """When the weather was heard last."""
+        """When interference was heard last."""
         for other in self._attached:
             if other.talking and other.is_weather and not other.alone:
                 return now
@@ -657,7 +658,7 @@ class Wire:
         return self._violations.count
 
     def weather_count(self):
-        """How many times faults of the line made somebody break a rule."""
+        """How many times faults of the line made a station break a rule."""
         return self._weather.count
 
     def violations(self):
@@ -671,7 +672,7 @@ class Wire:
         return self._violations.texts(self.start_interval_us, self.character_us)
 
     def weather(self):
-        """Texts as those of `violations`: what faults of the line made somebody do."""
+        """Texts as those of `violations`: what faults of the line made stations do."""
         return self._weather.texts(self.start_interval_us, self.character_us)
 
 
@@ -683,7 +684,7 @@ class Book:
         self._rows = [[0, None, "", "", 0] for _ in range(VIOLATION_LIMIT)]
 
     def note(self, at_us, rule, name, other, us):
-        # Kept as figures and made into texts later: this may run in an interrupt handler.
+        # Kept as figures, and made into texts later, because this may run in an interrupt handler.
         if self.count < VIOLATION_LIMIT:
             row = self._rows[self.count]
             row[0] = at_us
@@ -704,9 +705,9 @@ class Book:
 
 
 class Log:
-    """The last 1000 telegrams; fewer where they are longer than 32 characters on the average.
+    """The last 1000 telegrams; fewer if they are longer than 32 characters on average.
 
-    Their characters lie one behind the other in a ring, so that keeping them takes no heap.
+    Their characters lie one after the other in a ring, so that keeping them takes no heap.
     """
 
     def __init__(self):
@@ -769,8 +770,8 @@ class Log:
 class Transceiver:
     """The RS-485 chip that joins a UART and its driver enable pin to the line: one station.
 
-    Receiver and driver share the enable pin, so the UART hears the line while the pin is low and
-    never itself; where the line has `echo`, the receiver is on all the time.
+    Receiver and driver share the enable pin, so the UART hears the line while the pin is low, and
+    never itself. If the line has `echo`, the receiver is on all the time.
     """
 
     has_driver_enable = True
@@ -784,9 +785,9 @@ class Transceiver:
         self._clock = wire.clock
         self._uart = uart
         self._deaf = False
-        self._burst = None  # what is coming in
-        self._taken = 0  # how many of its characters the UART has had
-        self._other = None  # who talks as well, and ends later
+        self._burst = None  # the burst that is coming in
+        self._taken = 0  # how many of its characters the UART has got
+        self._other = None  # a second burst at the same time, which ends later
         wire.attach(self)
         enable_pin.on_change = self._enable
         self._enable(enable_pin.value())
@@ -800,7 +801,7 @@ class Transceiver:
         return burst.end_us
 
     def unplug(self):
-        """The chip is gone: cut what it sends, leave the line."""
+        """Remove the chip: cut what it sends, leave the line."""
         self._uart.line = None
         self._wire.detach(self)
 
@@ -818,11 +819,11 @@ class Transceiver:
         if not on and self._taken < burst.count:
             begun_us = burst.ends[self._taken - 1] if self._taken else 0
             if burst.start_us + begun_us < self._clock.now_us:
-                self._taken += 1  # the character in which the receiver comes on is lost as well
+                self._taken += 1  # the character in which the receiver comes on is lost too
 
     def watch(self, burst):
-        # Of several talkers at once, the first one is watched character by character, then the one
-        # that lasts longest.
+        # Of several talkers at once, watch the first one character by character, then the one that
+        # lasts longest.
         now = burst.start_us
         if self._burst is None or self._burst is burst or self._burst.end_us <= now:
             self._burst = burst
@@ -836,7 +837,7 @@ class Transceiver:
             self._burst = None
             self._take_up_other()
         elif not self._deaf:
-            # The other one of two talkers comes in as one piece of garbage.
+            # The second of two talkers comes in as one piece of garbage.
             self._uart.receive(burst.data, 0, burst.count)
         if not self._deaf:
             self._uart.quiet_since(burst.end_us)
@@ -844,7 +845,7 @@ class Transceiver:
     hear_itself = hear
 
     def _take_up_other(self):
-        """One of two talkers has ended: what the other one still has to say comes in as well."""
+        """One of two talkers has ended: take in what is left of the other one too."""
         other = self._other
         self._other = None
         now = self._clock.now_us
