@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Change reports of a simulated drive: it tells the master what somebody else has changed.
+"""Change reports of a simulated drive: it tells the master what others have changed.
 
 It knows which report is open, and what bit 11 of PKE has to be (USS specification C-4.2.1.2). It
 knows no values; parameter_channel.py makes the words. MICROMASTERs make no reports.
@@ -22,12 +22,12 @@ class Reports:
         self._waiting = []
 
     def add(self, number, index):
-        """Add a report to be sent; one that finds no room is not told."""
+        """Add a report to be sent; one that finds no room is dropped."""
         if len(self._waiting) < WAITING_LIMIT:
             self._waiting.append((number, index))
 
     def hear(self, bit):
-        """Bit 11 of a request."""
+        """Take bit 11 of a request."""
         if bit == self.bit:
             self._open = None
 

@@ -126,13 +126,13 @@ class Drive:
     @property
     def state(self):
         """inhibited, ready, ready to run, running, stopping, fault or off."""
-        self.process.hz()  # what time has done meanwhile
+        self.process.hz()  # works out what has happened meanwhile
         return self.process.state
 
     @property
     def powered(self):
-        """Whether its electronics live. They may still be booting: it is "off" until they have
-        booted.
+        """Whether its electronics have power. They may still be booting; until they have booted
+        the state is "off".
         """
         return self._supply.powered
 
@@ -191,8 +191,8 @@ class Drive:
 
     @property
     def residual_time_errors(self):
-        """Telegrams that were not over in time. No parameter shows this number, nor the next
-        one.
+        """Telegrams that were not over in time. No parameter shows this number, nor that of
+        watchdog_errors.
         """
         return self.slave.counters()[RESIDUAL_TIME]
 
@@ -245,14 +245,14 @@ class Drive:
         """Trip with this fault number. ValueError: the drive is off.
 
         value: r0949. lasting: its cause stays until `clear_cause`, and so does the fault: neither
-        an acknowledgement nor the power helps. Otherwise it is gone at once.
+        an acknowledgement nor a power cycle helps. Otherwise the cause is gone at once.
         """
         if not self._supply.booted:
             raise ValueError(self.name + " is off")
         self.process.trip(number, value, lasting)
 
     def clear_cause(self, number=None):
-        """The cause of a lasting fault is gone, of all of them without a number."""
+        """End the cause of a lasting fault; without a number, of all of them."""
         self.process.clear_cause(number)
 
     def warn(self, number, on=True):
@@ -260,17 +260,17 @@ class Drive:
         self.process.memory.warn(number, on)
 
     def load(self, percent, kind=FAN, inertia_s=INERTIA_S):
-        """What the motor has to do from now on, in percent of its rated torque.
+        """Set the load of the motor, in percent of its rated torque.
 
-        kind: CONSTANT, LINEAR or FAN (plant.py): how it depends on the frequency; `percent` is
-        that at the rated one. inertia_s: how long rated torque takes to the rated frequency.
-        More than the drive can give makes it warn, and trip in the end.
+        kind: CONSTANT, LINEAR or FAN (plant.py): how it depends on the frequency; `percent` is the
+        load at the rated frequency. inertia_s: how long rated torque takes to reach the rated
+        frequency. Under a load beyond what it can give, the drive warns, and trips in the end.
         """
         self.process.load(percent, kind, inertia_s)
 
     def supply(self, volts):
-        """The mains have so many volts from now on; 400 before. Below 248 it cannot run. Nothing
-        at all is `power_off`.
+        """Set the voltage of the mains; 400 at first. Below 248 the drive cannot run. For 0 V use
+        `power_off`.
         """
         self._supply.set_volts(volts)
 
@@ -285,8 +285,8 @@ class Drive:
         self._connect()
 
     def power_off(self):
-        """Mains off. Sooner or later (supply.py) the motor coasts, and RAM is lost: its
-        parameters are those of the EEPROM again.
+        """Mains off. After a while (supply.py) the motor coasts, and RAM is lost: the parameters
+        are those of the EEPROM again.
         """
         self._supply.off()
 
@@ -318,7 +318,7 @@ class Drive:
     # The line
 
     def hear(self, burst):
-        """The end of a burst on the line: called by the wire."""
+        """Called by the wire at the end of a burst."""
         if self._silent:
             return
         form = self.slave.hear(burst)
@@ -343,7 +343,7 @@ class Drive:
         """Whether the telegram failure time starts anew with this telegram."""
         if form == BROADCAST and not self.switches.broadcast_retriggers:
             return False
-        # A telegram that is mirrored carries process data for nobody.
+        # The process data of a mirror telegram are for no drive.
         return not self._needs_process_data or form != MIRROR and self.slave.pzd_words > 0
 
     def _net_words(self):
@@ -372,7 +372,7 @@ class Drive:
         else:
             slave = self.slave
             words = self.process.words(slave.pzd_words)
-            if self._with_pkw and slave.pkw_words:  # somebody may have changed it meanwhile
+            if self._with_pkw and slave.pkw_words:  # it may have been changed meanwhile
                 words = self.channel.reply(slave.pkw_words, slave.pzd_words) + words
             self.wire.talk(self, self._buffer, self.slave.frame(self._buffer, words))
         self._settle()
@@ -445,21 +445,21 @@ class Drive:
         self.process.refresh()
 
     def _settle(self):
-        """What had to wait for the end of the exchange: settings of the link, operations."""
+        """Do what had to wait for the end of the exchange: settings of the link, operations."""
         if self._unsettled:
             self._unsettled = False
             self._configure_link()
             self._operate()
 
     def _operate(self):
-        """Carry out what parameters have started. What takes its time makes the drive silent."""
+        """Carry out what parameters have started. The drive is silent while that takes time."""
         operations = self._operations
         while not self._silent and operations.seconds() is not None:
             seconds = operations.seconds()
             if seconds:
                 self._silent = True
                 self._clock.cancel(self._reply)
-                self._clock.cancel(self._failure)  # it waits as well: a choice
+                self._clock.cancel(self._failure)  # the supervision waits too: a choice
                 end_us = self._clock.now_us + round(seconds * 1_000_000)
                 self._clock.schedule(self._end_of_silence, end_us)
             else:

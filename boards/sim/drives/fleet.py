@@ -10,7 +10,7 @@
 Every address has the same kind, and the same time to its reply, each time.
 """
 
-# From the bottom up: an import inside an import inside an import takes stack.
+# Lower layers first: an import inside an import inside an import takes stack.
 from boards.sim.drives import parameters as drive_parameters  # noqa: F401
 from boards.sim.drives.families import g110, g120, generic, mm3, mm420, mm440, v20
 

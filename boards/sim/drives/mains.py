@@ -11,7 +11,7 @@ from boards.sim.clock import Event
 
 
 class Mains:
-    """drives: a list of `Drive`. Who was switched off by hand stays off."""
+    """drives: a list of `Drive`. A drive that was switched off by hand stays off."""
 
     def __init__(self, clock, drives):
         self._clock = clock
@@ -20,7 +20,9 @@ class Mains:
         self._back = Event(self._come_back)
 
     def dip(self, ms):
-        """From now on, for so long, or as long as a dip that goes on lasts. Also in an event."""
+        """Cut the mains for so long, or until the end of a dip under way. May be called in an
+        event.
+        """
         for drive in self._drives:
             if drive.mains:
                 drive.power_off()

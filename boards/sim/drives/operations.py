@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: MIT
 """What a simulated drive does because a parameter was written: it saves, resets, calculates.
 
-Some of it takes seconds in which a real drive says nothing (P0340, P0970, P0971, P1910, P3900).
-Here is what is done and how long it takes; drive.py keeps silent meanwhile. A family's OPERATIONS
-name its numbers: {number: (what, seconds)}.
+Some operations take seconds in which a real drive is silent (P0340, P0970, P0971, P1910, P3900).
+This carries them out and tells how long they take; drive.py keeps silent meanwhile. A family's
+OPERATIONS name its numbers: {number: (what, seconds)}.
 
     operations.note(970)        # P0970 was written: True if that starts something
-    operations.seconds()        # 10: the first that waits
-    operations.carry_out()      # it is done, P0970 is 0 again
+    operations.seconds()        # 10: of the first operation that waits
+    operations.carry_out()      # do it; P0970 is 0 again
 
-How long each takes no list says; that a reset takes about 10 s has been reported by users. What is
-calculated is general knowledge, the formulas are rough: they are for a master to see a change.
+No parameter list says how long each takes; users have reported that a reset takes about 10 s. The
+calculations are general knowledge, and their formulas rough: a master only needs to see a change.
 """
 
 SAVE = "RAM to EEPROM"
@@ -28,7 +28,7 @@ SQUARE_ROOT_OF_3 = 1.7320508
 
 
 class Operations:
-    """family: a module such as mm420. They are carried out one after the other."""
+    """family: a module such as mm420. Operations are carried out one after the other."""
 
     def __init__(self, family, parameters, process, switches):
         self._table = family.OPERATIONS
@@ -46,9 +46,10 @@ class Operations:
         del self._waiting[:]
 
     def note(self, number):
-        """A number was written: whether that starts something, which waits then.
+        """A number was written. Return whether that starts an operation, which then waits.
 
-        What only clears is done at once, so that the reply to the write tells of it.
+        An operation that only clears something is done at once, so that the reply to the write
+        shows it.
         """
         if number not in self._table:
             return False
@@ -61,14 +62,14 @@ class Operations:
         return True
 
     def seconds(self):
-        """How long the first that waits takes; None: nothing waits."""
+        """How long the first operation that waits takes; None if none waits."""
         if not self._waiting:
             return None
         number = self._waiting[0]
         return (self._switches.silence_s or {}).get(number, self._table[number][1])
 
     def carry_out(self):
-        """Do the first that waits; its number is 0 again."""
+        """Do the first operation that waits; its number is 0 again."""
         number = self._waiting.pop(0)
         what = self._table[number][0]
         values = list(self._parameters.ram.get(number, ()))
@@ -95,7 +96,7 @@ class Operations:
         return self._kept if self._switches.keeps_link else ()
 
     def _end_commissioning(self, how):
-        """In RAM alone: P0971 keeps it."""
+        """P3900. This changes RAM only; P0971 saves it."""
         parameters = self._parameters
         if how == RESET_OTHERS:
             parameters.restore_defaults(self._quick + self._kept_numbers())
@@ -107,7 +108,9 @@ class Operations:
         self._calculate([1] * len(parameters.ram[340]))
 
     def _calculate(self, wanted):
-        """P0340 or P1910: what follows from the motor's rating plate, for the data sets wanted."""
+        """P0340 or P1910: calculate values from the motor's rating plate, for the data sets
+        wanted.
+        """
         ram = self._parameters.ram
         for index in range(len(ram[304])):
             if wanted[min(index, len(wanted) - 1)]:

@@ -10,10 +10,10 @@ change_reports.py.
     channel.reply(4)                        # [0x2460, 0, 0x4120, 0]: a double word, 10.0
 
 A task is carried out once, when it changes; a reply that carries a value always carries the
-present one. In which order a drive looks for what is wrong no document says; here it is: task
-known, change rights, number, access level for reading (a switch), bits for texts (a switch),
-index, room, read-only, type, state, commissioning step, access level, in use, key, number of
-values, limits, discrete values.
+present one. No document says in which order a drive checks a task; this checks: task known, change
+rights, number, access level for reading (a switch), bits for texts (a switch), index, room,
+read-only, type, state, commissioning step, access level, in use, key, number of values, limits,
+discrete values.
 """
 
 from boards.sim.drives.change_reports import BIT, Reports
@@ -107,7 +107,7 @@ def page_of(number):
 
 class ParameterChannel:
     """family: a module such as mm420. state() is "C", "U" or "T": commissioning, running, ready.
-    changed(number) hears of writes. switches: see switches.py. reports: it tells of changes
+    changed(number) is called after writes. switches: see switches.py. reports: it tells of changes
     that others make.
     """
 
@@ -167,7 +167,7 @@ class ParameterChannel:
         return self._refusal is not None
 
     def report(self, number, index):
-        """Somebody else has changed this element, or ALL_ELEMENTS."""
+        """Report that another has changed this element, or ALL_ELEMENTS."""
         if self._reports is not None:
             self._reports.add(number, index)
 
@@ -211,7 +211,7 @@ class ParameterChannel:
         return words
 
     def _report(self, number, index, layout):
-        """PKW words that tell the value of an element that somebody else has changed."""
+        """PKW words that tell the value of an element that another has changed."""
         row = self._parameters.rows[number]
         array = row[INDICES] > 1
         position = index if index != ALL_ELEMENTS else None
@@ -236,7 +236,7 @@ class ParameterChannel:
         if array and index == ALL_ELEMENTS:
             return None
         if array and row[INDICES] == 1:
-            return 0  # a scalar that is addressed as an array answers to index 0 and 1 (RM420)
+            return 0  # a scalar addressed as an array answers to index 0 and 1 (RM420)
         first = self._family["first index"]
         return index - first if array or index else 0
 
@@ -281,7 +281,7 @@ class ParameterChannel:
         return rights is None or self._parameters.ram[rights[0]][0] & rights[1]
 
     def _neighbours(self, number):
-        """To browse by (RM420, G110D): the next number that exists, and the one before."""
+        """The next number that exists and the one before, for browsing (RM420, G110D)."""
         if number is None:
             return ()
         numbers = self._parameters.numbers
@@ -310,8 +310,8 @@ class ParameterChannel:
         if layout == VARIABLE:
             elements += self._family["variable elements"]
         if which not in elements:
-            # The whole description has no room in fixed length (SPEC C-4.2.2, OI440); a single
-            # element that there is in variable length alone does not exist.
+            # The whole description does not fit fixed length (SPEC C-4.2.2, OI440). A single
+            # element that needs variable length does not exist in fixed length.
             whole = which == ALL_ELEMENTS and which in self._family["variable elements"]
             return CHANNEL_TOO_SMALL if whole else NO_DESCRIPTION
         return DESCRIPTION_FIXED if ak == WRITE_DESCRIPTION else None
@@ -392,7 +392,7 @@ class ParameterChannel:
         return self._parameters.rows[number][LEVEL] <= ram[level][0]
 
     def _beyond(self, place, value):
-        """The error number of a limit that is narrower while it runs, or None."""
+        """The error number of a limit that is narrower while the drive runs, or None."""
         limits = self._family["tightened"]
         if limits is None or not self._switches.tightened_limits or self._state() != "U":
             return None
@@ -405,9 +405,9 @@ class ParameterChannel:
         return None
 
     def _legal(self, row, error, value):
-        """The next and the previous legal value (RM420), which both are the limit.
+        """The next and the previous legal value (RM420); both are the limit.
 
-        How a double word would be told, no document says.
+        No document says how a drive tells a double word.
         """
         if error != OUT_OF_LIMITS or not self._family["neighbours"] or not is_word(row[TYPE]):
             return ()
@@ -415,9 +415,9 @@ class ParameterChannel:
 
 
 def sent_value(values, width, layout, second_word):
-    """The words of one value among those behind PKE and IND.
+    """The words of one value among those after PKE and IND.
 
-    second_word: in variable length a master may always send four words, and means the last one.
+    second_word: in variable length a master may always send four words; the last one counts.
     """
     if width == 2:
         return values[:2]
@@ -427,7 +427,7 @@ def sent_value(values, width, layout, second_word):
 
 
 def placed(values, layout):
-    """Value words where the layout has them."""
+    """The value words in their places in the layout."""
     if layout == 4 and len(values) == 1:
         return [0, values[0]]
     return list(values) or [0]

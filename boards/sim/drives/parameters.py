@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """The parameter store of a simulated drive: RAM, EEPROM, and what may be put into them.
 
-It knows numbers, indices, types and ranges from the rows of a family (families/mm420.py). It
-knows no bus: who may write, and when, is the business of parameter_channel.py.
+It knows numbers, indices, types and ranges from the rows of a family (families/mm420.py).
+parameter_channel.py decides who may write, and when.
 
     store = Parameters(mm420, reading)
     store.set(1120, 0, 5.0)         # as from the drive's own keypad: RAM and EEPROM
@@ -25,7 +25,8 @@ OUT_OF_LIMITS = 2
 ONLY_ZERO = 6
 NOT_PERMITTED = 104
 
-# Bits of an identifier (general knowledge, unverified): not as delivered, may only be set to 0.
+# Bits of an identifier (general knowledge, unverified): it differs from the value as delivered; it
+# may only be set to 0.
 CHANGED, ONLY_TO_ZERO = 0x1000, 0x2000
 
 
@@ -47,7 +48,7 @@ def words_of(kind, value):
 
 
 def value_of(kind, words):
-    """What one or two words say, as this type means it."""
+    """The value of this type that one or two words hold."""
     if kind == "U16":
         return words[0]
     if kind == "I16":
@@ -56,7 +57,7 @@ def value_of(kind, words):
 
 
 def rows_like(rows, changes, without=()):
-    """The rows of another family, sorted, with `changes` in their place, or beside them.
+    """The rows of another family, sorted, with `changes` in place of some, or added.
 
     changes: whole rows. without: numbers that this family does not have.
     """
@@ -68,7 +69,7 @@ def rows_like(rows, changes, without=()):
 def in_single_precision(rows):
     """The rows with the limits and defaults of floats as a drive keeps them, a list.
 
-    Without this 0.1 off the line would be below a minimum of 0.1.
+    Without this a 0.1 from the line would be below a minimum of 0.1.
     """
     return [row if row[TYPE] != "F" else _single_row(row) for row in rows]
 
@@ -83,7 +84,7 @@ def _single_row(row):
     if row[CHANGE]:
         limits = single(row[MINIMUM]), single(row[MAXIMUM])
     exact = row[:MINIMUM] + limits + (default,) + row[CHANGE:]
-    return row if exact == row else exact  # most are: no second table in memory
+    return row if exact == row else exact  # mostly equal, which saves a second table in memory
 
 
 def only(table, rows):
@@ -101,10 +102,9 @@ def default_values(row):
 class Parameters:
     """family: a module such as mm420. reading(number, index): the value of a read-only number.
 
-    ram[number] is the list of the values in force, by index; look, and change it through store().
-    It stays the same list. Numbers that only show something are not in it, nor are those which
-    show something and can be set to 0 (P0952).
-    eeprom_writes   how often something was put into the EEPROM since delivery, all at once is once
+    ram[number] is the list of the values in force, by index; read it, but change it with store().
+    It stays the same list. ram has no readings, and no readings that can be set to 0 (P0952).
+    eeprom_writes   how often the EEPROM was written since delivery; saving all counts as once
     """
 
     def __init__(self, family, reading):
@@ -116,8 +116,8 @@ class Parameters:
         self._family = family
         self._permitted = family.PERMITTED
         self.reading = reading
-        self._retained = family.LINK["retained"]  # other than 0: every change is kept
-        self._volatile = family.OPERATIONS  # commands, which no EEPROM keeps
+        self._retained = family.LINK["retained"]  # if not 0, the EEPROM keeps every change
+        self._volatile = family.OPERATIONS  # commands, which the EEPROM does not keep
         self._only_zero = family.ONLY_ZERO
         for number in self.numbers:
             if self.rows[number][CHANGE] and number not in family.READINGS:
@@ -130,7 +130,7 @@ class Parameters:
         return self.reading(number, index)
 
     def flags(self, number):
-        """Bits of the identifier of a description that tell how it is with this number now."""
+        """The bits of a description's identifier that tell the present state of this number."""
         if number in self._only_zero:
             return ONLY_TO_ZERO
         values = self.ram.get(number)
@@ -139,7 +139,7 @@ class Parameters:
     def objection(self, number, index, value):
         """The error number that forbids `value` here, or None."""
         row = self.rows[number]
-        if not row[MINIMUM] <= value <= row[MAXIMUM]:  # not a float "not a number" either
+        if not row[MINIMUM] <= value <= row[MAXIMUM]:  # refuses a NaN too
             return OUT_OF_LIMITS
         if value not in self._permitted.get(number, (value,)):
             return NOT_PERMITTED
@@ -148,7 +148,7 @@ class Parameters:
     def store(self, number, index, value, permanently):
         """Keep a value that was checked, in RAM and, if `permanently`, in the EEPROM.
 
-        What it connects (P0700 sets P0840) is set with it.
+        The connectors that it sets (P0700 sets P0840) change with it.
         """
         if number not in self.ram:
             return
@@ -187,13 +187,13 @@ class Parameters:
             values[:] = self._eeprom.get(number) or default_values(self.rows[number])
 
     def restore_defaults(self, kept):
-        """In RAM: everything as delivered, but the numbers kept."""
+        """Set all of RAM as delivered, except the numbers in `kept`."""
         for number, values in self.ram.items():
             if number not in kept:
                 values[:] = default_values(self.rows[number])
 
     def deliver(self, kept):
-        """RAM and EEPROM as delivered, but the numbers kept."""
+        """Set RAM and EEPROM as delivered, except the numbers in `kept`."""
         self.restore_defaults(kept)
         self.eeprom_writes += 1
         self._eeprom = {n: values for n, values in self._eeprom.items() if n in kept}
@@ -206,7 +206,7 @@ class Parameters:
         return values
 
     def nearest(self, number, value):
-        """The limit that a value out of limits is beyond."""
+        """The limit that this value exceeds."""
         row = self.rows[number]
         return row[MAXIMUM] if value > row[MAXIMUM] else row[MINIMUM]
 
@@ -241,7 +241,7 @@ class Parameters:
         self.store(number, index, single(value) if row[TYPE] == "F" else value, True)
 
     def label(self, number, index):
-        """As in the manuals: P2010[0], r0021; an index only where there are several."""
+        """The name as in the manuals: P2010[0], r0021; with an index only if there are several."""
         row = self.rows[number]
         text = "%s%04d" % ("P" if row[CHANGE] else "r", number)
         return "%s[%d]" % (text, index) if row[INDICES] > 1 else text

@@ -75,7 +75,7 @@ ZSW_NO_DEVIATION = 0x0100
 ZSW_REACHED = 0x0400
 ZSW_BRAKE = 0x1000
 ZSW_RIGHT = 0x4000
-ZSW_SECOND_PROFILE = 0x07FF  # what a drive in standby says that leaves bits 11 to 15 at 0
+ZSW_SECOND_PROFILE = 0x07FF  # the bits of a drive in standby that leaves bits 11 to 15 at 0
 
 # Status word 2: bit 10, the technology controller is at its minimum, being off.
 ZSW2_ALWAYS = 0x0400
@@ -95,7 +95,7 @@ READY_FOR_USE, IN_COMMISSIONING = 1, 0
 class Process(Inverter):
     """The inverter as a bus sees it."""
 
-    # What a family has that cannot set it.
+    # Defaults for families that do not set these.
     tolerance_hz = 3.0  # of ZSW bit 8
     slow_hz = 1.0  # ZSW2 bit 1
     threshold_hz = 30.0  # ZSW2 bits 4, 5
@@ -107,8 +107,9 @@ class Process(Inverter):
 
     def __init__(self, clock, parameters, family, switches):
         self._previous = 0
-        # The words taken over last, and the state that they have led to, out of which they lead no
-        # more. The inhibit is none: what has acknowledged a fault lifts it when it comes again.
+        # The words taken over last, and the state that they have led to. The same words do not
+        # lead out of that state, except out of the inhibit: a word that has acknowledged a fault
+        # lifts the inhibit when it comes again.
         self._taken = None
         self._led_to = OFF
         style = family.STYLE
@@ -118,7 +119,7 @@ class Process(Inverter):
         self._obeyed_bits = style["obeyed bits"]
         self._control_fault = style["control fault"]
         self._warning_numbers = style["warnings"]
-        self._alarms = 0  # LIMITED ... BOTH_JOGS, those there are
+        self._alarms = 0  # bits of LIMITED ... BOTH_JOGS that are present
         Inverter.__init__(self, clock, parameters, family, switches)
         self._sets = DataSets(self._sources)
         memory = self.memory
@@ -190,7 +191,7 @@ class Process(Inverter):
         self.accept(merged)
 
     def refresh(self):
-        """A parameter changed: go by it from now on. No command counts as given by that."""
+        """A parameter changed: use it from now on. That gives no new command."""
         self._pass_time()
         self._settle(self._clock.now_us)
         self._take_settings()
@@ -203,7 +204,7 @@ class Process(Inverter):
         return self._sources.command(self.image, self._obeyed_bits)
 
     def steps_per_hz(self):
-        """Of a family whose frequencies are whole numbers."""
+        """Steps for each hertz, for a family whose frequencies are whole numbers."""
         return 100 if self.scaling else 10
 
     def _take_over(self, words):
@@ -290,7 +291,7 @@ class Process(Inverter):
         return _limited(round(hz * 100) if absolute else round(hz * 16384 / self.reference_hz))
 
     def _reference(self, what):
-        """What 4000h is of a quantity that is sent; None: it goes as it is."""
+        """The value of a quantity that is sent as 4000h; None: it is sent as it is."""
         if what == SPEED:
             return self.reference_hz * self._rpm_per_hz()
         if what == CURRENT or what == CURRENT_LIMIT:
@@ -348,7 +349,7 @@ class Process(Inverter):
         return zsw2
 
     def _look_round(self, hz):
-        """What there is to warn of by itself, LIMITED ... BOTH_JOGS."""
+        """Update the warnings that the drive gives by itself, LIMITED ... BOTH_JOGS."""
         alarms = self.plant.alarms(hz, self._motor.slope(self._clock.now_us))
         if self._stw & JOG == JOG and not self._stw & ON:
             alarms |= BOTH_JOGS
@@ -367,7 +368,7 @@ class Process(Inverter):
         """What a reading shows, in its unit (Hz and 1/min signed): `what` is a name of
         words.py, `index` a place in one that is a list.
         """
-        self.zsw()  # what there is to warn of now
+        self.zsw()  # updates the warnings
         if what in self._lists:
             places = self._lists[what]
             return places[index] if index < len(places) else 0
@@ -418,7 +419,7 @@ class Process(Inverter):
 
 
 def _limited(value):
-    """As a word of 16 bits, signed."""
+    """The value limited to a signed word of 16 bits."""
     return max(-32768, min(32767, value)) & 0xFFFF
 
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """What a simulated drive shows under its read-only numbers.
 
-Most of it is the process (process.py), some of it the link's counters; a little follows from the
-parameters. What has no kind in the family's READINGS has always the value of its row.
+Most readings come from the process (process.py), some from the link's counters, a few from the
+parameters. A reading without a kind in the family's READINGS always has the value of its row.
 
     readings = Readings(family, parameters, process, slave)
     readings.value(52, 0)       # ZSW
@@ -94,7 +94,8 @@ class Readings:
         return 100 * (synchronous - rpm) / synchronous
 
     def _outputs(self):
-        """A bit for each digital output; a source that is no status word is open."""
+        """A bit for each digital output; if the source is not a status word, the output is
+        open."""
         ram = self._parameters.ram
         states = 0
         for place, number in enumerate(OUTPUT_SOURCES):

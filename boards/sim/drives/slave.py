@@ -96,8 +96,8 @@ class Slave:
         self._error_status = 0
         self.length = 0
         self._received = 0  # characters of a telegram that is coming in
-        self._errors = 0  # of the first of them that has some
-        self._is_mine = True  # as far as its ADR is known: one with an error is not
+        self._errors = 0  # the errors of the first of them that has any
+        self._is_mine = True  # as far as its ADR is known; not if the ADR has an error
         self._stx_us = 0
         self._last_us = 0  # the end of the last of them
         self._skipping = False  # until the line has been idle for the start interval
@@ -111,11 +111,12 @@ class Slave:
         return self._error_status
 
     def watchdog_expired(self):
-        """The telegram failure time is over."""
+        """Count that the telegram failure time is over."""
         self._count(WATCHDOG)
 
     def hear(self, burst):
-        """Take a burst at its end; the form of the telegram for this drive that it completes."""
+        """Take a burst at its end; return the form of the telegram for this drive in it, or
+        None."""
         if self.baud != self._wire.baud:
             return self._hear_garbage(burst)
         if (
@@ -147,7 +148,7 @@ class Slave:
     # A telegram
 
     def _judge(self, data, count, check):
-        """All is there, in time: what it is."""
+        """Judge a telegram that is complete, and in time."""
         self._received = 0
         if check:
             return self._reject(BCC)
@@ -176,12 +177,12 @@ class Slave:
     def _fits(self, lge):
         if self.pkw_words == VARIABLE:
             return 4 <= lge <= 254 and not lge & 1 and lge >= 2 * self.pzd_words + 2
-        # LGE 2, of a telegram without net data, is none: set to no words at all it hears nothing.
+        # LGE 2, without net data, is not valid: a drive that is set to no words hears nothing.
         return lge > 2 and lge == 2 * (self.pkw_words + self.pzd_words) + 2
 
     def _deadline_us(self):
-        # 1.5 times the compressed time of LGE, ADR, n characters and BCC; n is 252 as long as a
-        # telegram of variable length has not told its own.
+        # 1.5 times the compressed time of LGE, ADR, n characters and BCC; n is 252 until the LGE
+        # of a telegram of variable length has come.
         net = NET_MAX
         if self.pkw_words != VARIABLE:
             net = 2 * (self.pkw_words + self.pzd_words)
@@ -208,7 +209,7 @@ class Slave:
         return form
 
     def _take(self, character, errors, end_us, gap_us):
-        """One character, `gap_us` after the one before: the form of a telegram it completes."""
+        """Take one character, `gap_us` after the last; return the form of a telegram it ends."""
         paused = gap_us >= self._pause_us - ROUNDING_US
         if self._received:
             self._give_up(end_us, paused)
@@ -232,7 +233,7 @@ class Slave:
         return self._judge(self.telegram, count, xor_of(self.telegram, count))
 
     def _begin(self, character, errors, end_us, paused):
-        """The first character of a telegram, or none."""
+        """Take what may be the first character of a telegram."""
         if paused:
             self._skipping = False
         if self._skipping:
@@ -261,13 +262,14 @@ class Slave:
                 self._count(RESIDUAL_TIME)
 
     def _settle(self):
-        """Somebody looks at the counters: what is over by now has to be in them."""
+        """Before the counters are read: count what is over by now."""
         now_us = self._wire.clock.now_us
         if self._received:
             self._give_up(now_us, now_us - self._last_us >= self._pause_us)
 
     def _hear_garbage(self, burst):
-        """At another baud rate nothing is a character; this rate tells what a pause is."""
+        """Take a burst of another baud rate: no character is valid; the pauses count as at
+        ours."""
         self._received = 0
         self._is_mine = True
         if burst.silence_us >= 22_000_000 // self.baud:

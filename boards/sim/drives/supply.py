@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: MIT
-"""What feeds a simulated drive: the mains, the DC link behind them, and electronics that boot.
+"""What feeds a simulated drive: the mains, the DC link, and electronics that boot.
 
     supply = Supply(clock, switches, process, start=drive.start, stop=drive.stop)
     supply.off()            # the mains go
     supply.on()             # they are back
 
-When the mains go the DC link carries everything on for `buffered_ms`. Then it has collapsed: a
+When the mains go off, the DC link feeds everything for `buffered_ms`. Then it has collapsed: a
 motor that is driven loses its pulses (undervoltage, F0003 on a MICROMASTER 4). The electronics
-live on for `dark_ms` more. Mains that are back by then were a brownout, later ones a blackout:
-so the MM420 and MM440 operating instructions tell these apart (3.15, 3.16), by a display that has
-gone dark. After a blackout the drive boots, and says nothing for `boot_ms`. The instructions tell
-no times: these are switches (switches.py).
+live on for `dark_ms` more. If the mains are back by then, it was a brownout; if later, a blackout.
+The MM420 and MM440 operating instructions (3.15, 3.16) tell them apart by a display that has gone
+dark. After a blackout the drive boots, and is silent for `boot_ms`. The instructions tell no
+times: these are switches (switches.py).
 """
 
 from boards.sim.clock import Event
@@ -25,8 +25,8 @@ class Supply:
     """start, stop: called when the electronics have booted, and when they go dark.
 
     mains    whether the mains are there
-    powered  whether the electronics live, booted or not
-    booted   whether they have started too
+    powered  whether the electronics have power, booted or not
+    booted   whether they have booted too
     """
 
     def __init__(self, clock, switches, process, start, stop):
@@ -44,19 +44,19 @@ class Supply:
         self.mains = self.powered = self.booted = False
 
     def begin(self):
-        """It was switched on long ago."""
+        """Begin as if switched on long ago."""
         self.mains = self.powered = True
         self._have_booted()
 
     def off(self):
-        """The mains go."""
+        """Switch the mains off."""
         if self.mains:
             self.mains = False
             self._clock.cancel(self._restart)
             self._after(self._sag, self._switches.buffered_ms)
 
     def on(self):
-        """The mains are back."""
+        """Switch the mains on."""
         if self.mains:
             return
         self.mains = True
@@ -78,7 +78,7 @@ class Supply:
             self._process.supply(volts)
 
     def _after(self, event, ms):
-        """At once where that is 0: whoever switched it sees it done."""
+        """Schedule an event; with 0 ms do it at once, so that it is done when the call returns."""
         if ms:
             self._clock.schedule(event, self._clock.now_us + ms * 1000)
         else:

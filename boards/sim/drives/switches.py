@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """What the documents leave open about a drive: one switch for each question, with its default.
 
-A switch says how a whole drive behaves, whatever its family. What differs between families stands
-in their tables (mm420.py), and what a drive is set to stands in its parameters. A drive takes its
-switches when it is built, and you may change them at any time.
+A switch says how a whole drive behaves, whatever its family. Differences between families are in
+their tables (mm420.py), the settings of a drive in its parameters. A drive takes its switches when
+it is built, and you may change them at any time.
 
     drive = Drive(clock, wire, 1, switches={"stale_replies": 2})
     drive.switches.reexecute = True
@@ -82,8 +82,8 @@ SWITCHES = (
 )  # fmt: skip
 
 
-# What a switch can be set to by name: those with a truth value 0 and 1, these, and numbers up to
-# SWITCH_MAX.
+# The values that a switch can be set to by name: a yes-or-no switch 0 and 1, these switches the
+# values here, all others numbers up to SWITCH_MAX.
 SWITCH_VALUES = {"no_rights_error": (0, 7, 11)}
 SWITCH_MAX = 0xFFFF
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The words that the parts of a simulated drive have in common: bits, states, readings.
+"""The names that the parts of a simulated drive share: bits, states, readings.
 
 Bits of control word 1 are those of the USS specification (C-5.2.1), 11 to 14 those of the
 MICROMASTER 4 and 3. A reading's name is the second column of a family's READINGS, and what
@@ -25,8 +25,8 @@ REVERSE = 0x0800
 RIGHT, LEFT = 0x0800, 0x1000  # of a family with a bit for each direction
 UP, DOWN = 0x2000, 0x4000  # the motor potentiometer
 
-# What an obeyed source says that is not this bus: open terminals and an untouched keypad say OFF1
-# and nothing worse; a link on which nobody ever spoke says 0000.
+# The control word from an obeyed source that is not this bus: open terminals and an untouched
+# keypad give OFF1 and nothing worse; a link that never had a telegram gives 0000.
 NO_COMMAND = NO_OFF2 | NO_OFF3 | PULSES | RAMP_OUTPUT | RAMP_RUN | SETPOINT
 
 # States, named as in a report.
@@ -38,7 +38,7 @@ STOPPING = "stopping"
 FAULT = "fault"
 OFF = "off"
 
-# Sources of the setpoint that make a difference here.
+# Sources of the setpoint that the simulation knows.
 MOP, FIXED_FREQUENCY, COM_LINK = 1, 3, 5
 
 # A binary source that is always 1: 1:0.
@@ -78,6 +78,7 @@ STEPS = 0  # in the place of a divisor: a frequency in 0.1 Hz, or in 0.01 Hz as 
 OVERCURRENT, OVERVOLTAGE, UNDERVOLTAGE = "overcurrent", "overvoltage", "undervoltage"
 OVERHEAT, EXTERNAL = "motor overtemperature", "external fault"
 
-# What it warns of by itself. Those with a bit of ZSW have it, low when they are there.
+# What it warns of by itself. A warning that has a bit of ZSW is that bit, which is low while the
+# warning is present.
 LIMITED, HOT, STRAINED = 0x0800, 0x2000, 0x8000  # current limit, motor, inverter
 LOW_SUPPLY, HELD_DOWN, BOTH_JOGS = 0x10000, 0x20000, 0x40000

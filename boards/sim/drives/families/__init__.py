@@ -10,7 +10,7 @@ NAMES = ("mm420", "mm440", "mm3", "g110", "v20", "g120", "generic")
 
 
 def named(name):
-    """The module of that family. ValueError: there is none."""
+    """The module of that family. ValueError if there is none."""
     if name not in NAMES:
         raise ValueError("no family %s: there are %s" % (name, " ".join(NAMES)))
     return __import__("boards.sim.drives.families." + name, None, None, ("ROWS",))

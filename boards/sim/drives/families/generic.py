@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A drive that does all that the USS specification knows, and that nobody ever built.
+"""A drive that does all that the USS specification knows. No such drive exists.
 
 Tables and columns are those of mm420.py, and so are its numbers. It has every rate, 0...16 PZD
 words, complete descriptions and texts, and counts the elements of an array from 1. A task that is

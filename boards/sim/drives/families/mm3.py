@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The MICROMASTER 3 as data: 3 + 2 words, numbers below 1000, 16-bit values, no index.
 
-Tables and columns are those of mm420.py. But for the layout, the control word 0C7Fh and IND 0
+Tables and columns are those of mm420.py. Except the layout, the control word 0C7Fh and IND 0,
 everything here is general knowledge, unverified: numbers, units (0.1 s, 0.1 Hz, or 0.01 Hz when
 P095 is not 0), the direction bits, the fault number. A change goes into the EEPROM with P971 = 1.
 

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: MIT
 """The MICROMASTER 420 as data: which parameters it has and how they leave the factory.
 
-It is not a store: parameters.py keeps the values, readings.py gives the readings
-theirs. The rows are those of mm4_parameters.py that an MM420 has. The other families (mm3.py,
-mm440.py, g110.py, v20.py, g120.py, generic.py) have the same tables; each stands here with what
-its columns mean.
+parameters.py keeps the values, readings.py supplies those of the readings. The rows are those of
+mm4_parameters.py that an MM420 has. The other families (mm3.py, mm440.py, g110.py, v20.py,
+g120.py, generic.py) have the same tables; this file explains each table and its columns.
 
     Drive(clock, wire, 3, family=mm440)
 """
@@ -66,7 +65,7 @@ ROWS = rows_like(
     ),
 )  # fmt: skip
 
-# Discrete settings: anything else between the limits is refused with error 104.
+# Discrete settings: the drive refuses any other value between the limits with error 104.
 PERMITTED = only(mm4_parameters.PERMITTED, ROWS)
 PERMITTED[1000] = tuple(10 * additional + main for additional in range(7) for main in range(7))
 # What the simulated drive can send: nothing, or one of these readings.
@@ -79,8 +78,8 @@ BAUD_CODES = {
     12: 115200,
 }  # fmt: skip
 
-# How somebody has set it up for a panel on its RS-485 terminals: index 0 of each number. Address
-# and baud rate come on top.
+# The settings for a panel on its RS-485 terminals: index 0 of each number. Address and baud rate
+# are set in addition.
 COMMISSIONED = {3: 3, 700: 5, 1000: 5, 2012: 2, 2013: 4}
 
 # The numbers of the link's own settings; None: the family has none, and `layout` holds, the PKW
@@ -106,7 +105,7 @@ LINK = {
     "broadcast": True,
 }
 
-# A setting that process.py goes by, the number that it comes from, and by what it is divided.
+# The settings that process.py uses: name, the number of the parameter, the divisor.
 SETTINGS = (
     ("commissioning", 10, 1),
     ("command_source", 700, 1),
@@ -174,7 +173,7 @@ OTHER_COMMANDS = {0: NO_COMMAND, 1: NO_COMMAND, 2: NO_COMMAND, 4: 0, 6: 0}
 # What P0700 and P1000 connect: sources.py tells the columns.
 SOURCES = sources.MM4
 
-# Values of the setpoint source that do not mean what its digits say: units main, tens additional.
+# Values of the setpoint source whose digits (units main, tens additional) do not tell the meaning.
 SETPOINT_SOURCES = {}
 
 READINGS = only(mm4_readings.READINGS, ROWS)

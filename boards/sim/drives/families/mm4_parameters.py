@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: MIT
-"""The parameters of the MICROMASTER 4 as data: one table, of which each family takes its own.
+"""The parameters of the MICROMASTER 4 as data: one table, from which each family takes its rows.
 
 A row has the columns that parameters.py names. CHANGE tells in which states the number may
 be changed, C commissioning, U running, T ready; a row without any is a reading. LEVEL is the least
 P0003 for changing it. A default that is a tuple has one value for each index. INDICES is a pair
-where an MM440 and an MM420 differ, 0 where one of them lacks the number.
+if an MM440 and an MM420 differ, with 0 for the one that lacks the number.
 
-    ROWS = rows_of(MM440)       # as parameters.py wants them
+    ROWS = rows_of(MM440)       # as parameters.py needs them
 
-Numbers, names and ranges follow the manufacturer's parameter lists as far as those were at hand;
-where a range or a default was not, it is general knowledge, unverified, as most of them are.
+Numbers, names and ranges follow the manufacturer's parameter lists as far as those were at hand.
+Other ranges and defaults, which are most of them, are general knowledge, unverified.
 """
 
 from boards.sim.drives.power.sources import SELECTIONS
@@ -17,7 +17,7 @@ from boards.sim.drives.parameters import CHANGE, DEFAULT, INDICES, in_single_pre
 
 MM440, MM420 = 0, 1  # the place in a pair
 
-SETS = (3, 1)  # data sets, of commands or of the drive: data_sets.py tells which counts
+SETS = (3, 1)  # data sets, of commands or of the drive: data_sets.py tells which is in force
 SETS_440 = (3, 0)
 ONE_440 = (1, 0)
 INPUTS = (2, 1)
@@ -311,7 +311,7 @@ ROWS = (
     (3986, "number of parameters", "U16", "", 2, None, None, 0, "", 4, ""),
 )  # fmt: skip
 
-# Discrete settings: anything else between the limits is refused with error 104.
+# Discrete settings: the drive refuses any other value between the limits with error 104.
 DIGITAL_INPUT = (0, 1, 2, 3, 4, 9, 10, 11, 12, 13, 14, 15, 16, 21, 25, 29, 99)
 PERMITTED = {
     10: (0, 1, 2, 29, 30),
@@ -321,7 +321,7 @@ PERMITTED = {
 }
 PERMITTED.update({number: DIGITAL_INPUT for number in range(701, 709)})
 
-# What quick commissioning asks for: it stays when P3900 = 1 resets everything else.
+# The numbers of quick commissioning: they keep their values when P3900 = 1 resets all others.
 QUICK_COMMISSIONING = (
     3, 10, 100, 300, 304, 305, 307, 308, 309, 310, 311, 320, 335, 640, 700, 1000, 1080, 1082, 1120,
     1121, 1135, 1300, 1910,
@@ -330,11 +330,12 @@ QUICK_COMMISSIONING = (
 # The terminals, which P3900 = 2 resets: from the first number to the last.
 TERMINALS = (701, 781)
 
-# Numbers that only a commissioning step changes, and the P0010 of it; 29, a download, opens all.
-# The step of every other number that has no state but C is 1.
+# Numbers that can be changed only in a certain commissioning step, and its P0010; 29, a download,
+# opens all. The step of every other number that can be changed only in state C is 1.
 COMMISSIONING_STEPS = {201: 2, 970: 30}
 
-# Numbers that another one puts out of use: that one, and its values with which they count.
+# Numbers that another parameter puts out of use: that parameter, and its values with which they
+# are in use.
 ACTIVE = {308: (100, (0, 2)), 309: (100, (1,))}
 
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""What the readings of the MICROMASTER 4 show: one table, of which each family takes its own.
+"""What the readings of the MICROMASTER 4 show: one table, from which each family takes its rows.
 
-The kinds are those of words.py. A number that is not here has always the value of its row:
-it tells of terminals without a signal, of a link on which nobody talks, or of the make.
+The kinds are those of words.py. A number that is not here always has the value of its row: it
+belongs to terminals without a signal, to a link without telegrams, or to the make of the drive.
 
     READINGS = only(mm4_readings.READINGS, ROWS)
 """
@@ -45,12 +45,12 @@ from boards.sim.drives.words import (
     WARNINGS,
 )
 
-# Kinds that no process has: they follow from the parameters.
+# Kinds that do not come from the process: they follow from the parameters.
 NUMBERS = "how many numbers there are"
 POLE_PAIRS, SLIP = "pole pairs", "rated slip"
 OUTPUTS = "digital outputs"
 
-# What it shows, and by what a frequency is multiplied, or where a list begins.
+# What a reading shows, and the factor of a frequency, or where a list begins.
 READINGS = {
     2: (DRIVE_STATE, 0),
     20: (WANTED, 1),

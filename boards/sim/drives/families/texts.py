@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """What a simulated drive tells about its parameters: elements of a description, and texts.
 
-Made from the rows of the family and from its table of texts (USS specification C-6 and C-4.2.2).
-It is not the channel: it knows no tasks and refuses nothing.
+They are made from the rows of the family and from its table of texts (USS specification C-6 and
+C-4.2.2). This knows no tasks and refuses nothing: the channel does.
 
     element(row, 6, 0)              # the words of "ramp-up time    "
     texts = Texts({(7, 1, 3): "300 BAUD"})
@@ -107,7 +107,7 @@ class Texts:
         return self._words[self._place(number, ind)]
 
     def write(self, number, ind, words):
-        """Whether these words are a text; it is kept then."""
+        """Keep these words if they are a text; return whether they are."""
         if len(words) != TEXT_CHARACTERS // 2:
             return False
         self._words[self._place(number, ind)] = tuple(words)

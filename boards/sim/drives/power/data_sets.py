@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: MIT
-"""Which data set of a MICROMASTER 440 counts: parameters with three indices have a value for each.
+"""Which data set of a MICROMASTER 440 is in force: parameters with three indices have a value for
+each.
 
-P0810 and P0811 choose the one of the commands, P0820 and P0821 the one of the drive, each of them
-a bit from some connector. Another set of the drive counts from standstill on. Numbers and their
-division are general knowledge.
+P0810 and P0811 choose the command data set, P0820 and P0821 the drive data set; each of them names
+a connector that gives one bit. A new drive data set comes into force at standstill. Numbers and
+their division are general knowledge.
 
     sets = DataSets(sources)
     sets.take(ram)                  # the four connectors
-    sets.look(image, standing)      # True: another set counts now
-    sets.index(700, 3)              # 1: the place of the value that counts, of three
+    sets.look(image, standing)      # True: another set is in force now
+    sets.index(700, 3)              # 1: the place of the value in force, of three
 """
 
 SETS = 3
@@ -24,9 +25,9 @@ CHOICES = (810, 811), (820, 821)  # bit 0, bit 1
 class DataSets:
     """sources: a `Sources`, which knows what connectors say.
 
-    command   the set of commands that counts, 0...2, r0050
-    drive     the set of the drive that counts, r0051[1]
-    selected  the one that is to count, r0051[0]
+    command   the command data set in force, 0...2, r0050
+    drive     the drive data set in force, r0051[1]
+    selected  the drive data set that is selected, r0051[0]
     """
 
     def __init__(self, sources):
@@ -36,7 +37,7 @@ class DataSets:
         self.command = self.drive = self.selected = 0
 
     def take(self, ram):
-        """The connectors have been set. A family without them has one set."""
+        """Take the connectors from `ram`. A family without them has one set."""
         zero = (0,)
         self._connectors = [[ram.get(number, zero)[0] for number in pair] for pair in CHOICES]
         self.by_bus = False
@@ -45,7 +46,7 @@ class DataSets:
                 self.by_bus = True
 
     def look(self, image, standing):
-        """Go by what the connectors say now. Whether another set counts."""
+        """Select by what the connectors say now; return whether another set is in force."""
         before = self.command, self.drive
         self.command, self.selected = [self._chosen(pair, image) for pair in self._connectors]
         if standing:

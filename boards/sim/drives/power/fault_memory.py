@@ -53,7 +53,7 @@ class FaultMemory:
         self._present = []  # warnings, the oldest first
 
     def strike(self, number, value, seconds):
-        """A fault. Of more than two before the acknowledgement the first two are kept."""
+        """Add a fault. If more than two come before the acknowledgement, keep the first two."""
         if not self.numbers[0]:
             place = 0
             self.times[:2] = [seconds >> 16 & 0xFFFF, seconds & 0xFFFF]
@@ -75,12 +75,12 @@ class FaultMemory:
         return _not_zero(self.numbers)
 
     def forget_faults(self):
-        """P0952 = 0: all but the present trip."""
+        """P0952 = 0: forget all faults except the present trip."""
         for places, width in self._lists():
             places[width:] = [0] * (len(places) - width)
 
     def _lists(self):
-        """What there is of each trip, and how many places that takes."""
+        """Each list that is kept for the trips, and how many places a trip takes in it."""
         return (self.numbers, PLACES), (self.values, PLACES), (self.times, self._time_words)
 
     def warn(self, number, on):
@@ -102,7 +102,7 @@ class FaultMemory:
         return _not_zero(self.warnings)
 
     def forget_warnings(self):
-        """P2111 = 0: those that are gone."""
+        """P2111 = 0: forget the warnings that are gone."""
         self.warnings[SHOWN:] = [0] * SHOWN
 
 

@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: MIT
 """The inverter of a simulated drive: its states, and what they make the motor do.
 
-The states are those of PROFIdrive as a MICROMASTER 4 goes through them (P and r numbers are its
-own). It obeys one control word; process.py decides which one, and knows all other process data. It
-trips and warns, and fault_memory.py remembers that.
+The states are those of PROFIdrive as a MICROMASTER 4 goes through them (P and r numbers are those
+of the MICROMASTER 4). The inverter obeys one control word; process.py decides which one, and
+handles all other process data. It trips and warns, and fault_memory.py remembers that.
 
     inverter.command(0x047F, 0x0001)    # ON, which has just risen
     inverter.state                      # "running"
     inverter.hz()                       # 0.0
 
-Nothing runs in the background. When somebody asks, the inverter works out what time has done (a
+Nothing runs in the background. At each call the inverter works out what has happened meanwhile (a
 ramp ends, pulses go off, an overload trips), for the instant at which it happened.
 """
 
@@ -59,13 +59,13 @@ class Inverter:
     memory  all of its faults and warnings
     plant   what hangs on it: mains, motor, load
 
-    The settings that it goes by are attributes, in Hz and seconds, taken from the parameters
-    whenever one of these has changed.
+    The settings that it uses are attributes, in Hz and seconds, taken from the parameters whenever
+    one of these has changed.
     """
 
     # Every family sets these.
     maximum_hz = reached_hz = reference_hz = up_s = down_s = None
-    # What a family has that cannot set it.
+    # Defaults for families that do not set these.
     commissioning = 0
     command_source = setpoint_source = COM_LINK
     scaling = 0
@@ -120,11 +120,11 @@ class Inverter:
         self._jogging = False  # running, or stopping, on a JOG command
         self._off3 = False  # stopping on OFF3, which cannot be taken back
         self._restarts = False  # P1210: ON that stands in the next telegram starts it
-        self._freed_by = restart.OTHER  # what took the pulses away last
+        self._freed_by = restart.OTHER  # what switched the pulses off last
         self._stw = 0  # the control word that was obeyed last
         self._given_hz = None  # the setpoint, once it was worked out
-        self._passed_us = -1  # up to here it is known what time has done
-        self._run_us = 0  # with mains, before they came the last time
+        self._passed_us = -1  # everything is worked out up to this instant
+        self._run_us = 0  # time with mains, before they came the last time
         self._on_us = 0
 
     # What happens to it
@@ -166,7 +166,7 @@ class Inverter:
         self._pulses_off(OFF, self._clock.now_us, restart.POWER)
 
     def trip(self, number, value=0, lasting=False):
-        """A fault: pulses off at once. One more before it is acknowledged is noted beside it.
+        """A fault: pulses off at once. Another one before the acknowledgement is noted beside it.
 
         lasting: it cannot be acknowledged before its cause was cleared.
         """
@@ -176,12 +176,12 @@ class Inverter:
         self._trip(self._clock.now_us, number, value)
 
     def clear_cause(self, number=None):
-        """The cause of a lasting fault is gone; without a number, the causes of all."""
+        """End the cause of a lasting fault; without a number, the causes of all."""
         causes = self.memory.causes
         causes[:] = [cause for cause in causes if number not in (None, cause)]
 
     def acknowledge(self):
-        """The fault counts as seen, unless its cause is still there."""
+        """Clear the fault, unless its cause is still there."""
         self._pass_time()
         if self.state == FAULT and not self.memory.causes and not self._persists():
             self.memory.file()
@@ -275,7 +275,7 @@ class Inverter:
             self._pulses_off(INHIBITED, self._clock.now_us)
 
     def _step(self, stw, rising):
-        """The states in which neither OFF2 nor OFF3 nor a fault has the word."""
+        """One step in the states that neither OFF2, OFF3 nor a fault decides."""
         jog = stw & JOG in (JOG_RIGHT, JOG_LEFT) and rising & JOG and not stw & ON
         if self.state == READY:
             if rising & ON and not stw & PULSES:
@@ -317,7 +317,7 @@ class Inverter:
         self._pulses_off(FAULT, at_us, restart.FAULT)
 
     def _persists(self):
-        """Whether what made it trip by itself is still there."""
+        """Whether the cause of a trip by itself is still there."""
         for kind, number in self._numbers.items():
             if number in self.faults[:2] and self.plant.persists(kind):
                 return True
@@ -357,18 +357,18 @@ class Inverter:
         self._follow(now_us)
 
     def _follow(self, at_us):
-        """What the plant does up to `at_us`, with the motor on the path that it has."""
+        """Let the plant go on up to `at_us`, with the motor on its present path."""
         tripped = self.plant.follow(self._motor, at_us)
         if tripped is not None:
             kind, trip_us = tripped
             self._trip(trip_us, self._numbers[kind], 0)
 
     def _settle(self, at_us):
-        """Before something changes that the plant goes by."""
+        """Call this before something changes that the plant uses."""
         self.plant.settle(self._motor, at_us)
 
     def _stand_still(self):
-        """At standstill, whatever stopped it, the pulses go off."""
+        """Switch the pulses off at standstill, whatever stopped the motor."""
         end_us = self._motor.end_us
         self._follow(end_us)
         if self.state == STOPPING:

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """The motor of a simulated drive: its frequency as a path through time.
 
-It decides nothing: process.py tells it where to go and how fast. The path is a few corners with
-straight lines between them, laid when a command changes and only read afterwards. So the frequency
-at an instant is the same however often, or seldom, somebody asks for it.
+process.py tells it where to go and how fast. The path is a few corners with straight lines between
+them, laid when a command changes and only read afterwards. So the frequency at an instant does not
+depend on how often it is read.
 
     motor.ramp(now_us, 25.0, 50.0, 10.0, 5.0)   # to 25 Hz; 0...50 Hz takes 10 s, 50...0 Hz 5 s
     motor.hz(now_us + 1_000_000)                # 5.0

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""What hangs on a simulated drive, mains and motor and load, and what that costs in amperes.
+"""The mains, motor and load of a simulated drive, and the current that they draw.
 
-Simple but plausible, no more: the motor turns as fast as its drive says, whatever the load. What
-is drawn follows from frequency, acceleration and load; the motor warms up as one body (I squared
-t). The figures are choices where no rating plate gives them. Like the motor's path it is worked
-out when somebody asks; a trip that has come meanwhile has the instant at which it came.
+This is simple, and only plausible: the motor turns as fast as its drive says, whatever the load.
+The current follows from frequency, acceleration and load; the motor warms up as one body (I
+squared t). Figures that no rating plate gives are choices. Like the motor's path, all this is
+worked out at each call; a trip that has come meanwhile has the instant at which it came.
 
     plant = Plant(settings, switches)
     plant.percent, plant.kind = 80.0, FAN
@@ -37,7 +37,7 @@ from boards.sim.drives.words import (
     VOLTAGE,
 )
 
-# How the load depends on the frequency: not, in proportion, by its square.
+# How the load depends on the frequency: not at all, in proportion, by its square.
 CONSTANT, LINEAR, FAN = "constant", "linear", "fan"
 EXPONENTS = {CONSTANT: 0, LINEAR: 1, FAN: 2}
 
@@ -45,10 +45,10 @@ INERTIA_S = 0.5
 SUPPLY_V = 400.0
 DC_PER_SUPPLY = 1.4  # r0026 is 560 V on 400 V
 UNDERVOLTAGE_PART = 0.62  # of the supply
-VDC_CONTROLLER_PER_SUPPLY = 1.63  # where the Vdc-max controller holds it: 1.15 times the peak
+VDC_CONTROLLER_PER_SUPPLY = 1.63  # the Vdc-max controller holds it here: 1.15 times the peak
 OVERVOLTAGE_PER_SUPPLY = 2.1  # 840 V on 400 V
 SAG_PART = 0.02  # of the DC link voltage, at rated power
-RISE_V = 600.0  # of the DC link voltage, were rated power fed back into a supply of 400 V
+RISE_V = 600.0  # of the DC link voltage, if rated power is fed back, on a supply of 400 V
 LOST_PART = 0.05  # of rated power, in motor and inverter, before any of it comes back
 
 STRAIN_S = 1.0  # at the current limit, until it trips
@@ -69,7 +69,7 @@ class Plant:
     heat        I squared t of the motor, 1.0 in the long run at rated current
     energy_kwh  r0039
 
-    What it goes by may change, but for `coast_s`, only at an instant to which it was settled.
+    Before you change anything that it uses, except `coast_s`, settle it up to that instant.
     """
 
     def __init__(self, settings, switches):
@@ -85,8 +85,8 @@ class Plant:
         self.energy_kwh = 0.0
         self._strained_s = 0.0
         self._at_us = 0  # so far heat and energy are worked out
-        self._quiet = False  # nothing can happen before somebody settles it
-        self._told_hz = self._told_slope = None  # what `_told` is the answer to
+        self._quiet = False  # nothing can happen before the next `settle`
+        self._told_hz = self._told_slope = None  # `_told` is the answer for these
         self._told = 0
 
     # What time does
@@ -94,7 +94,7 @@ class Plant:
     def follow(self, motor, to_us):
         """Go on to `to_us` along the motor's path.
 
-        What tripped on the way, (kind, instant), after which it has gone no further; or None.
+        Returns what tripped on the way, (kind, instant), after which it goes no further; or None.
         """
         if self._quiet:
             return None
@@ -103,7 +103,7 @@ class Plant:
         return tripped
 
     def settle(self, motor, to_us):
-        """Something changes at `to_us`, up to which nothing tripped: `follow` has seen to that."""
+        """Go on to `to_us`, before a change. `follow` has made sure that nothing trips by then."""
         self._go_on(motor, to_us)
         self._quiet = False
         self._told_hz = None
@@ -134,7 +134,7 @@ class Plant:
         return drawn <= min(self._limit(), WARM)
 
     def persists(self, kind):
-        """Whether what made it trip is still there."""
+        """Whether the cause of the trip is still there."""
         if kind == OVERHEAT:
             return self.heat > WARM
         return kind == UNDERVOLTAGE and self.is_low()
@@ -150,7 +150,7 @@ class Plant:
         self._at_us = to_us
 
     def _step(self, hz, slope, until_us):
-        """Go on to `until_us`, or to the instant at which something trips: what does."""
+        """Go on to `until_us`, or to the instant of a trip; return what trips."""
         torque = self.torque(hz, slope)
         drawn = self._drawn(torque)
         limit = self._limit()
@@ -191,18 +191,18 @@ class Plant:
         return load + (-speeding_up if hz < 0 else speeding_up)
 
     def _rated_hz(self):
-        return self._settings.rated_hz or 50.0  # a MICROMASTER 3 lets people set 0
+        return self._settings.rated_hz or 50.0  # a MICROMASTER 3 can be set to 0
 
     def _speed(self, hz):
         return abs(hz) / self._rated_hz()
 
     def _drawn(self, torque):
-        """The current that is wanted: what magnetises, and what makes the torque."""
+        """The current that the motor needs: the magnetising one, and the one for the torque."""
         idle = self._settings.magnetising_percent / 100 or 0.5
         return math.sqrt(idle * idle + (1 - idle * idle) * torque * torque)
 
     def _heat_s(self):
-        return self._settings.heat_s or 100  # 0: somebody switched it off
+        return self._settings.heat_s or 100  # 0: it is switched off
 
     def _limit(self):
         return self._settings.overload_percent / 100
@@ -224,7 +224,7 @@ class Plant:
     # Told
 
     def alarms(self, hz, slope):
-        """What there is to warn of, of LIMITED ... HELD_DOWN."""
+        """The warnings that are present, bits of LIMITED ... HELD_DOWN."""
         alarms = HOT if self.heat >= WARM else 0
         if self.is_low():
             alarms |= LOW_SUPPLY

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The motor potentiometer of a simulated drive: a setpoint that two bits turn up and down.
 
-It is not a ramp of the motor: it makes the setpoint, which the motor follows with its own ramp.
+It makes the setpoint, which the motor follows with its own ramp.
 
     potentiometer.set(5.0)
     potentiometer.turn(now_us, 1)                   # up, until told otherwise

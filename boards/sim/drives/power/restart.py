@@ -7,16 +7,17 @@ Tables only; inverter.py asks them.
     catches(1, "fault", -10.0, 25.0)            # True: a motor that turns is caught
 
 P1210 is that of the MM420 and MM440 operating instructions (3.15, 3.16: figure "automatic
-restart", for an ON that stands) and of the G120 list manual. The instructions want that ON from a
-terminal; whether one of the bus counts is not told (switch `bus_restart`). Not simulated: P1211,
-attempts are not counted; faults without a failure of the mains are acknowledged by nobody.
+restart", for an ON that is present) and of the G120 list manual. The instructions want that ON
+from a terminal; they do not tell whether an ON of the bus counts (switch `bus_restart`). Not
+simulated: P1211, so attempts are not counted; and the drive acknowledges no faults without a
+failure of the mains.
 """
 
-# What there was: how long the mains were away, and the fault that is present.
+# The cases: how long the mains were off, and the fault that is present.
 BROWNOUT, BLACKOUT = "brownout", "blackout"
 UNDERVOLTED, OTHER_FAULT, NO_FAULT = "undervoltage", "another fault", "no fault"
 
-# What it does: nothing, the fault counts as acknowledged, and it runs as well if ON stands.
+# What the drive does: nothing; acknowledge the fault; acknowledge it and run if ON is present.
 NOTHING, ACKNOWLEDGE, RESTART = 0, 1, 2
 
 CASES = (
@@ -45,10 +46,10 @@ G120 = {
     4: (RESTART, RESTART, ACKNOWLEDGE, NOTHING, RESTART),
     6: (RESTART, RESTART, RESTART, RESTART, RESTART),
 }
-# A family without that parameter: whatever it was, it is acknowledged by the power.
+# A family without that parameter: a power cycle acknowledges any fault.
 PLAIN = {None: (ACKNOWLEDGE, NOTHING, ACKNOWLEDGE, NOTHING, NOTHING)}
 
-# What took the pulses away from the motor.
+# What switched the motor's pulses off.
 POWER, FAULT, OFF2, OTHER = "power", "fault", "OFF2", "other"
 
 # P1200: after what a turning motor is caught, and whether only in the direction of the setpoint
@@ -72,6 +73,6 @@ def action(table, setting, away, fault):
 
 
 def catches(setting, freed_by, hz, setpoint_hz):
-    """Whether P1200 catches a motor that turns at `hz`, or it is forced to begin at 0 Hz."""
+    """Whether P1200 catches a motor that turns at `hz`; if not, it has to begin at 0 Hz."""
     reasons, one_direction = FLYING_STARTS[setting]
     return freed_by in reasons and not (one_direction and hz * setpoint_hz < 0)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The setpoint channel of a simulated drive: from the sources that it obeys to its ramp generator.
 
-It is no ramp: motor.py lays that. It knows no states either; process.py says when it counts.
+motor.py makes the ramp; process.py knows the states and decides when the setpoint is used.
 
     channel.hz(0x047F)      # Hz, signed: what the ramp generator is given, r0020
     channel.jog_hz(0x057E)  # the same for a jog
@@ -73,8 +73,8 @@ class SetpointChannel:
         return hz
 
     def _controlled_hz(self):
-        """What the PID controller makes of its setpoint: the proportional part, and a feedback
-        of 0, which is what an analog input without a signal says.
+        """The output of the PID controller: only its proportional part, with a feedback of 0, as
+        from an analog input without a signal.
         """
         settings = self._settings
         source, place = self._sources.setpoint(settings.controller_source)
@@ -108,7 +108,7 @@ class SetpointChannel:
         return -size if hz < 0 or not hz and reverse else size
 
     def _beside_gaps(self, size):
-        """Below a band that is skipped, whichever side the setpoint came from: a choice."""
+        """Keep a setpoint in a skipped band below it, from whichever side it came: a choice."""
         band_hz = self._settings.skip_band_hz
         for skip_hz in self._settings.skipped_hz:
             if skip_hz - band_hz < size < skip_hz + band_hz:

@@ -2,8 +2,8 @@
 """Where a simulated drive takes its commands and its setpoint from: P0700, P1000 and their like.
 
 P0700 and P1000 choose a source by a digit. On the drive each sets a connector that says the same
-as number and index, P0840 for ON and P1070 for the main setpoint; what is connected counts, and
-may be connected anew. P0719 overrides both. All of it is general knowledge, from the MM4 function
+as number and index, P0840 for ON and P1070 for the main setpoint. The connector decides, and can
+be set by itself. P0719 overrides both. All of this is general knowledge, from the MM4 function
 diagrams; the USS specification knows no sources.
 
     sources = Sources(family)
@@ -24,9 +24,9 @@ MOP_OUTPUT, FIXED_OUTPUT = 1050 << 16, 1024 << 16
 # Numbers that are a setpoint source by themselves.
 OUTPUTS = {1050: MOP, 1024: FIXED_FREQUENCY}
 
-# What a family says of it: `words`, its numbers for the control words received, by their place in
-# the image; `received`, the list of all words received; `sets`, a number that sets a connector:
-# which one, and to what by its value, of P1000 by the units of it.
+# A family's data on sources: `words`, its numbers for the control words received, by their place
+# in the image; `received`, the list of all words received; `sets`, the numbers that set a
+# connector: which one, and to what for each value, for P1000 for its units digit.
 MM4 = {
     "words": {2036: 0, 2037: CONTROL_WORD_2},
     "received": 2018,
@@ -42,7 +42,7 @@ MM4 = {
     },
 }  # fmt: skip
 
-# A family that connects nothing: only a digit.
+# A family without connectors: only the digit counts.
 FIXED = {"words": {}, "received": None, "sets": {}}
 
 # The second generation of the G120 connects what its macro p0015 says, USS with 21.
@@ -82,12 +82,12 @@ class Sources:
         self._received = family.SOURCES["received"]
         self._others = family.OTHER_COMMANDS
         self._digits = family.SETPOINT_SOURCES
-        self._command = None  # a control word that no bus sets, None: that of the image
-        self._on = None  # the connector of ON, None: as the rest
+        self._command = None  # a control word that no bus sets; None: that of the image
+        self._on = None  # the connector of ON; None: from the control word, as the other bits
         self.main, self.place, self.additional = COM_LINK, 1, 0
 
     def take(self, settings):
-        """Go by command_source, setpoint_source, selection, on_source and main_source."""
+        """Take command_source, setpoint_source, selection, on_source and main_source."""
         commands, setpoint = settings.selection // 10, settings.selection % 10
         self._on = None if commands else settings.on_source
         self._command = self._others.get(commands or settings.command_source)
