@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""tools/soak: many seeds, two processes, one line of progress, and what came of them.
+"""tools/soak: runs many seeds in two processes, shows one line of progress, and tells the results.
 
     python3 tools/soaking --seeds N --minutes M [--first SEED] [--drives N] [--jobs N]
     python3 tools/soaking --fuzz BYTES [--first SEED] [--jobs N]
@@ -24,8 +24,8 @@ sys.path[0] = str(Path(__file__).resolve().parents[2])
 from tools.soaking import interpreters  # noqa: E402
 from tools.soaking.interpreters import CPYTHON, NAMES, PYPY, TOP  # noqa: E402
 
-PORTION = 250_000  # bytes of a seed that fuzzes
-PORTION_MINUTES = 1  # of virtual time: about as much work
+PORTION = 250_000  # bytes for each seed of --fuzz
+PORTION_MINUTES = 1  # of virtual time take about as much work
 BROKEN, MISSING, CRASHED = 1, 3, 4
 SEEDS_MAX = 1_000_000
 MINUTES_MAX = 1_000_000
@@ -78,7 +78,7 @@ def count(low, high):
 
 
 def minutes(word):
-    """Type of an argument: minutes, a second at least."""
+    """Type of an argument: minutes, at least a second."""
     try:
         number = float(word)
     except ValueError:
@@ -91,9 +91,9 @@ def minutes(word):
 
 
 class Worker:
-    """A job with its own thread, which gives its processes seeds and hands on what they say.
+    """A thread that gives seeds to its processes and passes on their answers.
 
-    processes: of each interpreter one, from the first seed on that it has to live.
+    processes: one for each interpreter, from the first seed on that runs on it.
     """
 
     def __init__(self, wanted, arguments, seeds, said):
@@ -152,7 +152,7 @@ class Tally:
     def __init__(self, count):
         self.count = count
         self.began = time.monotonic()
-        self.running = {}  # worker -> seconds of the seed that it is at
+        self.running = {}  # worker -> virtual seconds of its present seed
         self.done = 0
         self.seconds = 0
         self.exchanges = 0
@@ -195,7 +195,7 @@ class Tally:
         yield self.verdict()
 
     def verdict(self):
-        """What came of it, in words."""
+        """The result, in words."""
         missing = self.count - self.done
         if self.broken:
             said = "%d of %d seeds broke a rule" % (len(self.broken), self.done)
@@ -212,7 +212,7 @@ def lived_on(counts):
 
 
 def lives(wanted):
-    """Each seed with the interpreter that is to live it, here or not."""
+    """Each seed with the interpreter that should run it, installed here or not."""
     seeds = -(-wanted.fuzz // PORTION) if wanted.fuzz else wanted.seeds
     each_minutes = PORTION_MINUTES if wanted.fuzz else wanted.minutes
     fast = interpreters.fastest(each_minutes * seeds / wanted.jobs)
@@ -221,7 +221,7 @@ def lives(wanted):
 
 
 def start(wanted, arguments):
-    """The workers, at work, and the queue into which they speak."""
+    """The workers, started, and the queue of their answers."""
     waiting = queue.SimpleQueue()
     chosen = list(lives(wanted))
     if PYPY in dict(chosen).values() and not interpreters.is_here(PYPY):
@@ -235,7 +235,7 @@ def start(wanted, arguments):
 
 
 def sayings(workers, said):
-    """What they say, until all have ended."""
+    """The workers' answers, until all have ended."""
     while workers:
         worker, what = said.get()
         if "ended" in what:
@@ -273,7 +273,7 @@ def again(wanted, what):
 
 
 def show_line(text):
-    """One line that is written over, where somebody looks on."""
+    """Show one line of progress that is written over, on a terminal."""
     if sys.stderr.isatty():
         print("\r\x1b[K" + text, end="", file=sys.stderr, flush=True)
 

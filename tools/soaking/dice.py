@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Numbers that look random, of a sequence that one seed decides, the same on every interpreter.
+"""Pseudo-random numbers: one seed decides the sequence, the same on every interpreter.
 
 In use:
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""One number for a whole life: if two interpreters live a seed differently, their numbers differ.
+"""One number for a whole run: if a seed runs differently on two interpreters, the numbers differ.
 
 In use:
 
@@ -26,7 +26,7 @@ class Digest:
         self._telegram = bytearray(struct.calcsize(TELEGRAM))
 
     def look(self):
-        """What has happened since the last look."""
+        """Add what has happened since the last look."""
         world = self._world
         lcd, log = world.lcd_chip, world.wire.log
         number = self.number
@@ -41,5 +41,5 @@ class Digest:
         self.number = crc32(lcd.ddram, crc32(self._picture, number))
 
     def with_more(self, *what):
-        """The number with whatever else belongs to it, as texts."""
+        """The number, and the texts that belong to it."""
         return crc32(repr(what).encode(), self.number)

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""An operator's fingers: what somebody does with the keys of a panel, well or badly, at random.
+"""An operator's fingers: they press the keys of a panel at random, sensibly or not.
 
-Time passes in slices, and after each of them judge and reader look.
+Time passes in slices; after each slice judge and reader look.
 """
 
 SLICE_MS = 40
 DEEDS = 60
-CONTACT_MS = 40  # no hand is quicker
+CONTACT_MS = 40  # the shortest press of a hand
 
 TAPPED = (
     "START", "START", "START", "STOP", "STOP", "REVERSE", "UP", "DOWN", "ADDRESS_UP",
@@ -39,7 +39,7 @@ class Fingers:
     # --- time -----------------------------------------------------------------------------------
 
     def run(self, ms):
-        """Let time pass, and look what happens."""
+        """Let time pass, and let judge and reader look."""
         world = self.world
         while ms > 0:
             world.run(min(ms, SLICE_MS))
@@ -94,7 +94,7 @@ class Fingers:
         self.press("STOP")
 
     def run_or_jog(self):
-        """The drive shown is to turn, so that what comes next matters."""
+        """Make the drive shown turn, so that the next deed matters."""
         self.press("STOP")
         self.run(self.dice.between(100, 1_500))
         if self.dice.below(3):
@@ -103,11 +103,11 @@ class Fingers:
         else:
             self.down(self.dice.one_of(JOGS))
             self.run(self.dice.between(100, 1_000))
-            if self.dice.below(2):  # else it stays down for a while
+            if self.dice.below(2):  # otherwise the key stays down for a while
                 self.release_jogs()
 
     def run_long(self):
-        """A motor turns for a while, and nobody does anything."""
+        """Let a motor turn for a while without any deed."""
         self.press("STOP")
         self.run(self.dice.between(500, 1_500))
         self.press("START")
@@ -118,7 +118,7 @@ class Fingers:
             self.up(key)
 
     def start_under_stop(self):
-        """STOP is down, and somebody presses what makes a motor turn."""
+        """Hold STOP down, and press keys that make a motor turn."""
         self.press("STOP")
         self.run(self.dice.between(300, 1_500))
         self.down("STOP")
@@ -129,7 +129,7 @@ class Fingers:
         self.run(60)
 
     def start_others(self):
-        """Several drives, one after the other."""
+        """Start several drives, one after the other."""
         for _ in range(self.dice.between(1, 3)):
             self.press("START")
             self.run(self.dice.between(200, 1_500))
@@ -177,7 +177,7 @@ class Fingers:
         self.run(self.dice.between(500, 6_000))
 
     def edit(self):
-        """Parameter mode, as somebody who knows it uses it, up to where he changes his mind."""
+        """Use parameter mode as an expert does, up to the point where he changes his mind."""
         self.press("PARAM")
         for _ in range(self.dice.below(3)):
             self.press("NEXT")

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""Feeds any bytes to the firmware's bus engine and its receiver, and sees that nothing breaks.
+"""Feeds random bytes to the firmware's bus engine and its receiver, and checks that nothing
+breaks.
 
 It sends noise, telegrams with a few wrong bits, pieces of telegrams and good replies, in bursts of
 any size, with pauses of any length. These rules must hold: the firmware raises no exception; it
-takes every good reply behind a start gap, unless something that begins like a telegram is still
+takes every good reply after a start gap, unless something that begins like a telegram is still
 coming in; it takes nothing else.
 
     fuzz(1_000_000, 7)          # {"bytes": ..., "good": ..., "broken": None or a text}
@@ -18,7 +19,7 @@ MASK = 0x3FFFFFFF
 STX = 0x02
 LAYOUTS = ((4, 2), (4, 2), (3, 2), (0, 2), (VARIABLE, 2), (4, 16))
 BAUDS = (9600, 19200, 115200)
-EXCHANGES = 2_000  # then another line
+EXCHANGES = 2_000  # on each line; then the next line begins
 NOISE, SPOILT, PIECE = range(3)
 
 
@@ -54,13 +55,13 @@ class Line:
         return len(burst)
 
     def come(self, burst):
-        """It has come in by now, its last character just now."""
+        """Take characters that have just come in; the last one ends now."""
         self._burst = burst
         self.received_at = self.now_us
 
 
 class Fuzz:
-    """A master, the drives of its list, and somebody who answers for them."""
+    """A master, the drives of its list, and the answers for them."""
 
     def __init__(self, dice):
         self.dice = dice
@@ -72,10 +73,11 @@ class Fuzz:
         self.fed = 0
         self.good = 0
         self._due_us = 1  # until the engine wants to be called again
-        self._sends = 0  # of the line, with the request of this exchange
+        self._sends = 0  # telegrams sent on the line, the request of this exchange included
 
     def exchange(self):
-        """A request, whatever comes, and perhaps the reply. Answers what is wrong, or None."""
+        """Do one exchange: a request, random bursts, perhaps the reply. Return what is wrong, or
+        None."""
         line, dice = self.line, self.dice
         self._sends = line.sends + 1
         while line.sends < self._sends:
@@ -126,7 +128,7 @@ class Fuzz:
         self._due_us = self.master.poll(line.now_us)
 
     def come(self, burst):
-        """Behind a pause: mostly a start gap, for a reply always."""
+        """Pause: mostly for a start gap, before a reply always."""
         timing, line = self.timing, self.line
         self.fed += len(burst)
         pause_us = timing.start_interval_us + 2
@@ -145,7 +147,7 @@ class Fuzz:
     # --- what comes -----------------------------------------------------------------------------
 
     def reply(self, request):
-        """A good one: the words are anything, but it is not the request itself."""
+        """A good reply with random words, which differs from the request."""
         reply = bytearray(request)
         for index in range(3, len(reply) - 1):
             reply[index] = self.dice.below(256)
@@ -168,7 +170,7 @@ class Fuzz:
 
 
 def was_good(heard, request):
-    """Whether what came is a whole reply all the same, in one piece or in several."""
+    """Whether what came is a whole reply by chance, in one piece or in several."""
     for first in range(len(heard)):
         stream = b"".join(heard[first:])
         if len(stream) > 4 and stream[0] == STX and stream[2] == request[2]:
@@ -186,7 +188,7 @@ def check_of(characters):
 
 
 def fuzz(count, seed):
-    """Feed `count` bytes. Exceptions of the firmware go through."""
+    """Feed `count` bytes. Exceptions of the firmware reach the caller."""
     dice = Dice(seed)
     fed = good = exchanges = 0
     broken = None

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
 """The hand of a soak: it presses keys at random and lets things fail at random.
 
-One number decides all of it. It lives in turns: for a time anything may happen; then it puts
-everything in order and looks whether the panel controls its drives again.
+One number decides all of it. It works in turns: for a time anything may happen; then it puts
+everything in order and checks whether the panel controls its drives again.
 
     hand = Hand(world, plan, judge, reader, weather)
-    hand.live(180)                  # seconds of virtual time: raises Broken, or what firmware did
+    hand.live(180)                  # virtual seconds: raises Broken, or what the firmware raised
     hand.deeds                      # the last things it did
 """
 
@@ -20,9 +20,9 @@ from tools.soaking.mischief import WARNINGS, Mischief
 from tools.soaking.worlds import CLEAN
 
 TURN_S = (8, 25)
-RISKS_MAX = 3  # one may ask about before a motor starts
+RISKS_MAX = 3  # so many risks the panel may ask about before a motor starts
 ACKNOWLEDGED_MS = 5_000
-TRIES = 12  # of so many addresses the hand looks for one that answers
+TRIES = 12  # the hand selects at most so many addresses to find one that answers
 IN_ORDER = {
     700: 5, 1000: 5, 1080: 0.0, 1082: 50.0, 2000: 50.0, 2009: 0, 1120: 2.0, 1121: 2.0, 1135: 1.0,
     3: 3, 10: 0, 927: 15, 719: 0, 840: 2036 << 16, 1070: 2018 << 16 | 1, 2200: 0, 1210: 1,
@@ -34,7 +34,7 @@ class Hand(Mischief):
     """See `Fingers` for what it takes, and for `deeds`; `Mischief` for `faults`."""
 
     def live(self, until_s):
-        """Until so many seconds of virtual time are over, and the turn that goes on then."""
+        """Go on until so many seconds of virtual time are over, to the end of the turn."""
         while self.world.clock.now_us < until_s * S:
             self.weather.change()
             self.bustle(self.dice.between(*TURN_S))
@@ -54,12 +54,12 @@ class Hand(Mischief):
     # --- order ----------------------------------------------------------------------------------
 
     def put_in_order(self):
-        """Everything is as it should be: plugged in, powered, set up; every key is up."""
+        """Put everything in order: plugged in, powered, set up; every key up."""
         self.note("everything is put in order")
         self.let_go()
         self.judge.look()
         self.world.flash.cut_at = None
-        self.run(2_500 + 8 * self.witness.cycle_us // MS)  # what was asked for is written by then
+        self.run(2_500 + 8 * self.witness.cycle_us // MS)  # by then every requested write is done
         for drive in self.drives:
             self.witness.excuse(drive.address, 3)
             if not drive.plugged:
@@ -76,7 +76,7 @@ class Hand(Mischief):
         self.run(3_000)
 
     def follow_addresses(self):
-        """A drive that is where the panel does not look for it gets an address where it does."""
+        """Give a drive that is not at an address of the panel's list such an address."""
         known = json.loads(self.world.store.read())["drives"]
         free = [address for address in known if address not in [d.address for d in self.drives]]
         for drive in self.drives:
@@ -84,7 +84,7 @@ class Hand(Mischief):
                 self.set_at_drive(drive, 2011, free.pop())
 
     def prove_control(self):
-        """START runs the drive shown, and STOP stops it."""
+        """Check that START runs the drive shown, and that STOP stops it."""
         if not self.find_one_that_answers():
             return
         reader = self.reader
@@ -95,14 +95,14 @@ class Hand(Mischief):
         if not reader.is_able(address):
             return
         drive = reader.drive_at(address)
-        self.run(1_500)  # a fault has to be shown for a second
-        self.press("STOP")  # and what was said of the drive is read
+        self.run(1_500)  # a fault must be shown for a second
+        self.press("STOP")  # this also dismisses a message
         self.acknowledge(drive)
         self.wait_for("drive %d to be ready" % address, lambda: drive.state == "ready", 20)
         self.wait_for("READY on the display", lambda: reader.rows[1].startswith("READY"), 8)
         self.press("START")
         self.run(200)
-        if self.reader.reads("NO:"):  # a drive that was not shown is not always known by now
+        if self.reader.reads("NO:"):  # a drive that was not shown may not be surveyed yet
             self.run(3_000 + 20 * self.witness.cycle_us // MS)
             self.press("START")
         for _ in range(RISKS_MAX):
@@ -121,7 +121,7 @@ class Hand(Mischief):
             self.prove_announced(drive)
 
     def acknowledge(self, drive):
-        """STOP again, where a fault took turns with others and was not shown for a second."""
+        """Press STOP again if a fault took turns with others and was not shown for a second."""
         for _ in range(ACKNOWLEDGED_MS // SLICE_MS):
             if drive.state != "fault":
                 return
@@ -129,8 +129,8 @@ class Hand(Mischief):
         self.press("STOP")
 
     def find_one_that_answers(self):
-        """A drive that the panel cannot control never confirms its STOP: another one is shown.
-        Answers whether there is one that it can control."""
+        """Select another drive if the panel cannot control this one, which never confirms its
+        STOP. Return whether there is a drive that it can control."""
         able = [drive for drive in self.drives if self.reader.is_able(drive.address)]
         for _ in range(min(len(self.plan.listed) - len(able), TRIES)):
             if not self.is_unconfirmed():
@@ -148,7 +148,7 @@ class Hand(Mischief):
         return False
 
     def prove_announced(self, drive):
-        """Another drive is shown: this one runs on, and the display says so."""
+        """Select another drive: check that this one runs on, and that the display says so."""
         self.press("ADDRESS_UP")
         text = "A%d RUN,HOLD=ALL" % drive.address
         self.wait_for(text, lambda: self.reader.reads(text), 8, "ANNOUNCED")
@@ -163,21 +163,22 @@ class Hand(Mischief):
             self.run(SLICE_MS)
 
     def _all_are_well(self):
-        """Whether no drive has anything to say that matters more than one that runs."""
+        """Whether no drive has an announcement that goes before that of a running drive."""
         for drive in self.drives:
             if not self.reader.is_able(drive.address) or drive.state not in ("ready", "running"):
                 return False
         return True
 
     def _is_answered(self, drive):
-        """START is pressed again where it was given up: the drive tells its settings slowly, or
-        the line is busy, and a clock that wraps soon lets it wait for a few seconds alone."""
+        """Press START again if the panel gave it up: because the drive tells its settings slowly
+        or the line is busy, or because a clock that wraps soon lets it wait for a few seconds
+        only."""
         if self.reader.reads("NO: STILL CHECKS"):
             self.press("START")
         return drive.state == "running" or self.reader.rows[1] in GOES
 
     def _is_home(self):
-        """Parameter mode is left as soon as it is seen."""
+        """Leave parameter mode as soon as it is seen."""
         reader, witness = self.reader, self.witness
         if (
             not reader.steady

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""The interpreters that a soak can run on: which of them lives a seed, and how it is started.
+"""The interpreters that a soak can run on: which of them runs a seed, and how it is started.
 
-A seed is the same life on each of them; they differ in speed, and in what they notice. MicroPython
-alone locks its heap in interrupt handlers, so every tenth seed stays there. CPython is half as
-fast again. PyPy is seven times as fast once it is warm, which takes five seconds and more.
+A seed runs the same on each of them; they differ in speed, and in the errors that they notice.
+Only MicroPython locks its heap in interrupt handlers, so every tenth seed stays there. CPython is
+1.5 times as fast. PyPy is seven times as fast once it is warm, which takes five seconds and more.
 """
 
 import os
@@ -14,7 +14,7 @@ TOP = Path(__file__).resolve().parents[2]
 WORKER = "tools/soaking/worker.py"
 MICROPYTHON, CPYTHON, PYPY = "micropython", "cpython", "pypy"
 
-# -u: what it says is waited for. -B: firmware/ stays as it is.
+# -u: its output must not be buffered. -B: no bytecode goes into firmware/.
 PYTHON = ("-u", "-B", "-s")
 COMMANDS = {
     MICROPYTHON: (TOP / "build/unix64/micropython", "-X", "heapsize=96M"),
@@ -23,8 +23,8 @@ COMMANDS = {
 }
 NAMES = {MICROPYTHON: "MicroPython", CPYTHON: "CPython", PYPY: "PyPy"}
 
-SHARE = 10  # every so many seeds one is lived on MicroPython
-WARM_MINUTES = 30  # of virtual time in a process: from there on PyPy is ahead
+SHARE = 10  # one of so many seeds runs on MicroPython
+WARM_MINUTES = 30  # of virtual time in a process; beyond that PyPy is faster
 
 
 def is_here(name):
@@ -32,12 +32,12 @@ def is_here(name):
 
 
 def fastest(minutes):
-    """Whichever suits a process with so many minutes of virtual time before it, here or not."""
+    """The best one for a process with so many minutes of virtual time to run, installed or not."""
     return PYPY if minutes >= WARM_MINUTES else CPYTHON
 
 
 def of_seed(seed, fast):
-    """The one that lives a seed, where `fast` lives most of them."""
+    """The interpreter that runs a seed, if `fast` runs most of them."""
     return fast if seed % SHARE else MICROPYTHON
 
 
@@ -47,7 +47,7 @@ def command(name, arguments):
 
 
 def environment(name, firmware):
-    """What it finds its modules by. firmware: the folder."""
+    """The environment by which it finds its modules. firmware: the folder."""
     if name == MICROPYTHON:
         return {**os.environ, "MICROPYPATH": "%s:%s:.frozen" % (firmware, TOP)}
     paths = (firmware, TOP, TOP / "host_tests/cpython")  # which has a module `micropython`

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What befalls drives, chip and flash during a soak; `weather` is what befalls the line.
+"""What goes wrong with drives, chip and flash during a soak; `weather` does so for the line.
 
 It tells the witness of each thing before it happens.
 """
@@ -10,7 +10,7 @@ from tools.soaking.judging.drive_settings import ACTUAL_HZ
 from tools.soaking.judging.facts import GOES
 from tools.soaking.worlds import bears_silences
 
-PARAMETERS = (  # what somebody sets at the drive itself
+PARAMETERS = (  # what a person may set at the drive itself
     (700, 5), (700, 2), (1000, 5), (1000, 1), (1080, 5.0), (1080, 0.0), (1082, 50.0), (1082, 35.0),
     (2000, 60.0), (2000, 50.0), (2009, 1), (2009, 0), (2014, 0), (2014, 5000), (2014, 65535),
     (1120, 2.0), (1121, 1.0), (1121, 10.0), (1058, 8.0), (1210, 1), (1210, 2), (1210, 6),
@@ -18,14 +18,14 @@ PARAMETERS = (  # what somebody sets at the drive itself
     (1070, 755 << 16), (840, 722 << 16), (2200, 1 << 16),
 )  # fmt: skip
 
-# What START and JOG have to refuse, or to ask about; no number: a fault.
+# What START and JOG must refuse, or ask about; without a number: a fault.
 DOUBTS = (
     (700, 2), (1000, 1), (2014, 0), (2014, 0), (2014, 0), (2014, 65535), (719, 11),
     (1070, 755 << 16), (None, 0),
 )  # fmt: skip
 AT_ONCE_MS = (0, 0, 20, 200)  # between two troubles
-LONGER_MS = 16_000  # a P2014 that has become longer is said by then
-SAID_S = 3  # hands off, for each drive in trouble
+LONGER_MS = 16_000  # by then the panel says that a P2014 has become longer
+SAID_S = 3  # no key for so long, for each drive in trouble
 WARNINGS = (501, 503, 505)
 
 
@@ -93,7 +93,7 @@ class Mischief(Fingers):
             self.power_on(drive)
 
     def blink(self):
-        """The mains of one drive fail for a moment, of one that runs if there is any."""
+        """Let the mains of one drive fail for a moment, of a running one if there is any."""
         running = [drive for drive in self.drives if drive.state == "running"]
         drive = self.dice.one_of(running) if running else self.any_drive()
         if not drive.mains:
@@ -115,7 +115,7 @@ class Mischief(Fingers):
         drive.power_on()
 
     def dip(self, whose, ms):
-        """The supply fails for a moment: of all drives, of the panel, of both."""
+        """Let a supply fail for a moment: that of all drives, of the panel, or of both."""
         self.note("the supply of %s fails for %d ms" % (whose, ms))
         if whose != "panel":
             off = [drive for drive in self.drives if drive.mains]
@@ -136,7 +136,7 @@ class Mischief(Fingers):
             return number
 
     def meddle_while_it_runs(self):
-        """A motor turns, parameters are changed at the drive, and nobody presses a key."""
+        """Change parameters at a drive whose motor turns, without pressing a key."""
         self.run_long()
         for _ in range(self.dice.between(1, 3)):
             number = self.meddle()
@@ -155,7 +155,7 @@ class Mischief(Fingers):
         self.run(self.dice.one_of((50, 50, 9_000)))
 
     def two_troubles(self):
-        """Drives run, two things fail at once, and nobody presses a key until all is said."""
+        """While drives run, let two things fail at once; press no key until all is said."""
         self.start_others()
         first = self.dice.below(len(self.at_once))
         second = (first + 1 + self.dice.below(len(self.at_once) - 1)) % len(self.at_once)
@@ -166,8 +166,8 @@ class Mischief(Fingers):
         self.run(SAID_S * 1_000 * self.dice.between(1, 4))
 
     def distrust(self):
-        """Change the drive shown into one that START and JOG have to refuse, or to ask about;
-        another one may run meanwhile.
+        """Change the drive shown into one that START and JOG must refuse, or ask about; another
+        one may run meanwhile.
         """
         if len(self.drives) > 1 and self.dice.below(4):
             self.press("START")
@@ -227,7 +227,8 @@ class Mischief(Fingers):
         self.witness.hangs(False)
 
     def stick(self):
-        """The chip's timers die, as if their clock stood: the watchdog has to help."""
+        """Let the chip's timers die, as if their clock stood: the watchdog must restart the
+        chip."""
         self.note("the timers die")
         self.count("dead timers")
         self.witness.sticks()
@@ -236,7 +237,7 @@ class Mischief(Fingers):
                 peripheral.die()
 
     def restart(self):
-        """The chip restarts, now and then while somebody leans on a key."""
+        """Restart the chip, sometimes while a key is held down."""
         key = self.dice.one_of(("START", "START", "STOP") + JOGS)
         if self.dice.below(4):
             self.down(key)
@@ -252,7 +253,7 @@ class Mischief(Fingers):
         self.world.cut_power()
 
     def cut_flash(self):
-        """The power fails at one of the next steps of writing the flash."""
+        """Let the power fail at one of the next steps of writing the flash."""
         self.note("power fails when the flash is written")
         self.count("flash cut")
         self.world.flash.cut_at = self.world.flash.steps + self.dice.below(5)

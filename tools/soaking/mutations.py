@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: MIT
 """Planted bugs. A soak must find them, or it proves nothing.
 
-Each row of MUTATIONS is a firmware with one thing wrong. host_tests/test_soak_mutations.py makes
-them in copies of firmware/, and soaks each with the seed beside it.
+Each row of MUTATIONS plants one bug. host_tests/test_soak_mutations.py applies each to a copy of
+firmware/, and soaks that with the row's seed.
 """
 
 
 class Mutation:
-    """name; why it matters; rules, one of which must be named; the seed that finds it; changes,
-    (file below firmware/, old text, new text) each.
+    """name; why it matters; rules, one of which the soak must name; the seed that finds it;
+    changes, each (file below firmware/, old text, new text).
     """
 
     def __init__(self, name, why, rules, seed, *changes):
@@ -19,7 +19,7 @@ class Mutation:
         self.changes = changes
 
     def apply(self, folder):
-        """Change the copy of firmware/ in `folder`, a Path. LookupError: a text is gone."""
+        """Change the copy of firmware/ in `folder`, a Path. LookupError if an old text is gone."""
         for name, old, new in self.changes:
             path = folder / name
             text = path.read_text(encoding="utf-8")

@@ -8,7 +8,7 @@ In use:
     soak.broken                     # None, or what ended it
 """
 
-# From the bottom of the house up, or the 32-bit build runs out of stack.
+# Lower layers first, or the 32-bit build runs out of stack.
 import boards.sim.drives.families.mm420
 import boards.sim.drives.parameter_channel
 import boards.sim.drives.parameters
@@ -25,9 +25,9 @@ TOLD_S = 30  # of virtual time between two calls of `progress`
 
 
 class Soak:
-    """seed, plan, world, and who takes part: judge, reader, weather, hand.
+    """Fields: seed, plan, world, judge, reader, weather, hand.
 
-    drives: how many, None: as the seed has it. broken: the exception that ended it, or None.
+    drives: how many; None: the seed decides. broken: the exception that ended it, or None.
     """
 
     def __init__(self, seed, drives=None, troubles=1):
@@ -41,7 +41,7 @@ class Soak:
         self.hand = Hand(world, plan, judge, reader, weather)
 
     def run(self, seconds, progress=None):
-        """Until `seconds` are over in its world. progress: called with the seconds so far."""
+        """Run until `seconds` are over in its world. progress: called with the seconds so far."""
         try:
             for until_s in range(TOLD_S, seconds, TOLD_S):
                 self.hand.live(until_s)
@@ -55,7 +55,7 @@ class Soak:
         return self.world.clock.now_us // 1_000_000
 
     def digest(self):
-        """A number for all of this life, the same on every interpreter."""
+        """A number for the whole run, the same on every interpreter."""
         reports = [drive.report() for drive in self.world.drives.values()]
         return self.world.digest.with_more(
             self.hand.deeds, sorted(self.faults().items()), reports,
@@ -63,7 +63,7 @@ class Soak:
         )  # fmt: skip
 
     def faults(self):
-        """How many of each kind: what failed beside the line, and on it."""
+        """How many faults of each kind there were, on the line and elsewhere."""
         found = dict(self.hand.faults)
         for kind, count in self.weather.count().items():
             if count:

@@ -13,7 +13,7 @@ from tools.soaking.judging.rules import RULES, Broken
 
 EVENTS = 110
 TELEGRAMS = 24
-FEW = 6  # so many drives are reported at the end
+FEW = 6  # at most so many drives are reported at the end
 
 WORDS = {
     0x047E: "OFF1", 0x047C: "OFF2", 0x047A: "OFF3", 0x047F: "ON", 0x0C7F: "ON, reverse",
@@ -30,7 +30,7 @@ TASKS = {
 
 
 def story(soak):
-    """Lines, about a `Soak` that has broken a rule or ended in an exception."""
+    """The lines about a `Soak` that has broken a rule or ended in an exception."""
     broken = soak.broken
     if isinstance(broken, Broken):
         rule, what = broken.args
@@ -60,7 +60,7 @@ def events(soak):
 
 
 def decoded(from_panel, characters):
-    """A telegram of 4 PKW and 2 PZD words in words; of others the characters."""
+    """A telegram as text: its words if it has 4 PKW and 2 PZD words, else its characters."""
     shown = " ".join("%02X" % character for character in characters)
     shown = "%s %s" % (">" if from_panel else "<", shown)
     if len(characters) != 16 or characters[0] != 0x02:

@@ -1,19 +1,20 @@
 # SPDX-License-Identifier: MIT
-"""What befalls the line during a soak: which faults, how often, and how many there were.
+"""What goes wrong on the line during a soak: which faults, how often, and how many there were.
 
 In use:
 
     weather = Weather(world, plan)
     weather.change()                # other faults from now on
-    weather.clear()                 # none
-    weather.dips                    # supplies that have failed: (whose, milliseconds), to be done
+    weather.clear()                 # no faults from now on
+    weather.dips                    # supplies that fail: (whose, milliseconds), not yet carried
+    out
 """
 
 from boards.sim.dice import Dice
 from boards.sim.line.faults import BABBLE_MS, WIRE_CUT_MS, LineFaults
 from tools.soaking.worlds import CLEAN, WILD
 
-# Kind: the highest rate of a rough line, of a wild one.
+# Kind: the highest rate of a rough line, and of a wild one.
 RATES = {
     "flip": (0.002, 0.01),
     "lost": (0.0003, 0.005),
@@ -40,7 +41,7 @@ class Weather:
         self._plan = plan
         self._clock = world.clock
         self._wire = world.wire
-        self._struck = self._lasting = 0  # faults so far; of those those that go on for a while
+        self._struck = self._lasting = 0  # faults so far; how many of them go on for a while
         self._cuts = 0
         self._deaf_until_us = 0
         self._until_us = 0  # when the last of those is over, at the latest
@@ -48,7 +49,7 @@ class Weather:
             self.faults = LineFaults(world.wire, Dice(plan.seed, 3).random, None, self._dip)
 
     def change(self):
-        """Each kind is there or not, up to its highest rate; now and then there is none."""
+        """Draw a rate for each kind, up to its highest or 0; now and then there are no faults."""
         dice = self._dice
         if self.faults is None or not dice.below(4):
             return
@@ -63,11 +64,11 @@ class Weather:
     def clear(self):
         if self.faults is not None:
             self.faults.calm()
-            self._wire.echo = self._plan.echo  # which is no weather
+            self._wire.echo = self._plan.echo  # the echo belongs to the plan, not to the weather
             self._until_us = 0
 
     def is_bad(self):
-        """Whether something has struck since it was asked last, or may go on."""
+        """Whether a fault has struck since the last call, or may still go on."""
         if self.faults is None:
             return False
         now_us = self._clock.now_us

@@ -16,7 +16,7 @@ from tools.soaking.judging.rules import Broken
 from tools.soaking.soak import Soak
 from tools.soaking.story import story
 
-# Left alone, MicroPython fills the heap first, and takes long to look for its last holes.
+# By default MicroPython collects only when the heap is full, and searches long for its last holes.
 COLLECT_AFTER = 2_000_000
 
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The world of a seed: how many drives it has, of which families, its line, and its settings.
 
-The same seed gives the same world, whatever else is asked of the soak.
+The same seed gives the same world, whatever the other arguments of the soak.
 
     plan = plan_of(7)
     world = SoakWorld(main.start, plan)
@@ -15,8 +15,8 @@ from tools.soaking.dice import Dice
 from tools.soaking.digest import Digest
 from tools.soaking.judging.facts import S, exchange_us, lost_us
 
-# Families that this panel can control, with the layout that it speaks (4 PKW, 2 PZD), and two that
-# answer it with another one, or not at all.
+# Families that this panel can control, with the layout that it uses (4 PKW, 2 PZD); and two that
+# answer it with another layout, or not at all.
 ABLE = ((mm420, {}), (mm420, {}), (mm440, {}))
 OTHERS = ((g110, {}), (mm420, {2013: 3}), (mm440, {2012: 4}), (v20, {2013: 4, 2014: 0}))
 
@@ -24,7 +24,7 @@ BAUDS = (19200, 19200, 19200, 19200, 19200, 9600, 38400, 38400, 57600, 115200, 4
 CLEAN, ROUGH, WILD = range(3)
 NAMES = ("clean", "rough", "wild")
 
-# What a switch of the drives that is no yes or no may be set to, besides its default.
+# The values, besides the default, of the drives' switches that are not yes-or-no.
 VALUES = {
     "stale_replies": (1, 2),
     "text_bits_error": (3, 5),
@@ -34,14 +34,15 @@ VALUES = {
     "boot_ms": (200, 700, 2_500),
     "silence_s": ({970: 2.0, 971: 1.0},),
 }
-LONG_MS = (8_000, 20_000, 65_535)  # a P2014 that is as good as none
-SLOW_LOOP_US = 10_000  # the longest step of a main loop that has much to do
+LONG_MS = (8_000, 20_000, 65_535)  # such a P2014 hardly protects
+SLOW_LOOP_US = 10_000  # the longest step of a busy main loop
 
 
 class Plan:
-    """seed, dice, addresses, listed (these, and those of the panel's list where no drive is),
-    baud, settings, keys, polled, echo, level (CLEAN, ROUGH, WILD), loop_us (the longest step of
-    the main loop), and what else a `World` is given: `ticks_start`, `ticks_mask`, `kinds`.
+    """seed, dice, addresses, listed (these, and the addresses of the panel's list without a
+    drive), baud, settings, keys, polled, echo, level (CLEAN, ROUGH, WILD), loop_us (the longest
+    step of the main loop), and further arguments of a `World`: `ticks_start`, `ticks_mask`,
+    `kinds`.
 
     troubles: how many things the hand lets fail at once, 1 or 2.
     """
@@ -50,7 +51,7 @@ class Plan:
         self.seed = seed
         self.troubles = troubles
         self.dice = dice = Dice(seed)
-        # What the worlds were widened by has dice of its own, so that it does not change the rest.
+        # Later additions to the worlds have their own dice, so that they do not change the rest.
         self.more = more = Dice(seed, 7)
         self.level = (CLEAN, CLEAN, ROUGH, ROUGH, ROUGH, WILD)[dice.below(6)]
         count = drives or _count(dice)
@@ -65,7 +66,7 @@ class Plan:
         self.ticks_mask = (1 << (24, 27, 30, 30)[dice.below(4)]) - 1
         if len(self.listed) > 3 or self.baud < 9600:  # a round takes long beside 16 s
             self.ticks_mask |= (1 << 27) - 1
-        self.supervised = dice.below(4)  # else no drive watches its line
+        self.supervised = dice.below(4)  # 0: no drive supervises its line
         self.ticks_start = dice.below(self.ticks_mask)
         if dice.below(2):  # the counter wraps within the first minute
             self.ticks_start = self.ticks_mask - dice.below(60_000_000) & self.ticks_mask
@@ -200,8 +201,8 @@ def _kind(plan, address):
 
 
 def bears_silences(plan):
-    """Whether three turns in a row on which a drive is silent do not lose it: else the panel asks
-    in vain for what it is silent about, the more when it lags.
+    """Whether three silences of a drive in a row do not lose it. Otherwise the panel asks in vain
+    for a parameter on which the drive is silent, even more if the drive lags.
     """
     return lost_us(plan) >= 3 * len(plan.listed) * exchange_us(plan)
 

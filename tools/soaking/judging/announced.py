@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
-"""Looks whether the panel says every trouble: it holds the display against what the line tells of
+"""Checks that the panel says every trouble: it compares the display with what the line tells of
 each drive.
 
-A drive is in trouble when it runs and is not shown, has tripped, ran when contact was lost, was
-never heard since power-on, or was stopped by something else than STOP. If n drives are in trouble,
-each must be on the display for a second within 2 n s, again and again, on every page.
+A drive is in trouble if it runs and is not shown, has tripped, ran when contact was lost, was
+never heard since power-on, or was stopped by something other than STOP. If n drives are in
+trouble, each must be on the display for a second within 2 n s, again and again, on every page.
 
     announced = Announced(plan, witness, reader)
     announced.look(now)             # after every slice: raises Broken
@@ -18,7 +18,7 @@ RUNS, EXPOSED, TRIPPED, MAY_RUN, NOT_STOPPED, UNHEARD, OFF = (
     "STOP unconfirmed", "never heard", "it was stopped",
 )  # fmt: skip
 
-ONE = (  # behind "A" and an address; which troubles that tells. Anything else tells that it is off
+ONE = (  # text after "A" and an address, and the troubles that it tells; any other text: it is off
     ("RUN,HOLD=ALL", (RUNS,)),
     ("RUN, P2014", (RUNS, EXPOSED)),
     ("P2014 LONG", (RUNS, EXPOSED)),
@@ -29,7 +29,7 @@ ONE = (  # behind "A" and an address; which troubles that tells. Anything else t
     ("MAY RUN", (UNHEARD,)),
     ("", (OFF,)),
 )
-MANY = (  # in front of their number, where there are more than FEW of them
+MANY = (  # text before their number, if there are more than FEW of them
     ("RUN,HOLD=ALL:", (RUNS,)),
     ("RUN, P2014 ?:", (RUNS, EXPOSED)),
     ("DRIVES FAULT:", (TRIPPED, OFF)),
@@ -41,17 +41,17 @@ MANY = (  # in front of their number, where there are more than FEW of them
 UNCONFIRMED, LOST = "STOP UNCONFIRMED", "NO CONTACT, "  # an alarm of the drive shown, a row
 ANY, SHOWN = -1, -2  # in place of an address: all of a kind; the drive shown, whichever it is
 
-LONG_US = 900 * MS  # 1 s, and what is lost of it by drawing and by looking
+LONG_US = 900 * MS  # 1 s, less the time lost by drawing and by looking
 TURN_US = 2 * S  # for each drive in trouble
 SPLASH_US = 1_500 * MS  # what is on the display after power-on
 SLACK_US = 500 * MS  # for drawing
-STOPS_US = 100 * MS  # a STOP of all that takes longer shortens what is said meanwhile
+STOPS_US = 100 * MS  # a longer STOP of all shortens the announcements meanwhile
 PAGE_US = 700 * MS  # the page of a drive that was just selected has a turn first
-REDRAWN_US, REDRAWN_STEPS = 200 * MS, 10  # what is said may go from one row to the other
-FOUND_US = 1_500 * MS  # until a trouble is noticed, and more for each drive of the list:
-FOUND_STEPS = 20  # of the loop
+REDRAWN_US, REDRAWN_STEPS = 200 * MS, 10  # an announcement may move from one row to the other
+FOUND_US = 1_500 * MS  # until a trouble is noticed; and for each drive of the list
+FOUND_STEPS = 20  # steps of the loop more
 UNHEARD_TELEGRAMS = 4  # without a reply since power-on
-LATELY = 4  # turns: what was said in these may have taken the time of what is to be said
+LATELY = 4  # turns: announcements in these may have taken the time of a due one
 
 
 class Announced:
@@ -66,7 +66,7 @@ class Announced:
         self._many = {}  # troubles -> how many drives were told to have them, and when
         self._rows = None
         self._alarm = False  # the rows have one of the drive shown
-        self._free_us = 0  # when the display last had nothing else to say
+        self._free_us = 0  # when the display last had nothing else to show
         self._redrawn_us = REDRAWN_US + REDRAWN_STEPS * plan.loop_us
         self._stops_us = plan.loop_us * len(plan.listed)  # a STOP of all: nothing is drawn
         self._found_us = FOUND_US + FOUND_STEPS * plan.loop_us * len(plan.listed)
@@ -84,7 +84,7 @@ class Announced:
         if now - selected_us < patience_us:
             patience_us += PAGE_US
         if self._stops_us > STOPS_US and now - witness.pressed_us["STOP"] < 2 * patience_us:
-            patience_us *= 2  # what is said during a STOP of all is short, and said again
+            patience_us *= 2  # an announcement during a STOP of all is short, and comes again
         for address, (which, since_us) in self._troubles.items():
             said_us = max(self._said.get((one, which), NEVER) for one in (address, ANY, SHOWN))
             waited_us = now - max(since_us + self._found_us, self._free_us, said_us)
@@ -100,7 +100,7 @@ class Announced:
             self._read = tuple(one for one in (said_in(row) for row in rows) if one is not None)
             self._alarm = UNCONFIRMED in rows or rows[0].startswith(LOST)
             for address, troubles in self._read:
-                if address == ANY and number_in(rows):  # else it is half drawn
+                if address == ANY and number_in(rows):  # without a number it is half drawn
                     self._many[troubles] = (number_in(rows), now)
         read = self._read
         if self._alarm and self.witness.shown is None:  # the page of whichever drive says it
@@ -159,7 +159,7 @@ class Announced:
             return UNHEARD if unheard else None
         if is_shown and not self._hides_state():
             return None  # its own page says it
-        taken_us = min(case.answered_us, case.heard_us)  # a reply, by the panel, for sure
+        taken_us = min(case.answered_us, case.heard_us)  # a reply that the panel has surely taken
         if now - taken_us > witness.lost_us * 9 // 10:
             if not witness.is_lost(case, now):
                 return None  # it may be, or about to be

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""What a drive is set to, what it was set to, and how long the panel may still go by that.
+"""The settings of a drive, its earlier ones, and how long the panel may still use those.
 
-It reads settings again and again (rules 6 and 17 of its promises), which takes time, and replies
-of the drive to do it with: old values count until both have passed.
+The panel reads settings again and again (rules 6 and 17 of its promises). That takes time, and
+replies of the drive: old values are allowed until enough of both have passed.
 
     settings = Settings(drive)
-    settings.note(now, replies)             # they may be others by now; replies: of the drive
-    for values in settings.in_force(since_us, replies): ...     # those that may count
+    settings.note(now, replies)             # they may have changed; replies: of the drive so far
+    for values in settings.in_force(since_us, replies): ...     # those that the panel may use
 """
 
 from tools.soaking.judging.facts import ALWAYS, MS
@@ -16,7 +16,7 @@ KEPT = 8  # values that were replaced
 
 
 class Values:
-    """What a run of a drive goes by, at one time, in Hz and microseconds.
+    """The settings that a run of a drive uses, at one time, in Hz and microseconds.
 
     tells_hz: HIW is its frequency. off_time_us: P2014, 0: it never trips. ended_us, ended_at: when
     other values came in their place, and how many replies of the drive there had been by then.
@@ -53,7 +53,7 @@ class Settings:
             self.rows = self.rows[-KEPT:] + [values]
 
     def in_force(self, since_us, replies):
-        """Those that were, at some time since then or since there had been so many replies."""
+        """The values that were set at some time since `since_us`, or since so many replies."""
         return [
             values
             for values in self.rows

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""What the judge goes by: words of the specification, the panel's promises as times.
+"""The facts for the judge: words of the specification, the panel's promises as times.
 
-Written from the documents, not from the firmware: a mistake must not stand in both.
+Written from the documents, not from the firmware, so that a mistake does not stand in both.
 """
 
 MS = 1000
@@ -25,7 +25,7 @@ EEPROM_WRITES = (11, 12, 13, 14)
 
 CONTROLLED = ("MICROMASTER 420", "MICROMASTER 440")  # by this panel
 
-# DESIGN, rule 7, and those among them that must not be forgotten by the drive.
+# DESIGN, rule 7, and those among them that the drive must not forget.
 DANGEROUS = (
     3, 10, 700, 719, 840, 918, 927, 970, 1000, 1070, 2000, 2009, 2010, 2011, 2012, 2013, 2014,
     2016, 2019, 2023, 3900,
@@ -41,7 +41,7 @@ CHOICES = (WRITES, RUNS_ON, RISKS)
 # loop, two of them of its own and those of a drawing that is under way.
 SETTLED_US = 25 * MS
 STEPS = 5
-SHORT_CHORD_US = 120 * MS  # within which nobody can tell which of two keys came first
+SHORT_CHORD_US = 120 * MS  # within this it is not known which of two keys came first
 DEAD_MAN_US = 300 * MS
 SECOND_STOP_US = 1_500 * MS
 ALL_STOP_US = 4_000 * MS
@@ -67,7 +67,7 @@ ALWAYS = 1 << 60
 
 
 def debounce_us(plan):
-    """From when a key moves to when that must have had its effect."""
+    """The time from when a key moves until that must have had its effect."""
     return SETTLED_US + STEPS * plan.loop_us
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The judge of a soak: he holds what the panel sends against what a hand at its keys has asked
+"""The judge of a soak: he compares what the panel sends with what a hand at its keys has asked
 for.
 
 He knows the keys, the line, the loop and the display's picture, and asks the firmware nothing. He
@@ -55,12 +55,12 @@ from tools.soaking.judging.shares import Shares
 from tools.soaking.judging.tape import MALFORMED, REQUEST
 from tools.soaking.judging.witness import Witness
 
-LISTEN_US = 95 * MS  # 100 ms, and what the panel's clocks may be short of
+LISTEN_US = 95 * MS  # 100 ms, less the error of the panel's clocks
 SILENT_US = 3_500 * MS  # a panel that listens, and then one exchange
 
 
 class Judge:
-    """world: a `SoakWorld`. plan: its `Plan`. witness: who is told what is done to that world.
+    """world: a `SoakWorld`. plan: its `Plan`. witness: it is told what is done to that world.
     exchanges: telegrams that were judged.
     """
 
@@ -116,7 +116,7 @@ class Judge:
                 witness.wishes["eeprom"] = now + witness.wish_us
 
     def _judge_held_stop(self, now, held_us):
-        """What a STOP that is held must have led to by now."""
+        """Judge what a STOP that is held must have led to by now."""
         witness = self.witness
         pressed_us = now - held_us
         if max(witness.stalled_us, witness.late_us) > pressed_us or witness.hung_us is not None:
@@ -180,7 +180,7 @@ class Judge:
         return bool(told) and all(told)
 
     def _settle_replies(self, now):
-        """Those by now that the panel must have taken."""
+        """The replies that the panel must have taken by now."""
         tape = self.tape
         waiting = []
         for one in self._unsettled:
@@ -421,7 +421,7 @@ class Judge:
         if pressed_us is None and now - witness.up["STOP"] < 200 * MS + witness.exchange_us:
             pressed_us = min(case.stop_us, witness.stop_from_us)
         if case.sent_us < witness.held_us + SECOND_STOP_US + witness.debounce_us:
-            pressed_us = witness.held_us  # the line was taken: nothing has gone to it since then
+            pressed_us = witness.held_us  # the line was busy: no telegram went to it since then
         held_us = now - (pressed_us if pressed_us is not None else ALWAYS)
         if off != witness.second_stop or held_us < SECOND_STOP_US - 50 * MS:
             told = (off, address, now, held_us // MS)
@@ -490,7 +490,7 @@ class Judge:
                     raise Broken("TURNS", "the motor of drive %d starts" % drive.address)
 
     def _is_garbage(self, stw):
-        """Whether a drive was told what no panel says: what faults have left of telegrams."""
+        """Whether a drive got what no panel sends: what faults of the line left of telegrams."""
         weather = self.witness.weather
         return weather.faults is not None and stw & ~ACKNOWLEDGE not in KNOWN
 
@@ -500,7 +500,7 @@ class Judge:
             self.witness.stuck_us is not None
             or self.clock.now_us - self.witness.boot_us < 200 * MS
         )
-        # A plug that is pulled within a character: nobody hears that one, so it is no silence.
+        # If a plug is pulled within a character, that character is not heard, but is no silence.
         pulled = self.clock.now_us - self.witness.pulled_us < 100 * MS
         if not helpless and not pulled:
             raise Broken("LINE", wire.violations()[0])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""An eye on the display: it holds what the display says, and does not say, against the drives.
+"""An eye on the display: it compares what the display says, and does not say, with the drives.
 
 In use:
 
@@ -233,7 +233,7 @@ class Reader:
             raise Broken("UNCONFIRMED", "STOP of drive %d, %d ms ago" % (address, since_ms))
 
     def _judge_shown(self, now):
-        """Nothing was done for a while: is the display right?"""
+        """Check the display after a while in which nothing was done."""
         address = self.witness.shown
         drive = self.drive_at(address)
         if drive is None or not self.is_able(address):
@@ -269,7 +269,7 @@ class Reader:
                 raise Broken("SHOWN", "%s, drive %d turns at %.2f Hz" % (row_1, address, hz))
 
     def _judge_setpoint(self, case, shown_hz, meant):
-        """It is the one sent, by what that meant the last time that the panel could read it."""
+        """Check that it is the one sent, by the scaling that the panel could last read."""
         sign = -1 if case.stw == ON_REVERSE else 1
         sent_hz = [sign * scaling.hz(case.hsw) for scaling in scalings(meant)]
         if sent_hz and not [hz for hz in sent_hz if abs(shown_hz - hz) <= 0.06 + abs(hz) / 0x2000]:

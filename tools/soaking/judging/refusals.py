@@ -10,9 +10,9 @@ from tools.soaking.judging.case import drive_at
 from tools.soaking.judging.facts import CONTROLLED, LONG_US, MS, S
 
 USS = 5  # P0700, P1000, a digit of P0719
-COMMAND = ((700, USS), (840, 2036 << 16))  # with what connects the words received
+COMMAND = ((700, USS), (840, 2036 << 16))  # with the connector of the words received
 SETPOINT = ((1000, USS), (1070, 2018 << 16 | 1), (2200, 0))
-TAKEN_US = 1 * S  # a change at the drive that is so young may still come in between
+TAKEN_US = 1 * S  # the panel may not have seen so recent a change at the drive
 
 
 def reason_against(witness, case, address, pressed_us, jogs):
@@ -37,7 +37,7 @@ def _knows(witness, case, address, pressed_us, jogs):
 
 
 def _wrong(drive, selected, sources):
-    """What of these sources is not USS. selected: a digit of P0719; 0 leaves it to the others."""
+    """Which of these sources is not USS. selected: a digit of P0719; 0: the others decide."""
     if selected not in (0, USS):
         return "P0719 is %s" % drive.read(719)
     for number, value in () if selected else sources:
@@ -47,7 +47,8 @@ def _wrong(drive, selected, sources):
 
 
 def runs_on_unasked(witness, case, address, pressed_us, jogs):
-    """Whether the motor would run on without the panel, for ever or long, and nobody agreed."""
+    """Whether the motor would run on without the panel, for ever or long, and the operator has not
+    agreed to that."""
     if case.accepted or address in witness.plan.settings.get("unsupervised", ()):
         return False
     drive = drive_at(witness.world, address)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""One START, one run: what a motor that was started must keep to, by the line and the drive.
+"""One START, one run: the rules for a motor that was started, by the line and the drive.
 
-A reply that shows that a run is over ends it: the drive has tripped, or stands though nobody has
-ordered it. If a motor starts once more, after a moment without mains, the panel stops it before
-long. While a run goes on, nothing but UP raises its setpoint.
+A reply ends a run if the drive has tripped, or stands although it was not told to. If a motor
+starts once more, after a moment without mains, the panel must stop it before long. While a run
+goes on, only UP raises its setpoint.
 
     if is_over(case, zsw) or is_standstill(case, hiw): ...
 """

@@ -2,10 +2,10 @@
 """How the panel shares out the line: how often it has to ask each drive, and what silence may
 cost.
 
-A drive that runs has its turn within a third of its telegram off time, as far as those that answer
-allow that. All drives together that are silent, and were not running, have a fifth of the line.
-The panel asks each of them so often that it finds a drive that is switched on. It takes back a
-task that a drive answers with silence.
+A drive that runs has its turn within a third of its telegram off time, as far as the drives that
+answer allow that. All drives together that are silent, and were not running, have a fifth of the
+line. The panel asks each of them so often that it finds a drive that is switched on. It withdraws
+a task that a drive answers with silence.
 
     shares = Shares(witness)
     shares.ask(case, address, task, now)    # a request begins; task: of its PKW words, or None
@@ -18,8 +18,8 @@ from tools.soaking.judging.rules import Broken
 
 FOUND_US = 5 * S  # a drive that is switched on is asked within, or as soon as its share allows
 SHARE = 5  # the part of the line that all silent drives together have
-OWED = 2  # times that: they may have had their share before
-RARE_US = 1 * S  # between two of them that make one that runs late
+OWED = 2  # times that, because they may have had less than their share before
+RARE_US = 1 * S  # between two silences that make a running drive's telegram late
 LOOKS = 10  # steps of the loop until one that runs has the turn that it needs
 SLACK = 5  # in percent of the line
 COUNTED_US = 10 * S  # over which the share is judged
@@ -76,8 +76,8 @@ class Shares:
         return [witness.cases[address] for address in witness.plan.listed]
 
     def _is_silent(self, case, now):
-        """Whether it has been for so long that nobody waits for it, and was heard at rest since it
-        was told to run."""
+        """Whether it is silent for so long that the panel does not wait for it, and was heard at
+        rest since it was told to run."""
         witness = self.witness
         if case.stw & RUN or case.zsw & ZSW_RUNNING or case.turned_us > case.rested_us:
             return False

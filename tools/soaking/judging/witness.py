@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
 """What the judge is told: which keys move, when the chip restarts, hangs, writes its flash.
 
-From that follows what the panel may send, and what it has to send; the `Case` of each address
-notes it. If a person could not tell either (which of two keys came first, which drive is shown
-while the address keys move), both ways are allowed.
+From that follows what the panel may send, and what it must send; the `Case` of each address notes
+it. If a person could not tell either (which of two keys came first, which drive is shown while the
+address keys move), both ways are allowed.
 """
 
 from boards.sim.board import KEYS
@@ -49,9 +49,9 @@ class Witness:
     """world: a `SoakWorld`. plan: its `Plan`. judge: has `look` and `play`, and judges with them
     what has happened so far, before anything new is noted.
 
-    The hand, the world and what befalls it tell it things. Others write some fields: the judge
-    writes `late_us`, `stirred_us`, `wishes` and `moved`, and strikes out what is `owed`; the
-    reader writes what the display asks, `asked_us`, `go_us` and `question`.
+    The hand, its mischief and the world tell it things. Others write some fields: the judge writes
+    `late_us`, `stirred_us`, `wishes` and `moved`, and takes cases out of `owed`; the reader writes
+    what the display asks, `asked_us`, `go_us` and `question`.
     """
 
     def __init__(self, world, plan, judge):
@@ -85,10 +85,10 @@ class Witness:
         self.confirmed = []  # what SET has said yes to, until when: (instant, question)
         self.moved = {}  # addresses that a drive was given, or left, or was to -> True
         self.owed = []  # cases that wait for their OFF
-        self.all_from_us = NEVER  # a STOP of all began then, as far as anybody can tell,
+        self.all_from_us = NEVER  # a STOP of all began then, as far as is known,
         self.all_until_us = NEVER  # and until then every drive is stopped, one after the other
-        self.stop_from_us = NEVER  # STOP is held since, as far as anybody can tell
-        self.stopping = ()  # cases that the last STOP is for, None: nobody can tell
+        self.stop_from_us = NEVER  # STOP is held since, as far as is known
+        self.stopping = ()  # cases that the last STOP is for; None: not known
         self.held_us = NEVER  # since when the last STOP that lasted until OFF2 or OFF3 was held
         self.second_owed = None  # the drive that a STOP, if it is held, stops by OFF2 or OFF3
         self.shown = None  # the address shown, None while it cannot be told
@@ -137,7 +137,7 @@ class Witness:
         return (self.cases[self.shown],) if self.is_sure() else self.cases
 
     def is_sure(self):
-        """Whether anybody can tell which drive is shown."""
+        """Whether it is known which drive is shown."""
         return self.shown is not None and self.clock.now_us > self.unsure_us
 
     def _selects(self, now):
@@ -265,7 +265,7 @@ class Witness:
         self.stalled_us = now
 
     def meddled(self, drive):
-        """Somebody has changed parameters at the drive itself."""
+        """Parameters were changed at the drive itself."""
         self.stirred_us = now = self.clock.now_us
         self.cases[drive.address].changes(now)
         self.judge.look()
@@ -280,7 +280,7 @@ class Witness:
         case.telltale = ran_us > 4 * S and now - case.powered_us > 10 * S + 4 * self.cycle_us
 
     def powered(self, drive):
-        """They are about to come."""
+        """The mains of a drive are about to come."""
         self.excuse(drive.address, 5 + 4 * self.cycle_us // S)
         self.cases[drive.address].powered_us = self.clock.now_us
 
@@ -327,7 +327,7 @@ class Witness:
             self.shown_us = self.clock.now_us
 
     def meant(self, address):
-        """What setpoint and actual frequency may mean to the panel: `Values`; none: who knows."""
+        """What setpoint and actual frequency may mean to the panel: `Values`; none: not known."""
         return self._in_force(address, self.clock.now_us - MEANT_US, MEANT_READS)
 
     def exposed_us(self, address, case):
@@ -351,7 +351,7 @@ class Witness:
         return any(found) and min(_exposure_us(one, long_us) for one in found) > case.exposed_us
 
     def limited(self, address):
-        """What the panel may take for the limits of a drive: `Values`; none: nobody can tell."""
+        """What the panel may take for the limits of a drive: `Values`; none: not known."""
         now = self.clock.now_us
         since_us = now - LIMITED_SHOWN_US
         if not self.is_sure() or self.shown != address or self.shown_us > since_us:
@@ -371,7 +371,7 @@ class Witness:
     def _in_force(self, address, since_us, reads):
         settings = self.settings.get(address)
         if settings is None or settings.drive.address != address:
-            return ()  # it was given another address: nobody knows whose they are
+            return ()  # it was given another address: it is not known whose they are
         if self.hung_us is not None or self.stalled_us > since_us:
             since_us -= HUNG_MAX_US
         replies = reads * (READ_REPLIES + settings.drive.stale_replies)
