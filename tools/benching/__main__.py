@@ -3,8 +3,8 @@
 
     python3 tools/benching [--only NAME ...] [--quick]
 
-Every measurement is a process of its own (measurements.py), two at a time; this program knows no
-chip and judges nothing (rows.py). Standard library only, CPython 3.11 or newer.
+Every measurement is a separate process (measurements.py); two run at a time. This program knows no
+chip, and leaves the judging to rows.py. Standard library only, CPython 3.11 or newer.
 """
 
 import argparse
@@ -88,7 +88,7 @@ def understood(said, status):
 
 
 def measure_all(tasks, quick):
-    """{task: figures}, the long ones first. What goes wrong is told at once."""
+    """{task: figures}; runs the long tasks first. Tells errors at once."""
     figures = {}
     with concurrent.futures.ThreadPoolExecutor(AT_A_TIME) as pool:
         running = {pool.submit(measure, task, quick): task for task in tasks}
@@ -102,7 +102,7 @@ def measure_all(tasks, quick):
 
 
 def versions():
-    """What was measured, and by what."""
+    """What was measured, and with which versions."""
 
     def read(path):
         try:

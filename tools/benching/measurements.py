@@ -16,15 +16,15 @@ import time
 
 sys.path[:] = ["", "firmware", ".frozen"]
 
-# Bytes between two collections: MicroPython would fill its heap first, and find no holes in it.
+# Bytes between two collections: otherwise MicroPython fills its heap first, and finds no holes.
 COLLECT_AFTER = 1_000_000
 
 CHARACTER_BITS = 11
 TELEGRAM_CHARACTERS = 16
 COLLECT_MS = 100
 REPLY_CHARACTERS = 2
-SETTLE_MS = 3_000  # from power-on of the panel until it knows its drive, when there is but one
-SETTLE_MORE_MS = 30_000  # as long as it may take with 31
+SETTLE_MS = 3_000  # from power-on of the panel until it knows its drive, if there is only one
+SETTLE_MORE_MS = 30_000  # the longest time with 31 drives
 READY_MS = 1_200  # until it shows READY
 OLD_SETPOINT = 1_000  # 0.01 Hz
 SAVE_MS = 300  # from one save to the next
@@ -107,14 +107,14 @@ def result(world, ms):
 
 
 def settle(world):
-    """Until the panel knows the drive that is shown."""
+    """Wait until the panel knows the drive that is shown."""
     world.run(SETTLE_MS)
     if not world.run_until(lambda: world.reads("READY"), SETTLE_MORE_MS):
         raise RuntimeError("the drive is not ready: %r" % (world.lcd(),))
 
 
 def start_the_motor(world):
-    """Press START and see that the motor turns: otherwise there would be nothing to measure."""
+    """Press START and check that the motor turns: otherwise there is nothing to measure."""
     settle(world)
     world.press("START")
     if not world.run_until(lambda: world.drives[1].hz() > STOP_HZ, 4_000):
@@ -150,7 +150,7 @@ def steps_of(table, bucket_us=20):
 
 
 def checked(world, figures):
-    """Breaches of the rules of line and display are a figure as well."""
+    """Breaches of the rules of line and display are a figure too."""
     figures["complaints"] = world.complaints()[:5]
     figures["restarts"] = ["%s at %d" % (cause, at) for at, cause in world.restarts[:5]]
     return figures
@@ -349,7 +349,7 @@ def stop(quick, baud, drives):
 
 
 def start_the_motor_again(world, starts_us):
-    """How many times START did nothing before it did; how long that took goes to `starts_us`."""
+    """How many times START had no effect before it had; `starts_us` gets how long that took."""
     drive = world.drives[1]
     for lost in range(5):
         since_us = world.clock.now_us

@@ -2,7 +2,7 @@
 """What the bench runs inside the emulated chip, typed in at the raw prompt (measurements.py).
 
 It builds the panel of the frozen modules, as the frozen main.py does, and steps it while it looks
-at the clock and at the heap. It is no part of the firmware, and no host can import it.
+at the clock and at the heap. It is not part of the firmware, and a host cannot import it.
 """
 
 import gc
@@ -142,7 +142,7 @@ def saving(settle_ms, times, every_ms):
     try:
         step_for(app, settle_ms)
         for _ in range(times):
-            app.settings.setpoint_centihertz += 10  # what is there already is not written
+            app.settings.setpoint_centihertz += 10  # the same data would not be written
             app.settings.dirty = True
             step_for(app, every_ms)
         dirty = app.settings.dirty

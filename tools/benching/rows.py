@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
-"""The rows of the bench: each says what is measured, which bar it has to reach, and how it reads.
+"""The rows of the bench: each says what is measured, its bar, and how it is shown.
 
-The bars are facts and stand here; the figures come from measurements.py, whose functions and
-arguments are the tasks. Nothing here measures.
+The bars are here; the figures come from measurements.py, whose functions and arguments are the
+tasks. Nothing here measures.
 """
 
 from collections.abc import Callable
@@ -388,7 +388,7 @@ def heap_row(how, drives):
 
 
 def rules_row(task):
-    """A broken rule of line or display is a figure as well."""
+    """A broken rule of line or display is a figure too."""
     return Row(
         task,
         "rules of line and display broken, and restarts, in `%s`" % " ".join(task.command),

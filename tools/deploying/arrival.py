@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""Finds out whether the panel has come up after a restart: it says so itself, once, on the serial
+"""Finds out whether the panel has come up after a restart: the panel says so once on the serial
 line.
 
-On a real Pico the serial port goes with the restart and comes back a little later; the chip keeps
-what it says in between. An emulated one keeps its port.
+On a real Pico the serial port goes away with the restart and comes back a little later; the chip
+keeps its output in between. An emulated one keeps its port.
 """
 
 import time

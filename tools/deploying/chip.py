@@ -2,7 +2,7 @@
 """A chip with MicroPython at the end of a serial line, through mpremote's transport.
 
     chip = Chip("/dev/ttyACM0")
-    chip.interrupt()                    # ends what runs; answers what was heard
+    chip.interrupt()                    # ends the program that runs; returns what was heard
     chip.enter()                        # a fresh interpreter
     chip.load()                         # with the functions of on_chip.py
     chip.call("look", ["main.py"])
@@ -29,7 +29,7 @@ from tools.deploying.errors import DeployError
 
 OPEN_S = 2  # for another program to let go of the line
 ANSWER_S = 10  # for an answer to begin, and between two characters of it
-INTERRUPT_S = 5  # between two Ctrl-C; a panel that is stopping its drives is not disturbed by one
+INTERRUPT_S = 5  # between two Ctrl-C; one does not disturb a panel that is stopping its drives
 STOP_S = 90  # for a panel to stop 31 drives at 300 baud
 POLL_S = 0.02
 PIECE = 512  # bytes that are written at a time
@@ -89,12 +89,12 @@ class Chip:
         return printed.decode("utf-8", "replace")
 
     def load(self):
-        """Bring the functions of on_chip.py into the interpreter."""
+        """Load the functions of on_chip.py into the interpreter."""
         self.execute('import os\nos.chdir("/")')
         self.execute(ON_CHIP.read_text())
 
     def evaluate(self, expression):
-        """What the expression is; it has to be made of Python literals."""
+        """The value of an expression, which must consist of Python literals."""
         try:
             return ast.literal_eval(self.execute(f"print(repr({expression}))").strip())
         except (ValueError, SyntaxError):
@@ -106,7 +106,7 @@ class Chip:
         return self.evaluate(f"{function}({words})")
 
     def write(self, path, data):
-        """A file with these bytes, at once its own and not in place of another."""
+        """Write these bytes to a new file, which replaces no other."""
         try:
             with silence():
                 self._line.fs_writefile(path, data, chunk_size=PIECE)
@@ -117,7 +117,8 @@ class Chip:
             raise DeployError(f"{path} could not be written: {error}") from None
 
     def restart(self):
-        """Like the power switched off and on; the line is closed, since USB goes with the chip."""
+        """Restart the chip as at power-on. This closes the line, because USB goes with the
+        chip."""
         try:
             self.interrupt()
             self.send(RESTART)

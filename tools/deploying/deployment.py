@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""The steps of tools/deploy, one after the other, each said in a line.
+"""The steps of tools/deploy, one after the other; it says each in a line.
 
     Deployment(chip, firmware, options, say).run()
 
 The chip never has a firmware that is half the old and half the new one and starts. The steps
 remove main.py first and write it last. That is not enough if a main.py is frozen into MicroPython,
-because nobody can remove that. Therefore they put up the gate (plan.GATE) before everything else,
+because that cannot be removed. Therefore they put up the gate (plan.GATE) before everything else,
 and take it away last of all. Each file is written beside the one it replaces, and a rename puts it
 in place.
 """
@@ -30,7 +30,7 @@ from tools.deploying.plan import (
 OLDEST = (1, 25)
 CHIP = "RP2040"
 STOPPED = "USS panel: stopped"  # how the line begins that firmware/main.py prints
-FROZEN_PANEL = "uss/master"  # frozen in where the panel is
+FROZEN_PANEL = "uss/master"  # frozen in if the panel is
 LOOK_AT_ONCE = 16  # paths; the answer stays small
 
 FROZEN = """\
@@ -59,8 +59,8 @@ IDENTITY = (
 
 class Options(NamedTuple):
     dry_run: bool = False
-    replace: bool = False  # what is in the way and not ours
-    new_board: bool = False  # the board file was named: it goes over any that is there
+    replace: bool = False  # replace files in the way that are not ours
+    new_board: bool = False  # the board file was named: it replaces any that is there
 
 
 class Identity(NamedTuple):
@@ -101,7 +101,7 @@ class Deployment:
         self.say("Restarted.")
 
     def _leave(self):
-        """After a failure: what the chip has is either as it was, or starts nothing."""
+        """After a failure: the chip's files are either as they were, or it starts nothing."""
         if self.gate_closed:
             self.say(INCOMPLETE)
             return

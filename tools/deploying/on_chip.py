@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What tools/deploy has the chip do: look at files, put a new one in place of an old one, remove.
+"""What tools/deploy makes the chip do: look at files, replace an old one by a new one, remove.
 
 This file is MicroPython. tools/deploy sends it over the serial line, and it lives in the chip's
 RAM until the next restart; no file of it stays there. Paths are relative to the top of the chip's

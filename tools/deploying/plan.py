@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""Compares what should be on the chip with what is there, and says what is to be done; it does
-nothing itself.
+"""Compares what should be on the chip with what is there, and plans what to do; it does nothing
+itself.
 
 The chip keeps a list of what was copied onto it, LIST: {"files": {path: [SHA-256, ...]}}. A file
-there is ours if its SHA-256 is the listed one. Everything else belongs to somebody else: their
-board.py stays, and any other file is a conflict if we would overwrite it, or if it would go before
-one of ours.
+there is ours if its SHA-256 is the listed one. All other files belong to others: their board.py
+stays, and any other file is a conflict if we would overwrite it, or if MicroPython would take it
+before one of ours.
 
     plan = Plan(files, read_list(text), look)       # look: {path: Found} of all in `paths`
 """
@@ -19,12 +19,12 @@ from tools.deploying.image import BOARD, MAIN
 LIST = "deployed.json"
 NEW = ".new"  # the ending of a file that is being written
 
-# Whatever a list says, these are the panel's or the user's.
+# These are the panel's or the user's, even if a list names them.
 NEVER = ("boot.py", "settings.json", "settings.json.new", "settings.json.bad")
 
-# MicroPython looks for app.py before app.mpy, and for both before the app that is frozen in: as
-# long as this stands there no main.py starts the panel, not even one that is frozen in, which
-# nobody can remove.
+# MicroPython looks for app.py before app.mpy, and for both before the app that is frozen in. As
+# long as this file is there, no main.py starts the panel, not even one that is frozen in and
+# cannot be removed.
 GATE = "app.py"
 GATE_TEXT = b"""\
 # Put here by tools/deploy while it copies the firmware, and removed when all of it is there.
@@ -44,7 +44,7 @@ def sha256(data):
 
 
 def read_list(data):
-    """{path: [SHA-256]} from the text of LIST; empty where there is none or it is damaged."""
+    """{path: [SHA-256]} from the text of LIST; empty if there is none or it is damaged."""
     try:
         files = json.loads(data)["files"]
         return {path: list(hashes) for path, hashes in files.items() if is_ours_to_list(path)}
@@ -84,7 +84,8 @@ def paths(files, listed):
 
 
 def rivals(path):
-    """What MicroPython would take instead of the module at `path`, were it there."""
+    """The files that MicroPython would take instead of the module at `path`, if they were
+    there."""
     if path == MAIN:
         return []
     module, _, ending = path.rpartition(".")
@@ -140,7 +141,7 @@ class Plan:
         return sorted(folders(self.listed) - folders(self.files), reverse=True)
 
     def blocks_wanted(self, block_bytes):
-        """Blocks of the file system that have to be free for all this, at the most at once."""
+        """How many blocks of the file system this needs at once, at the most."""
 
         def blocks(size):
             return size // (block_bytes - 8) + 1  # littlefs: pointers in every block but the first
@@ -177,7 +178,7 @@ class Plan:
         return sorted(path for path in in_the_way if self._is_of_others(path))
 
     def _remove(self):
-        """Files of ours that are no longer part, what an interruption left, and what is to be
+        """Files of ours that are no longer part, files that an interruption left, and files to be
         replaced.
         """
         gone = {

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Simulated drives for any USS master, on a pty or a serial port, in real time: tools/drive.
 
-Its output never holds up the drives: it leaves out the lines that nobody reads.
+Its output never holds up the drives: if the output is not read, it leaves lines out.
 
 Exit status: 0 after Ctrl-C or `quit`, 2 if it does not understand the command line, 5 if it cannot
 have the port.
@@ -68,7 +68,7 @@ examples:
 
 
 class Once(argparse.Action):
-    """Keeps a value, and refuses a second one: which of the two was meant?"""
+    """Keeps a value, and refuses a second one, because either could be meant."""
 
     given = False
 
@@ -113,7 +113,7 @@ def arguments(words):
 
 
 def milliseconds(word):
-    """ValueError: no delay of a reply."""
+    """ValueError if it is not a delay of a reply."""
     ms = float(word)
     if not 0 <= ms <= REPLY_DELAY_MAX_MS:
         raise argparse.ArgumentTypeError("%s is not 0...%d ms" % (word, REPLY_DELAY_MAX_MS))
@@ -125,7 +125,7 @@ def is_node(word):
 
 
 def kinds(chosen):
-    """{address: keyword arguments of `Drive`}. ValueError: there is no such drive."""
+    """{address: keyword arguments of `Drive`}. ValueError if there is no such drive."""
     found = {}
     for entry in chosen.address.split(","):
         address, _, family = entry.partition("=")
@@ -161,7 +161,7 @@ def kinds(chosen):
 
 
 def assignment(option, example, entry, found):
-    """What "1:NAME=VALUE" means: addresses, name, the word. ValueError: nothing."""
+    """What "1:NAME=VALUE" means: addresses, name, the word. ValueError if it means nothing."""
     left, equals, right = entry.partition("=")
     address, colon, name = left.rpartition(":")
     if not equals or colon and not (is_node(address) and int(address) in found):
@@ -175,7 +175,7 @@ def switches():
     lines = []
     for name, default, what, where in SWITCHES:
         if default is None:
-            continue  # a table, which no command line has room for
+            continue  # a table, which does not fit a command line
         lines.append("%s (%s)" % (name, int(default) if isinstance(default, bool) else default))
         lines += textwrap.wrap("%s. %s" % (what, where), 95, **INDENTED)
     return "\n".join(lines)
@@ -196,7 +196,7 @@ class Keyboard:
         return 0
 
     def listens(self):
-        """Whether something that is typed is for us."""
+        """Whether what is typed comes to this program."""
         return self.open and is_ours(0)
 
     def read(self):
@@ -204,14 +204,14 @@ class Keyboard:
             typed = os.read(0, READ_MAX)
         except OSError:
             if not is_ours(0):
-                return  # since a moment ago
+                return  # it went into the background a moment ago
             typed = b""  # the terminal has gone
         self.open = bool(typed)
         self._typed += typed
         while b"\n" in self._typed and not self.left:
             command, self._typed = self._typed.split(b"\n", 1)
             self._do(command.decode("utf-8", "replace"))
-        self._typed = self._typed[: LINE_MAX + 1]  # of a line that is too long the rest is lost
+        self._typed = self._typed[: LINE_MAX + 1]  # the rest of a line that is too long is lost
 
     def _do(self, command):
         words = command.split("#")[0].split()
@@ -236,7 +236,7 @@ class Keyboard:
 
 
 class Complaints:
-    """What is said on standard error, while somebody can be told there."""
+    """Say something on standard error, as long as it can be written."""
 
     def __init__(self):
         self._output = Output(2)
@@ -277,14 +277,14 @@ def main(words):
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     if signal.getsignal(signal.SIGHUP) != signal.SIG_IGN:  # nohup
         signal.signal(signal.SIGHUP, signal.default_int_handler)
-    signal.signal(signal.SIGTTIN, signal.SIG_IGN)  # in the background it is not typed to
+    signal.signal(signal.SIGTTIN, signal.SIG_IGN)  # in the background it reads no keyboard
     signal.signal(signal.SIGTTOU, signal.SIG_IGN)
     open_missing()
     complain = Complaints()
     try:
         serve(chosen, found, complain)
     except (KeyboardInterrupt, BrokenPipeError):
-        pass  # Ctrl-C; or whoever read the log has gone
+        pass  # Ctrl-C; or the reader of the log has gone
     except (PortError, ValueError, KeyError) as error:
         complain(error.args[0])
         return NO_PORT if isinstance(error, PortError) else NOT_UNDERSTOOD

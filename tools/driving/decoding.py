@@ -16,7 +16,7 @@ from boards.sim.drives.parameter_channel import ALL_ELEMENTS, PAGE_BITS, number_
 from boards.sim.drives.slave import BROADCAST_BIT, MIRROR_BIT, SPECIAL_BIT, STX, VARIABLE, xor_of
 
 NODE = 0x1F
-SHOWN = 24  # characters of something that is no telegram
+SHOWN = 24  # at most so many characters of something that is not a telegram
 DAMAGED = "??"  # stands for a character that came with an error
 
 TALKED_INTO = "talked into: %d of %d characters damaged"
@@ -56,7 +56,8 @@ FULL_SCALE = 0x4000  # is 100 %
 
 
 class Setup:
-    """How a drive takes a telegram that begins now: a write may have changed that at its end."""
+    """The settings with which a drive takes a telegram. Kept from its beginning, because a write
+    may change them at its end."""
 
     def __init__(self, drive):
         self.address = drive.address
@@ -67,7 +68,7 @@ class Setup:
 
 
 def said(burst):
-    """What was heard of it: characters, None for each that came with an error; and how damaged."""
+    """What was heard of a burst: its characters, None for each with an error; and its damage."""
     characters = list(burst.data[: burst.count])
     if burst.errors is None:
         return characters, ""
@@ -89,7 +90,7 @@ def line(at_us, from_master, characters, setups, damage=""):
 
 
 def flaw(characters, from_master, here):
-    """Why no drive takes this; "" when one does."""
+    """Why no drive takes this; "" if one does."""
     count = len(characters)
     if characters[0] != STX:
         return "no STX"
@@ -124,7 +125,7 @@ def _why_not_taken(characters, from_master, here):
 
 
 def telegram(characters, from_master, here):
-    """What a telegram says that is in order."""
+    """What a valid telegram says, in words."""
     adr = characters[2]
     end = characters[1] + 1
     words = [characters[i] << 8 | characters[i + 1] for i in range(3, end, 2)]
@@ -164,7 +165,7 @@ def parameter(words, from_master, setup):
 
 
 def place(pke, ind, setup):
-    """P2013[0]; or why that is no number: PNU goes to 1999, and IND tells the page."""
+    """P2013[0]; or why it is not a valid number: PNU goes to 1999, and IND tells the page."""
     number = number_of(pke, ind, setup.raw_numbers)
     if number is not None:
         return "P%04d[%d]" % (number, ind & 0xFF)
@@ -178,7 +179,7 @@ def value(words, long, setup, from_master):
         return "?"
     if long and len(words) > 1:
         return double_word(words)
-    # A reply has it in one place only, whatever a master may do.
+    # A reply has the value in one place only; a master has a choice.
     (word,) = sent_value(words, 1, setup.layout[0], from_master and setup.second_word)
     return "%d" % word
 
@@ -191,7 +192,7 @@ def values(words, long):
 
 
 def double_word(words):
-    """A float, where that makes sense."""
+    """The value as a float, if that makes sense."""
     double = words[0] << 16 | words[1]
     (real,) = struct.unpack(">f", struct.pack(">I", double))
     if 1e-4 < abs(real) < 1e7:

@@ -6,8 +6,8 @@
         if line.serve(keyboard):
             keyboard.read()
 
-It has the face that the script language asks of a world (`drives`, `wire`, `run` ...), so that the
-same commands work on it, except those of the panel.
+It has the attributes that the script language needs of a world (`drives`, `wire`, `run` ...), so
+the same commands work on it, except those of the panel.
 """
 
 import select
@@ -30,8 +30,8 @@ OF_THE_PANEL = ("press", "hold", "down", "up", "lcd", "expect", "hang", "reset",
 class DriveLine:
     """port: a `SerialPort` or `Pty` that is open. kinds: {address: keyword arguments of `Drive`}.
 
-    log: a function that is given a line for every telegram, or None. say: one for what happens to
-    the port.
+    log: a function that gets a line for every telegram, or None. say: a function that gets a line
+    for each change of the port.
     """
 
     refused = {command: NO_PANEL for command in OF_THE_PANEL}
@@ -50,7 +50,7 @@ class DriveLine:
         self._master = station(self.wire, self._port.write, *noted)
 
     def run(self, ms):
-        """Serve for so long, whatever is typed."""
+        """Serve for so long, and ignore the keyboard."""
         until_us = self.clock.true_us() + 1000 * ms
         left_us = 1000 * ms
         while left_us > 0:
@@ -58,7 +58,7 @@ class DriveLine:
             left_us = until_us - self.clock.true_us()
 
     def serve(self, keyboard=None, longest_s=LONGEST_WAIT_US / 1e6):
-        """Wait for something to happen, and let it. Answers whether `keyboard` can be read."""
+        """Wait for the next event, and handle it. Return whether `keyboard` can be read."""
         wait_s = max(0, min(self.clock.next_us() / 1e6, longest_s))
         awaited = [keyboard] if keyboard is not None else []
         if self._port.is_open:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A program of its own, without a panel: START runs the pump, STOP stops it, for ever.
+"""Your own program, without a panel: START runs the pump, STOP stops it, for ever.
 
 The bus works by interrupts; if this loop hangs, the bus stops the motor after 300 ms, and the
 watchdog restarts the chip. Ctrl-C ends it.

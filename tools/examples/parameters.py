@@ -19,7 +19,7 @@ def main(board):
             drive.write(1082, 900.0)
         except Refused as refusal:
             print(refusal, "(error %d)" % refusal.number)
-        job = pkw.read(2010, index=1)  # whoever cannot wait asks, and looks later
+        job = pkw.read(2010, index=1)  # if you cannot wait, ask, and look later
         drive.ask(job)
         while job.state == pkw.PENDING:
             bus.rest()

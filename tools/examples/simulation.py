@@ -8,16 +8,16 @@
 
 A file of your own finds a module `board`, as on a chip: ./tools/example mine.py --drives 1,2=g110
 
-Somebody presses keys, and Ctrl-C at the end, only for the examples that want it (SOMEBODY); the
-output says so. Exit status: 0; 1 if a rule of the line was broken, or an exception ended the
-program; 2 if there is no such example, file or drive.
+Keys, and Ctrl-C at the end, are pressed only for the examples that need it (SOMEBODY); the output
+says so. Exit status: 0; 1 if a rule of the line was broken, or an exception ended the program; 2
+if there is no such example, file or drive.
 """
 
 import os
 import sys
 from errno import errorcode
 
-# From the bottom of the house up, or the 32-bit build runs out of stack.
+# Lower layers first, or the 32-bit build runs out of stack.
 import boards.sim.drives.parameters  # noqa: F401
 from boards.sim.clock import Event
 from boards.sim.drives import families
@@ -39,7 +39,7 @@ class UsageError(Exception):
 
 
 class _Nobody:
-    """In place of the panel that a world has otherwise."""
+    """Stands in for the panel that a world usually has."""
 
     def __init__(self, board):
         self.board = board
@@ -53,7 +53,7 @@ class Stage(World):
         self.board = self.app.board
 
     def at(self, seconds, action, *arguments):
-        """Have action(*arguments) happen so long from now."""
+        """Call action(*arguments) so long from now."""
         event = Event(lambda: action(*arguments))
         self.clock.schedule(event, self.clock.now_us + int(seconds * 1_000_000))
 
@@ -131,7 +131,7 @@ def program(name):
 
 
 def attend(stage, name):
-    """Somebody at the keys, where the example wants that."""
+    """Press keys, if the example needs that."""
     for seconds, key in SOMEBODY.get(name, ()):
         if key == CTRL_C:
             stage.at(seconds, stage.interrupt)
@@ -141,7 +141,7 @@ def attend(stage, name):
 
 
 def run(words):
-    """Play an example, or a file, as somebody would who tries it out; answer the exit status."""
+    """Play an example, or a file, as a person would try it out; return the exit status."""
     try:
         name, found = understood(words)
         if name is None:
@@ -165,7 +165,7 @@ def run(words):
 
 
 def _own(path, text):
-    """main(board) of a file of one's own."""
+    """main(board) of your own file."""
 
     def main(board):
         sys.modules["board"] = board

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """A command of the script language that lets time pass, done slice by slice.
 
-So the panel hears the keys and the picture lives on meanwhile, and a person can end it early:
+So the panel hears the keys and the picture goes on meanwhile, and a person can end it early:
 
     errand = Errand(world, hand, "hold", ("UP", 3000))      # the key is down now
     while errand.left_us():
@@ -38,7 +38,7 @@ class Errand:
         world = self._world
         until_us = self._up_us if self._key else self._end_us
         ms = min(ms, -(-(until_us - world.clock.now_us) // 1000))
-        if self._lives == world.resets:  # a chip that the watchdog restarts hangs no longer
+        if self._lives == world.resets:  # a chip that the watchdog restarted hangs no longer
             world.hang(ms)
         else:
             world.run(ms)
@@ -46,7 +46,7 @@ class Errand:
             self.end()
 
     def end(self):
-        """Let go of the key: its time is over, or nobody wants the rest."""
+        """Let go of the key: its time is over, or the person has ended it."""
         if self._key:
             self._world.up(self._key)
             self._hand.fix(self._key, False)

@@ -6,9 +6,9 @@
     hand.hold("JOG_RIGHT", now_ms)  # down until something else is pressed
     hand.step(now_ms)               # every few milliseconds of the world
 
-Taps happen in the world's time, so that the panel sees a tap at every speed. A person's patience
-is real time: a JOG lets go when the keyboard does not repeat it. On a real line every key but STOP
-does the same: a terminal that went silent must not move a setpoint on and on.
+Taps happen in the world's time, so that the panel sees a tap at every speed. A held JOG runs in
+real time: it lets go when the keyboard does not repeat it. On a real line every key but STOP does
+the same: a terminal that went silent must not move a setpoint on and on.
 """
 
 from boards.sim.world import RELEASE_MS, TAP_MS
@@ -34,15 +34,15 @@ LETTERS = (
 )
 JOGS = ("JOG_RIGHT", "JOG_LEFT")
 STARTERS = ("START",) + JOGS  # what turns a motor
-ARM = "g"  # typed before each of these where the line is a real one
+ARM = "g"  # typed before each of these on a real line
 
 TAP_US = TAP_MS * 1000
 RELEASE_US = RELEASE_MS * 1000  # a key that was let go is up for so long before the next one
-# Without a repeat it lets go after so long: of a keyboard that repeats already, and of one that
+# Without a repeat the hand lets go after so long: if the keyboard repeats already, and if it still
 # waits before its first repeat (X11: 660 ms).
 REPEAT_MS = 300
 FIRST_REPEAT_MS = 700
-WAITING_MAX = 6  # taps typed ahead; more would still be done when nobody wants them any more
+WAITING_MAX = 6  # taps typed ahead; more would come after the person wants them
 
 
 class Hand:
@@ -84,7 +84,7 @@ class Hand:
             self._up()
 
     def vanish(self):
-        """Nobody has heard from the person: let go of every key, those of commands too."""
+        """The person was not heard: let go of every key, those of commands too."""
         self.let_go()
         for key in self.fixed:
             self._world.up(key)

@@ -59,7 +59,7 @@ class Picture:
         self.positions = {address: 0 for address in world.drives}
 
     def turn(self, passed_us):
-        """So much of the world's time has passed since the last picture: the shafts turn."""
+        """Turn the shafts by so much of the world's time since the last picture."""
         for address, drive in self._world.drives.items():
             angle = self._angles[address] + drive.hz() * passed_us
             if abs(angle) >= STEP:
@@ -125,7 +125,7 @@ class Picture:
         return padded(HIGHLIGHT + cell + PLAIN if how else cell, CELL_COLUMNS)
 
     def _drives(self):
-        """A line for each drive; where there are too many, those that matter now come first."""
+        """A line for each drive; if there are too many, those that matter now come first."""
         drives = self._world.drives
         addresses = sorted(drives)
         if len(addresses) <= DRIVE_ROWS_MAX:
@@ -142,7 +142,7 @@ class Picture:
 
     def _drive(self, address):
         drive = self._world.drives[address]
-        address = drive.read(ADDRESS)  # somebody may have changed it
+        address = drive.read(ADDRESS)  # it may have been changed
         hz = drive.hz()
         fault = drive.report().split("fault=")[1].split()[0]
         return "%s%-6s (%s) %7.2f Hz %-6s %-13s %s%s" % (

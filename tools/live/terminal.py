@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The terminal as a picture of lines and a source of strokes. It knows nothing of a panel.
 
-On the Unix port of MicroPython. Whoever opens it closes it, whatever happens in between:
+On the Unix port of MicroPython. If you open it, close it again, whatever happens in between:
 
     terminal = Terminal()
     terminal.open()
@@ -69,7 +69,7 @@ class Terminal:
         self._write(OPEN)
 
     def close(self):
-        """Make it as it was before, and drop what nobody has read, lest a shell takes it."""
+        """Make it as it was before, and drop unread input, so that no shell takes it."""
         settings, self._settings = self._settings, None
         if settings is None:
             return
@@ -129,8 +129,8 @@ class Strokes:
     An Esc does not swallow what is typed after it: a character that begins no sequence is a stroke
     of its own, and a space or a control character ends every sequence.
 
-    pasted    the strokes taken last were no keys that somebody pressed one after the other:
-              they stood in brackets, or several different ones came in one read
+    pasted    the strokes taken last were not typed one after the other: they stood in brackets, or
+              several different ones came in one read
     brackets  they stood in brackets
     """
 
@@ -154,7 +154,7 @@ class Strokes:
         return strokes
 
     def _judge(self, typed, strokes, now_ms):
-        """Whether it is a paste, a piece of one, or an end of one that nobody sent."""
+        """Whether it is a paste, a piece of one, or a paste whose end never came."""
         if self._in_brackets and not typed and now_ms - self._pasted_ms >= UNENDED_MS:
             self._in_brackets = False
         self.brackets = self.brackets or self._in_brackets

@@ -7,10 +7,10 @@ It joins the pieces: `terminal` (bytes and lines), `hand` (keys), `errand` (comm
 time), `picture` (what is shown). However it ends, it stops the drives and leaves the terminal as
 it was before.
 
-A person is at the keys, and may mistype. Text is never keys: a command line stays open until
-somebody leaves it, and the panel ignores what comes all at once, as a paste does, except STOP.
-START and JOG want the display in sight. On a real line, where a motor turns, they also want
-another key before them.
+A person is at the keys, and may mistype. Text never counts as keys: a command line stays open
+until the person leaves it, and the panel ignores input that comes all at once, as a paste does,
+except STOP. START and JOG need the display in sight. On a real line, where a motor turns, they
+also need another key before them.
 """
 
 import os
@@ -32,7 +32,7 @@ SIZE_MS = 2_000
 SPEED_MS = 1_000  # the speed shown is the mean of so long
 TELEGRAMS = 16
 ARMED_MS = 2_000
-UNHEARD_MS = 300  # a front end that was not heard for so long has let go of all keys
+UNHEARD_MS = 300  # after so long without input a front end counts as having let go of all keys
 
 CTRL_C, CTRL_D, CTRL_U = "\x03", "\x04", "\x15"
 BACKSPACES = ("\x08", "\x7f")
@@ -57,7 +57,7 @@ KEYS.update({" ": STOP, "UP": "UP", "DOWN": "DOWN", "RIGHT": "NEXT", "LEFT": "PR
 
 
 def live(world, speed, said=()):
-    """Run until somebody leaves; then stop the drives. KeyboardInterrupt: that was by Ctrl-C.
+    """Run until the person leaves; then stop the drives. KeyboardInterrupt if it was by Ctrl-C.
 
     said: lines for the person, until the first stroke.
     """
@@ -167,10 +167,10 @@ class Pace:
 class RealPace:
     """As `Pace`, for a world whose time is the real one: it just waits.
 
-    A program that stood still heard nobody meanwhile: the hand lets go of everything.
+    A program that stood still heard no keys meanwhile, so the hand lets go of everything.
     """
 
-    late = True  # nobody else has to wait
+    late = True  # nothing else waits
     speed = 1.0
 
     def __init__(self, clock, session):
@@ -193,7 +193,7 @@ class RealPace:
 
 
 class Session:
-    """What a person does to the world, and sees of it, whatever the terminal: strokes and lines.
+    """What a person does to the world, and sees of it, as strokes and lines, for any terminal.
 
     left: the person wants to go. command: what is being typed after `:`, or None: keys. errand:
     the command that lets time pass now, or None. said: up to SAID_ROWS lines for the person, until
@@ -254,8 +254,8 @@ class Session:
         return any(KEYS.get(stroke.lower()) in STARTERS for stroke in strokes)
 
     def take_paste(self, strokes, brackets, now_ms):
-        """Strokes that nobody typed one by one: only STOP counts, and Ctrl-C. In a command line
-        that is open they are text, if no brackets stand around them; its Enter has to be typed.
+        """Take strokes that were not typed one by one: only STOP counts, and Ctrl-C. In an open
+        command line they are text, if they stand in no brackets; its Enter must be typed.
         """
         if CTRL_C in strokes:
             raise KeyboardInterrupt
@@ -316,7 +316,7 @@ class Session:
             self.said = ["too fast: this %s was left out" % key]
 
     def _may_press(self, key, armed):
-        """Whether a key may go down now; what keeps one that turns a motor from it is said."""
+        """Whether a key may go down now. If one that turns a motor may not, say why."""
         if key not in STARTERS:
             return True
         if not self.in_sight:
@@ -351,7 +351,7 @@ class Session:
         if stroke == ESCAPE or stroke in ENTERS and not command:
             self.command = None
         elif stroke in ENTERS:
-            self.command = ""  # it stays open: what is typed next is no key
+            self.command = ""  # the command line stays open: the next stroke is not a key
             self._do(command)
         elif stroke == " " and command[-1:] in ("", " "):  # no command needs it: it is STOP
             self.command = ""
@@ -364,7 +364,7 @@ class Session:
             self.command = command + stroke
 
     def _do(self, command):
-        """What was typed after `:`; what it prints, or what is wrong with it, is said."""
+        """Do what was typed after `:`; say what it prints, or what is wrong with it."""
         word = command.split("#")[0].strip()
         if word == "help":
             self.said = list(HELP)
@@ -396,8 +396,8 @@ class Session:
             self._print("done: " + command)
 
     def _print(self, line):
-        """Say a line, on in the next one where it is too long. The last few are kept; of one that
-        is longer than that, the beginning."""
+        """Say a line, broken into several if it is too long. Keep the last few lines; if one alone
+        needs more, keep its beginning."""
         self.said = (self.said + folded(line, COLUMNS)[:SAID_ROWS])[-SAID_ROWS:]
 
     def _check(self):

@@ -44,14 +44,14 @@ BYTE_ORDER_MARK = "\ufeff"  # some editors begin a text with it
 ENOENT = 2
 EPIPE = 32  # not in MicroPython's errno
 KIND, ORDINARY = 0xF000, 0x8000  # of a file, in its mode
-NEW = ".new"  # behind the name of a file that is being written
+NEW = ".new"  # the ending of a file that is being written
 FAILED = 1
 NOT_UNDERSTOOD = 2
-CRASHED = 4  # 3 is that of the wrapper: no MicroPython
+CRASHED = 4  # 3 comes from the wrapper: no MicroPython
 NO_PORT = 5
 INTERRUPTED = 130
-# Bytes between two collections. Left alone, MicroPython fills the heap first, and takes ten times
-# as long for everything while it looks for the last holes in it.
+# Bytes between two collections. By default MicroPython collects only when the heap is full, and
+# takes ten times as long for everything while it looks for the last holes in it.
 COLLECT_AFTER = 1_000_000
 SLICE_MS = 10  # of real time, between two looks at standard input
 PORT_REPLY_TIMEOUT_MS = 60  # 20 ms, and what an adapter keeps back on the way there and back
@@ -163,7 +163,7 @@ OPTIONS = {
     "--reply-timeout": ("reply_timeout", None, one_of(range(20, 501), TIMEOUTS)),
     "--help": ("help", False, None),
     "-h": ("help", False, None),
-    "--check": ("check", False, None),  # only whether it can be: before anything is fetched
+    "--check": ("check", False, None),  # only check that it is possible, before any download
 }
 
 
@@ -176,7 +176,7 @@ ONLY_PORT = ("--reply-timeout",)
 
 
 def options(words):
-    """The values of OPTIONS that a command line means. UsageError when it means nothing."""
+    """The values of OPTIONS that a command line means. UsageError if it means nothing."""
     values = {name: default for name, default, _ in OPTIONS.values()}
     words, seen = list(words), []
     while words:
@@ -340,7 +340,7 @@ def flash_of(path):
     stored, image = None, None
     try:
         if is_new(path):
-            open(path + NEW, "wb").close()  # it is there at the end, or never
+            open(path + NEW, "wb").close()  # fails now, not at the end, if it cannot be written
             os.remove(path + NEW)
         else:
             if os.stat(path)[0] & KIND != ORDINARY:
@@ -406,12 +406,12 @@ def store_of(path, chosen):
         if chosen["port"] is not None:
             new.reply_timeout_ms = chosen["reply_timeout"] or PORT_REPLY_TIMEOUT_MS
         save(store, new)
-    store.read(1)  # what `load` would make the best of is an error here
+    store.read(1)  # raises an error here; `load` would ignore it
     return store, load(store)
 
 
 def difference(path, kept, drives):
-    """What the person should know where the settings name other drives than are simulated."""
+    """What to tell the person if the settings name other drives than are simulated."""
     if sorted(kept) == sorted(drives):
         return []
     kept, drives = (",".join(map(str, some)) for some in (kept, drives))
@@ -433,8 +433,8 @@ def lines_of(name, world):
 
 
 def pieces(stream):
-    """Its lines. A line that is longer than a command may be comes in pieces, which are too long
-    as well.
+    """Its lines. A line that is longer than a command may be comes in pieces that are too long
+    too.
     """
     line = stream.readline(LINE_MAX + 2)
     while line:
@@ -452,7 +452,7 @@ def standard_input():
 
 
 def typed_meanwhile(world):
-    """The lines of standard input; real time goes on while nobody types."""
+    """The lines of standard input; real time goes on while none comes."""
     poller = select.poll()
     poller.register(sys.stdin, select.POLLIN)
     line = b""
@@ -534,7 +534,7 @@ def panel(words):
         return complain("ended by Ctrl-C", INTERRUPTED)
     except StreamError as error:
         if error.args[0].errno == EPIPE:
-            return FAILED  # whoever read the output has gone
+            return FAILED  # the reader of the output has gone
         return complain("input or output failed: %s" % error, FAILED)
     except Exception as error:
         sys.print_exception(error, sys.stderr)
@@ -543,7 +543,7 @@ def panel(words):
 
 
 def leave_line(world):
-    """Every drive is stopped first; the live panel has done that already."""
+    """Stop every drive first; the live panel has done that already."""
     world.close()
     tell_notices(world)
     if world.unconfirmed():

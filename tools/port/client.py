@@ -7,8 +7,8 @@
     port.wait(1)                        # until something has come; KeyboardInterrupt: leave
     data = port.read(256)               # or None
 
-The launcher holds the port itself, tells when it has gone or is back, and hands on the wish of
-whoever wants the program to end.
+The launcher holds the port itself, tells when it has gone or is back, and passes on the request to
+end the program.
 """
 
 import os
@@ -82,7 +82,7 @@ class Port:
     def _told(self):
         """What the launcher has said: (word, the rest of its line)."""
         told = self._control.read(LINE_MAX)
-        if told == b"":  # it was killed: nothing reaches the line any more
+        if told == b"":  # the launcher was killed: nothing reaches the line any more
             self._poller.unregister(self._control)
             return [("cut", "tools/port/launch.py is no more"), ("leave", "")]
         *lines, self._line = (self._line + (told or b"")).split(b"\n")

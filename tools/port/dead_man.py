@@ -1,16 +1,17 @@
 # SPDX-License-Identifier: MIT
-"""Stops the drives of a panel that says nothing any more: it hangs, was killed, or is suspended.
+"""Stops the drives of a panel that has fallen silent because it hangs, was killed, or is
+suspended.
 
-It knows what the panel has sent, and nothing else. If the last control word to a drive turns its
-motor, it owes the drive an OFF1, which is that telegram without its commands. A panel that hung
-may go on in the middle of an ON. Therefore a drive that was stopped here gets no ON before the
-panel itself has sent it a telegram that turns nothing. The time is an argument.
+It knows only what the panel has sent. If the last control word to a drive turns its motor, it owes
+the drive an OFF1, which is that telegram without its commands. A panel that hung may go on in the
+middle of an ON. Therefore a drive that was stopped here gets no ON until the panel itself has sent
+it a telegram that does not turn the motor. The time is an argument.
 
     dead_man = DeadMan(19200)
-    if dead_man.heard(data, now_s):     # whatever the panel sends
-        ...                             # the line may have it
-    telegram = dead_man.due(now_s)      # to be sent in its place, or None
-    dead_man.over(now_s)                # it has ended, and sends nothing any more
+    if dead_man.heard(data, now_s):     # for everything that the panel sends
+        ...                             # send it on the line
+    telegram = dead_man.due(now_s)      # to send in the panel's place, or None
+    dead_man.over(now_s)                # the panel has ended, and sends nothing any more
 
 Telegrams are those of the panel, with two words of process data behind four of a parameter.
 """
@@ -25,7 +26,7 @@ CHARACTER_BITS = 11
 
 PATIENCE_S = 1.0  # and an exchange: a panel that works is never silent for so long
 REPLY_S = 0.1  # for the drive to answer, before the next telegram
-ROUNDS = 3  # of OFF1 to each, for nobody looks whether it has come
+ROUNDS = 3  # of OFF1 to each, because it does not check whether one has arrived
 
 
 def telegrams(data):
@@ -39,7 +40,7 @@ def telegrams(data):
 
 
 def turns(telegram):
-    """Whether it is one to a single drive that has the motor turn."""
+    """Whether it is a telegram to a single drive that turns its motor."""
     if len(telegram) != SIZE or telegram[0] != STX or telegram[2] > NODE_MAX:
         return False
     return bool(telegram[STW] & COMMANDS_HIGH or telegram[STW + 1] & COMMANDS_LOW)
@@ -64,15 +65,15 @@ class DeadMan:
         self.stopped = set()
         self._turning = {}  # address: the last telegram to it, one that turns it
         self._owed = []
-        self._barred = set()  # addresses stopped here that the panel has not talked to since
+        self._barred = set()  # addresses stopped here that the panel has not sent OFF since
         exchange_s = 2 * SIZE * CHARACTER_BITS / baud
         self._pace_s = exchange_s + REPLY_S
         self._patience_s = exchange_s + PATIENCE_S
         self._next_s = None  # when it is to be taken for dead, or the next OFF1 is due
 
     def heard(self, data, now_s):
-        """The panel is alive, and looks after the drives that it talks to. Answers whether the
-        line may have that: False where it would turn a drive that was stopped here.
+        """The panel is alive, and looks after the drives that it talks to. Return whether to send
+        this on the line: False if it would turn a drive that was stopped here.
         """
         self._next_s = now_s + self._patience_s
         may_pass = True
@@ -114,5 +115,5 @@ class DeadMan:
         return max(0, min(self._next_s - now_s, longest_s))
 
     def is_done(self):
-        """Whether nobody is owed an OFF1."""
+        """Whether no drive is owed an OFF1."""
         return not (self._turning or self._owed)

@@ -5,10 +5,10 @@
     python3 tools/port/launch.py PROGRAM ARGUMENTS...
 
 PROGRAM finds in its environment USS_PORT_DATA and USS_PORT_CONTROL, the numbers of two sockets:
-the characters of the port, and lines. It says "open BAUD PATH" and is told "opened" or "error
-TEXT"; later "cut TEXT" when the port has gone, "back" when it is there again, and "leave" when
-somebody wants it to end: Ctrl-C, kill, a closed terminal. These signals do not reach it, so that
-it can stop its drives first. Nor does Ctrl-Z: a panel that stands still stops nothing. If it hangs
+one for the characters of the port, one for lines. PROGRAM sends "open BAUD PATH" and gets "opened"
+or "error TEXT"; later "cut TEXT" when the port has gone, "back" when it is there again, and
+"leave" on Ctrl-C, kill or a closed terminal. These signals do not reach PROGRAM, so that it can
+stop its drives first. Nor does Ctrl-Z: a panel that stands still stops nothing. If PROGRAM hangs
 or dies all the same, this program sends its drives OFF1. Exit status: that of PROGRAM.
 """
 
@@ -30,10 +30,10 @@ from tools.port.standard_streams import open_missing  # noqa: E402
 
 LEAVE = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT)
 SUSPEND = (signal.SIGTSTP, signal.SIGTTIN, signal.SIGTTOU)
-STALE_S = 0.3  # what the program said before we stood still for so long is not meant any more
+STALE_S = 0.3  # if we stood still for so long, what the program sent before is out of date
 NOT_FOUND = 127  # the exit status of a shell whose command is not there
 READ_MAX = 4096
-HURRY = -10  # niceness, where the user may have that: the panel stops what it cannot look after
+HURRY = -10  # niceness, if the user may set it: a panel that is too slow stops its motors
 DRAIN_S = 2.0  # for the last telegrams to leave the machine
 STOPPED = "panel: it hung or died, and drive %s was sent OFF1 in its place"
 
@@ -48,13 +48,13 @@ class Relay:
         self._typed = b""
         self._over = False
         self._dead_man = None  # until a port is open
-        self._awake_s = time.monotonic()  # when it was last seen that we run
+        self._awake_s = time.monotonic()  # when we last ran
 
     def leave(self, *_):
         self._tell("leave")
 
     def run(self):
-        """Until the program has ended; what it has said by then is on the line."""
+        """Serve until the program has ended, and all that it has sent is on the line."""
         while not self._over:
             awaited = [self._data, self._control]
             if self._is_there():
@@ -68,7 +68,7 @@ class Relay:
                 self._receive()
             if self._port is not None and not self._port.is_open:
                 self._port.look_again()
-            if not select.select([self._data], (), (), 0)[0]:  # or it was us who hung
+            if not select.select([self._data], (), (), 0)[0]:  # otherwise it was us who hung
                 self._stop_due()
             self._awake_s = time.monotonic()
         self._stop_all()
@@ -105,8 +105,8 @@ class Relay:
         return self._dead_man.wait_s(time.monotonic(), AGAIN_S) if self._dead_man else AGAIN_S
 
     def send(self):
-        """Hand on the telegram that the program has said. If there are more, we have been too
-        slow: nobody knows how old they are, and the program will repeat what matters.
+        """Pass on the telegram that the program has sent. If there are more, we have been too
+        slow: they may be of any age, and the program will repeat what matters.
         """
         now_s = time.monotonic()
         is_stale = now_s - self._awake_s > AGAIN_S + STALE_S
@@ -133,7 +133,7 @@ class Relay:
             self._port.write(telegram)
 
     def _stop_all(self):
-        """The program has ended: what it has left running is stopped."""
+        """The program has ended: stop what it has left running."""
         if self._dead_man is None:
             return
         self._dead_man.over(time.monotonic())
@@ -143,7 +143,7 @@ class Relay:
 
     def _receive(self):
         data, flaws = self._port.read()
-        # A character that came with an error is none: its telegram must not be complete.
+        # Drop a character that came with an error, so that its telegram is not complete.
         data = bytes(data[i] for i in range(len(data)) if not flaws[i])
         try:
             self._data.send(data)
@@ -176,7 +176,7 @@ class Relay:
 
 
 def start(command, data, control):
-    """The program, which gets none of the signals that we do: the second Ctrl-C would end it."""
+    """Start the program. It gets none of our signals, because a second Ctrl-C would end it."""
 
     def prepare():
         for number in LEAVE + SUSPEND:

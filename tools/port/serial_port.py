@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A serial port, or a pty, for programs on CPython: 8E1, at the rates of USS, nobody else on it.
+"""A serial port, or a pty, for programs on CPython: 8E1, at the rates of USS, for exclusive use.
 
     port = SerialPort("/dev/ttyUSB0", 19200)
     port.open()                     # PortError: says in words what is wrong, and what helps
@@ -8,7 +8,7 @@
     port = Pty(link="/tmp/drive")   # one of our own: port.path is for the other side
 
 `fileno()` is for select. Nothing here waits. A pty has no parity and no rate; it is only set to
-change nothing on the way.
+pass all characters unchanged.
 """
 
 import array
@@ -61,7 +61,7 @@ class SerialPort:
         self.baud = baud
         self.is_pty = False
         self._descriptor = None
-        self._opened_ns = None  # when, by the clock of the machine, the last time that it was had
+        self._opened_ns = None  # when it was last open, by the clock of the machine
         self._marking = False
         self._rest = b""  # the beginning of a mark whose end has not come
 
@@ -71,7 +71,7 @@ class SerialPort:
     def open(self):
         """PortError."""
         try:
-            # Without NONBLOCK it would wait for a modem to find a carrier.
+            # Without NONBLOCK it would wait until a modem finds a carrier.
             self._descriptor = os.open(self.path, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
         except OSError as error:
             raise PortError(self._why(error)) from None
@@ -106,7 +106,7 @@ class SerialPort:
         return self.unmarked(data) if self._marking else (data, bytes(len(data)))
 
     def write(self, data):
-        """Write what has room; the rest is lost, as on a line that nobody reads. LineCut."""
+        """Write what has room; the rest is lost, as on a line without listeners. LineCut."""
         try:
             os.write(self._descriptor, data)
         except BlockingIOError:
@@ -132,8 +132,7 @@ class SerialPort:
         try:
             fcntl.flock(self._descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)  # as pyserial does
             if not self.is_pty:
-                # It stays until nobody has the port open any more: of a pty, whose maker keeps
-                # it open, for ever.
+                # It stays until all programs have closed the port; a pty's maker never closes it.
                 fcntl.ioctl(self._descriptor, termios.TIOCEXCL)
         except OSError:
             raise PortError(IN_USE % self.path) from None
@@ -144,8 +143,8 @@ class SerialPort:
         self._opened_ns = time.time_ns()
 
     def _look_whose(self, status):
-        """When a pty has gone, the next terminal that anybody opens gets its number. If this one
-        was made after the link to it, or after we had it, it is another one.
+        """PortError if this is not the pty that we mean. When a pty has gone, the next terminal
+        gets its number. One made after the link to it, or after we had it, is another pty.
         """
         if os.path.islink(self.path):
             if os.lstat(self.path).st_mtime_ns < made_ns(status):
@@ -155,7 +154,7 @@ class SerialPort:
 
     def _is_our_terminal(self):
         try:
-            os.tcgetpgrp(self._descriptor)  # nobody is told that of any other terminal
+            os.tcgetpgrp(self._descriptor)  # succeeds only for our own terminal
         except OSError:
             return False
         return True
@@ -236,8 +235,8 @@ def is_pty(status):
 def made_ns(status):
     """When a pty was made, at the latest. status: of `os.stat`.
 
-    Nothing else tells two ptys of one number apart: device and inode are the same. Of its times
-    the oldest counts: a terminal that is used, or whose mode is changed, renews the others.
+    Only this tells two ptys of one number apart: device and inode are the same. The oldest of its
+    times counts: using a terminal, or changing its mode, renews the others.
     """
     return min(status.st_atime_ns, status.st_mtime_ns, status.st_ctime_ns)
 
