@@ -521,7 +521,7 @@ class Drive:
 
     def may_reply_alike(self):
         """Whether its reply may be equal to the request. With PZD it may not: a status word has
-        bit 9 set when bit 3 is not, a control word does not.
+        bit 9 set when bit 3 is not.
         """
         return not self.layout.pzd_words
 
