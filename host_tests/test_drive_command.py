@@ -17,14 +17,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from test_port_panel import (  # noqa: F401
-    DRIVE,
-    PATIENCE_S,
-    Drives,
-    Talking,
-    as_in_a_terminal,
-    program,
-)
+from program_bench import DRIVE, PATIENCE_S, Drives, Talking, as_in_a_terminal, programs
 
 TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 sys.path.insert(0, TOP)
@@ -40,6 +33,8 @@ SET_PIPE_SIZE = 1031  # F_SETPIPE_SZ, Linux
 STOP, RUN = 0x047E, 0x047F
 READ_P0700 = (0x12BC, 0, 0, 0)
 NOTHING = (0, 0, 0, 0)
+
+program = pytest.fixture(programs)
 
 
 def telegram(adr, words):
@@ -75,7 +70,7 @@ class Master:
         return self.hears(1, silence_s) == b""
 
 
-def test_a_master_reads_starts_and_stops(program):  # noqa: F811
+def test_a_master_reads_starts_and_stops(program):
     drives = program(Drives, "--address", "5", "--family", "mm440")
     master = Master(drives.path)
     reply = master.asks(telegram(5, READ_P0700 + (STOP, 0)))
@@ -87,7 +82,7 @@ def test_a_master_reads_starts_and_stops(program):  # noqa: F811
     drives.waits(5, state="ready")
 
 
-def test_several_drives_of_several_families_share_the_line(program):  # noqa: F811
+def test_several_drives_of_several_families_share_the_line(program):
     drives = program(Drives, "--address", "1,2=g110,3=mm3", "--set", "2:P2013=0")
     master = Master(drives.path)
     assert len(master.asks(telegram(1, NOTHING + (STOP, 0)))) == 16
@@ -96,7 +91,7 @@ def test_several_drives_of_several_families_share_the_line(program):  # noqa: F8
     assert master.is_not_answered(telegram(4, NOTHING + (STOP, 0)))
 
 
-def test_it_is_told_what_happens_to_the_drive(program):  # noqa: F811
+def test_it_is_told_what_happens_to_the_drive(program):
     drives = program(Drives)
     master = Master(drives.path)
     request = telegram(1, NOTHING + (STOP, 0))
@@ -111,7 +106,7 @@ def test_it_is_told_what_happens_to_the_drive(program):  # noqa: F811
     assert len(master.asks(request)) == 16
 
 
-def test_mains_off_and_on_lose_the_ram_and_keep_the_eeprom(program):  # noqa: F811
+def test_mains_off_and_on_lose_the_ram_and_keep_the_eeprom(program):
     drives = program(Drives, "--set", "P1082=40.0", "--switch", "boot_ms=0")
     master = Master(drives.path)
     write = (0x24C7, 0x0000, 0, 0)  # P1223: there is none
@@ -128,7 +123,7 @@ def test_mains_off_and_on_lose_the_ram_and_keep_the_eeprom(program):  # noqa: F8
     assert len(master.asks(telegram(1, NOTHING + (STOP, 0)))) == 16
 
 
-def test_a_drive_that_powers_up_ready_starts_for_an_on_that_stands(program):  # noqa: F811
+def test_a_drive_that_powers_up_ready_starts_for_an_on_that_stands(program):
     drives = program(Drives, "--switch", "clean_power_up=1", "--set", "P1120=0.0")
     assert drives.asked("switch 1 clean_power_up") == "clean_power_up=1"
     assert drives.asked("switch 1 boot_ms=100") == "boot_ms=100"
@@ -149,7 +144,7 @@ def test_a_drive_that_powers_up_ready_starts_for_an_on_that_stands(program):  # 
     assert (report["state"], report["starts"], report["fault"]) == ("running", "2", "-")
 
 
-def test_the_log_says_every_telegram_in_words(program):  # noqa: F811
+def test_the_log_says_every_telegram_in_words(program):
     drives = program(Drives, "--log")
     master = Master(drives.path)
     master.asks(telegram(1, READ_P0700 + (STOP, 0x1000)))
@@ -160,7 +155,7 @@ def test_the_log_says_every_telegram_in_words(program):  # noqa: F811
     assert drives.line().endswith("(BCC 00 should be D9)")
 
 
-def test_the_log_says_how_a_telegram_was_meant_when_it_began(program):  # noqa: F811
+def test_the_log_says_how_a_telegram_was_meant_when_it_began(program):
     """What it writes, address or layout, is in force from its reply on, and not before."""
     for switch in ("layout_at_once=0", "layout_at_once=1"):
         drives = program(Drives, "--log", "--switch", switch)
@@ -176,7 +171,7 @@ def test_the_log_says_how_a_telegram_was_meant_when_it_began(program):  # noqa: 
         assert "< A7  is P2012[0] = 4  " in drives.line()
 
 
-def test_who_talks_into_a_reply_is_told_so_and_hears_no_more_of_it(program):  # noqa: F811
+def test_who_talks_into_a_reply_is_told_so_and_hears_no_more_of_it(program):
     drives = program(Drives, "--log", "--baud", "600", "--family", "generic")
     master = Master(drives.path)
     request = telegram(1, NOTHING + (STOP, 0))  # 0.3 s, and so is the reply
@@ -197,7 +192,7 @@ def test_who_talks_into_a_reply_is_told_so_and_hears_no_more_of_it(program):  # 
     assert " < " + " ".join("%02X" % character for character in heard) + " ??" in answered
 
 
-def test_the_drives_do_not_wait_for_whoever_reads_the_log(program):  # noqa: F811
+def test_the_drives_do_not_wait_for_whoever_reads_the_log(program):
     drives = program(Drives, "--log", "--baud", "115200")
     fcntl.fcntl(drives.process.stdout, SET_PIPE_SIZE, 4096)
     master = Master(drives.path)
@@ -207,7 +202,7 @@ def test_the_drives_do_not_wait_for_whoever_reads_the_log(program):  # noqa: F81
         os.write(master.port, telegram(1, NOTHING + (STOP, 0)))
 
 
-def test_a_second_after_garbage_at_the_speed_of_a_pty_the_drive_answers(program):  # noqa: F811
+def test_a_second_after_garbage_at_the_speed_of_a_pty_the_drive_answers(program):
     drives = program(Drives, "--log")  # which nobody reads
     fcntl.fcntl(drives.process.stdout, SET_PIPE_SIZE, 4096)
     port = os.open(drives.path, os.O_RDWR | os.O_NOCTTY | os.O_NONBLOCK)
@@ -257,7 +252,7 @@ class Unread(Talking):
 
 
 @pytest.mark.parametrize("how", ["full", "stopped"])
-def test_nor_for_whoever_looks_at_a_terminal(program, tmp_path, how):  # noqa: F811
+def test_nor_for_whoever_looks_at_a_terminal(program, tmp_path, how):
     link = str(tmp_path / "line")
     drives = program(Unread, link, None, "--log", "--baud", "115200")
     drives.shows(link)
@@ -279,7 +274,7 @@ def test_nor_for_whoever_looks_at_a_terminal(program, tmp_path, how):  # noqa: F
     os.close(drives.terminal)
 
 
-def test_ctrl_c_ends_it_while_its_terminal_is_stopped(program, tmp_path):  # noqa: F811
+def test_ctrl_c_ends_it_while_its_terminal_is_stopped(program, tmp_path):
     link = str(tmp_path / "line")
     drives = program(Unread, link, None, "--log")
     os.write(drives.terminal, b"\x13")
@@ -292,7 +287,7 @@ def test_ctrl_c_ends_it_while_its_terminal_is_stopped(program, tmp_path):  # noq
 @pytest.mark.parametrize(
     "how, why", [("full", "No space left on device"), ("gone", "Input/output error")]
 )
-def test_a_log_that_cannot_be_written_is_said_once(program, tmp_path, how, why):  # noqa: F811
+def test_a_log_that_cannot_be_written_is_said_once(program, tmp_path, how, why):
     link = str(tmp_path / "line")
     if how == "full":
         with open("/dev/full", "wb") as full:
@@ -311,7 +306,7 @@ def test_a_log_that_cannot_be_written_is_said_once(program, tmp_path, how, why):
     )
 
 
-def test_who_has_read_enough_ends_it(program):  # noqa: F811
+def test_who_has_read_enough_ends_it(program):
     command = '"$1" --pty --log | { read path; echo "$path"; }; echo "${PIPESTATUS[0]}"'
     drives = program(Talking, "bash", "-c", command, "-", DRIVE)
     master = Master(drives.line())
@@ -322,13 +317,13 @@ def test_who_has_read_enough_ends_it(program):  # noqa: F811
     assert drives.ends() == 0 and drives.rest == "0\n"
 
 
-def test_a_closed_standard_input_gives_no_commands(program):  # noqa: F811
+def test_a_closed_standard_input_gives_no_commands(program):
     drives = program(Talking, "bash", "-c", 'exec "$1" --pty <&-', "-", DRIVE)
     master = Master(drives.line())
     assert len(master.asks(telegram(1, NOTHING + (STOP, 0)))) == 16
 
 
-def test_a_reply_delay_is_kept(program):  # noqa: F811
+def test_a_reply_delay_is_kept(program):
     drives = program(Drives, "--reply-delay", "150")
     master = Master(drives.path)
     began = time.monotonic()
@@ -336,7 +331,7 @@ def test_a_reply_delay_is_kept(program):  # noqa: F811
     assert time.monotonic() - began > 0.15
 
 
-def test_commands_that_make_no_sense_are_told_and_change_nothing(program):  # noqa: F811
+def test_commands_that_make_no_sense_are_told_and_change_nothing(program):
     drives = program(Drives)
     assert "no panel here" in drives.asked("press START")
     unknown = drives.asked("jump")
@@ -351,7 +346,7 @@ def test_commands_that_make_no_sense_are_told_and_change_nothing(program):  # no
 
 
 @pytest.mark.parametrize("digits", [400, 5000])  # Python reads 4300
-def test_numbers_may_be_of_any_length(program, digits):  # noqa: F811
+def test_numbers_may_be_of_any_length(program, digits):
     drives = program(Drives)
     number = digits * "9"
     for command in (
@@ -363,7 +358,7 @@ def test_numbers_may_be_of_any_length(program, digits):  # noqa: F811
     assert drives.ends() == 0 and "Traceback" not in drives.rest
 
 
-def test_drives_are_served_however_long_a_command_waits(program):  # noqa: F811
+def test_drives_are_served_however_long_a_command_waits(program):
     drives = program(Drives)
     drives.does("drive 1", "wait 8640000000")
     drives.line()
@@ -373,7 +368,7 @@ def test_drives_are_served_however_long_a_command_waits(program):  # noqa: F811
 
 
 @pytest.mark.parametrize("ending", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, None])
-def test_it_ends_quietly(program, tmp_path, ending):  # noqa: F811
+def test_it_ends_quietly(program, tmp_path, ending):
     link = tmp_path / "line"
     drives = program(Drives, "--link", str(link))
     assert link.is_symlink() and drives.path == str(link)
@@ -415,18 +410,18 @@ def test_it_ends_quietly(program, tmp_path, ending):  # noqa: F811
         (("--port", "/dev/null"), 5, "/dev/null is no serial port"),
     ],
 )
-def test_what_cannot_be_is_refused(program, words, status, why):  # noqa: F811
+def test_what_cannot_be_is_refused(program, words, status, why):
     drives = program(Talking, DRIVE, *words)
     assert drives.ends() == status and why in drives.rest
 
 
 @pytest.mark.parametrize("word", ["1", "True", "on", "false"])
-def test_a_switch_is_turned_by_the_word_that_people_write(program, word):  # noqa: F811
+def test_a_switch_is_turned_by_the_word_that_people_write(program, word):
     drives = program(Drives, "--switch", "1:clean_power_up=" + word)
     assert drives.asked("switch 1 clean_power_up") == "clean_power_up=%d" % (word != "false")
 
 
-def test_idle_it_takes_next_to_no_time(program):  # noqa: F811
+def test_idle_it_takes_next_to_no_time(program):
     drives = program(Drives, "--address", ",".join(map(str, range(31))))
     drives.report()
     before = processor_s(drives.process.pid)

@@ -6,16 +6,15 @@ Real programs in real time. A test waits for what it expects, and gives up after
 
 import json
 import os
-import select
 import signal
 import socket
-import subprocess
 import sys
 import time
 
 import pytest
 
-from test_terminal import Terminal
+from program_bench import PANEL, PATIENCE_S, Drives, Panel, Talking, programs
+from terminal_bench import Terminal, terminals
 
 TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 sys.path.insert(0, TOP)
@@ -25,143 +24,13 @@ from tools.port.serial_port import Pty  # noqa: E402
 
 INTERPRETERS = "host"
 
-PANEL = os.path.join(TOP, "tools", "panel")
-DRIVE = os.path.join(TOP, "tools", "drive")
-PATIENCE_S = 30  # for a machine that does other things as well
-
 RUN = bytes.fromhex("020E010000000000000000047F0CCDB7")
 STOP = bytes.fromhex("020E010000000000000000047E000077")
 
 SUPERVISED = ("--set", "P2014=2000")
 
-
-def as_in_a_terminal():
-    """Tests that run in the background or under nohup hand down signals that are ignored."""
-    for number in (signal.SIGINT, signal.SIGHUP, signal.SIGQUIT, signal.SIGTSTP):
-        signal.signal(number, signal.SIG_DFL)
-
-
-class Talking:
-    """A program that takes commands line by line, and answers."""
-
-    def __init__(self, *command):
-        self.process = subprocess.Popen(
-            command,
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            preexec_fn=as_in_a_terminal,
-        )
-        self._said = b""
-
-    def line(self):
-        """The next line that it says."""
-        deadline = time.monotonic() + PATIENCE_S
-        while b"\n" not in self._said:
-            left = deadline - time.monotonic()
-            assert left > 0, "it says nothing; the last was %r" % self._said
-            if select.select([self.process.stdout], [], [], left)[0]:
-                said = os.read(self.process.stdout.fileno(), 65536)
-                assert said, "it has ended"
-                self._said += said
-        line, self._said = self._said.split(b"\n", 1)
-        return line.decode()
-
-    def does(self, *commands):
-        self.process.stdin.write(("\n".join(commands) + "\n").encode())
-        self.process.stdin.flush()
-
-    def asked(self, command):
-        """The line that a command answers."""
-        self.does(command)
-        return self.line()
-
-    def ends(self, patience_s=PATIENCE_S):
-        status = self.process.wait(patience_s)
-        self.rest = (self._said + self.process.stdout.read()).decode()
-        return status
-
-    def kill(self):
-        self.process.kill()
-        self.process.wait()
-
-
-class Drives(Talking):
-    """./tools/drive on a pty, whose path is `path`."""
-
-    def __init__(self, *options):
-        Talking.__init__(self, DRIVE, "--pty", *options)
-        self.path = self.line()
-
-    def report(self, address=1):
-        """{"state": "running", ...}"""
-        words = self.asked("drive %d" % address).split()
-        return dict(word.split("=") for word in words if "=" in word)
-
-    def waits(self, address=1, **wanted):
-        """Until the report of a drive says so."""
-        deadline = time.monotonic() + PATIENCE_S
-        while True:
-            report = self.report(address)
-            if all(report[name] == wanted[name] for name in wanted):
-                return
-            assert time.monotonic() < deadline, (wanted, report)
-
-
-class Panel(Talking):
-    """./tools/panel on a port, which takes its commands from here."""
-
-    def __init__(self, path, *options):
-        Talking.__init__(self, PANEL, "--port", path, "--script", "-", *options)
-
-    def shows(self, *texts):
-        """Wait until the display shows one of these; answer that."""
-        deadline = time.monotonic() + PATIENCE_S
-        while True:
-            self.does("wait 50", "lcd")
-            rows = [self.line(), self.line()]
-            for text in texts:
-                if text in " ".join(rows):
-                    return text
-            assert time.monotonic() < deadline, (texts, rows)
-
-    def runs(self):
-        """START, until it runs: a machine that stalls for 300 ms stops it again."""
-        while self.shows("READY", "NOT STARTED", "PANEL HUNG", "RUNNING") != "RUNNING":
-            self.does("press START")
-            self.shows("RUNNING", "PANEL HUNG")
-
-
-@pytest.fixture
-def program():
-    """Makes one of the programs above, and sees that it does not run on."""
-    made = []
-
-    def make(kind, *words):
-        made.append(kind(*words))
-        return made[-1]
-
-    yield make
-    for one in made:
-        if one.process.poll() is None:
-            one.kill()
-
-
-@pytest.fixture
-def terminal():
-    made = []
-
-    def make(*options):
-        made.append(Terminal(*options))
-        return made[-1]
-
-    yield make
-    for one in made:
-        if one.process.poll() is None:
-            os.killpg(one.process.pid, signal.SIGKILL)
-            one.process.wait()
-        os.close(one.master)
-        os.close(one.slave)
+program = pytest.fixture(programs)
+terminal = pytest.fixture(terminals)
 
 
 def test_a_drive_is_parameterised_started_and_stopped(program):
