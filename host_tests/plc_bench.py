@@ -24,6 +24,12 @@ BAUD = 19200
 SCAN_US = 2_000
 QUICK = {1120: 1.0, 1121: 1.0, 1135: 0.5}  # ramps, s
 
+# Codes that nothing on this link leads to, and why; s7/README.md says so, too.
+NEVER = {
+    3: "parity",  # no UART of MicroPython tells of it: the character is wrong or missing
+    14: "DB_PTR",  # the blocks need no memory of the program
+}
+
 
 class Inputs:
     """Of one USS_CTRL; every scan hands them to it."""

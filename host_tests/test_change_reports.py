@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Change reports: what somebody else has written (specification C-4.2.1.2, replies 9...12)."""
 
-from test_channel import Line
-from test_pkw import refused
+from pkw_bench import Line, refused
 from uss import pkw
 from uss.layout import VARIABLE as VARIABLE_WORDS
 from uss.tasks.change_reports import REPORTS_MAX, Reports

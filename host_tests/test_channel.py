@@ -6,53 +6,13 @@ Specification C-4.2.1.1. Time is in microseconds and only passes when a test say
 
 import random
 
-from test_pkw import characters, refused
+from pkw_bench import Line, refused
 from uss import pkw
-from uss.channel import JOBS_MAX, REST_MAX, Channel
+from uss.channel import JOBS_MAX, REST_MAX
 from uss.layout import VARIABLE
 from uss.tasks import arrays
 
-MASK = (1 << 30) - 1
 NO_TASK = (0, 0, 0, 0)
-
-
-class Line:
-    """A channel and the telegrams that go to and fro."""
-
-    def __init__(self, pkw_words=4, longest=20):
-        self.channel = Channel(MASK, pkw_words, longest)
-        self.now = 0
-        self.sent = []  # PKW words of each request
-        self.losses = 0  # telegrams in a row that were not answered
-        self._size = 0  # of the PKW words, when they were written last
-
-    def send(self, us=10_000):
-        """The PKW words of the next request."""
-        self.now += us
-        net = bytearray(260)
-        if not self.channel.idle:
-            self._size = self.channel.fill(net, 3, self.now)
-        size = self._size
-        words = tuple(net[at] << 8 | net[at + 1] for at in range(3, 3 + size, 2))
-        assert net[3 + size :] == bytes(len(net) - 3 - size)
-        self.sent.append(words)
-        return words
-
-    def answer(self, *words):
-        """A reply comes."""
-        net = characters(*words)
-        if not self.channel.idle:
-            self.channel.take(b"\x02\x00\x05" + net, 3, len(net))
-        self.losses = 0
-
-    def miss(self):
-        """None comes."""
-        self.losses += 1
-        self.channel.miss(self.now, self.losses)
-
-    def ask(self, job):
-        self.channel.ask(job)
-        return job
 
 
 def tasks(line):

@@ -6,7 +6,7 @@ import sys
 
 import micropython
 
-from test_pkw import characters
+from pkw_bench import characters
 from uss import pkw
 from uss.channel import Channel
 from uss.layout import VARIABLE

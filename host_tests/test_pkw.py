@@ -4,35 +4,9 @@
 How tasks are repeated, and told apart, is in test_channel.py; arrays and texts have their own.
 """
 
+from pkw_bench import FOUR, THREE, VARIABLE, answered, asked, refused
 from uss import pkw
 from uss.bus import pkw_errors
-
-THREE, FOUR, VARIABLE = pkw.THREE_WORDS, pkw.FOUR_WORDS, pkw.VARIABLE_LENGTH | 20
-
-
-def characters(*words):
-    """Words as they travel."""
-    return bytes([character for word in words for character in (word >> 8, word & 0xFF)])
-
-
-def answered(job, words, form=FOUR):
-    """Whether these PKW words of a reply end the job."""
-    net = characters(*words)
-    return job.answer(net, 0, len(net), form)
-
-
-def asked(job):
-    """The four words of the job."""
-    return tuple(job.words[at] << 8 | job.words[at + 1] for at in range(0, 8, 2))
-
-
-def refused(error, act, *arguments):
-    try:
-        act(*arguments)
-    except error:
-        return True
-    return False
-
 
 # --- requests -----------------------------------------------------------------------------------
 

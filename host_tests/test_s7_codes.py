@@ -6,6 +6,7 @@ A line on which one drive, node 3, answers what the test says, to the character.
 
 from boards.sim.clock import Clock
 from line_bench import MASK, Line, of_words, words_of
+from plc_bench import NEVER
 from uss.families import MM4
 from uss.layout import VARIABLE, Layout
 from uss.s7 import (
@@ -24,12 +25,6 @@ from uss.s7 import (
 
 NODE = 3
 READY, RUNNING = 0xFB31, 0xFB34
-
-# Codes that nothing on this link leads to, and why; s7/README.md says so, too.
-NEVER = {
-    3: "parity",  # no UART of MicroPython tells of it: the character is wrong or missing
-    14: "DB_PTR",  # the blocks need no memory of the program
-}
 
 
 class Pump(MM4):

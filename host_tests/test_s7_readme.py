@@ -11,8 +11,7 @@ from boards.sim.drives.drive import Drive as SimulatedDrive
 from boards.sim.line.wire import Transceiver, Wire
 from hal import pacer
 from hal.link.rs485 import Rs485Link
-from plc_bench import SCAN_US
-from test_s7_codes import NEVER
+from plc_bench import NEVER, SCAN_US
 from uss import (
     bits,
     drive,

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Arrays: an element, all elements, how many there are (specification C-4.2.2, tasks 6...12)."""
 
-from test_pkw import FOUR, THREE, VARIABLE, answered, asked, refused
+from pkw_bench import FOUR, THREE, VARIABLE, answered, asked, refused
 from uss import pkw
 from uss.bus import pkw_errors
 from uss.channel import Channel

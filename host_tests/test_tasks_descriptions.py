@@ -1,9 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Descriptions of parameters: elements, and the whole of it (specification C-6, tasks 4, 5)."""
 
-from test_channel import Line
-from test_pkw import FOUR, THREE, VARIABLE, answered, refused
-from test_tasks_texts import text_words
+from pkw_bench import FOUR, THREE, VARIABLE, Line, answered, refused, text_words
 from uss import pkw
 from uss.bus import pkw_errors
 from uss.layout import VARIABLE as VARIABLE_WORDS

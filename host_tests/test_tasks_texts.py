@@ -1,17 +1,10 @@
 # SPDX-License-Identifier: MIT
 """Texts of parameters (specification C-4.2.2, task 15)."""
 
-from test_channel import Line
-from test_pkw import refused
+from pkw_bench import Line, refused, text_words
 from uss import pkw
 from uss.layout import VARIABLE as VARIABLE_WORDS
 from uss.tasks import texts
-
-
-def text_words(text):
-    """The words of a text."""
-    codes = [ord(character) for character in text]
-    return [codes[at] << 8 | codes[at + 1] for at in range(0, len(codes), 2)]
 
 
 def test_the_texts_of_examples_7_and_8():

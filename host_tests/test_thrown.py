@@ -8,14 +8,12 @@ line throws, one after the other, and the engine recovers as `hal.pacer` has it.
 
 import sys
 
+from interruption_bench import ROOM, interrupted
 from round_bench import Bench, Node
-from test_interrupted import interrupted
 from uss import pzd
 from uss.outside import DONE, PENDING, Mirror
 
 INTERPRETERS = "cpython"
-
-ROOM = "/uss/"
 
 
 class Thrown(Exception):
