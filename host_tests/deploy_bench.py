@@ -9,14 +9,13 @@ what MicroPython would start from it.
 import builtins
 import io
 import os
-from pathlib import Path
 
+from tiers import TOP
 from tools.deploying.deployment import Deployment, Options
 from tools.deploying.errors import DeployError
 from tools.deploying.image import Firmware
 from tools.deploying.plan import GATE_TEXT
 
-TOP = Path(__file__).resolve().parent.parent
 RP2040 = "Raspberry Pi Pico with RP2040"
 MPY = 0x1306  # sys.implementation._mpy of MicroPython 1.25 on an RP2040
 MODULES = "__main__ gc os hashlib machine Plus any modules on the filesystem"

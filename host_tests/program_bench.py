@@ -18,7 +18,8 @@ import signal
 import subprocess
 import time
 
-TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+from tiers import TOP
+
 PANEL = os.path.join(TOP, "tools", "panel")
 DRIVE = os.path.join(TOP, "tools", "drive")
 PATIENCE_S = 30  # for a machine that does other things as well

@@ -21,7 +21,8 @@ import subprocess
 import termios
 import time
 
-TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+from tiers import TOP
+
 PANEL = os.path.join(TOP, "tools", "panel")
 PATIENCE_S = 30  # for a machine that does other things as well
 

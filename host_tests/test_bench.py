@@ -8,13 +8,12 @@ import ast
 import json
 import subprocess
 import sys
-from pathlib import Path
 
+from tiers import TOP
 from tools.benching import report, rows
 
 INTERPRETERS = "host"
 
-TOP = Path(__file__).resolve().parent.parent
 BENCH = TOP / "tools" / "benching"
 
 

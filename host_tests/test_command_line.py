@@ -11,9 +11,10 @@ import subprocess
 
 import pytest
 
+from tiers import TOP
+
 INTERPRETERS = "host"
 
-TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 PANEL = os.path.join(TOP, "tools", "panel")
 MICROPYTHON = os.path.join(TOP, "build", "unix64", "micropython")
 

@@ -14,13 +14,13 @@ from deploy_bench import (
     NEWER,
     OLD,
     RP2040,
-    TOP,
     FakeChip,
     PowerCut,
     deploy,
     firmware,
     running,
 )
+from tiers import TOP
 from tools.deploying import arrival, deployment, image, plan, ports
 from tools.deploying.errors import DeployError
 

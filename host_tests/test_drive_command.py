@@ -17,14 +17,10 @@ from types import SimpleNamespace
 
 import pytest
 
+from boards.sim.line.wire import Burst
 from program_bench import DRIVE, PATIENCE_S, Drives, Talking, as_in_a_terminal, programs
-
-TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-sys.path.insert(0, TOP)
-
-from boards.sim.line.wire import Burst  # noqa: E402
-from tools.driving import decoding  # noqa: E402
-from tools.port.serial_port import FRAME, PARITY, LineCut, Pty, SerialPort  # noqa: E402
+from tools.driving import decoding
+from tools.port.serial_port import FRAME, PARITY, LineCut, Pty, SerialPort
 
 INTERPRETERS = "host"
 

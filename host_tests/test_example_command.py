@@ -5,6 +5,8 @@ import os
 import subprocess
 import tempfile
 
+from tiers import TOP
+
 INTERPRETERS = "host"
 
 MINE = """
@@ -29,8 +31,6 @@ with Master(board.make_link(19200)) as bus:
     assert not board.keypad.read()
 print("over")
 """
-
-TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 
 
 def called(*words):

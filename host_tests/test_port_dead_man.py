@@ -1,12 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Data sheet of what stops the drives of a panel that hangs or has died. Times are in seconds."""
 
-import os
-import sys
-
-sys.path.insert(0, os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
-
-from tools.port.dead_man import ROUNDS, DeadMan, off1, telegrams  # noqa: E402
+from tools.port.dead_man import ROUNDS, DeadMan, off1, telegrams
 
 INTERPRETERS = "host"
 

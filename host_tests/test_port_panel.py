@@ -8,19 +8,14 @@ import json
 import os
 import signal
 import socket
-import sys
 import time
 
 import pytest
 
 from program_bench import PANEL, PATIENCE_S, Drives, Panel, Talking, programs
 from terminal_bench import Terminal, terminals
-
-TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
-sys.path.insert(0, TOP)
-
-from tools.port.launch import Relay  # noqa: E402
-from tools.port.serial_port import Pty  # noqa: E402
+from tools.port.launch import Relay
+from tools.port.serial_port import Pty
 
 INTERPRETERS = "host"
 

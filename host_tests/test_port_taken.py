@@ -11,7 +11,7 @@ import sys
 
 import pytest
 
-TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+from tiers import TOP
 
 INTERPRETERS = "host"
 
@@ -38,7 +38,7 @@ def opens(path):
     port.close()
     os.close(os.open(path, os.O_RDWR | os.O_NOCTTY))
     return "opened"
-""" % (TOP, NOBODY, NOBODY)
+""" % (str(TOP), NOBODY, NOBODY)
 
 
 def tells(program):

@@ -4,13 +4,13 @@
 import shutil
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 
+from tiers import TOP
+
 INTERPRETERS = "host"
 
-TOP = Path(__file__).resolve().parent.parent
 MICROPYTHON = TOP / "build" / "unix64" / "micropython"
 needs_micropython = pytest.mark.skipif(
     not MICROPYTHON.exists(), reason="there is no MicroPython: tools/test"

@@ -3,15 +3,14 @@
 
 import json
 import subprocess
-from pathlib import Path
 
 import pytest
 
+from tiers import TOP
 from tools.soaking import interpreters
 
 INTERPRETERS = "host"
 
-TOP = Path(__file__).resolve().parent.parent
 MINUTES = 0.3
 SEEDS = (4, 9, 13, 26, 31)  # clean, rough, wild; one drive and several; direct and matrix; polled
 

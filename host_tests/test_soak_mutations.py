@@ -20,11 +20,11 @@ from pathlib import Path
 import pytest
 
 from tools.soaking import interpreters
+from tools.soaking.interpreters import TOP
 from tools.soaking.mutations import MUTATIONS
 
 INTERPRETERS = "host"
 
-TOP = Path(__file__).resolve().parent.parent
 MINUTES = 2
 SEEDS = range(1, 61)
 OTHERS = range(1, 25)  # that a test tries

@@ -11,10 +11,10 @@ import sys
 import pytest
 
 from conftest import strict
+from tiers import TOP
 
 INTERPRETERS = "host"
 
-TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 
 # Room: what it may import of the project, and of the outside. A room is a file, a folder, or the
 # beginning of a file's name; the longest that fits counts. `micropython` is the language itself

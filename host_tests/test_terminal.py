@@ -13,10 +13,10 @@ import time
 import pytest
 
 from terminal_bench import PATIENCE_S, Terminal, terminals
+from tiers import TOP
 
 INTERPRETERS = "host"
 
-TOP = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 MICROPYTHON = os.path.join(TOP, "build", "unix64", "micropython")
 
 # With its supervision set, START does not ask first.
