@@ -4,7 +4,7 @@
 pytest starts it (conftest.py, tiers.py), one process for each file and tier. By hand, from the
 top of the tree:
 
-    build/unix32/micropython host_tests/runner.py unix32 host_tests/test_telegram.py test_bcc
+    build/unix32/micropython host_tests/runner.py unix32 host_tests/uss/test_telegram.py test_bcc
 
 Without function names it runs all of the file; without a file it only tells what it runs on.
 Before anything else it proves that the interpreter is what the tier promises.
@@ -45,7 +45,7 @@ PICO_FILES = (
 COLLECT_AFTER = 4_000_000
 
 # Relative to the top of the tree, which is the working directory.
-IMPORT_FOLDERS = ("", "firmware", "host_tests")
+IMPORT_FOLDERS = ("", "firmware", "host_tests/benches")
 TRACED_FOLDER = "firmware/"
 
 

@@ -12,9 +12,9 @@ from line_bench import TIMING, Line
 from uss import pkw
 from uss.layout import VARIABLE, Layout
 
-HERE = "test_robustness"
-LINK = "test_simulated_drive_link"
-PARAMETERS = "test_simulated_drive_parameters"
+HERE = "uss/test_robustness"
+LINK = "sim/drives/test_simulated_drive_link"
+PARAMETERS = "sim/drives/test_simulated_drive_parameters"
 
 # What the line or a partner does; how a master takes it; how a drive takes it: file and test.
 # None: it is no matter of that side.
@@ -29,7 +29,7 @@ SET = (
      (HERE, "test_a_reply_with_an_lge_that_cannot_be_is_refused_by_its_length"),
      (HERE, "test_a_drive_with_variable_length_takes_no_lge_that_cannot_be")),
     ("LGE of another layout",
-     ("test_layouts", "test_a_telegram_of_another_layout_is_not_received"),
+     ("uss/test_layouts", "test_a_telegram_of_another_layout_is_not_received"),
      (LINK, "test_lge_has_to_fit_the_layout")),
     ("LGE larger than what follows",
      (HERE, "test_a_reply_that_is_shorter_than_its_lge_ends_with_the_residual_time"),
@@ -41,16 +41,16 @@ SET = (
      (HERE, "test_a_reply_full_of_02h_is_taken_whole_or_not_at_all"),
      (HERE, "test_a_02h_is_a_start_only_behind_a_pause")),
     ("02h inside the data, a telegram in a telegram",
-     ("test_receiver", "test_a_02h_inside_the_data_starts_nothing"),
+     ("uss/test_receiver", "test_a_02h_inside_the_data_starts_nothing"),
      (LINK, "test_a_telegram_inside_another_ones_data_is_not_seen")),
     ("no pause before STX",
      (HERE, "test_a_reply_1_9_characters_after_the_request_starts_nothing"),
      (LINK, "test_a_telegram_starts_after_two_characters_of_silence")),
     ("gaps of just below and above half the compressed time",
-     ("test_receiver", "test_gaps_of_half_the_telegram_are_allowed_and_no_more"),
+     ("uss/test_receiver", "test_gaps_of_half_the_telegram_are_allowed_and_no_more"),
      (LINK, "test_gaps_are_allowed_up_to_half_the_compressed_time")),
     ("a single gap of 1.9 and of 2.1 characters",
-     ("test_receiver", "test_a_gap_inside_the_telegram_is_no_error"),
+     ("uss/test_receiver", "test_a_gap_inside_the_telegram_is_no_error"),
      (HERE, "test_a_single_gap_inside_a_telegram_is_none_of_the_drives_business")),
     ("parity and frame errors at each place",
      (HERE, "test_a_character_that_came_wrong_spoils_the_reply_wherever_it_stands"),
@@ -62,7 +62,7 @@ SET = (
      (HERE, "test_a_reply_with_another_adr_is_counted_as_such"),
      (LINK, "test_each_address_answers_to_itself_only")),
     ("mirror",
-     ("test_golden", "test_a_mirror_telegram_that_came_back_is_recognised"),
+     ("uss/test_golden", "test_a_mirror_telegram_that_came_back_is_recognised"),
      (LINK, "test_a_mirror_telegram_comes_back_and_does_nothing")),
     ("broadcast: no reply",
      None,
@@ -95,25 +95,24 @@ SET = (
      (HERE, "test_a_dead_node_keeps_nobody_else_from_being_asked"),
      None),
     ("a node twice in the list",
-     ("test_master", "test_the_list_goes_round_and_a_node_may_stand_in_it_twice"),
+     ("uss/test_master", "test_the_list_goes_round_and_a_node_may_stand_in_it_twice"),
      None),
     ("own echo before the reply",
      (HERE, "test_the_own_echo_is_skipped"),
      None),
     ("noise of any kind",
-     ("test_receiver", "test_noise_of_any_kind_is_survived_and_the_next_reply_taken"),
+     ("uss/test_receiver", "test_noise_of_any_kind_is_survived_and_the_next_reply_taken"),
      (HERE, "test_a_drive_survives_the_longest_burst")),
 )  # fmt: skip
 
 
 def test_every_item_of_the_set_has_its_tests():
-    folder = __file__.rsplit("/", 1)[0] if "/" in __file__ else "."
     files = {}
     for item, *places in SET:
         assert any(places), item
         for file, test in filter(None, places):
             if file not in files:
-                with open("%s/%s.py" % (folder, file)) as source:
+                with open("host_tests/%s.py" % file) as source:
                     files[file] = source.read()
             assert "\ndef %s()" % test in files[file], (item, file, test)
 

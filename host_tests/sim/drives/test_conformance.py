@@ -8,7 +8,6 @@ test_conformance_timing.py. Sections are those of the USS specification.
 """
 
 import ast
-import pathlib
 
 import pytest
 
@@ -16,6 +15,7 @@ from conformance.kinds import KINDS
 from conformance.master import VARIABLE
 from conformance.program import Drives
 from conformance.telegrams import BROADCAST, MIRROR, SPECIAL, framed
+from tiers import TOP
 
 INTERPRETERS = "host"
 
@@ -355,7 +355,7 @@ def test_a_broadcast_without_bit_10_is_not_valid(node):
 
 
 def test_the_master_shares_no_code_with_what_it_tries():
-    folder = pathlib.Path(__file__).parent / "conformance"
+    folder = TOP / "host_tests/benches/conformance"
     allowed = {"conformance", "serial", "os", "select", "struct", "subprocess", "time", "typing"}
     for path in folder.glob("*.py"):
         for tree in ast.walk(ast.parse(path.read_bytes())):

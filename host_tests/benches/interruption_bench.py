@@ -10,7 +10,7 @@ In use:
 import sys
 
 WHILES_US = (0, 1_500, 23_000, 70_000)  # nothing, a part of an exchange, one, several
-ROOM = "/uss/"
+ROOM = "firmware/uss/"
 
 
 class Interruption:

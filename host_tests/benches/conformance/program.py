@@ -18,7 +18,7 @@ import time
 
 from conformance.master import Master, Node
 
-COMMAND = os.path.join(os.path.dirname(__file__), "..", "..", "tools", "drive")
+COMMAND = os.path.join(os.path.dirname(__file__), "..", "..", "..", "tools", "drive")
 PATIENCE_S = 30.0
 BOOT_S = 0.4  # a drive's, and some
 END_OF_HELP = "quit"  # the list of commands ends with it
