@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Planted bugs. A soak must find them, or it proves nothing.
 
-Each row of MUTATIONS plants one bug. host_tests/tools/test_soak_mutations.py applies each to a copy of
-firmware/, and soaks that with the row's seed.
+Each row of MUTATIONS plants one bug. host_tests/tools/test_soak_mutations.py applies each to a
+copy of firmware/, and soaks that with the row's seed.
 """
 
 
