@@ -60,7 +60,7 @@ def test_rules_that_hold_are_told_with_hours_exchanges_and_faults():
 def test_a_rule_that_is_broken_is_told_with_the_command_that_repeats_it(tmp_path):
     firmware = tmp_path / "firmware"
     shutil.copytree(TOP / "firmware", firmware)
-    link = firmware / "hal" / "rs485.py"
+    link = firmware / "hal" / "link" / "rs485.py"
     text = link.read_text()
     link.write_text(text.replace("_arm(self._duration_us)", "_arm(2 * self._duration_us)"))
     status, told, _ = soak("--seeds", 1, "--minutes", 0.2, "--firmware", firmware)
