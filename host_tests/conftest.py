@@ -3,8 +3,9 @@
 
 A test file is plain Python that runs on MicroPython: functions `test_*` without arguments that
 use bare `assert`. It runs on each tier (tiers.py), one process for a file and a tier, and every
-function is a pytest item of its own: `test_telegram.py::unix32::test_bcc`. So `-k`, `-x`, node
-ids and the summary work as ever. A file that is not for every tier says so at module level:
+function is a pytest item of its own: `uss/test_telegram.py::unix32::test_bcc_counts_stx`. So
+`-k`, `-x`, node ids and the summary work as ever. A file that is not for every tier says so at
+module level:
 
     INTERPRETERS = "unix64 unix32"      # a part of: unix64 unix32 coverage cpython
     INTERPRETERS = "pico"               # beside an emulated Pico: tools/emulator/world.py

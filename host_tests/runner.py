@@ -4,9 +4,9 @@
 pytest starts it (conftest.py, tiers.py), one process for each file and tier. By hand, from the
 top of the tree:
 
-    build/unix32/micropython host_tests/runner.py unix32 host_tests/uss/test_telegram.py test_bcc
+    build/unix32/micropython host_tests/runner.py unix32 host_tests/uss/test_telegram.py [NAME ...]
 
-Without function names it runs all of the file; without a file it only tells what it runs on.
+Without names of functions it runs all of the file; without a file it only tells what it runs on.
 Before anything else it proves that the interpreter is what the tier promises.
 """
 

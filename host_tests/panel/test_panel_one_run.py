@@ -2,7 +2,7 @@
 """The operator's manual, one START, one run: a motor whose mains were away for a moment stays off.
 
 The drives here power up ready (`clean_power_up`), so that the ON which stands on the line starts
-them again. What a single reply shows is the subject of test_one_run.py.
+them again. What a single reply shows is the subject of uss/test_one_run.py.
 """
 
 from panel_bench import (

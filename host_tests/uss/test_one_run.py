@@ -2,7 +2,7 @@
 """One START, one run: a motor that had its speed and stands still is not left to start again.
 
 What each reply shows of it, as the engine sees it (`Drive.take`). Mains that come back within
-a second, with a drive behind them: test_panel_one_run.py.
+a second, with a drive behind them: panel/test_panel_one_run.py.
 """
 
 from master_bench import Bus
