@@ -3,8 +3,8 @@
 
 In use:
 
-    command = Command(drive, survey, desk, now_us)  # the key was obeyed
-    command.give(now_us)                    # likewise, another time
+    command = Command(drive, survey, desk, now_us, bus.dead_man_trips)  # the key was obeyed
+    command.give(now_us, bus.dead_man_trips)        # likewise, another time
     command.send(now_us)                    # ON goes out from now on
     notice = command.why_in_vain(jogs, now_us)  # again and again while it is sent, or NOTHING
     notice = command.why_stopped()          # the engine has taken it back
@@ -22,6 +22,7 @@ _START_US = const(5_000_000)  # a drive that does not run by then is told to sto
 
 class Command:
     """drive: `uss.drive.Drive`. survey: its `Survey`. desk: the `Desk` of its control.
+    dead_man_trips: those of the bus when the key was pressed.
 
     `Control` writes these fields, and the command only sets `risk` back: risk, the row of
     risks.RISKS that a START is to be asked about next; question, that it was asked about last;
@@ -30,7 +31,7 @@ class Command:
     looked at last. Nobody but the command writes the others.
     """
 
-    def __init__(self, drive, survey, desk, now_us):
+    def __init__(self, drive, survey, desk, now_us, dead_man_trips):
         self.question = 0
         self.accepted = [risks.NONE] * len(risks.RISKS)
         self.exposure_ms = 0
@@ -42,12 +43,12 @@ class Command:
         self._version = _NONE  # of the survey, as judged last
         self._is_local = False  # commands, and setpoints, come from elsewhere
         self._is_foreign = False
-        self.give(now_us)
+        self.give(now_us, dead_man_trips)
 
-    def give(self, now_us):
+    def give(self, now_us, dead_man_trips):
         self.risk = 0
         self._contacts = self._drive.contacts
-        self._dead_man_trips = self._bus.dead_man_trips
+        self._dead_man_trips = dead_man_trips
         self._failures = self._bus.failures
         self.send(now_us)
 

@@ -29,6 +29,7 @@ from panel.stop_watch import NO_WATCH, StopWatch
 from panel.supervision import longest_off_time_ms
 
 _UNKNOWN = const(-1)  # no status word
+_PREPARED = const(-1)  # no START waits to be prepared
 _SILENT_MAX = const(3)  # telegrams without an answer after which the speed is not known any more
 _RUNS_REREAD_US = const(200_000)  # a setting of one that runs is read again so often: while shown,
 _UNSEEN_REREAD_US = const(330_000)  # and while not
@@ -83,6 +84,8 @@ class Control:
         self.lost_running = False
         self.absence_known = False
         self._command = None  # the last one that was obeyed; most drives never need one
+        # bus.dead_man_trips when START was pressed, until that START is prepared.
+        self._start_trips = _PREPARED
         self._now_us = 0
         self._contact = False  # as last seen
         self._quiet_zsw = _UNKNOWN  # drive.zsw when there was nothing to watch
@@ -99,11 +102,10 @@ class Control:
         """
         self.refusal = permits.why_not_start(self)
         if not self.refusal and not self.is_starting():
-            self._obey()
             self.notice = texts.NOTHING
             self.phase = CHECKING
-            self.survey.count_anew()
-            self.survey.recheck()
+            self._quiet_zsw = _UNKNOWN
+            self._start_trips = self.desk.bus.dead_man_trips
 
     def accept_risk(self, row, value):
         """The operator takes the risk that it was asked about, as it was then, and starts the
@@ -140,7 +142,7 @@ class Control:
         """Turn while a key is held. stw: pzd.JOG_RIGHT or JOG_LEFT. Not obeyed: `refusal`."""
         self.refusal = permits.why_not_jog(self)
         if not self.refusal:
-            self._obey()
+            self._obey(self.desk.bus.dead_man_trips)
             self.stop_watch.end()
             self.phase = JOGGING
             self._jogged = True
@@ -333,17 +335,29 @@ class Control:
     def _on(self):
         return pzd.ON_REVERSE if self.reversed else pzd.ON
 
-    def _obey(self):
-        """A key was obeyed: what was said of the run before is over."""
+    def _obey(self, dead_man_trips):
+        """Obey a key: what was said of the run before is over."""
         self.remark = texts.NOTHING
         self._quiet_zsw = _UNKNOWN
         if self._command is None:
-            self._command = Command(self.drive, self.survey, self.desk, self._now_us)
+            self._command = Command(
+                self.drive, self.survey, self.desk, self._now_us, dead_man_trips
+            )
         else:
-            self._command.give(self._now_us)
+            self._command.give(self._now_us, dead_man_trips)
+
+    def _prepare(self):
+        """Begin what `start` has left to this turn: a step with a key in it takes long already."""
+        self._obey(self._start_trips)
+        self._start_trips = _PREPARED
+        self.survey.count_anew()
+        self.survey.recheck()
 
     def _finish_check(self, now_us):
         """ON, if the drive has told its settings and there is nothing against it."""
+        if self._start_trips != _PREPARED:
+            self._prepare()
+            return
         if self.setpoint.has_news():
             return  # HSW may be another once `ask` has taken them
         command = self._command

@@ -54,7 +54,7 @@ MUTATIONS = (
     Mutation(
         "BCC unchecked",
         "a spoilt reply counts",
-        ("WITHOUT REASON", "SHOWN", "LOST", "START"), 54,
+        ("WITHOUT REASON", "SHOWN", "LOST", "START"), 57,
         (
             "uss/telegram.py",
             "    if exclusive_or(buffer, count):\n        return BAD_BCC\n",
@@ -152,7 +152,7 @@ MUTATIONS = (
             "panel/control.py",
             "            self._contact = drive.contact\n            self.lost_running",
             "            self._contact = drive.contact\n            if self.runs():\n"
-            "                self._obey()\n"
+            "                self._obey(self.desk.bus.dead_man_trips)\n"
             "                self.drive.start(self.drive.hsw, self._on())\n"
             "            self.lost_running",
         ),
