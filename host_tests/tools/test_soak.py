@@ -51,7 +51,7 @@ def test_every_rule_holds():
 def test_a_start_that_nobody_pressed_is_noticed():
     soak = Soak(13, drives=1)
     soak.hand.run(1_500)
-    soak.world.app.panel.controls[0]._obey()  # as if START had been pressed
+    soak.world.app.panel.controls[0]._obey(0)  # as if START had been pressed
     soak.world.app.bus.turns.drives[0].start(0x1000)  # behind the back of whoever judges
     try:
         soak.hand.run(500)
