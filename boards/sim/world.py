@@ -87,7 +87,9 @@ class Surroundings:
             delay_us = self.random(fastest_us, max(15_000, 3 * fastest_us // 2)) if seed else None
             kind = {"reply_delay_us": delay_us, "parameters": parameters}
             kind.update((kinds or {}).get(address, {}))
-            if kind["parameters"] is None and not kind.get("factory"):
+            if kind.get("factory"):
+                kind["reply_delay_us"] = None  # it may be too short at the rate of its own
+            elif kind["parameters"] is None:
                 kind["parameters"] = supervision(kind.get("family", mm420), supervised_ms)
             self.drives[address] = Drive(clock, self.wire, address, **kind)
         self.mains = Mains(clock, list(self.drives.values()))

@@ -90,9 +90,8 @@ class Drive:
         self._clock = clock
         self.wire = wire
         self.name = "drive %d" % address
-        if reply_delay_us is None:
-            reply_delay_us = -(-REPLY_DELAY_CHARACTERS * 11_000_000 // wire.baud)
-        self.reply_delay_us = reply_delay_us
+        self._usual_delay = reply_delay_us is None
+        self.reply_delay_us = usual_delay_us(wire.baud) if self._usual_delay else reply_delay_us
         self._any_baud = any_baud
         self.plugged = True
         self._connected = False
@@ -391,7 +390,7 @@ class Drive:
         """Be on the line while plugged and powered. What it is sending when it leaves is cut."""
         connected = self.plugged and self._supply.booted and self._speaks_uss
         if connected and not self._connected:
-            self.wire.attach(self)
+            self.wire.attach(self, self.slave.baud)
         elif self._connected and not connected:
             self.wire.detach(self)
         self._connected = connected
@@ -506,7 +505,12 @@ class Drive:
         link = self.family.LINK
         ram = self.parameters.ram
         codes = self.family.BAUD_CODES
-        slave.baud = self.wire.baud if self._any_baud else codes[ram[link["baud"]][0]]
+        baud = self.wire.baud if self._any_baud else codes[ram[link["baud"]][0]]
+        if baud != slave.baud:
+            slave.set_baud(baud)
+            self.wire.set_rate(self, baud)
+            if self._usual_delay:
+                self.reply_delay_us = usual_delay_us(baud)
         slave.address = ram[link["address"]][0]
         self._configure_layout()
 
@@ -519,3 +523,8 @@ class Drive:
             slave.pzd_words = ram[link["pzd words"]][0]
         else:
             slave.pkw_words, slave.pzd_words = link["layout"]
+
+
+def usual_delay_us(baud):
+    """From the last character heard to the reply, where nobody has set another time."""
+    return -(-REPLY_DELAY_CHARACTERS * 11_000_000 // baud)
