@@ -90,7 +90,7 @@ usage: ./tools/panel [--speed N] [--drives 1,2=g110] [--baud 19200] [--settings 
                   included (60, or that of the settings). It delays a STOP as well
   -h, --help      this text
   --version       alone: the version of the panel
-The simulated drive knows the rates from 1200 to 115200.
+A simulated mm420 knows the rates from 1200 to 115200; others know fewer, or more.
 An emulated Pico tells the path of its USB serial port, for mpremote and tools/deploy.
 Without --script, in a terminal: the live panel. It shows its keys; q ends it.""" % (
     " ".join(kinds.NAMES)
