@@ -305,6 +305,27 @@ def check_form(bench, since, size):
         assert telegram.address != LOST or len(telegram.characters) == size, telegram
 
 
+def test_twice_in_one_exchange():
+    """Before the engine has come to it, and after; the first telegram is long, the line slow."""
+    for between_us in (0, 3_000):
+        bench = Bench([Node(1), Node(LOST, 3, 2)], baud=1200)
+        turns = bench.master.turns
+        turns.remove(bench.drives[LOST])
+        drive = bench.drives[LOST] = turns.add(LOST, Layout(4, 16))
+        bench.run_until(lambda: bench.sent and bench.sent[-1].address == LOST)
+        bench.run(1_000)
+        long = bench.sent[-1]
+        for layout in (Layout(4, 4), Layout(3, 2)):
+            turns.relayout(drive, layout)
+            bench.run(between_us)
+        sent = len(bench.sent)
+        bench.run_until(lambda: len(bench.sent) > sent)
+        waited_us = bench.sent[sent].at - long.at
+        assert waited_us > bench.timing.telegram_us(40) + bench.timing.reply_timeout_us
+        bench.run(1_000_000)
+        assert drive.contact and drive.silent == 0
+
+
 # --- whose turn it is ---------------------------------------------------------------------------
 
 

@@ -144,8 +144,12 @@ class Master:
         """Whatever comes of an exchange with this drive that is under way is a miss. The drive may
         be changed from now on; nobody begins another exchange with it before that is done.
         """
+        exchange = self.turns.exchanges
+        known = self._abandoned
+        if known is not None and known.drive is drive and known.exchange == exchange:
+            return  # the drive was changed already: it does not know what was sent
         if self.is_under_way(drive):
-            self._abandoned = _Abandoned(drive, self.turns.exchanges)
+            self._abandoned = _Abandoned(drive, exchange)
 
     def patience_us(self):
         """How long `progress` may stay the same on a bus that works."""
