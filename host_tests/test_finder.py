@@ -24,6 +24,7 @@ NOT_TRACED = """
     test_a_stop_is_on_the_line_as_soon_as_beside_silent_drives_anyway
     test_a_drive_that_is_switched_on_beside_thirty_others_is_found_by_the_list
     test_no_motor_starts_by_it
+    test_a_step_takes_memory_only_when_something_is_sent_or_found
 """
 
 
@@ -371,6 +372,22 @@ def test_a_drive_that_is_changed_or_removed_meanwhile():
             if change is not remove:
                 node = bench.nodes[bench.drives[2].address]
                 assert bench.drives[2].layout.pkw_words == node.pkw_words, (change, later_us)
+
+
+def test_one_that_answers_while_it_gets_another_layout_keeps_its_own():
+    bench = Search({2: (3, 2)})
+    turns = bench.master.turns
+    relayout = turns.relayout
+    refused = []
+
+    def refuse(drive, layout):
+        refused.append(layout)
+        turns.relayout = relayout
+        raise ValueError("it is in contact")
+
+    turns.relayout = refuse
+    bench.until_found(2)
+    assert len(refused) == 1 and bench.found == [bench.drives[2]]
 
 
 def test_two_layouts_that_are_the_same_are_one_object():

@@ -4,12 +4,14 @@
 No telegram is half old and half new, STOP stays owed, nothing starts, the others lose nothing.
 """
 
-from round_bench import RUNNING, Bench, Node, exclusive_or, framed
+from round_bench import MASK, RUNNING, Bench, Node, exclusive_or, framed
 from test_turns import Table
 from uss import pkw, pzd
 from uss.layout import STANDARD, VARIABLE, Layout
 from uss.receiver import OTHER_LENGTH
 from uss.tasks.change_reports import Reports
+from uss.timing import Timing
+from uss.turns import Turns
 
 NOT_TRACED = "test_at_every_instant_of_an_exchange"
 
@@ -162,6 +164,23 @@ def test_only_a_drive_without_contact_that_cannot_be_running():
     assert "not on this bus" in refused(bench, Layout(3, 2), 3)
 
 
+def test_one_that_answers_at_the_last_moment_keeps_its_layout_and_its_turns():
+    def answer(drive):
+        reply = framed(drive.address, bytes(8) + b"\xfb\x31\x00\x00")
+        drive.take(reply, len(reply), 0)
+
+    turns = Turns(Timing(19200), MASK, 1_000_000, lambda drive: True, answer)
+    drives = [turns.add(address) for address in (1, LOST, 3)]
+    try:
+        turns.relayout(drives[1], Layout(3, 2))
+    except ValueError as reason:
+        assert "contact" in str(reason)
+    assert drives[1].contact and drives[1].layout is STANDARD
+    assert [turns.choose(0) for _ in drives] == drives
+    drives[1].stop()
+    assert turns.choose(0) is drives[1]
+
+
 # --- what it loses, and what not ----------------------------------------------------------------
 
 
@@ -231,6 +250,22 @@ def test_counters_go_on_and_an_exchange_under_way_is_a_miss():
             assert drive.trouble == OTHER_LENGTH or drive.silent > 3
 
 
+def test_an_answer_that_equals_the_request_is_no_echo_for_that():
+    """Without PZD words it may, and the link cannot tell how long the pause before it was."""
+    bench = Bench([Node(1), Node(LOST, 4, 0, 1_000)], idle_us=800)
+    node, drive = bench.nodes[LOST], bench.drives[LOST]
+    node.plugged = False
+    bench.run(3_000_000)
+    node.plugged = True
+    length_errors = drive.counters[2]
+    sent = len(bench.sent)
+    bench.run_until(lambda: LOST in bench.addresses(sent))
+    relayout(bench, Layout(3, 0))
+    bench.run(60_000)
+    assert drive.counters[2] == length_errors + 1 and not drive.contact
+    assert not bench.master.has_echo()
+
+
 def test_further_words_that_both_layouts_have_are_kept():
     bench = Bench([Node(1), Node(LOST, 3, 6)])
     turns = bench.master.turns
@@ -286,12 +321,13 @@ def test_change_reports_are_followed_on():
 
 
 def test_a_drive_that_is_to_be_asked_again_is_asked_in_its_new_layout():
-    bench = bench_of(Layout(3, 2))
-    bench.master.retries = 3
+    bench = bench_of(Layout(VARIABLE, 2))
+    bench.master.retries = 1_000
     bench.run(3_000_000)
-    for later_us in range(0, 60_000, 1_000):
-        bench.run_until(lambda: bench.sent[-1].address == LOST)
-        bench.run(later_us)
+    for later_us in range(0, 60_000, 500):
+        sent = len(bench.sent)
+        bench.run_until(lambda: LOST in bench.addresses(sent))
+        bench.run_to(bench.sent[-1].at + later_us)
         sent = len(bench.sent)
         relayout(bench, Layout(4, 4))
         bench.run(60_000)

@@ -489,8 +489,10 @@ class _Abandoned:
     drive: whose it was. exchange: `exchanges` of the bus then.
     """
 
-    outside = True  # as if it were: nobody repeats it
-    silent = _OFTEN
+    outside = True  # it is treated as if it were
+    silent = _OFTEN  # nobody repeats it
+    contact = False
+    state = pkw.TIMED_OUT
 
     def __init__(self, drive, exchange):
         self.drive = drive
