@@ -4,6 +4,8 @@
 No telegram is half old and half new, STOP stays owed, nothing starts, the others lose nothing.
 """
 
+from boards.sim.drives.families import generic
+from fleet_bench import Fleet
 from round_bench import MASK, RUNNING, Bench, Node, exclusive_or, framed
 from test_turns import Table
 from uss import pkw, pzd
@@ -344,7 +346,7 @@ def check_form(bench, since, size):
 def test_twice_in_one_exchange():
     """Before the engine has come to it, and after; the first telegram is long, the line slow."""
     for between_us in (0, 3_000):
-        bench = Bench([Node(1), Node(LOST, 3, 2)], baud=1200)
+        bench = Bench([Node(1), Node(LOST, 3, 2)], baud=1200, echo=True)
         turns = bench.master.turns
         turns.remove(bench.drives[LOST])
         drive = bench.drives[LOST] = turns.add(LOST, Layout(4, 16))
@@ -360,6 +362,7 @@ def test_twice_in_one_exchange():
         assert waited_us > bench.timing.telegram_us(40) + bench.timing.reply_timeout_us
         bench.run(1_000_000)
         assert drive.contact and drive.silent == 0
+        assert drive.counters[5] == 1 == sum(drive.counters) - drive.counters[0]  # no reply
 
 
 # --- whose turn it is ---------------------------------------------------------------------------
@@ -410,3 +413,22 @@ def test_at_every_instant_of_an_exchange():
             check_form(bench, sent, layout.net_count + 4)
             check_wire(bench, layout, 0)
             step += 1
+
+
+def test_the_engine_takes_no_memory_for_it():
+    """On the simulated chip, whose heap is locked while an interrupt runs."""
+    fleet = Fleet({1: {"family": generic}, LOST: {"family": generic}}, listed=False)
+    turns = fleet.master.turns
+    turns.add(1)
+    lost = turns.add(LOST, Layout(3, 2))
+    fleet.run(1_000)
+    for step in range(120):
+        lost.ask_soon()
+        fleet.run(2 + step % 40)
+        turns.relayout(lost, (Layout(0, 2), Layout(3, 4))[step & 1])
+        fleet.run(10)
+    fleet.check()
+    assert turns.drives[0].contact and not any(turns.drives[0].counters[1:])
+    turns.relayout(lost, Layout(4, 2))
+    fleet.run(1_000)
+    assert lost.contact

@@ -54,6 +54,25 @@ def test_no_telegram_is_half_old_and_half_new():
                 assert bench.master.failures == 0 and len(bench.master.turns.round) == 3
 
 
+def test_where_its_exchange_is_about_to_be_repeated():
+    """It answered in another length; the start interval after that goes on."""
+    layout = LAYOUTS[2]
+    for later_us in (18_300, 19_000, 19_400, 19_800):
+
+        def prepare(later_us=later_us):
+            bench = bench_of(layout)
+            bench.master.retries = 1_000
+            sent = len(bench.sent)
+            bench.run_until(lambda: LOST in bench.addresses(sent))
+            bench.run_to(bench.sent[-1].at + later_us)
+            return bench
+
+        for bench, _ in interrupted(prepare, lambda bench: relayout(bench, layout)):
+            bench.run(150_000)
+            assert bench.drives[LOST].contact
+            check_wire(bench, layout, 0)
+
+
 def test_a_drive_that_answers_at_the_last_moment_keeps_its_layout():
     """It was switched on just now, and has the layout that the bus thought it has."""
     outcomes = set()
