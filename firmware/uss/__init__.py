@@ -27,7 +27,6 @@ What is known of a drive:
     families         what differs between the drive families: data, loaded when it is named
     survey           what must be known of a drive before it may be started
     telegram_count   whether a drive was without its mains
-    finder           the layout of drives that do not answer, found by trying
 
 For programs that need more than the panel:
     bits             the bits of control and status words by name
