@@ -56,8 +56,8 @@ class Master:
     def hears(self, size=16, patience_s=PATIENCE_S):
         deadline = time.monotonic() + patience_s
         heard = b""
-        while len(heard) < size and time.monotonic() < deadline:
-            if select.select([self.port], [], [], deadline - time.monotonic())[0]:
+        while len(heard) < size and (left_s := deadline - time.monotonic()) > 0:
+            if select.select([self.port], [], [], left_s)[0]:
                 heard += os.read(self.port, 300)
         return heard
 
