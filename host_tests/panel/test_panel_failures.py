@@ -492,3 +492,16 @@ def test_a_drive_that_is_lost_while_it_ramps_down_may_run():
     world.run(1500)
     assert row_1(world) == "NO CONTACT,     "
     world.check()
+
+
+def test_a_panel_that_hangs_while_it_prepares_a_start_starts_nothing():
+    """A START is prepared in the steps behind its key: 24 ms after that went down it is obeyed."""
+    for ms in range(24, 60, 2):
+        world = panel()
+        world.down("START")
+        world.run(ms)
+        world.hang(1000)
+        world.up("START")
+        world.run(3000)
+        assert starts(world) == 0 and row_2(world) == "PANEL HUNG   A1", (ms, row_2(world))
+        world.check()
