@@ -220,7 +220,9 @@ class MissingTier(pytest.Item):
         self.reason = reason
 
     def runtest(self):
-        raise TestFailed(absence(self.name.split()[1], self.reason))
+        fetched = TOP / "build/fetched.log"  # tools/test has written there what it tried
+        tried = fetched.read_text() if fetched.exists() else ""
+        raise TestFailed(tried + absence(self.name.split()[1], self.reason))
 
     def repr_failure(self, excinfo):
         return Failure(str(excinfo.value))

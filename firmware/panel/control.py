@@ -109,13 +109,12 @@ class Control:
 
     def accept_risk(self, row, value):
         """The operator takes the risk that it was asked about, as it was then, and starts the
-        drive."""
-        risks.accept(self, row, value)
+        drive. P2014 = 0 is accepted for this drive once and for all, see `risks`."""
+        if row == risks.SUPERVISION and not value:
+            self.desk.settings.accept_unsupervised(self.drive.address)
+        else:
+            self._command.accepted[row] = value
         self.start()
-
-    def accept_unsupervised(self):
-        """P2014 = 0 is accepted for this drive, once and for all."""
-        self.desk.settings.accept_unsupervised(self.drive.address)
 
     def stop(self):
         """OFF, always; acknowledge what was announced about this drive and its fault, if shown."""
@@ -248,11 +247,8 @@ class Control:
         """Whether the operator has taken this risk, a row of risks.RISKS, with this value."""
         return self._command is not None and self._command.accepted[row] == value
 
-    def accept(self, row, value):
-        """The operator takes a risk that a START has asked about."""
-        self._command.accepted[row] = value
-
     def accepts_unsupervised(self):
+        """Whether P2014 = 0 has been accepted for it."""
         return self.drive.address in self.desk.settings.unsupervised
 
     def is_unsaved(self):

@@ -61,6 +61,7 @@ class Panel:
     def __init__(self, controls, bus, key_names, settings, mask, notice=texts.NOTHING):
         self._turn = 0  # asked for in every step, so it is first: as in `Master`
         self._acting = False  # keys that were pressed are still to do what they do
+        self._trips = 0  # bus.dead_man_trips when they were
         self.controls = controls
         self.selected = controls[0]
         self.announcer = Announcer(controls, mask)
@@ -241,11 +242,15 @@ class Panel:
             self._act(now_ms)
         self._acts.note()
         self._acting = True
+        self._trips = self._bus.dead_man_trips
         return True
 
     def _act(self, now_ms):
         """What was pressed or repeats does what it does on this page."""
         self._acting = False
+        if self._bus.dead_man_trips != self._trips:  # the panel has hung since
+            self.say(now_ms, texts.PANEL_HUNG)
+            return
         acts = self._acts
         page = self._cover or self._page
         if (acts.pressed | acts.repeated) & self._command_bits and page.obeys:

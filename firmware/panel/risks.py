@@ -3,7 +3,7 @@
 
     is_open(control, row)           # there is this risk, and nobody has accepted it
     text, values, can_fix, value = ask(control, row)
-    accept(control, row, value)     # as it was when that was asked
+    control.accept_risk(row, value) # as it was when that was asked
 
 P2014 = 0 is accepted for good, in the settings, and with it any other P2014. All else is accepted
 until the panel restarts, and only as it is: another P2014, another P1210 is asked about anew.
@@ -72,14 +72,6 @@ def ask(control, row):
         if not value:
             text, values = texts.ASK_UNSUPERVISED, ()
     return text, values, can_fix, value
-
-
-def accept(control, row, value):
-    """The operator takes this risk, with the value that was asked about."""
-    if row == SUPERVISION and not value:
-        control.accept_unsupervised()
-    else:
-        control.accept(row, value)
 
 
 def exposure_ms(control):

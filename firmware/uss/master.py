@@ -280,7 +280,7 @@ class Master:
             self._paused_since = now
             return left_us
         self._begin_rest(now)
-        return self._rest(now)
+        return self._go_on(now)
 
     def _begin_rest(self, now):
         self._resting_since = now
@@ -288,11 +288,14 @@ class Master:
         self.phase = RESTING
 
     def _rest(self, now):
+        """Hear whether the line is still silent, then go on."""
+        heard = self._swallow(now)
+        if heard and self._is_foreign(heard):
+            self._count_foreign()
+        return self._go_on(now)
+
+    def _go_on(self, now):
         """Wait for the start interval: two characters of silence before every telegram."""
-        if now != self._resting_since:  # else all that has come was taken just now
-            heard = self._swallow(now)
-            if heard and self._is_foreign(heard):
-                self._count_foreign()
         left_us = self._rest_us - elapsed(now, self._quiet_since, self._mask)
         if left_us > 0 and elapsed(now, self._resting_since, self._mask) < _BABBLE_US:
             return left_us
@@ -438,7 +441,7 @@ class Master:
             if drive is not None:
                 return self._send(drive, now)
         self._begin_rest(now)
-        return self._rest(now)
+        return self._go_on(now)
 
     def _miss(self, finding, now):
         """There was no valid reply: count that, and repeat the exchange if `retries` says so."""

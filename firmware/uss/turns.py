@@ -97,7 +97,7 @@ class Turns:
         """
         if len(self.list) >= _LIST_MAX:
             raise ValueError("the circulating list holds %d entries" % _LIST_MAX)
-        drive = self.by_address[address] if address in range(NODES) else None
+        drive = self.at(address)
         if drive is None:
             drive = Drive(address, self._mask, self._attention, layout or STANDARD)
             # New lists, because an interrupt may have come in while it walks the old ones.
@@ -107,6 +107,10 @@ class Turns:
             raise ValueError("drive %d has %r already" % (address, drive.layout))
         self._set_list(self.list + [drive])
         return drive
+
+    def at(self, address):
+        """The drive with this address; None if there is none, or the address is not 0...31."""
+        return self.by_address[address] if address in range(NODES) else None
 
     def remove(self, drive):
         """Take a drive off the bus: it gets no telegrams any more.

@@ -495,13 +495,16 @@ def test_a_drive_that_is_lost_while_it_ramps_down_may_run():
 
 
 def test_a_panel_that_hangs_while_it_prepares_a_start_starts_nothing():
-    """A START is prepared in the steps behind its key: 24 ms after that went down it is obeyed."""
-    for ms in range(24, 60, 2):
+    """A key counts 20 ms after it went down, acts in the next step, and a START is prepared in the
+    steps behind that."""
+    for ms in range(22, 60, 2):
         world = panel()
         world.down("START")
         world.run(ms)
         world.hang(1000)
         world.up("START")
+        world.run(1000)
+        assert row_2(world).startswith("PANEL HUNG"), (ms, row_2(world))
         world.run(3000)
-        assert starts(world) == 0 and row_2(world) == "PANEL HUNG   A1", (ms, row_2(world))
+        assert starts(world) == 0
         world.check()

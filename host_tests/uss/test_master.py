@@ -5,7 +5,8 @@ from master_bench import MASK, REPLY_DELAY_US, TIMING, Bus, parameters
 from uss import pkw, pzd
 from uss.drive import Drive
 from uss.layout import VARIABLE, Layout
-from uss.master import CLOSED, DEAD_MAN_US, LISTENING, LOST_US, Master
+from uss.master import AWAITING, CLOSED, DEAD_MAN_US, LISTENING, LOST_US, RESTING, Master
+from uss.receiver import COMING
 from uss.timing import BAUD_RATES, Timing
 
 NOT_TRACED = "test_while_characters_come_in_nothing_is_sent_into_them"
@@ -740,6 +741,30 @@ def test_while_characters_come_in_nothing_is_sent_into_them():
     bus.receive = receive
     bus.run(300_000)
     assert len(bus.sent) - sent > 8
+
+
+def test_what_is_announced_in_the_microsecond_in_which_a_rest_begins_is_taken_at_once():
+    """Taken later, with what had come since, it seemed to end too early: the master sent while a
+    drive talked."""
+    bus = Bus()
+    bus.silent.add(1)
+    bus.run(300_000)
+    while bus.master.phase != AWAITING:
+        bus.run(1)
+    bus.receive = lambda buffer, at: COMING
+    while bus.master.phase != RESTING:
+        now = bus.now
+        bus.now += bus.master.poll(now & MASK)
+    bus.now, sent = now, len(bus.sent)
+
+    def announce(buffer, at):
+        bus.receive = lambda buffer, at: 0
+        bus.received_at = (now - 2 * TIMING.start_interval_us) & MASK
+        return 27
+
+    bus.receive = announce
+    bus.master.poll(now & MASK)
+    assert bus.receive is not announce and len(bus.sent) == sent + 1
 
 
 def test_a_list_that_is_emptied_ends_the_telegrams_and_nothing_else():

@@ -186,7 +186,7 @@ MUTATIONS = (
         "no question",
         "a parameter that cuts the panel off is written at once",
         ("WRITE",), 3,
-        ("panel/pages/parameters.py", "elif number in ask_first:", "elif number < 0:"),
+        ("panel/pages/parameters.py", "if number in ask_first and not", "if number < 0 and not"),
     ),
     Mutation(
         "setpoint limit dropped",

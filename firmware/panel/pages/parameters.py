@@ -97,10 +97,7 @@ class Parameters(Page):
         _, number, index, _ = PARAMETERS[self._row]
         self._wish = (self._control, number, index, self._edited)
         ask_first = self._control.survey.family.ask_first
-        reason = self._why_not()
-        if reason:
-            self.panel.say(now_ms, reason)
-        elif number in ask_first:
+        if number in ask_first and not self._why_not():
             values = (self._control.drive.address, number, self._edited)
             text = ASK[ask_first[number]]
             self.panel.cover(Question(self.panel, text, values, {"SET": self._grant}))

@@ -758,9 +758,9 @@ class Master:
         A drive of fixed length answers only its own length; for drives of this bus that length is
         used instead of `net_count`. Waits; NoContact if this bus sends nothing.
         """
-        for drive in self.drives:
-            if drive.address == node:
-                net_count = drive.layout.net_count
+        drive = self.engine.turns.at(node)
+        if drive is not None:
+            net_count = drive.layout.net_count
         probe = outside.Mirror(node, bytes(net_count))
         self.post(probe)
         while probe.state == pkw.PENDING:

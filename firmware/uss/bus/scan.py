@@ -173,7 +173,7 @@ class Scan:
         while not self._is_searched():
             row, place = divmod(self._position, len(self._addresses))
             address, net_count = self._addresses[place], self._net_counts[row]
-            drive = self._listed(address)
+            drive = self._bus.turns.at(address)
             if self._another_length:
                 self._probe(address, self.found[address] + 2)
                 return
@@ -207,7 +207,7 @@ class Scan:
             self.found[address] = mirror.size - FRAME_CHARACTERS
             self.unclear.pop(address, None)
             self._another_length = True
-            if self._listed(address) is None:
+            if self._bus.turns.at(address) is None:
                 self._kept[address] = now
         elif mirror.finding == SILENT:
             self._next()
@@ -275,12 +275,6 @@ class Scan:
                 self.will_trip[address] = off_time_ms
 
     # --- the bus --------------------------------------------------------------------------------
-
-    def _listed(self, address):
-        for drive in self._bus.turns.drives:
-            if drive.address == address:
-                return drive
-        return None
 
     def _has_contact(self):
         return any([drive.contact for drive in self._bus.turns.drives])
