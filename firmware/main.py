@@ -32,7 +32,7 @@ def loop(app):
         app.start()
         print(RUNS)  # tools/deploy waits for this
         while True:
-            app = app.step() or app
+            app.step()
     finally:
         app.close()
 

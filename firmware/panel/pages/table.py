@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""The pages, in the order in which PARAM shows them; the first one is the home page, which is
-always loaded. The others are `on_demand`: module of `panel.pages`, and class.
-"""
+"""The pages, in the order in which PARAM shows them; the first one is the home page."""
 
-PAGES = (("home", "Home"), ("parameters", "Parameters"))
+from panel.pages.home import Home
+from panel.pages.parameters import Parameters
+
+PAGES = (Home, Parameters)
