@@ -12,26 +12,31 @@ sends ON only while `step` refreshes it, and `step` feeds the watchdog only whil
 
 from micropython import const
 
+import on_demand
+
 # From the bottom of the house up: an import inside an import inside an import takes stack.
 import uss.fast  # noqa: F401
 from uss.timing import Timing, elapsed
 from uss.master import Master
 from uss.leave import leave, persist
-from uss.families.mm4 import MM4
-from uss.survey import Survey, spare_jobs
+import uss.survey  # noqa: F401
 from hal.pacer import Pacer
 from panel import texts
 import panel.risks  # noqa: F401
-from panel.control import Control, Desk
-import panel.pages.risk  # noqa: F401
-import panel.pages.table  # noqa: F401
+import panel.control  # noqa: F401
+from panel.roster import Roster
+import panel.pages.home  # noqa: F401
 from panel.panel import Panel
 from panel.screen import GLYPHS
-from settings import load, save
 
+# From the bottom of the house up, too.
+PAGES_AT_HAND = (
+    "panel.writer", "panel.pages.question", "panel.pages.risk", "panel.pages.parameters",
+)  # fmt: skip
 _FAREWELL_STEPS = const(100)  # for the display to show that nothing is controlled any more
 _SAVE_AGAIN_MS = const(10_000)  # after the store failed
 _LONG_US = const(900)  # a step that has taken so long is not to do two more things
+_SILENCES = const(3)  # telegrams without an answer, then somebody looks for another layout
 _FEED_MS = const(100)  # of the watchdog, which bites after 2 s
 
 
@@ -42,18 +47,18 @@ class App:
     def __init__(self, board):
         board.watchdog.feed()  # it bites from now on, whatever hangs before the loop is reached
         self.board = board
-        self.settings = settings = load(board.store)
+        self.settings = settings = on_demand.call("settings_file", "load", board.store)
         mask = board.clock.ticks_mask
         self.link = board.make_link(settings.baud)
         timing = Timing(settings.baud, settings.reply_timeout_ms * 1000)
         self.bus = Master(self.link, timing, mask, settings.lost_ms * 1000)
+        self._finder = None
         self.pacer = Pacer(self.bus, self.link, board.clock, board.timer)
-        drives = [self.bus.turns.add(address) for address in settings.drives]
-        desk, spares = Desk(self.bus, settings, mask), spare_jobs()
-        controls = [Control(drive, Survey(drive, MM4, mask, spares), desk) for drive in drives]
+        self._roster = roster = Roster(self.bus, settings, mask)
         board.display.define(GLYPHS)
         notice = texts.WATCHDOG_RESTART if board.reset_cause else texts.NOTHING
-        self.panel = Panel(controls, self.bus, board.keypad.names, settings, mask, notice)
+        self.panel = Panel(roster, self.bus, board.keypad.names, settings, mask, notice)
+        on_demand.keep(PAGES_AT_HAND)
         self._mask = mask
         self.ticks_us = board.clock.ticks_us
         self._ticks_ms = board.clock.ticks_ms
@@ -75,7 +80,8 @@ class App:
         self.pacer.start()
 
     def step(self):
-        """One turn of the main loop, 4 ms of work at most; ends in the board's `idle`."""
+        """One turn of the main loop, 4 ms of work at most; ends in the board's `idle`. Answers the
+        program that comes next, None as long as this one goes on."""
         board = self.board
         keypad = board.keypad
         now_ms = self._ticks_ms()
@@ -90,6 +96,22 @@ class App:
         if self.settings.dirty:
             self._save_if_quiet(now_ms)
         board.idle()
+        return self._hand_over() if self.panel.wants else None
+
+    def _hand_over(self):
+        """The program that comes next: this one leaves the line, and no motor runs."""
+        wanted, self.panel.wants = self.panel.wants, None
+        if self.panel.any_runs():
+            return None
+        self._leave()
+        if self.settings.dirty:
+            self._save(0)
+        if wanted == "app":
+            following = App(self.board)
+        else:
+            following = on_demand.load("search.search").Search(self.board, self.settings)
+        following.start()
+        return following
 
     def _look_or_show(self, now_us):
         """The drives that are silent or wait too long; a piece of the display, and the pacer: both
@@ -97,12 +119,24 @@ class App:
         """
         if not self._shows_next:
             self.refresh_bus(now_us)
+            self._find(now_us)
             if (self.ticks_us() - now_us) & self._mask > _LONG_US:
                 self._shows_next = True
                 return
         self._shows_next = False
         self.board.display.show(self.panel.screen.picture)
         self._tend()
+
+    def _find(self, now_us):
+        """Look for drives that are silent because their telegrams are divided differently."""
+        finder = self._finder
+        if finder is None:
+            if self.bus.deadlines.silence.count >= _SILENCES:  # most panels never need it
+                self._finder = on_demand.load("uss.finding.finder").Finder(self.bus, self._mask)
+            return
+        found = finder.step(now_us)
+        if found is not None:
+            self._roster.note_layout(found)
 
     def _save_if_quiet(self, now_ms):
         """Writing flash holds everything up for a while, interrupts too: only when no drive runs,
@@ -121,7 +155,7 @@ class App:
 
     def _save(self, now_ms):
         try:
-            save(self.board.store, self.settings)
+            on_demand.call("settings_file", "save", self.board.store, self.settings)
             self._save_failed_at_ms = None
         except OSError:
             self._save_failed_at_ms = now_ms
@@ -132,11 +166,14 @@ class App:
 
         Ctrl-C does not cut this short, wherever it strikes.
         """
+        self._leave()
+        persist(self._say_farewell)
+
+    def _leave(self):
         try:
             leave(self.bus, self.board.clock, self._go_on)
         finally:
             persist(self.pacer.stop)
-        persist(self._say_farewell)
 
     def _go_on(self):
         self.pacer.tend()

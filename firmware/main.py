@@ -32,7 +32,7 @@ def loop(app):
         app.start()
         print(RUNS)  # tools/deploy waits for this
         while True:
-            app.step()
+            app = app.step() or app
     finally:
         app.close()
 

@@ -45,7 +45,9 @@ class Surroundings:
     bounce. keys: "direct", each with a pin of its own, or "matrix", all but START and STOP.
     parameters: of every drive, {number: value}; without them they are supervised, P2014, as
     commissioned drives are. kinds: {address: what else `Drive` is given there}, such as
-    {3: {"family": g110, "parameters": {2013: 0}, "reply_delay_us": 4_000}}; fleet.py has some.
+    {3: {"family": g110, "parameters": {2013: 0}, "reply_delay_us": 4_000}}; fleet.py has some,
+    kinds.py makes them from what a person has written. A drive with "factory" stands on the wire,
+    and not in the settings.
 
     random    a function of (low, high): the numbers of the seed
     stored    what the panel's settings file should say
@@ -85,13 +87,17 @@ class Surroundings:
             delay_us = self.random(fastest_us, max(15_000, 3 * fastest_us // 2)) if seed else None
             kind = {"reply_delay_us": delay_us, "parameters": parameters}
             kind.update((kinds or {}).get(address, {}))
-            if kind["parameters"] is None:
+            if kind.get("factory"):
+                kind["reply_delay_us"] = None  # it may be too short at the rate of its own
+            elif kind["parameters"] is None:
                 kind["parameters"] = supervision(kind.get("family", mm420), supervised_ms)
             self.drives[address] = Drive(clock, self.wire, address, **kind)
         self.mains = Mains(clock, list(self.drives.values()))
         self.stored = dict(settings or {})
         self.stored.setdefault("baud", baud)
-        self.stored.setdefault("drives", list(addresses))
+        known = [address for address in addresses if not self.drives[address].factory]
+        if known or not addresses:  # of a drive as delivered nobody has told the panel
+            self.stored.setdefault("drives", known)
         self.lcd_chip = Lcd(clock)
         if keys not in WIRINGS:
             raise ValueError("keys are wired %s, not %s" % (" or ".join(WIRINGS), keys))
@@ -195,7 +201,7 @@ class World(Surroundings):
         until_us = clock.now_us + ms * 1000
         while clock.now_us < until_us:
             try:
-                self.app.step()
+                self.app = self.app.step() or self.app
             except PowerCut:  # `flash.cut_at` was reached; power is back at once
                 self.flash.power_on()
                 self.reset()

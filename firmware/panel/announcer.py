@@ -114,6 +114,27 @@ class Announcer:
             # A longer page begins behind the next announcement: nobody waits longer for this one.
             self._page_ms = min(self._page_ms, self._find_page_ms())
 
+    def make_room(self):
+        """Another drive stands at the end of the list: nothing is to be said of it yet."""
+        self._kinds.append(NOTHING)
+        self._counts[NOTHING] += 1
+        self._begin_anew()
+
+    def close_up(self, position):
+        """The drive at this place is not in the list any more."""
+        self._counts[self._kinds[position]] -= 1
+        self._kinds = self._kinds[:position] + self._kinds[position + 1 :]
+        self._begin_anew()
+
+    def _begin_anew(self):
+        """Places of the list have another meaning."""
+        self.kind = NOTHING
+        self.control = self._fault = self._page = None
+        self._position = len(self._kinds)
+        self._before = -1
+        self._shown = 0
+        self._page_ms = self._find_page_ms()
+
     def draw(self, screen, row):
         """Write into all of `row` what is said now."""
         kind, control = self.kind, self.control
@@ -130,7 +151,8 @@ class Announcer:
         screen.number(row, 1, column - 1, address * 100, 0)
         if kind == NOTED or kind == REMARKED:
             text = control.notice if kind == NOTED else wording.remark(control)
-            screen.put(row, column + 1, texts.ROW_WIDTH - column - 1, texts.of(text))
+            words = wording.of(text, control.survey.family)
+            screen.put(row, column + 1, texts.ROW_WIDTH - column - 1, words)
             return
         words = texts.of(one)
         screen.put(row, column, texts.ROW_WIDTH - column, words)

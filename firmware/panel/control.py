@@ -26,7 +26,7 @@ from panel.fault import NO_FAULT, Fault
 from panel.phases import ASKING, CHECKING, IDLE, JOGGING, RUNNING
 from panel.setpoint import Setpoint
 from panel.stop_watch import NO_WATCH, StopWatch
-from panel.supervision import longest_off_time_ms
+from panel.supervision import longest_off_time_ms, off_time_ms
 
 _UNKNOWN = const(-1)  # no status word
 _PREPARED = const(-1)  # no START waits to be prepared
@@ -43,14 +43,20 @@ class Desk:
     """What the controls of a panel share. bus: the `Master`, its drives added. settings: a
     `Settings`. mask: the clock's period - 1.
 
-    longest_off_time_ms: a longer P2014 is a risk.
+    longest_off_time_ms: a longer P2014 is a risk. off_time_ms: one that fits this bus.
     """
 
     def __init__(self, bus, settings, mask):
         self.bus = bus
         self.settings = settings
         self.mask = mask
-        self.longest_off_time_ms = longest_off_time_ms(bus.turns.longest_cycle_us())
+        self.follow_list()
+
+    def follow_list(self):
+        """The list of the bus has changed."""
+        cycle_us = self.bus.turns.longest_cycle_us()
+        self.longest_off_time_ms = longest_off_time_ms(cycle_us)
+        self.off_time_ms = off_time_ms(cycle_us)
 
 
 class Control:
@@ -159,7 +165,10 @@ class Control:
             self.refusal = texts.REFUSED_JOG
             return
         self.reversed = not self.reversed
-        self.drive.turn(self._on())
+        if self.survey.family.on_reverse:
+            self.drive.turn(self._on())
+        else:
+            self.setpoint.negate(self.reversed)
 
     def change(self, centihertz):
         """Move the setpoint, unless the drive runs and does not tell its settings: what is shown
@@ -199,7 +208,7 @@ class Control:
         actual = self.survey.actual
         if not drive.contact or drive.silent >= _SILENT_MAX or actual is None:
             return None
-        return actual.centihertz(drive.hiw)
+        return actual.centihertz(pzd.signed_hiw(self.survey.family, drive.hiw, drive.zsw))
 
     def actual_is_beyond(self):
         """Whether the actual frequency is more than its word can say, and so unknown."""
@@ -293,7 +302,7 @@ class Control:
             if survey.values[rows.STATUS_SENT] >= 0:  # else what was known stays true
                 drive.tells_status = not permits.tells_no_status(survey)
         if drive.zsw & pzd.ZSW_FAULT and self.fault is NO_FAULT:
-            self.fault = Fault(drive, self.desk.mask, survey.family.fault_number)
+            self.fault = Fault(drive, self.desk.mask, survey.family)
         self.fault.step(now_us)
         if drive.contact != self._contact:
             self._contact = drive.contact
@@ -329,7 +338,8 @@ class Control:
             self._begin_stop_watch()
 
     def _on(self):
-        return pzd.ON_REVERSE if self.reversed else pzd.ON
+        family = self.survey.family
+        return self.reversed and family.on_reverse or family.on
 
     def _obey(self, dead_man_trips):
         """Obey a key: what was said of the run before is over."""

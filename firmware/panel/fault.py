@@ -3,13 +3,13 @@
 
 In use:
 
-    warning = Report(drive, mask, pzd.ZSW_WARNING, MM4.warning_number)
+    warning = DriveWarning(drive, mask, MM440)
     warning.step(now_us)                # again and again
     warning.number                      # 501 for A0501; 0 while it is not known
-    warning.turn_to(other)              # another drive is shown
+    warning.turn_to(other, MM3)         # another drive is shown
 
     fault = NO_FAULT                    # of a drive that has not tripped yet
-    fault = Fault(drive, mask, MM4.fault_number)    # has to be seen before it may be acknowledged
+    fault = Fault(drive, mask, MM440)   # has to be seen before it may be acknowledged
     fault.show(passed_ms)               # it was on the display for so long
     if fault.was_shown(): drive.acknowledge()
 """
@@ -28,12 +28,14 @@ _REFUSED_US = const(10_000_000)  # and after one that the drive does not answer
 
 class Report:
     """drive: a `Drive`. mask: the clock's period - 1. bit: of ZSW. parameter: its index 0 has the
-    number.
+    number; None: nobody knows which has it. digits: of the number as it is shown, 0: as many as
+    it has.
 
     active: the drive reports it now.
     """
 
-    def __init__(self, drive, mask, bit, parameter):
+    def __init__(self, drive, mask, bit, parameter, digits):
+        self.digits = digits
         self._drive = drive
         self._mask = mask
         self._bit = bit
@@ -54,12 +56,6 @@ class Report:
         elif active:
             self._ask(now_us)  # again and again: there may be another one by now
 
-    def turn_to(self, drive):
-        """It is about another drive from now on."""
-        if self.active:
-            self._turn(False)
-        self._drive = drive
-
     def _turn(self, active):
         """It comes or goes."""
         self.active = active
@@ -69,6 +65,8 @@ class Report:
 
     def _ask(self, now_us):
         waited_us = elapsed(now_us, self._asked_at_us, self._mask)
+        if self._parameter is None:
+            return
         if waited_us >= self._wait_us and self._reading.ask(self._drive, self._parameter):
             self._asked_at_us = now_us
             self._wait_us = _AGAIN_US
@@ -83,11 +81,28 @@ class Report:
             self.number = job.low
 
 
+class DriveWarning(Report):
+    """Of the drive that is shown."""
+
+    def __init__(self, drive, mask, family):
+        digits = _digits(family.fault_format)
+        Report.__init__(self, drive, mask, pzd.ZSW_WARNING, family.warning_number, digits)
+
+    def turn_to(self, drive, family):
+        """It is about another drive from now on."""
+        if self.active:
+            self._turn(False)
+        self._drive = drive
+        self._parameter = family.warning_number
+        self.digits = _digits(family.fault_format)
+
+
 class Fault(Report):
     """It has to be seen before it may be acknowledged."""
 
-    def __init__(self, drive, mask, parameter):
-        Report.__init__(self, drive, mask, pzd.ZSW_FAULT, parameter)
+    def __init__(self, drive, mask, family):
+        digits = _digits(family.fault_format)
+        Report.__init__(self, drive, mask, pzd.ZSW_FAULT, family.fault_number, digits)
 
     def show(self, passed_ms):
         """It was on the display for so long."""
@@ -129,4 +144,10 @@ def draw_number(screen, row, column, letter, report):
     """A letter and the number of a fault or a warning, once that is known."""
     if report.number:
         screen.put(row, column, 1, texts.of(letter))
-        screen.digits(row, column + 1, 4, report.number)
+        digits = report.digits or len(str(report.number))
+        screen.digits(row, column + 1, digits, report.number)
+
+
+def _digits(form):
+    """How many digits a number has in a form such as F%04d; 0 where that is not said."""
+    return int(form[3]) if form[2] == "0" else 0

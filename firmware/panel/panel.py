@@ -3,7 +3,7 @@
 
 In use:
 
-    panel = Panel(controls, bus, keypad.names, settings, clock.ticks_mask)
+    panel = Panel(roster, bus, keypad.names, settings, clock.ticks_mask)
     if panel.step(keypad.read(), now_ms, now_us):   # each step of the loop
         display.show(panel.screen.picture)
 
@@ -13,28 +13,26 @@ on every page that obeys them; PARAM goes to the next page of `pages.table`.
 
 from micropython import const
 
-from panel import texts
+import on_demand
+from panel import texts, wording
 from panel.announcer import Announcer
-from panel.fault import Report
+from panel.fault import DriveWarning
 from panel.keys import Acts, Keys, unknown
 from panel.keys.jog_keys import JogKeys
 from panel.keys.stop_key import StopKey
 from panel.neighbours import Neighbours
-from panel.pages.risk import RiskQuestion
+from panel.pages.home import Home
 from panel.pages.splash import Splash
 from panel.pages.table import PAGES
 from panel.phases import ASKING, CHECKING
 from panel.screen import Screen
-from panel.supervision import off_time_ms
 from panel.view import View
-from panel.writer import Writer
-from uss import pzd
-from uss.families import rows
 from uss.timing import elapsed
 
 _DRAW_MS = const(50)
 _MESSAGE_MS = const(3_000)
 _LAST_TURN = const(7)
+_HELD_REPEATS = const(6)  # of PARAM or an address key: it is held for a second
 
 # They act on every page that obeys. STOP acts on every page.
 COMMAND_KEYS = (
@@ -47,45 +45,49 @@ HELD_KEYS = ("STOP", "JOG_RIGHT", "JOG_LEFT")
 
 
 class Panel:
-    """controls: a `Control` for each drive, at least one. key_names: as the keypad has its bits.
+    """roster: the `Roster`, its drives. key_names: as the keypad has its bits.
 
     settings: a `Settings`. mask: the clock's period - 1. notice: a text that is said after
     the splash, or NOTHING; what is wrong with the settings goes before it.
 
-    For pages and view: `selected`, the control that is shown; `warning`, its `Report`; `message`,
-    words that are shown for a while, or None; `stop_key`; `announcer`; `setpoint_step` in
-    centihertz; `off_time_ms`, a P2014 that fits this bus; `mask`. Nobody else writes a
-    field of it: pages call `say`, `cover`, `uncover` and `write`.
+    For pages and view: `selected`, the control that is shown; `warning`, its `DriveWarning`;
+    `message`, words that are shown for a while, or None; `stop_key`; `announcer`; `setpoint_step`
+    in centihertz; `remembered`; `settings`; `bus`; `mask`. For `App`: `wants`. Nobody else writes
+    a field of it: pages call `say`, `cover`, `uncover`, `write`, `add` and `remove`.
     """
 
-    def __init__(self, controls, bus, key_names, settings, mask, notice=texts.NOTHING):
+    def __init__(self, roster, bus, key_names, settings, mask, notice=texts.NOTHING):
         self._turn = 0  # asked for in every step, so it is first: as in `Master`
         self._acting = False  # keys that were pressed are still to do what they do
         self._trips = 0  # bus.dead_man_trips when they were
-        self.controls = controls
+        self.roster = roster
+        self.controls = controls = roster.controls
         self.selected = controls[0]
         self.announcer = Announcer(controls, mask)
-        number = self.selected.survey.family.warning_number
-        self.warning = Report(self.selected.drive, mask, pzd.ZSW_WARNING, number)
+        self.warning = DriveWarning(self.selected.drive, mask, self.selected.survey.family)
         self.screen = screen = Screen()
         self.mask = mask
         self.message = None
         self.setpoint_step = settings.setpoint_step_centihertz
-        self.off_time_ms = off_time_ms(bus.turns.longest_cycle_us())
-        self._bus = bus
-        self._settings = settings
+        self.bus = bus
+        self.settings = settings
         self._keys = keys = Keys(key_names, mask, HELD_KEYS)
         self._acts = Acts(keys)
         self._stop_bit = keys.bit("STOP")  # names take long to look up
         self._jog_bits = keys.bits(("JOG_RIGHT", "JOG_LEFT"))
         self._command_bits = keys.bits(COMMAND_KEYS)
+        self._param_bit = keys.bit("PARAM")
+        self._address_bits = keys.bits(("ADDRESS_UP", "ADDRESS_DOWN"))
         self._motion_bits = keys.bits(MOTION_KEYS)
         self._were_down = 0  # the keys that were down in the last step, as bits
         self.stop_key = StopKey(self._stop_bit, controls, settings.second_stop, mask, self.say)
         self._jog_keys = JogKeys(keys.bit("JOG_RIGHT"), keys.bit("JOG_LEFT"))
-        self._writer = Writer(bus, settings, mask)
-        self._pages = [page(self) for page in PAGES]
-        self._page = self._pages[0]
+        self._writer = None  # the `Writer`, as long as it has something to do
+        self._home = self._page = Home(self)
+        self._place = 0  # of the page in PAGES
+        self._is_new = settings.new  # nobody has set it up: it offers to find drives
+        self.wants = None  # another program: "search", or "app", this one anew
+        self.remembered = {}  # by module: where a page was when it was left
         self._cover = Splash(self)  # a page that hides it: the splash, a question, or None
         self._notices = _about(settings) or ([(notice,)] if notice else [])
         self._notices += [(texts.KEY_UNKNOWN, _start_of(name, 9)) for name in unknown(key_names)]
@@ -97,10 +99,9 @@ class Panel:
         self._neighbours = Neighbours(controls, self.announcer, self._heed)
         self._put_off = 0  # what can wait, in the turn before
         # What is not done at once takes turns, so that each step of the loop stays short.
-        around = self._look_around if len(controls) > 1 else self._ask
         self._turns = (
             self._draw, self._ask, self._leave, self._watch,
-            self._draw, self._follow, self._leave, around,
+            self._draw, self._follow, self._leave, self._look_around,
         )  # fmt: skip
 
     def step(self, raw_keys, now_ms, now_us, unclear_keys=0):
@@ -136,23 +137,63 @@ class Panel:
         self._cover = page
 
     def uncover(self):
+        for module in self._cover.modules:
+            on_demand.drop(module)
         self._cover = None
 
     def write(self, now_ms, control, number, index, value, eeprom=False):
         """The `Write` of a parameter, whose outcome the panel will say; None where it has said
         already why it cannot be tried.
         """
+        if self._writer is None:
+            writer = on_demand.load("panel.writer").Writer
+            self._writer = writer(self.bus, self.settings, self.mask)
         write = self._writer.write(control, number, index, value, eeprom)
         if write.outcome is None:
             return write
         self.say(now_ms, *write.outcome)
         return None
 
+    def close_menu(self):
+        """Close the menu that covers the page."""
+        self._cover.close()
+
+    def offer_search(self, now_ms):
+        """Ask whether drives shall be looked for."""
+        self.close_menu()
+        if self.any_runs() or self.line_in_use():
+            self.say(now_ms, texts.STOP_FIRST)
+            return
+        self._ask_search()
+
+    def _ask_search(self):
+        question = on_demand.load("panel.pages.question").Question
+        self.cover(question(self, texts.ASK_SEARCH, (), {"SET": self._search}))
+
+    def add(self, address, kind):
+        """Take a drive into the list, and show it. ValueError: see `Roster`."""
+        control = self.roster.add(address, kind)
+        self.announcer.make_room()
+        self.show(control)
+
+    def remove(self):
+        """Take the drive shown out of the list. ValueError: see `Roster`."""
+        position, control = self._position, self.selected
+        self.roster.remove(control)
+        self.announcer.close_up(position)
+        self._position = position % len(self.controls)
+        self._turn_to(self._position)
+
+    def show(self, control):
+        """Show another drive. It starts and stops nothing."""
+        self.selected.keep_quiet()
+        self._turn_to(self.controls.index(control))
+
     def is_taken(self, address):
         """Whether another drive of this panel than the selected one has this address."""
-        if self._writer.takes(address):
+        if self._writer and self._writer.takes(address):
             return True
-        return address != self.selected.drive.address and address in self._settings.drives
+        return address != self.selected.drive.address and address in self.settings.drives
 
     def any_runs(self):
         """Whether a drive of this panel runs, is told to, or may run out of contact, as far as it
@@ -162,7 +203,7 @@ class Panel:
 
     def line_in_use(self):
         """Whether another master was heard before the first telegram, so that none is sent."""
-        return self._bus.is_line_in_use()
+        return self.bus.is_line_in_use()
 
     # --- what takes turns: each answers whether it leaves the rest of the step to others -------
 
@@ -175,7 +216,7 @@ class Panel:
         """A drive has told its settings: its telegram-off time decides how soon it is asked."""
         survey = control.survey
         if survey.complete:
-            self._bus.deadlines.supervise(control.drive, survey.values[rows.SUPERVISION])
+            self.bus.deadlines.supervise(control.drive, survey.off_time_ms())
 
     def _watch(self, _now_ms, now_us):
         selected = self.selected
@@ -185,7 +226,8 @@ class Panel:
         return False
 
     def _follow(self, now_ms, now_us):
-        self._writer.step(now_us)
+        if self._writer:
+            self._writer.step(now_us)
         self.selected.ask_on(now_us)
         self._collect(now_ms)
         self._page.step(self._keys, now_ms)
@@ -218,7 +260,9 @@ class Panel:
         self._put_off = self._keys.unsettled and not self._put_off
         return self._put_off
 
-    def _look_around(self, _now_ms, now_us):
+    def _look_around(self, now_ms, now_us):
+        if len(self.controls) == 1:
+            return self._ask(now_ms, now_us)
         if not self._puts_off():
             self._neighbours.step(now_us)
         return False
@@ -242,19 +286,23 @@ class Panel:
             self._act(now_ms)
         self._acts.note()
         self._acting = True
-        self._trips = self._bus.dead_man_trips
+        self._trips = self.bus.dead_man_trips
         return True
 
     def _act(self, now_ms):
         """What was pressed or repeats does what it does on this page."""
         self._acting = False
-        if self._bus.dead_man_trips != self._trips:  # the panel has hung since
+        if self.bus.dead_man_trips != self._trips:  # the panel has hung since
             self.say(now_ms, texts.PANEL_HUNG)
             return
         acts = self._acts
         page = self._cover or self._page
         if (acts.pressed | acts.repeated) & self._command_bits and page.obeys:
             self._take_command(acts, now_ms)
+        if acts.repeated & self._param_bit and acts.repeats == _HELD_REPEATS and page.obeys:
+            self._open_menu(now_ms)
+        if acts.repeated & self._address_bits and acts.repeats == _HELD_REPEATS and page.obeys:
+            self._open_menu(now_ms, ("address", None))
         page.take_keys(acts, now_ms)
         if acts.pressed:
             self._drawn_at_ms = None  # a new picture at once
@@ -266,25 +314,51 @@ class Panel:
             self.selected.start()
         if acts.has("REVERSE"):
             self.selected.reverse()
-        direction = acts.direction("ADDRESS_UP", "ADDRESS_DOWN")
-        if direction:
-            self._select(direction)
+        if acts.pressed & self._address_bits:
+            self._select(acts.direction("ADDRESS_UP", "ADDRESS_DOWN"))
         if acts.has("PARAM"):
-            following = self._pages.index(self._page) + 1
-            self._page = self._pages[following % len(self._pages)]
-            self._page.open()
+            self._turn_page(now_ms, (self._place + 1) % len(PAGES))
+
+    def _open_menu(self, now_ms, begin=("main", None)):
+        self._turn_page(now_ms, 0)  # PARAM has gone to another one when it went down
+        try:
+            self.cover(on_demand.load("panel.menu.engine").Menu(self, begin))
+        except MemoryError:
+            self.say(now_ms, texts.NO_MEMORY)
+
+    def _search(self, now_ms):
+        if self.any_runs():
+            self.say(now_ms, texts.STOP_FIRST)
+        else:
+            self.wants = "search"
+
+    def _turn_page(self, now_ms, place):
+        """Another page of the table. The one before leaves the memory."""
+        before = self._page
+        self._place = place
+        self._page = self._home
+        try:
+            if self._place:
+                module, page = PAGES[self._place]
+                self._page = getattr(on_demand.load("panel.pages." + module), page)(self)
+        except MemoryError:
+            self._place = 0
+            self.say(now_ms, texts.NO_MEMORY)
+        for module in before.modules:
+            on_demand.drop(module)
+        self._page.open()
 
     def _select(self, direction):
-        """Show another drive. It starts and stops nothing.
+        """Show the next drive, or the one before."""
+        self.show(self.controls[(self._position + direction) % len(self.controls)])
 
-        What is known of it may be old: all of that is asked for at once.
-        """
-        self.selected.keep_quiet()
-        self._position = (self._position + direction) % len(self.controls)
-        self.selected = self.controls[self._position]
-        self.selected.survey.recheck()
-        self.warning.turn_to(self.selected.drive)
-        self._neighbours.show(self._position)
+    def _turn_to(self, position):
+        """What is known of that drive may be old: all of that is asked for at once."""
+        self._position = position
+        self.selected = control = self.controls[position]
+        control.survey.recheck()
+        self.warning.turn_to(control.drive, control.survey.family)
+        self._neighbours.show(position)
 
     # --- what has to be said --------------------------------------------------------------------
 
@@ -293,16 +367,27 @@ class Panel:
         selected = self.selected
         refusal = selected.take_refusal()
         if refusal:
-            self.say(now_ms, refusal)
-        write = self._writer.take_ended()
-        if write:
-            self.say(now_ms, *write.news(selected))
+            self.say(now_ms, wording.of(refusal, selected.survey.family))
+        if self._writer:
+            self._take_written(now_ms)
         if selected.phase == ASKING and self._cover is None:
-            self._cover = RiskQuestion(self)
+            on_demand.load("panel.pages.question")  # first: an import inside an import takes stack
+            self._cover = on_demand.load("panel.pages.risk").RiskQuestion(self)
         if self.message and elapsed(now_ms, self._message_at_ms, self.mask) >= _MESSAGE_MS:
             self.message = None
+        if self._is_new and self._cover is None:
+            self._is_new = False
+            self._ask_search()
         if self._notices and self.message is None and self._cover is None:
             self.say(now_ms, *self._notices.pop(0))  # also when a key has ended the one before
+
+    def _take_written(self, now_ms):
+        write = self._writer.take_ended()
+        if write:
+            self.say(now_ms, *write.news(self.selected))
+        if self._writer.is_idle():
+            self._writer = None
+            on_demand.drop("panel.writer")
 
 
 def _about(settings):

@@ -85,12 +85,14 @@ def _why_no_start(control, state):
     survey = control.survey
     if is_foreign(survey):
         return REFUSED_SOURCES[survey.wrong[rows.SETPOINT]]
-    if min(survey.lowest(), survey.values[rows.HIGHEST]) > survey.scaling.limit_centihertz():
+    if min(survey.lowest(), survey.own_highest()) > survey.scaling.limit_centihertz():
         return texts.REFUSED_MINIMUM
     return texts.NOTHING
 
 
 def _why_no_jog(control, state):
+    if not control.survey.family.jog_right:
+        return texts.REFUSED_NO_JOG
     if control.is_starting() or state == pzd.RUNNING and not control.own_jog_ends():
         return texts.REFUSED_RUNS
     if risks.is_open(control, risks.SUPERVISION):

@@ -22,7 +22,7 @@ _FOR_EVER_MS = const(1 << 20)  # longer than any P2014
 
 def _of_supervision(control):
     """P2014 with which the motor runs on too long when the panel dies, 0: for ever, or unread."""
-    off_time_ms = max(control.survey.values[rows.SUPERVISION], 0)
+    off_time_ms = control.survey.off_time_ms()
     if 0 < off_time_ms <= control.desk.longest_off_time_ms:
         return NONE
     return off_time_ms
@@ -67,10 +67,15 @@ def ask(control, row):
     value = measure(control, row)
     values = (value,)
     if row == SUPERVISION:
+        survey = control.survey
+        number, told = survey.family.off_time_number, survey.values[rows.SUPERVISION]
+        can_fix = number is not None and control.drive.layout.pkw_words
         tenths = -(-value // 100)
-        values = (value, tenths // 10, tenths % 10)
+        values = (number, told, tenths // 10, tenths % 10)
         if not value:
-            text, values = texts.ASK_UNSUPERVISED, ()
+            text, values = texts.ASK_UNSUPERVISED, (number,)
+        if not can_fix:
+            text, values = texts.ASK_UNTOLD, ()
     return text, values, can_fix, value
 
 

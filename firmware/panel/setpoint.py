@@ -8,18 +8,22 @@
 
 While the drive is wanted to run, only a key raises it in hertz: no limit that goes away does, no
 minimum frequency that comes, no other scaling. What lowers it in that time lowers it for good.
+For a drive in percent (`Survey.is_percent`) read "0.01 %" where it says centihertz.
 """
+
+from uss.pzd import signed
 
 
 class Setpoint:
     """settings: has setpoint_centihertz, lowest_centihertz, highest_centihertz.
 
-    centihertz: in 0.01 Hz, never negative; the direction is a bit of the control word and belongs
-    to `Control`. Nobody else writes a field of it, and nobody else writes drive.hsw, which goes
-    out with ON only.
+    centihertz: in 0.01 Hz, never negative; the direction belongs to `Control`, which has it sent
+    as a bit of the control word or by `negate`. Nobody else writes a field of it, and nobody else
+    writes drive.hsw, which goes out with ON only.
     """
 
     def __init__(self, drive, survey, settings):
+        self._negative = False
         self.centihertz = settings.setpoint_centihertz
         self._asked_centihertz = settings.setpoint_centihertz  # what the operator set
         self._settings = settings
@@ -39,6 +43,12 @@ class Setpoint:
             lowest = min(lowest, self.centihertz)  # down is not up to the lowest
         self._send(max(min(max(wish, lowest), self._highest), 0))
         self._asked_centihertz = self.centihertz
+
+    def negate(self, negative):
+        """Send it with a minus, or without: the direction, where the control word has none."""
+        magnitude = self._magnitude()
+        self._negative = negative
+        self._put(magnitude)
 
     def is_below(self):
         """Whether it is below the lowest frequency of the drive, at which that runs instead."""
@@ -79,17 +89,24 @@ class Setpoint:
 
     def _lower(self):
         """No more than what is in force, which another scaling has changed, and the limits."""
-        drive, scaling = self._drive, self._survey.scaling
+        scaling = self._survey.scaling
         centihertz = min(self.centihertz, self._highest)
-        in_force = drive.hsw
+        in_force = self._magnitude()
         if scaling is not self._scaling:
             centihertz = min(centihertz, scaling.centihertz(in_force))
         self._send(centihertz)
-        drive.hsw = min(drive.hsw, in_force)  # nor by rounding
+        self._put(min(self._magnitude(), in_force))  # nor by rounding
         self._asked_centihertz = min(self._asked_centihertz, centihertz)
 
     def _send(self, centihertz):
         self.centihertz = centihertz
         if self._survey.complete:
             self._scaling = self._survey.scaling
-            self._drive.hsw = self._scaling.hsw(centihertz)
+            self._put(self._scaling.hsw(centihertz))
+
+    def _put(self, magnitude):
+        self._drive.hsw = -magnitude & 0xFFFF if self._negative else magnitude
+
+    def _magnitude(self):
+        """That of drive.hsw."""
+        return abs(signed(self._drive.hsw))

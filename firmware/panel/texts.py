@@ -80,6 +80,7 @@ UNSUPERVISED = b"P2014=0"  # somebody has set it so while it was jogged; RUNS_LO
 # In front of setpoint, actual frequency and address, and in place of the actual frequency: 6 wide.
 SETPOINT = b"S:"
 ACTUAL = b" F:"
+ACTUAL_PERCENT = b"%F:"  # both are in percent: the drive does not tell what 100 % is in Hz
 ADDRESS = b"A"
 UNKNOWN_VALUE = b" -----"
 BEYOND_VALUE = b" >>>>>"  # more than the word of a telegram can say
@@ -99,6 +100,7 @@ SETTINGS_SUSPECTS = {
 }
 SETTING = b"%s"
 KEY_UNKNOWN = b"NO KEY %s"  # the board file names one that there is not
+NO_MEMORY = b"NO MEMORY LEFT"  # for a page
 NOT_SAVED = b"SETTINGS UNSAVED"  # the flash is full or broken
 WATCHDOG_RESTART = b"WATCHDOG RESTART"  # after the splash: the panel hung, and was restarted
 FAREWELL = (b"PANEL STOPPED", b"NO CONTROL")  # left behind by a panel that was ended
@@ -132,17 +134,21 @@ REFUSED_STOPPING = b"NO: QUICK STOP"  # OFF2 or OFF3 is still in force
 REFUSED_JOG = b"NO: JOG IS DOWN"
 REFUSED_RUNS = b"NO JOG: IT RUNS"
 REFUSED_UNSAVED = b"NO: UNSAVED"  # its new address is not in the settings yet
+REFUSED_NO_JOG = b"NO: HAS NO JOG"
 REFUSED_UNSUPERVISED = b"NO JOG: P2014=0"
 REFUSED_LONG = b"NO: P2014 LONG"
 
 # --- parameter mode ------------------------------------------------------------------------------
 
 # In front of a value, PARAMETER_WIDTH wide, and in place of one, VALUE_WIDTH wide.
+PARAMETER = b"P    :"  # with its number
+READ_PARAMETER = b"r    :"
 PARAMETER_WIDTH = 6
 VALUE_WIDTH = 6
 UNREAD_VALUE = b"     ?"
 REFUSED_VALUE = b" -----"  # the drive does not tell it
 
+NO_PARAMETERS = b"NO PARAMETERS"  # the drive has no parameter channel, or nobody knows any
 EDIT_FIRST = b"PRESS EDIT FIRST"
 READ_ONLY = b"READ ONLY"
 NOT_READ_YET = b"NOT READ YET"
@@ -198,9 +204,10 @@ _TO_BE_WRITTEN = b"A%d: P%04d=%d"
 
 ASK_CUTS_OFF = ((_TO_BE_WRITTEN, b"PANEL MAY LOSE", b"THE DRIVE BY IT"), _DO_OR_NOT)
 ASK_RESCALES = ((_TO_BE_WRITTEN, b"SETPOINTS MAY", b"CHANGE THEIR HZ"), _DO_OR_NOT)
-ASK_UNSUPERVISED = ((b"P2014=0: IT RUNS", b"ON IF PANEL DIES"), _FIX_OR_START)
-ASK_LONG = (  # ms, s
-    (b"P2014=%d: IT", b"RUNS ON %d.%d s", b"IF PANEL DIES"),
+ASK_UNSUPERVISED = ((b"P%04d=0: IT RUNS", b"ON IF PANEL DIES"), _FIX_OR_START)
+ASK_UNTOLD = ((b"IT MAY RUN ON", b"IF PANEL DIES"), _START_OR_STOP)  # nobody can read its P2014
+ASK_LONG = (  # number, value, s
+    (b"P%04d=%d: IT", b"RUNS ON %d.%d s", b"IF PANEL DIES"),
     _FIX_OR_START,
 )
 ASK_LATE = (
@@ -211,6 +218,52 @@ ASK_RESTART = (
     (b"P1210=%d: DRIVE", b"STARTS BY ITSELF") + (b"THE PANEL WILL", b"STOP IT THEN"),
     _START_OR_STOP,
 )
+
+ASK_SEARCH = ((b"LEAVE THE LINE &", b"FIND DRIVES?"), _DO_OR_NOT)
+
+# --- the menu, see `menu` ------------------------------------------------------------------------
+
+MENU = b"MENU"
+MENU_MARK = b">"
+MENU_DRIVES = b"DRIVES"
+ANY_ADDRESS = b"ANY ADDRESS"
+IN_THE_LIST = b"IN THE LIST"
+ASKS = b"..."
+ANSWERS = b"ANSWERS"
+NOBODY = b"NOBODY"
+ADDED = b"ADDED"
+FAMILY = b"FAMILY"
+MENU_SETTINGS = b"SETTINGS"
+MENU_ABOUT = b"ABOUT"
+ABOUT_VERSION = b"VERSION %s"
+LICENCE = b"LICENCE: MIT"
+SHOW_DRIVE = b"SHOW IT"
+REMOVE_DRIVE = b"REMOVE IT"
+REMOVED = b"REMOVED"
+NOT_REMOVED = b"NOT REMOVED"  # it is the only one, or may be running
+SETTING_NAMES = {
+    "baud": b"BAUD RATE",
+    "second_stop": b"SECOND STOP",
+    "reply_timeout_ms": b"REPLY ms",
+    "lost_ms": b"LOST ms",
+    "setpoint_centihertz": b"START cHz",
+    "setpoint_step_centihertz": b"STEP cHz",
+    "lowest_centihertz": b"LOWEST cHz",
+    "highest_centihertz": b"HIGHEST cHz",
+}
+
+# --- the search for drives, see `search` ---------------------------------------------------------
+
+FIND_DRIVES = b"FIND DRIVES"
+RATES_SET_GO = b"%d RATES SET=GO"
+BAUD_PERCENT = b"%d BAUD %d%%"
+FOUND_STOP_ENDS = b"%d FOUND STOP=NO"
+TAKE_DRIVES = b"TAKE %d DRIVES?"
+SET_YES = b"SET=YES PARAM=NO"
+NOBODY_FOUND = b"NOBODY ANSWERED"
+CHECK_WIRES = b"WIRES? MAINS?"
+TAKEN = b"TAKEN"
+NOT_TAKEN = b"SET=TAKE"
 
 # --- announcements -------------------------------------------------------------------------------
 

@@ -6,7 +6,8 @@
     row 2   the first of these: what a held STOP does; a message or another master, unless the
             drive shown is an alarm; an announcement; STOP UNCONFIRMED or MAY RUN; the page
 
-A page that is whole has both rows, and announcements take the place of its first.
+A page that is whole has both rows. Announcements take the place of its first, a message and what a
+held STOP does that of its second.
 
 Row 1 has 5 places for the setpoint and 6 for the actual frequency. A value that needs more room
 gives up decimals (-650.00 is shown as -650.0); without contact the actual frequency is dashes,
@@ -77,6 +78,9 @@ class View:
             _draw_address(screen, panel.selected)
         elif field == WHOLE:
             self._page.draw(screen, now_ms)
+            text = self._text()
+            if text is not None:
+                screen.put(1, 0, texts.ROW_WIDTH, text)
             if panel.announcer.kind != NOTHING:
                 panel.announcer.draw(screen, 0)
             return DONE
@@ -143,7 +147,8 @@ def _draw_setpoint(screen, control):
 
 
 def _draw_actual(screen, control):
-    screen.put(0, 7, 3, texts.of(texts.ACTUAL))
+    percent = control.survey.is_percent()
+    screen.put(0, 7, 3, texts.of(texts.ACTUAL_PERCENT if percent else texts.ACTUAL))
     actual = control.actual_centihertz()
     if actual is None:
         screen.put(0, 10, 6, texts.of(texts.UNKNOWN_VALUE))

@@ -4,17 +4,33 @@
 In use:
 
     text(control)                       # texts.RUNNING
+    of(texts.RUNS_FOR_EVER, MM3)        # b"RUN, P0093=0"
 """
 
 from panel import texts
 from panel.phases import JOGGING
 from panel.permits import is_local, tells_no_status
 from uss import pzd
+from uss.families import rows
+
+# Of a MICROMASTER 4, as the texts have them, by row of the survey.
+_NUMBERS = (
+    (rows.COMMAND_SOURCE, b"P0700"), (rows.SUPERVISION, b"P2014"), (rows.LOWEST, b"P1080"),
+)  # fmt: skip
 
 # Without contact, by `Drive.trouble`.
 _TROUBLES = (
     texts.NO_CONTACT, texts.LINE_NOISE, texts.OTHER_LENGTH, texts.WRONG_DRIVE, texts.WRONG_CHECK,
 )  # fmt: skip
+
+
+def of(text, family):
+    """The words of a text about a drive, with the parameter numbers of its family."""
+    words = texts.of(text)
+    for row, number in _NUMBERS:
+        if number in words and family.survey[row] is not None:
+            words = words.replace(number, b"P%04d" % family.survey[row][0])
+    return words
 
 
 def text(control):

@@ -23,6 +23,7 @@ the new address for a while, and then takes it to be at the old one.
 from micropython import const
 
 from panel import texts
+from panel.reading import failure
 from uss import pkw
 from uss.timing import elapsed
 
@@ -106,6 +107,10 @@ class Writer:
             else:
                 self._ask()
         return write
+
+    def is_idle(self):
+        """Whether nothing is on its way, and nobody has still to hear how the last one ended."""
+        return self._phase == IDLE and self._ended is None
 
     def takes(self, address):
         """Whether a drive is just being given this address."""
@@ -230,16 +235,3 @@ class Writer:
         elif elapsed(now_us, self._since_us, self._mask) >= self._patience_us:
             self._bus.turns.readdress(drive, write.old_address)
             self._end(texts.NO_ANSWER)
-
-
-def failure(job):
-    """Why a job was not done: a text and the values in it."""
-    if job.state == pkw.UNANSWERED:
-        return (texts.NO_REPLY_TO_THIS,)
-    if job.state != pkw.REFUSED:
-        return (texts.NO_ANSWER,)
-    if job.error == pkw.NO_CHANGE_RIGHTS:
-        return (texts.NO_RIGHTS,)
-    if job.error in texts.REFUSALS:
-        return (texts.REFUSALS[job.error],)
-    return texts.OTHER_REFUSAL, job.error

@@ -20,6 +20,7 @@ The engine, which may run in interrupts:
     drive            one slave: commands, process image, counters
     channel          the parameter channel of one drive: jobs wait, one task is on the line
     outside          telegrams outside the list: mirror, broadcast, special
+    errors           why something was not done, as exceptions
     leave            how a program ends: every drive is stopped, then the line is left
     fast             the loops over characters: machine code, or else plain Python
 
@@ -27,6 +28,7 @@ What is known of a drive:
     families         what differs between the drive families: data, loaded when it is named
     survey           what must be known of a drive before it may be started
     telegram_count   whether a drive was without its mains
+    finding          who is on the line, and how its telegrams are divided
 
 For programs that need more than the panel:
     bits             the bits of control and status words by name

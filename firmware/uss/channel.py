@@ -106,14 +106,34 @@ class Channel:
 
         None ends it. RuntimeError when the drive has no parameter channel.
         """
-        if not self._form:
-            raise RuntimeError("the drive has no parameter channel")
         if reports is None:
             self._form &= _FOLLOWED - 1
-        else:
-            self.reports = reports
-            self._form |= _FOLLOWED
+            return  # the engine sees by itself whether anything is left to do
+        if not self._form:
+            raise RuntimeError("the drive has no parameter channel")
+        self.reports = reports
+        self._form |= _FOLLOWED
         self.idle = False
+
+    def become(self, other):
+        """Take over the layout and the empty queue of `other`, which nobody uses.
+
+        What waits ends as TIMED_OUT; change reports are followed on where there are PKW words. The
+        engine may come in between and count a miss, but neither `fill` nor `take`.
+        """
+        self.idle = True  # from now on a miss is not for this channel
+        for job in self._queue:
+            if job is not None and job.state == _PENDING:
+                job.state = pkw.TIMED_OUT
+        form = other._form
+        if form and self._form >= _FOLLOWED:
+            form |= _FOLLOWED
+        self._queue = other._queue
+        self._in = self._out = 0
+        self._ended = _ANY
+        self._without = REST_MAX if form else 0  # the answer to an old task may still come
+        self._form = form
+        self.idle = not form
 
     # --- for the engine: allocates nothing ------------------------------------------------------
 

@@ -125,11 +125,13 @@ class Deadlines:
                     return other
         return None
 
-    def silence_wait_us(self):
-        """How long to wait, in microseconds, before one more telegram that may stay unanswered:
-        until the share of the silent drives has room for it. The telegram uses up some of it.
+    def silence_wait_us(self, longer_us=0):
+        """How long to wait, in microseconds, before one more telegram that perhaps nobody answers:
+        until the share of the silent drives has room for it. The telegram takes of their share.
+
+        longer_us: so much longer than the longest one of the list does that telegram take.
         """
-        if not self._has_room():
+        if not self._has_room(longer_us):
             return _LONGEST_US
         return max(self.silence.wait_us, 0)
 
@@ -312,10 +314,10 @@ class Deadlines:
             needed_us += needed_us // (SHARE - 1)
         return needed_us + self.silence.silent_exchange_us
 
-    def _has_room(self):
-        """Whether the drives that run still get their telegrams in time after one more silence.
-        If there are too many of them for that anyway, a silence may take a quarter of what they
-        need, which trips none. If only a drive that never trips would be late, and not lost, a
+    def _has_room(self, longer_us=0):
+        """Whether the drives that run still have their telegrams in time after one more silence.
+        Where there are too many of them for that anyway, a silence may take a quarter of what they
+        need: it trips none. Where only a drive that never trips would be late, and not lost, a
         silence is allowed now and then.
         """
         needed_us = self._needed_us
@@ -323,7 +325,7 @@ class Deadlines:
         if self.silence.wait_us < -_RARE_US:
             least_us = min(self._trips_us, 2 * least_us)
         room_us = max(least_us - needed_us, needed_us >> 2)
-        return self.silence.silent_exchange_us < room_us
+        return self.silence.silent_exchange_us + longer_us < room_us
 
     def _measure(self, now):
         """Measure how long answered exchanges take."""

@@ -7,7 +7,8 @@ in an interrupt). They share words, not structures; each field has one writer:
     loop     wanted, off, ticket, stops, hsw, urgent, asking, acknowledgements, near, tells_status,
              further words on their way out
     engine   void, zsw, hiw, contact, contacts, was_running, silent, served, counters and the rest
-    both     steady: either side sets it False after any change; only the engine sets it True
+    both     steady: False by whoever changes something, at last; True by the engine alone;
+             `become`: the loop, while the bus keeps the engine away from the drive
 
 ON and JOG are sent only on a ticket. Every `start` draws a new one. The engine voids the ticket in
 force if the drive is lost, faults, stops of its own accord or stands still although it was not
@@ -218,8 +219,25 @@ class Drive:
     def move(self, address):
         """The drive answers at another address from now on; `Turns` checks that it is free."""
         self.address = address
-        self.call()  # it may have called at the old address
-        self._call_for_turns()
+        self.call_again()  # what called at the old one
+
+    def become(self, other):
+        """Take over the layout of `other`, a new drive, with all that is made for it: the telegram
+        and the parameter channel. PZD words that both have keep what `put` said.
+
+        From the loop; the master sees that no telegram is built or taken meanwhile.
+        """
+        self.channel.become(other.channel)
+        if self.further and other.further:
+            count = min(len(self.further), len(other.further)) >> 1
+            for index in range(count):
+                other.further[index] = self.further[index]
+        self.further = other.further
+        self.layout = other.layout
+        self.request = other.request
+        self.size = other.size
+        self._behind = other._behind
+        self.sealed = self.steady = False
 
     def call(self):
         """Make the engine look how urgent this drive is."""
@@ -228,6 +246,11 @@ class Drive:
         if urgency > 1:
             attention[self.address] = urgency
             attention[ANY] = 1
+
+    def call_again(self):
+        """Let the engine look once more at all that this drive may have called for."""
+        self.call()
+        self._call_for_turns()
 
     def _call_for_turns(self):
         attention = self._attention

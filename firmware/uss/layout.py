@@ -63,6 +63,10 @@ class Layout:
         """Whether drives with the two layouts take the same telegrams."""
         return self.pkw_words == other.pkw_words and self.pzd_words == other.pzd_words
 
+    def suits(self, family):
+        """Whether drives of the family can have such telegrams."""
+        return self.pkw_words in family.pkw_choices and self.pzd_words in family.pzd_choices
+
     def takes_broadcast(self):
         """Whether the enable array of a broadcast fits: it needs a PKW area of four words."""
         return self.pkw_words == ENABLE_WORDS and self.pzd_words > 0

@@ -35,7 +35,8 @@ _STUCK_US = const(50_000)  # a transmission that takes so much longer than it sh
 _PAUSE_US = const(1_000_000)  # a pause ends after so long, even if `resume` is not called
 PAUSE_LOOK_US = const(5_000)  # how soon the end of a pause, or a command, is noticed
 _SHARED_EXCHANGES = const(1_000)  # so many after its last telegram another master counts as gone
-_FAILURES_MAX = const(3)  # after so many exceptions in a row contact with all drives is lost
+_OFTEN = const(0xFFFF)  # `silent` of what is not repeated
+_FAILURES_MAX = const(3)  # exceptions in a row after which nothing is known of the drives any more
 
 _GOOD = const(0)  # a copy from `telegram` for the compiler: every exchange needs it
 
@@ -81,7 +82,7 @@ class Master:
     The loop writes _refreshed_at, retries, _held. The engine writes all else. Both write: `phase`
     (the loop when it is OFF and the engine does nothing), what follows from that (_first,
     foreign), `paused` and _shared (the loop to False), _dead_man (the loop to False, in `refresh`;
-    the engine to True).
+    the engine to True), _abandoned (the engine to None).
     """
 
     def __init__(self, link, timing, mask, lost_us=LOST_US):
@@ -90,7 +91,7 @@ class Master:
         self._refreshed_at = 0
         self._dead_man = True  # tripped until the loop refreshes for the first time
         self.phase = LISTENING
-        self.turns = turns = Turns(timing, mask, lost_us, self.is_under_way)
+        self.turns = turns = Turns(timing, mask, lost_us, self.is_under_way, self.abandon)
         self.deadlines = turns.deadlines
         self.timing = timing
         self.progress = 0
@@ -108,7 +109,8 @@ class Master:
         self._foreseen = link.interrupts and getattr(link, "foreseen", False)
         self._reply_window_us = self._receiver.window_us
         self._character_us = timing.character_us
-        self._drive = None  # the drive whose turn it is, or a telegram outside the list
+        self._drive = None  # the one whose turn it is, or a telegram outside the list
+        self._abandoned = None  # what is to stand in its place
         self._failures_in_row = 0
         self._first = True  # poll was not called yet
         self._held = 0
@@ -137,6 +139,17 @@ class Master:
     def is_under_way(self, drive):
         """Whether an exchange with this drive has begun and not ended."""
         return self._drive is drive and self.phase in (SENDING, AWAITING)
+
+    def abandon(self, drive):
+        """Whatever comes of an exchange with this drive that is under way is a miss. The drive may
+        be changed from now on; nobody begins another exchange with it before that is done.
+        """
+        exchange = self.turns.exchanges
+        known = self._abandoned
+        if known is not None and known.drive is drive and known.exchange == exchange:
+            return  # the drive was changed already: it does not know what was sent
+        if self.is_under_way(drive):
+            self._abandoned = _Abandoned(drive, exchange)
 
     def patience_us(self):
         """How long `progress` may stay the same on a bus that works."""
@@ -232,6 +245,8 @@ class Master:
         """
         self.failures = (self.failures + 1) & 0xFFFF
         self._failures_in_row += 1
+        if self._abandoned is not None:
+            self._replace()
         for drive in self.turns.drives:
             drive.revoke()
             if self._failures_in_row >= _FAILURES_MAX:
@@ -394,7 +409,16 @@ class Master:
         # The link reports the reply: there is nothing to do until the reply is late.
         return ((sent_at - now) & self._mask) + self._reply_window_us
 
+    def _replace(self):
+        """The loop has abandoned an exchange: the one under way, unless that was over before."""
+        abandoned, self._abandoned = self._abandoned, None
+        if abandoned.exchange == self.turns.exchanges and abandoned.drive is self._drive:
+            self._drive = abandoned
+            self._receiver.await_instead(abandoned)
+
     def _finish_sending(self, now):
+        if self._abandoned is not None:
+            self._replace()
         left_us = self._link.sending_us(now)
         drive = self._drive
         if left_us:
@@ -423,6 +447,8 @@ class Master:
         return self._rest(now)
 
     def _await(self, now):
+        if self._abandoned is not None:
+            self._replace()
         receiver = self._receiver
         finding = receiver.take(self._link, now)
         if finding == _GOOD:
@@ -457,3 +483,36 @@ class Master:
             if drive.outside:
                 drive.state = pkw.PENDING  # it is repeated, so it is not over yet
             self.turns.repeat(drive)
+
+
+class _Abandoned:
+    """Takes the place of a drive in the exchange that was under way when it got another layout: it
+    has the request that was sent. No reply is a valid one.
+
+    drive: whose it was. exchange: `exchanges` of the bus then.
+    """
+
+    outside = True  # it is treated as if it were
+    silent = _OFTEN  # nobody repeats it
+    contact = False
+    state = pkw.TIMED_OUT
+
+    def __init__(self, drive, exchange):
+        self.drive = drive
+        self.exchange = exchange
+        self.address = drive.address
+        self.request = drive.request
+        self.size = drive.size
+        self._alike = drive.may_reply_alike()
+
+    def fits(self, net_count):
+        return False
+
+    def may_reply_alike(self):
+        return self._alike
+
+    def take(self, buffer, count, now):
+        self.miss(telegram.BAD_LENGTH, now, 0, 0)
+
+    def miss(self, finding, now, lost_us, mask):
+        self.drive.miss(finding, now, lost_us, mask)

@@ -17,12 +17,12 @@ from micropython import const
 
 from uss import pzd, telegram
 from uss.layout import ENABLE_WORDS, PZD_WORDS_MAX
+from uss.finding.mirror import Mirror, OutsideTelegram
 from uss.pkw import DONE, NEW, PENDING, TIMED_OUT
-from uss.telegram import BROADCAST, MIRROR, NET, NODE_MAX, SPECIAL
+from uss.telegram import BROADCAST, NET, NODE_MAX, SPECIAL
 
 __all__ = ("DONE", "NEW", "PENDING", "TIMED_OUT", "Mirror", "Broadcast", "Special", "stop_all")
 
-PROBE = bytes(12)  # net data that name no task and, bit 10 of STW being 0, command nothing
 STW_CONTROL = const(0x0400)
 OFTEN = const(0xFFFF)  # `silent` of a telegram without a reply, so that it is not repeated
 
@@ -31,73 +31,6 @@ OFTEN = const(0xFFFF)  # `silent` of a telegram without a reply, so that it is n
 ENABLE_FLAG = const(0x0001)  # in a: this is a broadcast; bit i: PZD i may be taken over
 UNMASKED = const(0xFFFF)
 ENABLED_PLACES = const(15)  # PZD 16 is never taken over
-
-
-class OutsideTelegram:
-    """The telegram with these net data to this ADR. ValueError if there is no such telegram.
-
-    state: what became of it. finding: the receiver's, why there was no reply. The engine uses the
-    other fields as those of a drive.
-    """
-
-    outside = True  # it is outside the list
-
-    def __init__(self, address, net):
-        self.request = bytearray(len(net) + 4)
-        self.request[NET : NET + len(net)] = net
-        self.size = telegram.seal(self.request, address, len(net))
-        self.address = address
-        self.ahead = False  # it goes ahead of all other telegrams; otherwise it waits its turn
-        self.sealed = True
-        self.silent = 0  # times in a row without a reply
-        self.state = NEW
-        self.finding = telegram.GOOD
-
-    def fits(self, net_count):
-        """Whether a reply may have so many net characters."""
-        return net_count == self.size - 4
-
-    def may_reply_alike(self):
-        """Whether the reply may be equal to the request."""
-        return True
-
-    # --- for the engine: allocates nothing ------------------------------------------------------
-
-    def fill(self, now):
-        """Nothing to do: the telegram does not change."""
-
-    def take(self, buffer, count, now):
-        self.state = DONE
-
-    def miss(self, finding, now, lost_us, mask):
-        self.silent += 1
-        self.finding = finding
-        self.state = TIMED_OUT
-
-    def __repr__(self):
-        return "<%s to ADR %02X>" % (type(self).__name__, self.address)
-
-
-class Mirror(OutsideTelegram):
-    """Asks a node to send the telegram back as it is (A-5.3). The node acts on nothing in it.
-
-    node: 0...31. net: what is sent; a drive of fixed length answers only its own length. DONE if
-    it came back unchanged; otherwise `finding` tells what came instead.
-    """
-
-    def __init__(self, node, net=PROBE):
-        if not 0 <= node <= NODE_MAX:
-            raise ValueError("node %r is not 0...31" % (node,))
-        OutsideTelegram.__init__(self, node | MIRROR, net)
-        self.node = node
-
-    def take(self, buffer, count, now):
-        for index in range(count):
-            if buffer[index] != self.request[index]:
-                self.miss(telegram.BAD_BCC, now, 0, 0)
-                return
-        self.finding = telegram.GOOD
-        self.state = DONE
 
 
 class Broadcast(OutsideTelegram):

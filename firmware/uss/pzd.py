@@ -34,6 +34,7 @@ ZSW_RUNNING = const(0x0004)
 ZSW_FAULT = const(0x0008)
 ZSW_INHIBIT = const(0x0040)
 ZSW_WARNING = const(0x0080)
+ZSW_RUNS_RIGHT = const(0x4000)
 
 # The states that a status word may tell. One that matches no row of STATES is NOT_READY.
 NOT_READY, READY, RUNNING, FAULT, INHIBITED = range(5)
@@ -79,6 +80,17 @@ BEYOND = (0x7FFF, 0x8000)  # a drive stops counting here: the true value may be 
 def signed(word):
     """The two's complement value of a 16-bit word: 8000h...FFFFh are negative."""
     return word - 0x10000 if word & 0x8000 else word
+
+
+def signed_hiw(family, hiw, zsw):
+    """The actual value of a drive of the family as a word with a sign.
+
+    If HIW is only a magnitude, bit 14 of ZSW tells the direction. A value that is already negative
+    stays negative.
+    """
+    if family.hiw_is_signed or zsw & ZSW_RUNS_RIGHT or hiw & 0x8000:
+        return hiw
+    return -hiw & 0xFFFF
 
 
 class Scaling:

@@ -91,6 +91,10 @@ class Receiver:
         self._echoed = 0
         self._coming = False
 
+    def await_instead(self, awaited):
+        """Go on with the same request, of which `awaited` says now what a reply is."""
+        self._awaited = awaited
+
     def take(self, link, now):
         """Take what the link has; return WAITING, GOOD, or why there will be no telegram.
 

@@ -14,7 +14,6 @@ from uss.pzd import FULL_SCALE, HSW_MAX, HSW_MIN, signed
 
 CENTIHERTZ_PER_HERTZ = 100
 SECONDS_PER_MINUTE = 60
-RUNS_RIGHT = 0x4000  # bit 14 of ZSW
 RATED_ROUNDING = 0.01  # a motor's plate rounds its frequency by at most this fraction
 
 
@@ -103,17 +102,6 @@ def run_words(family, hsw, reverse=False):
     if family.hsw_is_signed:
         return family.on, min(count, HSW_MAX) & 0xFFFF
     return (family.on_reverse if count < 0 else family.on), min(abs(count), HSW_MAX)
-
-
-def signed_hiw(family, hiw, zsw):
-    """The actual value of a drive of the family as a word with a sign.
-
-    If HIW is only a magnitude, bit 14 of ZSW tells the direction. A value that is already negative
-    stays negative.
-    """
-    if family.hiw_is_signed or zsw & RUNS_RIGHT or hiw & 0x8000:
-        return hiw
-    return -hiw & 0xFFFF
 
 
 def pole_pairs(frequency_hertz, speed_rpm):

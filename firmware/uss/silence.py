@@ -116,9 +116,11 @@ class Silence:
                 self.look_after(asked)
         elif self.wait_us <= 0 and self.resting:
             last = asked.address if asked is not None else 0
-            self._asked = asked = self._turns.by_address[greatest(self.rests, 0, NODES, last)]
-            self._is_asked = True
-            asked.ask_soon()
+            asked = self._turns.by_address[greatest(self.rests, 0, NODES, last)]
+            if asked is not None:  # a Ctrl-C in `relayout` leaves none there
+                self._asked = asked
+                self._is_asked = True
+                asked.ask_soon()
 
     def _is_anyone_there(self):
         """1 if a drive answers, or may run. Without one, no drive loses time to the silent

@@ -18,6 +18,7 @@ from micropython import const
 from uss.timing import elapsed
 from uss import pkw, pzd
 from uss.families import rows
+from uss.families.rows import RPM, STEPS
 import uss.drive  # noqa: F401
 from uss.telegram_count import TelegramCount
 
@@ -33,6 +34,18 @@ _EXPONENT_MAX = const(136)  # less than 2**10 Hz
 _MANTISSA_BITS = const(148)  # mantissa * 25 >> 148 - exponent is in 0.01 Hz
 _CENTI = const(100)
 _CENTIHERTZ_MAX = const(65_000)
+
+# The same of speeds, from 0.5 1/min to 2**18: mantissa >> 150 - exponent is in 1/min.
+_RPM_EXPONENT_MIN = const(126)
+_RPM_EXPONENT_MAX = const(144)
+_RPM_BITS = const(150)
+_RPM_MAX = const(210_000)  # p2000 of a G120
+
+# A drive that does not tell its reference, or tells it in 1/min, is shown in percent: then
+# hundredths of a percent stand wherever there are hundredths of a hertz.
+_HUNDRED_PERCENT = const(10_000)
+_OF_A_WORD = (rows.WORD, STEPS, rows.COUNT)
+_NOTHING_ASKED = (None,) * rows.COUNT_OF_ROWS
 
 _UNANSWERED_MAX = const(2)  # then the row counts as missing, and is read only before a START
 _ABSENT = (pkw.NO_PARAMETER, pkw.NO_INDEX)  # the drive has no such parameter
@@ -94,19 +107,33 @@ class Survey:
         self._changed = _NOTHING  # the row whose value is new and not judged yet
         self._read_at_us = 0
         self._contact = 0  # the values belong to this drive.contacts; 0 without contact
+        self._asks = self._askable()  # the rows that are read
+
+    def is_percent(self):
+        """Whether frequencies of this drive are in percent, see _HUNDRED_PERCENT."""
+        reference = self._asks[rows.REFERENCE]
+        return reference is None or reference[2] == RPM
 
     def lowest(self):
         """The lowest frequency of the drive, P1080, in centihertz. Only when complete."""
-        return self.values[rows.LOWEST]
+        return self._limit(rows.LOWEST, 0)
 
     def highest(self):
         """The highest frequency of the drive, in centihertz. Only when complete."""
-        return min(self.values[rows.HIGHEST], self.scaling.limit_centihertz())
+        return min(self.own_highest(), self.scaling.limit_centihertz())
+
+    def own_highest(self):
+        """The same, although no telegram may be able to say it."""
+        return self._limit(rows.HIGHEST, _CENTIHERTZ_MAX)
+
+    def off_time_ms(self):
+        """The drive's telegram-off time; 0 if it does not tell one."""
+        return max(self.values[rows.SUPERVISION], 0) * self.family.off_time_unit_ms
 
     def recheck(self):
         """Read every row again soon; the drive gets more than its turn meanwhile."""
         if self.drive.contact:
-            self.unchecked = len(self.values)
+            self.unchecked = self._count_asked()
         if self.count:
             self.count.is_told = True
         self.settle()
@@ -138,7 +165,7 @@ class Survey:
             self._contact = contact
             self._forget()  # nothing else in this step: this takes long enough
             if contact and reread_us == REREAD_US:  # the drive is shown: the operator waits
-                self.unchecked = len(self.values)
+                self.unchecked = self._count_asked()
         elif self._changed != _NOTHING:
             self.settle()
         elif self._asked and self._asked.state != pkw.PENDING:
@@ -162,6 +189,8 @@ class Survey:
             self._judge_scaling()
         else:
             self.wrong = rows.wrong_rows(self.family.meaning, self.values)
+            if self.scaling is None:
+                self._judge_scaling()  # another data set has made it unknown
         self._judge()
 
     def _forget(self):
@@ -172,21 +201,33 @@ class Survey:
         if self.count:
             self.count.forget()
         self._unanswered = None
-        known = self.unreadable
+        known = self.unreadable or self.complete
         for row in range(len(self.values)):
             blank = 0 if row in _LATER else _UNKNOWN
             known = known or self.values[row] != blank
             self.values[row] = blank
-        if known:
+        self._asks = self._askable()  # another layout, perhaps
+        if known or self.is_percent():
             self.scaling = None
             self.wrong = rows.wrong_rows(self.family.meaning, self.values)
+            if self._contact:
+                self._judge_scaling()  # it may be known without a question
             self._judge()
             self.unreadable = False
+
+    def _askable(self):
+        """The rows that the drive can be asked for: three PKW words carry no double word."""
+        survey, pkw_words = self.family.survey, self.drive.layout.pkw_words
+        if not pkw_words or survey[rows.REFERENCE] is None:
+            return _NOTHING_ASKED
+        if pkw_words == 3 and survey[rows.REFERENCE][2] != STEPS:
+            return tuple([row if row and row[2] in _OF_A_WORD else None for row in survey])
+        return survey
 
     def _is_due(self, now_us, reread_us):
         """Whether to ask for a row now."""
         asked = self._asked
-        if self._asked_next or not self.drive.contact:
+        if self._asked_next or not self.drive.contact or self._asks is _NOTHING_ASKED:
             return False
         if asked is self._job and not self._spares:
             return False
@@ -200,7 +241,7 @@ class Survey:
         if channel.is_full():
             return  # the queue is full, because others ask too: try later
         row = self._next_row()
-        wanted = self.family.survey[row]
+        wanted = self._asks[row]
         job = self._spares.pop() if self._asked is self._job else self._job
         job.aim(pkw.READ, wanted[0], rows.index_of(wanted, self.values))
         job.tag = row
@@ -224,19 +265,20 @@ class Survey:
         self._turn = (self._turn + 1) % (2 * len(_WATCHED))
         if self._turn & 1 and self.drive.wanted and self.complete and not self.unchecked:
             row = _WATCHED[self._turn >> 1]
-            if row != rows.COUNTER or self.count is None or self.count.is_told:
+            if row == rows.COUNTER and self.count is not None and not self.count.is_told:
+                self._turn += 2
+                row = _WATCHED[self._turn >> 1]
+            if self._asks[row] is not None:
                 return row
-            self._turn += 2
-            return _WATCHED[self._turn >> 1]
         row = self._row
-        while not self.unchecked and self._is_left_out(row):
+        while self._asks[row] is None or not self.unchecked and self._is_left_out(row):
             row = (row + 1) % len(self.values)
         self._row = (row + 1) % len(self.values)
         return row
 
     def _is_left_out(self, row):
         """Whether the round leaves the row out: only START needs it, or it is in _WATCHED."""
-        missing = self.family.survey[row][3]
+        missing = self._asks[row][3]
         if self._is_unanswered(row) and self.values[row] == missing:
             return True
         if row in _LATER:
@@ -264,7 +306,7 @@ class Survey:
             return
         if self._unanswered:
             self._unanswered[row] = 0
-        kind = self.family.survey[row][2]
+        kind = self._asks[row][2]
         if kind == rows.COUNT:
             before, self.values[row] = self.values[row], job.low
             if self.count:
@@ -275,6 +317,10 @@ class Survey:
             value = centihertz(job.high, value)
         elif kind == rows.SOURCE:
             value = rows.source(job.high, value)
+        elif kind == RPM:
+            value = rpm(job.high, value)
+        elif kind == STEPS:
+            value = self._from_steps(value)
         if value != self.values[row] or value == _UNKNOWN:
             self._put(row, value)
 
@@ -291,7 +337,7 @@ class Survey:
             self._unanswered[row] = min(self._unanswered[row] + 1, _UNANSWERED_MAX)
             is_absent = self._is_unanswered(row)
         if is_absent or row in _LATER and job.state != pkw.TIMED_OUT:
-            value = self.family.survey[row][3]
+            value = self._asks[row][3]
         if value is None or value == _UNKNOWN:
             value = _UNKNOWN
             self.unreadable = job.state == pkw.REFUSED or job.state == pkw.UNANSWERED
@@ -303,11 +349,25 @@ class Survey:
         self.values[row] = value
         self._changed = row
         if row == rows.COMMAND_SET or row == rows.DRIVE_SET:
-            for other in range(len(self.values)):
-                if self.family.survey[other][1] < 0:
-                    self.values[other] = _UNKNOWN
-            self.scaling = None
-            self.complete = False  # at once, so that nothing uses a scaling that is not judged yet
+            self._make_unknown(1, (rows.BY_COMMAND_SET, rows.BY_DRIVE_SET))
+        elif row == rows.ABSOLUTE:
+            self._make_unknown(2, (STEPS,))
+
+    def _make_unknown(self, place, meant):
+        """The values of the rows that have one of these in this place."""
+        for row in range(len(self.values)):
+            asked = self._asks[row]
+            if asked is not None and asked[place] in meant:
+                self.values[row] = _UNKNOWN
+                self.scaling = None
+                self.complete = False  # at once, so that nothing uses what is not judged yet
+
+    def _from_steps(self, value):
+        """0.01 Hz of a frequency in steps whose size the row ABSOLUTE tells."""
+        absolute = self.values[rows.ABSOLUTE]
+        if absolute == _UNKNOWN:
+            return _UNKNOWN  # it is asked for again
+        return value if absolute else value * 10
 
     # --- what it amounts to ---------------------------------------------------------------------
 
@@ -315,22 +375,49 @@ class Survey:
         """Judge all values together, after one of them changed."""
         values = self.values
         self.version += 1
-        tells = values[rows.ACTUAL_SENT] != _UNKNOWN and self.wrong[rows.ACTUAL] == rows.RIGHT
+        tells = not self._is_missing(rows.ACTUAL_SENT) and self.wrong[rows.ACTUAL] == rows.RIGHT
         self.actual = self.scaling if tells else None
-        self.complete = self.scaling is not None and _UNKNOWN not in values
+        self.complete = self.scaling is not None
+        for row in range(len(values)):
+            if values[row] == _UNKNOWN and self._is_missing(row):
+                self.complete = False
         if self.complete:
             self.unreadable = False
-            self.drive.tell_speed(self.scaling.full_scale() if tells else 0)
+            has_sign = tells and self.family.hiw_is_signed
+            self.drive.tell_speed(self.scaling.full_scale() if has_sign else 0)
+
+    def _is_missing(self, row):
+        """Whether a value is still to be told."""
+        return self.values[row] == _UNKNOWN and self._asks[row] is not None
 
     def _judge_scaling(self):
-        reference, absolute = self.values[rows.REFERENCE], self.values[rows.ABSOLUTE]
-        if reference < pzd.REFERENCE_MIN or absolute == _UNKNOWN:
+        """The scaling, made once for all drives that have the same."""
+        reference = self.values[rows.REFERENCE]
+        is_absolute = self.values[rows.ABSOLUTE] == self.family.absolute_value
+        if self._is_missing(rows.REFERENCE) or self._is_missing(rows.ABSOLUTE):
+            reference = 0
+        elif self.is_percent():
+            reference = _HUNDRED_PERCENT if reference and not is_absolute else 0
+            self.unreadable = self.unreadable or is_absolute
+        if reference < pzd.REFERENCE_MIN:
             self.scaling = None
-        elif self.scaling is None or not self.scaling.is_of(reference, bool(absolute)):
+        elif self.scaling is None or not self.scaling.is_of(reference, is_absolute):
             latest = Survey.latest_scaling
-            if latest is None or not latest.is_of(reference, bool(absolute)):
-                Survey.latest_scaling = latest = pzd.Scaling(reference, bool(absolute))
+            if latest is None or not latest.is_of(reference, is_absolute):
+                Survey.latest_scaling = latest = pzd.Scaling(reference, is_absolute)
             self.scaling = latest
+
+    def _limit(self, row, missing):
+        """A frequency that the drive has told, or what stands for it."""
+        value = self.values[row]
+        if value == _UNKNOWN:
+            return missing
+        if self._asks[row][2] == RPM:
+            return value * _HUNDRED_PERCENT // self.values[rows.REFERENCE]
+        return value
+
+    def _count_asked(self):
+        return sum([asked is not None for asked in self._asks])
 
 
 def centihertz(high, low):
@@ -346,3 +433,18 @@ def centihertz(high, low):
     mantissa = (0x80 | high & 0x7F) << 16 | low
     value = (mantissa * (_CENTI >> 2) + (1 << shift - 1)) >> shift
     return value if value <= _CENTIHERTZ_MAX else _UNKNOWN
+
+
+def rpm(high, low):
+    """Convert an IEEE-754 single in 1/min, two words, to whole 1/min, rounded; -1 if a drive
+    cannot have this speed. As `centihertz`, without a floating-point number.
+    """
+    exponent = high >> 7
+    if exponent > _RPM_EXPONENT_MAX:
+        return 0 if high == 0x8000 and not low else _UNKNOWN
+    if exponent < _RPM_EXPONENT_MIN:
+        return 0
+    shift = _RPM_BITS - exponent
+    mantissa = (0x80 | high & 0x7F) << 16 | low
+    value = (mantissa + (1 << shift - 1)) >> shift
+    return value if value <= _RPM_MAX else _UNKNOWN

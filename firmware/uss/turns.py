@@ -40,9 +40,9 @@ _FORGOTTEN_MAX = const(4)  # in one look, so many drives are cleared that want n
 
 
 class Turns:
-    """timing: `Timing` of the line. mask: the clock's period - 1. lost_us: contact with a drive is
-    lost after so long without a valid reply. is_under_way: function drive -> whether an exchange
-    with it has begun and not ended.
+    """timing: `Timing` of the line. mask: the clock's period - 1. lost_us: without a valid reply
+    for so long, contact with a drive is lost. is_under_way: function drive -> whether an exchange
+    with it has begun and not ended. abandon: function drive; such an exchange ends as a miss.
 
     Fields to look at: `drives`, each once, in the order added; `list`, the circulating list, see
     `arrange`; `exchanges`, how often there was a turn, 16 bit; `deadlines`, which looks after
@@ -55,8 +55,8 @@ class Turns:
     the drive that is removed); the attention (any caller sets its rows, the engine clears them).
     """
 
-    def __init__(self, timing, mask, lost_us, is_under_way):
-        # Fields that every exchange needs come first, as in `Master`.
+    def __init__(self, timing, mask, lost_us, is_under_way, abandon=None):
+        # What every exchange asks for comes first, as in `Master`.
         self._attention = bytearray(ATTENTION)
         self.following = _LIST_MAX  # the next drive's place in the round; beyond it a round begins
         self.round_count = 0  # so many entries of `round` count
@@ -69,8 +69,9 @@ class Turns:
         self.timing = timing
         self.lost_us = lost_us
         self.is_under_way = is_under_way
-        self.longest_exchange_us = 0  # if the reply begins and ends at the last moment
-        self.lists_between = 1  # so many telegrams of the list between two extra ones
+        self.longest_exchange_us = 0  # when the reply comes, and ends, at the last moment
+        self.lists_between = 1  # from one telegram that is extra to the next, so many of the list
+        self._abandon = abandon
         self._mask = mask
         self._round_began_at = None
         self._round_left_us = 0  # what is left of the cycle time at the end of the round
@@ -164,6 +165,50 @@ class Turns:
         self._attention[old] = 0
         self.by_address[old] = None
 
+    def relayout(self, drive, layout):
+        """From the next telegram on, the telegrams to `drive` are divided like `layout`.
+
+        An exchange that is under way ends as a miss. A stop that is owed stays owed, and so do
+        commands and counters; parameter jobs that wait are TIMED_OUT. The drive is asked soon.
+        ValueError when it is not on this bus, or is in contact. Of a drive that may be running
+        only who knows that it has this layout by now may say so: its STOP goes out in this one.
+        """
+        address = drive.address
+        if self.by_address[address] is not drive:
+            raise ValueError("drive %d is not on this bus" % address)
+        self._check_lost(drive)
+        fresh = Drive(address, self._mask, self._attention, layout)
+        # While its parts do not fit together, no exchange with it begins: nobody finds it. The
+        # last one that may have begun is no longer its own.
+        is_in_round = not self.deadlines.silence.rests[address]
+        self.by_address[address] = None
+        if self._again is drive:
+            self._again = None
+        if is_in_round:
+            self.leave_round(drive)
+        try:
+            self._check_lost(drive)
+            if self._abandon:
+                self._abandon(drive)
+            self._check_lost(drive)  # it answered at the last moment
+        except BaseException:
+            self._bring_back(drive, is_in_round)
+            raise
+        drive.become(fresh)
+        self._bring_back(drive, is_in_round)
+        drive.ask_soon()
+        self._follow_layouts()
+
+    def _check_lost(self, drive):
+        if drive.contact:
+            raise ValueError("drive %d is in contact" % drive.address)
+
+    def _bring_back(self, drive, is_in_round):
+        self.by_address[drive.address] = drive
+        if is_in_round:
+            self.join_round(drive)
+        drive.call_again()  # nobody heard what it called meanwhile
+
     def post(self, telegram_outside):
         """Send a telegram outside the list once (see `outside`). It is the next telegram but one
         at the latest, if nothing else is urgent. RuntimeError if 8 wait already, or this one does.
@@ -198,16 +243,23 @@ class Turns:
 
     def _set_list(self, entries):
         self.list = entries
-        longest_us = 0
-        for drive in self.drives:
-            layout = drive.layout
-            reply_count = telegram.NET_COUNT_MAX if layout.variable else layout.net_max
-            longest_us = max(longest_us, self._longest_us(layout.net_max, reply_count))
-        self.longest_exchange_us = longest_us
-        self.deadlines.list_changed()
-        self.round_count = 0  # no drive has a turn until the round is filled
+        self._follow_layouts()
+        self.round_count = 0  # nobody has a turn until it is filled
         self.round = list(entries)
         self._fill_round()
+
+    def _follow_layouts(self):
+        """What follows from the layouts of the drives."""
+        longest_us = 0
+        last = None
+        for drive in self.drives:
+            layout = drive.layout
+            if layout is not last:  # mostly they share one
+                last = layout
+                reply_count = telegram.NET_COUNT_MAX if layout.variable else layout.net_max
+                longest_us = max(longest_us, self._longest_us(layout.net_max, reply_count))
+        self.longest_exchange_us = longest_us
+        self.deadlines.list_changed()
 
     # --- for `silence`, from the loop -----------------------------------------------------------
 
@@ -238,15 +290,16 @@ class Turns:
             place += 1
 
     def _fill_round(self):
-        """Fill the round with the list without the drives that rest. It is filled in place: that
-        takes no heap, and an interrupt meanwhile finds a drive in every place, the old or the new
-        one.
+        """The list without those that rest, or are just given another layout. In place: it takes
+        no heap, and an interrupt that walks it meanwhile finds a drive everywhere, the one before
+        or the one after.
         """
         rests = self.deadlines.silence.rests
+        by_address = self.by_address
         drives = self.round
         count = 0
         for drive in self.list:
-            if not rests[drive.address]:
+            if not rests[drive.address] and by_address[drive.address] is drive:
                 drives[count] = drive
                 count += 1
         self.round_count = count
@@ -276,8 +329,8 @@ class Turns:
         return left_us
 
     def repeat(self, drive):
-        """Repeat an exchange without a valid reply, unless the drive was removed meanwhile."""
-        if drive.outside or drive in self.drives:
+        """There was no valid reply: once more, unless the drive was removed meanwhile."""
+        if drive.outside or self.by_address[drive.address] is drive:
             self._again = drive
             self._attention[ANY] = 1
 

@@ -7,10 +7,10 @@ from spoilt_bench import TROUBLES, spoil
 from tools.examples.simulation import Stage
 from uss import bits, pkw, pzd
 from uss.bus import MAY_RUN, NO_CONTACT, Master
-from uss.bus.errors import FallsSilent, NoContact, NotStarted, Refused, TimedOut, UssError
-from uss.bus.scan import Scan
+from uss.errors import FallsSilent, NoContact, NotStarted, Refused, TimedOut, UssError
 from uss.families import G110, G120, GENERIC, MM3, MM420, MM440, V20
 from uss.families.rows import WORD
+from uss.finding.scan import Scan
 from uss.layout import VARIABLE, Layout
 from uss.master import CLOSED, OFF
 from uss.scaling import Scale

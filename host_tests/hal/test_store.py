@@ -8,7 +8,7 @@ other addresses.
 import os
 
 import main
-import settings
+import settings_file as settings
 from boards.sim.chip.flash import BLOCK_BYTES, ENOSPC, Flash, PowerCut
 from boards.sim.world import SETTINGS_FILE, World
 from hal.store import FileStore

@@ -10,7 +10,7 @@ import subprocess
 
 import pytest
 
-import settings
+import settings_file as settings
 import version
 from boards.sim.script import COMMANDS
 from panel import texts
@@ -131,7 +131,7 @@ def test_every_file_and_folder_that_a_table_names_is_there():
 def pattern(text):
     """A text of the display as a pattern: a number may be any, blanks count once."""
     words = [re.escape(word) for word in text.decode("latin-1").split()]
-    return re.sub("%0?[0-9]?d", r"\\d+", r"\s*".join(words)).replace("%s", ".+")
+    return re.sub("%0?[0-9]?d", r"\\d+", r"\s*".join(words)).replace("%s", ".+").replace("%%", "%")
 
 
 def every_text(thing):

@@ -14,7 +14,7 @@ from boards.sim.drives.families import mm420
 from boards.sim.world import World
 from panel_bench import OFF1, ON, panel, row_1, row_2, running, telegrams
 from receiver_bench import REPLY, TCH, Line
-from settings import load
+from settings_file import load
 from uss import pkw
 from uss.drive import COUNTERS
 from uss.receiver import WAITING

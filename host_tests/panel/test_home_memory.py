@@ -59,7 +59,8 @@ def test_nor_do_frequencies_that_change_or_three_drives_of_which_one_is_announce
     world.press("STOP")
     lock(world, 10_000)
     world.drives[3].unplug()
-    lock(world, 5_000)
+    world.run(3_000)  # who looks for another layout is loaded now
+    lock(world, 20_000)
     world.check()
 
 

@@ -6,7 +6,7 @@ START asks, STOP promises, and becomes of it when something fails is in the file
 """
 
 import main
-import settings
+import settings_file as settings
 from boards.sim.world import World
 from panel import texts
 from panel_bench import OFF1, ON, panel, row_1, row_2, running, starts, telegrams, unsupervised

@@ -7,7 +7,7 @@ each of them is said for a second and more in every 2 n s.
 
 import main
 from boards.sim.world import World
-from panel.pages.table import PAGES
+from panel.pages.home import Home
 from panel_bench import (
     all_running,
     panel,
@@ -570,7 +570,7 @@ def test_drawing_changes_nothing_but_the_picture():
         world.run(1)
     fault = shown.selected.fault
     before = dict(fault.__dict__)
-    home = PAGES[0](shown)
+    home = Home(shown)
     for now_ms in range(0, 10_000, 100):
         home.draw(shown.screen, now_ms)
     assert fault.__dict__ == before

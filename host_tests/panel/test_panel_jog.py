@@ -542,7 +542,7 @@ def test_the_number_of_an_earlier_fault_is_not_shown_for_the_next():
     drive = Drive(1, 0x3FFFFFFF)
     drive.ask = ask
     drive.contact = True
-    fault = Fault(drive, 0x3FFFFFFF, MM4.fault_number)
+    fault = Fault(drive, 0x3FFFFFFF, MM4)
     for drive.zsw in (FAULT_ZSW, READY_ZSW, FAULT_ZSW):
         fault.step(0)
     asked[0].state, asked[0].low = pkw.DONE, 12

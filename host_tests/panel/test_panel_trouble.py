@@ -4,25 +4,28 @@
 Silence, noise, another length, another address, a wrong check have each a cure of its own.
 """
 
-from panel_bench import panel, row_2
+from panel_bench import panel, row_1, row_2, starts
 from spoilt_bench import TROUBLES, spoil
 
 INTERPRETERS = "unix64 unix32"
 
 
-def test_a_drive_as_it_is_delivered_answers_in_another_length():
-    """P2013 = 127, and every telegram is answered: nobody looks for a broken wire."""
+def test_a_drive_whose_telegrams_have_another_length_is_found_and_not_started():
+    """P2013 = 127 as it is delivered, and every telegram is answered: no wire is broken."""
     world = panel(parameters={2013: 127})
     seen = set()
     for _ in range(60):
         world.run(100)
         seen.add(row_2(world))
-    assert "OTHER LENGTH A1" in seen and not any("NO CONTACT" in row for row in seen), seen
-    world.press("START")
-    assert not world.app.bus.turns.drives[0].is_on()
-    world.drives[1].write(2013, 0, 4)
-    world.run(6_000)
-    assert row_2(world) == "READY        A1", row_2(world)
+    assert not any("NO CONTACT" in row for row in seen), seen
+    assert row_2(world) == "READY        A1" and starts(world) == 0
+    assert world.app.settings.kinds == {"1": "mm420/127"}
+    for pkw_words, text in ((4, "F:"), (3, "%F:"), (0, "%F:"), (127, "F:")):
+        world.drives[1].write(2013, 0, pkw_words)
+        world.run(8_000)
+        assert row_2(world) == "READY        A1" and text in row_1(world), (pkw_words, world.lcd())
+    assert starts(world) == 0
+    world.check()
 
 
 def test_each_trouble_has_its_words_on_the_display():

@@ -23,6 +23,7 @@ PARAMETERS = (
     (2014, 5000),
 )  # fmt: skip
 TURNS = {0x047F: "START", 0x0C7F: "START", 0x057E: "JOG_RIGHT", 0x067E: "JOG_LEFT"}
+MIRROR = 0x40  # bit of ADR: the drive sends the telegram back as it came
 OFF = (0x047E, 0x047A, 0x04FE, 0x04FA)  # OFF1, OFF3, each with an acknowledgement
 JOG_RELEASE_US = 150_000  # debouncing, the exchange under way, a stop of another drive
 
@@ -109,7 +110,9 @@ class Operator:
             if not from_panel:
                 self.last_answer_us[address] = at_us
                 continue
-            if stw not in OFF:
+            if address & MIRROR:
+                assert not any(characters[3:-1]), characters  # nobody could obey it
+            elif stw not in OFF:
                 self.judge(at_us, address, stw)
         self.looked_at = log.count
 

@@ -2,8 +2,8 @@
 """The picture of 2 x 16 characters, and the texts that stand in it."""
 
 from panel import texts
-from panel.pages.parameters import PARAMETERS
 from panel.screen import COLUMNS, ROWS, Screen
+from uss import families
 
 
 def shown(width, hundredths, decimals):
@@ -102,7 +102,7 @@ def test_no_text_is_wider_than_its_place():
         elif name in values:
             width = texts.VALUE_WIDTH
         elif name == "OTHER_TRIPPED":
-            width = texts.ROW_WIDTH - len("A31") - len("0001")
+            width = texts.ROW_WIDTH - len("A31") - len("01910")
         elif name == "OTHER_REFUSAL":
             width = texts.ROW_WIDTH - len("65535") + len("%d")
         elif name.startswith("OTHER_"):
@@ -122,10 +122,14 @@ def test_every_text_is_made_of_characters_that_the_display_has():
 
 
 def test_every_state_of_a_drive_fits_beside_its_fault_number():
+    """A G120 has the longest: F01910."""
     for words, letter in zip(all_words(texts.FAULT), all_words(texts.FAULT_LETTER)):
-        assert len(words) + 1 + len(letter) + 4 <= texts.STATE_WIDTH
+        assert len(words) + 1 + len(letter) + 5 <= texts.STATE_WIDTH
 
 
 def test_parameter_names_fit_their_field():
-    for name, _, _, _ in PARAMETERS:
-        assert len(name) == texts.PARAMETER_WIDTH
+    for name in (texts.PARAMETER, texts.READ_PARAMETER):
+        for words in all_words(name):
+            assert len(words) == texts.PARAMETER_WIDTH
+    for family in families.FAMILIES:
+        assert all(0 < number <= 9999 for number, _ in family.shown)

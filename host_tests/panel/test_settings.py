@@ -3,7 +3,7 @@
 
 import json
 
-import settings
+import settings_file as settings
 from boards.sim.chip.flash import Flash
 from hal.store import FileStore
 
@@ -166,7 +166,9 @@ def test_a_file_that_is_too_big_is_set_aside_without_being_read():
 def test_unknown_things_that_would_fill_the_file_are_left_out_and_said():
     chosen = loaded({"baud": 9600, "new": 3_000 * "x"})
     assert (chosen.suspect, chosen.baud) == (settings.TOO_BIG, 9600)
-    assert len(chosen.as_file()) < settings.SIZE_MAX
+    store = stored({})
+    settings.save(store, chosen)
+    assert len(store.read()) < settings.SIZE_MAX
 
 
 def test_what_stands_there_twice_is_named_and_has_its_default():
@@ -215,7 +217,7 @@ def test_what_is_saved_is_loaded_again():
     chosen = loaded({"baud": 38400, "drives": [5, 6], "second_stop": "none", "unsupervised": [6]})
     settings.save(store, chosen)
     again = settings.load(store)
-    assert again.as_dictionary() == chosen.as_dictionary()
+    assert settings.as_dictionary(again) == settings.as_dictionary(chosen)
     assert again.complaint is None
 
 
@@ -233,7 +235,8 @@ def test_a_person_can_read_the_file():
         '  "lowest_centihertz": 0,\n'
         '  "highest_centihertz": 65000,\n'
         '  "drives": [2, 1],\n'
-        '  "unsupervised": [2]\n'
+        '  "unsupervised": [2],\n'
+        '  "kinds": {}\n'
         "}\n"
     )
 
@@ -330,8 +333,7 @@ def test_31_drives_can_all_be_accepted_whatever_the_file_says_of_others():
 
 
 def test_what_is_still_to_be_saved_stays_so_though_nothing_new_is_accepted():
-    changed = settings.Settings()
-    changed.take({"drives": [1], "unsupervised": [1]})
+    changed = loaded({"drives": [1], "unsupervised": [1]})
     changed.readdress(1, 5)
     changed.accept_unsupervised(5)
     assert changed.dirty and changed.unsupervised == (5,)

@@ -473,13 +473,6 @@ def test_of_two_talkers_both_come_in_as_garbage():
     assert TELEGRAM[2] not in received
 
 
-def test_a_uart_at_another_baud_rate_cannot_be_joined():
-    clock = Clock()
-    wire = Wire(clock, 9600)
-    chip = Chip(clock, wire)
-    assert refused(ValueError, Transceiver, wire, UART(chip, 19200), Pin(chip))
-
-
 # Interrupts
 
 

@@ -109,7 +109,7 @@ def test_an_unknown_word_is_exit_status_2_and_names_file_and_line(tmp_path):
         (("--script", "."), "cannot be read"),
         (("--drives", "32", "--script", "-"), "32 is no address 0...31"),
         (("--drives", "", "--script", "-"), "nothing is no address"),
-        (("--drives", "1,1", "--script", "-"), "an address stands there twice"),
+        (("--drives", "1,1", "--script", "-"), "1 stands there twice"),
         (("--drives", ",".join(map(str, range(32))), "--script", "-"), "31 at the most"),
         (("--keys", "loop", "--script", "-"), "keys are wired direct or matrix"),
         (("--settings", "nowhere/settings.json", "--script", "-"), "cannot be kept"),

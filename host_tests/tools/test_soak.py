@@ -7,19 +7,23 @@ tools/soaking/judging/rules.py.
 """
 
 from boards.sim.clock import Clock
+from boards.sim.drives.drive import Drive
+from boards.sim.drives.families import g120, mm3, mm440
 from boards.sim.drives.switches import SWITCHES
 from boards.sim.line.wire import Wire
 from tools.soaking.dice import Dice
 from tools.soaking.fuzz import fuzz
 from tools.soaking.judging.announced import ANY, MAY_RUN, OFF, RUNS, TRIPPED, number_in, said_in
 from tools.soaking.judging.case import Case
+from tools.soaking.judging.drive_settings import Values
+from tools.soaking.judging.families import FAMILIES, VARIABLE, Kind, Sight, kinds_of
 from tools.soaking.judging.reader import subject_in
 from tools.soaking.judging.rules import RULES, Broken
 from tools.soaking.judging.runs import is_standstill
-from tools.soaking.judging.tape import REPLY, Tape
+from tools.soaking.judging.tape import MIRRORED, REPLY, RETURNED, Tape
 from tools.soaking.soak import Soak
 from tools.soaking.story import story
-from tools.soaking.worlds import switched
+from tools.soaking.worlds import Plan, switched
 
 NOT_TRACED = """
     test_every_rule_holds
@@ -141,10 +145,10 @@ def test_a_drive_that_stands_though_nobody_ordered_it_is_told_from_one_that_turn
     case = Case()
     case.stw, case.hsw = 0x047F, 0x2000
     hiws = (0x0000, 0x1FF0, 0x2000, 0x1000, 0x0010)  # from rest to the setpoint, and to rest
-    assert [is_standstill(case, hiw) for hiw in hiws] == [False, False, False, False, True]
+    assert [is_standstill(case, hiw, 0x0C7F) for hiw in hiws] == [False, False, False, False, True]
     case.stw, case.reached = 0x0C7F, False  # REVERSE
     hiws = (0x2000, 0x0010, 0xE000, 0x0000)  # right, through 0, left, and to rest
-    assert [is_standstill(case, hiw) for hiw in hiws] == [False, False, False, True]
+    assert [is_standstill(case, hiw, 0x0C7F) for hiw in hiws] == [False, False, False, True]
 
 
 def test_what_an_announcement_says_of_whom_is_read_from_the_display():
@@ -188,8 +192,91 @@ def test_what_a_question_is_about_is_read_from_the_display():
         assert subject_in(other) is None, other
 
 
+def test_a_telegram_that_a_drive_is_to_send_back_is_no_request():
+    clock = Clock()
+    wire = Wire(clock, 19200)
+    tape = Tape(wire)
+    panel, drive = Talker("panel", True), Talker("drive 1")
+    for station in (panel, drive):
+        wire.attach(station)
+    telegram = bytes((0x02, 0x0C, 0x41) + 10 * (0,) + (0x4F,))
+    wire.talk(panel, telegram, 14)
+    clock.advance(15_000)
+    wire.talk(drive, telegram, 14)
+    clock.advance(30_000)
+    rows = list(tape.news())
+    assert [tape.kind[row] for row in rows] == [MIRRORED, RETURNED]
+    assert [tape.address[row] for row in rows] == [1, 1]
+    assert [tape.count[row] for row in rows] == [5, 5] and tape.is_blank(rows[0])
+
+
+def test_the_layout_changes_only_to_one_that_has_come_back():
+    kind = Kind("mm420", 4, 2)
+    assert kind.send(6, 0) and kind.send(6, 1) and not kind.send(5, 0)
+    assert kind.may_be_reply(6) and not kind.may_be_reply(5)
+    kind.returned(5, True)
+    assert kind.send(5, 0) and kind.words == {3} and not kind.send(6, 0)
+    kind.restarted()
+    assert kind.sight() is None and kind.send(6, 0) and kind.words == {4}
+    kind.returned(5, True)
+    kind.answered()
+    assert not kind.send(5, 0)
+    kind.returned(5, True)
+    kind.returned(6, True)  # it takes a longer one, too
+    assert kind.send(5, 0) and kind.words == {VARIABLE} and kind.may_be_reply(6)
+    assert not kind.send(2, 0)
+
+
+def test_what_the_settings_name_is_what_the_panel_is_taken_to_know():
+    kinds = kinds_of({"kinds": {"3": "g120", "5": "mm440/4+4", "7": "mm3"}}, (1, 3, 5, 7))
+    told = {one: (kinds[one].words, kinds[one].pzd_words) for one in kinds}
+    assert told == {1: ({4}, 2), 3: ({VARIABLE}, 2), 5: ({4}, 4), 7: ({3}, 2)}
+
+
+def test_percent_is_where_nobody_can_read_what_it_is_of():
+    for name, pkw_words, percent in (
+        ("mm420", 4, False), ("mm440", VARIABLE, False), ("g110", 3, True), ("v20", 0, True),
+        ("mm3", 3, False), ("g120", VARIABLE, True), ("generic", 4, True),
+    ):  # fmt: skip
+        sight = Sight(FAMILIES[name], pkw_words)
+        assert sight.is_percent == percent, name
+        assert sight.reads_words == (pkw_words != 0 and name != "generic"), name
+
+
+def test_limits_are_told_in_the_unit_that_the_panel_shows():
+    world = Soak(1).world
+    told = {}
+    for name, module, pkw_words in (
+        ("mm440", mm440, 4), ("mm440", mm440, 3), ("mm3", mm3, 3), ("g120", g120, VARIABLE),
+        ("g120", g120, 3),
+    ):  # fmt: skip
+        drive = Drive(world.clock, Wire(world.clock, 19200), 1, family=module)
+        values = Values(drive, Sight(FAMILIES[name], pkw_words))
+        told[name, pkw_words] = (values.is_percent, values.highest_hz, values.reference_hz)
+    assert told == {
+        ("mm440", 4): (False, 50, 50),
+        ("mm440", 3): (True, 650, 100),
+        ("mm3", 3): (False, 50, 50),
+        ("g120", VARIABLE): (True, 100, 100),
+        ("g120", 3): (True, 650, 100),
+    }
+
+
+def test_worlds_have_every_family_in_every_layout():
+    found = set()
+    for seed in range(400):
+        plan = Plan(seed, 3)
+        if plan.has_families:
+            found |= {(kind["family"].NAME, kind["layout"][0]) for kind in plan.kinds.values()}
+    assert {name for name, _ in found} >= {
+        "MICROMASTER 420", "MICROMASTER 440", "MICROMASTER 3", "SINAMICS G110", "SINAMICS V20",
+        "SINAMICS G120", "drive of the specification",
+    }  # fmt: skip
+    assert {words for name, words in found if name != "MICROMASTER 3"} == {0, 3, 4, VARIABLE}
+
+
 def test_where_the_panel_can_control_no_drive_it_has_nothing_to_prove():
-    soak = Soak(721)  # two drives, both with telegrams that this panel does not speak
+    soak = Soak(721)  # two drives, both of other families than the panel is told
     assert not any(soak.reader.is_able(address) for address in soak.plan.addresses)
     soak.hand.put_in_order()
     soak.hand.prove_control()

@@ -5,7 +5,7 @@ from boards.sim.line.intruder import Intruder
 from fleet_bench import Fleet
 from round_bench import framed
 from uss import pkw
-from uss.bus.scan import EVERY_NET_COUNT, Scan
+from uss.finding.scan import EVERY_NET_COUNT, Scan
 
 NOT_TRACED = """
     test_all_run_and_all_are_read_at_once

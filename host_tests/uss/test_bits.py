@@ -4,7 +4,7 @@
 from uss import bits
 from uss.bits import STW2_BITS, STW_BITS, ZSW2_BITS, ZSW_BITS, bit, may_start, names
 from uss.families import FAMILIES
-from uss.scaling import RUNS_RIGHT
+from uss.pzd import ZSW_RUNS_RIGHT
 
 # ZSW, what is remarkable about it. From captures and manuals (USS.md 4.3).
 SEEN = (
@@ -87,7 +87,7 @@ def test_a_bit_by_its_name():
     assert bit("REVERSE", STW_BITS) == 0x0800
     assert bit("DATA_SET_BIT_0", bits.STW_BITS_G120) == 0x8000
     for table in (ZSW_BITS, bits.ZSW_BITS_MM3, bits.ZSW_BITS_G120):
-        assert bit("RUNS_RIGHT", table) == RUNS_RIGHT
+        assert bit("RUNS_RIGHT", table) == ZSW_RUNS_RIGHT
     for table in tables():
         for place, name, _ in table:
             assert bit(name, table) == 1 << place

@@ -109,7 +109,7 @@ def test_the_first_telegram_of_all_may_be_a_mirror_telegram():
 
 
 def test_a_scan_on_a_line_with_an_echo_finds_who_is_there():
-    from uss.bus.scan import Scan
+    from uss.finding.scan import Scan
 
     for bits in LINKS:
         bench = bench_of([Node(3), Node(9, 3, 2)], bits, listed=False)

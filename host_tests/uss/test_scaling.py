@@ -5,7 +5,8 @@ import random
 
 from uss import pzd
 from uss.families import FAMILIES, G120, GENERIC, MM3, MM440
-from uss.scaling import Scale, pole_pairs, run_words, signed_hiw
+from uss.pzd import signed_hiw
+from uss.scaling import Scale, pole_pairs, run_words
 
 RIGHT, LEFT = 0xFB34, 0xBB34
 

@@ -15,6 +15,7 @@ import textwrap
 from functools import partial
 
 from boards.sim.drives import families
+from boards.sim.drives.kinds import USUAL, as_delivered, listed_drives, simulated
 from boards.sim.drives.switches import SWITCHES, switch_value
 from boards.sim.script import (
     LINE_MAX,
@@ -29,7 +30,6 @@ from tools.driving.line import OF_THE_PANEL, DriveLine
 from tools.port.serial_port import PortError, Pty, SerialPort
 from tools.port.standard_streams import Output, is_ours, open_missing
 
-USUAL = "mm420"
 BAUD_RATES = (
     300, 600, 1200, 2400, 4800, 9600, 19200, 38400, 57600, 76800, 93750, 115200, 187500,
 )  # fmt: skip
@@ -91,7 +91,8 @@ def arguments(words):
     where.add_argument("--pty", action="store_true", help="on a new pty, whose path is printed")
     where.add_argument("--port", action=Once, metavar="PATH", help="on a port, as /dev/ttyUSB0")
     once("--link", metavar="PATH", help="with --pty: a symbolic link to it, always the same")
-    once("--address", "--drives", default="1", metavar="LIST", help="such as 1,2=g110,3=v20 (1)")
+    once("--address", "--drives", default="1", metavar="LIST",
+         help="such as 1,2=g110,3=v20/4,8=mm420/factory (%(default)s)")  # fmt: skip
     once("--family", default=USUAL, choices=families.NAMES,
          help="of those without one (%(default)s)")  # fmt: skip
     once("--baud", type=int, default=19200, choices=BAUD_RATES, metavar="RATE", help="(19200)")
@@ -126,21 +127,14 @@ def is_node(word):
 
 def kinds(chosen):
     """{address: keyword arguments of `Drive`}. ValueError if there is no such drive."""
-    found = {}
-    for entry in chosen.address.split(","):
-        address, _, family = entry.partition("=")
-        family = family.lower() or chosen.family
-        if not is_node(address):
-            raise ValueError("--address: %s is no address 0...31" % (address or "nothing"))
-        if int(address) in found:
-            raise ValueError("--address: %s stands there twice" % address)
-        try:
-            found[int(address)] = {"family": families.named(family)}
-        except ValueError as error:
-            raise ValueError("--address: %s" % error) from None
-        found[int(address)].update({"parameters": {}, "switches": {}})
+    try:
+        found = simulated(listed_drives(chosen.address, usual=chosen.family))
+    except ValueError as error:
+        raise ValueError("--address: %s" % error) from None
+    for kind in found.values():
+        kind.update({"parameters": {}, "switches": {}})
         if chosen.reply_delay is not None:
-            found[int(address)]["reply_delay_us"] = int(chosen.reply_delay * 1000)
+            kind["reply_delay_us"] = int(chosen.reply_delay * 1000)
     for entry in chosen.set:
         addresses, name, word = assignment("--set", "P2014=0", entry, found)
         try:
@@ -262,6 +256,8 @@ def serve(chosen, found, complain):
         log = output.say if chosen.log else None
         line = DriveLine(port, found, chosen.baud, log, complain)
         output.say(chosen.link or port.path)
+        for told in as_delivered(line.drives, chosen.baud):
+            complain(told)
         keyboard = Keyboard(line, output.say)
         while not keyboard.left:
             if line.serve(keyboard if keyboard.listens() else None):

@@ -11,6 +11,7 @@ driver is on. It keeps the figures of the line, in nanoseconds of the chip's clo
 from array import array
 
 from boards.sim.clock import Event
+from boards.sim.line.wire import GARBLE
 
 BITS = 11  # of a character
 FOLLOWS_BITS_PERCENT = 40  # a later start bit is a gap; the world is that far behind
@@ -191,7 +192,8 @@ class Station:
         starts_ns = self._instant_ns(burst, at)
         ends_ns = self._instant_ns(burst, at + 1)
         if not self._deaf(starts_ns, ends_ns):
-            self._tell(ends_ns, "C", burst.data[at], 0)
+            characters = burst.data if burst.baud == self._wire.baud else GARBLE
+            self._tell(ends_ns, "C", characters[at], 0)
             self._heard_until_ns = ends_ns
             self.figures.heard_ns = ends_ns - self._origin_ns
         if at + 1 < burst.count:

@@ -91,8 +91,8 @@ class Input:
 
 class PicoWorld(Surroundings):
     """program: "panel" or "stock" of build/pico, or the path of a UF2 file. addresses, baud,
-    settings, seed, parameters: as in `Surroundings`; a seed makes keys bounce and drives answer
-    each in its own time.
+    settings, seed, parameters, kinds: as in `Surroundings`; a seed makes keys bounce and drives
+    answer each in its own time.
 
     display: "wires", four data lines, or "backpack", on I2C. files: path -> content, put on the
     chip's file system. flash: path of a flash image to begin with, of which all but the program
@@ -122,10 +122,13 @@ class PicoWorld(Surroundings):
         files=None,
         flash=None,
         model=None,
+        kinds=None,
     ):
         if display not in DISPLAYS:
             raise ValueError("a display is one of: %s" % " ".join(DISPLAYS))
-        Surroundings.__init__(self, Clock(), addresses, baud, settings, seed, "direct", parameters)
+        Surroundings.__init__(
+            self, Clock(), addresses, baud, settings, seed, "direct", parameters, kinds
+        )
         self.chip = connection()
         self.restarts = []
         self.flash_log = []

@@ -20,7 +20,7 @@ from errno import errorcode
 # Lower layers first, or the 32-bit build runs out of stack.
 import boards.sim.drives.parameters  # noqa: F401
 from boards.sim.clock import Event
-from boards.sim.drives import families
+from boards.sim.drives.kinds import as_delivered, listed_drives, simulated
 from boards.sim.world import World
 
 FOLDER = "tools/examples"
@@ -31,7 +31,6 @@ CTRL_C = "Ctrl-C"
 SOMEBODY = {"own_program": ((2.0, "START"), (12.0, "STOP"), (40.0, CTRL_C))}
 
 USAGE = "usage: ./tools/example %s|FILE.py [--drives 1,2=g110]"
-NODE_MAX = 31
 
 
 class UsageError(Exception):
@@ -81,19 +80,10 @@ def names():
 
 def kinds(text):
     """What drives "1,2=g110" are: address -> kind, as of World. UsageError: none like that."""
-    found = {}
-    for entry in text.split(","):
-        address, _, family = entry.partition("=")
-        family = family.lower() or "mm420"
-        if not address.isdigit() or int(address) > NODE_MAX:
-            raise UsageError("--drives: %s is no address 0...31" % (address or "nothing"))
-        if int(address) in found:
-            raise UsageError("--drives: %s stands there twice" % address)
-        try:
-            found[int(address)] = {"family": families.named(family)}
-        except ValueError as error:
-            raise UsageError("--drives: %s" % error) from None
-    return found
+    try:
+        return simulated(listed_drives(text))
+    except ValueError as error:
+        raise UsageError("--drives: %s" % error) from None
 
 
 def understood(words):
@@ -152,6 +142,8 @@ def run(words):
         print("tools/example: %s" % error, file=sys.stderr)
         return 2
     stage = Stage(tuple(sorted(found)), kinds=found)
+    for line in as_delivered(stage.drives, stage.wire.baud):
+        print("(%s)" % line)
     attend(stage, name)
     stage.play(main)
     seconds = stage.clock.now_us / 1_000_000

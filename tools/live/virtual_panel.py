@@ -10,6 +10,7 @@ Ctrl-C.
 """
 
 import gc
+import json
 import os
 import select
 import sys
@@ -17,11 +18,12 @@ import time
 
 import main
 from boards.sim.board import WIRINGS
-from boards.sim.drives.families import mm420
+from boards.sim.drives import kinds
 from boards.sim.script import LINE_MAX, ExpectationFailed, Script, ScriptError
 from boards.sim.world import World
 from hal.store import FileStore
-from settings import load, save
+from settings_file import SIZE_MAX, load, save
+from strict_json import fields
 from tools.live.terminal_panel import live
 from uss.telegram import NODE_MAX
 from uss.timing import BAUD_RATES
@@ -57,14 +59,18 @@ SLICE_MS = 10  # of real time, between two looks at standard input
 PORT_REPLY_TIMEOUT_MS = 60  # 20 ms, and what an adapter keeps back on the way there and back
 
 USAGE = """\
-usage: ./tools/panel [--speed N] [--drives 1,2,5] [--baud 19200] [--settings FILE] ...
+usage: ./tools/panel [--speed N] [--drives 1,2=g110] [--baud 19200] [--settings FILE] ...
        ./tools/panel --script FILE|- ...
        ./tools/panel --board pico [--flash FILE] ...
        ./tools/panel --port PATH [--reply-timeout MS] [--script FILE|-] ...
 
   --speed N       in a terminal: time passes N times as fast, 1...100 (1)
   --script FILE   do the commands in FILE, or from standard input (-), in virtual time
-  --drives LIST   addresses of the simulated drives, 0...31 (1, or those of the settings)
+  --drives LIST   the simulated drives (1, or those of the settings): addresses 0...31, and what is
+                  there, if it is no mm420: 1,2=g110,3=v20/4,4=mm440/4+4,8=mm420/factory
+                  families: %s
+                  /0 /3 /4 /127: PKW words, if not as usual; +4: PZD words; /factory: a drive as
+                  delivered, of which the panel is not told
   --baud RATE     baud rate of the line and its drives (19200, or that of the settings)
   --settings FILE keep the panel's settings in FILE; otherwise they end with the program. The panel
                   looks for the drives in FILE, whichever --drives simulates
@@ -77,15 +83,18 @@ usage: ./tools/panel [--speed N] [--drives 1,2,5] [--baud 19200] [--settings FIL
   --display KIND  pico: wires, four data lines, or backpack, on I2C (wires)
   --port PATH     talk to real drives on this serial port, which is set to 8E1 at --baud, or on a
                   pty, in real time; wait and hold in a script take theirs. --drives are those that
-                  the panel looks for. Not with --speed, --seed, --polled, --board
+                  the panel looks for, families what it expects there. Not with --speed, --seed,
+                  --polled, --board
   --reply-timeout MS
                   port: how long a drive may take to answer, 20...500, the adapter's own delay
                   included (60, or that of the settings). It delays a STOP as well
   -h, --help      this text
   --version       alone: the version of the panel
-The simulated drive knows the rates from 1200 to 115200.
+A simulated mm420 knows the rates from 1200 to 115200; others know fewer, or more.
 An emulated Pico tells the path of its USB serial port, for mpremote and tools/deploy.
-Without --script, in a terminal: the live panel. It shows its keys; q ends it."""
+Without --script, in a terminal: the live panel. It shows its keys; q ends it.""" % (
+    " ".join(kinds.NAMES)
+)
 
 
 class UsageError(Exception):
@@ -100,22 +109,38 @@ class StreamError(Exception):
     """Standard input or output failed; args[0] is the OSError."""
 
 
-def addresses(word):
-    listed = word.split(",")
-    for address in listed:
-        if not address.isdigit() or int(address) > NODE_MAX:
-            raise UsageError("--drives %s: %s is no address 0...31" % (word, address or "nothing"))
-    numbers = tuple(int(address) for address in listed)
-    if len(set(numbers)) < len(numbers):
-        raise UsageError("--drives %s: an address stands there twice" % word)
-    if len(numbers) > NODE_MAX:
-        raise UsageError("--drives %s: %d at the most" % (word, NODE_MAX))
-    return numbers
+def listed(text, on_port):
+    """The drives that --drives names. UsageError: nobody can have them."""
+    try:
+        drives = kinds.listed_drives(text, names=panel_families() if on_port else kinds.NAMES)
+    except ValueError as error:
+        raise UsageError("--drives: %s" % error)
+    if on_port:
+        for one in drives:
+            if one.factory:
+                raise UsageError("--drives: %s: a real drive is as it is" % one.text())
+    if len(told(drives)) > NODE_MAX:
+        raise UsageError("--drives: the panel knows %d at the most" % NODE_MAX)
+    return drives
 
 
-def known_to_drives(baud):
-    if baud not in mm420.BAUD_CODES.values():
-        raise UsageError("a %s has no code for %d baud" % (mm420.NAME, baud))
+def panel_families():
+    """The names of all that the panel may expect on a line."""
+    from uss import families
+
+    return [family.__name__.lower() for family in families.FAMILIES]
+
+
+def told(drives):
+    """Those of them that the panel is told of."""
+    return [one for one in drives if not one.factory]
+
+
+def known_to_drives(baud, drives):
+    try:
+        kinds.knowing(drives, baud)
+    except ValueError as error:
+        raise UsageError(error)
     return baud
 
 
@@ -146,7 +171,7 @@ WIRED = "--keys %s: keys are wired " + " or ".join(sorted(WIRINGS))
 OPTIONS = {
     "--script": ("script", None, str),
     "--speed": ("speed", 1, one_of(range(1, 101), SPEEDS)),
-    "--drives": ("drives", None, addresses),
+    "--drives": ("drives", None, str),
     "--baud": ("baud", None, one_of(BAUD_RATES, RATES)),
     "--settings": ("settings", None, str),
     "--keys": ("keys", "direct", one_of(WIRINGS, WIRED)),
@@ -199,13 +224,18 @@ def options(words):
 
 
 def fit_for_board(chosen):
-    """UsageError: an option that the board, or the real line, does not know."""
+    """UsageError: an option that the board, or the real line, does not know.
+
+    What --drives says is understood now: which families there are depends on the line.
+    """
     board = chosen["board"]
+    if chosen["drives"] is not None:
+        chosen["drives"] = listed(chosen["drives"], chosen["port"] is not None)
     if chosen["port"] is not None:
         refuse(chosen, NOT_PORT, "%s is not for --port: the line is a real one, in real time")
         return
     if chosen["baud"] is not None:
-        known_to_drives(chosen["baud"])
+        known_to_drives(chosen["baud"], chosen["drives"] or usual_drives())
     refuse(chosen, ONLY_PORT, "%s is for --port")
     refuse(chosen, ONLY_SIM if board == "pico" else ONLY_PICO, "%s is not for --board " + board)
 
@@ -231,18 +261,30 @@ def world_of(chosen):
     drives, baud, said = fitting(chosen, kept, chosen["settings"])
     world = World(
         main.start,
-        drives,
+        [one.address for one in drives],
         baud,
+        settings=setting_of(drives),
         seed=chosen["seed"],
         polled=chosen["polled"],
         keys=chosen["keys"],
         store=store,
+        kinds=kinds.simulated(drives),
     )
-    return world, said
+    return world, said + kinds.as_delivered(world.drives, baud)
+
+
+def usual_drives():
+    return kinds.listed_drives("1")
+
+
+def setting_of(drives):
+    """What the panel's settings say of the kinds of these drives."""
+    expected = kinds.expected(drives)
+    return {"kinds": expected} if expected else {}
 
 
 def kept_settings(chosen):
-    """The store of --settings and what it holds; None and None without it."""
+    """The store of --settings and what it holds, `Kept`; None and None without it."""
     path = chosen["settings"]
     if path is None:
         return None, None
@@ -258,16 +300,17 @@ def port_world(chosen, store, kept):
     from boards.port.world import PortWorld
     from tools.port.client import Port, PortError
 
+    drives = chosen["drives"] or usual_drives()
     if kept:
+        drives = kept.listed(panel_families())
+        wanted = chosen["drives"] and kinds.text_of(chosen["drives"])
         for option, given, named in (
-            ("--drives", chosen["drives"], kept.drives),
+            ("--drives", wanted, kinds.text_of(drives)),
             ("--baud", chosen["baud"], kept.baud),
             ("--reply-timeout", chosen["reply_timeout"], kept.reply_timeout_ms),
         ):
             if given not in (None, named):
-                said = (chosen["settings"], str(named).strip("(,)").replace(" ", ""))
-                raise UsageError("%s: %s says %s" % ((option,) + said))
-    drives = kept.drives if kept else chosen["drives"] or (1,)
+                raise UsageError("%s: %s says %s" % (option, chosen["settings"], named))
     baud = kept.baud if kept else chosen["baud"] or 19200
     timeout_ms = chosen["reply_timeout"] or PORT_REPLY_TIMEOUT_MS
     try:
@@ -275,9 +318,11 @@ def port_world(chosen, store, kept):
         port.open(chosen["port"], baud)
     except PortError as error:
         raise PortFailed(error)
+    settings = setting_of(drives)
+    settings["reply_timeout_ms"] = timeout_ms
     world = PortWorld(
-        main.start, port, drives, baud, RealClock(Stopwatch().read_us),
-        {"reply_timeout_ms": timeout_ms}, keys=chosen["keys"], store=store,
+        main.start, port, [one.address for one in drives], baud, RealClock(Stopwatch().read_us),
+        settings, keys=chosen["keys"], store=store,
     )  # fmt: skip
     return world, []
 
@@ -306,12 +351,15 @@ def pico_world(chosen):
     drives, baud, said = fitting(chosen, kept, chosen["flash"])
     world = PicoWorld(
         "panel",
-        drives,
+        [one.address for one in drives],
         baud,
+        settings=setting_of(drives),
         seed=chosen["seed"],
         display=chosen["display"] or "wires",
         flash=image,
+        kinds=kinds.simulated(drives),
     )
+    said = said + kinds.as_delivered(world.drives, baud)
     return world, said + ["USB serial of the emulated Pico: %s" % world.open_serial()]
 
 
@@ -322,15 +370,48 @@ def fitting(chosen, kept, path):
     """
     drives, baud = chosen["drives"], chosen["baud"]
     if not kept:
-        return drives or (1,), baud or 19200, []
-    drives = drives or kept.drives
+        drives, baud = drives or usual_drives(), baud or 19200
+        return drives, known_to_drives(baud, drives), []
     if baud not in (None, kept.baud):
         raise UsageError("--baud %d: %s says %d" % (baud, path, kept.baud))
-    return drives, known_to_drives(kept.baud), difference(path, kept.drives, drives)
+    drives = drives or kept.listed(kinds.NAMES)
+    said = difference(path, kept.listed(panel_families()), told(drives))
+    return drives, known_to_drives(kept.baud, drives), said
+
+
+class Kept:
+    """What a settings file holds that was there, as far as the world goes by it.
+
+    settings: as the panel has loaded them from `data`, bytes.
+    """
+
+    def __init__(self, settings, data):
+        self.baud = settings.baud
+        self.reply_timeout_ms = settings.reply_timeout_ms
+        self._addresses = settings.drives
+        self._kinds = {}
+        try:
+            for name, value, _ in fields(data) if len(data) <= SIZE_MAX else ():
+                if name == "kinds" and isinstance(value, dict):
+                    self._kinds = value
+        except ValueError:
+            pass  # the panel says that the file is damaged
+
+    def listed(self, names):
+        """The drives that the panel looks for; one that is of none of the families is plain."""
+        found = []
+        for address in self._addresses:
+            kind = self._kinds.get(str(address))
+            text = "%d=%s" % (address, kind) if isinstance(kind, str) else str(address)
+            try:
+                found += kinds.listed_drives(text, names=names)
+            except ValueError:
+                found += kinds.listed_drives(str(address))
+        return found
 
 
 def flash_of(path):
-    """The flash image to begin with and the settings in it; None and None for a new file.
+    """The flash image to begin with and the settings in it, `Kept`; None and None for a new file.
 
     UsageError: it is something else, or could not be written.
     """
@@ -355,7 +436,7 @@ def flash_of(path):
         raise UsageError("--flash %s" % error)
     except OSError as error:
         raise UsageError("--flash %s: cannot be kept (%s)" % (path, error))
-    return image, load(Stored(stored)) if stored else None
+    return image, Kept(load(Stored(stored)), stored) if stored else None
 
 
 def is_new(path):
@@ -389,7 +470,7 @@ def keep_flash(world, path):
 
 
 def store_of(path, chosen):
-    """The store in this file, and the settings in it. A new file gets what was chosen.
+    """The store in this file, and the settings in it, `Kept`. A new file gets what was chosen.
 
     OSError: it cannot be read or written. UsageError: it is a folder, a pipe or the like, which
     could keep the panel waiting for ever.
@@ -401,20 +482,30 @@ def store_of(path, chosen):
     except OSError as error:
         if error.args[0] != ENOENT:
             raise
-        new = load(store)
-        new.drives, new.baud = chosen["drives"] or new.drives, chosen["baud"] or new.baud
-        if chosen["port"] is not None:
-            new.reply_timeout_ms = chosen["reply_timeout"] or PORT_REPLY_TIMEOUT_MS
-        save(store, new)
-    store.read(1)  # raises an error here; `load` would ignore it
-    return store, load(store)
+        save(store, load(Stored(json.dumps(new_settings(chosen)).encode())))
+    data = store.read(SIZE_MAX + 1)  # what `load` would make the best of is an error here
+    return store, Kept(load(store), data)
+
+
+def new_settings(chosen):
+    """What a new settings file says, besides what is usual."""
+    drives = chosen["drives"] or usual_drives()
+    new = setting_of(drives)
+    if told(drives):
+        new["drives"] = [one.address for one in told(drives)]
+    if chosen["baud"]:
+        new["baud"] = chosen["baud"]
+    if chosen["port"] is not None:
+        new["reply_timeout_ms"] = chosen["reply_timeout"] or PORT_REPLY_TIMEOUT_MS
+    return new
 
 
 def difference(path, kept, drives):
-    """What to tell the person if the settings name other drives than are simulated."""
-    if sorted(kept) == sorted(drives):
+    """What the person should know where the settings name other drives than are simulated."""
+    kept, drives = (sorted([one.text() for one in some]) for some in (kept, drives))
+    if kept == drives:
         return []
-    kept, drives = (",".join(map(str, some)) for some in (kept, drives))
+    kept, drives = (",".join(some) or "none" for some in (kept, drives))
     return ["by %s the panel looks for drives %s; there are %s" % (path, kept, drives)]
 
 

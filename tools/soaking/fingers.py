@@ -113,6 +113,12 @@ class Fingers:
         self.press("START")
         self.run(self.dice.between(2_000, 9_000))
 
+    def turn_round(self):
+        """Let a motor turn one way and the other, with time to look at the display."""
+        self.run_long()
+        self.press("REVERSE")
+        self.run(self.dice.between(4_000, 9_000))
+
     def release_jogs(self):
         for key in JOGS:
             self.up(key)

@@ -11,8 +11,10 @@ everything in order and checks whether the panel controls its drives again.
 
 import json
 
+from boards.sim.world import supervision, supervision_ms
+from tools.soaking.at_the_drive import AT_THE_DRIVE
 from tools.soaking.fingers import SLICE_MS
-from tools.soaking.judging.drive_settings import ACTUAL_HZ
+from tools.soaking.judging.announced import is_parameter
 from tools.soaking.judging.facts import GOES, MS, S
 from tools.soaking.judging.reader import address_in
 from tools.soaking.judging.rules import Broken
@@ -23,11 +25,9 @@ TURN_S = (8, 25)
 RISKS_MAX = 3  # so many risks the panel may ask about before a motor starts
 ACKNOWLEDGED_MS = 5_000
 TRIES = 12  # the hand selects at most so many addresses to find one that answers
-IN_ORDER = {
-    700: 5, 1000: 5, 1080: 0.0, 1082: 50.0, 2000: 50.0, 2009: 0, 1120: 2.0, 1121: 2.0, 1135: 1.0,
-    3: 3, 10: 0, 927: 15, 719: 0, 840: 2036 << 16, 1070: 2018 << 16 | 1, 2200: 0, 1210: 1,
-    (2019, 1): ACTUAL_HZ,
-}  # fmt: skip
+SHORT_US = 1 * S  # a telegram off time that a person, too, finds too short
+FOUND_S = 20  # in which a drive that answers in another layout is found, and rounds of the line
+FOUND_ROUNDS = 200
 
 
 class Hand(Mischief):
@@ -66,8 +66,9 @@ class Hand(Mischief):
                 drive.plug()
             if not drive.mains:
                 self.power_on(drive)
-            for number, value in IN_ORDER.items():
+            for number, value in AT_THE_DRIVE[drive.family.NAME].order:
                 self.set_at_drive(drive, number, value)
+            self.supervise_again(drive)
             for number in WARNINGS:
                 drive.warn(number, False)
         self.follow_addresses()
@@ -75,16 +76,29 @@ class Hand(Mischief):
         self.press("STOP", 4_300)
         self.run(3_000)
 
+    def supervise_again(self, drive):
+        """Give a drive a longer telegram off time if none could keep the one that it has."""
+        number = drive.family.LINK["off time"]
+        if 0 < drive.read(number) * drive.family.LINK["unit us"] < SHORT_US:
+            ms = supervision_ms(self.plan.baud, len(self.plan.listed))
+            self.set_at_drive(drive, number, supervision(drive.family, ms)[number])
+
     def follow_addresses(self):
-        """Give a drive that is not at an address of the panel's list such an address."""
+        """Give a drive that is not at an address of the panel's list such an address, of its own
+        kind if there is one."""
         known = json.loads(self.world.store.read())["drives"]
         free = [address for address in known if address not in [d.address for d in self.drives]]
         for drive in self.drives:
             if drive.address not in known and free:
-                self.set_at_drive(drive, 2011, free.pop())
+                fitting = [one for one in free if self.witness.kinds[one].can_find(drive)]
+                address = (fitting or free)[-1]
+                free.remove(address)
+                self.set_at_drive(drive, drive.family.LINK["address"], address)
 
     def prove_control(self):
-        """Check that START runs the drive shown, and that STOP stops it."""
+        """Check that drives in another layout were found, that START runs the drive shown, and
+        that STOP stops it."""
+        self.prove_found()
         if not self.find_one_that_answers():
             return
         reader = self.reader
@@ -119,6 +133,20 @@ class Hand(Mischief):
             self.wait_for("drive %d to stand" % address, lambda: drive.state == "ready", 12)
         elif len(self.drives) > 1 and self._all_are_well():
             self.prove_announced(drive)
+
+    def prove_found(self):
+        """Check that the panel finds out how the telegrams of its drives are divided."""
+        kinds = self.witness.kinds
+        findable = [one for one in self.drives if kinds[one.address].can_find(one)]
+        known = json.loads(self.world.store.read())["drives"]
+        findable = [one for one in findable if one.address in known]
+        seconds = FOUND_S + FOUND_ROUNDS * self.witness.cycle_us // S
+        for drive in findable:
+            self.wait_for(
+                "the layout of drive %d" % drive.address,
+                lambda drive=drive: kinds[drive.address].answers(drive),
+                seconds,
+            )
 
     def acknowledge(self, drive):
         """Press STOP again if a fault took turns with others and was not shown for a second."""
@@ -188,7 +216,7 @@ class Hand(Mischief):
             return False
         if address_in(reader.rows[1]) != witness.shown:
             return False
-        if reader.rows[1][5] == ":":
+        if is_parameter(reader.rows[1]):
             self.press("PARAM")
             return False
         return True

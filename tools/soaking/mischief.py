@@ -5,24 +5,11 @@ It tells the witness of each thing before it happens.
 """
 
 from boards.sim.chip.machine import Timer
+from tools.soaking.at_the_drive import AT_THE_DRIVE
 from tools.soaking.fingers import JOGS, SLICE_MS, Fingers, weights
-from tools.soaking.judging.drive_settings import ACTUAL_HZ
 from tools.soaking.judging.facts import GOES
 from tools.soaking.worlds import bears_silences
 
-PARAMETERS = (  # what a person may set at the drive itself
-    (700, 5), (700, 2), (1000, 5), (1000, 1), (1080, 5.0), (1080, 0.0), (1082, 50.0), (1082, 35.0),
-    (2000, 60.0), (2000, 50.0), (2009, 1), (2009, 0), (2014, 0), (2014, 5000), (2014, 65535),
-    (1120, 2.0), (1121, 1.0), (1121, 10.0), (1058, 8.0), (1210, 1), (1210, 2), (1210, 6),
-    ((2019, 1), 0), ((2019, 1), 20 << 16), ((2019, 1), ACTUAL_HZ), (719, 11), (719, 0),
-    (1070, 755 << 16), (840, 722 << 16), (2200, 1 << 16),
-)  # fmt: skip
-
-# What START and JOG must refuse, or ask about; without a number: a fault.
-DOUBTS = (
-    (700, 2), (1000, 1), (2014, 0), (2014, 0), (2014, 0), (2014, 65535), (719, 11),
-    (1070, 755 << 16), (None, 0),
-)  # fmt: skip
 AT_ONCE_MS = (0, 0, 20, 200)  # between two troubles
 LONGER_MS = 16_000  # by then the panel says that a P2014 has become longer
 SAID_S = 3  # no key for so long, for each drive in trouble
@@ -46,6 +33,8 @@ class Mischief(Fingers):
             self.hang, self.restart, self.old_replies,
         )  # fmt: skip
         self.common += 6 * [self.distrust] + 2 * [self.meddle_while_it_runs]
+        if plan.has_families:
+            self.common += 6 * [self.turn_round]
         if plan.troubles > 1:
             self.common += len(self.common) * [self.two_troubles]
         for drive in self.drives:
@@ -129,19 +118,20 @@ class Mischief(Fingers):
 
     def meddle(self):
         drive = self.any_drive()
-        number, value = self.dice.one_of(PARAMETERS)
+        people = AT_THE_DRIVE[drive.family.NAME]
+        number, value = self.dice.one_of(people.meddled)
         if self.set_at_drive(drive, number, value):
             self.note("drive %d: P%s=%s at the drive itself" % (drive.address, number, value))
             self.count("parameter")
-            return number
+            return number == people.off_time
 
     def meddle_while_it_runs(self):
         """Change parameters at a drive whose motor turns, without pressing a key."""
         self.run_long()
         for _ in range(self.dice.between(1, 3)):
-            number = self.meddle()
+            is_off_time = self.meddle()
             self.run(self.dice.between(1_000, 14_000))
-            if number == 2014:
+            if is_off_time:
                 self.run(LONGER_MS)
 
     def warn(self):
@@ -177,7 +167,10 @@ class Mischief(Fingers):
         self.press("STOP")
         self.run(self.dice.between(500, 2_000))
         drive = None if self.witness.shown is None else self.reader.drive_at(self.witness.shown)
-        number, value = self.dice.one_of(DOUBTS)
+        name = self.drives[0].family.NAME if drive is None else drive.family.NAME
+        people = AT_THE_DRIVE[name]
+        doubts = people.doubts + people.more if self.plan.has_families else people.doubts
+        number, value = self.dice.one_of(doubts)
         if drive is None or drive.state == "off":
             return
         if number is None:

@@ -44,7 +44,7 @@ MUTATIONS = (
     Mutation(
         "both jog keys",
         "two jog keys at once are one",
-        ("JOG",), 11,
+        ("JOG",), 7,
         (
             "panel/keys/jog_keys.py",
             "if down != self._key or control is not",
@@ -65,7 +65,7 @@ MUTATIONS = (
     Mutation(
         "ON kept over a loss",
         "a drive that comes back into contact starts by itself",
-        ("START", "LOST"), 15,
+        ("START", "LOST"), 11,
         (
             "uss/drive.py",
             "            self.was_running = self._may_run or not self.tells_status\n"
@@ -91,7 +91,7 @@ MUTATIONS = (
     Mutation(
         "stale PKW accepted",
         "an old answer is taken for that of another parameter",
-        ("SETPOINT", "SHOWN", "RECOVERS"), 3,
+        ("SETPOINT", "SHOWN", "RECOVERS"), 12,
         (
             "uss/pkw.py",
             "reply = reply_about(net, at, self.words)",
@@ -147,7 +147,7 @@ MUTATIONS = (
     Mutation(
         "started after a reset",
         "a motor that turns when the panel has restarted is sent ON",
-        ("START",), 11,
+        ("START",), 1,
         (
             "panel/control.py",
             "            self._contact = drive.contact\n            self.lost_running",
@@ -160,7 +160,7 @@ MUTATIONS = (
     Mutation(
         "START without release",
         "a START that was down at power-on counts, sooner or later",
-        ("START",), 47,
+        ("START",), 215,
         (
             "panel/keys/__init__.py",
             "self._released = 0  #",
@@ -185,7 +185,7 @@ MUTATIONS = (
     Mutation(
         "no question",
         "a parameter that cuts the panel off is written at once",
-        ("WRITE",), 3,
+        ("WRITE",), 6,
         ("panel/pages/parameters.py", "if number in ask_first and not", "if number < 0 and not"),
     ),
     Mutation(
@@ -213,7 +213,7 @@ MUTATIONS = (
     Mutation(
         "STOP ALL forgets drives",
         "STOP held for 4 s stops only what is shown",
-        ("STOP ALL",), 11,
+        ("STOP ALL",), 21,
         (
             "panel/keys/stop_key.py",
             "            self.left = 2 * len(self._controls)\n",
@@ -233,7 +233,7 @@ MUTATIONS = (
     Mutation(
         "watchdog fed always",
         "a bus that stands is not restarted",
-        ("WATCHDOG",), 15,
+        ("WATCHDOG",), 45,
         ("app.py", "if stands_ms * 1000 < self.bus.patience_us():", "if stands_ms >= 0:"),
     ),
     Mutation(
@@ -255,7 +255,7 @@ MUTATIONS = (
     Mutation(
         "lost drive forgotten",
         "a drive that ran and is lost is just NO CONTACT",
-        ("MAY RUN",), 15,
+        ("MAY RUN",), 11,
         (
             "panel/control.py",
             "self.lost_running = drive.was_running and not drive.contact",
@@ -289,7 +289,7 @@ MUTATIONS = (
     Mutation(
         "listens to nobody",
         "the panel talks into another master's telegrams after power-on",
-        ("LISTEN",), 11,
+        ("LISTEN",), 6,
         ("uss/master.py", "LISTEN_US = const(100_000)", "LISTEN_US = const(10_000)"),
     ),
     Mutation(
@@ -322,10 +322,10 @@ MUTATIONS = (
     Mutation(
         "unsupervised is nothing",
         "nobody is asked whether a motor may run on without the panel",
-        ("UNSUPERVISED",), 2,
+        ("UNSUPERVISED",), 1,
         (
             "panel/risks.py",
-            "    off_time_ms = max(control.survey.values[rows.SUPERVISION], 0)\n",
+            "    off_time_ms = control.survey.off_time_ms()\n",
             "    return NONE\n",
         ),
     ),
@@ -409,7 +409,7 @@ MUTATIONS = (
     Mutation(
         "a running drive backs off",
         "a drive that runs, and is lost, is asked as seldom as one that stands",
-        ("NEGLECTED",), 93,
+        ("NEGLECTED",), 16,
         (
             "uss/drive.py",
             "return not self.contact and not self.was_running",
@@ -419,7 +419,7 @@ MUTATIONS = (
     Mutation(
         "saved at any time",
         "settings are written while a motor turns, and the bus stands still",
-        ("FLASH",), 2,
+        ("FLASH",), 15,
         (
             "app.py",
             "if has_just_failed or self.panel.any_runs():",
@@ -451,7 +451,7 @@ MUTATIONS = (
     Mutation(
         "the first alarm for ever",
         "of several drives in trouble one is announced, and hides the others",
-        ("ANNOUNCED",), 2,
+        ("ANNOUNCED",), 11,
         (
             "panel/announcer.py",
             "                position = self._find(kind, position + 1)\n",
@@ -522,7 +522,7 @@ MUTATIONS = (
     Mutation(
         "lost a little later",
         "ON goes to a silent drive for a tenth longer than the settings say",
-        ("LOST",), 15,
+        ("LOST",), 21,
         ("app.py", "settings.lost_ms * 1000", "settings.lost_ms * 1100"),
     ),
     Mutation(
@@ -557,7 +557,7 @@ MUTATIONS = (
     Mutation(
         "hertz believed",
         "HIW is shown as hertz whatever the drive sends as HIW",
-        ("SHOWN",), 84,
+        ("SHOWN",), 227,
         (
             "uss/survey.py",
             "        self.actual = self.scaling if tells else None\n",
@@ -577,7 +577,7 @@ MUTATIONS = (
     Mutation(
         "runs on longer, unsaid",
         "somebody takes the supervision of a motor that runs away, and nobody is told",
-        ("SHOWN", "ANNOUNCED"), 3,
+        ("SHOWN", "ANNOUNCED"), 125,
         (
             "panel/control.py",
             "        if risks.exposure_ms(self) > self._command.exposure_ms:\n",
@@ -608,6 +608,168 @@ MUTATIONS = (
             "panel/control.py",
             "return self.drive.hiw in pzd.BEYOND",
             "return self.drive.hiw > 0x2000",
+        ),
+    ),
+    # --- families and layouts -------------------------------------------------------------------
+    Mutation(
+        "MM3 reversed as an MM4",
+        "REVERSE turns a MICROMASTER 3 right by the word that turns an MM4 left",
+        ("SHOWN",), 63,
+        ("uss/families/mm3.py", "on_reverse = 0x147F", "on_reverse = 0x0C7F"),
+    ),
+    Mutation(
+        "MM3 started as an MM4",
+        "a MICROMASTER 3 is sent a word without a direction",
+        ("CONTROL",), 11,
+        ("uss/families/mm3.py", "    on = 0x0C7F", "    on = 0x047F"),
+    ),
+    Mutation(
+        "HIW of an MM3 has a sign",
+        "a motor that turns left reads as one that turns right, where bit 14 of ZSW tells it",
+        ("SHOWN",), 63,
+        (
+            "uss/pzd.py",
+            "if family.hiw_is_signed or zsw & ZSW_RUNS_RIGHT or hiw & 0x8000:",
+            "if hiw is not None:",
+        ),
+    ),
+    Mutation(
+        "percent sent as hertz",
+        "10.0% goes out as 10 Hz of 50 Hz",
+        ("SHOWN", "SETPOINT"), 3,
+        ("uss/survey.py", "_HUNDRED_PERCENT = const(10_000)", "_HUNDRED_PERCENT = const(5_000)"),
+    ),
+    Mutation(
+        "percent looks like hertz",
+        "a drive that does not tell its reference is shown in hertz",
+        ("SHOWN",), 11,
+        ("panel/texts.py", 'ACTUAL_PERCENT = b"%F:"', 'ACTUAL_PERCENT = b" F:"'),
+    ),
+    Mutation(
+        "percent of what",
+        "START is obeyed though the drive takes 0.01 Hz for what the panel sends as percent",
+        ("REFUSED",), 753,
+        (
+            "uss/survey.py",
+            "reference = _HUNDRED_PERCENT if reference and not is_absolute else 0",
+            "reference = _HUNDRED_PERCENT if reference else 0",
+        ),
+        (
+            "uss/survey.py",
+            "self.unreadable = self.unreadable or is_absolute",
+            "is_absolute = False",
+        ),
+    ),
+    Mutation(
+        "limits in 1/min halved",
+        "the lowest speed that a G120 tells is not kept",
+        ("SETPOINT",), 640,
+        (
+            "uss/survey.py",
+            "return value * _HUNDRED_PERCENT // self.values[rows.REFERENCE]",
+            "return value * _HUNDRED_PERCENT // self.values[rows.REFERENCE] // 2",
+        ),
+    ),
+    Mutation(
+        "untold is supervised",
+        "a drive without a parameter channel is started, and nobody is asked",
+        ("UNSUPERVISED",), 3,
+        (
+            "panel/risks.py",
+            "    if 0 < off_time_ms <= control.desk.longest_off_time_ms:\n",
+            "    if not control.drive.layout.pkw_words:\n        return NONE\n"
+            "    if 0 < off_time_ms <= control.desk.longest_off_time_ms:\n",
+        ),
+    ),
+    Mutation(
+        "seconds are milliseconds",
+        "a MICROMASTER 3 runs on for minutes without the panel, and nobody is asked",
+        ("UNSUPERVISED",), 294,
+        ("uss/families/mm3.py", "off_time_unit_ms = 1000", "off_time_unit_ms = 1"),
+    ),
+    Mutation(
+        "reversed without a bit",
+        "the display says left, and a drive without a reverse bit is sent the same setpoint",
+        ("SHOWN",), 18,
+        (
+            "panel/control.py",
+            "            self.setpoint.negate(self.reversed)\n",
+            "            pass\n",
+        ),
+    ),
+    Mutation(
+        "jogs without a jog",
+        "a drive whose family has no jog is sent that of another",
+        ("CONTROL",), 6,
+        (
+            "panel/permits.py",
+            "    if not control.survey.family.jog_right:\n"
+            "        return texts.REFUSED_NO_JOG\n",
+            "",
+        ),
+    ),
+    Mutation(
+        "local is remote",
+        "START is obeyed by a MICROMASTER 3 that is controlled from its keypad",
+        ("REFUSED",), 63,
+        ("uss/families/mm3.py", "ALL_DIGITS, (1,), None)", "ALL_DIGITS, (0, 1, 2, 4), None)"),
+    ),
+    Mutation(
+        "looked for though it answers",
+        "a drive that answers is sent telegrams in other layouts",
+        ("MIRROR",), 1,
+        (
+            "uss/finder.py",
+            "if drive.contact or drive.silent < least:",
+            "if drive.silent > least:",
+        ),
+    ),
+    Mutation(
+        "looked for too soon",
+        "a drive that may run is sent other telegrams before its STOP had a chance",
+        ("MIRROR",), 16,
+        ("uss/finder.py", "STOPPED_MIN = const(30)", "STOPPED_MIN = const(3)"),
+    ),
+    Mutation(
+        "a mirror telegram that commands",
+        "a drive that takes it for one of its own telegrams obeys what it says",
+        ("MIRROR",), 2,
+        (
+            "uss/outside.py",
+            "            self.request[NET + index] = 0\n",
+            "            self.request[NET + index] = 4\n",
+        ),
+    ),
+    Mutation(
+        "mirrors have no share",
+        "looking for layouts takes the line from the drives that run",
+        ("NEGLECTED",), 4,
+        (
+            "uss/finder.py",
+            "        if self._turns.has_command() or silence.shared_us != silence.charged_us:\n"
+            "            return False  # what the last one took is not accounted for yet\n",
+            "        return not self._turns.has_command()\n",
+        ),
+    ),
+    Mutation(
+        "layout guessed",
+        "a drive is given a layout in which nothing has come back",
+        ("TELEGRAM",), 2,
+        (
+            "uss/finder.py",
+            "        elif is_silent or self._tries >= TRIES:\n            self._row += 1\n",
+            "        elif is_silent or self._tries >= TRIES:\n"
+            "            self._find(_WORDS[self._row])\n            self._row += 1\n",
+        ),
+    ),
+    Mutation(
+        "found and forgotten",
+        "the layout of a drive is found out, and not used",
+        ("RECOVERS",), 8,
+        (
+            "uss/finder.py",
+            "            self._turns.relayout(self._drive, layout)\n",
+            "            self._layout = layout\n",
         ),
     ),
 )  # fmt: skip

@@ -8,17 +8,24 @@ The same seed gives the same world, whatever the other arguments of the soak.
 """
 
 from boards.sim.board import LOOP_US
-from boards.sim.drives.families import g110, mm420, mm440, v20
+from boards.sim.drives.families import g110, mm420, mm440, named, v20
 from boards.sim.drives.switches import SWITCHES
 from boards.sim.world import World, supervision, supervision_ms
 from tools.soaking.dice import Dice
 from tools.soaking.digest import Digest
 from tools.soaking.judging.facts import S, exchange_us, lost_us
 
-# Families that this panel can control, with the layout that it uses (4 PKW, 2 PZD); and two that
-# answer it with another layout, or not at all.
+# Of a panel that is told nothing: drives as it expects them (MICROMASTER 4 with 4 PKW and 2 PZD);
+# and such as are in another layout, or of another family.
 ABLE = ((mm420, {}), (mm420, {}), (mm440, {}))
 OTHERS = ((g110, {}), (mm420, {2013: 3}), (mm440, {2012: 4}), (v20, {2013: 4, 2014: 0}))
+
+# One world in so many has drives of all families and layouts. Of these the panel is told the
+# truth, or another layout, now and then that it is a drive of which nothing is known.
+FAMILIES_IN = 3
+FAMILIES = ("mm420", "mm440", "mm3", "mm3", "g110", "v20", "g120", "g120", "generic")
+PKW_WORDS = (0, 3, 4, 127)
+PZD_WORDS = (2, 2, 2, 4)
 
 BAUDS = (19200, 19200, 19200, 19200, 19200, 9600, 38400, 38400, 57600, 115200, 4800)
 CLEAN, ROUGH, WILD = range(3)
@@ -42,7 +49,7 @@ class Plan:
     """seed, dice, addresses, listed (these, and the addresses of the panel's list without a
     drive), baud, settings, keys, polled, echo, level (CLEAN, ROUGH, WILD), loop_us (the longest
     step of the main loop), and further arguments of a `World`: `ticks_start`, `ticks_mask`,
-    `kinds`.
+    `kinds`. pzd_words: the most of a telegram.
 
     troubles: how many things the hand lets fail at once, 1 or 2.
     """
@@ -73,7 +80,14 @@ class Plan:
         self.echo = not dice.below(10)
         self.settings = _settings(dice, self.addresses)
         self.settings["drives"] = list(self.listed)
+        # Drives of all families.
+        self.families = families = Dice(seed, 11)
+        self.has_families = families.below(FAMILIES_IN) == 0
+        self.pzd_words = families.one_of(PZD_WORDS) if self.has_families else PZD_WORDS[0]
         self.kinds = {address: _kind(self, address) for address in self.addresses}
+        if self.has_families:
+            told = {str(address): _put_family(self, address) for address in self.addresses}
+            self.settings["kinds"] = {address: told[address] for address in told if told[address]}
 
     def __str__(self):
         return "%d drives of %d at %d baud%s, keys %s, loop %d ms, %s, settings %s" % (
@@ -81,7 +95,12 @@ class Plan:
             (", polled" if self.polled else "") + (", echo" if self.echo else ""), self.keys,
             self.loop_us // 1000, NAMES[self.level],
             ", ".join("%s %r" % pair for pair in sorted(self.settings.items())),
-        )  # fmt: skip
+        ) + ("; the drives are %s" % self._real_kinds() if self.has_families else "")  # fmt: skip
+
+    def _real_kinds(self):
+        found = ["%d %s" % (one, self.kinds[one]["family"].NAME) for one in self.addresses]
+        layouts = ["%d+%d" % self.kinds[one]["layout"] for one in self.addresses]
+        return ", ".join("%s %s" % pair for pair in zip(found, layouts))
 
 
 class SoakWorld(World):
@@ -198,6 +217,32 @@ def _kind(plan, address):
     if not bears_silences(plan) and (lost_us(plan) < S or "stale_replies" in switches):
         switches.pop("silent_refusals", None)
     return {"family": family, "parameters": parameters, "switches": switches}
+
+
+def _put_family(plan, address):
+    """Give the drive there a family and a layout; what the panel is told of it, or None."""
+    dice, kind = plan.families, plan.kinds[address]
+    name, pkw_words, told_words = (
+        dice.one_of(FAMILIES), dice.one_of(PKW_WORDS), dice.one_of(PKW_WORDS),
+    )  # fmt: skip
+    is_told, is_generic = dice.below(3), not dice.below(8)
+    family = named(name)
+    fixed = family.LINK["layout"]
+    if plan.baud not in family.BAUD_CODES.values() or (
+        fixed and (address > 30 or plan.pzd_words != fixed[1])
+    ):
+        name, family, fixed = "mm420", mm420, None
+    layout = fixed or (pkw_words, plan.pzd_words)
+    off_time_ms = kind["parameters"].get(mm420.LINK["off time"], 0)
+    kind.update(family=family, parameters=supervision(family, off_time_ms), layout=layout)
+    told = (name, "generic")[is_generic and name in ("mm420", "mm440", "v20")]
+    words = layout[0] if fixed or is_told else told_words
+    return _kind_text(told, words, plan.pzd_words)
+
+
+def _kind_text(name, pkw_words, pzd_words):
+    """As the settings name a family and a layout."""
+    return "%s/%d%s" % (name, pkw_words, "" if pzd_words == 2 else "+%d" % pzd_words)
 
 
 def bears_silences(plan):

@@ -56,6 +56,10 @@ class Drive:
                     be set, illegal ones too
     any_baud        True: it talks at the line's rate whatever its P2010 says, for lines that this
                     family does not know
+    layout          PKW and PZD words that it is set up for; None: those of its family's
+                    commissioning
+    factory         True: as delivered, nobody has commissioned it. It has the address, the baud
+                    rate and all else that it has left the factory with, but for `parameters`
     switches        {name: value} of what the documents leave open, see switches.py; then
                     an object with an attribute for each
     eeprom_writes   how often something was written into its EEPROM, P0971 counts once
@@ -77,15 +81,17 @@ class Drive:
         family=mm420,
         reports=False,
         switches=None,
+        layout=None,
+        factory=False,
     ):
         self.family = family
+        self.factory = factory
         self.switches = Switches(switches)
         self._clock = clock
         self.wire = wire
         self.name = "drive %d" % address
-        if reply_delay_us is None:
-            reply_delay_us = -(-REPLY_DELAY_CHARACTERS * 11_000_000 // wire.baud)
-        self.reply_delay_us = reply_delay_us
+        self._usual_delay = reply_delay_us is None
+        self.reply_delay_us = usual_delay_us(wire.baud) if self._usual_delay else reply_delay_us
         self._any_baud = any_baud
         self.plugged = True
         self._connected = False
@@ -113,7 +119,10 @@ class Drive:
         self._unsettled = False  # writes wait for the end of the exchange to take effect
         self._buffer = bytearray(256)
         self._supply = Supply(clock, self.switches, self.process, self._start_up, self._go_dark)
-        self._commission(address, parameters or {})
+        settings = {} if factory else self._commissioning(address)
+        settings.update(self._layout_settings(layout))
+        settings.update(parameters or {})
+        self._set_up(settings)
         self._supply.begin()
 
     # Looking at it
@@ -381,7 +390,7 @@ class Drive:
         """Be on the line while plugged and powered. What it is sending when it leaves is cut."""
         connected = self.plugged and self._supply.booted and self._speaks_uss
         if connected and not self._connected:
-            self.wire.attach(self)
+            self.wire.attach(self, self.slave.baud)
         elif self._connected and not connected:
             self.wire.detach(self)
         self._connected = connected
@@ -401,8 +410,8 @@ class Drive:
 
     # Parameters
 
-    def _commission(self, address, parameters):
-        """Set it up as delivered, then for USS at the line's baud rate, then as asked for."""
+    def _commissioning(self, address):
+        """What somebody sets who has the drive obey USS, at the line's baud rate."""
         family = self.family
         link = family.LINK
         codes = [code for code, baud in family.BAUD_CODES.items() if baud == self.wire.baud]
@@ -412,7 +421,20 @@ class Drive:
         if codes:
             settings[link["baud"]] = codes[0]
         settings[link["address"]] = address
-        settings.update(parameters)
+        return settings
+
+    def _layout_settings(self, layout):
+        """What sets it up for so many PKW and PZD words. ValueError: the family cannot."""
+        link = self.family.LINK
+        if layout is None or layout == link["layout"]:
+            return {}
+        if link["layout"] is not None:
+            raise ValueError("a %s has %d+%d words" % ((self.family.NAME,) + link["layout"]))
+        return {link["pkw words"]: layout[0], link["pzd words"]: layout[1]}
+
+    def _set_up(self, settings):
+        """Set it up as delivered, but for these settings."""
+        family = self.family
         for connects in (True, False):  # P0700 before P0840, which it sets
             for key in settings:
                 number, index = key if isinstance(key, tuple) else (key, 0)
@@ -483,7 +505,12 @@ class Drive:
         link = self.family.LINK
         ram = self.parameters.ram
         codes = self.family.BAUD_CODES
-        slave.baud = self.wire.baud if self._any_baud else codes[ram[link["baud"]][0]]
+        baud = self.wire.baud if self._any_baud else codes[ram[link["baud"]][0]]
+        if baud != slave.baud:
+            slave.set_baud(baud)
+            self.wire.set_rate(self, baud)
+            if self._usual_delay:
+                self.reply_delay_us = usual_delay_us(baud)
         slave.address = ram[link["address"]][0]
         self._configure_layout()
 
@@ -496,3 +523,8 @@ class Drive:
             slave.pzd_words = ram[link["pzd words"]][0]
         else:
             slave.pkw_words, slave.pzd_words = link["layout"]
+
+
+def usual_delay_us(baud):
+    """From the last character heard to the reply, where nobody has set another time."""
+    return -(-REPLY_DELAY_CHARACTERS * 11_000_000 // baud)

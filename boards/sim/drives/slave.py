@@ -16,6 +16,7 @@ the same. What the specification leaves open is a switch (switches.py).
 from boards.sim.drives.switches import Switches
 from boards.sim.line.wire import FRAME as FRAME_ERROR
 from boards.sim.line.wire import OVERRUN as OVERRUN_ERROR
+from boards.sim.line.wire import start_interval_us
 
 STX = 0x02
 BROADCAST_BIT, MIRROR_BIT, SPECIAL_BIT = 0x20, 0x40, 0x80
@@ -84,11 +85,16 @@ class Slave:
         self.address = 0
         self.pkw_words = 4
         self.pzd_words = 2
-        self.baud = wire.baud
         self.takes_broadcast = True
         self.telegram = bytearray(NET_MAX + 4)
-        self._pause_us = wire.start_interval_us - 1
+        self.set_baud(wire.baud)
         self.reset()
+
+    def set_baud(self, baud):
+        """Hear and judge by this rate from now on."""
+        self.baud = baud
+        self._pause_us = start_interval_us(baud) - 1
+        self._character_us = -(-11_000_000 // baud)
 
     def reset(self):
         """As at power-up: nothing received, nothing counted."""
@@ -117,12 +123,12 @@ class Slave:
     def hear(self, burst):
         """Take a burst at its end; return the form of the telegram for this drive in it, or
         None."""
-        if self.baud != self._wire.baud:
+        if self.baud != burst.baud:
             return self._hear_garbage(burst)
         if (
             self._received
             or burst.errors is not None
-            or burst.ends is not self._wire.ends
+            or burst.ends is not burst.even_ends
             or burst.silence_us < self._pause_us
         ):
             return self._hear_characters(burst)
@@ -188,7 +194,7 @@ class Slave:
             net = 2 * (self.pkw_words + self.pzd_words)
         elif self._received > 1:
             net = self.telegram[1] - 2
-        return self._stx_us - (-(net + 3) * 16_500_000 // self._wire.baud)
+        return self._stx_us - (-(net + 3) * 16_500_000 // self.baud)
 
     # Character by character
 
@@ -200,7 +206,7 @@ class Slave:
             return None
         form = None
         before_us = -burst.silence_us
-        character_us = self._wire.character_us
+        character_us = self._character_us
         for i in range(burst.count):
             gap_us = ends[i] - character_us - before_us
             before_us = ends[i]

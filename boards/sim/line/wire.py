@@ -12,6 +12,9 @@ heap for a hole.
     wire.talk(drive, reply, 16)
     wire.violations()                   # ["at 1146: ..."] when somebody broke a rule
 
+Every station talks at a rate of its own, most of them at that of the line. Who hears a burst of
+another rate, Burst.baud, makes no sense of it: a drive counts noise, a UART gets garbage.
+
 A station has these attributes, all but the first optional:
     hear(burst)         called when somebody else's burst has ended
     watch(burst)        called when it begins
@@ -75,6 +78,16 @@ SILENCE_RULES = (SHORT_SILENCE, COLLISION, DRIVER_ON_INTO)
 DRIVER_RULES = (DRIVER_MISSING, DRIVER_CUTS, DRIVER_EARLY, DRIVER_LATE, DRIVER_IDLE)
 
 
+def start_interval_us(baud):
+    """The silence that must precede a telegram: two characters, rounded up."""
+    return -(-22_000_000 // baud)
+
+
+def ends_of_characters(baud):
+    """The ends of as many characters as a burst can have, in microseconds after its beginning."""
+    return array("i", [(i + 1) * 11_000_000 // baud for i in range(BURST_LIMIT)])
+
+
 def copy(data, count, into, at):
     """Copy data[:count] to into[at:]."""
     for i in range(count):
@@ -91,13 +104,16 @@ class Burst:
     start_us    first start bit; end_us: end of the last stop bit, or the cut
     silence_us  how long the line was silent before it
     ends        ends[i] is the end of character i, in microseconds after start_us
+    baud        the talker's rate
+    even_ends   `ends` of characters back to back
     garbled     another station talked, or held its driver enabled, at the same time
     inside      it began while another station talked
     sent        None, or what left the talker, if faults of the line have changed it
     sent_count  how many characters those were
     """
 
-    def __init__(self, ends, character_us):
+    def __init__(self, ends, character_us, baud=0):
+        self.baud = baud
         self.data = bytearray(BURST_LIMIT)
         self.count = 0
         self.start_us = 0
@@ -111,7 +127,7 @@ class Burst:
         self.sent_count = 0
         self._character_us = character_us
         # All that faults need is allocated here, because they strike in interrupt handlers too.
-        self._even_ends = ends
+        self.even_ends = ends
         self._own_ends = array("i", ends)
         self._flags = bytearray(BURST_LIMIT)
         self._original = bytearray(BURST_LIMIT)
@@ -123,7 +139,7 @@ class Burst:
         self.sent_count = 0
         self.start_us = now_us
         self.silence_us = silence_us
-        self.ends = self._even_ends
+        self.ends = self.even_ends
         self.errors = None
         self.garbled = False
         self.inside = False
@@ -137,7 +153,7 @@ class Burst:
         elapsed = now_us - self.start_us
         ends = self.ends
         count = 0
-        if ends is self._even_ends:
+        if ends is self.even_ends:
             count = elapsed // self._character_us  # rounded up, so this is never too many
         last = self.count
         while count < last and ends[count] <= elapsed:
@@ -152,14 +168,14 @@ class Burst:
         at = self.count
         copy(data, count, self.data, at)
         self.count = self.sent_count = count = at + count
-        self.end_us = self.start_us + self._even_ends[count - 1]
+        self.end_us = self.start_us + self.even_ends[count - 1]
         if self.garbled:
             self._garble_from(at)
 
     def cut(self, now_us):
         """End the burst: only the characters that are complete by now were sent."""
         elapsed = now_us - self.start_us
-        while self.sent_count and self._even_ends[self.sent_count - 1] > elapsed:
+        while self.sent_count and self.even_ends[self.sent_count - 1] > elapsed:
             self.sent_count -= 1
         self.count = self.arrived(now_us)
         self.end_us = now_us
@@ -194,7 +210,7 @@ class Burst:
         self.sent = self._original
         for i in range(self.count):
             self._original[i] = self.data[i]
-            self._own_ends[i] = self._even_ends[i]
+            self._own_ends[i] = self.even_ends[i]
         self.ends = self._own_ends
 
     def carry(self, character):
@@ -202,11 +218,11 @@ class Burst:
         at = self.sent_count
         self._original[at] = character
         self.sent_count = at + 1
-        self.end_us = self.start_us + self._even_ends[at]
+        self.end_us = self.start_us + self.even_ends[at]
 
     def sent_end_us(self):
         """The end of the last character sent, after start_us."""
-        return self._even_ends[self.sent_count - 1] if self.sent_count else 0
+        return self.even_ends[self.sent_count - 1] if self.sent_count else 0
 
     def put(self, character, end_us, flags):
         """Let one character be heard. It ends so long after start_us, not before the last one."""
@@ -245,7 +261,7 @@ class Burst:
 class _Tap:
     """A station's place on the line: its burst, and its driver if that is switched."""
 
-    def __init__(self, wire, station):
+    def __init__(self, wire, station, baud):
         self.wire = wire
         self.name = getattr(station, "name", "a station")
         self.from_panel = getattr(station, "is_panel", False)
@@ -256,7 +272,8 @@ class _Tap:
         self.hear = station.hear
         self.watch = getattr(station, "watch", None)
         self.attached_us = wire.clock.now_us
-        self.burst = Burst(wire.ends, wire.character_us)
+        self.wanted_baud = baud  # from its next telegram on
+        self.tune()
         self.talking = False  # the burst is on the line
         self.end = Event(self.ended)
         self.has_driver_enable = getattr(station, "has_driver_enable", False)
@@ -266,6 +283,13 @@ class _Tap:
         self.driver_needed_us = 0  # until when the driver had to be enabled
         self.driver_judged = False
 
+    def tune(self):
+        """Talk at the rate that is wanted from now on."""
+        self.baud = baud = self.wanted_baud
+        self.character_us = -(-11_000_000 // baud)
+        self.start_interval_us = start_interval_us(baud)
+        self.burst = Burst(self.wire.ends_at(baud), self.character_us, baud)
+
     def ended(self):
         self.wire._ended(self)
 
@@ -273,7 +297,7 @@ class _Tap:
 class Wire:
     """The line and its referee.
 
-    baud                bits a second
+    baud                bits a second, of every station that has no other rate
     character_us        one character, rounded up
     start_interval_us   two characters, rounded up: silence that must precede a telegram (USS
                         specification 5.1.2)
@@ -291,8 +315,9 @@ class Wire:
         self.clock = clock
         self.baud = baud
         self.character_us = -(-11_000_000 // baud)
-        self.start_interval_us = -(-22_000_000 // baud)
-        self.ends = array("i", [(i + 1) * 11_000_000 // baud for i in range(BURST_LIMIT)])
+        self.start_interval_us = start_interval_us(baud)
+        self.ends = ends_of_characters(baud)
+        self._ends_at = {baud: self.ends}
         self.echo = False
         self.log = Log()
         self.faults = None
@@ -313,11 +338,14 @@ class Wire:
 
     # Stations
 
-    def attach(self, station):
-        """Put `station` on the line; it hears the bursts that begin from now on."""
+    def attach(self, station, baud=None):
+        """Put `station` on the line; it hears the bursts that begin from now on.
+
+        baud: at which it talks, if that is not the rate of the line.
+        """
         if station in self._taps:
             raise ValueError("the station is on the line already")
-        tap = _Tap(self, station)
+        tap = _Tap(self, station, baud or self.baud)
         self._taps[station] = tap
         # A new list, because a station may come or go while the old one is being walked.
         self._attached = self._attached + [tap]
@@ -335,6 +363,18 @@ class Wire:
         del self._taps[station]
         self._attached = [other for other in self._attached if other is not tap]
         self._hearing = [other for other in self._hearing if other is not tap]
+
+    def set_rate(self, station, baud):
+        """`station` talks at this rate from its next telegram on."""
+        tap = self._taps.get(station)
+        if tap is not None:
+            tap.wanted_baud = baud
+
+    def ends_at(self, baud):
+        """`ends` at another rate."""
+        if baud not in self._ends_at:
+            self._ends_at[baud] = ends_of_characters(baud)
+        return self._ends_at[baud]
 
     def cut(self, name, deaf=True, mute=True):
         """Cut the wires to the station of that name, whether or not it is plugged in: it does not
@@ -434,6 +474,8 @@ class Wire:
         """The station's burst, emptied, which begins now."""
         if tap.talking:  # its last burst ends at this very instant
             self._ended(tap)
+        if tap.baud != tap.wanted_baud:
+            tap.tune()
         now = self.clock.now_us
         silence_us = 0 if self._talkers else now - self._idle_since_us
         tap.burst.begin(now, silence_us)
@@ -475,7 +517,7 @@ class Wire:
             self._garble(now)
             burst.garbled = True
             burst.inside = True
-        elif burst.silence_us < self.start_interval_us - ROUNDING_US:
+        elif burst.silence_us < tap.start_interval_us - ROUNDING_US:
             self._violate(SHORT_SILENCE, tap, burst.silence_us)
         if self._drivers > (1 if tap.driving else 0):
             other = self._driver_but(tap)
@@ -488,6 +530,7 @@ class Wire:
         The wire does not judge it, and faults do not touch it. burst: one of the caller's, with
         the wire's `ends` or its own.
         """
+        burst.baud = self.baud
         self._idle_since_us = burst.end_us
         self._last_began_us = burst.start_us
         self._tell(self._taps[station], burst)
@@ -597,7 +640,7 @@ class Wire:
     def _judge_driver(self, tap, rule, now):
         """The driver is enabled for one character, at the most, before and after what it sends."""
         needless_us = now - tap.driver_needed_us
-        if needless_us <= self.character_us or tap.driver_judged:
+        if needless_us <= tap.character_us or tap.driver_judged:
             return
         tap.driver_judged = True
         if rule is DRIVER_LATE and tap.driver_needed_us == tap.driver_on_us:
@@ -610,7 +653,8 @@ class Wire:
         book = self._violations
         if self.faults is not None and self._is_forced(rule, tap):
             book = self._weather
-        book.note(self.clock.now_us, rule, tap.name, other.name if other is not None else "", us)
+        name = other.name if other is not None else ""
+        book.note(self.clock.now_us, rule, tap.name, name, us, tap.baud)
 
     def _is_forced(self, rule, tap):
         """Whether the faults of the line made a station break a rule.
@@ -634,7 +678,7 @@ class Wire:
                 arrived = burst.arrived(now)
                 if arrived and burst.start_us >= plugged_us:
                     heard_us = max(heard_us, burst.start_us + burst.ends[arrived - 1])
-        if now - heard_us >= self.start_interval_us - ROUNDING_US:
+        if now - heard_us >= tap.start_interval_us - ROUNDING_US:
             return True
         quiet_us = now - self._babbled_until_us(now)
         # The panel counts from when it last found the line silent; a shorter pause does not count.
@@ -669,11 +713,11 @@ class Wire:
         for tap in self._attached:
             if tap.driving and not tap.talking:
                 self._judge_driver(tap, DRIVER_LATE, self.clock.now_us)
-        return self._violations.texts(self.start_interval_us, self.character_us)
+        return self._violations.texts()
 
     def weather(self):
         """Texts as those of `violations`: what faults of the line made stations do."""
-        return self._weather.texts(self.start_interval_us, self.character_us)
+        return self._weather.texts()
 
 
 class Book:
@@ -681,9 +725,9 @@ class Book:
 
     def __init__(self):
         self.count = 0
-        self._rows = [[0, None, "", "", 0] for _ in range(VIOLATION_LIMIT)]
+        self._rows = [[0, None, "", "", 0, 0] for _ in range(VIOLATION_LIMIT)]
 
-    def note(self, at_us, rule, name, other, us):
+    def note(self, at_us, rule, name, other, us, baud):
         # Kept as figures, and made into texts later, because this may run in an interrupt handler.
         if self.count < VIOLATION_LIMIT:
             row = self._rows[self.count]
@@ -692,13 +736,15 @@ class Book:
             row[2] = name
             row[3] = other
             row[4] = us
+            row[5] = baud
         self.count += 1
 
-    def texts(self, start_interval_us, character_us):
+    def texts(self):
         texts = []
-        for at_us, rule, name, other, us in self._rows[: self.count]:
+        for at_us, rule, name, other, us, baud in self._rows[: self.count]:
+            start_us, character_us = start_interval_us(baud), -(-11_000_000 // baud)
             text = rule.format(
-                name=name, other=other, us=us, start=start_interval_us, character=character_us
+                name=name, other=other, us=us, start=start_us, character=character_us
             )
             texts.append("at %d: %s" % (at_us, text))
         return texts
@@ -778,8 +824,6 @@ class Transceiver:
     is_panel = True
 
     def __init__(self, wire, uart, enable_pin, name="panel"):
-        if uart.baud != wire.baud:
-            raise ValueError("the line runs at %d baud" % wire.baud)
         self.name = name
         self._wire = wire
         self._clock = wire.clock
@@ -788,7 +832,7 @@ class Transceiver:
         self._burst = None  # the burst that is coming in
         self._taken = 0  # how many of its characters the UART has got
         self._other = None  # a second burst at the same time, which ends later
-        wire.attach(self)
+        wire.attach(self, uart.baud)
         enable_pin.on_change = self._enable
         self._enable(enable_pin.value())
         uart.line = self
@@ -838,7 +882,7 @@ class Transceiver:
             self._take_up_other()
         elif not self._deaf:
             # The second of two talkers comes in as one piece of garbage.
-            self._uart.receive(burst.data, 0, burst.count)
+            self._uart.receive(self._understood(burst), 0, burst.count)
         if not self._deaf:
             self._uart.quiet_since(burst.end_us)
 
@@ -861,8 +905,12 @@ class Transceiver:
         arrived = burst.arrived(self._clock.now_us)
         if arrived > self._taken:
             if not self._deaf:
-                self._uart.receive(burst.data, self._taken, arrived)
+                self._uart.receive(self._understood(burst), self._taken, arrived)
             self._taken = arrived
+
+    def _understood(self, burst):
+        """The characters that the UART makes of a burst."""
+        return burst.data if burst.baud == self._uart.baud else GARBLE
 
     def receiving(self):
         """Whether a burst is coming in and a character of it has arrived."""

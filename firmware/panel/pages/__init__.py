@@ -15,8 +15,10 @@ class Page:
     tells_state: its row 2 says what the drive shown does (pages that are not whole)
     obeys: START, REVERSE, JOG, address keys and PARAM act while it is shown; STOP always acts
     announces: what has to be said of other drives is said while it is shown
+    modules: nobody needs them in memory when it is gone
     """
 
+    modules = ()
     whole = False
     tells_state = False
     obeys = True
@@ -27,6 +29,10 @@ class Page:
 
     def open(self):
         """It is shown from now on."""
+
+    def close(self):
+        """It has covered another page, and need not be shown any more."""
+        self.panel.uncover()
 
     def step(self, keys, now_ms):
         """Again and again while it is shown, or hidden by another. keys: `panel.keys.Keys`."""

@@ -28,7 +28,7 @@ class Home(Page):
         text = wording.text(control)
         if text != texts.FAULT and warning.draw(screen, self.panel):
             return
-        words = texts.of(text)
+        words = wording.of(text, control.survey.family)
         screen.put(1, 0, texts.STATE_WIDTH + 1, words)
         if text == texts.FAULT:
             draw_number(screen, 1, len(words) + 1, texts.FAULT_LETTER, control.fault)

@@ -4,48 +4,43 @@
     S: 10.0 F:  9.98
     P1000:     5 A1         the value as the drive tells it, read again and again
 
-NEXT and PREVIOUS walk the rows of PARAMETERS. EDIT freezes the value, UP and DOWN change it, EDIT
-lets it go again. SET writes it into the drive's RAM; SET held for 1.5 s, and no other key with it,
-writes it into the EEPROM as well. Between value and address: an arrow while the value is frozen,
-an hourglass while a write is on its way. A warning of the drive takes turns with all that.
+NEXT and PREVIOUS walk the parameters that the drive's family shows. EDIT freezes the value, UP and
+DOWN change it, EDIT lets it go again. SET writes it into the drive's RAM; SET held for 1.5 s, and
+no other key with it, writes it into the EEPROM as well. Between value and address: an arrow while
+the value is frozen, an hourglass while a write is on its way. A warning of the drive takes turns
+with all that.
 """
 
 from micropython import const
 
+import on_demand
 from panel import texts
 from panel.pages import Page, warning
-from panel.pages.question import Question
-from panel.reading import Reading
+from panel.reading import Reading, failure
 from panel.screen import BUSY, EDITS
-from panel.writer import failure
 from uss import pkw
 from uss.families.generic import CUTS_OFF, RESCALES
 from uss.timing import elapsed
-
-PARAMETERS = (  # what is shown, number, index, highest value or None: read only. Lowest is 0.
-    (b"P0700:", 700, 0, 6),
-    (b"P1000:", 1000, 0, 77),
-    (b"P2011:", 2011, 0, 31),
-    (b"r2024:", 2024, 0, None),
-    (b"r2025:", 2025, 0, None),
-)
 
 _READ_MS = const(500)  # between an answer and the next question
 _EEPROM_MS = const(1_500)  # SET is held so long
 _FAST_SPAN = const(100)  # values of a smaller range move by ones, however long the key is held
 
 _MARK_COLUMN = const(12)
+_ADDRESS_COLUMN = const(13)
 GLYPHS = (bytes((BUSY,)), bytes((EDITS,)))
 
 ASK = {CUTS_OFF: texts.ASK_CUTS_OFF, RESCALES: texts.ASK_RESCALES}
 
 
 class Parameters(Page):
-    """Which row of PARAMETERS is shown, of which drive, and what is done with it."""
+    """Which parameter is shown, of which drive, and what is done with it."""
+
+    modules = ("panel.pages.parameters",)
 
     def __init__(self, panel):
         Page.__init__(self, panel)
-        self._row = 0
+        self._row = panel.remembered.get(__name__, 0)
         self._edited = 0
         self._reading = Reading()
         self._read_at_ms = 0
@@ -58,13 +53,16 @@ class Parameters(Page):
 
     def take_keys(self, acts, now_ms):
         self._look_at_selected()
+        if not self._shown:
+            return
         set_key = acts.bit("SET")
         if acts.pressed & ~set_key:
             self._set_at_ms = None
         step = acts.direction("NEXT", "PREVIOUS")
         if step:
-            self._row = (self._row + step) % len(PARAMETERS)
+            self._row += step
             self._forget()
+            self.panel.remembered[__name__] = self._row
         elif acts.has("EDIT"):
             self._toggle_edit(now_ms)
         elif acts.pressed == set_key and set_key:  # with another key it is no clear wish
@@ -74,7 +72,7 @@ class Parameters(Page):
             self._change(direction, acts, now_ms)
 
     def _toggle_edit(self, now_ms):
-        if PARAMETERS[self._row][3] is None:
+        if self._shown[self._row][1] is None:
             self.panel.say(now_ms, texts.READ_ONLY)
         elif self._value is None:
             self.panel.say(now_ms, texts.NOT_READ_YET)
@@ -83,7 +81,7 @@ class Parameters(Page):
             self._edited = self._value
 
     def _change(self, direction, acts, now_ms):
-        highest = PARAMETERS[self._row][3]
+        highest = self._shown[self._row][1]
         if not self._editing:
             self.panel.say(now_ms, texts.READ_ONLY if highest is None else texts.EDIT_FIRST)
             return
@@ -94,19 +92,20 @@ class Parameters(Page):
         if not self._editing:
             self.panel.say(now_ms, texts.EDIT_FIRST)
             return
-        _, number, index, _ = PARAMETERS[self._row]
-        self._wish = (self._control, number, index, self._edited)
+        number = self._shown[self._row][0]
+        self._wish = (self._control, number, self._edited)
         ask_first = self._control.survey.family.ask_first
         if number in ask_first and not self._why_not():
             values = (self._control.drive.address, number, self._edited)
             text = ASK[ask_first[number]]
-            self.panel.cover(Question(self.panel, text, values, {"SET": self._grant}))
+            question = on_demand.load("panel.pages.question").Question
+            self.panel.cover(question(self.panel, text, values, {"SET": self._grant}))
         else:
             self._grant(now_ms)
 
     def _why_not(self):
         """Why the wish is not even tried. Asked again when a question was answered."""
-        control, number, _, value = self._wish
+        control, number, value = self._wish
         if number != control.survey.family.address_number:
             return texts.NOTHING
         if self.panel.any_runs() or control.is_starting():
@@ -119,16 +118,18 @@ class Parameters(Page):
         if reason:
             self.panel.say(now_ms, reason)
             return
-        control, number, index, value = self._wish
-        eeprom = eeprom or number in control.survey.family.permanent
-        self._write = self.panel.write(now_ms, control, number, index, value, eeprom)
-        self._set_at_ms = None if eeprom or not self._write else now_ms
+        control, number, value = self._wish
+        family = control.survey.family
+        eeprom = family.has_eeprom_tasks and (eeprom or number in family.permanent)
+        self._write = self.panel.write(now_ms, control, number, 0, value, eeprom)
+        holds = self._write and family.has_eeprom_tasks and not eeprom
+        self._set_at_ms = now_ms if holds else None
 
     # --- what goes on ---------------------------------------------------------------------------
 
     def step(self, keys, now_ms):
         self._look_at_selected()
-        contact = self._control.drive.contact
+        contact = self._control.drive.contact and self._shown
         if not contact or not keys.down & keys.bit("SET"):
             self._set_at_ms = None
         if not contact:
@@ -162,8 +163,7 @@ class Parameters(Page):
     def _ask(self, now_ms):
         waited_ms = elapsed(now_ms, self._read_at_ms, self.panel.mask)
         if self._due or waited_ms >= _READ_MS:
-            _, number, index, _ = PARAMETERS[self._row]
-            if self._reading.ask(self._control.drive, number, index):
+            if self._reading.ask(self._control.drive, self._shown[self._row][0]):
                 self._due = False
 
     def _take_answer(self, now_ms):
@@ -179,7 +179,10 @@ class Parameters(Page):
 
     def _forget(self):
         """Another parameter or another drive: nothing is known of it yet, nothing is edited."""
-        self._control = self.panel.selected  # the drive that what follows belongs to
+        self._control = control = self.panel.selected  # the drive that what follows belongs to
+        # (number, highest value; None: read only)
+        self._shown = control.survey.family.shown if control.drive.layout.pkw_words else ()
+        self._row %= max(len(self._shown), 1)
         self._value = None  # as last told by the drive
         self._refused = False  # it does not tell it
         self._editing = False
@@ -193,8 +196,14 @@ class Parameters(Page):
     def draw(self, screen, now_ms):
         if warning.draw(screen, self.panel):
             return
+        if not self._shown:
+            screen.put(1, 0, _ADDRESS_COLUMN, texts.of(texts.NO_PARAMETERS))
+            return
         value = self._edited if self._editing else self._value
-        screen.put(1, 0, texts.PARAMETER_WIDTH, PARAMETERS[self._row][0])
+        number, highest = self._shown[self._row]
+        name = texts.READ_PARAMETER if highest is None else texts.PARAMETER
+        screen.put(1, 0, texts.PARAMETER_WIDTH, texts.of(name))
+        screen.digits(1, 1, 4, number)
         if value is not None:
             screen.number(1, texts.PARAMETER_WIDTH, texts.VALUE_WIDTH, value * 100, 0)
         else:

@@ -24,6 +24,7 @@ class Question(Page):
     deaf_ms: so long after it appeared no answer counts, because nobody has read it yet.
     """
 
+    modules = ("panel.pages.question",)
     whole = True
     obeys = False
 
@@ -34,10 +35,6 @@ class Question(Page):
         self._answers = answers
         self._deaf_ms = deaf_ms
         self._shown_at_ms = None
-
-    def close(self):
-        """It was answered, or need not be any more."""
-        self.panel.uncover()
 
     def take_keys(self, acts, now_ms):
         if not acts.pressed:

@@ -16,6 +16,8 @@ _READING_MS = const(1_000)  # so long a START does not answer: it may be a doubl
 class RiskQuestion(Question):
     """About the risk that `panel.selected` is asked about, which is open."""
 
+    modules = ("panel.pages.risk",) + Question.modules
+
     def __init__(self, panel):
         self._control = control = panel.selected
         self._risk = risk = control.question()
@@ -48,4 +50,5 @@ class RiskQuestion(Question):
         """Have the drive stop by itself when this panel falls silent."""
         family = self._control.survey.family
         number, index = family.off_time_number, family.link_index
-        self.panel.write(now_ms, self._control, number, index, self.panel.off_time_ms)
+        value = -(-self._control.desk.off_time_ms // family.off_time_unit_ms)
+        self.panel.write(now_ms, self._control, number, index, value)

@@ -13,6 +13,7 @@ _SHOWN_MS = const(800)
 class Splash(Page):
     """It ends by itself. Any key ends it and does nothing else, but for STOP."""
 
+    modules = ("panel.pages.splash",)
     whole = True
     obeys = False
     announces = False

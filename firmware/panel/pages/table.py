@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The pages, in the order in which PARAM shows them; the first one is the home page."""
+"""The pages, in the order in which PARAM shows them; the first one is the home page, which is
+always loaded. The others are `on_demand`: module of `panel.pages`, and class.
+"""
 
-from panel.pages.home import Home
-from panel.pages.parameters import Parameters
-
-PAGES = (Home, Parameters)
+PAGES = (("home", "Home"), ("parameters", "Parameters"))

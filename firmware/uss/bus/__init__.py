@@ -22,13 +22,13 @@ from uss.timing import Timing, elapsed
 from uss.drive import COUNTERS
 from uss import bits, families, master, outside, pkw, pzd
 from uss.bus import pkw_errors
-from uss.bus.errors import WHY_SILENT, UssError
-from uss.bus.errors import FallsSilent, NoContact, NotStarted, Refused, TimedOut
+from uss.errors import WHY_SILENT, UssError
+from uss.errors import FallsSilent, NoContact, NotStarted, Refused, TimedOut
 from uss.families.rows import ACTUAL, STATUS
 from uss.layout import Layout
 from uss.leave import leave, persist
 from uss.bus.survey import Survey
-from uss.scaling import Scale, run_words, signed_hiw
+from uss.scaling import Scale, run_words
 
 REST_US = 100  # between two looks at the bus while a call waits
 TRIES = 3  # a wait for contact ends after so many telegrams without a valid reply
@@ -435,7 +435,7 @@ class Drive:
         if wrong:
             raise ValueError("drive %d %s" % (self.engine.address, wrong))
         self._wait_for_contact()
-        return signed_hiw(self.family, self.engine.word(2), self.engine.zsw)
+        return pzd.signed_hiw(self.family, self.engine.word(2), self.engine.zsw)
 
     def _jog(self, stw):
         if not stw:

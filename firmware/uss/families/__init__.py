@@ -35,12 +35,13 @@ _MODULES = {
     "g120": "CU240S G120",
     "questions": "",
 }
+NAMES = " ".join(_MODULES.values()).split()
 
 
 def __getattr__(name):
     """A family or a function that is named for the first time; FAMILIES are all of them."""
     if name == "FAMILIES":
-        return tuple([__getattr__(family) for family in " ".join(_MODULES.values()).split()])
+        return tuple([__getattr__(family) for family in NAMES])
     home = "mm4" if name == "MM4" else "questions"
     for module in _MODULES:
         if name in _MODULES[module].split():

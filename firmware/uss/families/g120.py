@@ -36,6 +36,7 @@ class G120(GENERIC):
     motor = (310, 311)
     protocol = (2030, 1)
     save = (971, 1)
+    shown = ((2021, 30), (2040, 65535))
     survey = (
         None,  # the macro p0015 = 21 connects ON and setpoint to the link
         None,

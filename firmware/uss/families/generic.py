@@ -56,6 +56,10 @@ class GENERIC:
     protocol = None  # so that the terminals talk USS
     save = None  # copies RAM to EEPROM
 
+    # What a panel without a catalogue shows: (number, highest value that it writes; None: it only
+    # reads this one).
+    shown = ()
+
     # What must be known before a start, in the order of `rows`: (number, index, kind, value where
     # the drive has no such parameter; None: it must be), or None where the family has none.
     survey = (None,) * COUNT_OF_ROWS

@@ -31,6 +31,7 @@ class MM3(GENERIC):
     motor = (81, 82)
     access = (9, 3)
     save = (971, 1)
+    shown = ((910, 4), (91, 30), (94, None), (12, None), (13, None))
     survey = (
         (910, 0, WORD, None),  # 1: ON and setpoint both come from USS
         None,

@@ -43,6 +43,7 @@ class MM420(GENERIC):
     motor = (310, 311)
     access = (3, 3)
     save = (971, 1)
+    shown = ((700, 6), (1000, 77), (2011, 31), (2024, None), (2025, None))
     survey = (
         (700, _BY_COMMAND_SET, _WORD, None),  # where ON comes from
         (1000, _BY_COMMAND_SET, _WORD, None),  # where the setpoint comes from; tens: a second one

@@ -18,7 +18,7 @@ def baud_code(family, baud):
 
 def can_be_set_to(family, layout):
     """Whether drives of the family can have telegrams of this `Layout`."""
-    return layout.pkw_words in family.pkw_choices and layout.pzd_words in family.pzd_choices
+    return layout.suits(family)
 
 
 def value(job, kind, is_fine=False):

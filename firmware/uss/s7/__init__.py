@@ -36,7 +36,7 @@ from uss.s7.parameters import (  # noqa: F401  (also blocks of this library)
     USS_WPM_R,
     USS_WPM_W,
 )
-from uss.scaling import RUNS_RIGHT, Scale, run_words, signed_hiw
+from uss.scaling import Scale, run_words
 from uss.telegram import NODE_MAX
 from uss.timing import BAUD_RATES, elapsed
 from uss.bits import may_start
@@ -406,8 +406,8 @@ class USS_CTRL(Block):
         self._counters = counters
         if self.RESP_R:
             self.STATUS = zsw = drive.zsw
-            self.SPEED = PERCENT.percent(signed_hiw(self._family, drive.hiw, zsw))
+            self.SPEED = PERCENT.percent(pzd.signed_hiw(self._family, drive.hiw, zsw))
             self.RUN_EN = zsw & pzd.ZSW_RUNNING != 0
-            self.D_DIR = zsw & RUNS_RIGHT != 0
+            self.D_DIR = zsw & pzd.ZSW_RUNS_RIGHT != 0
             self.INHIBIT = zsw & pzd.ZSW_INHIBIT != 0
             self.FAULT = zsw & pzd.ZSW_FAULT != 0

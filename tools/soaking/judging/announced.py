@@ -10,7 +10,15 @@ trouble, each must be on the display for a second within 2 n s, again and again,
     announced.look(now)             # after every slice: raises Broken
 """
 
-from tools.soaking.judging.facts import CHOICES, MS, NEVER, ZSW_FAULT, ZSW_RUNNING, S
+from tools.soaking.judging.facts import (
+    CHOICES,
+    MS,
+    NEVER,
+    NO_PARAMETERS,
+    ZSW_FAULT,
+    ZSW_RUNNING,
+    S,
+)
 from tools.soaking.judging.rules import Broken
 
 RUNS, EXPOSED, TRIPPED, MAY_RUN, NOT_STOPPED, UNHEARD, OFF = (
@@ -20,9 +28,11 @@ RUNS, EXPOSED, TRIPPED, MAY_RUN, NOT_STOPPED, UNHEARD, OFF = (
 
 ONE = (  # text after "A" and an address, and the troubles that it tells; any other text: it is off
     ("RUN,HOLD=ALL", (RUNS,)),
-    ("RUN, P2014", (RUNS, EXPOSED)),
+    ("RUN, P", (RUNS, EXPOSED)),  # and the number of its telegram off time
     ("P2014 LONG", (RUNS, EXPOSED)),
-    ("BELOW P1080", (RUNS,)),
+    ("P0093 LONG", (RUNS, EXPOSED)),
+    ("P2040 LONG", (RUNS, EXPOSED)),
+    ("BELOW P", (RUNS,)),
     ("FAULT", (TRIPPED, OFF)),
     ("LOST,MAY RUN", (MAY_RUN,)),
     ("NOT STOPPED", (NOT_STOPPED, RUNS, EXPOSED, MAY_RUN)),
@@ -177,7 +187,12 @@ class Announced:
     def _hides_state(self):
         """Whether the page is one that does not tell what the drive shown does."""
         row_2 = self.reader.rows[1]
-        return row_2 in CHOICES or row_2[5:6] == ":"
+        return row_2 in CHOICES or is_parameter(row_2)
+
+
+def is_parameter(row_2):
+    """Whether the page is that of parameter mode."""
+    return row_2[5:6] == ":" or row_2.startswith(NO_PARAMETERS)
 
 
 def said_in(row):

@@ -17,7 +17,8 @@ class Case:
         self.sent_us = NEVER
         self.zsw = 0  # of the last whole reply
         self.answered_us = NEVER  # the end of that
-        self.heard_us = NEVER  # the last one that the panel is sure to have taken
+        self.heard_us = NEVER  # the last one that the panel is sure to have taken,
+        self.contact_us = NEVER  # the first one since power-on, or the lost time before it
         self.asked_us = NEVER  # the last request, if no reply has come to it
         self.missed_us = NEVER  # a request that stayed without a reply, the last one
         self.lost_us = NEVER  # such a one, for the lost time or more after a reply, was over
@@ -25,6 +26,8 @@ class Case:
         self.tasks = 0
         self.replies = 0  # ever
         self.unheard = 0  # requests since power-on, while no reply has come
+        self.requests = 0  # ever, and so many of them up to the last reply that the panel is sure
+        self.heard_requests = 0  # to have taken, or up to power-on
         self.off_us = NEVER  # it was running by START, and stopped by something else than STOP
         self.ran = False  # since ON was sent first
         self.ran_us = NEVER  # seen running last

@@ -7,13 +7,14 @@ Written from the documents, not from the firmware, so that a mistake does not st
 MS = 1000
 S = 1_000_000
 
-# Control words (specification C-5.2.1) of a panel that never gives control away.
+# Control words (specification C-5.2.1) of a panel that never gives control away. Those that turn a
+# motor are of a MICROMASTER 4; other families have others, see `families`.
 OFF1, OFF2, OFF3 = 0x047E, 0x047C, 0x047A
 ON, ON_REVERSE, JOG_RIGHT, JOG_LEFT = 0x047F, 0x0C7F, 0x057E, 0x067E
 ACKNOWLEDGE = 0x0080
-RUN = 0x0301  # bits of which each turns the motor
+ON_BIT, JOG_BITS, JOG_RIGHT_BIT = 0x0001, 0x0300, 0x0100
+RUN = ON_BIT | JOG_BITS  # each of them turns the motor
 OFFS = (OFF1, OFF2, OFF3)
-KNOWN = OFFS + (ON, ON_REVERSE, JOG_RIGHT, JOG_LEFT)
 SECOND_STOPS = {"OFF3": OFF3, "OFF2": OFF2, "none": OFF1}
 
 ZSW_RUNNING, ZSW_FAULT, ZSW_INHIBIT, ZSW_WARNING = 0x0004, 0x0008, 0x0040, 0x0080
@@ -23,19 +24,13 @@ READS = (0, 1, 4, 6, 9)
 RAM_WRITES = (2, 3, 7, 8)
 EEPROM_WRITES = (11, 12, 13, 14)
 
-CONTROLLED = ("MICROMASTER 420", "MICROMASTER 440")  # by this panel
-
-# DESIGN, rule 7, and those among them that the drive must not forget.
-DANGEROUS = (
-    3, 10, 700, 719, 840, 918, 927, 970, 1000, 1070, 2000, 2009, 2010, 2011, 2012, 2013, 2014,
-    2016, 2019, 2023, 3900,
-)  # fmt: skip
-PERMANENT = (2010, 2011, 2012, 2013)
 # Row 2 of a question: to which SET says yes; START may; about a risk that nothing takes away.
 WRITES, RUNS_ON, RISKS = "SET=DO  PARAM=NO", "SET=FIX START=GO", "START=GO STOP=NO"
 QUESTIONS = (WRITES, RUNS_ON)
 GOES = (RUNS_ON, RISKS)
 CHOICES = (WRITES, RUNS_ON, RISKS)
+NO_PARAMETERS = "NO PARAMETERS"  # parameter mode, of a drive that can tell none
+UNTOLD = ("IT MAY RUN ON", "IF PANEL DIES")  # row 1 of RISKS, where no P2014 can be read
 
 # How long the panel may take: a key settles in 20 ms and bounces for up to 5; five steps of the
 # loop, two of them of its own and those of a drawing that is under way.
@@ -53,6 +48,10 @@ WISH_US = 40 * S  # a write that SET has asked for is over by then, and 20 round
 MEANT_US, MEANT_READS = 10 * S, 36
 LIMITED_SHOWN_US, LIMITED_US, LIMITED_READS = 2_500 * MS, 10 * S, 8
 READ_REPLIES = 2  # of a drive whose replies do not lag
+# A drive is sent a telegram in another layout, to be sent back, when it has no contact and has not
+# answered so many; so many, if it may run. At the least the list asks silent drives half the time.
+SILENT_MIN, STOPPED_MIN = 3, 30
+SHARED = 2
 # Of the loop, for each that runs and is not shown, where that takes longer: until its limits have
 # been read, and all its settings.
 LOOKED_STEPS, MEANT_STEPS = 200, 900
@@ -76,7 +75,9 @@ def lost_us(plan):
 
 
 def exchange_us(plan):
-    """The longest exchange on this line: the reply comes, and ends, at the last moment."""
+    """The longest exchange on this line: the reply comes, and ends, at the last moment. Its
+    telegrams have 4 PKW words and the PZD words of the plan."""
     character_us = -(-11_000_000 // plan.baud)
     timeout_us = max(plan.settings.get("reply_timeout_ms", 20) * MS, 4 * character_us)
-    return 2 * character_us + 16 * character_us + timeout_us + 25 * character_us
+    size = 2 * (4 + plan.pzd_words) + 4
+    return (2 + size) * character_us + timeout_us + (size + 9) * character_us

@@ -11,30 +11,29 @@ each telegram by the keys as they were when it began.
     judge.witness.key("START", True)    # before the key moves
 """
 
-from tools.soaking.judging.drive_settings import scalings
+from tools.soaking.judging.drive_settings import magnitude, scalings
 from tools.soaking.judging.facts import (
     ACKNOWLEDGE,
     ALL_STOP_US,
     ALWAYS,
-    DANGEROUS,
     DEAD_MAN_US,
     EEPROM_WRITES,
     HELD_SET_US,
-    JOG_RIGHT,
-    KNOWN,
+    JOG_BITS,
+    JOG_RIGHT_BIT,
     MEANT_US,
     MS,
     NEVER,
     OFF1,
-    ON,
-    ON_REVERSE,
-    PERMANENT,
+    ON_BIT,
     RAM_WRITES,
     READS,
     RUN,
     SECOND_STOP_US,
     SHORT_CHORD_US,
+    SILENT_MIN,
     START_S,
+    STOPPED_MIN,
     STUCK_US,
     ZSW_FAULT,
     ZSW_INHIBIT,
@@ -52,7 +51,7 @@ from tools.soaking.judging.runs import (
     judge_rise,
 )
 from tools.soaking.judging.shares import Shares
-from tools.soaking.judging.tape import MALFORMED, REQUEST
+from tools.soaking.judging.tape import MALFORMED, MIRRORED, REPLY, REQUEST
 from tools.soaking.judging.witness import Witness
 
 LISTEN_US = 95 * MS  # 100 ms, less the error of the panel's clocks
@@ -140,14 +139,50 @@ class Judge:
                 self._judge_request(row, tape)
             elif kind == MALFORMED:
                 raise Broken("TELEGRAM", "at %d" % tape.at_us[row])
-            else:
+            elif kind == REPLY:
                 self._take_reply(row, tape)
+            elif kind == MIRRORED:
+                self._judge_mirror(row, tape)
+            else:
+                self._shares.answered()
+                kind = self.witness.kinds[tape.address[row]]
+                kind.returned(tape.count[row], self._is_sure(row, tape))
+
+    def _judge_mirror(self, row, tape):
+        """It looks for the layout of a drive that is silent; no drive acts on it."""
+        now, address = tape.at_us[row], tape.address[row]
+        witness, case = self.witness, self.cases[address]
+        where = "drive %d at %d" % (address, now)
+        self.exchanges += 1
+        if self._begun_us != witness.boot_us:
+            self._judge_first(row, tape)
+        if address not in witness.plan.listed and address not in witness.moved:
+            raise Broken("MIRROR", "%s, which is not in the list" % where)
+        if not tape.is_blank(row):
+            raise Broken("MIRROR", "%s, its net data are not nothing" % where)
+        # One that waits to be sent when the drive answers still goes out.
+        waited_us = 2 * (witness.exchange_us + self.plan.loop_us)
+        recently_us = max(witness.boot_us, now - witness.lost_us * 9 // 10)
+        if case.heard_us > recently_us and now - case.contact_us > waited_us:
+            told = (where, (now - case.contact_us) // MS, (now - case.heard_us) // MS)
+            raise Broken("MIRROR", "%s, in contact for %d ms, heard %d ms ago" % told)
+        may_run = case.turned_us > max(case.rested_us, witness.boot_us)
+        least = STOPPED_MIN if may_run else SILENT_MIN
+        misses = case.requests - case.heard_requests
+        if misses < least and now - case.contact_us > waited_us:
+            raise Broken("MIRROR", "%s, silent for %d telegrams" % (where, misses))
+        self._shares.mirror(case, now)
 
     def _take_reply(self, row, tape):
-        at = 6 * row
-        case = self.cases[tape.address[row]]
+        address = tape.address[row]
+        case = self.cases[address]
+        kind = self.witness.kinds[address]
+        if not kind.may_be_reply(tape.count[row]):
+            return
+        self._shares.answered()
         now = tape.end_us[row]
-        zsw = tape.words[at + 4]
+        zsw = tape.word(row, -kind.pzd_words)
+        hiw = tape.word(row, 1 - kind.pzd_words)
         if case.missed_us - case.answered_us > self.witness.lost_us + 100 * MS:
             case.void_us = max(case.void_us, now - SHORT_CHORD_US)
             case.excused_us = now + 2 * S + self.witness.cycle_us
@@ -167,30 +202,37 @@ class Judge:
             if zsw & ZSW_RUNNING:
                 case.ran = True
             stops = is_over(case, zsw)
-            if is_standstill(case, tape.words[at + 5]) and self._tells_speed(row):
+            reverse = kind.family.reverse
+            if is_standstill(case, hiw, reverse) and self._tells_speed(address):
                 stops = True
             if stops:
                 case.excused_us = now + 2 * S + self.witness.cycle_us
-        self._unsettled.append((row, case, stops))
+        self._unsettled.append((row, case, kind, zsw, case.requests, stops))
 
-    def _tells_speed(self, row):
-        """Whether HIW is the speed, in percent, by what the drive is set to."""
-        meant = self.witness.meant(self.tape.address[row])
-        told = [values.tells_hz and not values.absolute for values in meant]
-        return bool(told) and all(told)
+    def _tells_speed(self, address):
+        """Whether HIW is the speed, in percent and with a sign, by what the drive is set to."""
+        meant = self.witness.meant(address)
+        told = [values.tells_speed and not values.absolute for values in meant]
+        return self.witness.kinds[address].family.signed and bool(told) and all(told)
 
     def _settle_replies(self, now):
         """The replies that the panel must have taken by now."""
         tape = self.tape
         waiting = []
         for one in self._unsettled:
-            row, case, stops = one
+            row, case, kind, zsw, requests, stops = one
             if not tape.is_settled(row, now):
                 waiting.append(one)
-            elif self._is_sure(row, tape):
+            elif self._is_sure(row, tape) and kind.is_sure_reply(tape.count[row]):
+                kind.answered()
                 case.replies += 1
-                case.heard_us = max(case.heard_us, tape.end_us[row])
-                if tape.words[6 * row + 4] & (ZSW_FAULT | ZSW_INHIBIT):
+                case.heard_requests = max(case.heard_requests, requests)
+                heard_us = tape.end_us[row]
+                lost_us = max(self.witness.boot_us, heard_us - self.witness.lost_us)
+                if case.heard_us < lost_us:
+                    case.contact_us = heard_us
+                case.heard_us = max(case.heard_us, heard_us)
+                if zsw & (ZSW_FAULT | ZSW_INHIBIT):
                     case.bad_us = max(case.bad_us, tape.end_us[row])
                 if stops:
                     case.void_us = case.off_us = max(case.void_us, tape.end_us[row])
@@ -208,14 +250,17 @@ class Judge:
     def _judge_request(self, row, tape):
         now = tape.at_us[row]
         address = tape.address[row]
-        at = 6 * row
-        words = tape.words
-        stw = words[at + 4]
         case = self.cases[address]
+        kind = self.witness.kinds[address]
         self.exchanges += 1
-        task = words[at] >> 12
-        asks = (words[at], words[at + 1]) if task else None
-        self._shares.ask(case, address, asks, now)
+        pkw_words = tape.count[row] - kind.pzd_words
+        pke = tape.word(row, 0) if pkw_words > 0 else 0
+        task = pke >> 12
+        self._judge_layout(row, tape, kind, task)
+        kind = self.witness.kinds[address]
+        index = tape.word(row, 1) if task else 0
+        stw, hsw = tape.word(row, -kind.pzd_words), tape.word(row, 1 - kind.pzd_words)
+        self._shares.ask(case, address, (pke, index) if task else None, now)
         if self._begun_us != self.witness.boot_us:
             self._judge_first(row, tape)
         if case.asked_us > 0:
@@ -225,13 +270,15 @@ class Judge:
                 case.lost_us = now
         case.asked_us = now
         case.unheard += 1
+        case.requests += 1
         if self.witness.owed:
             self._judge_owed(case, now)
         if task and task != 1:
-            self._judge_task(task, words[at] & 0x7FF, words[at + 1], words[at + 3], now, address)
+            value = tape.word(row, 2 if pkw_words == 3 else 3)
+            self._judge_task(task, pke & 0x7FF, index, value, now, address)
         if not stw & RUN:
-            if words[at + 5]:
-                raise Broken("SETPOINT", "%04X with OFF" % words[at + 5])
+            if hsw:
+                raise Broken("SETPOINT", "%04X with OFF" % hsw)
             if self.witness.owed and case in self.witness.owed and now >= case.owed_us:
                 self.witness.owed.remove(case)
                 case.owed_us = NEVER
@@ -240,12 +287,41 @@ class Judge:
             return
         self._judge_word(case, address, stw, now)
         if stw & RUN:
-            self._judge_run(case, address, stw, words[at + 5], now)
+            self._judge_run(case, address, stw, hsw, now)
         else:
             self._judge_off(case, address, stw, now)
         case.stw = stw & ~ACKNOWLEDGE
-        case.hsw = words[at + 5]
+        case.hsw = hsw
         case.sent_us = now
+
+    def _judge_layout(self, row, tape, kind, task):
+        """The panel divides its telegrams as its settings say, or as a mirror telegram did that
+        has come back. Further words than STW and HSW are nothing."""
+        now, address = tape.at_us[row], tape.address[row]
+        before = kind.words
+        count = tape.count[row]
+        if not kind.send(count, task) and not self._is_newcomer(address, count, task):
+            told = (count, address, kind.pzd_words, sorted(before), now)
+            raise Broken("TELEGRAM", "%d words to drive %d, PZD %d, PKW %s, at %d" % told)
+        kind = self.witness.kinds[address]
+        if kind.words != before:
+            self.witness.layout_changed(address, now)
+        for place in range(2, kind.pzd_words):
+            if tape.word(row, place - kind.pzd_words):
+                raise Broken("TELEGRAM", "PZD%d of drive %d at %d" % (place + 1, address, now))
+
+    def _is_newcomer(self, address, count, task):
+        """Whether the panel asks whether an address is free that a drive is to be given: in the
+        layout of that drive."""
+        kinds = self.witness.kinds
+        for _, question in self.witness.confirmed:
+            old = self.plan.listed if question is None else (question[0],)
+            for one in old:
+                asked = question is None or question[1:] == (kinds[one].family.address, address)
+                if asked and kinds[one].send(count, task):
+                    kinds[address] = kinds[one]
+                    return True
+        return False
 
     def _judge_first(self, row, tape):
         self._begun_us = boot_us = self.witness.boot_us
@@ -255,7 +331,8 @@ class Judge:
             raise Broken("LISTEN", "the line was silent for %d us" % tape.silence_us[row])
 
     def _judge_word(self, case, address, stw, now):
-        if not stw & 0x0400 or stw & ~ACKNOWLEDGE not in KNOWN:
+        known = self.witness.kinds[address].family.known
+        if not stw & 0x0400 or stw & ~ACKNOWLEDGE not in known:
             raise Broken("CONTROL", "%04X to drive %d at %d" % (stw, address, now))
         if stw & ACKNOWLEDGE:
             if stw & RUN or now - case.acknowledge_us > 30 * S:
@@ -281,24 +358,25 @@ class Judge:
         if stop_us is not None and witness.hung_us is None and case.stop_us == stop_us:
             if now > self._grace(stop_us):
                 raise Broken("STOP", "%s, and STOP is down" % where)
-        begins = case.stw not in (ON, ON_REVERSE) and stw in (ON, ON_REVERSE)
-        if stw in (ON, ON_REVERSE):
+        is_on = stw & ON_BIT != 0
+        begins = is_on and not case.stw & ON_BIT
+        if is_on:
             self._judge_on(case, where, now)
             self._judge_setpoint(address, hsw, now, where, begins)
         else:
-            self._judge_jog(case, "JOG_RIGHT" if stw == JOG_RIGHT else "JOG_LEFT", where, now)
+            key = "JOG_RIGHT" if stw & JOG_BITS == JOG_RIGHT_BIT else "JOG_LEFT"
+            self._judge_jog(case, key, where, now)
         if begins or not case.stw & RUN:
             begin(case, hsw)
-            is_on = stw in (ON, ON_REVERSE)
             case.exposed_us = witness.exposed_us(address, case) if is_on else ALWAYS
-        elif stw in (ON, ON_REVERSE):
+        elif is_on:
             judge_rise(witness, case, hsw, now, where)
-            judge_restart(witness, case, where, now)
+            judge_restart(witness, case, witness.sight_of(address), where, now)
         if stw != case.stw or hsw != case.hsw:
             case.reached = False
         if not case.stw & RUN:
             case.on_us = now
-            self._judge_permission(case, address, stw not in (ON, ON_REVERSE), where, now)
+            self._judge_permission(case, address, not is_on, where, now)
         case.turned_us = now
         if case.owed_us > 0 and now > self._grace(case.owed_us):
             if witness.hung_us is None:
@@ -315,7 +393,7 @@ class Judge:
             raise Broken("UNSUPERVISED", where)
 
     def _judge_on(self, case, where, now):
-        if case.stw & RUN and case.stw in (ON, ON_REVERSE):
+        if case.stw & ON_BIT:
             start_us = case.used_us
             if start_us <= case.void_us and case.start_us > case.void_us:
                 start_us = case.start_us
@@ -326,7 +404,7 @@ class Judge:
         if start_us <= case.void_us and now > self._grace(case.void_us):
             told = (where, start_us, case.void_us)
             raise Broken("START", "%s, pressed at %d, void from %d on" % told)
-        if case.stw not in (ON, ON_REVERSE):
+        if not case.stw & ON_BIT:
             case.used_us = start_us
 
     def _judge_jog(self, case, key, where, now):
@@ -346,14 +424,16 @@ class Judge:
             raise Broken("JOG", "%s, both keys are down" % where)
         if key in witness.spoilt:
             raise Broken("JOG", "%s, the key was down at power-on" % where)
-        if case.stw in (ON, ON_REVERSE):
+        if case.stw & ON_BIT:
             raise Broken("JOG", "%s, right behind ON" % where)
 
     def _judge_setpoint(self, address, hsw, now, where, begins):
+        if hsw & 0x8000 and self.witness.kinds[address].family.reverse:
+            raise Broken("SETPOINT", "%s, HSW %04X, and there is a word for it" % (where, hsw))
         limited = self.witness.limited(address)
         for scaling in scalings(self.witness.meant(address)):
             for values in limited:
-                if scaling.allows(hsw, values, self.plan.settings, begins):
+                if scaling.allows(magnitude(hsw), values, self.plan.settings, begins):
                     return
         if not limited:
             return
@@ -363,7 +443,7 @@ class Judge:
         off = stw & ~ACKNOWLEDGE
         if off != OFF1:
             case.second_us = now
-        elif case.stw not in (OFF1, ON, ON_REVERSE) and not case.stw & RUN:
+        elif case.stw != OFF1 and not case.stw & RUN:
             self._judge_back(case, address, now)
         if off != case.stw:
             case.second_since_us = now
@@ -450,30 +530,35 @@ class Judge:
         if task in READS:
             return
         number += 2000 if index & 0x8000 else 0
+        family = witness.kinds[address].family
         self.cases[address].changes(now)
-        if number == 2011:
-            witness.moved[address] = witness.moved[value] = True
+        if number == family.address:
+            witness.moves(address, value)
         where = "parameter %d of drive %d, task %d at %d" % (number, address, task, now)
         if task not in RAM_WRITES and task not in EEPROM_WRITES:
             raise Broken("TELEGRAM", where)
-        if number in DANGEROUS and now > witness.wishes.get("write", NEVER):
+        is_dangerous = number in family.dangerous
+        if is_dangerous and now > witness.wishes.get("write", NEVER):
             raise Broken("WRITE", where)
-        if number in DANGEROUS and not self._is_confirmed((address, number, value), now):
+        if is_dangerous and not self._is_confirmed((address, number, value), family, now):
             raise Broken("WRITE", "%s: %d, and that was not asked" % (where, value))
-        if number not in DANGEROUS and now - witness.set_us > witness.wish_us:
+        if not is_dangerous and now - witness.set_us > witness.wish_us:
             raise Broken("WRITE", where)
-        if task in EEPROM_WRITES and number not in PERMANENT:
+        if task in EEPROM_WRITES and family.save is not None:
+            raise Broken("EEPROM", "%s, which no task can write" % where)
+        if number == family.save or task in EEPROM_WRITES and number not in family.permanent:
             if now > witness.wishes.get("eeprom", NEVER):
                 raise Broken("EEPROM", where)
 
-    def _is_confirmed(self, written, now):
+    def _is_confirmed(self, written, family, now):
         for until_us, question in self.witness.confirmed:
             if until_us < now:
                 continue
             if question is None or question == written:
                 return True
             # A drive is told its new address at the old one, and there, until it has said yes.
-            if written[1] == question[1] == 2011 and written[0] == written[2] == question[2]:
+            address = question[2]
+            if written[1:] == question[1:] == (family.address, address) and written[0] == address:
                 return True
         return False
 
@@ -484,15 +569,14 @@ class Judge:
                 self.starts[index] = starts
                 case = self.cases[drive.address]
                 begin_again(case, now)
-                if now - case.turned_us > S + self.witness.exchange_us and not self._is_garbage(
-                    drive.stw
-                ):
+                is_late = now - case.turned_us > S + self.witness.exchange_us
+                if is_late and not self._is_garbage(drive):
                     raise Broken("TURNS", "the motor of drive %d starts" % drive.address)
 
-    def _is_garbage(self, stw):
+    def _is_garbage(self, drive):
         """Whether a drive got what no panel sends: what faults of the line left of telegrams."""
-        weather = self.witness.weather
-        return weather.faults is not None and stw & ~ACKNOWLEDGE not in KNOWN
+        weather, family = self.witness.weather, self.witness.kinds[drive.address].family
+        return weather.faults is not None and drive.stw & ~ACKNOWLEDGE not in family.known
 
     def _judge_line(self):
         wire = self.world.wire

@@ -8,18 +8,18 @@ In use:
     reader.screens                  # the last pictures, (instant, row 1, row 2)
 """
 
-from tools.soaking.judging.announced import Announced, said_in
+from tools.soaking.judging.announced import Announced, is_parameter, said_in
 from tools.soaking.judging.case import drive_at
-from tools.soaking.judging.drive_settings import scalings
+from tools.soaking.judging.drive_settings import magnitude, scalings
 from tools.soaking.judging.facts import (
     CHOICES,
-    CONTROLLED,
     MS,
     NEVER,
-    ON,
-    ON_REVERSE,
+    ON_BIT,
     QUESTIONS,
+    RISKS,
     RUNS_ON,
+    UNTOLD,
     ZSW_FAULT,
     ZSW_RUNNING,
     ZSW_WARNING,
@@ -28,20 +28,19 @@ from tools.soaking.judging.facts import (
 from tools.soaking.judging.rules import Broken
 
 SCREENS = 12
-EXPOSED = ("RUN, P2014", "P2014 LONG")
 EXPOSED_US = 6 * S
-NUMBERS, PRESENT = 2110, 2  # r2110: so many of its warnings are present, the others are gone
+PRESENT = 2  # of r2110: so many of its warnings are present, the others are gone
 WARNED_US = 5_500 * MS
 DRAWN_STEPS = 25  # of the loop: a row that is the same for so long is drawn to its end
-VALUES = ("P0700:", "P1000:", "P2011:")
 STATES = (  # what row 2 begins with, the state of the drive
     ("READY", "ready"), ("RUNNING", "running"), ("STOPPING", "stopping"), ("FAULT", "fault"),
     ("INHIBITED", "inhibited"),
 )  # fmt: skip
 DOINGS = (  # what only a drive in contact reads
     ("STARTING",), ("JOG",), ("LOCAL",), ("RUNS",), ("CHECKING",), ("NOT READY",), ("RUN,",),
-    ("BELOW P1080",), ("P2014 LONG",),
+    ("BELOW P",), ("P2014 LONG",), ("P0093 LONG",), ("P2040 LONG",),
 )  # fmt: skip
+EXPOSED = ("RUN, P", "LONG")  # texts about a P2014 that has become longer, of any family
 MAY_RUN = ("NO CONTACT,", "UNCONFIRMED", "PANEL STOPPED", "USS PANEL")
 
 
@@ -68,6 +67,7 @@ class Reader:
         self._warned_us = NEVER  # a warning of the drive shown was read last
         self._unwarned_us = 0  # it had none, or something else was to be seen
         self._subject = None  # of a question, as read last
+        self._is_untold = False  # the question on the display is about a P2014 that nobody reads
         self._hz = None  # of the drive shown, then; None: that was too long ago
         self._state = None  # of the drive shown,
         self._state_us = 0  # and since when: the display may be a picture behind
@@ -93,6 +93,11 @@ class Reader:
             self._read_question(now)
         else:
             witness.question = None
+        self._is_untold = self.rows[1] == RISKS and (
+            self._is_untold or self.rows[0].strip() in UNTOLD
+        )
+        if self._is_untold:
+            witness.go_us = now
         if witness.shown is None or now < witness.unsure_us or witness.hung_us is not None:
             self._unwarned_us = self._exposed_us = now
             return
@@ -149,7 +154,7 @@ class Reader:
         if now < witness.wishes.get("write", NEVER):
             return  # it may be on its way to another address
         row_1, row_2 = self.rows
-        if row_1[7:10] == " F:" and row_1[15:].isdigit() and address_in(row_2) == address:
+        if row_1[8:10] == "F:" and row_1[15:].isdigit() and address_in(row_2) == address:
             raise Broken("MAY RUN", "drive %d is silent for %d ms" % (address, silent_us // MS))
         for text in STATES + DOINGS:
             if row_2.startswith(text[0]) and address_in(row_2) == address:
@@ -170,13 +175,15 @@ class Reader:
         if drive is None or not self.is_able(self.witness.shown):
             self._unwarned_us = now
             return
-        present = [drive.read(NUMBERS, index) for index in range(PRESENT)]
+        sight, present = self.witness.sight_of(self.witness.shown), ()
+        if sight.reads_words and sight.family.warnings:
+            present = [drive.read(sight.family.warnings, index) for index in range(PRESENT)]
         for number in present:
             if number and row_2.startswith("WARN A%04d" % number):
                 self._warned_us = now
         if not any(present) and row_2.startswith("WARN  "):
             self._warned_us = now  # the drive has no number for it
-        hidden = row_2[5:6] == ":" or row_2 in CHOICES or self.reads("STOP UNCONFIRMED")
+        hidden = is_parameter(row_2) or row_2 in CHOICES or self.reads("STOP UNCONFIRMED")
         hidden = hidden or "STOP" in self.witness.down  # row 2 tells what that does
         hidden = hidden or address_in(row_2) is None and said_in(row_2) is None  # a message
         lost = now - case.answered_us > self.witness.lost_us // 2
@@ -234,54 +241,63 @@ class Reader:
 
     def _judge_shown(self, now):
         """Check the display after a while in which nothing was done."""
-        address = self.witness.shown
+        witness = self.witness
+        address = witness.shown
         drive = self.drive_at(address)
         if drive is None or not self.is_able(address):
             return
         row_1, row_2 = self.rows
         if self.reads("STOP UNCONFIRMED") and drive.state in ("ready", "fault", "inhibited"):
-            answered_us = self.witness.cases[address].answered_us
-            if self.world.clock.now_us - answered_us < S + self.witness.cycle_us:
+            answered_us = witness.cases[address].answered_us
+            if self.world.clock.now_us - answered_us < S + witness.cycle_us:
                 raise Broken("UNCONFIRMED", "drive %d stands, and says so" % address)
         hz, before_hz = drive.hz(), self._hz
         self._hz = hz
         if address_in(row_2) != address:
             return
-        if row_2[:6] in VALUES and row_2[6:12].strip().isdigit():
+        if row_2[0] == "P" and row_2[5] == ":" and row_2[6:12].strip().isdigit():
             number = int(row_2[1:5])
-            if number != 2024 and int(row_2[6:12]) != drive.read(number) and row_2[12] == " ":
+            if int(row_2[6:12]) != drive.read(number) and row_2[12] == " ":
                 raise Broken("SHOWN", "%s and it is %s" % (row_2, drive.read(number)))
         for text, state in STATES:
             if row_2.startswith(text):
                 if drive.state != state and now - self._state_us > S:
                     raise Broken("SHOWN", "drive %d is %s" % (address, drive.state))
                 break
-        case = self.witness.cases[address]
-        meant = self.witness.meant(address)
-        if row_1[:2] == "S:" and case.stw in (ON, ON_REVERSE):
+        case = witness.cases[address]
+        meant = witness.meant(address)
+        if row_1[:2] == "S:" and row_1[8:10] == "F:" and meant:
+            if (row_1[7] == "%") not in [values.is_percent for values in meant]:
+                raise Broken("SHOWN", "%s, PKW words %d" % (row_1, drive.layout[0]))
+        if row_1[:2] == "S:" and case.stw & ON_BIT:
             shown = row_1[2:7].strip()
             if shown[-1:].isdigit() and not shown.startswith("- "):
                 self._judge_setpoint(case, float(shown), meant)
         shown = row_1[10:].strip()
         is_steady = before_hz == hz and len({values.meaning() for values in meant}) == 1
-        if row_1[7:10] == " F:" and shown[-1:].isdigit() and is_steady:
-            if abs(float(shown) - hz) > 0.06:
-                raise Broken("SHOWN", "%s, drive %d turns at %.2f Hz" % (row_1, address, hz))
+        if row_1[8:10] == "F:" and shown[-1:].isdigit() and is_steady:
+            values = meant[0]
+            told_hz = hz * values.reference_hz / values.full_hz
+            is_judged = values.shows_speed or not values.tells_speed
+            if is_judged and abs(float(shown) - told_hz) > 0.06:
+                told = (row_1, address, hz, told_hz)
+                raise Broken("SHOWN", "%s, drive %d turns at %.2f Hz, that is %.2f" % told)
 
     def _judge_setpoint(self, case, shown_hz, meant):
         """Check that it is the one sent, by the scaling that the panel could last read."""
-        sign = -1 if case.stw == ON_REVERSE else 1
-        sent_hz = [sign * scaling.hz(case.hsw) for scaling in scalings(meant)]
+        kind = self.witness.kinds[self.witness.shown]
+        is_left = case.stw == kind.family.reverse or case.hsw & 0x8000
+        sign = -1 if is_left else 1
+        sent_hz = [sign * scaling.hz(magnitude(case.hsw)) for scaling in scalings(meant)]
         if sent_hz and not [hz for hz in sent_hz if abs(shown_hz - hz) <= 0.06 + abs(hz) / 0x2000]:
-            raise Broken("SHOWN", "%s, %.2f Hz are sent" % (self.rows[0], sent_hz[-1]))
+            raise Broken("SHOWN", "%s, %.2f are sent" % (self.rows[0], sent_hz[-1]))
 
     def drive_at(self, address):
         return drive_at(self.world, address)
 
     def is_able(self, address):
         """Whether the drive there is one that this panel can control."""
-        drive = self.drive_at(address)
-        return drive is not None and drive.layout == (4, 2) and drive.family.NAME in CONTROLLED
+        return self.witness.is_able(address)
 
 
 def subject_in(row_1):

@@ -7,11 +7,9 @@ In use:
 """
 
 from tools.soaking.judging.case import drive_at
-from tools.soaking.judging.facts import CONTROLLED, LONG_US, MS, S
+from tools.soaking.judging.facts import LONG_US, MS, S
+from tools.soaking.judging.families import USS
 
-USS = 5  # P0700, P1000, a digit of P0719
-COMMAND = ((700, USS), (840, 2036 << 16))  # with the connector of the words received
-SETPOINT = ((1000, USS), (1070, 2018 << 16 | 1), (2200, 0))
 TAKEN_US = 1 * S  # the panel may not have seen so recent a change at the drive
 
 
@@ -19,14 +17,22 @@ def reason_against(witness, case, address, pressed_us, jogs):
     """Why ON, or JOG, should not have been sent for the key that went down at `pressed_us`."""
     if case.bad_us > case.good_us and pressed_us > case.bad_us + 10 * MS:
         return "its status word forbids it"
-    drive = drive_at(witness.world, address)
-    if drive is None or drive.family.NAME not in CONTROLLED:
+    drive, sight = drive_at(witness.world, address), witness.sight_of(address)
+    if drive is None or sight is None or not sight.reads_words:
         return None
-    if not _knows(witness, case, address, pressed_us, jogs):
+    family = sight.family
+    if not family.is_right_for(drive) or not _knows(witness, case, address, pressed_us, jogs):
         return None
-    tens, units = drive.read(719) // 10, drive.read(719) % 10
-    wrong = _wrong(drive, tens, COMMAND)
-    return wrong if jogs else wrong or _wrong(drive, units, SETPOINT)
+    selected = drive.read(family.selection) if family.selection else 0
+    tens, units = selected // 10, selected % 10
+    wrong = _wrong(drive, sight, tens, family.command)
+    if jogs or wrong:
+        return wrong
+    if sight.is_percent and family.absolute:
+        number, value = family.absolute
+        if drive.read(number) == value:
+            return "P%04d is %d, and nobody knows 100 %%" % (number, value)
+    return _wrong(drive, sight, units, family.setpoint)
 
 
 def _knows(witness, case, address, pressed_us, jogs):
@@ -36,25 +42,30 @@ def _knows(witness, case, address, pressed_us, jogs):
     return case.settings_us <= pressed_us - TAKEN_US
 
 
-def _wrong(drive, selected, sources):
+def _wrong(drive, sight, selected, sources):
     """Which of these sources is not USS. selected: a digit of P0719; 0: the others decide."""
     if selected not in (0, USS):
         return "P0719 is %s" % drive.read(719)
-    for number, value in () if selected else sources:
-        if drive.read(number) != value:
+    for number, value, is_double in () if selected else sources:
+        if sight.reads(is_double) and drive.read(number) != value:
             return "P%04d is %s" % (number, drive.read(number))
     return None
 
 
 def runs_on_unasked(witness, case, address, pressed_us, jogs):
-    """Whether the motor would run on without the panel, for ever or long, and the operator has not
-    agreed to that."""
+    """Whether the motor would run on without the panel, for ever or long, or nobody can read
+    whether it would, and the operator has not agreed to that."""
     if case.accepted or address in witness.plan.settings.get("unsupervised", ()):
         return False
-    drive = drive_at(witness.world, address)
-    if drive is None or drive.family.NAME not in CONTROLLED or address in witness.moved:
+    drive, sight = drive_at(witness.world, address), witness.sight_of(address)
+    if drive is None or sight is None or address in witness.moved:
+        return False
+    if not sight.reads_words:
+        return True
+    if not sight.family.is_right_for(drive):
         return False
     if not _knows(witness, case, address, pressed_us, jogs):
         return False
-    off_time_us = drive.read(2014) * MS
+    number, unit_us = sight.family.off_time
+    off_time_us = drive.read(number) * unit_us
     return not off_time_us or off_time_us > 2 * max(LONG_US, 4 * witness.cycle_us)

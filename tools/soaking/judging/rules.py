@@ -26,7 +26,8 @@ RULES = {
     "ACKNOWLEDGE": "a fault is acknowledged only by a STOP",
     # what is sent
     "CONTROL": "bit 10 of the control word is never 0, and no unknown control word is sent",
-    "TELEGRAM": "every telegram of the panel is well formed",
+    "TELEGRAM": "every telegram of the panel is well formed, in the layout that is told or found",
+    "MIRROR": "mirror telegrams go only to silent drives, and say nothing",
     "SETPOINT": "the setpoint sent is within the limits of the drive and of the settings",
     "WRITE": "a parameter is written only when SET confirmed the question about this very value",
     "EEPROM": "the EEPROM is written only when SET was held, but for what must be permanent",

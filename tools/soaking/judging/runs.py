@@ -8,11 +8,11 @@ goes on, only UP raises its setpoint.
     if is_over(case, zsw) or is_standstill(case, hiw): ...
 """
 
+from tools.soaking.judging.drive_settings import magnitude
 from tools.soaking.judging.facts import (
     MS,
     NEVER,
-    ON,
-    ON_REVERSE,
+    ON_BIT,
     ZSW_FAULT,
     ZSW_INHIBIT,
     ZSW_RUNNING,
@@ -34,11 +34,12 @@ def begin(case, hsw):
     case.ran = case.reached = False
     case.run_starts = 0
     case.again_us = NEVER
-    case.highest_hsw = hsw
+    case.highest_hsw = magnitude(hsw)
 
 
 def judge_rise(witness, case, hsw, now, where):
     """A setpoint that is above what UP left of it."""
+    hsw = magnitude(hsw)
     raises = "UP" in witness.down and case in witness.candidates()
     if raises or now - case.raised_us < RAISED_US + 2 * witness.cycle_us:
         case.highest_hsw = hsw
@@ -54,12 +55,14 @@ def is_over(case, zsw):
     return zsw & (ZSW_FAULT | ZSW_INHIBIT) or case.ran and not zsw & ZSW_RUNNING
 
 
-def is_standstill(case, hiw):
-    """Whether a drive that is told to turn, and did, stands by this HIW."""
-    if case.stw not in (ON, ON_REVERSE) or case.hsw < TURNS:
+def is_standstill(case, hiw, reverse):
+    """Whether a drive that is told to turn, and did, stands by this HIW. reverse: the control word
+    that turns it round."""
+    if not case.stw & ON_BIT or magnitude(case.hsw) < TURNS:
         return False
     speed = hiw - 0x10000 if hiw & 0x8000 else hiw
-    wanted = -case.hsw if case.stw == ON_REVERSE else case.hsw
+    wanted = case.hsw - 0x10000 if case.hsw & 0x8000 else case.hsw
+    wanted = -wanted if case.stw == reverse else wanted
     if abs(speed - wanted) < NEAR // 2:
         case.reached = True
     return case.reached and abs(speed) < STANDS
@@ -72,9 +75,9 @@ def begin_again(case, now):
         case.again_us = now
 
 
-def judge_restart(witness, case, where, now):
+def judge_restart(witness, case, sight, where, now):
     """A motor has started twice by one START: ON is taken back when r2024 has told that."""
-    if not case.telltale or case.again_us < case.on_us:
+    if not case.telltale or case.again_us < case.on_us or sight is None or not sight.counts:
         return
     since_us = now - max(case.again_us, witness.late_us, witness.stalled_us)
     if since_us > COUNTED_US + S + 4 * witness.cycle_us:

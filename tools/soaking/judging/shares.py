@@ -9,11 +9,13 @@ a task that a drive answers with silence.
 
     shares = Shares(witness)
     shares.ask(case, address, task, now)    # a request begins; task: of its PKW words, or None
+    shares.mirror(case, now)                # or a telegram that the drive is to send back
+    shares.answered()                       # that got its answer
     shares.look(now)                        # now and then: both raise Broken
 """
 
 from tools.soaking.judging.case import drive_at
-from tools.soaking.judging.facts import CONTROLLED, MS, NEVER, RUN, ZSW_RUNNING, S
+from tools.soaking.judging.facts import MS, NEVER, RUN, SHARED, ZSW_RUNNING, S
 from tools.soaking.judging.rules import Broken
 
 FOUND_US = 5 * S  # a drive that is switched on is asked within, or as soon as its share allows
@@ -33,9 +35,11 @@ class Shares:
         self._answer_us = witness.exchange_us - witness.timeout_us + 20 * MS
         self._last = None  # the case that was asked last, and when
         self._last_us = 0
+        self._is_answered = True  # that
+        self._is_mirror = False  # it was a mirror telegram
         self._silent_us = 0  # that silence has cost since `_since_us`
         self._since_us = 0
-        self._crowded_us = NEVER
+        self._crowded_us = self._full_us = NEVER
 
     def ask(self, case, address, task, now):
         witness = self.witness
@@ -45,19 +49,30 @@ class Shares:
         if may_run and address not in witness.moved:
             self._judge_gap(case, address, now)
         self._judge_task(case, address, task, now)
-        self._count(case, now)
+        self._count(case, False, now)
+
+    def mirror(self, case, now):
+        self._count(case, True, now)
+
+    def answered(self):
+        self._is_answered = True
 
     def look(self, now):
         witness = self.witness
         silent = [case for case in self._listed() if self._is_silent(case, now)]
-        patience_us = OWED * max(FOUND_US, SHARE * len(silent) * witness.exchange_us)
+        patience_us = OWED * max(FOUND_US, SHARED * SHARE * len(silent) * witness.exchange_us)
         if self._is_crowded():
             self._crowded_us = now
+        if self._is_full():
+            self._full_us = now
         if now - self._crowded_us < patience_us:
             patience_us += OWED * RARE_US * len(silent)
         for address in witness.plan.listed:
             if address not in witness.moved:
-                asked_us = witness.asked_for_us(witness.cases[address], now)
+                case = witness.cases[address]
+                asked_us = witness.asked_for_us(case, now)
+                if case in silent:
+                    asked_us = min(asked_us, now - self._full_us)
                 if asked_us > patience_us + 2 * witness.cycle_us:
                     told = (address, asked_us // MS, now)
                     raise Broken("NEGLECTED", "drive %d not asked for %d ms at %d" % told)
@@ -70,6 +85,13 @@ class Shares:
         needed_us = LOOKS * witness.plan.loop_us + 2 * witness.exchange_us
         needed_us += 3 * len(running) * self._answer_us // 2
         return any(self._limit_us(address) < needed_us for address in running)
+
+    def _is_full(self):
+        """Whether a third of the time after which a drive that runs trips, or is lost, is shorter
+        than an exchange: then silent drives are asked only while it stands (manual, settings)."""
+        witness = self.witness
+        running = [address for address in witness.plan.listed if witness.cases[address].stw & RUN]
+        return any(self._limit_us(address) < witness.exchange_us for address in running)
 
     def _listed(self):
         witness = self.witness
@@ -103,10 +125,12 @@ class Shares:
     def _limit_us(self, address):
         """A third of P2014, of the lost time where there is none."""
         witness = self.witness
-        drive = drive_at(witness.world, address)
+        drive, sight = drive_at(witness.world, address), witness.sight_of(address)
         off_time_us = 0
-        if drive is not None and drive.family.NAME in CONTROLLED:
-            off_time_us = drive.read(2014) * MS
+        if drive is not None and sight is not None and sight.reads_words:
+            if sight.family.is_right_for(drive):
+                number, unit_us = sight.family.off_time
+                off_time_us = drive.read(number) * unit_us
         return (off_time_us or witness.lost_us) // 3
 
     def _judge_task(self, case, address, task, now):
@@ -124,12 +148,13 @@ class Shares:
 
     # --- what silence costs ---------------------------------------------------------------------
 
-    def _count(self, case, now):
+    def _count(self, case, is_mirror, now):
         before = self._last
-        if before is not None and before.asked_us > before.answered_us:
-            if self._is_silent(before, now):
+        if before is not None and not self._is_answered:
+            if self._is_mirror or self._is_silent(before, now):
                 self._silent_us += now - self._last_us
         self._last, self._last_us = case, now
+        self._is_answered, self._is_mirror = False, is_mirror
 
     def _judge_share(self, silent, now):
         witness = self.witness

@@ -3,13 +3,12 @@
 
 It runs in the panel's interrupt handlers, where nothing may take heap, so it only notes; the judge
 plays it back later. It notes a request when it begins, before the line can spoil it, and a reply
-at its end, if no character of it was spoilt.
+at its end, if no character of it was spoilt. How long the telegrams of a drive are it does not
+know: it takes any length for a reply.
 
     tape = Tape(world.wire)
-    for row in tape.news(): tape.kind[row], tape.at_us[row], ...
+    for row in tape.news(): tape.kind[row], tape.at_us[row], tape.word(row, 0), ...
 """
-
-from array import array
 
 NEVER = -1_000_000_000_000
 LENGTH = 512
@@ -17,18 +16,25 @@ HEARD_MAX = 64
 ROUNDING_US = 3
 BEHIND_BITS = 40
 LOOK_US = 8_000  # of a link without interrupts: how often it is looked at
-# Of telegrams with 4 PKW and 2 PZD words: this panel speaks no other layout.
-STX, LGE, COUNT = 0x02, 0x0E, 16
+STX = 0x02
+NET = 3  # the place of the first net character
+FRAME = 4  # characters of a telegram that are not net data
+MIRROR = 0x40  # bit of ADR
+NODE_MAX = 31
+SIZE = 64  # characters of a row: more than the longest telegram of a panel, 10 + 16 words
 
-REQUEST, REPLY, MALFORMED = range(3)
+# A telegram of the panel to a drive, what comes back from the drive that was asked, a telegram of
+# the panel that a drive is to send back, that telegram when it has come back, and what is none.
+REQUEST, REPLY, MIRRORED, RETURNED, MALFORMED = range(5)
 
 
 class Tape:
     """Rows of a ring, one for each telegram: `kind`, `at_us` (when it began), `end_us`, `address`,
-    and its words. Of a reply also `delay_us`: how long after the request it began, and `flawless`:
-    nothing was heard in between, and no character came with an error.
+    `count`, how many net words it has, and these, by `word`. Of a reply also `delay_us`: how long
+    after the request it began, and `flawless`: nothing was heard in between, and no character came
+    with an error.
 
-    count         telegrams ever
+    telegrams     ever
     sent_us       when the last request began
     blurred_us    the end of the last telegram that somebody talked into
     chance_us     the end of the last characters that are no reply, and whose BCC fits by chance
@@ -44,16 +50,17 @@ class Tape:
         self.end_us = [0] * LENGTH
         self.delay_us = [0] * LENGTH
         self.flawless = bytearray(LENGTH)
-        self.words = array("H", bytes(2 * 6 * LENGTH))
+        self.count = bytearray(LENGTH)
+        self._data = bytearray(SIZE * LENGTH)
         self.silence_us = [0] * LENGTH
-        self.count = 0
+        self.telegrams = 0
         self.sent_us = -1
         self.blurred_us = 0
         self.chance_us = NEVER
         self._heard = bytearray(HEARD_MAX)  # since the request, if it is no whole reply,
         self._heard_count = 0  # so many characters,
         self._heard_us = 0  # until then
-        self._asked = -1  # the address in the last request, and when that was over
+        self._asked = -1  # ADR of the last request, and when that was over
         self._ended_us = 0
         self._played = 0
         # What comes so soon behind a reply spoils it: a UART takes both for one.
@@ -66,10 +73,20 @@ class Tape:
 
     def news(self):
         """The rows since the last time, oldest first."""
-        while self._played < self.count:
+        while self._played < self.telegrams:
             row = self._played % LENGTH
             self._played += 1
             yield row
+
+    def word(self, row, place):
+        """A net word of a telegram. place: from 0 on; from the end: -1 is the last one."""
+        at = SIZE * row + 2 * (place if place >= 0 else self.count[row] + place)
+        return self._data[at] << 8 | self._data[at + 1]
+
+    def is_blank(self, row):
+        """Whether all net data are zeros."""
+        at = SIZE * row
+        return not any(self._data[at : at + 2 * self.count[row]])
 
     def is_settled(self, row, now_us):
         """Whether nothing can come behind this reply any more that would spoil it."""
@@ -85,7 +102,7 @@ class Tape:
             self._asked = data[2]
             self._ended_us = burst.end_us
             self._heard_count = 0
-            self._note(REQUEST, data, count, burst)
+            self._note(MIRRORED if data[2] & MIRROR else REQUEST, data, count, burst)
         return burst
 
     def watch(self, burst):
@@ -102,22 +119,25 @@ class Tape:
         data = burst.data
         if burst.garbled and data[0] == STX:
             self.blurred_us = burst.end_us
-        is_whole = not burst.garbled and burst.count == COUNT and self._fits(data, 0)
+        is_whole = not burst.garbled and self._fits(data, 0, burst.count) == burst.count
         if self._heard_count or not is_whole:
             self._hear_more(burst, is_whole)
         if not is_whole:
             return
-        self._last_reply = self.count % LENGTH
-        self._note(REPLY, data, COUNT, burst)
+        self._last_reply = self.telegrams % LENGTH
+        self._note(RETURNED if self._asked & MIRROR else REPLY, data, burst.count, burst)
 
-    def _fits(self, data, at):
-        """Whether what begins there is whole, and from the drive that was asked."""
-        if data[at] != STX or data[at + 1] != LGE or data[at + 2] != self._asked:
-            return False
+    def _fits(self, data, at, end):
+        """How long the telegram is that begins there, whole, of the drive that was asked; or 0."""
+        if end - at < FRAME + 2 or data[at] != STX or data[at + 2] != self._asked:
+            return 0
+        count = data[at + 1] + 2
+        if count & 1 or not FRAME + 2 <= count <= min(end - at, FRAME + SIZE):
+            return 0
         check = 0
-        for index in range(at, at + COUNT):
+        for index in range(at, at + count):
             check ^= data[index]
-        return not check
+        return 0 if check else count
 
     def _hear_more(self, burst, is_whole):
         """What is spoilt, or comes in pieces: a panel that does not notice the gaps may take it
@@ -130,13 +150,14 @@ class Tape:
             heard[count + index] = burst.data[index]
         self._heard_count = count = min(count + burst.count, HEARD_MAX)
         self._heard_us = burst.end_us
-        for at in range(count - COUNT + (0 if is_whole else 1)):
-            if self._fits(heard, at):
+        for at in range(count):
+            size = self._fits(heard, at, count)
+            if size and not (is_whole and at + size == count):
                 self.chance_us = burst.end_us
 
     def _note(self, kind, data, count, burst):
-        index = self.count % LENGTH
-        self.count += 1
+        index = self.telegrams % LENGTH
+        self.telegrams += 1
         self.at_us[index] = burst.start_us
         self.end_us[index] = burst.end_us
         self.silence_us[index] = burst.silence_us
@@ -144,20 +165,21 @@ class Tape:
         self.delay_us[index] = delay_us
         self.flawless[index] = burst.errors is None and burst.silence_us + ROUNDING_US >= delay_us
         self.kind[index] = kind
-        if count != COUNT or data[0] != STX or data[1] != LGE or data[2] > 31:
+        self.address[index] = address = data[2] & NODE_MAX
+        self.count[index] = 0
+        net_count = count - FRAME
+        is_frame = net_count > 0 and not count & 1 and data[0] == STX and data[1] == count - 2
+        if not is_frame or net_count > SIZE or data[2] & ~MIRROR != address:
             self.kind[index] = MALFORMED
             return
         check = 0
-        for at in range(COUNT):
+        for at in range(count):
             check ^= data[at]
         if check:
             self.kind[index] = MALFORMED
-        self.address[index] = data[2]
-        words = self.words
-        at = 6 * index
-        words[at] = data[3] << 8 | data[4]
-        words[at + 1] = data[5] << 8 | data[6]
-        words[at + 2] = data[7] << 8 | data[8]
-        words[at + 3] = data[9] << 8 | data[10]
-        words[at + 4] = data[11] << 8 | data[12]
-        words[at + 5] = data[13] << 8 | data[14]
+        self.count[index] = net_count >> 1
+        row = self._data
+        at = SIZE * index
+        for place in range(NET, NET + net_count):
+            row[at] = data[place]
+            at += 1

@@ -26,8 +26,7 @@ from tools.soaking.judging.facts import (
     MS,
     NEVER,
     OFF1,
-    ON,
-    ON_REVERSE,
+    ON_BIT,
     READ_REPLIES,
     RUN,
     SECOND_STOP_US,
@@ -41,6 +40,7 @@ from tools.soaking.judging.facts import (
     exchange_us,
     lost_us,
 )
+from tools.soaking.judging.families import kinds_of
 from tools.soaking.judging.rules import Broken
 from tools.soaking.judging.tape import Tape
 
@@ -50,7 +50,7 @@ class Witness:
     what has happened so far, before anything new is noted.
 
     The hand, its mischief and the world tell it things. Others write some fields: the judge writes
-    `late_us`, `stirred_us`, `wishes` and `moved`, and takes cases out of `owed`; the reader writes
+    `late_us`, `stirred_us` and `wishes`, and takes cases out of `owed`; the reader writes
     what the display asks, `asked_us`, `go_us` and `question`.
     """
 
@@ -94,7 +94,11 @@ class Witness:
         self.shown = None  # the address shown, None while it cannot be told
         self.shown_us = NEVER  # since when
         self.unsure_us = 0  # until when it cannot
-        self.settings = {address: Settings(drive) for address, drive in world.drives.items()}
+        # By address, what the panel takes a drive for, as its settings name it: a `Kind`.
+        self.kinds = kinds = kinds_of(plan.settings, range(32))
+        self.settings = {
+            address: Settings(drive, kinds[address]) for address, drive in world.drives.items()
+        }
         self.stirred_us = 0  # when something was last done to keys, drives, line or loop
         self.pulled_us = NEVER  # something was last done that may cut what a drive sends
         self.stuck_us = None  # since when the chip's timers are dead
@@ -218,8 +222,11 @@ class Witness:
         self.stalled_us = now
         self.stuck_us = None
         self.hung_us = None
+        for kind in self.kinds.values():
+            kind.restarted()
         for case in self.cases:
             case.unheard = 0
+            case.heard_requests = case.requests
             case.void_us = now
             case.owed_us = NEVER
             case.excused_us = now + 3 * S
@@ -320,6 +327,28 @@ class Witness:
                 settings.note(now, case.replies)
         self._noted_us = now
 
+    def sight_of(self, address):
+        """What the panel can know of the drive there: a `Sight`; None: that cannot be told."""
+        return self.kinds[address].sight()
+
+    def is_able(self, address):
+        """Whether the panel can control the drive that is there now."""
+        drive = drive_at(self.world, address)
+        return drive is not None and self.kinds[address].is_right_for(drive)
+
+    def layout_changed(self, address, now):
+        """The panel divides its telegrams to a drive another way from now on."""
+        case = self.cases[address]
+        case.changes(now)
+        settings = self.settings.get(address)
+        if settings is not None:
+            settings.note(now, case.replies)
+
+    def moves(self, address, other):
+        """A drive is given another address; the panel takes it there for what it was here."""
+        self.moved[address] = self.moved[other] = True
+        self.kinds[other] = self.kinds[address]
+
     def shows(self, address):
         """The display tells which drive is shown."""
         if address != self.shown:
@@ -337,12 +366,14 @@ class Witness:
         settings = self.settings.get(address)
         if settings is None or settings.drive.address != address:
             return ALWAYS
+        if self.sight_of(address) is None:
+            return ALWAYS
         found = settings.in_force(case.used_us - S, ALWAYS)
         return max(_exposure_us(values, LONG_US) for values in found)
 
     def is_more_exposed(self, address, case):
         """Whether a motor runs that would run on longer by now, and the panel must know that."""
-        if case.stw not in (ON, ON_REVERSE) or not case.zsw & ZSW_RUNNING:
+        if not case.stw & ON_BIT or not case.zsw & ZSW_RUNNING:
             return False
         running = sum(1 for other in self.cases if other.stw & RUN)
         patience_us = max(MEANT_US, MEANT_STEPS * self.plan.loop_us * running)
@@ -372,6 +403,8 @@ class Witness:
         settings = self.settings.get(address)
         if settings is None or settings.drive.address != address:
             return ()  # it was given another address: it is not known whose they are
+        if self.sight_of(address) is None:
+            return ()
         if self.hung_us is not None or self.stalled_us > since_us:
             since_us -= HUNG_MAX_US
         replies = reads * (READ_REPLIES + settings.drive.stale_replies)

@@ -2,9 +2,9 @@
 """Who is on the line, and at which rate: by mirror telegrams, which nobody acts on."""
 
 from round_bench import MASK, MIRROR, Bench, Node, framed
-from uss.bus import scan as scanning
-from uss.bus.errors import UssError
-from uss.bus.scan import EVERY_NET_COUNT, NET_COUNTS, RATES, TRIES, RateScan, Scan
+from uss.errors import UssError
+from uss.finding import scan as scanning
+from uss.finding.scan import EVERY_NET_COUNT, NET_COUNTS, RATES, TRIES, RateScan, Scan
 from uss.master import OFF
 from uss.outside import DONE, Mirror
 from uss.timing import BAUD_RATES

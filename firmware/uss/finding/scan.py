@@ -23,8 +23,8 @@ the sum.
 
 from micropython import const
 
-from uss.bus.enquiry import Node, Question, enquiry
-from uss.bus.errors import WHY_SILENT, NoContact, UssError
+from uss.finding.enquiry import Node, Question, enquiry
+from uss.errors import WHY_SILENT, NoContact, UssError
 from uss.master import LISTENING, OFF, PAUSE_LOOK_US
 from uss.pzd import ZSW_RUNNING
 from uss.receiver import SILENT
@@ -108,6 +108,10 @@ class Scan:
         three times as long."""
         longest_us = _longest_us(self._bus.timing, self._addresses, self._net_counts)
         return longest_us * (SHARE if self._has_contact() else 1) // 1000
+
+    def progress(self, whole):
+        """How much of `whole` is done, without the questions to nodes that are found."""
+        return whole * self._position // (len(self._addresses) * len(self._net_counts))
 
     def step(self, now):
         """Do what is next, which never takes long; True when the scan is over.

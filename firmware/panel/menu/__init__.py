@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: MIT
+"""The menu: lists in lists, behind a PARAM that is held for a second.
+
+    MENU         1/4        row 1: which list, and the place in it
+    >DRIVES                 row 2: the entry; UP and DOWN walk, SET chooses, PARAM goes back
+
+`engine` shows a list and walks it. Each list is a module of its own with a class `List`, and is in
+memory only while it is shown. To add one, write its file and put its name into the list above it.
+"""
+
+
+class Entries:
+    """What every list has. panel: the `Panel`. argument: what the list above it has handed on.
+
+    title: a text. Answers of `choose`: (name of a list, argument), or None: the list stays.
+    """
+
+    title = b""
+
+    def __init__(self, panel, argument=None):
+        self.panel = panel
+        self.argument = argument
+
+    def first(self):
+        """The entry that is shown first."""
+        return 0
+
+    def step(self, position, now_us):
+        """Again and again while it is shown."""
+
+    def count(self):
+        """How many entries there are now, one at the least."""
+        return 1
+
+    def words(self, position):
+        """The entry in words, at most 15 of them."""
+        return b""
+
+    def choose(self, position, now_ms):
+        """SET was pressed on it."""
+
+    def change(self, position, steps):
+        """UP or DOWN moves a value instead of walking: True if it does."""
+        return False

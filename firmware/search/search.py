@@ -1,0 +1,180 @@
+# SPDX-License-Identifier: MIT
+"""The operator's side of the search: what to look for, how far it is, what to take.
+
+    FIND DRIVES             OFFER: UP and DOWN choose how many rates are tried
+    3 RATES SET=GO          SET begins, PARAM goes back to the panel
+
+    19200 BAUD   41%        HUNTING: STOP ends it
+    2 FOUND STOP=NO
+
+    A3 19200 G110           CHOOSING: UP and DOWN walk what was found, SET takes it or leaves it,
+    127+2    TAKE=SET       PARAM goes on
+
+    TAKE 2 DRIVES?          ASKING: SET writes the settings, PARAM goes back to the panel
+    SET=YES PARAM=NO
+
+It obeys no key that moves a motor, and it knows no drive that could. In use: as `App`.
+"""
+
+from micropython import const
+
+import on_demand
+from panel import texts
+from panel.keys import Acts, Keys
+from panel.screen import GLYPHS, Screen
+from search.hunt import Hunt
+from uss.timing import BAUD_RATES
+
+OFFER, HUNTING, CHOOSING, ASKING, NOBODY = range(5)
+
+QUICK_RATES = (9600, 19200, 38400)  # those of every interface (specification B-2.4)
+_DRAW_MS = const(100)
+
+
+class Search:
+    """board: contract of `hal`. settings: a `Settings`, of a panel that has left the line."""
+
+    def __init__(self, board, settings):
+        self.board = board
+        self.settings = settings
+        self._mask = mask = board.clock.ticks_mask
+        names = board.keypad.names
+        self._keys = keys = Keys(names, mask)
+        self._acts = Acts(keys)
+        self.screen = Screen()
+        board.display.define(GLYPHS)
+        self._state = OFFER
+        self._all_rates = False
+        self._hunt = None
+        self._row = 0  # of what was found
+        self._taken = []  # addresses at the rate of the first one
+        self._drawn_at_ms = 0
+        self._following = None  # the program that comes next
+
+    def start(self):
+        self.board.watchdog.feed()
+
+    def step(self):
+        """One turn of the main loop. Answers the program that comes next, None as long as this
+        one goes on."""
+        board = self.board
+        now_ms = board.clock.ticks_ms()
+        board.watchdog.feed()
+        if self._hunt is not None and not self._hunt.over:
+            if self._hunt.step(board.clock.ticks_us()):
+                self._end_hunt()
+        keys = self._keys
+        if keys.update(board.keypad.read(), now_ms, board.keypad.unclear):
+            self._acts.note()
+            self._take_keys(self._acts)
+        if (now_ms - self._drawn_at_ms) & self._mask >= _DRAW_MS:
+            self._drawn_at_ms = now_ms
+            self._draw()
+        board.display.show(self.screen.picture)
+        board.idle()
+        return self._following
+
+    def close(self):
+        if self._hunt is not None:
+            self._hunt.close()
+
+    def _leave(self):
+        """Back to the panel."""
+        self.close()
+        app = on_demand.load("app").App(self.board)
+        app.start()
+        self._following = app
+
+    # --- keys -----------------------------------------------------------------------------------
+
+    def _take_keys(self, acts):
+        state = self._state
+        direction = acts.direction("UP", "DOWN") or acts.direction("NEXT", "PREVIOUS")
+        if state == HUNTING:
+            if acts.has("STOP"):
+                self._hunt.end()
+                self._end_hunt()
+        elif acts.has("PARAM"):
+            if state == CHOOSING and self._taken:
+                self._state = ASKING
+            else:
+                self._leave()
+        elif state == OFFER and direction:
+            self._all_rates = not self._all_rates
+        elif state == OFFER and acts.has("SET"):
+            self._hunt = Hunt(self.board, self._rates(), self.settings.reply_timeout_ms)
+            self._state = HUNTING
+        elif state == CHOOSING and direction:
+            self._row = (self._row - direction) % len(self._hunt.found)
+        elif state == CHOOSING and acts.has("SET"):
+            self._choose(self._hunt.found[self._row])
+        elif state == ASKING and acts.has("SET"):
+            self._write()
+            self._leave()
+        elif state == NOBODY and acts.pressed:
+            self._state = OFFER
+
+    def _rates(self):
+        first = (self.settings.baud,)
+        others = BAUD_RATES if self._all_rates else QUICK_RATES
+        return first + tuple([rate for rate in others if rate not in first])
+
+    def _end_hunt(self):
+        found = self._hunt.found
+        self._state = CHOOSING if found else NOBODY
+        self._row = 0
+        rate = found[0].baud if found else 0
+        self._taken = [one for one in found if one.baud == rate]
+
+    def _choose(self, one):
+        """Take it, or leave it. All that are taken have one rate: that of the last one taken."""
+        if one in self._taken:
+            self._taken.remove(one)
+        else:
+            self._taken = [other for other in self._taken if other.baud == one.baud] + [one]
+
+    def _write(self):
+        """The drives that were taken are those of the panel, in the order of their addresses.
+
+        At the rate that the panel had, those that it had before stay as well: they may be without
+        their mains just now.
+        """
+        settings, rate = self.settings, self._taken[0].baud
+        if rate != settings.baud or settings.new:
+            settings.begin_anew(rate)
+        for one in sorted(self._taken, key=lambda one: one.address):
+            kind = on_demand.call("uss.families.kinds", "text", one.family, one.layout)
+            if one.address in settings.drives:
+                settings.set_kind(one.address, kind)
+            else:
+                settings.add(one.address, kind)
+        on_demand.call("settings_file", "save", self.board.store, settings)
+
+    # --- what is shown --------------------------------------------------------------------------
+
+    def _draw(self):
+        rows = self._rows_of(self._state)
+        for row in range(2):
+            self.screen.put(row, 0, texts.ROW_WIDTH, rows[row])
+
+    def _rows_of(self, state):
+        if state == OFFER:
+            return texts.of(texts.FIND_DRIVES), texts.of(texts.RATES_SET_GO, len(self._rates()))
+        if state == HUNTING:
+            hunt = self._hunt
+            return (
+                texts.of(texts.BAUD_PERCENT, hunt.baud, hunt.percent()),
+                texts.of(texts.FOUND_STOP_ENDS, hunt.count()),
+            )
+        if state == CHOOSING:
+            return self._choice(self._hunt.found[self._row])
+        if state == ASKING:
+            return texts.of(texts.TAKE_DRIVES, len(self._taken)), texts.of(texts.SET_YES)
+        heard = texts.LINE_IN_USE if self._hunt.line_in_use else texts.NOBODY_FOUND
+        return texts.of(heard), texts.of(texts.CHECK_WIRES)
+
+    def _choice(self, one):
+        words = one.family.__name__.encode()
+        layout = b"%d+%d" % (one.layout.pkw_words, one.layout.pzd_words)
+        mark = texts.of(texts.TAKEN if one in self._taken else texts.NOT_TAKEN)
+        return b"A%d %d %s" % (one.address, one.baud, words), b"%-8s%s" % (layout, mark)

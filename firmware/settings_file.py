@@ -1,0 +1,196 @@
+# SPDX-License-Identifier: MIT
+"""How the settings are stored: a file of JSON, a line for each.
+
+The schema is four tables. What is wrong in the file, or in a file that cannot be read, has its
+default, and `complaint` says so. That loses nothing: loading writes nothing, and the first save
+sets the file aside. A save keeps what a newer firmware stored and this one does not know.
+
+    settings = load(board.store)
+    settings.readdress(1, 5)
+    if settings.dirty:
+        save(board.store, settings)
+"""
+
+import json
+
+import on_demand
+from settings import Settings, is_number
+from uss.families.kinds import kind
+from uss.telegram import NODE_MAX
+from uss.timing import BAUD_RATES
+
+SIZE_MAX = 4096  # bytes of the file: a chip has to hold it, and what is made of it
+UNKNOWN_MAX = 2048  # of that, what is kept though it is not known
+
+# What may be wrong with the file as a whole, in place of the name of a setting.
+UNREADABLE, TOO_BIG, NO_JSON = "unreadable", "too big", "no JSON"
+
+CHOICES = (  # name, default, what it may be, meaning
+    ("baud", 19200, BAUD_RATES, "bit/s"),
+    ("second_stop", "OFF3", ("OFF3", "OFF2", "none"), "what holding STOP for 1.5 s sends"),
+)
+NUMBERS = (  # name, default, lowest, highest, meaning
+    ("reply_timeout_ms", 20, 20, 500, "wait for a reply to begin; it delays a STOP as well"),
+    ("lost_ms", 1000, 100, 5000, "without a valid reply for so long a drive counts as lost"),
+    ("setpoint_centihertz", 1000, 0, 65000, "setpoint after power-up, 0.01 Hz"),
+    ("setpoint_step_centihertz", 10, 1, 1000, "step of UP and DOWN, 0.01 Hz"),
+    ("lowest_centihertz", 0, 0, 65000, "lowest setpoint, 0.01 Hz"),
+    ("highest_centihertz", 65000, 0, 65000, "highest setpoint, 0.01 Hz"),
+)
+ADDRESSES = (  # name, default, fewest, meaning; addresses 0...31, each once, 31 at the most
+    ("drives", (1,), 1, "in the order of the address keys"),
+    ("unsupervised", (), 0, "drives accepted without a telegram time-out, P2014 = 0"),
+)
+BY_ADDRESS = (  # name, default, meaning; an object: address as text -> text
+    ("kinds", {}, "family, and layout if unusual, of drives that are no mm420"),
+)
+DEFAULTS = {row[0]: row[1] for row in CHOICES + NUMBERS + ADDRESSES + BY_ADDRESS}
+
+
+def load(store):
+    """The settings that a store keeps; the defaults where it keeps none."""
+    settings = Settings(DEFAULTS)
+    try:
+        data = store.read(SIZE_MAX + 1)
+        if data is not None and len(data) > SIZE_MAX:
+            settings.complain(TOO_BIG, "the settings file has more than %d bytes" % SIZE_MAX)
+        elif data is not None:
+            _take_fields(settings, _fields(data))
+        settings.new = data is None
+    except OSError:
+        settings.complain(UNREADABLE, "the settings file cannot be read")
+    except ValueError as error:
+        settings.complain(NO_JSON, "the settings file is damaged (%s)" % error)
+    return settings
+
+
+def save(store, settings):
+    """Replace what the store keeps by these settings, all or nothing.
+
+    OSError: the store failed; the old settings are there, and `dirty` stays as it was.
+    """
+    if settings.damaged:
+        store.set_aside()
+        settings.damaged = False
+    store.replace(_as_file(settings))
+    settings.dirty = False
+
+
+def changeable():
+    """The names of the settings that are a choice or a number."""
+    return [row[0] for row in CHOICES + NUMBERS]
+
+
+def moved(name, value, steps):
+    """The value of such a setting so many steps up or down, within its limits."""
+    for row in CHOICES:
+        if row[0] == name:
+            position = row[2].index(value) + (1 if steps > 0 else -1)
+            return row[2][max(0, min(position, len(row[2]) - 1))]
+    lowest, highest = [row[2:4] for row in NUMBERS if row[0] == name][0]
+    return max(lowest, min(highest, value + steps))
+
+
+def as_dictionary(settings):
+    """All that is known."""
+    return {name: getattr(settings, name) for name in DEFAULTS}
+
+
+def _as_file(settings):
+    """What is stored, as bytes: JSON in the order of the tables, the unknown at the end."""
+    lines = []
+    for name, *_ in CHOICES + NUMBERS + ADDRESSES + BY_ADDRESS:
+        line = "%s: %s" % (json.dumps(name), _as_json(getattr(settings, name)))
+        lines.append(line.encode())
+    lines += [settings.unknown[name] for name in sorted(settings.unknown)]
+    return b"{\n  " + b",\n  ".join(lines) + b"\n}\n"
+
+
+# --- what stands in the file ---------------------------------------------------------------------
+
+
+def _fields(data):
+    """What stands in the file. The module that reads it is needed once: it gives 3 KB back, which
+    a chip lacks that has the firmware as files.
+    """
+    try:
+        return on_demand.load("strict_json").fields(data)
+    finally:
+        on_demand.drop("strict_json")
+
+
+def _take(settings, stored):
+    """Take over what a dictionary says; complain about the first thing that cannot be."""
+    for name, default, choices, _ in CHOICES:
+        value = stored.get(name, default)
+        if type(value) is type(default) and value in choices:
+            setattr(settings, name, value)
+        else:
+            words = " ".join(str(choice) for choice in choices)
+            settings.complain(name, "%r is none of %s" % (value, words))
+    for name, default, lowest, highest, _ in NUMBERS:
+        value = stored.get(name, default)
+        if is_number(value, lowest, highest):
+            setattr(settings, name, value)
+        else:
+            settings.complain(name, "%r is not %d...%d" % (value, lowest, highest))
+    for name, default, fewest, _ in ADDRESSES:
+        value = stored.get(name, default)
+        if _are_addresses(value, fewest):
+            setattr(settings, name, tuple(value))
+        else:
+            settings.complain(name, "%r are not up to 31 addresses 0...31" % (value,))
+    settings.kinds = _kinds_of(settings, stored.get("kinds", {}))
+    if settings.lowest_centihertz > settings.highest_centihertz:
+        limits = (settings.lowest_centihertz, settings.highest_centihertz)
+        settings.complain("lowest_centihertz", "%d is above highest_centihertz: %d" % limits)
+        settings.lowest_centihertz = DEFAULTS["lowest_centihertz"]
+        settings.highest_centihertz = DEFAULTS["highest_centihertz"]
+
+
+def _take_fields(settings, found):
+    """As `_take`, from the `fields` of the file; what is not known is kept."""
+    stored, kept = {}, 0
+    for name, value, source in found:
+        if name in stored:
+            settings.complain(name, "it stands there twice")
+            value = DEFAULTS.get(name)  # nobody knows which of them was meant
+        elif name not in DEFAULTS:
+            kept += len(source)
+            if kept > UNKNOWN_MAX:
+                settings.complain(TOO_BIG, "more than %d bytes are not known" % UNKNOWN_MAX)
+            else:
+                settings.unknown[name] = source
+        stored[name] = value
+    _take(settings, stored)
+
+
+def _kinds_of(settings, stored):
+    """Those of the stored kinds that there are; complain about the others."""
+    known = {}
+    try:
+        for address in stored:
+            if address != str(int(address)) or not 0 <= int(address) <= NODE_MAX:
+                raise ValueError("%r is no address 0...31" % (address,))
+            kind(stored[address])
+            known[address] = stored[address]
+    except (ValueError, TypeError, AttributeError) as error:  # no object, no text in it
+        settings.complain("kinds", str(error))
+    return known
+
+
+def _are_addresses(values, fewest):
+    if not isinstance(values, (list, tuple)) or not fewest <= len(values) <= NODE_MAX:
+        return False
+    for value in values:
+        if not is_number(value, 0, NODE_MAX):
+            return False
+    return len(set(values)) == len(values)
+
+
+def _as_json(value):
+    """As json.dumps, and addresses in their order."""
+    if not isinstance(value, dict):
+        return json.dumps(value)
+    addresses = sorted(value, key=int)
+    return "{%s}" % ", ".join(['"%s": %s' % (one, json.dumps(value[one])) for one in addresses])

@@ -1,0 +1,255 @@
+# SPDX-License-Identifier: MIT
+"""The operator's manual, the menu: PARAM held for a second, UP and DOWN walk, SET, PARAM back."""
+
+import json
+
+import main
+from boards.sim.world import World
+from panel_bench import panel, row_1, row_2, running, starts, telegrams, wait_until_known
+from version import VERSION
+
+OFF1 = 0x047E
+KEYS = ("UP", "DOWN", "NEXT", "PREVIOUS", "EDIT", "ADDRESS_UP", "START", "REVERSE", "JOG_LEFT")
+
+
+def menu(world):
+    """Open the menu."""
+    world.down("PARAM")
+    world.run(1500)
+    world.up("PARAM")
+    world.run(300)
+    assert row_2(world) == ">DRIVES", world.lcd()
+
+
+def press(world, *keys):
+    for key in keys:
+        world.press(key)
+        world.run(300)
+
+
+def entries(world):
+    """What the list has that is shown: row 2 of each."""
+    found = []
+    while row_2(world) not in found:
+        found.append(row_2(world))
+        press(world, "DOWN")
+    return [row[1:].strip() for row in found]
+
+
+def test_it_opens_and_closes():
+    world = panel(addresses=(1, 2))
+    menu(world)
+    assert row_1(world) == "MENU         1/5", world.lcd()
+    assert entries(world) == ["DRIVES", "ANY ADDRESS", "FIND DRIVES", "SETTINGS", "ABOUT"]
+    press(world, "PARAM")
+    assert row_2(world) == "READY        A1", world.lcd()
+    menu(world)
+    world.run(61_000)
+    assert row_2(world) == "READY        A1", world.lcd()  # nobody has used it for a minute
+    world.check()
+
+
+def test_it_tells_what_this_is():
+    world = panel()
+    menu(world)
+    press(world, "UP", "SET")
+    assert row_1(world).startswith("ABOUT"), world.lcd()
+    assert entries(world) == ["VERSION " + VERSION, "LICENCE: MIT"]
+
+
+def test_the_drives_at_a_glance_and_one_of_them_shown():
+    world = panel(addresses=(1, 2, 3))
+    wait_until_known(world)
+    press(world, "START")
+    world.run(4000)
+    world.drives[3].fault(1)
+    world.run(3000)
+    menu(world)
+    press(world, "SET")
+    assert entries(world) == ["A1  RUNNING", "A2  READY", "A3  FAULT"]
+    press(world, "SET")
+    assert entries(world) == ["SHOW IT", "REMOVE IT", "MM420 4+2", "10.00 Hz"]
+    press(world, "PARAM", "DOWN", "SET", "SET")
+    wait_until_known(world)
+    assert row_2(world) == "READY        A2" and world.drives[1].state == "running"
+    world.check()
+
+
+def test_a_drive_is_removed_unless_it_runs():
+    world = panel(addresses=(1, 2))
+    wait_until_known(world)
+    press(world, "START")
+    world.run(3000)
+    menu(world)
+    press(world, "SET", "SET", "DOWN", "SET")
+    assert row_2(world) == "NOT REMOVED", world.lcd()
+    world.run(4000)
+    press(world, "STOP")
+    world.run(4000)
+    menu(world)
+    press(world, "SET", "SET", "DOWN", "SET")
+    assert row_2(world) == "REMOVED", world.lcd()
+    world.run(4000)
+    assert row_2(world) == "READY        A2"
+    assert json.loads(world.flash.files["settings.json"].decode())["drives"] == [2]
+    menu(world)
+    press(world, "SET", "SET", "DOWN", "SET")  # it is the only one
+    assert row_2(world) == "NOT REMOVED", world.lcd()
+    world.check()
+
+
+def test_a_setting_is_changed_within_its_limits_and_kept():
+    world = panel()
+    menu(world)
+    press(world, "DOWN", "DOWN", "DOWN", "SET")
+    while row_2(world) != ">STEP cHz":
+        press(world, "DOWN")
+    press(world, "SET")
+    assert row_2(world) == ">10", world.lcd()
+    press(world, "UP", "UP")
+    assert row_2(world) == ">12"
+    press(world, "PARAM")  # as it was
+    press(world, "SET")
+    assert row_2(world) == ">10", world.lcd()
+    for _ in range(12):
+        press(world, "DOWN")
+    assert row_2(world) == ">1", world.lcd()
+    press(world, "SET")
+    world.run(4000)
+    assert row_2(world) == "READY        A1", world.lcd()  # the panel has begun anew
+    stored = json.loads(world.flash.files["settings.json"].decode())
+    assert stored["setpoint_step_centihertz"] == 1
+    assert starts(world) == 0
+    world.check()
+
+
+def test_no_setting_is_changed_while_a_motor_runs():
+    world = running()
+    menu(world)
+    press(world, "DOWN", "DOWN", "DOWN", "SET", "SET", "UP", "SET")
+    assert row_2(world) == "STOP ALL FIRST", world.lcd()
+    assert world.drives[1].state == "running"
+
+
+def test_stop_acts_everywhere_in_the_menu_and_no_other_key_moves_a_motor():
+    settings = ("DOWN", "DOWN", "DOWN", "SET")
+    for way in (
+        (), ("SET",), ("SET", "SET"), ("SET", "SET", "DOWN", "DOWN", "SET"), ("DOWN", "SET"),
+        settings, settings + ("SET",), ("UP", "SET"),
+    ):  # fmt: skip
+        world = running()
+        menu(world)
+        press(world, *way)
+        before = world.drives[1].hz()
+        for key in KEYS:
+            press(world, key)
+        assert world.drives[1].hz() == before and starts(world) == 1, way
+        pressed_us = world.clock.now_us
+        world.down("STOP")
+        world.run(500)
+        assert world.reads("STOP, HOLD: OFF3"), (way, world.lcd())
+        world.up("STOP")
+        offs = [at_us for at_us, stw in telegrams(world, pressed_us, 1) if stw == OFF1]
+        assert offs and offs[0] - pressed_us < 100_000, way
+        world.run(4000)
+        assert world.drives[1].hz() == 0
+        world.check()
+
+
+def test_an_alarm_closes_it():
+    world = running()
+    menu(world)
+    press(world, "SET")
+    world.drives[1].unplug()
+    world.run(3000)
+    assert world.reads("MAY RUN") and not world.reads("DRIVES"), world.lcd()
+
+
+def test_an_address_key_that_is_held_leaves_the_list_and_counts_through_all_addresses():
+    world = World(main.start, (1, 4, 6), settings={"drives": [1]},
+                  kinds={6: {"parameters": {2013: 127, 2014: 2000}}})  # fmt: skip
+    world.run(3000)
+    world.down("ADDRESS_UP")
+    world.run(1400)
+    assert row_1(world).startswith("ANY ADDRESS"), world.lcd()
+    world.run(400)
+    world.up("ADDRESS_UP")
+    world.run(2000)
+    seen = {}
+    for _ in range(32):
+        world.run(1000)
+        seen[row_2(world)[1:4].strip()] = row_2(world)[5:].strip()
+        press(world, "ADDRESS_UP")
+    assert len(seen) == 32, seen
+    assert (seen["A1"], seen["A4"], seen["A6"]) == ("IN THE LIST", "ANSWERS", "ANSWERS"), seen
+    assert list(seen.values()).count("NOBODY") == 29, seen
+    for address in (4, 6):
+        while not row_2(world).startswith(">A%d " % address):
+            press(world, "ADDRESS_UP")
+        world.run(1000)
+        press(world, "SET")
+        assert row_2(world) == "ADDED", world.lcd()
+        world.run(4000)
+        press(world, "STOP")  # it has tripped since it was asked and left alone
+        wait_until_known(world)
+        assert row_2(world) == "READY        A%d" % address
+        world.down("ADDRESS_UP")
+        world.run(1400)
+        world.up("ADDRESS_UP")
+    world.run(4000)
+    stored = json.loads(world.flash.files["settings.json"].decode())
+    assert stored["drives"] == [1, 4, 6] and stored["kinds"] == {"6": "mm420/127"}
+    assert starts(world) == starts(world, 4) == starts(world, 6) == 0
+    world.check()
+
+
+def test_addresses_are_looked_at_beside_a_motor_that_runs():
+    world = World(main.start, (1, 4), settings={"drives": [1]})
+    world.run(3000)
+    press(world, "START")
+    world.run(3000)
+    world.down("ADDRESS_UP")
+    world.run(12_000)
+    world.up("ADDRESS_UP")
+    assert world.drives[1].state == "running" and row_1(world), world.lcd()
+    press(world, "STOP")
+    world.run(6000)
+    assert world.drives[1].hz() == 0
+    world.check()
+
+
+def test_the_family_of_a_drive_is_chosen():
+    world = panel()
+    menu(world)
+    press(world, "SET", "SET", "DOWN", "DOWN", "SET")
+    assert row_2(world) == ">MM420", world.lcd()
+    while row_2(world) != ">MM440":
+        press(world, "DOWN")
+    press(world, "SET")
+    world.run(4000)
+    assert row_2(world) == "READY        A1", world.lcd()
+    assert json.loads(world.flash.files["settings.json"].decode())["kinds"] == {"1": "mm440"}
+    world.check()
+
+
+def test_without_contact_the_menu_begins_with_the_search():
+    world = panel()
+    world.drives[1].unplug()
+    world.run(3000)
+    world.down("PARAM")
+    world.run(1500)
+    world.up("PARAM")
+    world.run(300)
+    assert row_2(world) == ">FIND DRIVES", world.lcd()
+
+
+def test_a_panel_that_nobody_has_set_up_offers_to_find_drives():
+    world = panel()
+    world.flash.files.clear()
+    world.reset()
+    world.run(4000)
+    assert row_2(world) == "SET=DO  PARAM=NO", world.lcd()
+    press(world, "PARAM")
+    assert row_2(world) == "READY        A1", world.lcd()
+    world.run(5000)
+    assert row_2(world) == "READY        A1", world.lcd()

@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: MIT
+"""On a chip with little memory a page is loaded when it is shown, and leaves the memory again."""
+
+import sys
+
+import on_demand
+from panel_bench import panel, row_2, starts, wait_until_known
+
+PAGE, WRITER, QUESTION = "panel.pages.parameters", "panel.writer", "panel.pages.question"
+
+
+def cramped():
+    """A panel with no room to keep what it does not need."""
+    world = panel()
+    on_demand.keep(())
+    for name in (PAGE, WRITER, QUESTION, "panel.pages.risk"):
+        on_demand.drop(name)
+    wait_until_known(world)
+    return world
+
+
+def test_a_page_comes_and_goes():
+    world = cramped()
+    for _ in range(3):
+        assert PAGE not in sys.modules
+        world.press("PARAM")
+        world.run(1000)
+        assert row_2(world) == "P0700:     5 A1" and PAGE in sys.modules, world.lcd()
+        world.press("PARAM")
+        world.run(300)
+        assert row_2(world) == "READY        A1"
+    world.check()
+
+
+def test_a_parameter_is_written_all_the_same():
+    world = cramped()
+    world.press("PARAM")
+    world.press("NEXT")
+    world.run(1000)
+    world.press("EDIT")
+    world.press("DOWN")
+    world.press("SET")
+    world.run(300)
+    assert QUESTION in sys.modules
+    world.press("SET")
+    world.run(1000)
+    assert world.drives[1].read(1000) == 4
+    world.run(2000)
+    assert WRITER not in sys.modules and QUESTION not in sys.modules
+    world.check()
+
+
+def test_what_is_kept_is_loaded_at_once():
+    world = panel()
+    assert PAGE in sys.modules and WRITER in sys.modules
+    world.press("PARAM")
+    world.press("PARAM")
+    assert PAGE in sys.modules
+
+
+def test_a_page_that_finds_no_memory_is_not_shown():
+    world = cramped()
+    load = on_demand.load
+
+    def fail(name):
+        raise MemoryError("no memory")
+
+    on_demand.load = fail
+    try:
+        world.press("PARAM")
+        world.run(300)
+        assert row_2(world) == "NO MEMORY LEFT", world.lcd()
+        world.press("START")
+        world.run(3000)
+        assert starts(world) == 1
+    finally:
+        on_demand.load = load
+    world.run(3000)
+    assert row_2(world) == "RUNNING      A1"
+
+
+def test_a_question_of_start_is_asked_all_the_same():
+    world = cramped()
+    world.drives[1].write(2014, 0, 0)
+    world.run(3000)
+    world.press("START")
+    world.run(1500)
+    assert world.lcd()[1] == "SET=FIX START=GO", world.lcd()
+    world.press("SET")
+    world.run(1000)
+    assert world.drives[1].read(2014) >= 1000 and QUESTION not in sys.modules

@@ -1,0 +1,606 @@
+# SPDX-License-Identifier: MIT
+"""The layout of drives that do not answer is found by trying, and the others notice nothing of it.
+
+Against simulated drives where it matters what they take for a telegram of theirs, and on a line
+with nodes of a few lines each where it matters who talks when.
+"""
+
+import micropython
+
+from boards.sim.drives.families import mm420
+from fleet_bench import Fleet
+from round_bench import MASK, MIRROR, RUNNING, Bench, Node, framed
+from uss import pzd
+from uss.finding import finder as finding
+from uss.finding.finder import Finder
+from uss.layout import STANDARD, VARIABLE, Layout
+from uss.outside import Mirror
+from uss.receiver import OTHER_LENGTH
+
+NOT_TRACED = """
+    test_how_long_it_takes
+    test_whatever_the_list_says_and_the_drive_is_set_to
+    test_while_another_runs_nobody_is_late
+    test_a_stop_is_on_the_line_as_soon_as_beside_silent_drives_anyway
+    test_a_drive_that_is_switched_on_beside_thirty_others_is_found_by_the_list
+    test_no_motor_starts_by_it
+    test_a_step_takes_memory_only_when_something_is_found
+"""
+
+
+# --- simulated drives ---------------------------------------------------------------------------
+
+
+class Line(Fleet):
+    """Drive 1 runs, supervised; `sets`: {address: (P2013, P2012)} of others, without power yet.
+    All stand in the list as `layout`, and so do those at `absent`."""
+
+    def __init__(self, sets, absent=(), layout=STANDARD, baud=19200, runs=True):
+        kinds = {1: {"family": mm420, "parameters": {2014: 2_000}}}
+        for address, (pkw_words, pzd_words) in sets.items():
+            parameters = {2013: pkw_words, 2012: pzd_words, 2014: 0}
+            kinds[address] = {"family": mm420, "parameters": parameters}
+        Fleet.__init__(self, kinds, baud=baud, listed=False)
+        turns = self.master.turns
+        self.drives[1] = turns.add(1)
+        for address in sorted(list(sets) + list(absent)):
+            self.drives[address] = turns.add(address, layout)
+        for address in sets:
+            self.motors[address].unplug()
+        self.found = []
+        self.finder = Finder(self.master, self.clock.ticks_mask)
+        self.run(1_500)
+        if runs:
+            self.master.deadlines.supervise(self.drives[1], 2_000)
+            self.drives[1].start(0x2000)
+        self.run(2_000)
+
+    def run(self, ms):
+        until = self.clock.now_us + round(ms * 1000)
+        while self.clock.now_us < until:
+            Fleet.run(self, 2)
+            drive = self.finder.step(self.clock.ticks_us())
+            if drive:
+                self.found.append(drive)
+
+    def last(self):
+        """ADR of the last telegram of the master, and its net characters."""
+        for _, mine, characters in self.wire.log.last(2):
+            if mine:
+                last = characters
+        return last[2], len(last) - 4
+
+    def found_after(self, address, limit_ms=200_000):
+        """Switch it on; after so many ms it has been found."""
+        self.motors[address].plug()
+        began = self.clock.now_us
+        self.run_until(lambda: self.drives[address].contact, limit_ms)
+        return (self.clock.now_us - began) // 1000
+
+
+def layout_of(drive):
+    return drive.layout.pkw_words, drive.layout.pzd_words
+
+
+def test_each_of_the_layouts_is_found():
+    line = Line({2: (127, 2), 3: (3, 2), 4: (0, 2), 5: (4, 2)})
+    for address in (2, 3, 4, 5):
+        line.motors[address].plug()
+    line.run_until(lambda: all([drive.contact for drive in line.drives.values()]), 15_000)
+    assert [layout_of(line.drives[address]) for address in (2, 3, 4, 5)] == [
+        (127, 2), (3, 2), (0, 2), (4, 2),
+    ]  # fmt: skip
+    assert len(line.found) == 3 and line.drives[5] not in line.found
+    line.run(2_000)
+    for address in (2, 3, 4, 5):  # they run in it, and are stopped
+        line.drives[address].start(0x1000)
+    line.run(3_000)
+    assert all([motor.state == "running" for motor in line.motors.values()])
+    line.master.stop_all()
+    line.run(10_000)
+    assert not any([motor.state == "running" for motor in line.motors.values()])
+    assert not any(line.drives[1].counters[1:])
+    line.check()
+
+
+def test_whatever_the_list_says_and_the_drive_is_set_to():
+    for layout in (Layout(3, 2), Layout(0, 2), Layout(VARIABLE, 2), Layout(4, 4)):
+        pzd_words = layout.pzd_words
+        words = [0, 3, 4, 127]
+        sets = {2 + place: (each, pzd_words) for place, each in enumerate(words)}
+        line = Line(sets, layout=layout, runs=False)
+        for address in sets:
+            line.motors[address].plug()
+        drives = [line.drives[address] for address in sorted(sets)]
+        line.run_until(lambda: all([drive.contact for drive in drives]), 20_000)
+        for drive, each in zip(drives, words):
+            known = layout_of(drive)[0]
+            # With telegrams of 3 PKW words that one is well served.
+            assert known == each or {known, each} == {3, VARIABLE}, (layout, drive.layout, each)
+        line.check()
+
+
+def test_how_long_it_takes():
+    """No longer than the module says. The worst instant: its length was tried just before it was
+    switched on."""
+    promised_s = {(9600, 1): 3, (19200, 1): 3, (9600, 30): 45, (19200, 30): 30}
+    for (baud, silent), limit_s in promised_s.items():
+        for pkw_words, net_count in ((127, 10), (3, 10), (0, 4)):
+            address = 2 if silent == 1 else 17
+            absent = [each for each in range(2, 2 + silent) if each != address]
+            line = Line({address: (pkw_words, 2)}, absent, baud=baud)
+            line.run(5_000)
+            asked = address | MIRROR, net_count
+            line.run_until(lambda: line.last() == asked, 100_000)
+            line.run(100)
+            took_ms = line.found_after(address)
+            print("%d baud, %d silent, PKW %d: %d ms" % (baud, silent, pkw_words, took_ms))
+            assert took_ms < limit_s * 1000, (baud, silent, pkw_words, took_ms)
+            assert layout_of(line.drives[address]) == (pkw_words, 2)
+            assert not any(line.drives[1].counters[1:])
+            line.check()
+
+
+def test_while_another_runs_nobody_is_late():
+    """P2014 of drive 1 is 2 s; and where so much is left that no silence fits, none is risked."""
+    for off_time_ms in (2_000, 300):
+        line = Line({2: (3, 2), 3: (127, 2)}, range(4, 20), baud=9600)
+        line.master.deadlines.supervise(line.drives[1], off_time_ms)
+        line.run(1_000)
+        instants = []
+        for step in range(30):
+            since = line.wire.log.count
+            line.run(1_000)
+            if step == 10:
+                line.motors[2].plug()
+                line.motors[3].plug()
+            for at_us, mine, characters in line.wire.log.last(line.wire.log.count - since):
+                if mine and characters[2] == 1:
+                    instants.append(at_us)
+        longest_us = max([b - a for a, b in zip(instants, instants[1:])])
+        print("P2014 = %d: %d us" % (off_time_ms, longest_us))
+        assert longest_us < off_time_ms * 1000 // 3
+        assert line.motors[1].state == "running" and line.drives[2].contact
+        line.check()
+
+
+# --- who is looked for --------------------------------------------------------------------------
+
+
+class Short(Node):
+    """It answers in three PKW words where it takes any length, and may answer something else."""
+
+    spoil = 0  # so many of its next replies are spoilt
+    stray = None  # net data of what it answers to what is not for it
+
+    def answer(self, characters):
+        is_for_it = self.plugged and characters[2] == self.address
+        if self.stray and is_for_it and not self._takes(len(characters) - 4):
+            return framed(self.address, self.stray)
+        reply = Node.answer(self, characters)
+        if reply and self.spoil:
+            self.spoil -= 1
+            return reply[:5] + b"\x77" + reply[6:]
+        if reply and self.pkw_words == VARIABLE and reply[2] == self.address:
+            return framed(self.address, reply[3:-1][-2 * (self.pzd_words + 3) :])
+        return reply
+
+
+class Search(Bench):
+    """A bench whose loop steps a finder. sets: {address: (PKW, PZD words)} of those that the list
+    has as 4 + 2 words. found: the drives that it has found."""
+
+    def __init__(self, sets=None, present=(1,), **more):
+        nodes = [Node(address) for address in present]
+        nodes += [Short(address) for address in sets or ()]
+        Bench.__init__(self, nodes, **more)
+        for address, (pkw_words, pzd_words) in (sets or {}).items():
+            self.nodes[address].pkw_words = pkw_words
+            self.nodes[address].pzd_words = pzd_words
+        self.found = []
+        self.finder = Finder(self.master, MASK)
+        self.loop = self.step
+
+    def step(self):
+        drive = self.finder.step(self.now & MASK)
+        if drive:
+            self.found.append(drive)
+
+    def mirrors(self, address=None, since=0):
+        """Net characters of the mirror telegrams to it, or to everybody."""
+        return [
+            len(telegram.characters) - 4
+            for telegram in self.sent[since:]
+            if telegram.address & MIRROR and address in (None, telegram.address & 0x1F)
+        ]
+
+    def until_found(self, address, limit_us=60_000_000):
+        self.run_until(lambda: self.drives[address].contact, limit_us)
+
+
+def test_mirror_telegrams_have_nothing_in_them_that_a_drive_could_obey():
+    bench = Search({2: (3, 2), 3: (127, 2), 4: (0, 2)})
+    bench.run(20_000_000)
+    assert all([drive.contact for drive in bench.drives.values()])
+    for telegram in bench.sent:
+        assert not telegram.address & MIRROR or not any(telegram.characters[3:-1])
+    assert [bench.nodes[address].stw for address in (2, 3, 4)] == [pzd.OFF1] * 3
+
+
+def test_a_drive_in_contact_is_left_alone_and_so_is_one_that_was_missed_now_and_then():
+    bench = Search(present=(1, 2))
+    for _ in range(20):
+        bench.nodes[2].plugged = False
+        bench.run(50_000)
+        bench.nodes[2].plugged = True
+        bench.run(400_000)
+    assert bench.mirrors() == [] and not bench.found
+
+
+def test_the_length_that_the_list_asks_in_is_left_out():
+    for layout, lengths in (
+        ((4, 2), [10, 4]), ((3, 2), [12, 4]), ((0, 2), [10, 12]), ((127, 2), [12, 4]),
+        ((3, 0), [8]), ((0, 6), [18, 20]),
+    ):  # fmt: skip
+        bench = Bench([Node(1), Node(2, *layout)])
+        bench.nodes[2].plugged = False
+        bench.contact()
+        search = Finder(bench.master, MASK)
+        bench.loop = lambda: search.step(bench.now)
+        bench.run(30_000_000)
+        asked = [len(each.characters) - 4 for each in bench.sent if each.address == 2 | MIRROR]
+        assert asked[:4] == (lengths * 4)[:4] and set(asked) == set(lengths), (layout, asked)
+
+
+def test_one_that_was_running_when_it_was_lost_is_told_to_stop_before_it_is_looked_for():
+    """And then in the layout in which it hears that."""
+    bench = Search(present=(1, 2))
+    bench.contact()
+    bench.drives[2].start(0x1000)
+    bench.run(300_000)
+    node = bench.nodes[2]
+    node.plugged = False
+    sent = len(bench.sent)
+    while not bench.mirrors():
+        bench.run(1_000)
+    assert bench.drives[2].was_running and not bench.drives[2].contact
+    assert bench.stws(2, sent).count(pzd.OFF1) > 10
+    node.pkw_words = 3
+    node.plugged = True
+    bench.run(20_000_000)
+    assert bench.drives[2].contact and bench.drives[2].layout.is_like(Layout(3, 2))
+    assert pzd.ON not in bench.stws(2, sent)[30:] and not bench.drives[2].is_on()
+
+
+def test_one_that_falls_silent_again_is_looked_for_again():
+    bench = Search({2: (3, 2)})
+    drive, node = bench.drives[2], bench.nodes[2]
+    for pkw_words in (3, 0, 4, 127, 0):
+        node.plugged = False
+        bench.run(3_000_000)
+        node.pkw_words = pkw_words
+        node.plugged = True
+        bench.until_found(2)
+        assert drive.layout.pkw_words == pkw_words
+        asked = len(bench.mirrors())
+        bench.run(10_000_000)
+        assert len(bench.mirrors()) <= asked + 1 and drive.contact
+    assert bench.found == [drive] * 5
+
+
+def test_one_that_answers_in_another_length_goes_first_unless_that_was_in_vain():
+    sets = {address: (127, 2) for address in range(2, 12)}
+    bench = Search(sets)
+    for address in sets:
+        bench.nodes[address].plugged = False
+    bench.run(20_000_000)
+    node = bench.nodes[9]
+    node.plugged = True
+    node.pkw_words, node.pzd_words, node.stray = 4, 7, bytes(22)
+    bench.run_until(lambda: bench.drives[9].trouble == OTHER_LENGTH)
+    since = len(bench.sent)
+    bench.run(30_000_000)
+    asked = [each.address & 0x1F for each in bench.sent[since:] if each.address & MIRROR]
+    first = asked.index(9)
+    assert first < 3 and asked[first + 1] == 9, asked
+    later = asked[first + 2 :]
+    counts = [later.count(address) for address in sets]
+    assert max(counts) - min(counts) <= 2 < min(counts), asked
+    node.plugged = False
+    bench.run(1_000_000)
+
+
+def test_a_reply_that_was_spoilt_is_asked_for_again():
+    for spoilt in (1, 2):
+        bench = Search({2: (3, 2)})
+        bench.run_until(lambda: bench.mirrors(2))
+        bench.nodes[2].spoil = spoilt
+        bench.until_found(2)
+        assert bench.drives[2].layout.is_like(Layout(3, 2))
+
+
+def test_one_that_no_telegram_reaches_whole_is_left_for_this_time():
+    """And the others are looked for."""
+    bench = Search({2: (3, 2), 3: (0, 2)})
+    bench.nodes[2].spoil = 1_000
+    bench.until_found(3)
+    asked = bench.mirrors(2)
+    assert asked[:4] == [10] * finding.TRIES + [4], asked
+    bench.nodes[2].spoil = 0
+    bench.until_found(2)
+
+
+def test_a_telegram_that_is_lost_makes_no_fixed_length_of_a_variable_one():
+    bench = Search({2: (127, 2)})
+    node, answer = bench.nodes[2], bench.nodes[2].answer
+    lost = []
+
+    def lossy(characters):
+        if characters[2] & MIRROR and len(characters) == 16 and not lost:
+            lost.append(characters)
+            return None
+        return answer(characters)
+
+    node.answer = lossy
+    bench.until_found(2)
+    assert lost and bench.drives[2].layout.variable
+
+
+def test_a_drive_that_is_changed_or_removed_meanwhile():
+    """By the operator: its layout, its address; or it answers at last, or stands there no more."""
+
+    def relayout(bench):
+        bench.master.turns.relayout(bench.drives[2], Layout(0, 2))
+
+    def readdress(bench):
+        bench.nodes[9] = bench.nodes[2]
+        bench.nodes[9].address = 9
+        bench.master.turns.readdress(bench.drives[2], 9)
+
+    def remove(bench):
+        bench.master.turns.remove(bench.drives[2])
+
+    def answer(bench):
+        bench.nodes[2].pkw_words = 4
+
+    for change in (relayout, readdress, remove, answer):
+        for later_us in range(0, 120_000, 7_000):
+            bench = Search({2: (3, 2), 3: (127, 2)})
+            bench.run_until(lambda: bench.mirrors(2))
+            bench.run(later_us)
+            if not bench.drives[2].contact:
+                change(bench)
+            bench.run(12_000_000)
+            for drive in bench.master.turns.drives:
+                assert drive.contact, (change, later_us, drive)
+            assert bench.drives[3].layout.variable
+            if change is not remove:
+                node = bench.nodes[bench.drives[2].address]
+                assert bench.drives[2].layout.pkw_words == node.pkw_words, (change, later_us)
+
+
+def test_one_that_answers_while_it_gets_another_layout_keeps_its_own():
+    bench = Search({2: (3, 2)})
+    turns = bench.master.turns
+    relayout = turns.relayout
+    refused = []
+
+    def refuse(drive, layout):
+        refused.append(layout)
+        turns.relayout = relayout
+        raise ValueError("it is in contact")
+
+    turns.relayout = refuse
+    bench.until_found(2)
+    assert len(refused) == 1 and bench.found == [bench.drives[2]]
+
+
+def test_two_layouts_that_are_the_same_are_one_object():
+    bench = Search({address: (3, 2) for address in range(2, 6)})
+    bench.run(20_000_000)
+    layouts = [bench.drives[address].layout for address in range(2, 6)]
+    assert len(bench.found) == 4 and [each is layouts[0] for each in layouts] == [True] * 4
+
+
+# --- where nobody can be asked ------------------------------------------------------------------
+
+
+def test_nothing_is_sent_while_the_bus_listens_or_is_off():
+    bench = Search({2: (3, 2)})
+    bench.nodes[2].plugged = False
+    bench.run(3_000_000)
+    bench.master.off()
+    bench.run(1_000_000)
+    sent = len(bench.sent)
+    bench.nodes[2].plugged = True
+    bench.run(30_000_000)
+    assert len(bench.sent) == sent
+    bench.master.on()
+    bench.until_found(2)
+
+
+def test_where_others_wait_already_it_waits():
+    bench = Search({2: (3, 2)})
+    bench.nodes[2].plugged = False
+    bench.run(2_000_000)
+    posts = []
+
+    def crowd():
+        while True:
+            single = Mirror(1)
+            try:
+                bench.master.turns.post(single)
+            except RuntimeError:
+                break
+            posts.append(single)
+
+    step = bench.loop
+
+    def loop():
+        crowd()
+        step()
+
+    bench.loop = loop
+    asked = len(bench.mirrors(2))
+    bench.run(5_000_000)
+    assert len(bench.mirrors(2)) <= asked + 1
+    bench.loop = step
+    bench.nodes[2].plugged = True
+    bench.until_found(2)
+
+
+def test_a_telegram_that_is_never_through_does_not_hold_it_up():
+    """An exception in the engine may lose one."""
+    bench = Search({2: (3, 2)})
+    post = bench.master.turns.post
+    lost = []
+
+    def swallow(mirror):
+        lost.append(mirror)
+        mirror.state = finding.PENDING
+        bench.master.turns.post = post
+
+    bench.master.turns.post = swallow
+    bench.until_found(2, 20_000_000)
+    assert len(lost) == 1 and bench.found
+
+
+# --- the others ---------------------------------------------------------------------------------
+
+
+def gaps(bench, address, since):
+    instants = [each.at for each in bench.sent[since:] if each.address == address]
+    return [b - a for a, b in zip(instants, instants[1:])]
+
+
+def test_a_drive_that_runs_keeps_four_fifths_of_its_telegrams():
+    bench = Bench([Node(1)] + [Node(address) for address in range(2, 12)])
+    for address in range(2, 12):
+        bench.nodes[address].plugged = False
+    bench.contact()
+    bench.drives[1].start(0x1000)
+    bench.run(3_000_000)
+    beside = bench.rate(1, 20_000_000)
+    search = Finder(bench.master, MASK)
+    bench.loop = lambda: search.step(bench.now)
+    since = len(bench.sent)
+    searched = bench.rate(1, 20_000_000)
+    mirrors = [each for each in bench.sent[since:] if each.address & MIRROR]
+    assert searched > 0.97 * beside and len(mirrors) > 20, (beside, searched, len(mirrors))
+    assert bench.nodes[1].zsw == RUNNING and not any(bench.drives[1].counters[1:])
+
+
+def test_a_stop_is_on_the_line_as_soon_as_beside_silent_drives_anyway():
+    bench = Search(present=tuple(range(1, 8)))
+    for address in range(3, 8):
+        bench.nodes[address].plugged = False
+    bench.contact()
+    bench.run(2_000_000)
+    silence = bench.master.deadlines.silence
+    limit_us = silence.silent_exchange_us + bench.timing.start_interval_us
+    latest_us = 0
+    for step in range(250):
+        bench.drives[1].start(0x1000)
+        bench.run(300_000 + 1_739 * step % 90_000)
+        assert bench.nodes[1].zsw == RUNNING
+        sent = len(bench.sent)
+        began = bench.now
+        bench.drives[1].stop()
+        bench.run(100_000)
+        first = bench.sent[sent]
+        assert first.address == 1 and first.stw() == pzd.OFF1, first
+        latest_us = max(latest_us, first.at - began)
+    print("%d us, mirrors: %d" % (latest_us, len(bench.mirrors())))
+    assert latest_us <= limit_us and len(bench.mirrors()) > 50
+
+
+def test_while_commands_wait_none_is_sent():
+    """Nor right behind them: they have cost what the silent drives share."""
+    bench = Search(present=tuple(range(1, 32)))
+    for address in range(3, 32):
+        bench.nodes[address].plugged = False
+    for step in range(10):
+        bench.loop = bench.step
+        bench.run(3_000_000 + 7_111 * step)
+        bench.loop = None
+        bench.run(50_000)
+        bench.run_until(lambda: bench.master.deadlines.silence_wait_us() == 0)
+        since = len(bench.sent)
+        bench.master.stop_all()
+        bench.loop = bench.step
+        bench.run_until(lambda: not bench.master.turns.has_command())
+        bench.run(150_000)
+        told = bench.addresses(since)
+        assert not bench.mirrors(None, since) and set(range(1, 32)) <= set(told), told
+
+
+def test_a_drive_that_is_switched_on_beside_thirty_others_is_found_by_the_list():
+    """In less than one and a half times what it takes without a finder."""
+    bench = Search(present=tuple(range(1, 32)))
+    for address in range(2, 32):
+        bench.nodes[address].plugged = False
+    bench.contact()
+    bench.drives[1].start(0x1000)
+    bench.run(20_000_000)
+    silence_us = bench.master.deadlines.silence.silent_exchange_us
+    limit_us = 30 * silence_us * 6 * 3 // 2 + 2_000_000
+    for address in (5, 30, 16):
+        bench.nodes[address].plugged = True
+        bench.until_found(address, limit_us)
+        bench.run(1_234_567)
+    assert not bench.found
+
+
+def test_where_nobody_answers_and_nobody_may_run_it_is_quick():
+    bench = Search({2: (0, 2), 3: (3, 2), 4: (127, 2)}, present=())
+    bench.run_until(lambda: all([drive.contact for drive in bench.drives.values()]), 4_000_000)
+
+
+def test_no_motor_starts_by_it():
+    """Whatever was wanted before its layout was found is void."""
+    for pkw_words in (0, 3, 127):
+        bench = Search({2: (pkw_words, 2)})
+        drive = bench.drives[2]
+        while not drive.contact:
+            drive.start(0x1000)
+            bench.run(1_000_000)
+            assert bench.now < 30_000_000
+        assert bench.nodes[2].zsw != RUNNING
+        sent = len(bench.sent)
+        bench.run(3_000_000)
+        drive.start(0x1000)
+        bench.run(300_000)
+        assert pzd.ON in bench.stws(2, sent) and bench.nodes[2].zsw == RUNNING
+
+
+# --- memory -------------------------------------------------------------------------------------
+
+
+def test_a_step_takes_memory_only_when_something_is_found():
+    """And where there is none, nothing is changed: the next step does it."""
+    if not hasattr(micropython, "heap_lock"):
+        return  # CPython
+    bench = Search({2: (3, 2)}, present=(1, 5, 6, 7))
+    for address in (5, 6, 7):
+        bench.nodes[address].plugged = False
+    step = bench.finder.step
+    bench.loop = None
+    wanting = 0
+    for _ in range(10_000):
+        bench.run(2_000)
+        now = bench.now
+        is_short = False
+        micropython.heap_lock()
+        try:
+            step(now)
+        except MemoryError:
+            is_short = True
+        finally:
+            micropython.heap_unlock()
+        if is_short:
+            wanting += 1
+            step(now)
+    print("%d steps in %d s took memory" % (wanting, bench.now // 1_000_000))
+    asked = len(bench.mirrors())
+    assert bench.drives[2].contact and bench.drives[2].layout.is_like(Layout(3, 2))
+    assert asked > 10 and wanting == 1
