@@ -227,6 +227,8 @@ class Drive:
 
         From the loop; the master sees that no telegram is built or taken meanwhile.
         """
+        # It has missed no telegram that is divided like this.
+        self.silent = self.status = 0
         self.channel.become(other.channel)
         if self.further and other.further:
             count = min(len(self.further), len(other.further)) >> 1

@@ -288,6 +288,21 @@ def test_one_that_falls_silent_again_is_looked_for_again():
     assert bench.found == [drive] * 5
 
 
+def test_one_that_was_found_is_asked_by_the_list_before_it_is_looked_for_again():
+    """In its new layout, and again if those telegrams are lost, as often as any other drive."""
+    for lost in range(finding.SILENT_MIN):
+        bench = Search({2: (3, 2), 3: (0, 2), 4: (127, 2)})
+        bench.nodes[3].plugged = bench.nodes[4].plugged = False
+        bench.run_until(lambda: bench.found)
+        drive, node, since = bench.drives[2], bench.nodes[2], len(bench.sent)
+        node.plugged = False
+        bench.run_until(lambda: len(bench.stws(2, since)) >= lost, 20_000_000)
+        bench.run(100_000)
+        node.plugged = True
+        bench.run_until(lambda: drive.contact, 20_000_000)
+        assert bench.mirrors(2, since) == [] and bench.found == [drive], lost
+
+
 def test_one_that_answers_in_another_length_goes_first_unless_that_was_in_vain():
     sets = {address: (127, 2) for address in range(2, 12)}
     bench = Search(sets)
