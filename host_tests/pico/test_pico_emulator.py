@@ -3,6 +3,7 @@
 believe something false: how long things take, what a reset leaves, what a power cut leaves."""
 
 from tools.emulator.chip import EmulatorError
+from tools.emulator.flash_image import FlashImage
 from tools.emulator.world import PicoWorld
 
 INTERPRETERS = "pico"
@@ -336,6 +337,16 @@ def test_files_put_on_the_flash_are_there_and_files_written_come_back():
     assert world.read_file("told.txt") == b"hello"
     assert world.read_file("nothing.txt") is None
     assert world.settings()["baud"] == BAUD
+
+
+def test_the_same_files_make_the_same_flash_whenever_it_is_made():
+    def image():
+        image = FlashImage()
+        image.write("settings.json", b"{}")
+        return image.blocks()
+
+    first, again = image(), image()
+    assert first == again and bytes(first).find(b"settings.json") > 0
 
 
 def test_the_same_again_is_the_same_to_the_nanosecond():
