@@ -86,7 +86,8 @@ def test_plain_micropython_starts_with_a_program_of_ones_own():
     files = {path: read(files[path]) for path in files}
     files["one_drive.py"] = read("tools/examples/one_drive.py", ONE_DRIVE)
     files["main.py"] = (
-        b"import gc, uss.bus\ngc.collect()\nimport board, one_drive\none_drive.main(board)\n"
+        b"import gc, board\ngc.collect()\nimport uss.bus\ngc.collect()\n"
+        b"import one_drive\none_drive.main(board)\n"
     )
     world = PicoWorld("stock", files=files, parameters=QUICK)
     assert turns(world, 25.0, 15_000), world.drives[1].report()
