@@ -22,7 +22,7 @@ from boards.sim.chip.flash import Flash, PowerCut
 from boards.sim.chip.lcd import Lcd
 from boards.sim.chip.switches import Switches
 from boards.sim.line.wire import Wire
-from boards.sim.drives.families import mm420
+from boards.sim.drives.families import mm420, setting_of
 from boards.sim.drives.drive import Drive
 from boards.sim.drives.mains import Mains
 from hal.store import FileStore
@@ -293,7 +293,7 @@ class World(Surroundings):
 def supervision(family, ms):
     """The parameter that makes a drive of a family supervise its line, for at least so long."""
     unit_us = family.LINK["unit us"]
-    return {family.LINK["off time"]: -(-ms * 1000 // unit_us)}
+    return {setting_of(family, "off time"): -(-ms * 1000 // unit_us)}
 
 
 def supervision_ms(baud, drives):

@@ -70,7 +70,7 @@ usage: ./tools/panel [--speed N] [--drives 1,2=g110] [--baud 19200] [--settings 
                   there, if it is no mm420: 1,2=g110,3=v20/4,4=mm440/4+4,8=mm420/factory
                   families: %s
                   /0 /3 /4 /127: PKW words, if not as usual; +4: PZD words; /factory: a drive as
-                  delivered, of which the panel is not told
+                  delivered, of which the panel is not told; mm440-bop: USS on its BOP link
   --baud RATE     baud rate of the line and its drives (19200, or that of the settings)
   --settings FILE keep the panel's settings in FILE; otherwise they end with the program. The panel
                   looks for the drives in FILE, whichever --drives simulates

@@ -23,7 +23,7 @@ from boards.sim.drives.power.plant import FAN, INERTIA_S
 from boards.sim.drives.power.inverter import Inverter  # noqa: F401  or `process` does, too deep
 from boards.sim.drives.parameters import Parameters
 from boards.sim.drives.operations import Operations
-from boards.sim.drives.families import mm420
+from boards.sim.drives.families import mm420, setting_of
 from boards.sim.drives.readings import Readings
 from boards.sim.drives.supply import Supply
 from boards.sim.drives.parameter_channel import ALL_ELEMENTS, ParameterChannel
@@ -106,6 +106,7 @@ class Drive:
         self.readings = Readings(family, self.parameters, self.process, self.slave)
         self._operations = Operations(family, self.parameters, self.process, self.switches)
         self._off_time = self.parameters.ram[link["off time"]]
+        self._index = link["index"]  # of its numbers
         self._off_time_unit_us = link["unit us"]
         self._needs_process_data = link["from process data"]
         self._reply = Event(self._send_reply)
@@ -397,7 +398,7 @@ class Drive:
 
     def _supervise(self):
         """Start the telegram failure time anew; it runs from the first telegram on."""
-        limit = self._off_time[0]
+        limit = self._off_time[self._index]
         if limit and self._heard_us is not None:
             limit_us = limit * self._off_time_unit_us
             self._clock.schedule(self._failure, self._heard_us + limit_us)
@@ -413,14 +414,13 @@ class Drive:
     def _commissioning(self, address):
         """What somebody sets who has the drive obey USS, at the line's baud rate."""
         family = self.family
-        link = family.LINK
         codes = [code for code, baud in family.BAUD_CODES.items() if baud == self.wire.baud]
         if not codes and not self._any_baud:
             raise ValueError("a %s has no code for %d baud" % (family.NAME, self.wire.baud))
         settings = dict(family.COMMISSIONED)
         if codes:
-            settings[link["baud"]] = codes[0]
-        settings[link["address"]] = address
+            settings[setting_of(family, "baud")] = codes[0]
+        settings[setting_of(family, "address")] = address
         return settings
 
     def _layout_settings(self, layout):
@@ -430,7 +430,8 @@ class Drive:
             return {}
         if link["layout"] is not None:
             raise ValueError("a %s has %d+%d words" % ((self.family.NAME,) + link["layout"]))
-        return {link["pkw words"]: layout[0], link["pzd words"]: layout[1]}
+        names = "pkw words", "pzd words"
+        return {setting_of(self.family, names[place]): layout[place] for place in range(2)}
 
     def _set_up(self, settings):
         """Set it up as delivered, but for these settings."""
@@ -505,13 +506,13 @@ class Drive:
         link = self.family.LINK
         ram = self.parameters.ram
         codes = self.family.BAUD_CODES
-        baud = self.wire.baud if self._any_baud else codes[ram[link["baud"]][0]]
+        baud = self.wire.baud if self._any_baud else codes[ram[link["baud"]][self._index]]
         if baud != slave.baud:
             slave.set_baud(baud)
             self.wire.set_rate(self, baud)
             if self._usual_delay:
                 self.reply_delay_us = usual_delay_us(baud)
-        slave.address = ram[link["address"]][0]
+        slave.address = ram[link["address"]][self._index]
         self._configure_layout()
 
     def _configure_layout(self):
@@ -519,8 +520,8 @@ class Drive:
         link = self.family.LINK
         ram = self.parameters.ram
         if link["layout"] is None:
-            slave.pkw_words = ram[link["pkw words"]][0]
-            slave.pzd_words = ram[link["pzd words"]][0]
+            slave.pkw_words = ram[link["pkw words"]][self._index]
+            slave.pzd_words = ram[link["pzd words"]][self._index]
         else:
             slave.pkw_words, slave.pzd_words = link["layout"]
 

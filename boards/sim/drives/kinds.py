@@ -3,7 +3,8 @@
 
 An entry is an address; then "=" and a family; then "/" and PKW words (0, 3, 4 or 127), "+" and PZD
 words, if the drive is set up for others than the family usually has; or "/factory" if nobody has
-set it up since it was delivered.
+set it up since it was delivered. Behind the family may stand "-bop": the drive has its USS on the
+BOP link, not on its RS-485 terminals.
 
     listed = listed_drives("1,2=g110/0,8=mm420/factory")
     simulated(listed)       # {1: {"family": mm420}, 2: {"family": g110, "layout": (0, 2)}, ...
@@ -13,7 +14,7 @@ Each error is a ValueError with a text of one line.
 """
 
 from boards.sim.drives.parameters import MAXIMUM, NUMBER
-from boards.sim.drives.families import NAMES, named
+from boards.sim.drives.families import NAMES, named, setting_of, without_link
 
 USUAL = "mm420"
 ADDRESS_MAX = 31
@@ -27,7 +28,7 @@ class ListedDrive:
     """One entry.
 
     address  as it stands there. A drive as delivered is known by it, and answers at another one
-    family   the name of its family
+    family   the name of its family, with its link: mm440-bop
     plain    whether the entry says nothing but the address
     layout   PKW and PZD words, or None: those that the family usually has
     factory  whether it is as delivered
@@ -126,7 +127,7 @@ def _understood(entry, usual, names):
     if not slash:
         family, plus, pzd = family.partition("+")
     family = family or usual
-    if family not in names:
+    if without_link(family) not in names:
         raise ValueError("no family %s: there are %s" % (family, " ".join(names)))
     address, plain = int(word), not kind
     if slash and rest == FACTORY:
@@ -136,7 +137,7 @@ def _understood(entry, usual, names):
     layout = _usual_layout(family)
     if slash or plus:
         layout = _words(entry, rest if slash else str(layout[0]), pzd if plus else str(layout[1]))
-    if family in NAMES:
+    if _is_simulated(family):
         _check(entry, named(family), address, layout)
     if layout == _usual_layout(family):
         layout = None
@@ -155,11 +156,15 @@ def _words(entry, pkw, pzd):
 
 def _usual_layout(family):
     """PKW and PZD words of a family, as somebody sets it up."""
-    if family not in NAMES:
+    if not _is_simulated(family):
         return 4, PZD_USUAL
     module = named(family)
     link = module.LINK
-    return link["layout"] or (module.COMMISSIONED[link["pkw words"]], PZD_USUAL)
+    return link["layout"] or (module.COMMISSIONED[setting_of(module, "pkw words")], PZD_USUAL)
+
+
+def _is_simulated(family):
+    return without_link(family) in NAMES
 
 
 def _check(entry, family, address, layout):

@@ -121,7 +121,7 @@ class Process(Inverter):
         self._warning_numbers = style["warnings"]
         self._alarms = 0  # bits of LIMITED ... BOTH_JOGS that are present
         Inverter.__init__(self, clock, parameters, family, switches)
-        self._sets = DataSets(self._sources)
+        self._sets = DataSets(self._sources, family.LINK["index"])
         memory = self.memory
         self._lists = {
             RECEIVED: self.image,

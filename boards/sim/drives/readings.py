@@ -35,6 +35,7 @@ class Readings:
         self._parameters = parameters
         self._process = process
         self._slave = slave
+        self._link = family.LINK["index"]
 
     def value(self, number, index):
         """The value of a number and index that exist, an int or a float as its type says."""
@@ -56,7 +57,7 @@ class Readings:
             place = detail + index
             return process.faults[place] if place < len(process.faults) else 0
         if what == COUNTERS:
-            return 0 if index else self._slave.counters()[detail]  # [1] is the BOP link
+            return self._slave.counters()[detail] if index == self._link else 0
         if what is None:
             return self._constant(number, index)
         if what in (NUMBERS, OUTPUTS, POLE_PAIRS, SLIP):

@@ -38,8 +38,9 @@ STOPPING = "stopping"
 FAULT = "fault"
 OFF = "off"
 
-# Sources of the setpoint that the simulation knows.
-MOP, FIXED_FREQUENCY, COM_LINK = 1, 3, 5
+# Sources of the setpoint that the simulation knows, digits of P1000. That of this bus is 5, even
+# where the drive's own digit for it is another one.
+MOP, FIXED_FREQUENCY, THIS_BUS = 1, 3, 5
 
 # A binary source that is always 1: 1:0.
 ALWAYS = 0x00010000

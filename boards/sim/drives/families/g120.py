@@ -137,6 +137,7 @@ LINK = {
     "retained": None,
     "protocol": 2030,
     "broadcast": False,
+    "index": 0,
 }
 
 SETTINGS = (

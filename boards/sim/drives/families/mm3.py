@@ -103,6 +103,7 @@ LINK = {
     "retained": 971,
     "protocol": None,
     "broadcast": False,
+    "index": 0,
 }
 
 SETTINGS = (

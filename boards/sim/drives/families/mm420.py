@@ -88,7 +88,7 @@ COMMISSIONED = {3: 3, 700: 5, 1000: 5, 2012: 2, 2013: 4}
 # where the connector speaks USS, from the next power-up on. `off time` is in microseconds
 # times `unit us`; it runs from the first telegram on, or from the first one with process data;
 # `fault` is what it trips with. `broadcast`: whether the family takes one (optional: USS
-# specification A-3).
+# specification A-3). `index`: of the link among the family's, where its numbers have one.
 LINK = {
     "baud": 2010,
     "address": 2011,
@@ -103,6 +103,7 @@ LINK = {
     "retained": None,
     "protocol": None,
     "broadcast": True,
+    "index": 0,
 }
 
 # The settings that process.py uses: name, the number of the parameter, the divisor.

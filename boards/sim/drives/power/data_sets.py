@@ -4,15 +4,16 @@ each.
 
 P0810 and P0811 choose the command data set, P0820 and P0821 the drive data set; each of them names
 a connector that gives one bit. A new drive data set comes into force at standstill. Numbers and
-their division are general knowledge.
+their division are general knowledge. Two indices are those of the two links.
 
-    sets = DataSets(sources)
+    sets = DataSets(sources, 0)
     sets.take(ram)                  # the four connectors
     sets.look(image, standing)      # True: another set is in force now
     sets.index(700, 3)              # 1: the place of the value in force, of three
 """
 
 SETS = 3
+LINKS = 2
 
 # Numbers with three indices that belong to the commands; the others belong to the drive.
 OF_COMMANDS = (
@@ -23,15 +24,16 @@ CHOICES = (810, 811), (820, 821)  # bit 0, bit 1
 
 
 class DataSets:
-    """sources: a `Sources`, which knows what connectors say.
+    """sources: a `Sources`, which knows what connectors say. link: the index of this bus.
 
     command   the command data set in force, 0...2, r0050
     drive     the drive data set in force, r0051[1]
     selected  the drive data set that is selected, r0051[0]
     """
 
-    def __init__(self, sources):
+    def __init__(self, sources, link):
         self._sources = sources
+        self._link = link
         self._connectors = ((0, 0), (0, 0))
         self.by_bus = False  # a word that is received may choose another one
         self.command = self.drive = self.selected = 0
@@ -59,5 +61,5 @@ class DataSets:
 
     def index(self, number, indices):
         if indices != SETS:
-            return 0
+            return self._link if indices == LINKS else 0
         return self.command if number in OF_COMMANDS else self.drive

@@ -16,7 +16,7 @@ ramp ends, pulses go off, an overload trips), for the instant at which it happen
 from boards.sim.drives.power import restart
 from boards.sim.drives.words import (
     ACKNOWLEDGE,
-    COM_LINK,
+    THIS_BUS,
     DOWN,
     FAULT,
     INHIBITED,
@@ -67,7 +67,7 @@ class Inverter:
     maximum_hz = reached_hz = reference_hz = up_s = down_s = None
     # Defaults for families that do not set these.
     commissioning = 0
-    command_source = setpoint_source = COM_LINK
+    command_source = setpoint_source = THIS_BUS
     scaling = 0
     potentiometer_hz = 0.0
     potentiometer_kept = 0  # P1031: it goes on where it was, P1040 follows

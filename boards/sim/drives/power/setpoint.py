@@ -13,7 +13,7 @@ frequencies, limits.
 
 from boards.sim.drives.words import (
     ALWAYS,
-    COM_LINK,
+    THIS_BUS,
     CONTROL_WORD_2,
     FIXED_FREQUENCY,
     JOG_LEFT,
@@ -83,7 +83,7 @@ class SetpointChannel:
         return percent * settings.reference_hz / 100
 
     def _source_hz(self, source, place):
-        if source == COM_LINK:
+        if source == THIS_BUS:
             if place >= len(self._image):
                 return 0.0
             word = self._image[place]

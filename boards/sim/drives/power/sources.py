@@ -9,11 +9,11 @@ diagrams; the USS specification knows no sources.
     sources = Sources(family)
     sources.take(process)               # its settings have changed
     sources.command(image)              # the control word that is obeyed
-    sources.main, sources.place         # COM_LINK, 1: the setpoint is PZD2
+    sources.main, sources.place         # THIS_BUS, 1: the setpoint is PZD2
     family.SOURCES["sets"][700]         # (840, {5: 0x07F40000, ...}): what a write of P0700 sets
 """
 
-from boards.sim.drives.words import ALWAYS, COM_LINK, CONTROL_WORD_2, FIXED_FREQUENCY, MOP, ON
+from boards.sim.drives.words import ALWAYS, THIS_BUS, CONTROL_WORD_2, FIXED_FREQUENCY, MOP, ON
 
 NONE = 0
 
@@ -25,11 +25,13 @@ MOP_OUTPUT, FIXED_OUTPUT = 1050 << 16, 1024 << 16
 OUTPUTS = {1050: MOP, 1024: FIXED_FREQUENCY}
 
 # A family's data on sources: `words`, its numbers for the control words received, by their place
-# in the image; `received`, the list of all words received; `sets`, the numbers that set a
-# connector: which one, and to what for each value, for P1000 for its units digit.
+# in the image; `received`, the list of all words received; `digit`, the digit of P1000 that means
+# this bus; `sets`, the numbers that set a connector: which one, and to what for each value, for
+# P1000 for its units digit.
 MM4 = {
     "words": {2036: 0, 2037: CONTROL_WORD_2},
     "received": 2018,
+    "digit": THIS_BUS,
     "sets": {
         700: (
             (840, {0: TERMINAL_1, 1: KEYPAD, 2: TERMINAL_1, 4: 2032 << 16, 5: 2036 << 16,
@@ -43,12 +45,13 @@ MM4 = {
 }  # fmt: skip
 
 # A family without connectors: only the digit counts.
-FIXED = {"words": {}, "received": None, "sets": {}}
+FIXED = {"words": {}, "received": None, "digit": THIS_BUS, "sets": {}}
 
 # The second generation of the G120 connects what its macro p0015 says, USS with 21.
 G120 = {
     "words": {2090: 0, 2091: 1, 2092: 2, 2093: 3},
     "received": 2050,
+    "digit": THIS_BUS,
     "sets": {
         15: (
             (840, {12: TERMINAL_1, 17: TERMINAL_1, 18: TERMINAL_1, 19: TERMINAL_1,
@@ -73,18 +76,19 @@ class Sources:
     """family: a module such as mm420.
 
     main        the source of the main setpoint, a digit as of P1000
-    place       of the word that COM_LINK means
+    place       of the word that THIS_BUS means
     additional  the source of the additional setpoint
     """
 
     def __init__(self, family):
         self._words = family.SOURCES["words"]
         self._received = family.SOURCES["received"]
+        self._digit = family.SOURCES["digit"]
         self._others = family.OTHER_COMMANDS
         self._digits = family.SETPOINT_SOURCES
         self._command = None  # a control word that no bus sets; None: that of the image
         self._on = None  # the connector of ON; None: from the control word, as the other bits
-        self.main, self.place, self.additional = COM_LINK, 1, 0
+        self.main, self.place, self.additional = THIS_BUS, 1, 0
 
     def take(self, settings):
         """Take command_source, setpoint_source, selection, on_source and main_source."""
@@ -93,18 +97,24 @@ class Sources:
         self._command = self._others.get(commands or settings.command_source)
         self.place = 1
         if setpoint:
-            self.main, self.additional = setpoint, 0
+            self.main, self.additional = self._source(setpoint), 0
             return
         digits = self._digits.get(settings.setpoint_source, settings.setpoint_source)
-        self.main, self.additional = digits % 10, digits // 10
+        self.main, self.additional = self._source(digits % 10), self._source(digits // 10)
         if settings.main_source is not None:
             self.main, self.place = self.setpoint(settings.main_source)
+
+    def _source(self, digit):
+        """The source that a digit means; other links say nothing."""
+        if digit == self._digit:
+            return THIS_BUS
+        return NONE if digit == THIS_BUS else digit
 
     def setpoint(self, connector):
         """What a connector of a setpoint means: source, and place of the word."""
         number, index = connector >> 16, connector & 0xFFFF
         if number == self._received:
-            return COM_LINK, index
+            return THIS_BUS, index
         return OUTPUTS.get(number, NONE), 1
 
     def command(self, image, obeyed_bits):
