@@ -16,6 +16,7 @@ from uss.families import rows
 # Of a MICROMASTER 4, as the texts have them, by row of the survey.
 _NUMBERS = (
     (rows.COMMAND_SOURCE, b"P0700"), (rows.SUPERVISION, b"P2014"), (rows.LOWEST, b"P1080"),
+    (rows.STATUS_SENT, b"P2019"),
 )  # fmt: skip
 
 # Without contact, by `Drive.trouble`.

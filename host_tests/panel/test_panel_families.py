@@ -5,48 +5,22 @@ A kind is written as --drives has it: g110, or mm440/4+4 with the PKW and PZD wo
 """
 
 import main
-from boards.sim.drives.kinds import expected, listed_drives, simulated
+from boards.sim.drives.kinds import listed_drives, simulated
 from boards.sim.world import World
+from kind_bench import is_untold, panel_of, start
 from panel_bench import row_1, row_2, starts, wait_until_known
 
 NOT_TRACED = "test_every_family_in_every_layout_runs_turns_round_trips_and_stops"
 
 HERTZ = (
     "mm420", "mm440", "mm440/127", "mm420/4+4", "mm440/4+8", "g110", "g110/4", "v20", "v20/4+6",
-    "mm3",
+    "mm3", "mm440-bop", "mm420-bop/127", "mm440-bop/4+4",
 )  # fmt: skip
 # Without a parameter channel, with words alone, with a reference in 1/min, or nothing known.
 PERCENT = (
-    "mm420/0", "mm440/0+4", "mm420/3", "g110/0", "v20/3", "g120", "g120/0", "g120/4", "generic",
-    "generic/0", "generic/127+3",
+    "mm420/0", "mm440/0+4", "mm420/3", "mm440-bop/0", "mm420-bop/3", "g110/0", "v20/3", "g120",
+    "g120/0", "g120/4", "generic", "generic/0", "generic/127+3",
 )  # fmt: skip
-
-
-def is_untold(kind):
-    """Whether nobody can read its telegram-off time: it has no parameter channel, or no family."""
-    return kind.startswith("generic") or "/0" in kind
-
-
-def panel_of(text, **more):
-    """A panel that was switched on a while ago, with these drives as ./tools/panel has them."""
-    listed = listed_drives(text)
-    settings = dict(more.pop("settings", {}), kinds=expected(listed))
-    addresses = [one.address for one in listed]
-    world = World(main.start, addresses, settings=settings, kinds=simulated(listed), **more)
-    world.run(1000)
-    wait_until_known(world)
-    return world
-
-
-def start(world, kind, address=1):
-    """Press START, and again where the drive does not tell its telegram-off time."""
-    world.press("START")
-    if is_untold(kind):
-        world.run(1500)
-        assert world.lcd()[1] == "START=GO STOP=NO", (kind, world.lcd())
-        assert starts(world, address) == 0
-        world.press("START")
-    world.run(4000)
 
 
 def test_every_family_in_every_layout_runs_turns_round_trips_and_stops():

@@ -21,10 +21,13 @@ from uss.families import (
     baud_code,
     can_be_set_to,
     is_float,
+    on_bop,
     rows,
     value,
 )
 from uss.families.generic import CUTS_OFF, RESCALES
+from uss.families.kinds import kind as understood
+from uss.families.kinds import text
 from uss.layout import VARIABLE, Layout
 from uss.timing import BAUD_RATES
 
@@ -234,6 +237,45 @@ def test_the_panel_asks_before_everything_that_the_design_names():
     named = (3, 10, 700, 719, 840, 918, 927, 970, 1000, 1070, 2000, 2009, 2010, 2011, 2012, 2013,
              2014, 2016, 2019, 2023, 3900)  # fmt: skip
     assert sorted(MM4.ask_first) == sorted(named)
+
+
+def test_the_bop_link_of_a_micromaster_4_has_words_and_indices_of_its_own():
+    for family in (MM410, MM420, MM430, MM440, CU240S):
+        bop = on_bop(family)
+        assert bop is on_bop(family) and bop.com is family and family.com is None
+        assert bop.__name__ == family.__name__ + "-BOP" and issubclass(bop, family)
+        assert (family.link_index, bop.link_index) == (0, 1)
+        assert (family.off_time_fault, bop.off_time_fault) == (72, 71)
+        for row in range(rows.COUNT_OF_ROWS):
+            com, own = family.survey[row], bop.survey[row]
+            if row in (rows.ABSOLUTE, rows.SUPERVISION, rows.COUNTER):
+                assert (com[:2], own[:2]) == ((com[0], 0), (com[0], 1)), row
+            elif row in (rows.STATUS_SENT, rows.ACTUAL_SENT):
+                assert (com[0], own[0]) == (2019, 2016) and com[1:] == own[1:]
+            else:
+                assert com[:3] == own[:3], row
+        missing = [bop.survey[row][3] for row in (rows.ON_SOURCE, rows.MAIN_SOURCE)]
+        assert missing == [rows.source(2032), rows.source(2015, 1)]
+    right = [rule[3] for rule in on_bop(MM440).meaning]
+    assert right == [
+        (0, 4), (4,), (2032 << 16,), (0, 4), (4,), (2015 << 16 | 1,), (0,), (0,), (52 << 16,),
+        (21 << 16,),
+    ]  # fmt: skip
+    for family in (MM3, G110, V20, G120, GENERIC):
+        assert refused(on_bop, family), family.name
+
+
+def test_a_kind_says_which_link_it_is_on():
+    for word, family, layout in (
+        ("mm440-bop", on_bop(MM440), Layout(4, 2)),
+        ("mm420-bop/127+4", on_bop(MM420), Layout(VARIABLE, 4)),
+        ("cu240s-bop/0", on_bop(CU240S), Layout(0, 2)),
+    ):
+        found = understood(word)
+        assert found[0] is family and found[1].is_like(layout), word
+        assert text(*found) == word
+    for word in ("v20-bop", "-bop", "mm440-bop-bop", "bop", "mm440-com", "mm420-bop/4+5"):
+        assert refused(understood, word), word
 
 
 def test_values_of_a_survey():

@@ -121,7 +121,8 @@ class Parameters(Page):
         control, number, value = self._wish
         family = control.survey.family
         eeprom = family.has_eeprom_tasks and (eeprom or number in family.permanent)
-        self._write = self.panel.write(now_ms, control, number, 0, value, eeprom)
+        index = self._index(number)
+        self._write = self.panel.write(now_ms, control, number, index, value, eeprom)
         holds = self._write and family.has_eeprom_tasks and not eeprom
         self._set_at_ms = now_ms if holds else None
 
@@ -145,6 +146,11 @@ class Parameters(Page):
         elif contact:
             self._ask(now_ms)
 
+    def _index(self, number):
+        """The index of the link, where the number has one for each link."""
+        family = self._control.survey.family
+        return family.link_index if number in family.linked else 0
+
     def _look_at_selected(self):
         if self.panel.selected is not self._control:
             self._forget()
@@ -163,7 +169,8 @@ class Parameters(Page):
     def _ask(self, now_ms):
         waited_ms = elapsed(now_ms, self._read_at_ms, self.panel.mask)
         if self._due or waited_ms >= _READ_MS:
-            if self._reading.ask(self._control.drive, self._shown[self._row][0]):
+            number = self._shown[self._row][0]
+            if self._reading.ask(self._control.drive, number, self._index(number)):
                 self._due = False
 
     def _take_answer(self, now_ms):

@@ -16,6 +16,7 @@ How the families differ from the MICROMASTER 4, in short (USS.md 1.3, 1.9, 4.2, 
 
     MM3     3 + 2 words, no IND, numbers below 1000; ON is 0C7Fh right, 147Fh left, and HIW has no
             sign; P091...P095, telegram-off time in seconds
+    -BOP    USS on the second link of a MICROMASTER 4 or CU240S: `bop` makes it of the family
     G110    parameters without index, 127 PKW words as delivered, no P2009
     V20     USS is chosen by P2023 = 1 and a power cycle; baud codes from 9600 on; trips with F72
     CU240S  the first G120: as an MM440
@@ -25,17 +26,18 @@ How the families differ from the MICROMASTER 4, in short (USS.md 1.3, 1.9, 4.2, 
 
 import uss.families.rows  # noqa: F401 - __getattr__ does not see the modules of this package
 
-# Which module has which families. The last one has what a program asks of them.
-_MODULES = {
-    "generic": "GENERIC",
-    "mm3": "MM3",
-    "mm4": "MM410 MM420 MM430 MM440",
-    "g110": "G110",
-    "v20": "V20",
-    "g120": "CU240S G120",
-    "questions": "",
-}
-NAMES = " ".join(_MODULES.values()).split()
+# Which module has which families. The last two have what a program asks of them.
+_MODULES = (
+    ("generic", "GENERIC"),
+    ("mm3", "MM3"),
+    ("mm4", "MM410 MM420 MM430 MM440"),
+    ("g110", "G110"),
+    ("v20", "V20"),
+    ("g120", "CU240S G120"),
+    ("bop", "on_bop"),
+    ("questions", ""),
+)
+NAMES = [name for _, names in _MODULES for name in names.split() if name.isupper()]
 
 
 def __getattr__(name):
@@ -43,8 +45,8 @@ def __getattr__(name):
     if name == "FAMILIES":
         return tuple([__getattr__(family) for family in NAMES])
     home = "mm4" if name == "MM4" else "questions"
-    for module in _MODULES:
-        if name in _MODULES[module].split():
+    for module, names in _MODULES:
+        if name in names.split():
             home = module
     found = getattr(__import__(__name__ + "." + home, None, None, (name,)), name, None)
     if found is None:

@@ -13,6 +13,7 @@ class G110(MM420):
     name = "SINAMICS G110"
     layout = Layout(VARIABLE, 2)
     has_indices = False
+    has_bop_link = False
     survey = (
         (700, 0, WORD, None),
         (1000, 0, WORD, None),

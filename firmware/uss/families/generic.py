@@ -37,8 +37,12 @@ class GENERIC:
     baud_codes = {}
     baud = 9600
 
-    # Numbers of the link's parameters, and the index among the links where its RS-485 stands.
+    # Numbers of the link's parameters, and the index of the link in them: 0 is that of the RS-485
+    # terminals. `bop` makes the family with the other link.
+    has_bop_link = False
     link_index = 0
+    linked = ()  # numbers that have this index, where it is not 0
+    com = None  # the same family on its terminals, where this is not that one
     baud_number = None
     address_number = None
     pzd_words_number = None

@@ -3,6 +3,7 @@
 
     kind("g110")                # (G110, Layout(127, 2)): as that family usually is
     kind("mm440/4+4")           # (MM440, Layout(4, 4)): PKW words, and PZD words if not 2
+    kind("mm440-bop/127")       # USS on the BOP link, not on the RS-485 terminals
     text(MM440, Layout(4, 4))   # "mm440/4+4"
 
 This is for programs that obey a person's choice, so a layout has PZD1 and PZD2 at the least.
@@ -11,6 +12,7 @@ This is for programs that obey a person's choice, so a layout has PZD1 and PZD2 
 from uss import families
 from uss.layout import STANDARD, Layout
 
+_BOP = "-bop"
 _PZD_USUAL = 2
 _PZD_MIN = 2  # STW and HSW: without them nobody commands a drive
 
@@ -18,9 +20,13 @@ _PZD_MIN = 2  # STW and HSW: without them nobody commands a drive
 def kind(text):
     """The family and the layout. ValueError if there is no such kind."""
     name, slash, words = text.partition("/")
+    is_bop = name.endswith(_BOP)
+    name = name[: -len(_BOP)] if is_bop else name
     if name not in [name.lower() for name in families.NAMES]:
         raise ValueError("no family %s: there are %s" % (name, " ".join(families.NAMES).lower()))
     family = getattr(families, name.upper())
+    if is_bop:
+        family = families.on_bop(family)
     layout = _layout(words) if slash else family.layout
     if not layout.suits(family):
         raise ValueError("a %s has no %r" % (family.name, layout))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""MICROMASTER 410, 420, 430 and 440, on their RS-485 terminals.
+"""MICROMASTER 410, 420, 430 and 440, on their RS-485 terminals; `bop` has the other link.
 
 Parameter numbers and meanings: MICROMASTER parameter lists; set up for USS with P0700 = P1000 = 5.
 """
@@ -30,7 +30,7 @@ class MM420(GENERIC):
     has_array_tasks = False  # it has them, and takes an index with the others (MM420 manual)
     baud_codes = codes(3, 9)  # (?) the ends of the range
     baud = 9600
-    link_index = 0
+    has_bop_link = True  # (?) of an MM410
     baud_number = 2010
     address_number = 2011
     pzd_words_number = 2012

@@ -13,6 +13,7 @@ class V20(MM440):
     name = "SINAMICS V20"
     layout = Layout(VARIABLE, 2)
     has_array_tasks = True
+    has_bop_link = False  # index 1 is reserved
     baud_codes = codes(6, 12)
     baud = 38400
     fault_format = "F%d"
