@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The bus for a program of one's own: what a maker writes, and what becomes of the motor."""
 
+from boards.sim.drives.bop_link import on_bop as on_bop_link
 from boards.sim.drives.families import g110, g120, generic, mm3, mm420, mm440, v20
 from bus_bench import QUICK, Bench, refusal
 from spoilt_bench import TROUBLES, spoil
@@ -8,7 +9,7 @@ from tools.examples.simulation import Stage
 from uss import bits, pkw, pzd
 from uss.bus import MAY_RUN, NO_CONTACT, Master
 from uss.errors import FallsSilent, NoContact, NotStarted, Refused, TimedOut, UssError
-from uss.families import G110, G120, GENERIC, MM3, MM420, MM440, V20
+from uss.families import G110, G120, GENERIC, MM3, MM420, MM440, V20, on_bop
 from uss.families.rows import WORD
 from uss.finding.scan import Scan
 from uss.layout import VARIABLE, Layout
@@ -1189,6 +1190,33 @@ def test_a_scan_says_what_it_has_found_in_a_form_that_add_takes():
         bus.add(address, node.family, node.layout)
     assert sorted(scan.nodes) == sorted(wanted)
     assert bus.wait(3, lambda: all([drive.contact for drive in bus.drives]))
+    bus.close()
+    stage.check()
+
+
+def test_a_scan_tells_which_link_of_a_micromaster_4_it_has_found():
+    """By the layout that index 0 or 1 tells, by the address, or by P0700."""
+    com_420, com_440 = mm420, mm440
+    bop_420, bop_440 = on_bop_link(mm420), on_bop_link(mm440)
+    wanted = {
+        0: (bop_440, {2013: 4}, on_bop(MM420), (4, 2)),  # address 0 and 4 + 2 words, on either
+        1: (bop_420, {}, on_bop(MM420), (4, 2)),
+        2: (bop_440, {(2013, 1): 127, (2012, 1): 4}, on_bop(MM420), (VARIABLE, 4)),
+        3: (bop_420, {2013: 4}, on_bop(MM420), (4, 2)),
+        4: (bop_440, {2013: 4, 2011: 4}, on_bop(MM420), (4, 2)),
+        5: (com_420, {(2013, 1): 4, (2011, 1): 5}, MM420, (4, 2)),
+        6: (com_440, {(2013, 1): 4}, MM420, (4, 2)),
+        7: (bop_440, {(2012, 1): 8}, on_bop(MM440), (4, 8)),
+        8: (bop_420, {(2013, 1): 3, (2014, 1): 900}, on_bop(MM420), (3, 2)),
+        9: (bop_420, {(2013, 1): 0}, GENERIC, (0, 2)),
+    }
+    drives = {address: (row[0], row[1]) for address, row in wanted.items()}
+    stage, bus, scan = scanned(drives, range(10))
+    for address, (_, _, family, layout) in wanted.items():
+        node = scan.nodes[address]
+        told = (node.layout.pkw_words, node.layout.pzd_words)
+        assert (node.family, told) == (family, layout), (address, node)
+    assert scan.will_trip == {8: 900, 9: None}, scan.will_trip
     bus.close()
     stage.check()
 

@@ -7,33 +7,40 @@ forms, until the drive confirms one. Which other parameters the drive has tells 
 question is an ordinary telegram with OFF1, so that it stops a motor that somebody left running. In
 a wrong form, bit 10 is 0 where the drive looks for its control word, so the drive obeys nothing.
 
-    node = Node(12, False)
-    questions = enquiry(node)           # a generator: yields (layout, number), is sent the value
-    layout, number = next(questions)
-    layout, number = questions.send(4)  # ... until StopIteration
-    node.family, node.layout, node.off_time_ms
+    enquirer = Enquirer(3, 12, False)   # a node of address 3 that takes 12 net characters
+    turns.post(enquirer.question())     # ... and when that is over:
+    enquirer.take(question)             # True: that was the last one
+    enquirer.node.family, enquirer.node.layout, enquirer.node.off_time_ms
+
+A MICROMASTER 4 has these parameters twice, for its RS-485 terminals and for the BOP link. It is on
+the one whose parameters tell the layout that it has, or else its address; if both do, P0700 says.
 """
 
-from uss import pkw, pzd
-from uss.families import G110, G120, GENERIC, MM3, MM4, MM440, V20, can_be_set_to
+from uss import families, pkw, pzd
+from uss.families import GENERIC, can_be_set_to
 from uss.layout import PZD_WORDS_MAX, VARIABLE, Layout
 from uss.outside import DONE, TIMED_OUT, OutsideTelegram
+from uss.receiver import SILENT
 from uss.telegram import GOOD, NET, put_word
 
 FRAME = 4  # characters of a telegram that are not net data
 NO_CHANNEL = -1  # instead of a value: the reply has no parameter channel in that place
+TRIES = 6  # of one question: a drive's answers may lag
+SILENCES = 2  # after so many silences to a question the drive has no answer to it
 
 # In the order of trying: the family; a family whose parameters tell the layout and the
-# telegram-off time; a parameter that this family has and those further down lack, or None.
+# telegram-off time; a parameter that this family has and those further down lack, or None. By
+# name, because few of them must be loaded.
 SIGNS = (
-    (MM4, MM4, 2009),
-    (MM440, MM4, 2009),  # with more PZD words
-    (V20, MM4, 2023),
-    (G110, MM4, None),
-    (G120, G120, None),
-    (MM3, MM3, 93),
-    (GENERIC, MM4, None),  # with even more
+    ("MM4", "MM4", 2009),
+    ("MM440", "MM4", 2009),  # with more PZD words
+    ("V20", "MM4", 2023),
+    ("G110", "MM4", None),
+    ("G120", "G120", None),
+    ("MM3", "MM3", 93),
+    ("GENERIC", "MM4", None),  # with even more
 )
+_COMMAND_SOURCE, _BY_BOP_LINK = 700, 4
 
 # PZD words of a drive with variable length, the most usual first.
 USUAL_PZD_WORDS = (2, 4, 8, 1, 3, 5, 6, 7, 0, 16, 12, 10, 9, 11, 13, 14, 15)
@@ -48,7 +55,8 @@ class Node:
     most usual one of its length and `family` is GENERIC.
     """
 
-    def __init__(self, net_count, variable):
+    def __init__(self, address, net_count, variable):
+        self.address = address
         self.net_count = net_count
         self.variable = variable
         self.layout = layouts(net_count, variable)[0]
@@ -57,6 +65,35 @@ class Node:
 
     def __repr__(self):
         return "<%s %r>" % (self.family.name, self.layout)
+
+
+class Enquirer:
+    """Asks one node everything. node: the `Node`, complete when `take` has said True."""
+
+    def __init__(self, address, net_count, variable):
+        self.node = Node(address, net_count, variable)
+        self._questions = enquiry(self.node)
+        self._place = next(self._questions)
+        self._tries = self._silences = 0
+
+    def question(self):
+        """The telegram to be sent next."""
+        return Question(self.node.address, *self._place)
+
+    def take(self, question):
+        """A telegram is over. Whether it was the last one."""
+        self._tries += 1
+        if question.state != DONE:
+            if question.finding == SILENT:
+                self._silences += 1
+            if self._silences < SILENCES and self._tries < TRIES:
+                return False  # the question is sent once more
+        self._tries = self._silences = 0
+        try:
+            self._place = self._questions.send(question.value())
+        except StopIteration:
+            return True
+        return False
 
 
 def layouts(net_count, variable):
@@ -69,43 +106,78 @@ def layouts(net_count, variable):
 
 
 def enquiry(node):
-    """A generator of (layout, number) to read; number None: a telegram without a task. Send it the
-    value, None if there is none, or NO_CHANNEL. At its end the fields of `node` hold what is
-    known.
+    """A generator of (layout, number, index) to read; number None: a telegram without a task. Send
+    it the value, None if there is none, or NO_CHANNEL. At its end the fields of `node` hold what
+    is known.
     """
     usual = None
     for layout in layouts(node.net_count, node.variable):
         if not layout.pkw_words:
             usual = usual or layout
             break
-        known = {}  # number -> value
-        for family, link, sign in SIGNS:
+        known = {}  # (number, index) -> value
+        for name, told_by, sign in SIGNS:
+            family, link = getattr(families, name), getattr(families, told_by)
             if not can_be_set_to(family, layout):
                 continue
-            rows = (
-                (link.pkw_words_number, layout.pkw_words),
-                (link.pzd_words_number, layout.pzd_words),
-                (sign, None),
-            )
-            for number, wanted in rows:
-                if number is None:
-                    continue
-                if number not in known:
-                    known[number] = yield layout, number
-                value = known[number]
-                if value in (None, NO_CHANNEL) or wanted not in (None, value):
-                    break
-            else:
-                node.layout = layout
-                node.family = family
-                off_time = yield layout, link.off_time_number
-                if off_time is not None:
-                    node.off_time_ms = off_time * link.off_time_unit_ms
-                return
+            links = []  # indices that it may be on
+            for index in range(2 if family.has_bop_link else 1):
+                if (yield from _is_set_to(layout, known, link, index)):
+                    links.append(index)
+            if not links or sign and not (yield from _has(layout, known, sign)):
+                continue
+            index = links[0]
+            if len(links) > 1:
+                index = yield from _link(node.address, layout, known, link.address_number)
+            node.layout = layout
+            node.family = families.on_bop(family) if index else family
+            off_time = yield layout, link.off_time_number, index
+            if off_time not in (None, NO_CHANNEL):
+                node.off_time_ms = off_time * link.off_time_unit_ms
+            return
         if NO_CHANNEL not in known.values():
             usual = usual or layout
     node.layout = usual or node.layout
-    yield node.layout, None
+    yield node.layout, None, 0
+
+
+def _ask(layout, known, number, index=0):
+    """Read a parameter once."""
+    place = number, index
+    if place not in known:
+        known[place] = yield layout, number, index
+    return known[place]
+
+
+def _has(layout, known, number):
+    value = yield from _ask(layout, known, number)
+    return value not in (None, NO_CHANNEL)
+
+
+def _is_set_to(layout, known, link, index):
+    """Whether the parameters of this link tell the layout, as far as there are such."""
+    if index and NO_CHANNEL in known.values():
+        return False
+    rows = (link.pkw_words_number, layout.pkw_words), (link.pzd_words_number, layout.pzd_words)
+    for number, words in rows:
+        if number is not None:
+            value = yield from _ask(layout, known, number, index)
+            if value != words:
+                return False
+    return True
+
+
+def _link(address, layout, known, number):
+    """The index of the link that it is on, of two that are set to the layout."""
+    own = []
+    for index in range(2):
+        value = yield from _ask(layout, known, number, index)
+        if value == address:
+            own.append(index)
+    if len(own) == 1:
+        return own[0]
+    source = yield from _ask(layout, known, _COMMAND_SOURCE)
+    return 1 if source == _BY_BOP_LINK else 0
 
 
 class Question(OutsideTelegram):
@@ -115,8 +187,8 @@ class Question(OutsideTelegram):
     silent, or, if `finding` is GOOD, its answer belongs to an older question.
     """
 
-    def __init__(self, address, layout, number):
-        self.job = None if number is None else pkw.read(number)
+    def __init__(self, address, layout, number, index=0):
+        self.job = None if number is None else pkw.read(number, index)
         self._layout = layout
         self._speaks = True  # the reply may be that of a parameter channel
         self._form = layout.pkw_words * 2

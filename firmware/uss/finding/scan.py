@@ -23,7 +23,7 @@ the sum.
 
 from micropython import const
 
-from uss.finding.enquiry import Node, Question, enquiry
+from uss.finding.enquiry import Enquirer
 from uss.errors import WHY_SILENT, NoContact, UssError
 from uss.master import LISTENING, OFF, PAUSE_LOOK_US
 from uss.pzd import ZSW_RUNNING
@@ -46,8 +46,6 @@ TRIES = const(3)  # telegrams to an address, if something came back, but not the
 ACCOUNT_US = const(10_000)  # the bus takes so long to charge a silence to the silent drives' share
 KEEP_US = const(100_000)  # a node that was found is asked again after so long,
 KEEP_MAX = const(2)  # but at most so many such nodes in a row
-QUESTION_TRIES = const(6)  # of one question: a drive's answers may lag
-SILENCES = const(2)  # after so many silences to a question the drive has no answer to it
 
 
 class Scan:
@@ -90,16 +88,13 @@ class Scan:
         self._stops = self._count_stops()
         self._position = 0  # counts through the addresses, once for every length
         self._tries = 0
-        self._silences = 0
         self._another_length = False  # the next telegram is to show whether any length will do
         self._telegram = None  # the telegram that is under way
         self._take = None  # what is called with it when it is over
         self._silent_at = None  # when the last telegram that nobody answered was over
         self._kept = {}  # nodes found that are not on the bus: address -> when it was asked last
         self._kept_in_a_row = 0
-        self._enquiring = None  # the address that is being asked what it is,
-        self._questions = None  # the generator of the questions to it,
-        self._question = None  # and the question that waits for an answer
+        self._enquirer = None  # asks one of them what it is
 
     @property
     def longest_ms(self):
@@ -247,36 +242,25 @@ class Scan:
 
     def _enquire(self):
         """Send the next question to a node that was found; False if none is left to ask."""
-        if self._questions is None:
+        if self._enquirer is None:
             left = [address for address in sorted(self._kept) if address not in self.nodes]
             if not left:
                 return False
-            address = self._enquiring = left[0]
-            node = Node(self.found[address], address in self.variable)
-            self.nodes[address] = node
-            self._questions = enquiry(node)
-            self._question = next(self._questions)
-        self._send(Question(self._enquiring, *self._question), self._take_answer)
+            address = left[0]
+            enquirer = Enquirer(address, self.found[address], address in self.variable)
+            self._enquirer = enquirer
+            self.nodes[address] = enquirer.node
+        self._send(self._enquirer.question(), self._take_answer)
         return True
 
     def _take_answer(self, question, now):
-        address = self._enquiring
-        self._kept[address] = now
-        self._tries += 1
-        if question.state != DONE:
-            self._note_silence(question, now)
-            if question.finding == SILENT:
-                self._silences += 1
-            if self._silences < SILENCES and self._tries < QUESTION_TRIES:
-                return  # the question is sent once more
-        self._tries = self._silences = 0
-        try:
-            self._question = self._questions.send(question.value())
-        except StopIteration:
-            self._questions = None
-            off_time_ms = self.nodes[address].off_time_ms
-            if off_time_ms != 0:
-                self.will_trip[address] = off_time_ms
+        node = self._enquirer.node
+        self._kept[node.address] = now
+        self._note_silence(question, now)
+        if self._enquirer.take(question):
+            self._enquirer = None
+            if node.off_time_ms != 0:
+                self.will_trip[node.address] = node.off_time_ms
 
     # --- the bus --------------------------------------------------------------------------------
 
