@@ -60,6 +60,7 @@ clock = rp2040.Clock()
 display = rp2040.make_display(
     BACKPACK_SDA, BACKPACK_SCL, BACKPACK_ADDRESSES, LCD_REGISTER_SELECT, LCD_ENABLE, clock
 )
+backlight = getattr(display, "backlight", None)  # a backpack switches it
 keypad = rp2040.make_keypad(KEYS, NORMALLY_CLOSED)
 store = FileStore(SETTINGS_FILE, open, os)
 watchdog = rp2040.Watchdog()

@@ -88,6 +88,8 @@ class Board:
         self.reset_cause = reset_cause
         self.clock = chip.clock
         self.display = make_display(chip, lcd)
+        self.backlight = lcd.light
+        lcd.light(True)  # as every board has it at first
         self.keypad = make_keypad(chip, switches)
         self.store = store
         self.watchdog = Watchdog(chip)

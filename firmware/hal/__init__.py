@@ -18,6 +18,7 @@ board
     timer               a machine.Timer for the bus alone; None: the main loop paces the bus, and
     if
                         it hangs, only the watchdog stops the drives
+    backlight(on)       optional, or None: switches the light of the display, on at first
     make_link(baud)     builds the link for that baud rate; called once
     idle()              at the end of each main loop step: lets the machine work, 2 ms at most
 

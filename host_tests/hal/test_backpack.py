@@ -48,6 +48,30 @@ def test_looking_for_it_lights_it_and_writes_nothing():
     assert bench.chip_of_backpack.lit and bench.written() == 0
 
 
+def test_the_light_goes_off_and_on_and_the_picture_stays():
+    bench = running(HOURGLASS)
+    chip, display = bench.chip_of_backpack, bench.display
+    written = bench.written()
+    display.backlight(False)
+    assert not chip.lit and bench.written() == written
+    assert bench.run(bytearray(READY), START_MS) and bench.text() == shown(READY)
+    bench.run(bytearray(READY), REFRESH_MS + 500)  # all of it is written anew
+    assert not chip.lit and bench.text() == shown(READY)
+    display.backlight(True)
+    assert chip.lit and bench.text() == shown(READY)
+    bench.check()
+
+
+def test_a_backpack_that_is_away_when_the_light_goes_off_comes_back_dark():
+    bench = running()
+    bench.chip_of_backpack.plugged = False
+    bench.display.backlight(False)
+    bench.chip_of_backpack.plugged = True
+    assert bench.run(bytearray(READY), START_MS + 2 * AGAIN_MS) and bench.text() == shown(READY)
+    assert not bench.chip_of_backpack.lit
+    bench.check()
+
+
 def test_the_first_picture_after_power_on():
     """Nothing is seen before it is whole, and nothing is claimed before it is seen."""
     bench = BackpackBench()

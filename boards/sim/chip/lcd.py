@@ -73,6 +73,7 @@ class Lcd:
     ddram, cgram        80 characters, 40 for each row; 8 rows of dots for each of 8 characters
     characters, dots    how many bytes were written to each
     instructions, clears, homes   how many were executed, clear and home among them
+    lit                 whether its light is on; `light` is wired to the board
     is_on, two_lines, increment, shifts, first_column, address, in_cgram, eight_bits, half
                         its state, for tests to look at and to spoil; half: the high nibble of a
                         byte whose low one has not come, or -1
@@ -86,6 +87,7 @@ class Lcd:
         self.instructions = 0
         self.clears = 0
         self.homes = 0
+        self.lit = True
         self._clock = clock
         self._pins = ()
         self._lines = 0  # D4...D7, and RS as bit 4
@@ -104,6 +106,9 @@ class Lcd:
             (0x01, self._clear),
         )
         self.power_on()
+
+    def light(self, on):
+        self.lit = on
 
     def power_on(self):
         """Power comes, or comes back: 8 bits wide, off, random characters in its memory."""

@@ -8,6 +8,7 @@ and sets it up anew when it answers. The panel goes on meanwhile.
     display = Backpack(make_i2c, 0x27, clock)
     display.show(picture)               # each step of the loop, until it answers True
     display.failures                    # transfers that were not acknowledged
+    display.backlight(False)            # as the contract `board` of `hal` has it
 """
 
 from micropython import const
@@ -45,10 +46,18 @@ class Backpack(CharacterDisplay):
         self._count = 0
         self._register = -1  # what P0 was last set for; -1 unknown
         self._lost = False  # the last transfer failed
+        self._light = BACKLIGHT
         CharacterDisplay.__init__(self, clock)
 
+    def backlight(self, on):
+        self._light = BACKLIGHT if on else 0
+        self._register = -1  # this byte sets it too
+        self._buffer[0] = self._light
+        self._count = 1
+        self._end_piece()
+
     def _nibble(self, register, code):
-        lines = code & _DATA | BACKLIGHT | (_REGISTER_SELECT if register else 0)
+        lines = code & _DATA | self._light | (_REGISTER_SELECT if register else 0)
         buffer, count = self._buffer, self._count
         if register != self._register:
             # The register must stand 40 ns before E rises; data need not before E falls.
@@ -65,7 +74,7 @@ class Backpack(CharacterDisplay):
     def _end_piece(self):
         count, self._count = self._count, 0
         if self._lost:  # only look whether it is there again: the display may just have got power
-            self._buffer[0] = BACKLIGHT
+            self._buffer[0] = self._light
             count = 1
         try:
             self._write_to(self._i2c_address, self._pieces[count])
