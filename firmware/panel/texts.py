@@ -137,6 +137,14 @@ REFUSED_UNSAVED = b"NO: UNSAVED"  # its new address is not in the settings yet
 REFUSED_NO_JOG = b"NO: HAS NO JOG"
 REFUSED_UNSUPERVISED = b"NO JOG: P2014=0"
 REFUSED_LONG = b"NO: P2014 LONG"
+REFUSED_DIGITS = b"NO: SET OR PARAM"  # first: the setpoint is being edited
+
+# --- the setpoint digit by digit, and the units of what row 1 shows ------------------------------
+
+NEW_SETPOINT = b"NEW"
+SET_TO_LIMIT = b"LIMIT: %d.%02d"  # in place of what was beyond it
+HERTZ = b"Hz"
+PERCENT = b"%"
 
 # --- parameter mode ------------------------------------------------------------------------------
 

@@ -7,21 +7,34 @@
 Row 1 and the address are drawn by `panel.view`, because parameter mode shows them too.
 """
 
+import on_demand
 from panel import texts, wording
 from panel.fault import draw_number
 from panel.pages import Page, warning
 
 
 class Home(Page):
-    """UP and DOWN move the setpoint, faster while they are held."""
+    """UP and DOWN move the setpoint, faster while they are held. EDIT: digit by digit."""
 
     tells_state = True
 
     def take_keys(self, acts, now_ms):
+        panel = self.panel
         direction = acts.direction("UP", "DOWN")
         if direction:
-            panel = self.panel
             panel.selected.change(direction * panel.setpoint_step * acts.pace())
+        if acts.has("EDIT"):
+            self._load(now_ms, self._edit)
+
+    def _edit(self):
+        self.panel.cover(on_demand.load("panel.pages.digits").Digits(self.panel))
+
+    def _load(self, now_ms, begin):
+        """Begin what comes from the flash."""
+        try:
+            begin()
+        except MemoryError:
+            self.panel.say(now_ms, texts.NO_MEMORY)
 
     def draw(self, screen, now_ms):
         control = self.panel.selected

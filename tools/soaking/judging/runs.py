@@ -3,7 +3,7 @@
 
 A reply ends a run if the drive has tripped, or stands although it was not told to. If a motor
 starts once more, after a moment without mains, the panel must stop it before long. While a run
-goes on, only UP raises its setpoint.
+goes on, only UP raises its setpoint, or SET, which takes one that was typed in.
 
     if is_over(case, zsw) or is_standstill(case, hiw): ...
 """
@@ -45,7 +45,7 @@ def judge_rise(witness, case, hsw, now, where):
         case.highest_hsw = hsw
     elif hsw > case.highest_hsw + ROUNDING:
         told = (where, hsw, case.highest_hsw)
-        raise Broken("RISES", "%s, HSW %04X was %04X, and nobody pressed UP" % told)
+        raise Broken("RISES", "%s, HSW %04X was %04X, and nobody pressed UP or SET" % told)
     else:
         case.highest_hsw = min(case.highest_hsw, hsw)
 

@@ -111,7 +111,7 @@ class Witness:
         """A key is about to move."""
         self.judge.look()
         self.stirred_us = now = self.clock.now_us
-        if key == "UP":
+        if key in ("UP", "SET"):  # SET takes a setpoint that was typed in
             for case in self.candidates():
                 case.raised_us = now
         if not down:
