@@ -69,7 +69,9 @@ class View:
                 return ROW_2
             _draw_setpoint(screen, panel.selected)
         elif field == ACTUAL:
-            _draw_actual(screen, panel.selected)
+            values = self._page.values
+            if values is None or not values.draw(screen):
+                _draw_actual(screen, panel.selected)
         elif field == ROW_2:
             return self._draw_row_2(panel.selected)
         elif field == PAGE:

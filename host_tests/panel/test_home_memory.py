@@ -8,7 +8,7 @@ chips.
 
 from micropython import heap_lock, heap_unlock
 
-from panel_bench import panel, row_2
+from panel_bench import panel, row_1, row_2, running
 
 INTERPRETERS = "unix64 unix32"
 
@@ -61,6 +61,17 @@ def test_nor_do_frequencies_that_change_or_three_drives_of_which_one_is_announce
     world.drives[3].unplug()
     world.run(3_000)  # who looks for another layout is loaded now
     lock(world, 20_000)
+    world.check()
+
+
+def test_nor_do_percent_and_the_output_current_in_place_of_the_frequency():
+    world = running()
+    for presses, unit in ((1, "%"), (3, "A")):
+        for _ in range(presses):
+            world.press("NEXT")
+        world.run(5_000)
+        lock(world, 20_000)
+        assert row_1(world).rstrip().endswith(unit), world.lcd()
     world.check()
 
 

@@ -15,6 +15,7 @@ class Page:
     tells_state: its row 2 says what the drive shown does (pages that are not whole)
     obeys: START, REVERSE, JOG, address keys and PARAM act while it is shown; STOP always acts
     announces: what has to be said of other drives is said while it is shown
+    values: draw in row 1 what stands there in place of the actual frequency; None: nothing does
     modules: nobody needs them in memory when it is gone
     """
 
@@ -23,6 +24,7 @@ class Page:
     tells_state = False
     obeys = True
     announces = True
+    values = None
 
     def __init__(self, panel):
         self.panel = panel

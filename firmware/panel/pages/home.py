@@ -14,7 +14,9 @@ from panel.pages import Page, warning
 
 
 class Home(Page):
-    """UP and DOWN move the setpoint, faster while they are held. EDIT: digit by digit."""
+    """UP and DOWN move the setpoint, faster while they are held. EDIT: digit by digit.
+    NEXT and PREVIOUS show other values than the actual frequency, see `panel.pages.values`.
+    """
 
     tells_state = True
 
@@ -23,18 +25,29 @@ class Home(Page):
         direction = acts.direction("UP", "DOWN")
         if direction:
             panel.selected.change(direction * panel.setpoint_step * acts.pace())
-        if acts.has("EDIT"):
-            self._load(now_ms, self._edit)
-
-    def _edit(self):
-        self.panel.cover(on_demand.load("panel.pages.digits").Digits(self.panel))
-
-    def _load(self, now_ms, begin):
-        """Begin what comes from the flash."""
+        step = acts.direction("NEXT", "PREVIOUS")
         try:
-            begin()
+            if acts.has("EDIT"):
+                panel.cover(on_demand.load("panel.pages.digits").Digits(panel))
+            elif step:
+                values = self.values or on_demand.load("panel.pages.values").Values(panel)
+                self._keep(values, values.turn(step))
         except MemoryError:
-            self.panel.say(now_ms, texts.NO_MEMORY)
+            panel.say(now_ms, texts.NO_MEMORY)
+
+    def open(self):
+        if self.values:
+            self.values.forget()
+
+    def step(self, keys, now_ms):
+        if self.values and not self.values.step(now_ms):
+            self._keep(None, False)
+
+    def _keep(self, values, shown):
+        """Another value than the actual frequency is shown, or is not any more."""
+        self.values = values if shown else None
+        if not shown:
+            on_demand.drop("panel.pages.values")
 
     def draw(self, screen, now_ms):
         control = self.panel.selected

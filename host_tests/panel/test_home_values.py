@@ -1,0 +1,344 @@
+# SPDX-License-Identifier: MIT
+"""The operator's manual, the home page: NEXT and PREVIOUS show other values than the frequency.
+
+Percent of the reference, and what the drive tells by parameters: Hz, 1/min, A, V, kW and C.
+"""
+
+import sys
+
+from panel_bench import OFF1, late, panel, row_1, row_2, running, telegrams, wait_until_known
+
+
+def runs(kind="mm420", **more):
+    """A panel whose drive, of this kind, runs at its setpoint."""
+    family, _, words = kind.partition("/")
+    module = __import__("boards.sim.drives.families." + family, None, None, (family,))
+    own = {"family": module}
+    if words:
+        own["parameters"] = {2014: 2000, 2013: int(words)}
+    settings = {"kinds": {"1": kind}, "unsupervised": [1]}
+    return running(kinds={1: own}, settings=settings, **more)
+
+
+def shown(world):
+    """The value in row 1, once the drive has told it."""
+    for _ in range(60):
+        world.run(50)
+        if not row_1(world)[7:].strip().startswith("?"):
+            return row_1(world)[7:]
+    raise AssertionError(world.lcd())
+
+
+def values(world, key="NEXT"):
+    """What row 1 shows behind the setpoint, from one press to the next, once round."""
+    seen = []
+    while len(seen) < 20:
+        world.press(key)
+        world.run(700)
+        seen.append(shown(world))
+        if "F:" in seen[-1]:
+            return seen
+    raise AssertionError(seen)
+
+
+def units(seen):
+    return [text.strip(" 0123456789.-") for text in seen]
+
+
+def show(world, unit):
+    """Press NEXT until this unit is shown."""
+    for _ in range(12):
+        world.press("NEXT")
+        world.run(700)
+        if row_1(world).rstrip().endswith(unit):
+            return world
+    raise AssertionError(world.lcd())
+
+
+def asked(world, since_us, number):
+    """How often the panel has asked for a parameter since an instant."""
+    head = (0x1000 | number % 2000, 0x8000 if number >= 2000 else 0)
+    told = 0
+    for at_us, from_panel, characters in world.wire.log.last(1000):
+        if from_panel and at_us >= since_us and len(characters) >= 12:
+            words = (characters[3] << 8 | characters[4], characters[5] << 8 | characters[6])
+            told += words == head
+    return told
+
+
+# --- what there is -------------------------------------------------------------------------------
+
+
+def test_next_goes_through_all_values_and_round():
+    world = runs("mm440")
+    seen = values(world)
+    assert units(seen) == ["%", "Hz", "rpm", "A", "V", "Vdc", "kW", "C M", "C I", "F:"], seen
+    drive = world.drives[1]
+    for text, number in zip(seen[1:-1], (24, 22, 27, 25, 26, 32, 35, 37)):
+        value = float(text.strip().rstrip("HzrpmAVdckWMI C"))
+        assert abs(value - drive.read(number)) <= max(0.51, abs(value) / 50), (text, number)
+    assert seen[0] == "  20.0%  " and seen[1] == " 10.00Hz ", seen
+    assert seen[-1] == " F: 10.00"
+    world.check()
+
+
+def test_previous_goes_the_other_way():
+    world = runs("mm420")
+    assert units(values(world)) == ["%", "Hz", "rpm", "A", "V", "Vdc", "C I", "F:"]
+    assert units(values(world, "PREVIOUS")) == ["C I", "Vdc", "V", "A", "rpm", "Hz", "%", "F:"]
+    world.check()
+
+
+def test_each_family_shows_what_it_has():
+    common = ["Hz", "rpm", "A", "V", "Vdc"]
+    for kind, wanted in (
+        ("g110", ["%"] + common + ["C I", "F:"]),
+        ("v20", ["%"] + common + ["kW", "C M", "C I", "F:"]),
+        ("g120", common + ["kW", "C M", "%F:"]),  # this one refuses r0037, and is in percent
+        ("mm3", ["%", "rpm", "A", "V", "Vdc", "F:"]),
+    ):
+        world = runs(kind)
+        seen = values(world)
+        assert units(seen) == wanted, (kind, seen)
+        world.check()
+
+
+def test_a_value_in_words_has_its_decimals():
+    world = show(runs("mm3"), "A")
+    drive = world.drives[1]
+    assert abs(float(shown(world).strip()[:-1]) - drive.read(132) / 10) < 0.05, world.lcd()
+    show(world, "rpm")
+    assert abs(int(shown(world).strip()[:-3]) - drive.read(135)) <= 2, world.lcd()
+
+
+def test_without_a_parameter_channel_there_is_only_what_pzd_tells():
+    world = panel(kinds={1: {"parameters": {2013: 0}}}, settings={"kinds": {"1": "mm420/0"}})
+    wait_until_known(world)
+    assert row_1(world) == "S: 10.0%F:  0.00"
+    world.press("NEXT")
+    world.run(500)
+    assert row_1(world) == "S: 10.0%F:  0.00"
+    world.check()
+
+
+def test_it_turns_left_with_a_minus():
+    world = runs("mm440")
+    world.press("REVERSE")
+    world.run(5000)
+    seen = values(world)
+    assert seen[0].strip() == "-20.0%" and seen[1].strip() == "-10.0Hz", seen
+    assert seen[2].strip().startswith("-"), seen
+    world.check()
+
+
+def test_percent_beyond_what_a_word_can_say():
+    world = show(runs("mm440"), "%")
+    screen = world.app.panel.screen
+    world.app.panel.selected.drive.hiw = 0x7FFF
+    screen.put(0, 0, 16, b"")
+    world.app.panel._home.values.draw(screen)
+    assert screen.rows()[0] == "        >>>>>%  ", screen.rows()
+
+
+def test_speeds_of_five_digits_and_a_sign_have_room():
+    world = show(runs("mm440"), "rpm")
+    values_shown = world.app.panel._home.values
+    for value, text in (
+        (-1_500_000, " -15000rpm"),
+        (1_500_000, "  15000rpm"),
+        (1_234, "     12rpm"),
+    ):
+        values_shown._value = value
+        screen = world.app.panel.screen
+        screen.put(0, 0, 16, b"")
+        values_shown.draw(screen)
+        assert screen.rows()[0][6:] == text, screen.rows()
+
+
+# --- what it does and what it does not -----------------------------------------------------------
+
+
+def test_it_follows_the_drive():
+    world = show(runs("mm440"), "rpm")
+    before = shown(world)
+    world.press("UP", 3000)
+    world.run(5000)
+    after = shown(world)
+    assert int(after.strip()[:-3]) > int(before.strip()[:-3]) + 100, (before, after)
+    world.press("STOP")
+    world.run(6000)
+    assert shown(world) == "     0rpm", world.lcd()
+    world.check()
+
+
+def test_stop_acts_at_once():
+    world = show(runs("mm440"), "A")
+    pressed_us = world.clock.now_us
+    world.press("STOP")
+    sent = telegrams(world, pressed_us, 1)
+    assert any(stw == OFF1 and at_us - pressed_us < 40_000 for at_us, stw in sent), sent
+    world.run(6000)
+    assert world.drives[1].hz() == 0
+    world.check()
+
+
+def test_a_start_is_not_later_by_it():
+    def start_ms(world):
+        world.run(2000)
+        pressed_us = world.clock.now_us
+        world.press("START")
+        world.run(2000)
+        on = [at_us for at_us, stw in telegrams(world, pressed_us, 1) if stw == 0x047F]
+        return (on[0] - pressed_us) // 1000
+
+    plain = panel()
+    wait_until_known(plain)
+    world = panel()
+    wait_until_known(world)
+    show(world, "A")
+    assert start_ms(world) <= start_ms(plain) + 100
+    world.check()
+
+
+def test_it_is_read_about_three_times_a_second():
+    world = show(runs("mm440"), "A")
+    since_us = world.clock.now_us
+    world.run(3000)
+    assert 5 <= asked(world, since_us, 27) <= 40
+    while " F:" not in row_1(world):
+        world.press("NEXT")
+    since_us = world.clock.now_us
+    world.run(3000)
+    assert asked(world, since_us, 27) == 0  # not any more
+
+
+def test_another_page_and_back_reads_it_anew():
+    world = show(runs("mm440"), "Vdc")
+    world.press("PARAM")
+    world.run(500)
+    assert " F:" in row_1(world), world.lcd()  # parameter mode has the frequency
+    since_us = world.clock.now_us
+    world.run(2000)
+    assert asked(world, since_us, 26) == 0
+    world.press("PARAM")
+    assert shown(world).strip().endswith("Vdc")
+    world.check()
+
+
+def test_the_value_stays_selected_while_other_drives_are_shown():
+    from boards.sim.drives.families import generic, mm440
+
+    kinds = {1: {"family": mm440}, 2: {"family": generic}, 3: {"family": mm440}}
+    settings = {"kinds": {"1": "mm440", "2": "generic", "3": "mm440"}}
+    world = panel(addresses=(1, 2, 3), kinds=kinds, settings=settings)
+    wait_until_known(world)
+    show(world, "kW")
+    world.press("ADDRESS_UP")
+    world.run(1500)
+    assert row_1(world) == "S: 10.0%F:  0.00" and row_2(world).endswith("A2"), world.lcd()
+    world.press("ADDRESS_UP")
+    world.run(1500)
+    assert shown(world) == "  0.00kW " and row_2(world).endswith("A3"), world.lcd()
+    world.check()
+
+
+def test_without_contact_it_is_dashes():
+    world = show(panel(), "Vdc")
+    world.drives[1].unplug()
+    world.run(3000)
+    assert row_1(world) == "S: 10.0 -----Vdc", world.lcd()
+    world.press("PREVIOUS")
+    world.run(100)
+    world.press("NEXT")
+    world.run(500)
+    assert row_1(world)[7:] == " -----Vdc", world.lcd()
+    world.drives[1].plug()
+    world.run(3000)
+    assert shown(world).endswith("Vdc") and "-" not in shown(world), world.lcd()
+    world.check()
+
+
+def test_percent_without_contact_is_dashes():
+    world = show(panel(), "%")
+    world.drives[1].unplug()
+    world.run(3000)
+    assert row_1(world)[7:] == " -----%  ", world.lcd()
+
+
+def test_a_value_that_is_late_is_not_shown_as_if_it_were_new():
+    world = show(runs("mm440"), "A")
+    late(world, 27)
+    for _ in range(200):
+        world.run(20)
+        if row_1(world)[7:] == " -----A  ":
+            break
+    else:
+        raise AssertionError(world.lcd())
+    world.run(4000)
+    assert "-----" not in row_1(world), world.lcd()
+
+
+def test_a_refused_value_is_left_out_and_not_asked_for_again():
+    world = runs("g120")
+    since_us = world.clock.now_us
+    values(world)
+    first = asked(world, since_us, 37)
+    assert first >= 1
+    since_us = world.clock.now_us
+    values(world)
+    assert asked(world, since_us, 37) == 0
+    world.check()
+
+
+def test_a_value_that_is_refused_later_is_dashes_and_asked_for_seldom():
+    world = show(runs("mm440"), "A")
+    rows = world.drives[1].parameters.rows
+    kept = rows.pop(27)
+    try:
+        world.run(2000)
+        assert row_1(world)[7:] == " -----A  ", world.lcd()
+        since_us = world.clock.now_us
+        world.run(5000)
+        assert asked(world, since_us, 27) <= 3
+        world.press("NEXT")
+        world.run(700)
+        assert shown(world).strip().endswith("V")
+    finally:
+        rows[27] = kept
+    world.check()
+
+
+def test_floats_are_read_without_floats():
+    from panel.pages import values as module
+    from uss import pkw
+
+    class Told:
+        state, width = pkw.DONE, pkw.DOUBLE
+
+    def hundredths(high, low):
+        Told.high, Told.low = high, low
+        return module._hundredths(Told, 0)
+
+    import struct
+
+    for value in (0.0, 1.0, -1.0, 0.01, 0.004, 0.006, 49.995, 560.25, 1395.0, -39000.0, 131000.5,
+                  1e-30, -0.0):  # fmt: skip
+        high, low = struct.unpack(">HH", struct.pack(">f", value))
+        assert abs(hundredths(high, low) - value * 100) <= 0.51, value
+    for value in (1e6, 1e38, float("inf"), -float("inf"), float("nan")):
+        high, low = struct.unpack(">HH", struct.pack(">f", value))
+        assert hundredths(high, low) is None, value
+    Told.width = pkw.WORD
+    assert module._hundredths(Told, 0) is None  # a drive that means something else by it
+    Told.width, Told.low = pkw.DOUBLE, 5
+    assert module._hundredths(Told, 10) is None
+
+
+def test_it_leaves_the_memory_with_the_frequency():
+    world = show(panel(), "Hz")
+    assert "panel.pages.values" in sys.modules and "uss.families.readings" not in sys.modules
+    show(world, "C I")
+    world.press("NEXT")
+    world.run(700)
+    assert " F:" in row_1(world) and "panel.pages.values" not in sys.modules
+    world.check()
