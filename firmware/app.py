@@ -57,7 +57,7 @@ class App:
         self._roster = roster = Roster(self.bus, settings, mask)
         board.display.define(GLYPHS)
         notice = texts.WATCHDOG_RESTART if board.reset_cause else texts.NOTHING
-        self.panel = Panel(roster, self.bus, board.keypad.names, settings, mask, notice)
+        self.panel = Panel(roster, self.bus, board, settings, mask, notice)
         on_demand.keep(PAGES_AT_HAND)
         self._mask = mask
         self.ticks_us = board.clock.ticks_us
@@ -107,6 +107,7 @@ class App:
         if self.settings.dirty:
             self._save(0)
         if wanted == "app":
+            self._say(texts.BEGINS_ANEW)
             following = App(self.board)
         else:
             following = on_demand.load("search.search").Search(self.board, self.settings)
@@ -167,7 +168,7 @@ class App:
         Ctrl-C does not cut this short, wherever it strikes.
         """
         self._leave()
-        persist(self._say_farewell)
+        persist(self._say, texts.FAREWELL)
 
     def _leave(self):
         try:
@@ -180,11 +181,11 @@ class App:
         self.board.watchdog.feed()
         self.board.idle()
 
-    def _say_farewell(self):
+    def _say(self, rows):
         """The picture of a panel that has stopped would go on saying what no longer holds."""
         screen = self.panel.screen
-        for row in range(len(texts.FAREWELL)):
-            screen.put(row, 0, texts.ROW_WIDTH, texts.of(texts.FAREWELL[row]))
+        for row in range(len(rows)):
+            screen.put(row, 0, texts.ROW_WIDTH, texts.of(rows[row]))
         try:
             for _ in range(_FAREWELL_STEPS):
                 if self.board.display.show(screen.picture):

@@ -29,6 +29,7 @@ CHOICES = (  # name, default, what it may be, meaning
     ("baud", 19200, BAUD_RATES, "bit/s"),
     ("second_stop", "OFF3", ("OFF3", "OFF2", "none"), "what holding STOP for 1.5 s sends"),
 )
+LIMITS = ("lowest_centihertz", "highest_centihertz")  # of the setpoint: never crossed
 NUMBERS = (  # name, default, lowest, highest, meaning
     ("reply_timeout_ms", 20, 20, 500, "wait for a reply to begin; it delays a STOP as well"),
     ("lost_ms", 1000, 100, 5000, "without a valid reply for so long a drive counts as lost"),
@@ -36,6 +37,10 @@ NUMBERS = (  # name, default, lowest, highest, meaning
     ("setpoint_step_centihertz", 10, 1, 1000, "step of UP and DOWN, 0.01 Hz"),
     ("lowest_centihertz", 0, 0, 65000, "lowest setpoint, 0.01 Hz"),
     ("highest_centihertz", 65000, 0, 65000, "highest setpoint, 0.01 Hz"),
+    ("key_delay_ms", 400, 200, 900, "a key held so long begins to repeat"),
+    ("key_repeat_ms", 120, 40, 500, "from one repeat to the next"),
+    ("light_minutes", 0, 0, 60, "without a key for so long the backlight goes off; 0: never"),
+    ("lock_code", 0, 0, 9999, "of the lock; 0: there is none"),
 )
 ADDRESSES = (  # name, default, fewest, meaning; addresses 0...31, each once, 31 at the most
     ("drives", (1,), 1, "in the order of the address keys"),
@@ -76,18 +81,17 @@ def save(store, settings):
     settings.dirty = False
 
 
-def changeable():
-    """The names of the settings that are a choice or a number."""
-    return [row[0] for row in CHOICES + NUMBERS]
-
-
-def moved(name, value, steps):
-    """The value of such a setting so many steps up or down, within its limits."""
+def moved(settings, name, value, steps):
+    """This value of a choice or a number so many steps up or down, within its limits."""
     for row in CHOICES:
         if row[0] == name:
             position = row[2].index(value) + (1 if steps > 0 else -1)
             return row[2][max(0, min(position, len(row[2]) - 1))]
     lowest, highest = [row[2:4] for row in NUMBERS if row[0] == name][0]
+    if name == LIMITS[0]:
+        highest = getattr(settings, LIMITS[1])
+    elif name == LIMITS[1]:
+        lowest = getattr(settings, LIMITS[0])
     return max(lowest, min(highest, value + steps))
 
 

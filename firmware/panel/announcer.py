@@ -135,6 +135,11 @@ class Announcer:
         self._shown = 0
         self._page_ms = self._find_page_ms()
 
+    def has_alarm(self):
+        """Whether there is something dangerous to be said."""
+        counts = self._counts
+        return counts[TRIPPED] + counts[LOST] + counts[UNCONFIRMED] > 0
+
     def draw(self, screen, row):
         """Write into all of `row` what is said now."""
         kind, control = self.kind, self.control

@@ -3,7 +3,7 @@
 
 In use:
 
-    panel = Panel(roster, bus, keypad.names, settings, clock.ticks_mask)
+    panel = Panel(roster, bus, board, settings, clock.ticks_mask)
     if panel.step(keypad.read(), now_ms, now_us):   # each step of the loop
         display.show(panel.screen.picture)
 
@@ -32,7 +32,6 @@ from uss.timing import elapsed
 _DRAW_MS = const(50)
 _MESSAGE_MS = const(3_000)
 _LAST_TURN = const(7)
-_HELD_REPEATS = const(6)  # of PARAM or an address key: it is held for a second
 
 # They act on every page that obeys. STOP acts on every page.
 COMMAND_KEYS = (
@@ -47,16 +46,17 @@ HELD_KEYS = ("STOP", "JOG_RIGHT", "JOG_LEFT")
 class Panel:
     """roster: the `Roster`, its drives. key_names: as the keypad has its bits.
 
-    settings: a `Settings`. mask: the clock's period - 1. notice: a text that is said after
-    the splash, or NOTHING; what is wrong with the settings goes before it.
+    settings: a `Settings`. mask: the clock's period - 1. board: contract of `hal`. notice: a text
+    that is said after the splash, or NOTHING; what is wrong with the settings goes before it.
 
     For pages and view: `selected`, the control that is shown; `warning`, its `DriveWarning`;
-    `message`, words that are shown for a while, or None; `stop_key`; `announcer`; `setpoint_step`
-    in centihertz; `remembered`; `settings`; `bus`; `mask`. For `App`: `wants`. Nobody else writes
-    a field of it: pages call `say`, `cover`, `uncover`, `write`, `add` and `remove`.
+    `message`, words that are shown for a while, or None; `stop_key`; `announcer`; `guard`, a
+    `Guard` or None; `setpoint_step` in centihertz; `remembered`; `settings`; `bus`; `board`;
+    `mask`. For `App`: `wants`. Nobody else writes a field of it: pages call `say`, `cover`,
+    `uncover`, `write`, `add`, `remove`, `heed_settings`, `begin_anew` and `lock`.
     """
 
-    def __init__(self, roster, bus, key_names, settings, mask, notice=texts.NOTHING):
+    def __init__(self, roster, bus, board, settings, mask, notice=texts.NOTHING):
         self._turn = 0  # asked for in every step, so it is first: as in `Master`
         self._acting = False  # keys that were pressed are still to do what they do
         self._trips = 0  # bus.dead_man_trips when they were
@@ -68,14 +68,16 @@ class Panel:
         self.screen = screen = Screen()
         self.mask = mask
         self.message = None
-        self.setpoint_step = settings.setpoint_step_centihertz
         self.bus = bus
+        self.board = board
         self.settings = settings
+        key_names = board.keypad.names
         self._keys = keys = Keys(key_names, mask, HELD_KEYS)
         self._acts = Acts(keys)
         self._stop_bit = keys.bit("STOP")  # names take long to look up
         self._jog_bits = keys.bits(("JOG_RIGHT", "JOG_LEFT"))
         self._command_bits = keys.bits(COMMAND_KEYS)
+        self.heed_settings(locked=True)
         self._param_bit = keys.bit("PARAM")
         self._address_bits = keys.bits(("ADDRESS_UP", "ADDRESS_DOWN"))
         self._motion_bits = keys.bits(MOTION_KEYS)
@@ -158,6 +160,32 @@ class Panel:
         """Close the menu that covers the page."""
         self._cover.close()
 
+    def heed_settings(self, locked=False):
+        """Settings that act at once have changed. locked: where they have a lock, it is closed."""
+        settings = self.settings
+        self.setpoint_step = settings.setpoint_step_centihertz
+        keys = self._keys
+        keys.pace(settings.key_delay_ms, settings.key_repeat_ms)
+        if settings.lock_code or settings.light_minutes:
+            backlight = getattr(self.board, "backlight", None)
+            guard = on_demand.load("panel.keys.guard").Guard
+            self.guard = guard(settings, keys, self.mask, backlight, locked)
+        else:
+            self.guard = None
+
+    def lock(self, now_ms):
+        """Close the lock. The home page is what it leaves."""
+        self.guard.lock()
+        if self._cover is not None and not self._cover.locks:
+            self.close_menu()
+        self._turn_page(now_ms, 0)
+        self.say(now_ms, texts.LOCKED)
+
+    def begin_anew(self):
+        """Settings have changed with which a panel begins. No motor may run."""
+        self.close_menu()
+        self.wants = "app"
+
     def offer_search(self, now_ms):
         """Ask whether drives shall be looked for."""
         self.close_menu()
@@ -230,6 +258,9 @@ class Panel:
             self._writer.step(now_us)
         self.selected.ask_on(now_us)
         self._collect(now_ms)
+        guard = self.guard
+        if guard is not None and guard.step(now_ms, self._has_alarm()):
+            self.lock(now_ms)
         self._page.step(self._keys, now_ms)
         if self._cover is not None:
             self._cover.step(self._keys, now_ms)
@@ -278,8 +309,14 @@ class Panel:
         if down & self._stop_bit:
             self.stop_key.step(keys, self.selected, now_ms)
         page = self._cover or self._page
+        guard = self.guard
+        if guard is not None and (keys.pressed or keys.repeated or down & self._jog_bits):
+            guard.note_keys(now_ms)
         if down & self._jog_bits:
-            self._jog_keys.step(keys, self.selected, page.obeys and not self.stop_key.is_down)
+            allowed = page.obeys and not self.stop_key.is_down
+            if guard is not None and guard.locked:
+                allowed = False
+            self._jog_keys.step(keys, self.selected, allowed)
         if not (keys.pressed or keys.repeated):
             return False
         if self._acting:  # since the last step
@@ -297,12 +334,16 @@ class Panel:
             return
         acts = self._acts
         page = self._cover or self._page
+        guard = self.guard
+        if guard is not None and guard.locked and page.locks and self._is_locked(page, now_ms):
+            return
         if (acts.pressed | acts.repeated) & self._command_bits and page.obeys:
             self._take_command(acts, now_ms)
-        if acts.repeated & self._param_bit and acts.repeats == _HELD_REPEATS and page.obeys:
-            self._open_menu(now_ms)
-        if acts.repeated & self._address_bits and acts.repeats == _HELD_REPEATS and page.obeys:
-            self._open_menu(now_ms, ("address", None))
+        if page.obeys:
+            if acts.is_held(self._param_bit):
+                self._open_menu(now_ms)
+            elif acts.is_held(self._address_bits):
+                self._open_menu(now_ms, ("address", None))
         page.take_keys(acts, now_ms)
         if acts.pressed:
             self._drawn_at_ms = None  # a new picture at once
@@ -318,6 +359,17 @@ class Panel:
             self._select(acts.direction("ADDRESS_UP", "ADDRESS_DOWN"))
         if acts.has("PARAM"):
             self._turn_page(now_ms, (self._place + 1) % len(PAGES))
+
+    def _is_locked(self, page, now_ms):
+        """The lock is closed: what it refuses is not done. Answers whether nothing is left."""
+        acts = self._acts
+        held = page.obeys and acts.is_held(self._param_bit | self._address_bits)
+        if held and acts.repeated & self._param_bit:
+            self.message = None
+            self._open_menu(now_ms, ("code", False))
+        elif self.guard.holds_back(acts, page) or held:
+            self.say(now_ms, texts.LOCKED)
+        return held or not (acts.pressed or acts.repeated)
 
     def _open_menu(self, now_ms, begin=("main", None)):
         self._turn_page(now_ms, 0)  # PARAM has gone to another one when it went down
@@ -380,6 +432,10 @@ class Panel:
             self._ask_search()
         if self._notices and self.message is None and self._cover is None:
             self.say(now_ms, *self._notices.pop(0))  # also when a key has ended the one before
+
+    def _has_alarm(self):
+        selected = self.selected
+        return selected.needs_attention() or selected.fault.active or self.announcer.has_alarm()
 
     def _take_written(self, now_ms):
         write = self._writer.take_ended()

@@ -104,6 +104,7 @@ NO_MEMORY = b"NO MEMORY LEFT"  # for a page
 NOT_SAVED = b"SETTINGS UNSAVED"  # the flash is full or broken
 WATCHDOG_RESTART = b"WATCHDOG RESTART"  # after the splash: the panel hung, and was restarted
 FAREWELL = (b"PANEL STOPPED", b"NO CONTROL")  # left behind by a panel that was ended
+BEGINS_ANEW = (b"THE PANEL", b"BEGINS ANEW")  # with other settings
 
 # What a STOP that is held does next, or has done.
 HOLD_FOR_OFF3 = b"STOP, HOLD: OFF3"
@@ -229,10 +230,12 @@ ASK_RESTART = (
 
 ASK_SEARCH = ((b"LEAVE THE LINE &", b"FIND DRIVES?"), _DO_OR_NOT)
 
-# --- the menu, see `menu` ------------------------------------------------------------------------
+# --- the menu, see `menu`; `menu.words` has more -------------------------------------------------
 
 MENU = b"MENU"
 MENU_MARK = b">"
+MENU_LOCK = b"LOCK"  # closes the lock
+LOCKED = b"LOCK: HOLD PARAM"  # until its code is given
 MENU_DRIVES = b"DRIVES"
 ANY_ADDRESS = b"ANY ADDRESS"
 IN_THE_LIST = b"IN THE LIST"
@@ -243,22 +246,10 @@ ADDED = b"ADDED"
 FAMILY = b"FAMILY"
 MENU_SETTINGS = b"SETTINGS"
 MENU_ABOUT = b"ABOUT"
-ABOUT_VERSION = b"VERSION %s"
-LICENCE = b"LICENCE: MIT"
 SHOW_DRIVE = b"SHOW IT"
 REMOVE_DRIVE = b"REMOVE IT"
 REMOVED = b"REMOVED"
 NOT_REMOVED = b"NOT REMOVED"  # it is the only one, or may be running
-SETTING_NAMES = {
-    "baud": b"BAUD RATE",
-    "second_stop": b"SECOND STOP",
-    "reply_timeout_ms": b"REPLY ms",
-    "lost_ms": b"LOST ms",
-    "setpoint_centihertz": b"START cHz",
-    "setpoint_step_centihertz": b"STEP cHz",
-    "lowest_centihertz": b"LOWEST cHz",
-    "highest_centihertz": b"HIGHEST cHz",
-}
 
 # --- the search for drives, see `search` ---------------------------------------------------------
 

@@ -14,6 +14,7 @@ import settings_file as settings
 import version
 from boards.sim.script import COMMANDS
 from panel import texts
+from panel.menu import words
 from tiers import TOP
 from tools.live import virtual_panel
 
@@ -145,7 +146,8 @@ def every_text(thing):
 
 def test_every_text_of_the_display_is_explained():
     said = section(PANEL, "What the display says")
-    found = [row for row in every_text(vars(texts)) if row and row not in texts.SPLASH]
+    found = [*every_text(vars(texts)), *every_text(vars(words))]
+    found = [row for row in found if row and row not in texts.SPLASH]
     assert len(found) > 100
     missing = [text for text in found if not re.search(pattern(text), said)]
     assert not missing

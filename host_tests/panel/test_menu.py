@@ -54,7 +54,9 @@ def test_it_tells_what_this_is():
     menu(world)
     press(world, "UP", "SET")
     assert row_1(world).startswith("ABOUT"), world.lcd()
-    assert entries(world) == ["VERSION " + VERSION, "LICENCE: MIT"]
+    told = entries(world)
+    assert told[:3] == ["VERSION " + VERSION, "LICENCE: MIT", "SIMULATED"]
+    assert len(told) == 3 or told[3].startswith("FREE "), told
 
 
 def test_the_drives_at_a_glance_and_one_of_them_shown():
@@ -98,29 +100,127 @@ def test_a_drive_is_removed_unless_it_runs():
     world.check()
 
 
-def test_a_setting_is_changed_within_its_limits_and_kept():
+def setting(world, start):
+    """Open SETTINGS, and the entry that starts like this."""
+    menu(world)
+    while row_2(world) != ">SETTINGS":
+        press(world, "DOWN")
+    press(world, "SET")
+    seen = []
+    while not row_2(world).startswith(">" + start):
+        assert row_2(world) not in seen, seen
+        seen.append(row_2(world))
+        press(world, "DOWN")
+    press(world, "SET")
+    assert row_2(world).startswith(">" + start), world.lcd()
+
+
+def kept(world):
+    """What the settings file says."""
+    return json.loads(world.flash.files["settings.json"].decode())
+
+
+def test_every_setting_is_shown_with_its_value_and_its_unit():
     world = panel()
     menu(world)
     press(world, "DOWN", "DOWN", "DOWN", "SET")
-    while row_2(world) != ">STEP cHz":
-        press(world, "DOWN")
-    press(world, "SET")
-    assert row_2(world) == ">10", world.lcd()
+    assert entries(world)[:11] == [
+        "BAUD 19200", "2ND STOP OFF3", "REPLY 20 ms", "LOST 1000 ms", "START 10.00 Hz",
+        "STEP 0.10 Hz", "LOW 0.00 Hz", "HIGH 650.00 Hz", "KEY WAIT 400 ms", "KEY RATE 120 ms",
+        "LIGHT STAYS ON",
+    ]  # fmt: skip
+
+
+def test_a_setting_is_changed_within_its_limits_and_kept():
+    world = panel()
+    setting(world, "STEP")
+    assert row_1(world) == "UP DOWN SET=KEEP"
+    assert row_2(world) == ">STEP 0.10 Hz", world.lcd()
     press(world, "UP", "UP")
-    assert row_2(world) == ">12"
+    assert row_2(world) == ">STEP 0.12 Hz"
     press(world, "PARAM")  # as it was
     press(world, "SET")
-    assert row_2(world) == ">10", world.lcd()
+    assert row_2(world) == ">STEP 0.10 Hz", world.lcd()
     for _ in range(12):
         press(world, "DOWN")
-    assert row_2(world) == ">1", world.lcd()
+    assert row_2(world) == ">STEP 0.01 Hz", world.lcd()
     press(world, "SET")
+    assert row_2(world) == "KEPT", world.lcd()
+    press(world, "PARAM", "PARAM")
     world.run(4000)
-    assert row_2(world) == "READY        A1", world.lcd()  # the panel has begun anew
-    stored = json.loads(world.flash.files["settings.json"].decode())
-    assert stored["setpoint_step_centihertz"] == 1
-    assert starts(world) == 0
+    assert kept(world)["setpoint_step_centihertz"] == 1
+    press(world, "DOWN")  # it acts at once
+    world.run(200)
+    assert row_1(world).startswith("S: 10.0 "), world.lcd()
+    for _ in range(5):
+        press(world, "DOWN")
+    assert row_1(world).startswith("S:  9.9 "), world.lcd()
     world.check()
+
+
+def test_a_setting_of_the_bus_acts_when_the_panel_has_begun_anew():
+    world = panel()
+    setting(world, "BAUD")
+    press(world, "UP")
+    assert row_2(world) == ">BAUD 38400", world.lcd()
+    world.down("SET")
+    said = set()
+    for _ in range(100):
+        world.run(10)
+        said.add(" ".join(" ".join(world.lcd()).split()))
+    world.up("SET")
+    assert "THE PANEL BEGINS ANEW" in said, said
+    world.run(4000)
+    assert row_2(world) == "NO CONTACT   A1", world.lcd()  # the drive has another rate
+    assert kept(world)["baud"] == 38400
+    setting_back = ("SET", "DOWN", "SET")
+    menu_from_search(world)
+    press(world, *setting_back)
+    world.run(4000)
+    press(world, "STOP")  # it has tripped meanwhile: nobody spoke at its rate
+    wait_until_known(world)
+    assert kept(world)["baud"] == 19200 and starts(world) == 0
+
+
+def menu_from_search(world):
+    """SETTINGS, of a panel whose drive is silent: its menu begins elsewhere."""
+    world.down("PARAM")
+    world.run(1500)
+    world.up("PARAM")
+    world.run(300)
+    while row_2(world) != ">SETTINGS":
+        press(world, "DOWN")
+    press(world, "SET")
+
+
+def test_the_lowest_setpoint_does_not_pass_the_highest():
+    """A file that says so has the defaults for both at the next power-on."""
+    world = World(main.start, settings={"lowest_centihertz": 1000, "highest_centihertz": 1002})
+    world.run(3000)
+    setting(world, "LOW")
+    press(world, "UP", "UP", "UP", "UP")
+    assert row_2(world) == ">LOW 10.02 Hz", world.lcd()
+    press(world, "PARAM", "DOWN", "SET", "DOWN", "DOWN", "DOWN", "DOWN")
+    assert row_2(world) == ">HIGH 10.00 Hz", world.lcd()
+
+
+def test_how_soon_and_how_fast_a_key_repeats_is_a_setting():
+    """And a key that is held for a second is held for a second, whatever that is."""
+    for delay_ms, repeat_ms in ((400, 120), (900, 500), (200, 40), (900, 40)):
+        world = World(main.start, settings={"key_delay_ms": delay_ms, "key_repeat_ms": repeat_ms})
+        world.run(3000)
+        before = row_1(world)
+        world.down("UP")
+        world.run(delay_ms + repeat_ms // 2)
+        world.up("UP")
+        world.run(300)
+        assert (before[:7], row_1(world)[:7]) == ("S: 10.0", "S: 10.2"), world.lcd()
+        world.down("PARAM")
+        world.run(950)
+        assert not row_1(world).startswith("MENU"), delay_ms
+        world.run(650)
+        assert row_1(world).startswith("MENU"), delay_ms
+        world.up("PARAM")
 
 
 def test_no_setting_is_changed_while_a_motor_runs():
@@ -129,6 +229,19 @@ def test_no_setting_is_changed_while_a_motor_runs():
     press(world, "DOWN", "DOWN", "DOWN", "SET", "SET", "UP", "SET")
     assert row_2(world) == "STOP ALL FIRST", world.lcd()
     assert world.drives[1].state == "running"
+
+
+def test_what_acts_at_once_is_changed_beside_a_motor_that_runs():
+    world = running()
+    setting(world, "KEY RATE")
+    press(world, "DOWN", "SET")
+    assert row_2(world) == "KEPT", world.lcd()
+    world.run(4000)
+    assert world.drives[1].state == "running" and kept(world).get("key_repeat_ms") is None
+    press(world, "STOP")
+    world.run(9000)
+    assert kept(world)["key_repeat_ms"] == 119  # saved when it stands
+    world.check()
 
 
 def test_stop_acts_everywhere_in_the_menu_and_no_other_key_moves_a_motor():

@@ -2,6 +2,7 @@
 """The picture of 2 x 16 characters, and the texts that stand in it."""
 
 from panel import texts
+from panel.menu import words as menu_words
 from panel.screen import COLUMNS, ROWS, Screen
 from uss import families
 
@@ -81,9 +82,12 @@ def all_words(value):
 
 
 def named_texts():
-    """(name, text or texts) of all that the module `texts` has."""
+    """(name, text or texts) of all that the modules of texts have."""
     return [
-        (name, getattr(texts, name)) for name in dir(texts) if name[0] != "_" and name != "NOTHING"
+        (name, getattr(module, name))
+        for module in (texts, menu_words)
+        for name in dir(module)
+        if name[0] != "_" and name != "NOTHING"
     ]
 
 

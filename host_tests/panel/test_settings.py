@@ -92,6 +92,11 @@ def test_a_value_that_cannot_be_gives_its_default_and_keeps_the_others():
         ("highest_centihertz", 65001),
         ("highest_centihertz", 12.5),
         ("highest_centihertz", True),
+        ("key_delay_ms", 1000),
+        ("key_repeat_ms", 0),
+        ("light_minutes", 61),
+        ("lock_code", 10000),
+        ("lock_code", "1234"),
         ("drives", []),
         ("drives", [32]),
         ("drives", [1, 1]),
@@ -234,6 +239,10 @@ def test_a_person_can_read_the_file():
         '  "setpoint_step_centihertz": 10,\n'
         '  "lowest_centihertz": 0,\n'
         '  "highest_centihertz": 65000,\n'
+        '  "key_delay_ms": 400,\n'
+        '  "key_repeat_ms": 120,\n'
+        '  "light_minutes": 0,\n'
+        '  "lock_code": 0,\n'
         '  "drives": [2, 1],\n'
         '  "unsupervised": [2],\n'
         '  "kinds": {}\n'
@@ -251,6 +260,59 @@ def test_what_a_newer_firmware_stored_is_kept():
     assert (again["language"], again["motors"]) == ("de", {"1": ["a", None]})
     assert b"3.141592653589793" in store.read(), "also where numbers have fewer digits"
     assert again["baud"] == 9600
+
+
+# --- an update of the firmware -------------------------------------------------------------------
+
+# As a firmware without a lock writes it.
+BEFORE_THE_LOCK = b"""{
+  "baud": 38400,
+  "second_stop": "OFF2",
+  "reply_timeout_ms": 30,
+  "lost_ms": 2000,
+  "setpoint_centihertz": 1500,
+  "setpoint_step_centihertz": 5,
+  "lowest_centihertz": 100,
+  "highest_centihertz": 5000,
+  "drives": [7, 3],
+  "unsupervised": [3],
+  "kinds": {"7": "g110/127"}
+}
+"""
+
+
+def test_an_update_takes_over_what_the_firmware_before_has_stored():
+    store = stored(BEFORE_THE_LOCK)
+    chosen = settings.load(store)
+    assert chosen.complaint is None and not chosen.dirty
+    before = json.loads(BEFORE_THE_LOCK.decode())
+    for name, value in before.items():
+        assert getattr(chosen, name) == (tuple(value) if isinstance(value, list) else value), name
+    for name in settings.DEFAULTS:
+        if name not in before:
+            assert getattr(chosen, name) == settings.DEFAULTS[name], name
+    settings.save(store, chosen)
+    after = json.loads(store.read())
+    assert {name: after[name] for name in before} == before
+
+
+def test_what_is_new_survives_a_firmware_that_does_not_know_it():
+    """An older firmware is an older table: somebody goes back to it, and forth again."""
+    new = ("key_delay_ms", "key_repeat_ms", "light_minutes", "lock_code")
+    store = stored({"lock_code": 1234, "light_minutes": 5, "key_repeat_ms": 80, "baud": 9600})
+    newer_numbers, newer_defaults = settings.NUMBERS, settings.DEFAULTS
+    settings.NUMBERS = tuple([row for row in newer_numbers if row[0] not in new])
+    settings.DEFAULTS = {name: newer_defaults[name] for name in newer_defaults if name not in new}
+    try:
+        older = settings.load(store)
+        assert older.complaint is None and not hasattr(older, "lock_code")
+        older.add(9, "mm420")
+        settings.save(store, older)
+    finally:
+        settings.NUMBERS, settings.DEFAULTS = newer_numbers, newer_defaults
+    again = settings.load(store)
+    assert again.complaint is None and again.drives == (1, 9)
+    assert (again.lock_code, again.light_minutes, again.key_repeat_ms) == (1234, 5, 80)
 
 
 def test_a_file_with_something_wrong_is_set_aside_before_the_first_save_and_only_then():

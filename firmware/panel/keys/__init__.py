@@ -20,8 +20,9 @@ NAMES = (
 )  # fmt: skip
 
 _DEBOUNCE_MS = const(20)
-_REPEAT_DELAY_MS = const(400)
+_DELAY_MS = const(400)  # until a key repeats, and from then on; settings may say otherwise
 _REPEAT_MS = const(120)
+_HELD_MS = const(1_000)  # so long a key is down that is held for more than its repeats
 
 # How a value moves while its key is held: repeats, then steps for each of them.
 PACES = ((16, 100), (8, 10), (0, 1))
@@ -51,6 +52,10 @@ class Acts:
         self.repeated = keys.repeated
         self.repeats = keys.repeats
 
+    def is_held(self, bits):
+        """Whether it is one of these keys that has just been held for a second."""
+        return self.repeated & bits != 0 and self.repeats == self._keys.held_repeats
+
     def has(self, key):
         """Whether this key went down."""
         return self.pressed & self.bit(key) != 0
@@ -75,8 +80,9 @@ class Keys:
     held: names of keys that matter as long as they are down, not only when they are pressed.
 
     After each `update`, as bits: `down`, the keys that are down; `pressed`, those that went down
-    just now; `repeated`, those held for another _REPEAT_MS just now. `repeats`: how often the key
-    that repeats has done so. Only the key pressed last repeats. `at_rest`: no key is down or has
+    just now; `repeated`, those that repeat just now. `repeats`: how often the key
+    that repeats has done so; `held_repeats`: how often after _HELD_MS. Only the key pressed last
+    repeats. `at_rest`: no key is down or has
     just been, and each has been seen up; as long as none is down, `update` has nothing to do.
     `unsettled`: keys that moved lately or have not been seen up yet, as bits: then it takes long.
     """
@@ -97,6 +103,7 @@ class Keys:
         self._last = 0  # the key pressed last, while it is down
         self._repeat_at_ms = 0
         self._wait_ms = 0  # from then to the next repeat
+        self.pace(_DELAY_MS, _REPEAT_MS)
         self._first = True
         self.at_rest = False
         self.unsettled = self._all
@@ -108,6 +115,18 @@ class Keys:
     def bits(self, names):
         """The bits of several keys."""
         return sum(self.bit(key) for key in names)
+
+    def pace(self, delay_ms, repeat_ms):
+        """A key repeats after `delay_ms`, 900 at the most, and from then on every `repeat_ms`."""
+        self._delay_ms = delay_ms
+        self._repeat_ms = repeat_ms
+        self.held_repeats = 1 - (delay_ms - _HELD_MS) // repeat_ms
+
+    def withhold(self, bits):
+        """These keys count as not pressed, until they were let go."""
+        self.pressed &= ~bits
+        self.repeated &= ~bits
+        self._last &= ~bits
 
     def forget(self):
         """What is down repeats nothing any more: it has to be pressed anew."""
@@ -142,7 +161,7 @@ class Keys:
             self._released &= ~unclear
         if self._last and (now_ms - self._repeat_at_ms) & self._mask >= self._wait_ms:
             self._repeat_at_ms = now_ms
-            self._wait_ms = _REPEAT_MS
+            self._wait_ms = self._repeat_ms
             self.repeats += 1
             self.repeated = self._last
         seen = self.down | were_down
@@ -172,6 +191,6 @@ class Keys:
             self.pressed |= bit
             self._last = bit
             self._repeat_at_ms = now_ms
-            self._wait_ms = _REPEAT_DELAY_MS
+            self._wait_ms = self._delay_ms
             self.repeats = 0
         self.down |= bit

@@ -8,11 +8,16 @@
 memory only while it is shown. To add one, write its file and put its name into the list above it.
 """
 
+from panel import texts
+
+BACK = ("", None)  # of `choose`: back to the list above this one
+
 
 class Entries:
     """What every list has. panel: the `Panel`. argument: what the list above it has handed on.
 
-    title: a text. Answers of `choose`: (name of a list, argument), or None: the list stays.
+    title: a text; 16 characters in a list that has one entry only, else 10. Answers of `choose`:
+    (name of a list, argument), BACK, or None: the list stays.
     """
 
     title = b""
@@ -32,6 +37,10 @@ class Entries:
         """How many entries there are now, one at the least."""
         return 1
 
+    def heading(self, position):
+        """Row 1 in words, in front of the place in the list."""
+        return texts.of(self.title)
+
     def words(self, position):
         """The entry in words, at most 15 of them."""
         return b""
@@ -42,3 +51,10 @@ class Entries:
     def change(self, position, steps):
         """UP or DOWN moves a value instead of walking: True if it does."""
         return False
+
+    def take_keys(self, acts):
+        """Before the menu does: True if the keys are not for the menu, BACK if it is to leave."""
+        return False
+
+    def leave(self, now_ms):
+        """PARAM goes back to the list above this one."""

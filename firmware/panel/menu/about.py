@@ -1,16 +1,28 @@
 # SPDX-License-Identifier: MIT
-"""What this panel is: version, licence, where its texts are explained."""
+"""What this panel is: version, licence, board, memory."""
 
+import on_demand
 from panel import texts
-from panel.menu import Entries
+from panel.menu import Entries, words
 from version import VERSION
 
 
 class List(Entries):
     title = texts.MENU_ABOUT
 
+    def __init__(self, panel, argument):
+        Entries.__init__(self, panel, argument)
+        self._rows = [
+            texts.of(words.ABOUT_VERSION, VERSION.encode()),
+            texts.of(words.LICENCE),
+            panel.board.name.encode(),
+        ]
+        free = on_demand.free_bytes()
+        if free is not None:
+            self._rows.append(texts.of(words.FREE_MEMORY, free // 1024))
+
     def count(self):
-        return 2
+        return len(self._rows)
 
     def words(self, position):
-        return (texts.of(texts.ABOUT_VERSION, VERSION.encode()), texts.of(texts.LICENCE))[position]
+        return self._rows[position]

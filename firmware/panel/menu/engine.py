@@ -9,6 +9,7 @@ from micropython import const
 
 import on_demand
 from panel import texts
+from panel.menu import BACK
 from panel.pages import Page
 from uss.timing import elapsed
 
@@ -19,14 +20,16 @@ _COUNT_COLUMN = const(11)  # "12/31"
 class Menu(Page):
     """The page that covers all others while the menu is open. begin: the first list."""
 
-    modules = ("panel.menu.engine",)
+    modules = ("panel.menu.engine", "panel.menu.words")
     whole = True
     obeys = False
+    locks = False  # a closed lock opens nothing of it but the page for its code
 
     def __init__(self, panel, begin=("main", None)):
         Page.__init__(self, panel)
         self._lists = []  # (name of the module, `List`, position in it), the one shown last
         self._used_at_ms = None
+        on_demand.load("panel.menu.words")  # first: an import inside an import takes stack
         self._enter(*begin)
 
     def take_keys(self, acts, now_ms):
@@ -34,16 +37,19 @@ class Menu(Page):
             return
         self._used_at_ms = now_ms
         name, shown, position = self._lists[-1]
+        taken = shown.take_keys(acts)
+        if taken:
+            if taken is BACK:
+                self._leave(now_ms)
+            return
         direction = acts.direction("DOWN", "UP") or acts.direction("NEXT", "PREVIOUS")
         turned = acts.direction("ADDRESS_UP", "ADDRESS_DOWN")
         if acts.has("PARAM"):
-            self._leave()
+            self._leave(now_ms)
         elif turned and name == "address":
             self._lists[-1] = (name, shown, (position + turned) % shown.count())
         elif acts.has("SET"):
-            following = shown.choose(position, now_ms)
-            if following is not None:
-                self._enter(*following)
+            self._go(shown.choose(min(position, shown.count() - 1), now_ms), now_ms)
         elif direction and not shown.change(position, -direction * acts.pace(100)):
             self._lists[-1] = (name, shown, (position + direction) % shown.count())
 
@@ -66,17 +72,36 @@ class Menu(Page):
         _, shown, position = self._lists[-1]
         count = shown.count()
         position = min(position, count - 1)  # what was last in it may have gone
-        screen.put(0, 0, _COUNT_COLUMN, texts.of(shown.title))
-        screen.put(0, _COUNT_COLUMN, 5, b"%5s" % (b"%d/%d" % (position + 1, count)))
+        width = _COUNT_COLUMN if count > 1 else texts.ROW_WIDTH
+        screen.put(0, 0, width, shown.heading(position))
+        if count > 1:
+            place = b"%5s" % (b"%d/%d" % (position + 1, count))
+            screen.put(0, width, texts.ROW_WIDTH - width, place)
         screen.put(1, 0, 1, texts.of(texts.MENU_MARK))
         screen.put(1, 1, texts.ROW_WIDTH - 1, shown.words(position))
+
+    def _go(self, following, now_ms):
+        """Where a list leads to, unless it has closed the menu."""
+        if following is None or not self._lists:
+            return
+        if following is BACK:
+            self._leave(now_ms)
+            return
+        try:
+            self._enter(*following)
+        except MemoryError:
+            on_demand.drop("panel.menu." + following[0])
+            self.panel.say(now_ms, texts.NO_MEMORY)
 
     def _enter(self, name, argument):
         shown = on_demand.load("panel.menu." + name).List(self.panel, argument)
         self._lists.append((name, shown, shown.first()))
 
-    def _leave(self):
+    def _leave(self, now_ms):
         """Back to the list above this one."""
+        self._lists[-1][1].leave(now_ms)
+        if not self._lists:  # that has closed the menu
+            return
         on_demand.drop("panel.menu." + self._lists.pop()[0])
         if not self._lists:
             self.panel.uncover()

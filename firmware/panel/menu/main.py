@@ -8,7 +8,7 @@ LISTS = (  # text, module; None: the search, which is a program of its own
     (texts.MENU_DRIVES, "drives"),
     (texts.ANY_ADDRESS, "address"),
     (texts.FIND_DRIVES, None),
-    (texts.MENU_SETTINGS, "numbers"),
+    (texts.MENU_SETTINGS, "settings"),
     (texts.MENU_ABOUT, "about"),
 )
 
@@ -16,19 +16,28 @@ LISTS = (  # text, module; None: the search, which is a program of its own
 class List(Entries):
     title = texts.MENU
 
+    def __init__(self, panel, argument):
+        Entries.__init__(self, panel, argument)
+        self._lists = LISTS
+        if panel.settings.lock_code:
+            self._lists += ((texts.MENU_LOCK, None),)
+
     def first(self):
         """Whoever has no contact is looking for the drive."""
         return 0 if self.panel.selected.drive.contact else LISTS.index((texts.FIND_DRIVES, None))
 
     def count(self):
-        return len(LISTS)
+        return len(self._lists)
 
     def words(self, position):
-        return texts.of(LISTS[position][0])
+        return texts.of(self._lists[position][0])
 
     def choose(self, position, now_ms):
-        name = LISTS[position][1]
-        if name is None:
+        text, name = self._lists[position]
+        if text == texts.MENU_LOCK:
+            self.panel.lock(now_ms)
+        elif name is None:
             self.panel.offer_search(now_ms)
-            return None
-        return name, None
+        else:
+            return name, None
+        return None

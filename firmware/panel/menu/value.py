@@ -1,37 +1,44 @@
 # SPDX-License-Identifier: MIT
 """One setting: UP and DOWN change it, SET keeps it, PARAM leaves it as it was.
 
-What the bus is made with (its rate, its times) acts when the panel begins anew, which it does at
-once if no motor runs.
+Some act at once. With the others, such as the rate of the bus, the panel begins anew, which it
+does at once if no motor runs.
 """
 
 import on_demand
 from panel import texts
-from panel.menu import Entries
+from panel.menu import BACK, Entries, words
 
 
 class List(Entries):
-    """argument: the name of the setting."""
+    """argument: its row of words.SETTINGS."""
+
+    title = words.SET_KEEPS
 
     def __init__(self, panel, argument):
         Entries.__init__(self, panel, argument)
-        self.title = texts.SETTING_NAMES[argument]
-        self._value = getattr(panel.settings, argument)
+        self._value = getattr(panel.settings, argument[0])
 
     def words(self, position):
-        value = self._value
-        return value.encode() if isinstance(value, str) else b"%d" % value
+        return words.reading(self.argument, self._value)
 
     def change(self, position, steps):
-        self._value = on_demand.call("settings_file", "moved", self.argument, self._value, steps)
+        name, settings = self.argument[0], self.panel.settings
+        self._value = on_demand.call("settings_file", "moved", settings, name, self._value, steps)
         return True
 
     def choose(self, position, now_ms):
-        panel = self.panel
-        if panel.any_runs():
+        name, _, _, at_once = self.argument
+        panel, settings = self.panel, self.panel.settings
+        if getattr(settings, name) == self._value:
+            return BACK
+        if not at_once and panel.any_runs():
             panel.say(now_ms, texts.STOP_FIRST)
-            return
-        settings = panel.settings
-        settings.change(self.argument, self._value)
-        panel.close_menu()
-        panel.wants = "app"
+            return None
+        settings.change(name, self._value)
+        if at_once:
+            panel.heed_settings()
+            panel.say(now_ms, words.KEPT)
+        else:
+            panel.begin_anew()
+        return BACK

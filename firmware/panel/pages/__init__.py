@@ -14,6 +14,7 @@ class Page:
     whole: it takes both rows; otherwise row 1 shows the frequencies, and row 2 ends in the address
     tells_state: its row 2 says what the drive shown does (pages that are not whole)
     obeys: START, REVERSE, JOG, address keys and PARAM act while it is shown; STOP always acts
+    locks: it obeys the lock, see `panel.keys.guard`
     announces: what has to be said of other drives is said while it is shown
     values: draw in row 1 what stands there in place of the actual frequency; None: nothing does
     modules: nobody needs them in memory when it is gone
@@ -23,6 +24,7 @@ class Page:
     whole = False
     tells_state = False
     obeys = True
+    locks = True
     announces = True
     values = None
 

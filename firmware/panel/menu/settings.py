@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: MIT
+"""The settings, each with its value; SET opens one."""
+
+from panel import texts
+from panel.menu import Entries, words
+
+LISTS = (  # text, module, argument: what is more than a value
+    (words.LOCK_CODE, "code", True),
+    (words.ACCEPTED, "accepted", None),
+    (words.KEY_TEST, "keys", None),
+)
+
+
+class List(Entries):
+    title = texts.MENU_SETTINGS
+
+    def __init__(self, panel, argument):
+        Entries.__init__(self, panel, argument)
+        self._rows = words.SETTINGS
+        if not getattr(panel.board, "backlight", None):
+            self._rows = [row for row in self._rows if row[0] != "light_minutes"]
+
+    def count(self):
+        return len(self._rows) + len(LISTS)
+
+    def words(self, position):
+        if position >= len(self._rows):
+            return texts.of(LISTS[position - len(self._rows)][0])
+        row = self._rows[position]
+        return words.reading(row, getattr(self.panel.settings, row[0]))
+
+    def choose(self, position, now_ms):
+        if position >= len(self._rows):
+            return LISTS[position - len(self._rows)][1:]
+        return "value", self._rows[position]

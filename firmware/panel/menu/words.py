@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: MIT
+"""The texts of the menu's own lists, in memory only while the menu is open. See `panel.texts`.
+
+A text that is said after the menu has closed stands in `panel.texts`.
+"""
+
+from panel import texts
+
+# Settings that are a choice or a number: name, how it reads, decimals, whether it acts at once.
+# The panel begins anew with the others, for which no motor may run.
+SETTINGS = (
+    ("baud", b"BAUD %s", 0, False),
+    ("second_stop", b"2ND STOP %s", 0, False),
+    ("reply_timeout_ms", b"REPLY %s ms", 0, False),
+    ("lost_ms", b"LOST %s ms", 0, False),
+    ("setpoint_centihertz", b"START %s Hz", 2, False),
+    ("setpoint_step_centihertz", b"STEP %s Hz", 2, True),
+    ("lowest_centihertz", b"LOW %s Hz", 2, False),
+    ("highest_centihertz", b"HIGH %s Hz", 2, False),
+    ("key_delay_ms", b"KEY WAIT %s ms", 0, True),
+    ("key_repeat_ms", b"KEY RATE %s ms", 0, True),
+    ("light_minutes", b"LIGHT %s min", 0, True),
+)
+LIGHT_STAYS = b"LIGHT STAYS ON"  # light_minutes is 0
+SET_KEEPS = b"UP DOWN SET=KEEP"
+KEPT = b"KEPT"
+ACCEPTED = b"P2014=0 OK"  # drives that may run on when the panel dies
+TAKE_BACK = b"A%d  SET=ASK"
+NO_DRIVE = b"NO DRIVE"
+KEY_TEST = b"KEY TEST"
+KEY_TEST_ENDS = b"HOLD PARAM: ENDS"
+PRESS_A_KEY = b"PRESS A KEY"
+
+LOCK_CODE = b"LOCK CODE"
+SET_NEXT = b"UP DOWN SET=NEXT"
+NEW_CODE = b"NEW CODE %s"
+CODE = b"CODE %s"
+NO_LOCK = b"NO LOCK"
+WRONG_CODE = b"WRONG CODE"
+UNLOCKED = b"UNLOCKED"
+
+ABOUT_VERSION = b"VERSION %s"
+LICENCE = b"LICENCE: MIT"
+FREE_MEMORY = b"FREE %d KB"
+
+
+def reading(row, value):
+    """A setting in words. row: of SETTINGS."""
+    name, text, decimals, _ = row
+    if name == "light_minutes" and not value:
+        return texts.of(LIGHT_STAYS)
+    if isinstance(value, str):
+        value = value.encode()
+    elif decimals:
+        value = b"%d.%02d" % (value // 100, value % 100)
+    else:
+        value = b"%d" % value
+    return texts.of(text, value)
