@@ -13,7 +13,7 @@ import os
 import micropython
 from machine import Pin
 
-from chips import rp2040
+from chips import rp2
 from hal.store import FileStore
 
 # --- what is wired where: GPIO numbers ----------------------------------------------------------
@@ -29,10 +29,10 @@ BACKPACK_ADDRESSES = (0x27, 0x3F)  # PCF8574 and PCF8574A, as they are sold: A0.
 LCD_REGISTER_SELECT = 7  # six pins in a row: register select, enable, D4...D7; R/W to ground
 LCD_ENABLE = 8
 
-KEYS = (  # each to ground
+KEYS = (  # each to ground; none at GP15, whose pull-up fails a while when USB comes (RP2040-E5)
     ("START", 13),
     ("STOP", 14),
-    ("REVERSE", 15),
+    ("REVERSE", 3),
     ("JOG_RIGHT", 16),
     ("JOG_LEFT", 17),
     ("UP", 18),
@@ -49,24 +49,26 @@ NORMALLY_CLOSED = ("STOP",)  # () for a STOP that closes: then a broken wire is 
 
 SETTINGS_FILE = "settings.json"
 
+rp2.expect("RP2040")
+
 # Before anything else: nobody drives the bus.
 driver_enable = Pin(DRIVER_ENABLE, Pin.OUT, value=0)
 
 micropython.alloc_emergency_exception_buf(100)
 
 name = "RASPBERRY PICO"
-reset_cause = rp2040.why_it_booted()
-clock = rp2040.Clock()
-display = rp2040.make_display(
+reset_cause = rp2.why_it_booted()
+clock = rp2.Clock()
+display = rp2.make_display(
     BACKPACK_SDA, BACKPACK_SCL, BACKPACK_ADDRESSES, LCD_REGISTER_SELECT, LCD_ENABLE, clock
 )
 backlight = getattr(display, "backlight", None)  # a backpack switches it
-keypad = rp2040.make_keypad(KEYS, NORMALLY_CLOSED)
+keypad = rp2.make_keypad(KEYS, NORMALLY_CLOSED)
 store = FileStore(SETTINGS_FILE, open, os)
-watchdog = rp2040.Watchdog()
-timer = rp2040.make_timer()
-idle = rp2040.idle
+watchdog = rp2.Watchdog()
+timer = rp2.make_timer()
+idle = rp2.idle
 
 
 def make_link(baud):
-    return rp2040.make_link(BUS_SEND, BUS_RECEIVE, driver_enable, clock, baud)
+    return rp2.make_link(BUS_SEND, BUS_RECEIVE, driver_enable, clock, baud)

@@ -22,5 +22,5 @@ def python_files(folder):
 
 freeze("$(PORT_DIR)/modules", ("_boot.py", "_boot_fat.py", "rp2.py"))  # the port's own
 freeze("../../firmware", tuple(python_files("../../firmware")))
-freeze("..", ("chips/rp2040.py",))
+freeze("..", ("chips/rp2.py",))
 module("board.py")

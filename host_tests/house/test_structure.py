@@ -40,7 +40,7 @@ RULES = (
     ("boards/sim/drives", ("boards.sim",), None),
     ("boards/sim/line", ("boards.sim",), None),
     ("boards/port", ("boards.port", "boards.sim"), None),
-    ("boards/chips", ("hal",), ("machine", "time", "rp2", "esp32")),
+    ("boards/chips", ("hal",), ("machine", "sys", "time", "rp2", "esp32")),
     ("boards", ("chips", "hal"), ("machine", "micropython", "os")),
 )
 PROJECT = (
@@ -156,7 +156,7 @@ def test_the_rule_would_notice():
         ("firmware/hal/display/rp2_hd44780.py", "board"),
         ("boards/sim/drives/drive.py", "uss.telegram"),
         ("boards/sim/line/wire.py", "hal.link.rs485"),
-        ("boards/chips/rp2040.py", "chips.esp32"),
+        ("boards/chips/rp2.py", "chips.esp32"),
         ("boards/pico/board.py", "rp2"),
         ("boards/sim/world.py", "boards.port.line"),
         ("boards/sim/world.py", "app.App"),

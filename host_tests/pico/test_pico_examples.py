@@ -69,7 +69,7 @@ def test_own_program_works_by_interrupts_and_obeys_its_keys():
 
 def test_plain_micropython_starts_with_a_program_of_ones_own():
     """What firmware/uss/README.md has copied to it, as sources."""
-    files = {"board.py": "boards/pico/board.py", "chips/rp2040.py": "boards/chips/rp2040.py"}
+    files = {"board.py": "boards/pico/board.py", "chips/rp2.py": "boards/chips/rp2.py"}
     for folder in (
         "uss",
         "uss/bus",

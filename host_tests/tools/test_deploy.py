@@ -189,12 +189,12 @@ def test_sources_make_place_for_compiled_files_and_these_for_sources():
 
 def test_the_whole_firmware_of_the_tree_is_taken():
     made = image.Firmware.read(TOP, "pico")
-    wanted = {"main.py", "app.py", "board.py", "chips/rp2040.py", "uss/master.py"}
+    wanted = {"main.py", "app.py", "board.py", "chips/rp2.py", "uss/master.py"}
     assert wanted | {"panel/pages/home.py"} <= set(made.sources)
     own = TOP / "boards" / "sim" / "board.py"
     other = image.Firmware.read(TOP, "pico", own)
     assert other.sources["board.py"] == own.read_bytes() != made.sources["board.py"]
-    assert "chips/rp2040.py" in other.sources
+    assert "chips/rp2.py" in other.sources
 
 
 def test_a_board_file_for_a_chip_that_nobody_knows_is_refused(tmp_path):

@@ -731,6 +731,6 @@ def test_the_firmware_is_one_for_the_pico_and_tells_nothing_of_this_machine(name
         assert path.encode() not in image
     firmware = tiers.TOP / "firmware"
     ours = {str(path.relative_to(firmware)) for path in firmware.rglob("*.py")}
-    ours |= {"board.py", "chips/rp2040.py"}
+    ours |= {"board.py", "chips/rp2.py"}
     for frozen in ours - {"main.py"}:  # a name that MicroPython knows
         assert (b"\0" + frozen.encode() + b"\0" in image) == (name == "panel"), frozen

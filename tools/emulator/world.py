@@ -34,7 +34,7 @@ LED = 25  # the Pico's own, which the panel leaves alone
 KEY_PINS = {
     "START": 13,
     "STOP": 14,
-    "REVERSE": 15,
+    "REVERSE": 3,
     "JOG_RIGHT": 16,
     "JOG_LEFT": 17,
     "UP": 18,

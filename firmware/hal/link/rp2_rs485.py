@@ -10,7 +10,7 @@ rate.
     driver_enable = Pin(6, Pin.OUT, value=0)        # low before anything else
     rx = Pin(5, Pin.IN, Pin.PULL_UP)                # it floats while the driver is on
     uart = UART(1, baud, bits=8, parity=0, stop=1, tx=Pin(4), rx=rx, rxbuf=256, txbuf=32)
-    link = Rp2Link(uart, 0, rp2.DMA(), Pin(4), driver_enable, clock, baud)
+    link = Rp2Link(uart, 0x40038000, 0, rp2.DMA(), Pin(4), driver_enable, clock, baud)
 
 Runs on the chip alone; it is proven on the emulated one.
 """
@@ -23,8 +23,10 @@ from micropython import const
 
 from hal.link.bursts import Bursts
 
-_CYCLES_PER_BIT = const(8)  # of the state machine; its divider allows 239 baud ... 15 Mbaud
-_LEAD_CYCLES = const(4)  # from the DMA's first word to the first start bit, at the most
+# Of the state machine. Its divider goes to 65536, so that 300 baud are possible up to a system
+# clock of 314 MHz: more than either chip is made for.
+_CYCLES_PER_BIT = const(16)
+_LEAD_CYCLES = const(8)  # from the DMA's first word to the first start bit, at the most
 _BITS_PER_CHARACTER = const(11)
 _BITS_BEFORE_STOP = const(10)
 _SIZE_MAX = const(256)
@@ -39,21 +41,21 @@ _WORDS = const(1)  # code of the DMA for transfers of 16 bits
 def transmitter():
     """First word: characters - 1. Then a word for each character, as `_transmit` makes them.
 
-    A bit takes 8 cycles; characters follow each other without a gap, because fetching the next one
-    is part of the stop bit. The DMA writes 16 bits, which the chip puts on both halves of the
+    A bit takes 16 cycles; characters follow each other without a gap, because fetching the next
+    one is part of the stop bit. The DMA writes 16 bits, which the chip puts on both halves of the
     32-bit bus: `out(y, 16)` takes one of them, where `mov(y, osr)` would count far too many.
     """
     pull(block).side(0)
-    out(y, 16).side(1)
+    out(y, 16).side(1)[3]
     label("character")
     pull(block).side(1)
     set(x, _BITS_BEFORE_STOP - 1).side(1)
     label("bit")
-    out(pins, 1).side(1)[6]
+    out(pins, 1).side(1)[14]
     jmp(x_dec, "bit").side(1)
-    out(pins, 1).side(1)[4]  # the stop bit, which lasts until the next `out`
+    out(pins, 1).side(1)[12]  # the stop bit, which lasts until the next `out`
     jmp(y_dec, "character").side(1)
-    nop().side(1)[2]  # to its end, and one cycle more
+    nop().side(1)[3]  # to its end, and two cycles more
 
 
 @micropython.viper
@@ -74,23 +76,6 @@ def _transmit(buffer: ptr8, count: int, words: ptr16, channel: ptr32):
 
 
 @micropython.viper
-def _fifo_holds() -> bool:
-    """Whether characters stand in the FIFO of UART 1."""
-    uart = ptr32(0x40038000)
-    return uart[6] & 0x10 == 0  # UARTFR, RXFE: it is empty
-
-
-@micropython.viper
-def _clear_fifo(uart):
-    """Move the characters in the FIFO of UART 1 to its buffer; drop those that find no room."""
-    registers = ptr32(0x40038000)
-    if registers[6] & 0x10 == 0:
-        uart.any()
-        while registers[6] & 0x10 == 0:
-            registers[0]  # UARTDR: to read it is enough
-
-
-@micropython.viper
 def _copy(source: ptr8, target: ptr8, at: int, count: int):
     index = 0
     while index < count:
@@ -99,7 +84,8 @@ def _copy(source: ptr8, target: ptr8, at: int, count: int):
 
 
 class Rp2Link(Bursts):
-    """uart: UART 1 as above, made before this. state_machine: its number, 0...7.
+    """uart: UART 1 as above, made before this. registers: its address, which is not the same on
+    every chip. state_machine: its number, 0...7.
 
     dma: an rp2.DMA that the link may keep; `close` gives the channel back. tx_pin and
     driver_enable: pins, which the state machine takes over. baud: 300...187500.
@@ -107,8 +93,9 @@ class Rp2Link(Bursts):
 
     foreseen = True
 
-    def __init__(self, uart, state_machine, dma, tx_pin, driver_enable, clock, baud):
+    def __init__(self, uart, registers, state_machine, dma, tx_pin, driver_enable, clock, baud):
         self.sent_at = 0
+        self._registers = registers
         self._dma = dma
         self._tx_pin = tx_pin
         self._driver_enable = driver_enable
@@ -127,7 +114,7 @@ class Rp2Link(Bursts):
         control = dma.pack_ctrl(size=_WORDS, inc_read=True, inc_write=False, treq_sel=request)
         dma.config(read=self._words, write=self._state_machine, count=1, ctrl=control)
         self._channel = dma.registers
-        Bursts.__init__(self, uart, clock, baud, _copy, (_fifo_holds, _clear_fifo))
+        Bursts.__init__(self, uart, clock, baud, _copy, (self._holds, self._clear))
 
     def send(self, buffer, count):
         if self._is_driving():  # the last telegram never ended; this does not happen on the chip
@@ -167,3 +154,18 @@ class Rp2Link(Bursts):
             out_base=self._tx_pin,
         )
         self._state_machine.active(1)
+
+    @micropython.viper
+    def _holds(self) -> bool:
+        """Whether characters stand in the UART's FIFO."""
+        registers = ptr32(self._registers)
+        return registers[6] & 0x10 == 0  # UARTFR, RXFE: it is empty
+
+    @micropython.viper
+    def _clear(self, uart):
+        """Move the characters in the UART's FIFO to its buffer; drop those that find no room."""
+        registers = ptr32(self._registers)
+        if registers[6] & 0x10 == 0:
+            uart.any()
+            while registers[6] & 0x10 == 0:
+                registers[0]  # UARTDR: to read it is enough

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""What every board with an RP2040 needs: clock, watchdog, timer, bus, display, keys, registers.
+"""What every board with an RP2040 or RP2350 needs: clock, watchdog, timer, bus, display, keys.
 
 A board file says which pin is what and asks here for the rest. A driver is handed objects of the
-chip; this is the only place that makes them. Names of registers: RP2040 data sheet.
+chip; this is the only place that makes them. Names and numbers of registers: the data sheets of
+RP2040 and RP2350; where only one place is named, both chips have it there.
 """
 
+import sys
 import time
 
 import machine
@@ -18,8 +20,9 @@ from hal.link.rp2_rs485 import Rp2Link
 # --- which part of the chip does what ------------------------------------------------------------
 
 BUS_UART = 1  # the one that `Rp2Link` knows
-BUS_STATE_MACHINE = 0  # the first of PIO 0
-LCD_STATE_MACHINE = 4  # the first of PIO 1
+# Both of PIO 0, whose 32 instructions hold both programs: the radio of a Pico W takes a machine of
+# the last PIO, and no program can have that one afterwards (pico-sdk, cyw43_bus_pio_spi.c).
+BUS_STATE_MACHINE, LCD_STATE_MACHINE = 0, 1
 RECEIVE_BUFFER, SEND_BUFFER = 256, 32  # characters; nothing is sent through the UART
 BACKPACK_I2C = 0
 BACKPACK_HZ = 100_000  # the most that a PCF8574 takes
@@ -29,16 +32,29 @@ WATCHDOG_MS = 2_000
 
 # --- registers -----------------------------------------------------------------------------------
 
-I2C_REGISTERS = 0x4004_4000  # I2C 0 (4.3.17)
-GPIO_IN = 0xD000_0004  # the levels of all pins (SIO, 2.3.1.7)
+GPIO_IN = 0xD000_0004  # the levels of all pins (SIO, RP2040 2.3.1.7)
+ADDRESSES = {  # where the chips differ: watchdog, UART 1, I2C 0 (RP2040 2.2, RP2350 2.2)
+    "RP2040": (0x4005_8000, 0x4003_8000, 0x4004_4000),
+    "RP2350": (0x400D_8000, 0x4007_8000, 0x4009_0000),
+}
+CHIP = sys.implementation._machine.rpartition(" with ")[2]
+if CHIP not in ADDRESSES:
+    raise ValueError("this firmware knows %s, no %s" % (" and ".join(sorted(ADDRESSES)), CHIP))
+WATCHDOG, UART_REGISTERS, I2C_REGISTERS = ADDRESSES[CHIP]
 
-# The watchdog (4.7.6). Writing to the second address clears bits.
-WATCHDOG_CONTROL, WATCHDOG_CONTROL_CLEAR = 0x4005_8000, 0x4005_B000
+# The watchdog (RP2040 4.7.6). Writing to the second address clears bits.
+WATCHDOG_CONTROL, WATCHDOG_CONTROL_CLEAR = WATCHDOG, WATCHDOG + 0x3000
 WATCHDOG_ENABLE = 1 << 30
-WATCHDOG_REASON = 0x4005_8008
-WATCHDOG_SCRATCH_4 = 0x4005_801C
+WATCHDOG_REASON = WATCHDOG + 0x08
+WATCHDOG_SCRATCH_4 = WATCHDOG + 0x1C
 # What the SDK leaves in SCRATCH_4 when a watchdog is started, and 0 for a reset that is wanted.
 STARTED = 0x6AB7_3121
+
+
+def expect(chip):
+    """Raises ValueError on another chip: there the pins of this board may be something else."""
+    if chip != CHIP:
+        raise ValueError("this board file is for the %s, and here is a %s" % (chip, CHIP))
 
 
 class Clock:
@@ -108,7 +124,7 @@ def make_timer():
     timer = HardTimer(machine_timer)
     try:
         timer.init(Timer.ONE_SHOT, 1_000_000, 1_000_000, print)  # a second: it never comes to that
-    except TypeError:
+    except (TypeError, ValueError):  # it knows no such thing; it knows it, and has it not
         return machine_timer
     timer.deinit()
     return timer
@@ -133,7 +149,16 @@ def make_link(send, receive, driver_enable, clock, baud):
         rxbuf=RECEIVE_BUFFER,
         txbuf=SEND_BUFFER,
     )
-    return Rp2Link(uart, BUS_STATE_MACHINE, rp2.DMA(), send_pin, driver_enable, clock, baud)
+    return Rp2Link(
+        uart,
+        UART_REGISTERS,
+        BUS_STATE_MACHINE,
+        rp2.DMA(),
+        send_pin,
+        driver_enable,
+        clock,
+        baud,
+    )
 
 
 # --- display -------------------------------------------------------------------------------------

@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: MIT
+"""What real chips do and the emulated one does not: here it is done before the panel starts.
+
+A boot.py does it; there is no USB in it, the LED tells.
+"""
+
+from panel_bench import row_2
+from pico_bench import BOOT_MS, panel, start
+from tools.emulator.world import PicoWorld
+
+INTERPRETERS = "pico pico_again"
+
+# A radio takes a state machine of PIO 1, and room for its program; here it has taken all of both.
+RADIO = b"""
+import rp2
+machine_of = rp2.StateMachine
+
+def left_over(number, *arguments, **named):
+    if number >= 4:
+        raise ValueError("StateMachine claimed by external resource")
+    return machine_of(number, *arguments, **named)
+
+@rp2.asm_pio()
+def program():
+    for _ in range(32):
+        nop()
+
+rp2.PIO(1).add_program(program)
+rp2.StateMachine = left_over
+"""
+
+# Ports answer each in its way to a timer with hard callbacks that they have not.
+REFUSES = b"""
+import machine
+from chips import rp2
+
+class Timer:
+    ONE_SHOT = 0
+    deinit = None
+
+    def init(self, **options):
+        if "hard" in options:
+            raise %s
+
+rp2.Timer = Timer
+rp2.HardTimer.ONE_SHOT = 0
+if isinstance(rp2.make_timer(), Timer):
+    machine.Pin(25, machine.Pin.OUT, value=1)
+"""
+
+
+def test_the_radio_of_a_pico_w_has_taken_its_part_of_the_chip_first():
+    world = panel(files={"boot.py": RADIO})
+    start(world)
+    assert world.lcd()[0].startswith("S: 10.0 F: ")
+    world.check()
+
+
+def test_the_slowest_rate_works_with_a_fast_system_clock():
+    """The emulated chip's own clock stays as it is, so the line is slower than it should be."""
+    world = PicoWorld(
+        "panel",
+        baud=300,
+        addresses=(),
+        settings={"drives": [1]},
+        files={"boot.py": b"import machine\nmachine.freq(250_000_000)\n"},
+    )
+    world.run(4_000)
+    assert b"USS panel: runs" in world.usb, bytes(world.usb)
+    assert row_2(world).startswith("A1"), world.lcd()
+    assert world.figures.release_ns
+
+
+def test_a_board_file_for_another_chip_says_so_and_drives_nothing():
+    with open("boards/pico/board.py", "rb") as source:
+        other = source.read().replace(b'"RP2040"', b'"RP2350"')
+    world = PicoWorld("panel", files={"board.py": other})
+    world.run(BOOT_MS)
+    sentence = b"ValueError: this board file is for the RP2350, and here is a RP2040"
+    assert sentence in world.usb, bytes(world.usb)
+    assert b"runs" not in world.usb and not world.figures.release_ns
+
+
+def test_a_port_without_hard_timers_gets_a_soft_one():
+    for error in (b"TypeError", b"ValueError"):
+        world = PicoWorld("panel", files={"boot.py": REFUSES % error})
+        assert world.run_until(lambda: world.led and world.led[-1][1], BOOT_MS), error
