@@ -50,7 +50,7 @@ class Surroundings:
     and not in the settings.
 
     random    a function of (low, high): the numbers of the seed
-    stored    what the panel's settings file should say
+    stored    what the panel's settings file should say; None: there is to be none
     resets    how often the chip has restarted
     place     where the panel runs, for people
     refused   commands of the script language that cannot be done here: name -> why

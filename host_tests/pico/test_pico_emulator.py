@@ -47,9 +47,9 @@ class Talker:
 
     name = "talker"
 
-    def __init__(self, world):
+    def __init__(self, world, baud=None):
         self.world = world
-        world.wire.attach(self)
+        world.wire.attach(self, baud)
 
     def hear(self, burst):
         pass
@@ -356,3 +356,39 @@ def test_the_same_again_is_the_same_to_the_nanosecond():
         return world.figures.driver
 
     assert run() == run()
+
+
+def test_characters_of_another_rate_are_garbage_with_framing_errors():
+    world = stock(SET_UP + "machine.mem32[0x40038038] = 0\n")  # no interrupt empties the FIFO
+    sent = b"\x02\x0a\x01"
+    heard = {}
+    for baud in (9600, BAUD, 38400):
+        Talker(world, baud).say(sent)
+        world.run(50)
+        told = does(world, "for _ in range(3): print(machine.mem32[0x40038000])")
+        heard[baud] = [int(character) for character in told.split()]
+    assert heard[BAUD] == list(sent)
+    for baud in (9600, 38400):
+        for character, was in zip(heard[baud], sent):
+            assert character & 0x100 and character & 0xFF != was, heard
+    world.check()
+
+
+def test_a_chip_that_changes_its_rate_talks_at_the_new_one():
+    world = stock()
+    heard = []
+
+    class Listener(Talker):
+        def hear(self, burst):
+            heard.append((burst.baud, bytes(burst.data[: burst.count])))
+
+    Listener(world)
+    for baud in (9600, 38400):
+        does(
+            world,
+            "uart.init(%d, bits=8, parity=0, stop=1)\n"
+            "driver(1)\nuart.write(b'\\x02\\x0a')\nuart.flush()\ndriver(0)" % baud,
+        )
+        world.run(10)
+    assert heard == [(9600, b"\x02\x0a"), (38400, b"\x02\x0a")]
+    assert world.station.baud == 38400 and not world.station.complaints

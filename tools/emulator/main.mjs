@@ -18,6 +18,7 @@ const ORPHAN_SLICES = 20; // and how often whether anybody still waits for the a
 const COMPLAINTS = 20; // different ones, for each chip
 const PAYLOADS = new Set(['N', 'U', 'F']);
 const UNIT_NANOS = 100000; // of V's duration
+const UNIT_BAUD = 50; // of a rate: the greatest common divisor of those of USS
 
 // What the chip reports, as records. It is the chip's logger as well.
 class Report {
@@ -38,6 +39,10 @@ class Report {
   character(start, byte, parityWrong, stopWrong) {
     this.server.writer.add(start, 'T', byte, parityWrong | (stopWrong << 1));
     this.stop = true;
+  }
+
+  tuned(baud) {
+    this.add('B', 0, Math.min(Math.round(baud / UNIT_BAUD), 0xffff));
   }
 
   pin(gpio, state) {
@@ -166,7 +171,7 @@ class Server {
     switch (kind) {
       case 'N': this.newChip(JSON.parse(payload.toString())); break;
       case 'S': this.terminal.on = a === 1; break;
-      case 'C': pico?.receive(a, !!(b & 1), !!(b & 2)); break;
+      case 'C': pico?.receive(a, !!(b & 1), !!(b & 2), (b >> 2) * UNIT_BAUD); break;
       case 'P': pico?.drive(a, b); break;
       case 'U': pico?.send(payload); break;
       case 'X': if (a === 1) pico?.cutPower(); else pico?.pulseRunPin(); break;

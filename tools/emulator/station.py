@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: MIT
 """The transceiver of an emulated panel: TX, RX and driver enable as a station on the wire.
 
+Everybody talks at a rate of its own. The chip's is the one that its UART is set to; what comes at
+another one, the UART gets as garbage, and so does a drive what the chip says.
+
 The chip tells a character when it is over, with the instant of its start bit; the world runs so
 far behind that the character can still begin on the wire at that instant. What others send goes to
 the chip character by character, each as late as possible, so that a collision can garble it and a
@@ -11,15 +14,27 @@ driver is on. It keeps the figures of the line, in nanoseconds of the chip's clo
 from array import array
 
 from boards.sim.clock import Event
-from boards.sim.line.wire import GARBLE
+from uss.timing import BAUD_RATES
 
 BITS = 11  # of a character
 FOLLOWS_BITS_PERCENT = 40  # a later start bit is a gap; the world is that far behind
 EDGES_KEPT = 16  # of the driver: more than there are while one character lasts
 FIGURES_MAX = 20_000
 COMPLAINTS_MAX = 16
+UNIT_BAUD = 50  # of a rate in the records
+TOLERANCE_PERCENT = 1  # a UART divides its clock: no rate is met exactly
 
 PARITY_WRONG, STOP_WRONG = 1, 2  # flaws of a character
+RATE_SHIFT = 2  # its rate stands above them
+
+
+def rate_of(units):
+    """The rate of USS that a chip has set which divides its clock; as it is if none is near."""
+    measured = units * UNIT_BAUD
+    for baud in BAUD_RATES:
+        if 100 * abs(baud - measured) <= TOLERANCE_PERCENT * baud:
+            return baud
+    return measured
 
 
 class Figures:
@@ -68,8 +83,7 @@ class Station:
         self._clock = wire.clock
         self._tell = tell
         self._origin_ns = origin_ns
-        self._character_ns = BITS * 1_000_000_000 // wire.baud
-        self._gap_ns = FOLLOWS_BITS_PERCENT * 10_000_000 // wire.baud
+        self.tune(wire.baud)
         self._one = bytearray(1)
         self._to_send = []  # (start_ns, byte): told, and not on the wire yet
         self._burst = None  # ours, on the wire
@@ -87,6 +101,16 @@ class Station:
         wire.attach(self)
 
     # --- from the chip --------------------------------------------------------------------------
+
+    def tune(self, baud):
+        """The chip's UART has been set to this rate: told when it is known."""
+        self.baud = baud
+        self._character_ns = BITS * 1_000_000_000 // baud
+        self._gap_ns = FOLLOWS_BITS_PERCENT * 10_000_000 // baud
+
+    def talk_at(self, baud):
+        """It talks at this rate now, in the world's time."""
+        self._wire.set_rate(self, baud)
 
     def sent(self, at_ns, byte, flaws):
         """A character left TX; its start bit began at `at_ns`."""
@@ -142,7 +166,7 @@ class Station:
         self._rose_ns = None
         self._heard_until_ns = None
         self._edges = []
-        self._wire.attach(self)
+        self._wire.attach(self, self.baud)
 
     def _put(self):
         """Put on the wire what follows the present burst without a gap; the rest waits."""
@@ -192,8 +216,7 @@ class Station:
         starts_ns = self._instant_ns(burst, at)
         ends_ns = self._instant_ns(burst, at + 1)
         if not self._deaf(starts_ns, ends_ns):
-            characters = burst.data if burst.baud == self._wire.baud else GARBLE
-            self._tell(ends_ns, "C", characters[at], 0)
+            self._tell(ends_ns, "C", burst.data[at], burst.baud // UNIT_BAUD << RATE_SHIFT)
             self._heard_until_ns = ends_ns
             self.figures.heard_ns = ends_ns - self._origin_ns
         if at + 1 < burst.count:
@@ -201,7 +224,8 @@ class Station:
 
     def _instant_ns(self, burst, characters):
         """When so many characters of a burst are over."""
-        return self._origin_ns + burst.start_us * 1000 + characters * self._character_ns
+        characters_ns = characters * BITS * 1_000_000_000 // burst.baud
+        return self._origin_ns + burst.start_us * 1000 + characters_ns
 
     def _deaf(self, from_ns, until_ns):
         """Whether the driver was on, and so the receiver off, at any instant between these."""

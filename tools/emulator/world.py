@@ -23,9 +23,9 @@ from boards.sim.world import SETTINGS_FILE, Surroundings
 from tools.emulator.chip import connection
 from tools.emulator.flash_image import FlashImage
 from tools.emulator.repl import Repl
-from tools.emulator.station import Station
+from tools.emulator.station import Station, rate_of
 
-BEHIND_BITS_PERCENT = 1090  # how far the world is behind the chip, in bits of the line
+BEHIND_BITS_PERCENT = 1090  # how far the world is behind the chip, in bits at the chip's rate
 
 # Where things are on the board: boards/pico/README.md.
 SENDS, RECEIVES, DRIVER_ENABLE = 4, 5, 6
@@ -96,7 +96,8 @@ class PicoWorld(Surroundings):
 
     display: "wires", four data lines, or "backpack", on I2C. files: path -> content, put on the
     chip's file system. flash: path of a flash image to begin with, of which all but the program
-    stays, and which gets no settings if it has some. model: settings of the emulated chip that
+    stays, and which gets no settings if it has some. new: nobody has given the panel settings yet;
+    baud is that of the line alone. model: settings of the emulated chip that
     differ from the usual ones, as {"receive_timeout": "again"}: README.md.
 
     figures        of the line, see `station.Figures`
@@ -123,6 +124,7 @@ class PicoWorld(Surroundings):
         flash=None,
         model=None,
         kinds=None,
+        new=False,
     ):
         if display not in DISPLAYS:
             raise ValueError("a display is one of: %s" % " ".join(DISPLAYS))
@@ -137,10 +139,12 @@ class PicoWorld(Surroundings):
         self.usb = bytearray()
         self.repl = Repl(self)
         self._origin_ns = self.chip.now_ns
-        self._behind_ns = BEHIND_BITS_PERCENT * 10_000_000 // baud
+        self._behind_ns = behind_ns(baud)
         self._records = []  # (at_ns, kind, a, b) that are not due in the world yet
         self._due = Event(self._take_due)
         self._outputs = {}
+        if new:
+            self.stored = None
         self._begin_chip(program_path(program), baud, display, files or {}, flash, model)
         self.station = Station(self.wire, self.chip.tell, self._origin_ns)
         self.figures = self.station.figures
@@ -252,7 +256,7 @@ class PicoWorld(Surroundings):
     def _begin_chip(self, program, baud, display, files, flash, model):
         """Put the files on a flash, and power to a chip with it."""
         image = FlashImage(flash)
-        if flash is None or image.read(SETTINGS_FILE) is None:
+        if self.stored is not None and image.read(SETTINGS_FILE) is None:
             image.write(SETTINGS_FILE, json.dumps(self.stored).encode())
         for path, content in files.items():
             image.write(path, content)
@@ -312,6 +316,9 @@ class PicoWorld(Surroundings):
         elif kind == "E" and a == LED:
             self._note(self.led, (self._world_us(at_ns), b == HIGH))
         else:
+            if kind == "B":
+                self.station.tune(rate_of(b))
+                self._behind_ns = behind_ns(self.station.baud)
             if kind == "E" and a == DRIVER_ENABLE:
                 self.station.driver(at_ns, b == HIGH)
             self._queue(at_ns, kind, a, b)
@@ -340,7 +347,9 @@ class PicoWorld(Surroundings):
         records = self._records
         while records and self._world_us(records[0][0]) <= self.clock.now_us:
             at_ns, kind, a, b = records.pop(0)
-            if kind == "E" and a == DRIVER_ENABLE:
+            if kind == "B":
+                self.station.talk_at(rate_of(b))
+            elif kind == "E" and a == DRIVER_ENABLE:
                 self.station.drive(at_ns, b == HIGH)
             elif kind == "E":
                 self._outputs[a].put(b)
@@ -360,6 +369,11 @@ class PicoWorld(Surroundings):
         if not self.backpack:
             self.lcd_chip.let_go()
             self._wire_display()
+
+
+def behind_ns(baud):
+    """How far the world is behind a chip that sends at this rate."""
+    return BEHIND_BITS_PERCENT * 10_000_000 // baud
 
 
 def program_path(program):

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What a receiver on the line makes of the TX pin: characters of 8 data bits, even parity and one
-// stop bit at the line's baud rate, each bit looked at in its middle.
+// stop bit, each bit looked at in its middle. Its rate is that to which the chip has set the UART
+// at the RX pin: whoever sends at another rate than it receives makes characters with flaws.
 //
 // While the chip does not drive the pin the line rests (high).
 
@@ -10,10 +11,14 @@ const COMPLETE = 10.5; // bits after the beginning of the start bit
 export class LineDecoder {
   // decoded(start, byte, parityWrong, stopWrong): half a bit before the character is over.
   constructor(baud, decoded) {
-    this.bitNanos = 1e9 / baud;
+    this.tune(baud);
     this.decoded = decoded;
     this.level = 1;
     this.reset(null);
+  }
+
+  tune(baud) {
+    this.bitNanos = 1e9 / baud;
   }
 
   // The chip is new, its line rests.

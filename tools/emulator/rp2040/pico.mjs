@@ -52,7 +52,7 @@ export class Pico {
   constructor(options, image, nanos, report) {
     this.report = report;
     this.model = modelOf(options.model ?? {});
-    this.baud = options.baud ?? 9600;
+    this.baud = options.baud ?? 9600; // of the chip on the line
     this.watched = new Set(options.watch ?? []);
     this.addresses = new Set(options.i2c ?? []);
     this.hasUsb = options.usb ?? true;
@@ -97,7 +97,7 @@ export class Pico {
     const { peripherals, clock } = mcu;
     for (const index of [0, 1]) {
       const uart = new TimedUart(mcu, index, () => this.wires.uartMoved(index),
-        this.model.receive_timeout === 'again');
+        (baud) => this.uartTuned(index, baud), this.model.receive_timeout === 'again');
       mcu.uart[index] = peripherals[0x40034 + 4 * index] = uart;
       mcu.pio[index] = peripherals[0x50200 + 0x100 * index] = new TimedPio(mcu, index);
     }
@@ -187,10 +187,17 @@ export class Pico {
     this.bus.levels(this.wires.level[SDA], this.wires.level[SCL]);
   }
 
-  // A character has come in at the RX pin.
-  receive(byte, parityWrong, framingWrong) {
+  uartTuned(index, baud) {
+    if (index !== LINE.uart || baud === this.baud) return;
+    this.baud = baud;
+    this.decoder.tune(baud);
+    this.report.tuned(baud);
+  }
+
+  // A character has come in at the RX pin from a talker of this rate.
+  receive(byte, parityWrong, framingWrong, baud) {
     if (!isUart(this.mcu.gpio[LINE.rx])) return;
-    this.mcu.uart[LINE.uart].receive(byte, parityWrong, framingWrong, this.baud);
+    this.mcu.uart[LINE.uart].receive(byte, parityWrong, framingWrong, baud);
   }
 
   send(bytes) {

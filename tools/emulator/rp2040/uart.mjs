@@ -24,14 +24,16 @@ const TIMEOUT_BITS = 32;
 const BAUD_TOLERANCE = 0.03;
 
 export class TimedUart extends BasePeripheral {
-  // onLevel(): the level of the TX line has changed. timeoutAgain: the receive time-out that was
-  // cleared is there again as long as its characters are left in the FIFO.
-  constructor(mcu, index, onLevel, timeoutAgain) {
+  // onLevel(): the level of the TX line has changed. onRate(baud): it was set to a rate.
+  // timeoutAgain: the receive time-out that was cleared is there again as long as its characters
+  // are left in the FIFO.
+  constructor(mcu, index, onLevel, onRate, timeoutAgain) {
     super(mcu, 'UART' + index);
     const { irq, dreq } = mcu.uart[index];
     this.irq = irq;
     this.dreq = dreq;
     this.onLevel = onLevel;
+    this.onRate = onRate;
     this.timeoutAgain = timeoutAgain;
     this.bitAlarm = mcu.clock.createAlarm(() => this.nextBit());
     this.timeoutAlarm = mcu.clock.createAlarm(() => this.timeout());
@@ -224,7 +226,10 @@ export class TimedUart extends BasePeripheral {
         break;
       case IBRD: this.ibrd = value & 0xffff; break;
       case FBRD: this.fbrd = value & 0x3f; break;
-      case LCR_H: this.lcr = value & 0xff; break;
+      case LCR_H: // it makes the divisors act as well
+        this.lcr = value & 0xff;
+        if (this.ibrd) this.onRate(1e9 / this.bitNanos);
+        break;
       case CR:
         this.cr = value & 0xffff;
         this.begin();
