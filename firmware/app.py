@@ -17,6 +17,7 @@ import on_demand
 # From the bottom of the house up: an import inside an import inside an import takes stack.
 import uss.fast  # noqa: F401
 from uss.timing import Timing, elapsed
+from uss.drive import Drive
 from uss.master import Master
 from uss.leave import leave, persist
 import uss.survey  # noqa: F401
@@ -53,6 +54,7 @@ class App:
         timing = Timing(settings.baud, settings.reply_timeout_ms * 1000)
         self.bus = Master(self.link, timing, mask, settings.lost_ms * 1000)
         self._finder = None
+        self._doubts = Drive.doubts
         self.pacer = Pacer(self.bus, self.link, board.clock, board.timer)
         self._roster = roster = Roster(self.bus, settings, mask)
         board.display.define(GLYPHS)
@@ -132,8 +134,10 @@ class App:
         """Look for drives that are silent because their telegrams are divided differently."""
         finder = self._finder
         if finder is None:
-            if self.bus.deadlines.silence.count >= _SILENCES:  # most panels never need it
-                self._finder = on_demand.load("uss.finding.finder").Finder(self.bus, self._mask)
+            # Most panels never need it.
+            if self.bus.deadlines.silence.count >= _SILENCES or Drive.doubts != self._doubts:
+                finder = on_demand.load("uss.finding.finder").Finder
+                self._finder = finder(self.bus, self._mask, _enquirer)
             return
         found = finder.step(now_us)
         if found is not None:
@@ -203,3 +207,8 @@ class App:
         stands_ms = elapsed(now_ms, self._progress_at_ms, self._mask)
         if stands_ms * 1000 < self.bus.patience_us():
             self.board.watchdog.feed()
+
+
+def _enquirer(*node):
+    """Asks a drive what it is; the module leaves the memory with it."""
+    return on_demand.call("uss.finding.enquiry", "Enquirer", *node)

@@ -103,6 +103,8 @@ class Drive:
     """
 
     outside = False  # it is in the list; for telegrams outside it see `outside`
+    doubted = False  # its replies make no sense: perhaps they are divided differently
+    doubts = 0  # how often that was noticed, of any drive
 
     def __init__(self, address, mask, attention=None, layout=STANDARD):
         if not 0 <= address <= NODE_MAX:
@@ -549,6 +551,11 @@ class Drive:
         bit 9 set when bit 3 is not.
         """
         return not self.layout.pzd_words
+
+    def doubt(self):
+        """What it answers makes no sense. A finder asks it for its layout."""
+        self.doubted = True
+        Drive.doubts += 1
 
     def lose(self):
         """Contact is lost; ON, if it was being sent, is void."""

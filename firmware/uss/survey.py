@@ -47,6 +47,7 @@ _HUNDRED_PERCENT = const(10_000)
 _OF_A_WORD = (rows.WORD, STEPS, rows.COUNT)
 _NOTHING_ASKED = (None,) * rows.COUNT_OF_ROWS
 
+_ODD_MAX = const(2)  # answers in a row that make no sense: perhaps it has another layout
 _UNANSWERED_MAX = const(2)  # then the row counts as missing, and is read only before a START
 _ABSENT = (pkw.NO_PARAMETER, pkw.NO_INDEX)  # the drive has no such parameter
 _FIRST = rows.COMMAND_SET  # a round begins with it, because it tells the indices of others
@@ -81,6 +82,7 @@ class Survey:
     """
 
     latest_scaling = None  # the newest of any drive: most drives of a bus have the same, shared
+    _odd = 0  # answers in a row that make no sense
 
     def __init__(self, drive, family, mask, spares):
         self.drive = drive
@@ -306,6 +308,10 @@ class Survey:
             return
         if self._unanswered:
             self._unanswered[row] = 0
+        if job.high and job.width == pkw.WORD:
+            self._wonder(1)  # there is no high word: what stands there is something else
+        elif self._odd:
+            self._odd = 0
         kind = self._asks[row][2]
         if kind == rows.COUNT:
             before, self.values[row] = self.values[row], job.low
@@ -321,11 +327,24 @@ class Survey:
             value = rpm(job.high, value)
         elif kind == STEPS:
             value = self._from_steps(value)
+        elif value > pkw.INDEX_MAX and (row == rows.COMMAND_SET or row == rows.DRIVE_SET):
+            value = _UNKNOWN  # no data set has this number
         if value != self.values[row] or value == _UNKNOWN:
             self._put(row, value)
 
+    def _wonder(self, weight):
+        """Whether its answers make sense, as long as not everything is known."""
+        self._odd += weight
+        if self._odd >= _ODD_MAX and not (self.complete or self.drive.doubted):
+            self._odd = 0
+            self.drive.doubt()
+
     def _take_refusal(self, job, row):
         value = _UNKNOWN
+        if job.state == pkw.REFUSED and job.error == pkw.TOO_SMALL:
+            self._wonder(_ODD_MAX)  # any length has room for it: it has none
+        elif job.state == pkw.TIMED_OUT and not self.drive.silent:
+            self._wonder(1)
         if row == rows.COUNTER:
             if job.state == pkw.TIMED_OUT:
                 return  # the line was bad; the next count tells as much

@@ -165,18 +165,20 @@ class Turns:
         self._attention[old] = 0
         self.by_address[old] = None
 
-    def relayout(self, drive, layout):
+    def relayout(self, drive, layout, doubted=False):
         """From the next telegram on, the telegrams to `drive` are divided like `layout`.
 
         An exchange that is under way ends as a miss. A stop that is owed stays owed, and so do
         commands and counters; parameter jobs that wait are TIMED_OUT. The drive is asked soon.
         ValueError when it is not on this bus, or is in contact. Of a drive that may be running
         only who knows that it has this layout by now may say so: its STOP goes out in this one.
+
+        doubted: it may be in contact, if it stands; it has none in the new layout yet.
         """
         address = drive.address
         if self.by_address[address] is not drive:
             raise ValueError("drive %d is not on this bus" % address)
-        self._check_lost(drive)
+        self._check_lost(drive, doubted)
         fresh = Drive(address, self._mask, self._attention, layout)
         # While its parts do not fit together, no exchange with it begins: nobody finds it. The
         # last one that may have begun is no longer its own.
@@ -187,20 +189,23 @@ class Turns:
         if is_in_round:
             self.leave_round(drive)
         try:
-            self._check_lost(drive)
+            self._check_lost(drive, doubted)
             if self._abandon:
                 self._abandon(drive)
-            self._check_lost(drive)  # it answered at the last moment
+            self._check_lost(drive, doubted)  # it answered at the last moment
         except BaseException:
             self._bring_back(drive, is_in_round)
             raise
+        if doubted:
+            drive.lose()
+            drive.doubted = False
         drive.become(fresh)
         self._bring_back(drive, is_in_round)
         drive.ask_soon()
         self._follow_layouts()
 
-    def _check_lost(self, drive):
-        if drive.contact:
+    def _check_lost(self, drive, doubted):
+        if drive.contact and not (doubted and not drive.may_run()):
             raise ValueError("drive %d is in contact" % drive.address)
 
     def _bring_back(self, drive, is_in_round):

@@ -10,7 +10,11 @@ from boards.sim.world import World
 from kind_bench import is_untold, panel_of, start
 from panel_bench import row_1, row_2, starts, wait_until_known
 
-NOT_TRACED = "test_every_family_in_every_layout_runs_turns_round_trips_and_stops"
+NOT_TRACED = """
+    test_every_family_in_every_layout_runs_turns_round_trips_and_stops
+    test_a_drive_of_other_pzd_words_than_the_settings_say_is_found
+    test_a_drive_whose_answers_make_no_sense_is_asked_for_its_layout
+"""
 
 HERTZ = (
     "mm420", "mm440", "mm440/127", "mm420/4+4", "mm440/4+8", "g110", "g110/4", "v20", "v20/4+6",
@@ -182,6 +186,47 @@ def test_a_drive_of_another_layout_than_the_settings_say_is_found():
         world.run(1500)
         assert row_2(world) == "READY        A2", (kind, world.lcd())
         world.check()
+
+
+def test_a_drive_of_other_pzd_words_than_the_settings_say_is_found():
+    for real, told in (
+        ("mm440/4+4", "mm440"),
+        ("mm440/127+4", "mm440"),
+        ("mm440/0+4", "mm440/0"),
+        ("mm440-bop/4+8", "mm440-bop"),
+    ):
+        found_as_it_is(real, told)
+
+
+def test_a_drive_whose_answers_make_no_sense_is_asked_for_its_layout():
+    """It answers in the length that the settings say, or in any, and is divided differently."""
+    for real, told in (
+        ("mm440/3", "mm440/127"),
+        ("mm440/127+4", "mm440/127"),
+        ("mm440/127+5", "mm440/127"),
+        ("mm440/3+3", "mm440"),
+        ("mm440/0+6", "mm440"),
+        ("mm440-bop/3", "mm440-bop/127"),
+    ):
+        found_as_it_is(real, told)
+
+
+def found_as_it_is(real, told):
+    """A panel whose settings say `told`, on a line with a drive that is `real`."""
+    settings = {"kinds": {"1": told}}
+    world = World(main.start, [1], kinds=simulated(listed_drives("1=" + real)), settings=settings)
+    for _ in range(250):
+        world.run(100)
+        if row_2(world) == "READY        A1" and world.app.settings.kinds == {"1": real}:
+            break
+    assert world.app.settings.kinds == {"1": real}, (real, told, world.lcd())
+    wait_until_known(world)
+    start(world, real)
+    assert row_2(world) == "RUNNING      A1" and world.drives[1].hz() > 4, (real, world.lcd())
+    world.press("STOP")
+    world.run(4000)
+    assert world.drives[1].hz() == 0 and starts(world) == 1
+    world.check()
 
 
 def test_a_drive_whose_layout_is_changed_while_it_runs_is_found_and_stopped():

@@ -19,6 +19,7 @@ from uss.receiver import OTHER_LENGTH
 
 NOT_TRACED = """
     test_how_long_it_takes
+    test_other_pzd_words_than_the_list_says_are_found
     test_whatever_the_list_says_and_the_drive_is_set_to
     test_while_another_runs_nobody_is_late
     test_a_stop_is_on_the_line_as_soon_as_beside_silent_drives_anyway
@@ -115,15 +116,68 @@ def test_whatever_the_list_says_and_the_drive_is_set_to():
         line.run_until(lambda: all([drive.contact for drive in drives]), 20_000)
         for drive, each in zip(drives, words):
             known = layout_of(drive)[0]
-            # With telegrams of 3 PKW words that one is well served.
-            assert known == each or {known, each} == {3, VARIABLE}, (layout, drive.layout, each)
+            # One of any length answers the list, if that comes first, with as many PKW words: with
+            # 3 it is well served, and 0 is what the list says.
+            served = {known, each} == {3, VARIABLE}
+            served = served or each == VARIABLE and known == layout.pkw_words == 0
+            assert known == each or served, (layout, drive.layout, each)
         line.check()
+
+
+def test_other_pzd_words_than_the_list_says_are_found():
+    """P2012: the length alone does not tell them, so the drive is asked."""
+    for layout, words in (
+        (STANDARD, (4, 4)), (STANDARD, (127, 4)), (STANDARD, (0, 4)), (STANDARD, (3, 4)),
+        (STANDARD, (4, 3)), (Layout(3, 2), (127, 3)), (Layout(0, 2), (0, 4)),
+    ):  # fmt: skip
+        line = Line({2: words}, layout=layout, runs=False)
+        line.found_after(2, 30_000)
+        assert layout_of(line.drives[2]) == words, (layout, words, line.drives[2].layout)
+        assert line.found == [line.drives[2]]
+        line.drives[2].start(0x1000)
+        line.run(1_000)
+        assert line.motors[2].state == "running"
+        line.check()
+
+
+def test_a_drive_that_is_doubted_is_asked_if_it_stands():
+    """It is in contact: its telegrams have the length that the list says, or any."""
+    for layout, words in (
+        (Layout(VARIABLE, 2), (3, 2)), (Layout(VARIABLE, 2), (127, 4)), (STANDARD, (3, 3)),
+        (STANDARD, (127, 3)), (Layout(VARIABLE, 2), (127, 3)),
+    ):  # fmt: skip
+        line = Line({2: words}, layout=layout, runs=False)
+        line.found_after(2)
+        assert line.drives[2].contact and not line.found
+        line.drives[2].doubt()
+        line.run(6_000)
+        told = layout, words, line.drives[2].layout, line.found
+        assert layout_of(line.drives[2]) == words and line.found == [line.drives[2]], told
+        assert line.drives[2].contact and not line.drives[2].doubted
+        line.check()
+    line = Line({2: (4, 2)}, runs=False)
+    line.found_after(2)
+    line.drives[2].doubt()
+    line.run(3_000)
+    assert not line.found and not line.drives[2].doubted  # it has what the list says
+    line.drives[2].start(0x1000)
+    line.run(1_000)
+    line.drives[2].doubt()
+    since = line.wire.log.count
+    line.run(3_000)
+    assert line.motors[2].state == "running"
+    for _, mine, characters in line.wire.log.last(line.wire.log.count - since):
+        assert not (mine and characters[2] & MIRROR)
+    line.drives[2].stop()
+    line.run(8_000)
+    assert not line.drives[2].doubted
+    line.check()
 
 
 def test_how_long_it_takes():
     """No longer than the module says. The worst instant: its length was tried just before it was
     switched on."""
-    promised_s = {(9600, 1): 3, (19200, 1): 3, (9600, 30): 45, (19200, 30): 30}
+    promised_s = {(9600, 1): 4, (19200, 1): 4, (9600, 30): 45, (19200, 30): 30}
     for (baud, silent), limit_s in promised_s.items():
         for pkw_words, net_count in ((127, 10), (3, 10), (0, 4)):
             address = 2 if silent == 1 else 17
@@ -168,7 +222,8 @@ def test_while_another_runs_nobody_is_late():
 
 
 class Short(Node):
-    """It answers in three PKW words where it takes any length, and may answer something else."""
+    """It answers in three PKW words where it takes any length, and may answer something else. If
+    asked, it tells its P2013 and P2012."""
 
     spoil = 0  # so many of its next replies are spoilt
     stray = None  # net data of what it answers to what is not for it
@@ -182,7 +237,11 @@ class Short(Node):
             self.spoil -= 1
             return reply[:5] + b"\x77" + reply[6:]
         if reply and self.pkw_words == VARIABLE and reply[2] == self.address:
-            return framed(self.address, reply[3:-1][-2 * (self.pzd_words + 3) :])
+            net = bytearray(reply[3:-1][-2 * (self.pzd_words + 3) :])
+            told = {13: self.pkw_words, 12: self.pzd_words}.get(characters[4])
+            if characters[3] == 0x10 and characters[5:7] == b"\x80\x00" and told is not None:
+                net[:6] = b"\x10" + characters[4:7] + bytes((0, told))
+            return framed(self.address, net)
         return reply
 
 
@@ -249,7 +308,14 @@ def test_the_length_that_the_list_asks_in_is_left_out():
         bench.loop = lambda: search.step(bench.now)
         bench.run(30_000_000)
         asked = [len(each.characters) - 4 for each in bench.sent if each.address == 2 | MIRROR]
-        assert asked[:4] == (lengths * 4)[:4] and set(asked) == set(lengths), (layout, asked)
+        own = 2 * ((3 if layout[0] == 127 else layout[0]) + layout[1])
+        others = [each for each in range(4, 26, 2) if each not in lengths and each != own]
+        assert [each for each in asked if each in lengths][:4] == (lengths * 4)[:4], asked
+        further = [each for each in asked if each not in lengths]
+        assert further[: len(others)] == others and set(further) == set(others), (layout, asked)
+        # Each turn of the drive ends with one of those.
+        turn = len(lengths) + 1
+        assert [asked[at] in others for at in range(turn)] == [False] * (turn - 1) + [True]
 
 
 def test_one_that_was_running_when_it_was_lost_is_told_to_stop_before_it_is_looked_for():
@@ -311,7 +377,7 @@ def test_one_that_answers_in_another_length_goes_first_unless_that_was_in_vain()
     bench.run(20_000_000)
     node = bench.nodes[9]
     node.plugged = True
-    node.pkw_words, node.pzd_words, node.stray = 4, 7, bytes(22)
+    node.pkw_words, node.pzd_words, node.stray = 4, 12, bytes(22)
     bench.run_until(lambda: bench.drives[9].trouble == OTHER_LENGTH)
     since = len(bench.sent)
     bench.run(30_000_000)
@@ -400,7 +466,7 @@ def test_one_that_answers_while_it_gets_another_layout_keeps_its_own():
     relayout = turns.relayout
     refused = []
 
-    def refuse(drive, layout):
+    def refuse(drive, layout, doubted):
         refused.append(layout)
         turns.relayout = relayout
         raise ValueError("it is in contact")

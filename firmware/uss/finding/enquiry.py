@@ -51,8 +51,8 @@ class Node:
     any number.
 
     layout, family: as `bus.add` takes them. off_time_ms: the node trips after so long without a
-    telegram; 0: never, None: it does not tell. If the drive confirms no layout, `layout` is the
-    most usual one of its length and `family` is GENERIC.
+    telegram; 0: never, None: it does not tell. confirmed: it has told that layout; if not, it is
+    the most usual one of its length, and `family` is GENERIC.
     """
 
     def __init__(self, address, net_count, variable):
@@ -62,17 +62,19 @@ class Node:
         self.layout = layouts(net_count, variable)[0]
         self.family = GENERIC
         self.off_time_ms = None
+        self.confirmed = False
 
     def __repr__(self):
         return "<%s %r>" % (self.family.name, self.layout)
 
 
 class Enquirer:
-    """Asks one node everything. node: the `Node`, complete when `take` has said True."""
+    """Asks one node everything, or its layout alone. node: the `Node`, complete when `take` has
+    said True."""
 
-    def __init__(self, address, net_count, variable):
+    def __init__(self, address, net_count, variable, everything=True):
         self.node = Node(address, net_count, variable)
-        self._questions = enquiry(self.node)
+        self._questions = enquiry(self.node, everything)
         self._place = next(self._questions)
         self._tries = self._silences = 0
 
@@ -105,10 +107,10 @@ def layouts(net_count, variable):
     return [Layout(count, words - count) for count in pkw_words] or [Layout(VARIABLE, 2)]
 
 
-def enquiry(node):
+def enquiry(node, everything=True):
     """A generator of (layout, number, index) to read; number None: a telegram without a task. Send
     it the value, None if there is none, or NO_CHANNEL. At its end the fields of `node` hold what
-    is known.
+    is known. everything: not only the layout.
     """
     usual = None
     for layout in layouts(node.net_count, node.variable):
@@ -120,16 +122,24 @@ def enquiry(node):
             family, link = getattr(families, name), getattr(families, told_by)
             if not can_be_set_to(family, layout):
                 continue
+            if NO_CHANNEL in known.values():
+                break
             links = []  # indices that it may be on
             for index in range(2 if family.has_bop_link else 1):
-                if (yield from _is_set_to(layout, known, link, index)):
-                    links.append(index)
+                if not (yield from _is_set_to(layout, known, link, index)):
+                    continue
+                if not everything:
+                    node.layout = layout
+                    node.confirmed = True
+                    return
+                links.append(index)
             if not links or sign and not (yield from _has(layout, known, sign)):
                 continue
             index = links[0]
             if len(links) > 1:
                 index = yield from _link(node.address, layout, known, link.address_number)
             node.layout = layout
+            node.confirmed = True
             node.family = families.on_bop(family) if index else family
             off_time = yield layout, link.off_time_number, index
             if off_time not in (None, NO_CHANNEL):
@@ -156,7 +166,7 @@ def _has(layout, known, number):
 
 def _is_set_to(layout, known, link, index):
     """Whether the parameters of this link tell the layout, as far as there are such."""
-    if index and NO_CHANNEL in known.values():
+    if index and known[link.pkw_words_number, 0] in (None, NO_CHANNEL):
         return False
     rows = (link.pkw_words_number, layout.pkw_words), (link.pzd_words_number, layout.pzd_words)
     for number, words in rows:

@@ -6,7 +6,12 @@ different ones: P2013 = 127, 4, 3 or 0 PKW words. So a drive that stays silent i
 telegrams of the other lengths that it may have with its PZD words (specification A-4.3, A-5.3). It
 acts on none of them: their net data are zeros, and so is bit 10 wherever a control word may stand.
 Where one comes back, the drive gets that layout by `Turns.relayout`, and the list asks it in it. A
-drive of variable length also sends back one that is a word longer.
+drive of variable length also sends back one that is a word longer. Where the length does not tell
+the layout, because it is variable or the drive has other PZD words (P2012), the drive is asked:
+`enquiry`. That goes with OFF1, which it is owed anyway.
+
+A drive may also answer in contact, and its answers make no sense: its survey doubts it. It is
+asked what it is as well, if it is seen to stand.
 
     finder = Finder(bus, clock.ticks_mask)
     drive = finder.step(clock.ticks_us())   # from the loop, every few milliseconds
@@ -20,8 +25,11 @@ How long it takes at the most until the drive is in contact, beside one that run
 says 4 + 2 words and the drive has another of these layouts; no telegram is lost:
 
                         9600 baud   19200 baud
-    one silent drive    3 s         3 s
+    one silent drive    4 s         4 s
     30 of them          45 s        30 s
+
+With other PZD words it takes ten times as long, because only one such length is tried in each turn
+of a drive, and beside many silent ones only now and then: minutes.
 """
 
 from micropython import const
@@ -30,7 +38,7 @@ from micropython import const
 from uss.timing import elapsed
 from uss.layout import VARIABLE, Layout
 from uss.receiver import OTHER_LENGTH, SILENT
-from uss.drive import NODES
+from uss.drive import NODES, Drive
 from uss.pkw import DONE, PENDING
 from uss.finding.mirror import Mirror
 from uss.master import CLOSED, LISTENING, OFF
@@ -46,24 +54,39 @@ _PATIENCE_US = const(10_000_000)  # a telegram that is not through by then never
 _FRAME = const(4)  # characters of a telegram that are not net data
 _NET_MAX = const(2 * (4 + 16) + 2)
 _WORDS = (3, 4, 0)  # PKW, the most usual first: a drive of variable length takes it as well
+_FURTHER = const(3)  # the row behind these: one length with other PZD words, each time the next
+_TURNS = const(8)  # where many are silent, it comes after so many turns of a drive
+_LEAST_WORDS = const(2)  # of a whole telegram, 0 + 2,
+_MOST_WORDS = const(12)  # and 4 + 8
+_PZD_MIN = const(2)  # STW and HSW: without them nobody commands a drive
 
 # What is done next: `_state`.
 _LOOK = const(0)  # look for a silent drive, at one drive in a step
 _ASK = const(1)  # send it the next length, as soon as there is room
 _AWAIT = const(2)  # see what comes back
 _SET = const(3)  # give it the layout that was found
+_ENQUIRE = const(4)  # ask it the next question, as soon as there is room
+_HEAR = const(5)  # see what it says
+
+
+def enquirer(*node):
+    """An `enquiry.Enquirer`: that module is not needed before a drive is found."""
+    return __import__("uss.finding.enquiry", None, None, ("Enquirer",)).Enquirer(*node)
 
 
 class Finder:
-    """bus: the engine, `uss.master.Master`. mask: the clock's period - 1.
+    """bus: the engine, `uss.master.Master`. mask: the clock's period - 1. enquire: what makes an
+    Enquirer, for those who load it in a way of their own.
 
     It looks for drives that have no contact and have not answered SILENT_MIN telegrams, or
     STOPPED_MIN where they may run: in the layout that it finds they hear their STOP. A drive in
-    contact is left alone; when it falls silent, it is looked for again.
+    contact is left alone, unless its survey doubts it; when it falls silent, it is looked for
+    again.
     """
 
-    def __init__(self, bus, mask):
+    def __init__(self, bus, mask, enquire=enquirer):
         self._bus = bus
+        self._enquire_by = enquire
         self._turns = bus.turns
         self._silence = bus.deadlines.silence
         self._mask = mask
@@ -74,14 +97,20 @@ class Finder:
         self._next_place = 0
         self._drive = None  # whose turn it is,
         self._layout = None  # what the bus took for its layout then,
-        self._found = 0  # and how many PKW words it has
-        self._row = 0  # of _WORDS
+        self._found = 0  # and its PKW and PZD words, as a key of _layouts
+        self._row = 0  # of _WORDS, or _FURTHER
         self._answered = 0  # net characters of what came back
         self._tries = 0
         self._mirror = Mirror(0, bytes(_NET_MAX))
+        self._enquirer = None  # while it is asked what it is, and
+        self._telegram = self._mirror  # what is under way
         self._posted_at = 0
         self._silences = 0  # `silence.count` after the last one that did not come back
-        self._seen = -1  # `silence.count` when no silent drive was found
+        self._seen = -1  # `silence.count` when no silent drive was found,
+        self._doubts = -1  # and `Drive.doubts`, when none was doubted
+        self._doubtful = False  # one of them is, as far as they were looked at
+        self._further = bytearray(NODES)  # by address: the next length of _FURTHER, in words,
+        self._turns_left = bytearray((_TURNS,) * NODES)  # and after so many turns it comes
         self._in_vain = bytearray(NODES)  # by address: it answers, and in no length of these
         self._layouts = {}  # that were found: drives share them
 
@@ -96,14 +125,18 @@ class Finder:
             return None
         state = self._state
         if state == _LOOK:
-            if self._silence.count != self._seen:  # else everybody answers
+            # Else everybody answers, and makes sense.
+            if self._silence.count != self._seen or Drive.doubts != self._doubts:
                 self._look()
-        elif state == _AWAIT:
-            self._await(now)
+        elif state == _AWAIT or state == _HEAR:
+            self._await(now, state)
         elif self._drive.layout is not self._layout or not self._is_lost(self._drive):
             self._state = _LOOK
         elif state == _ASK:
             self._ask(now)
+        elif state == _ENQUIRE:
+            if self._has_room(self._answered):
+                self._post(self._enquirer.question(), now, _HEAR)
         else:
             return self._set()
         return None
@@ -112,8 +145,10 @@ class Finder:
 
     def _is_lost(self, drive):
         """Whether it is to be looked for."""
-        least = STOPPED_MIN if drive.may_run() else SILENT_MIN
-        if drive.contact or drive.silent < least:
+        if drive.contact:
+            if not drive.doubted or drive.may_run():
+                return False
+        elif drive.silent < (STOPPED_MIN if drive.may_run() else SILENT_MIN):
             return False
         return self._turns.by_address[drive.address] is drive
 
@@ -127,12 +162,17 @@ class Finder:
                 self._begin(self._next)
             else:
                 self._seen = self._silence.count
+                if not self._doubtful:
+                    self._doubts = Drive.doubts
+                self._doubtful = False
             self._passed = 0
             return
         self._passed = passed + 1
         place = (self._place + 1 + passed) % len(drives)
         drive = drives[place]
-        is_there = not drive.contact and drive.trouble == OTHER_LENGTH
+        is_there = drive.doubted if drive.contact else drive.trouble == OTHER_LENGTH
+        if drive.doubted:
+            self._doubtful = True
         if not is_there:
             self._in_vain[drive.address] = 0
         if not self._is_lost(drive):
@@ -147,6 +187,9 @@ class Finder:
         self._drive = drive
         self._layout = drive.layout
         self._row = self._tries = self._answered = 0
+        if drive.contact:  # its length is known
+            self._row = _FURTHER
+            self._answered = drive.layout.net_count
         self._next = None
         self._passed = 0
         self._state = _ASK
@@ -157,22 +200,37 @@ class Finder:
         """The next length, or whether it takes a longer one, too."""
         net_count = self._answered + 2
         if not self._answered:
-            if self._row >= len(_WORDS):
+            if self._row > _FURTHER:
                 self._give_up()
                 return
-            net_count = 2 * (_WORDS[self._row] + self._layout.pzd_words)
+            net_count = self._net_count()
             if not net_count or net_count == self._layout.net_count:
                 self._row += 1  # the list asks it in that
                 return
         if not self._has_room(net_count):
             return
         self._mirror.aim(self._drive.address, net_count)
+        self._post(self._mirror, now, _AWAIT)
+
+    def _net_count(self):
+        """Of the next telegram: one of the usual lengths, then the one of the others whose turn it
+        is this time."""
+        pzd_words = self._layout.pzd_words
+        if self._row < _FURTHER:
+            return 2 * (_WORDS[self._row] + pzd_words)
+        words = self._further[self._drive.address]
+        while words - pzd_words in _WORDS or not _LEAST_WORDS <= words <= _MOST_WORDS:
+            words = words + 1 if words < _MOST_WORDS else _LEAST_WORDS
+        return 2 * words
+
+    def _post(self, telegram, now, state):
         try:
-            self._turns.post(self._mirror)
+            self._turns.post(telegram)
         except RuntimeError:
             return  # others wait already
+        self._telegram = telegram
         self._posted_at = now
-        self._state = _AWAIT
+        self._state = state
 
     def _has_room(self, net_count):
         """Whether a telegram of this length may be sent now that perhaps nobody answers."""
@@ -190,19 +248,28 @@ class Finder:
         longer_us = max(exchange_us - silence.silent_exchange_us, 0)
         return self._bus.deadlines.silence_wait_us(longer_us) == 0
 
-    def _await(self, now):
-        mirror = self._mirror
-        if mirror.state == PENDING:
+    def _await(self, now, state):
+        telegram = self._telegram
+        if telegram.state == PENDING:
             if elapsed(now, self._posted_at, self._mask) >= _PATIENCE_US:
                 self._mirror = Mirror(0, bytes(_NET_MAX))  # the engine has failed with that one
                 self._state = _LOOK
-            return
-        self._state = _ASK
+        elif state == _AWAIT:
+            self._state = _ASK
+            self._judge(telegram)
+        else:
+            self._state = _ENQUIRE
+            if self._enquirer.take(telegram):
+                self._conclude(self._enquirer.node)
+                self._enquirer = None
+
+    def _judge(self, mirror):
+        """Of the mirror telegram that is over."""
         if mirror.state == DONE:
             if mirror.node != self._drive.address:
                 self._state = _LOOK  # it has another address since
             elif self._answered:
-                self._find(VARIABLE)
+                self._ask_it(True)
             else:
                 self._answered = mirror.size - _FRAME
                 self._tries = 0
@@ -212,34 +279,67 @@ class Finder:
         is_silent = mirror.finding == SILENT
         if self._answered:
             if self._tries >= (_SILENCES if is_silent else TRIES):
-                self._find(_WORDS[self._row])
+                if self._row < _FURTHER:
+                    self._find(_WORDS[self._row], self._layout.pzd_words)
+                else:
+                    self._ask_it(False)
         elif is_silent or self._tries >= TRIES:
-            self._row += 1
             self._tries = 0
+            self._row += 1
+            self._choose_further(mirror.size - _FRAME)
 
-    def _find(self, pkw_words):
-        """It has so many PKW words."""
-        self._found = pkw_words
+    def _choose_further(self, net_count):
+        """Whether its turn ends with one of the further lengths, and with which. net_count: of the
+        last telegram. Where many are silent, the usual ones matter more."""
+        address, row = self._drive.address, self._row
+        if row > _FURTHER:
+            self._further[address] = (net_count >> 1) + 1
+        elif row == _FURTHER:
+            left = self._turns_left[address]
+            if left and self._silence.resting >= _FEW:
+                self._turns_left[address] = left - 1
+                self._row = row + 1
+            else:
+                self._turns_left[address] = _TURNS
+
+    def _ask_it(self, variable):
+        """The length does not tell the layout."""
+        self._enquirer = self._enquire_by(self._drive.address, self._answered, variable, False)
+        self._state = _ENQUIRE
+
+    def _conclude(self, node):
+        """It has told its layout, or has nothing to tell it by."""
+        layout = node.layout
+        if node.variable and not node.confirmed:
+            layout = Layout(VARIABLE, self._layout.pzd_words)
+        self._find(layout.pkw_words, layout.pzd_words)
+        if layout.pzd_words < _PZD_MIN <= self._layout.pzd_words:
+            self._give_up()
+
+    def _find(self, pkw_words, pzd_words):
+        """It has so many words."""
+        self._found = pkw_words << 5 | pzd_words
         self._state = _SET
-        if pkw_words == self._layout.pkw_words:
+        if self._layout.pkw_words == pkw_words and self._layout.pzd_words == pzd_words:
             self._give_up()  # it should answer the list
 
     def _set(self):
         """Nothing is changed before there is memory for it."""
-        pzd_words = self._layout.pzd_words
-        key = self._found << 5 | pzd_words
-        layout = self._layouts.get(key)
+        layout = self._layouts.get(self._found)
         if layout is None:
-            self._layouts[key] = layout = Layout(self._found, pzd_words)
-        try:
-            self._turns.relayout(self._drive, layout)
-        except ValueError:  # it answered at the last moment
-            self._state = _LOOK
-            return None
+            self._layouts[self._found] = layout = Layout(self._found >> 5, self._found & 0x1F)
+        drive = self._drive
         self._state = _LOOK
-        return self._drive
+        try:
+            self._turns.relayout(drive, layout, drive.doubted)
+        except ValueError:  # it answered at the last moment
+            return None
+        return drive
 
     def _give_up(self):
         """For this time."""
-        self._in_vain[self._drive.address] = 1
+        drive = self._drive
+        self._in_vain[drive.address] = 1
+        if drive.doubted:
+            drive.doubted = False
         self._state = _LOOK
