@@ -137,6 +137,35 @@ def test_the_parameter_page_shows_what_the_family_has():
         world.check()
 
 
+def test_no_telegram_off_time_is_chosen_that_trips_the_drive():
+    """p2040 of a G120: 0, or what fits this bus."""
+    world = panel_of("1=g120")
+    drive = world.drives[1]
+    before = drive.read(2040)
+    assert before > 1000
+    world.press("PARAM")
+    world.press("NEXT")
+    world.run(1500)
+    assert row_2(world).startswith("P2040:"), world.lcd()
+    world.press("EDIT")
+    seen = [before]
+    world.down("DOWN")
+    while seen[-1]:
+        world.run(50)
+        seen.append(int(row_2(world)[6:12]))
+    world.up("DOWN")
+    assert len(seen) > 10 and not [one for one in seen if 0 < one < 1000], seen
+    world.press("UP")
+    world.run(200)
+    assert row_2(world).startswith("P2040:  1000"), world.lcd()
+    world.press("SET")
+    world.run(500)
+    world.press("SET")
+    world.run(4000)
+    assert drive.read(2040) == 1000 and drive.state == "ready", drive.report()
+    world.check()
+
+
 def test_a_limit_in_rpm_is_kept_in_percent():
     world = panel_of("1=g120", settings={"setpoint_centihertz": 9000})
     drive = world.drives[1]

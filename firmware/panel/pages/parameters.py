@@ -86,7 +86,19 @@ class Parameters(Page):
             self.panel.say(now_ms, texts.READ_ONLY if highest is None else texts.EDIT_FIRST)
             return
         pace = acts.pace(100 if highest > _FAST_SPAN else 1)
-        self._edited = max(0, min(highest, self._edited + direction * pace))
+        value = max(0, min(highest, self._edited + direction * pace))
+        if 0 < value < self._shortest():
+            value = self._shortest() if direction > 0 else 0
+        self._edited = value
+
+    def _shortest(self):
+        """The least value that is not 0. With a shorter telegram-off time the drive would trip on
+        this bus, see `supervision`."""
+        control = self._control
+        family = control.survey.family
+        if self._shown[self._row][0] != family.off_time_number:
+            return 0
+        return -(-control.desk.off_time_ms // family.off_time_unit_ms)
 
     def _set(self, now_ms):
         if not self._editing:
