@@ -4,6 +4,7 @@
 import json
 
 import main
+from boards.sim.drives.kinds import listed_drives, simulated
 from boards.sim.world import World
 from panel_bench import panel, row_1, row_2, running, starts, telegrams, wait_until_known
 from version import VERSION
@@ -278,6 +279,77 @@ def test_an_alarm_closes_it():
     assert world.reads("MAY RUN") and not world.reads("DRIVES"), world.lcd()
 
 
+def told(world, ms=3000):
+    """Wait until it is known whether somebody answers at the address that is shown."""
+    world.run(200)
+    for _ in range(ms // 50):
+        if not row_2(world).endswith("..."):
+            return
+        world.run(50)
+    raise AssertionError(world.lcd())
+
+
+def test_a_drive_of_any_family_layout_and_link_is_taken_from_its_address_as_what_it_is():
+    for kind, as_what in (
+        ("mm440/4+8", "mm440/4+8"),
+        ("mm440/127+5", "mm440/127+5"),
+        ("mm420/3+4", "mm420/3+4"),
+        ("mm440-bop", "mm420-bop"),
+        ("v20", "v20"),
+        ("g110/4+3", "g110/4+3"),
+        ("g120", "g120"),
+        ("mm3", "mm3"),
+        ("g110/0", "generic/0"),
+        ("generic/3+6", "mm440/3+6"),  # it has the same parameters
+    ):
+        kinds = simulated(listed_drives("7=" + kind))
+        world = World(main.start, (1, 7), settings={"drives": [1]}, kinds=kinds)
+        world.run(3000)
+        world.down("ADDRESS_UP")
+        world.run(1400)
+        world.up("ADDRESS_UP")
+        world.run(100)
+        while not row_2(world).startswith(">A7 "):
+            press(world, "ADDRESS_UP")
+        told(world)
+        assert row_2(world) == ">A7  ANSWERS", (kind, world.lcd())
+        press(world, "SET")
+        for _ in range(60):
+            world.run(100)
+            if not row_2(world).startswith(">"):
+                break
+        world.run(200)  # for the display
+        assert row_2(world) == "ADDED", (kind, world.lcd())
+        wait_until_known(world)
+        world.run(200)
+        found = world.app.settings.kinds.get("7")
+        assert found == as_what, (kind, found)
+        assert row_2(world) == "READY        A7" and starts(world, 7) == 0, (kind, world.lcd())
+        world.check()
+
+
+def test_a_drive_that_nobody_can_command_is_not_added():
+    kinds = simulated(listed_drives("7=mm440"))
+    kinds[7]["parameters"] = {2012: 0, 2014: 0}
+    world = World(main.start, (1, 7), settings={"drives": [1]}, kinds=kinds)
+    world.run(3000)
+    world.down("ADDRESS_DOWN")
+    world.run(1400)
+    world.up("ADDRESS_DOWN")
+    while not row_2(world).startswith(">A7 "):
+        press(world, "ADDRESS_UP")
+    told(world)
+    press(world, "SET")
+    for _ in range(60):
+        world.run(100)
+        if not row_2(world).startswith(">"):
+            break
+    world.run(200)
+    assert row_2(world) == "NOT ADDED", world.lcd()
+    assert world.app.settings.drives == (1,) and "7" not in world.app.settings.kinds
+    world.check()
+
+
 def test_an_address_key_that_is_held_leaves_the_list_and_counts_through_all_addresses():
     world = World(main.start, (1, 4, 6), settings={"drives": [1]},
                   kinds={6: {"parameters": {2013: 127, 2014: 2000}}})  # fmt: skip
@@ -290,7 +362,7 @@ def test_an_address_key_that_is_held_leaves_the_list_and_counts_through_all_addr
     world.run(2000)
     seen = {}
     for _ in range(32):
-        world.run(1000)
+        told(world)
         seen[row_2(world)[1:4].strip()] = row_2(world)[5:].strip()
         press(world, "ADDRESS_UP")
     assert len(seen) == 32, seen
@@ -301,6 +373,10 @@ def test_an_address_key_that_is_held_leaves_the_list_and_counts_through_all_addr
             press(world, "ADDRESS_UP")
         world.run(1000)
         press(world, "SET")
+        for _ in range(30):
+            world.run(100)
+            if row_2(world) == "ADDED":
+                break
         assert row_2(world) == "ADDED", world.lcd()
         world.run(4000)
         press(world, "STOP")  # it has tripped since it was asked and left alone

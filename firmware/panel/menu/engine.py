@@ -56,6 +56,8 @@ class Menu(Page):
     def step(self, keys, now_ms):
         _, shown, position = self._lists[-1]
         shown.step(position, now_ms)
+        if not self._lists:  # that has closed the menu
+            return
         if self._used_at_ms is None:
             self._used_at_ms = now_ms
         stale = elapsed(now_ms, self._used_at_ms, self.panel.mask) >= _STALE_MS
@@ -69,6 +71,8 @@ class Menu(Page):
         self.panel.uncover()
 
     def draw(self, screen, now_ms):
+        if not self._lists:
+            return  # it has closed, in the middle of this picture
         _, shown, position = self._lists[-1]
         count = shown.count()
         position = min(position, count - 1)  # what was last in it may have gone
