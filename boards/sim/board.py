@@ -28,6 +28,9 @@ KEYS = (
     "SET",
 )
 
+# A compact keypad, see firmware/panel/keys/compact.py.
+COMPACT_KEYS = ("START", "STOP", "REVERSE", "JOG", "UP", "DOWN", "P", "FN")
+
 NORMALLY_CLOSED = ("STOP",)
 
 # How the keys may be wired: which are in a matrix. The others have pins of their own.
@@ -39,6 +42,9 @@ WIRINGS = {
         ("NEXT", "PREVIOUS", "EDIT", "SET"),
     ),
 }
+# Which keys there are, and how they are wired.
+KEYPADS = {wiring: (KEYS, matrix) for wiring, matrix in WIRINGS.items()}
+KEYPADS["compact"] = (COMPACT_KEYS, ())
 
 LOOP_US = 2_000  # the longest step of the main loop on the chip
 WATCHDOG_MS = 2_000

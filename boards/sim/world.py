@@ -14,7 +14,7 @@ The world knows nothing of the firmware: `start(board)` makes it and answers an 
 import json
 from collections import OrderedDict
 
-from boards.sim.board import KEYS, LOOP_US, NORMALLY_CLOSED, WIRINGS, Board
+from boards.sim.board import KEYPADS, LOOP_US, NORMALLY_CLOSED, Board
 from boards.sim.chip.machine import Chip
 from boards.sim.clock import Clock
 from boards.sim.dice import Dice
@@ -42,7 +42,8 @@ class Surroundings:
     addresses: of the drives on the wire. baud: of wire and panel. settings: what else the panel's
     settings file says. seed: 0 is the plain world, in which every drive answers after 3
     characters; any other number gives each its own time, the same for the same number, and keys
-    bounce. keys: "direct", each with a pin of its own, or "matrix", all but START and STOP.
+    bounce. keys: "direct", each with a pin of its own, "matrix", all but START and STOP, or
+    "compact", eight keys with pins of their own.
     parameters: of every drive, {number: value}; without them they are supervised, P2014, as
     commissioned drives are. kinds: {address: what else `Drive` is given there}, such as
     {3: {"family": g110, "parameters": {2013: 0}, "reply_delay_us": 4_000}}; fleet.py has some,
@@ -99,10 +100,11 @@ class Surroundings:
         if known or not addresses:  # of a drive as delivered nobody has told the panel
             self.stored.setdefault("drives", known)
         self.lcd_chip = Lcd(clock)
-        if keys not in WIRINGS:
-            raise ValueError("keys are wired %s, not %s" % (" or ".join(WIRINGS), keys))
+        if keys not in KEYPADS:
+            raise ValueError("keys are wired %s, not %s" % (" or ".join(KEYPADS), keys))
+        names, matrix = KEYPADS[keys]
         self.keypad = Switches(
-            clock, KEYS, NORMALLY_CLOSED, WIRINGS[keys], self.random if seed else None
+            clock, names, NORMALLY_CLOSED, matrix, self.random if seed else None
         )
         self.resets = 0
 

@@ -17,7 +17,7 @@ import on_demand
 from panel import texts, wording
 from panel.announcer import Announcer
 from panel.fault import DriveWarning
-from panel.keys import Acts, Keys, unknown
+from panel.keys import Acts, keys_of, unknown
 from panel.keys.jog_keys import JogKeys
 from panel.keys.stop_key import StopKey
 from panel.neighbours import Neighbours
@@ -72,7 +72,7 @@ class Panel:
         self.board = board
         self.settings = settings
         key_names = board.keypad.names
-        self._keys = keys = Keys(key_names, mask, HELD_KEYS)
+        self._keys = keys = keys_of(key_names, mask, HELD_KEYS, self)
         self._acts = Acts(keys)
         self._stop_bit = keys.bit("STOP")  # names take long to look up
         self._jog_bits = keys.bits(("JOG_RIGHT", "JOG_LEFT"))
@@ -94,7 +94,7 @@ class Panel:
         self._notices = _about(settings) or ([(notice,)] if notice else [])
         self._notices += [(texts.KEY_UNKNOWN, _start_of(name, 9)) for name in unknown(key_names)]
         self._message_at_ms = 0
-        self._view = View(self, screen)
+        self._view = View(self, screen, keys)
         self._view.begin(self._cover)
         self._drawn_at_ms = None  # when the picture was begun; None: a new one at once
         self._position = 0  # of the selected one in the controls

@@ -27,6 +27,7 @@ _MINUS = const(0x2D)
 _POINT = const(0x2E)
 _ZERO = const(0x30)
 _NINE = const(0x39)
+_CARET = const(0x5E)
 _DIVISORS = (100, 10, 1)  # of hundredths, by the decimals that are left
 
 
@@ -68,6 +69,11 @@ class Screen:
         for position in range(at + width - 1, at - 1, -1):
             self.picture[position] = _ZERO + number % 10
             number //= 10
+
+    def mark(self, count):
+        """Write a ^ over so many of the first places: FN of a compact keypad."""
+        for place in range(count):
+            self.picture[place] = _CARET
 
     def rows(self):
         """Both rows as text, for people and tests."""

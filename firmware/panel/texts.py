@@ -138,6 +138,7 @@ REFUSED_UNSAVED = b"NO: UNSAVED"  # its new address is not in the settings yet
 REFUSED_NO_JOG = b"NO: HAS NO JOG"
 REFUSED_UNSUPERVISED = b"NO JOG: P2014=0"
 REFUSED_LONG = b"NO: P2014 LONG"
+REFUSED_FN = b"NO: FN IS ON"  # this key of a compact keypad does nothing behind FN
 REFUSED_DIGITS = b"NO: SET OR PARAM"  # first: the setpoint is being edited
 
 # --- the setpoint digit by digit, and the units of what row 1 shows ------------------------------

@@ -31,14 +31,16 @@ SETPOINT, ACTUAL, ROW_2, PAGE, ADDRESS, DONE, ANNOUNCEMENT, WHOLE = range(8)
 
 class View:
     """panel: the `Panel` that is shown on `screen`, a field in a step: drawing takes its time.
+    keys: its `Keys`.
 
     view.begin(page)        # a new picture
     view.step(now_ms)       # again and again
     """
 
-    def __init__(self, panel, screen):
+    def __init__(self, panel, screen, keys):
         self._panel = panel
         self._screen = screen
+        self._keys = keys
         self._page = None
         self._next = DONE  # the field that is drawn next
 
@@ -56,6 +58,8 @@ class View:
         field = self._next
         if field != DONE:
             self._next = self._draw(field, now_ms)
+            if self._keys.shift and (field == SETPOINT or field == WHOLE):
+                self._screen.mark(self._keys.shift)
 
     def tells_state(self, page):
         """Whether a picture of this page begun now tells what the drive shown does."""

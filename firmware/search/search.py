@@ -20,7 +20,7 @@ from micropython import const
 
 import on_demand
 from panel import texts
-from panel.keys import Acts, Keys
+from panel.keys import Acts, keys_of
 from panel.screen import GLYPHS, Screen
 from search.hunt import Hunt
 from uss.timing import BAUD_RATES
@@ -39,7 +39,7 @@ class Search:
         self.settings = settings
         self._mask = mask = board.clock.ticks_mask
         names = board.keypad.names
-        self._keys = keys = Keys(names, mask)
+        self._keys = keys = keys_of(names, mask)
         self._acts = Acts(keys)
         self.screen = Screen()
         board.display.define(GLYPHS)
@@ -156,6 +156,7 @@ class Search:
         rows = self._rows_of(self._state)
         for row in range(2):
             self.screen.put(row, 0, texts.ROW_WIDTH, rows[row])
+        self.screen.mark(self._keys.shift)
 
     def _rows_of(self, state):
         if state == OFFER:

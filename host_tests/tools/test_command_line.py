@@ -111,7 +111,7 @@ def test_an_unknown_word_is_exit_status_2_and_names_file_and_line(tmp_path):
         (("--drives", "", "--script", "-"), "nothing is no address"),
         (("--drives", "1,1", "--script", "-"), "1 stands there twice"),
         (("--drives", ",".join(map(str, range(32))), "--script", "-"), "31 at the most"),
-        (("--keys", "loop", "--script", "-"), "keys are wired direct or matrix"),
+        (("--keys", "loop", "--script", "-"), "keys are wired compact or direct or matrix"),
         (("--settings", "nowhere/settings.json", "--script", "-"), "cannot be kept"),
         (("--settings", "", "--script", "-"), "cannot be kept"),
         (("--settings", ".", "--script", "-"), "is no ordinary file"),
@@ -301,6 +301,16 @@ def test_keys_in_a_matrix_work_as_well():
     ended = panel("--keys", "matrix", "--script", "-", script=script)
     assert (ended.returncode, ended.stderr) == (0, "")
     assert ended.stdout.splitlines()[1] == "|RUNNING      A1 |"
+
+
+def test_eight_keys_work_as_well():
+    more = "press FN\nwait 100\nexpect ^: 10.0\npress UP\nwait 500\nexpect 0.0%\npress JOG\n"
+    ended = panel("--keys", "compact", "--script", "-", script=START_AND_STOP + more)
+    assert (ended.returncode, ended.stderr) == (0, "")
+    assert ended.stdout.splitlines()[1] == "|RUNNING      A1 |"
+    ended = panel("--keys", "compact", "--script", "-", script="press PARAM\n")
+    assert ended.returncode == 2
+    assert "no key PARAM: there are START STOP REVERSE JOG UP DOWN P FN" in ended.stderr
 
 
 # --- a firmware that fails ----------------------------------------------------------------------

@@ -979,3 +979,40 @@ def test_a_small_terminal_shows_display_and_keys_first_and_says_that_it_is_small
     assert all(fitted(lines, rows, 8)[-1].startswith("q quits") for rows in (1, 10, 24))
     seat.type(*":wait")
     assert fitted(seat.screen(), 10, 80)[6].startswith(" :wait_")
+
+
+# --- eight keys ----------------------------------------------------------------------------------
+
+
+def test_a_panel_of_eight_keys_has_eight_letters():
+    seat = Seat(keys="compact")
+    legend = " ".join(seat.screen())
+    for cell in ("s START", "t STOP", "r REVERSE", "j JOG", "u UP", "d DOWN", "p P", "f FN"):
+        assert cell in legend, legend
+    assert "PARAM" not in legend and "EDIT" not in legend
+    seat.type("f", "p")
+    seat.wait(500)
+    assert seat.world.lcd()[0].startswith("S:")  # SET does nothing on the home page
+    seat.type("f", "f", "p")
+    seat.wait(700)
+    assert seat.world.lcd()[1].startswith("NEW"), seat.world.lcd()
+    seat.type(" ")
+    seat.wait(300)
+    assert seat.world.lcd()[1].startswith("READY"), seat.world.lcd()
+    seat.type("RIGHT")
+    assert "does nothing here" in seat.session.said[0]
+
+
+def test_its_jog_ends_when_the_keyboard_does_not_repeat_it():
+    seat = Seat(keys="compact")
+    seat.wait(1500)
+    seat.type("J")
+    seat.wait(600)
+    assert seat.world.drives[1].hz() > 0
+    seat.wait(3000)
+    assert seat.world.drives[1].hz() == 0
+    seat.type("r")
+    seat.wait(300)
+    seat.type("J")
+    seat.wait(600)
+    assert seat.world.drives[1].hz() < 0

@@ -16,6 +16,7 @@ from boards.sim.world import RELEASE_MS, TAP_MS
 STOP = "STOP"
 
 # Letter: the key that it taps; the capital holds it. In the order in which a legend shows them.
+# A panel has either all functions as keys of their own, or the last three keys for the rest.
 LETTERS = (
     ("s", "START"),
     ("t", STOP),
@@ -31,8 +32,11 @@ LETTERS = (
     ("b", "PREVIOUS"),
     ("e", "EDIT"),
     ("w", "SET"),
+    ("j", "JOG"),
+    ("p", "P"),
+    ("f", "FN"),
 )
-JOGS = ("JOG_RIGHT", "JOG_LEFT")
+JOGS = ("JOG_RIGHT", "JOG_LEFT", "JOG")
 STARTERS = ("START",) + JOGS  # what turns a motor
 ARM = "g"  # typed before each of these on a real line
 

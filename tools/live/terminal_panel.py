@@ -52,8 +52,9 @@ UNARMED = "on a real line %s is two keys within 2 s: g, then the letter"
 ARMED = "g: now the letter of START or of a JOG"
 WAITING = "waiting, %d s left (space: STOP, Esc: no further): %s"
 
-KEYS = {letter: key for letter, key in LETTERS}
-KEYS.update({" ": STOP, "UP": "UP", "DOWN": "DOWN", "RIGHT": "NEXT", "LEFT": "PREVIOUS"})
+STROKES = LETTERS + (
+    (" ", STOP), ("UP", "UP"), ("DOWN", "DOWN"), ("RIGHT", "NEXT"), ("LEFT", "PREVIOUS"),
+)  # fmt: skip
 
 
 def live(world, speed, said=()):
@@ -207,6 +208,7 @@ class Session:
         self.errand = None
         self.said = []
         self.in_sight = True
+        self._keys = {stroke: key for stroke, key in STROKES if key in world.keypad.names}
         self._armed_ms = -ARMED_MS  # when ARM was typed
         self._begun = ""  # the command that the errand is
         self._world = world
@@ -251,7 +253,7 @@ class Session:
         """Whether these strokes may turn a motor: is the display in sight then?"""
         if self.command is not None:
             return any(stroke in ENTERS for stroke in strokes)
-        return any(KEYS.get(stroke.lower()) in STARTERS for stroke in strokes)
+        return any(self._keys.get(stroke.lower()) in STARTERS for stroke in strokes)
 
     def take_paste(self, strokes, brackets, now_ms):
         """Take strokes that were not typed one by one: only STOP counts, and Ctrl-C. In an open
@@ -264,7 +266,7 @@ class Session:
                 if stroke != ESCAPE and stroke not in ENTERS:
                     self.take(stroke, now_ms)
             return
-        stops = [stroke for stroke in strokes if KEYS.get(stroke.lower()) == STOP]
+        stops = [stroke for stroke in strokes if self._keys.get(stroke.lower()) == STOP]
         if ESCAPE in strokes:
             self.hand.let_go()
         if stops and self.errand:
@@ -298,12 +300,12 @@ class Session:
 
     def _press(self, stroke, now_ms):
         small = stroke.lower() if len(stroke) == 1 else stroke
-        key = KEYS.get(small)
+        key = self._keys.get(small)
         armed_ms, self._armed_ms = self._armed_ms, -ARMED_MS
         if stroke == ARM and self._world.port is not None:
             self._armed_ms = now_ms
             self.said = [ARMED]
-        elif key not in self._world.keypad.names:
+        elif key is None:
             name = stroke if len(stroke) == 1 and stroke > " " else "that key"
             self.said = ["%s does nothing here; the letters stand beside the keys" % name]
         elif small != stroke and self.hand.holds(key):
@@ -334,7 +336,7 @@ class Session:
             return
         if stroke == ESCAPE:
             self.hand.let_go()
-        elif KEYS.get(stroke.lower()) == STOP:
+        elif self._keys.get(stroke.lower()) == STOP:
             self._press(stroke, now_ms)  # before the command lets go of its key
         else:
             self.said = ["a key has to wait until the command is done"]

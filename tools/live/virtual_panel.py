@@ -17,7 +17,7 @@ import sys
 import time
 
 import main
-from boards.sim.board import WIRINGS
+from boards.sim.board import KEYPADS
 from boards.sim.drives import kinds
 from boards.sim.script import LINE_MAX, ExpectationFailed, Script, ScriptError
 from boards.sim.world import World
@@ -74,11 +74,12 @@ usage: ./tools/panel [--speed N] [--drives 1,2=g110] [--baud 19200] [--settings 
   --baud RATE     baud rate of the line and its drives (19200, or that of the settings)
   --settings FILE keep the panel's settings in FILE; otherwise they end with the program. The panel
                   looks for the drives in FILE, whichever --drives simulates
-  --keys WIRING   direct: each key has a pin of its own; matrix: all but START and STOP (direct)
+  --keys WIRING   direct: each key has a pin of its own; matrix: all but START and STOP;
+                  compact: eight keys in place of fourteen (direct)
   --seed N        other reply delays and loop times; 0 is the plain world (0)
   --polled        no receive interrupt: the link is polled
   --board BOARD   sim: the simulated board; pico: the firmware file for the Raspberry Pi Pico on an
-                  emulated one (sim). Not with --settings, --polled and --keys matrix
+                  emulated one (sim). Not with --settings, --polled and --keys
   --flash FILE    pico: keep the chip's flash in FILE, and with it the settings of the panel
   --display KIND  pico: wires, four data lines, or backpack, on I2C (wires)
   --port PATH     talk to real drives on this serial port, which is set to 8E1 at --baud, or on a
@@ -165,7 +166,7 @@ def one_of(allowed, why):
 RATES = "--baud %s: USS knows " + " ".join(str(rate) for rate in BAUD_RATES)
 SPEEDS = "--speed %s: time passes 1...100 times as fast"
 TIMEOUTS = "--reply-timeout %s: 20...500 ms"
-WIRED = "--keys %s: keys are wired " + " or ".join(sorted(WIRINGS))
+WIRED = "--keys %s: keys are wired " + " or ".join(sorted(KEYPADS))
 
 # Option: name of the value, default, reader. An option without a reader is a switch.
 OPTIONS = {
@@ -174,7 +175,7 @@ OPTIONS = {
     "--drives": ("drives", None, str),
     "--baud": ("baud", None, one_of(BAUD_RATES, RATES)),
     "--settings": ("settings", None, str),
-    "--keys": ("keys", "direct", one_of(WIRINGS, WIRED)),
+    "--keys": ("keys", "direct", one_of(KEYPADS, WIRED)),
     "--seed": ("seed", 0, number),
     "--polled": ("polled", False, None),
     "--board": ("board", "sim", one_of(("sim", "pico"), "--board %s: there are sim and pico")),

@@ -13,11 +13,16 @@ starts nothing, while a STOP that is down, or whose wire is broken, is down from
 
 from micropython import const
 
+import on_demand
+
 # All keys that the panel knows; a board has STOP and any others of them.
 NAMES = (
     "START", "STOP", "REVERSE", "JOG_RIGHT", "JOG_LEFT", "UP", "DOWN", "ADDRESS_UP",
     "ADDRESS_DOWN", "PARAM", "NEXT", "PREVIOUS", "EDIT", "SET",
 )  # fmt: skip
+
+# Keys of a compact keypad, which have more than one of those functions: see `panel.keys.compact`.
+COMPACT_NAMES = ("JOG", "P", "FN")
 
 _DEBOUNCE_MS = const(20)
 _DELAY_MS = const(400)  # until a key repeats, and from then on; settings may say otherwise
@@ -30,7 +35,16 @@ PACES = ((16, 100), (8, 10), (0, 1))
 
 def unknown(names):
     """Those of a board's keys that the panel does not know: each would be dead."""
-    return [name for name in names if name not in NAMES]
+    return [name for name in names if name not in NAMES and name not in COMPACT_NAMES]
+
+
+def keys_of(names, mask, held=(), panel=None):
+    """The `Keys` of a board that has these, or `CompactKeys`, which behave alike. panel: the
+    `Panel` that has them, None in a program that moves no motor.
+    """
+    if [name for name in names if name in COMPACT_NAMES]:
+        return on_demand.load("panel.keys.compact").CompactKeys(names, mask, held, panel)
+    return Keys(names, mask, held)
 
 
 class Acts:
@@ -85,7 +99,10 @@ class Keys:
     repeats. `at_rest`: no key is down or has
     just been, and each has been seen up; as long as none is down, `update` has nothing to do.
     `unsettled`: keys that moved lately or have not been seen up yet, as bits: then it takes long.
+    `shift`: how often FN of a compact keypad was pressed for the next key.
     """
+
+    shift = 0
 
     def __init__(self, names, mask, held=()):
         self.down = 0

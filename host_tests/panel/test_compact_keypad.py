@@ -1,0 +1,441 @@
+# SPDX-License-Identifier: MIT
+"""The operator's manual, eight keys in place of fourteen: START STOP REVERSE JOG UP DOWN P FN.
+
+FN gives the next key its second function, FN twice its third; ^ or ^^ on the display says so.
+"""
+
+from boards.sim.board import COMPACT_KEYS
+from panel.keys import NAMES, Keys, keys_of, unknown
+from panel.keys.compact import FUNCTIONS
+from panel_bench import OFF1, ON, panel, row_1, row_2, starts, telegrams, wait_until_known
+
+MASK = 0x3FFFFFFF
+JOG_RIGHT, JOG_LEFT = 0x057E, 0x067E
+
+# How each of the fourteen is reached.
+WAYS = {
+    "START": ("START",),
+    "STOP": ("STOP",),
+    "REVERSE": ("REVERSE",),
+    "JOG_RIGHT": ("JOG",),
+    "JOG_LEFT": ("REVERSE", "JOG"),
+    "UP": ("UP",),
+    "DOWN": ("DOWN",),
+    "PARAM": ("P",),
+    "SET": ("FN", "P"),
+    "EDIT": ("FN", "FN", "P"),
+    "NEXT": ("FN", "UP"),
+    "PREVIOUS": ("FN", "DOWN"),
+    "ADDRESS_UP": ("FN", "FN", "UP"),
+    "ADDRESS_DOWN": ("FN", "FN", "DOWN"),
+}
+
+
+def ready(**options):
+    world = panel(keys="compact", **options)
+    wait_until_known(world)
+    return world
+
+
+def press(world, *functions):
+    """Use functions of the fourteen."""
+    for function in functions:
+        for key in WAYS[function]:
+            world.press(key)
+        world.run(150)
+
+
+def hold(world, function, ms):
+    for key in WAYS[function][:-1]:
+        world.press(key)
+    world.press(WAYS[function][-1], ms)
+
+
+def stops_at_once(world):
+    """STOP, and OFF1 is on the wire."""
+    pressed_us = world.clock.now_us
+    world.press("STOP")
+    sent = telegrams(world, pressed_us, 1)
+    assert any(stw == OFF1 and at_us - pressed_us < 40_000 for at_us, stw in sent), sent
+    world.run(5000)
+    assert world.drives[1].hz() == 0
+
+
+# --- the fourteen functions ----------------------------------------------------------------------
+
+
+def test_each_of_the_fourteen_has_a_way():
+    assert sorted(WAYS) == sorted(NAMES) and not unknown(COMPACT_KEYS)
+    for function, keys in WAYS.items():
+        if function != "JOG_LEFT":
+            row = FUNCTIONS.get(keys[-1], (keys[-1],) * 3)
+            assert row[len(keys) - 1] == function
+    assert sorted({key for keys in WAYS.values() for key in keys}) == sorted(COMPACT_KEYS)
+
+
+def test_run_reverse_and_stop():
+    world = ready()
+    press(world, "START")
+    world.run(4000)
+    assert row_2(world) == "RUNNING      A1" and abs(world.drives[1].hz() - 10) < 0.01
+    press(world, "REVERSE")
+    world.run(4000)
+    assert row_1(world) == "S:-10.0 F:-10.00"
+    stops_at_once(world)
+    assert row_2(world) == "READY        A1" and starts(world) == 1
+    world.check()
+
+
+def test_the_setpoint_goes_up_and_down_and_repeats():
+    world = ready()
+    press(world, "UP", "UP", "DOWN")
+    assert row_1(world).startswith("S: 10.1 ")
+    hold(world, "UP", 3000)
+    assert float(row_1(world)[2:7]) > 12, world.lcd()
+    hold(world, "DOWN", 6000)
+    assert float(row_1(world)[2:7]) < 10, world.lcd()
+    world.check()
+
+
+def test_jog_turns_to_the_side_that_reverse_has_chosen_while_it_is_held():
+    world = ready()
+    for function, stw, sign in (("JOG_RIGHT", JOG_RIGHT, 1), ("JOG_LEFT", JOG_LEFT, -1)):
+        for key in WAYS[function][:-1]:
+            world.press(key)
+        since_us = world.clock.now_us
+        world.down("JOG")
+        world.run(2000)
+        assert sign * world.drives[1].hz() > 1, (function, world.lcd())
+        assert row_2(world) == ("JOG RIGHT    A1" if sign > 0 else "JOG LEFT     A1")
+        assert {word for _, word in telegrams(world, since_us, 1)} & {JOG_RIGHT, JOG_LEFT} == {stw}
+        world.up("JOG")
+        world.run(2000)
+        assert world.drives[1].hz() == 0 and row_2(world) == "READY        A1"
+    world.check()
+
+
+def test_a_jog_that_is_held_does_not_change_its_side():
+    world = ready()
+    world.down("JOG")
+    world.run(1000)
+    world.press("REVERSE")
+    assert row_2(world) == "NO: JOG IS DOWN"
+    world.run(1000)
+    assert world.drives[1].hz() > 0
+    world.up("JOG")
+    world.run(2000)
+    assert world.drives[1].hz() == 0
+    world.check()
+
+
+def test_a_jog_is_stopped_by_stop():
+    world = ready()
+    world.down("JOG")
+    world.run(1500)
+    assert world.drives[1].hz() > 0
+    stops_at_once(world)
+    assert world.drives[1].hz() == 0
+    world.up("JOG")
+    world.check()
+
+
+def test_stop_held_is_the_second_stop_and_then_all():
+    world = ready(addresses=(1, 2))
+    press(world, "START", "ADDRESS_UP")
+    wait_until_known(world)
+    press(world, "START")
+    world.run(4000)
+    world.down("STOP")
+    world.run(1800)
+    assert row_2(world) == "OFF3, HOLD: ALL"
+    world.run(2500)
+    assert row_2(world) == "ALL DRIVES: STOP"
+    world.up("STOP")
+    world.run(4000)
+    assert world.drives[1].hz() == 0 == world.drives[2].hz()
+    world.check()
+
+
+def test_the_address_goes_up_and_down_and_any_address_is_reached():
+    world = ready(addresses=(1, 2, 3))
+    press(world, "ADDRESS_UP")
+    assert row_2(world).endswith("A2"), world.lcd()
+    press(world, "ADDRESS_DOWN", "ADDRESS_DOWN")
+    assert row_2(world).endswith("A3"), world.lcd()
+    hold(world, "ADDRESS_UP", 1800)
+    assert row_1(world).startswith("ANY ADDRESS"), world.lcd()
+    at = row_2(world)
+    press(world, "ADDRESS_UP")
+    assert row_2(world) != at and row_1(world).startswith("ANY ADDRESS"), world.lcd()
+    press(world, "PARAM")
+    wait_until_known(world)
+    world.check()
+
+
+def test_parameters_are_read_edited_and_written():
+    world = ready()
+    press(world, "PARAM")
+    world.run(300)
+    assert row_2(world) == "P0700:     5 A1"
+    press(world, "NEXT")
+    world.run(300)
+    assert row_2(world) == "P1000:     5 A1"
+    press(world, "PREVIOUS", "PREVIOUS", "PREVIOUS")
+    world.run(300)
+    assert row_2(world).startswith("r2024"), world.lcd()
+    press(world, "NEXT", "NEXT", "NEXT")
+    press(world, "EDIT", "UP", "SET")
+    world.run(300)
+    assert row_2(world) == "SET=DO  PARAM=NO" and world.drives[1].read(1000) == 5, world.lcd()
+    press(world, "SET")
+    world.run(500)
+    assert world.drives[1].read(1000) == 6
+    press(world, "EDIT", "DOWN", "SET")
+    world.run(200)
+    press(world, "PARAM")  # no
+    world.run(500)
+    assert world.drives[1].read(1000) == 6
+    stops_at_once(world)
+    press(world, "PARAM")
+    world.run(300)
+    assert row_2(world).endswith("A1") and not row_2(world).startswith("P"), world.lcd()
+    world.check()
+
+
+def test_set_that_is_held_writes_into_the_eeprom():
+    world = ready()
+    press(world, "PARAM", "NEXT")
+    world.run(300)
+    press(world, "EDIT", "SET")
+    world.run(200)
+    assert row_2(world) == "SET=DO  PARAM=NO", world.lcd()
+    hold(world, "SET", 2500)
+    world.run(500)
+    assert row_2(world) == "WRITTEN (EEPROM)", world.lcd()
+    world.check()
+
+
+def test_the_menu_and_the_question_of_the_search():
+    world = ready()
+    hold(world, "PARAM", 1500)
+    world.run(200)
+    assert row_1(world).startswith("MENU") and row_2(world) == ">DRIVES"
+    press(world, "DOWN")
+    assert row_2(world) == ">ANY ADDRESS"
+    press(world, "UP", "UP", "SET")
+    assert row_1(world).startswith("ABOUT"), world.lcd()
+    press(world, "PARAM")
+    assert row_1(world).startswith("MENU")
+    press(world, "UP", "UP", "SET")
+    world.run(300)
+    assert row_2(world) == "SET=DO  PARAM=NO", world.lcd()
+    press(world, "PARAM")
+    world.run(300)
+    assert row_2(world) == "READY        A1", world.lcd()
+    world.check()
+
+
+def test_the_search_itself():
+    world = ready()
+    hold(world, "PARAM", 1500)
+    world.run(200)
+    press(world, "DOWN", "DOWN", "SET", "SET")
+    world.run(1000)
+    assert row_1(world) == "FIND DRIVES     ", world.lcd()
+    world.press("FN")
+    world.run(200)
+    assert row_1(world) == "^IND DRIVES     ", world.lcd()
+    world.press("P")
+    world.run(500)
+    assert "BAUD" in row_1(world), world.lcd()
+    world.press("STOP")
+    world.run(500)
+    assert "BAUD" not in row_1(world), world.lcd()
+
+
+def test_values_and_digits():
+    world = ready()
+    press(world, "NEXT")
+    world.run(300)
+    assert row_1(world) == "S: 10.0   0.0%  "
+    press(world, "PREVIOUS")
+    world.run(300)
+    assert row_1(world) == "S: 10.0 F:  0.00"
+    press(world, "EDIT", "UP", "NEXT", "UP", "UP", "SET")
+    assert row_1(world).startswith("S: 11.2"), world.lcd()
+    press(world, "EDIT", "UP", "PARAM")
+    assert row_1(world).startswith("S: 11.2"), world.lcd()
+    press(world, "EDIT", "UP", "START")
+    assert row_2(world) == "NO: SET OR PARAM" and starts(world) == 0
+    press(world, "EDIT", "START")
+    world.run(4000)
+    assert abs(world.drives[1].hz() - 11.2) < 0.01
+    world.check()
+
+
+# --- FN ------------------------------------------------------------------------------------------
+
+
+def test_fn_is_shown_and_ends_after_three_seconds():
+    world = ready()
+    for presses, mark in ((1, "^: 10.0 F:  0.00"), (2, "^^ 10.0 F:  0.00"), (3, None)):
+        for _ in range(presses):
+            world.press("FN")
+        world.run(100)
+        assert row_1(world) == (mark or "S: 10.0 F:  0.00"), (presses, world.lcd())
+        if mark:
+            world.run(2400)
+            assert row_1(world) == mark
+            world.run(700)
+        assert row_1(world) == "S: 10.0 F:  0.00"
+    world.press("UP")
+    world.run(100)
+    assert row_1(world).startswith("S: 10.1")  # UP is UP again
+    world.check()
+
+
+def test_fn_is_for_one_key_alone():
+    world = ready()
+    press(world, "NEXT")
+    world.press("UP")
+    world.run(300)
+    assert row_1(world) == "S: 10.1   0.0%  ", world.lcd()
+
+
+def test_a_key_that_is_held_behind_fn_repeats_its_second_function():
+    world = ready()
+    press(world, "PARAM")
+    world.run(300)
+    world.press("FN")
+    world.down("UP")
+    seen = set()
+    for _ in range(100):
+        world.run(20)
+        seen.add(row_2(world)[:5])
+    world.up("UP")
+    assert len(seen) >= 5 and row_1(world).startswith("S: 10.0"), seen
+    world.check()
+
+
+def test_stop_is_stop_behind_fn_and_ends_it():
+    for presses in (1, 2):
+        world = ready()
+        press(world, "START")
+        world.run(4000)
+        for _ in range(presses):
+            world.press("FN")
+        stops_at_once(world)
+        assert row_1(world).startswith("S:"), world.lcd()
+        for _ in range(presses):
+            world.press("FN")
+        world.press("STOP")
+        world.press("UP")
+        world.run(100)
+        assert row_1(world).startswith("S: 10.1"), world.lcd()
+        world.check()
+
+
+def test_nothing_behind_fn_moves_a_motor():
+    for key in ("START", "REVERSE", "JOG"):
+        for presses in (1, 2):
+            world = ready()
+            for _ in range(presses):
+                world.press("FN")
+            since_us = world.clock.now_us
+            world.down(key)
+            world.run(300)
+            assert row_2(world) == "NO: FN IS ON", (key, world.lcd())
+            world.run(2000)
+            world.up(key)
+            assert not {stw for _, stw in telegrams(world, since_us)} & {ON, JOG_RIGHT, JOG_LEFT}
+            assert row_1(world) == "S: 10.0 F:  0.00" and starts(world) == 0
+            world.check()
+
+
+def test_start_behind_fn_does_not_start_but_the_next_one_does():
+    world = ready()
+    world.press("FN")
+    world.press("START")
+    world.run(1000)
+    assert starts(world) == 0
+    world.press("START")
+    world.run(3000)
+    assert starts(world) == 1
+    world.check()
+
+
+def test_stop_that_is_held_beats_start_and_jog():
+    world = ready()
+    world.down("STOP")
+    world.run(100)
+    for key in ("START", "JOG"):
+        world.press(key)
+        world.run(300)
+    world.run(2000)
+    assert starts(world) == 0 and world.drives[1].hz() == 0
+    world.up("STOP")
+    world.check()
+
+
+def test_a_jammed_start_key_starts_nothing():
+    world = panel(keys="compact")
+    world.down("START")
+    world.down("JOG")
+    world.reset()
+    world.run(6000)
+    assert starts(world) == 0 and world.drives[1].hz() == 0
+    world.check()
+
+
+def test_the_full_keypad_loads_nothing_of_this():
+    import sys
+
+    sys.modules.pop("panel.keys.compact", None)
+    panel()
+    assert "panel.keys.compact" not in sys.modules
+    panel(keys="compact")
+    assert "panel.keys.compact" in sys.modules
+
+
+# --- a board with other keys ---------------------------------------------------------------------
+
+
+def test_a_board_may_have_further_keys_besides():
+    names = ("STOP", "UP", "FN", "EDIT")
+    keys = keys_of(names, MASK)
+    assert isinstance(keys_of(("STOP", "UP"), MASK), Keys) and not isinstance(keys, Keys)
+    assert keys.bit("EDIT") and keys.bit("ADDRESS_UP") and not keys.bit("SET")
+    now_ms = 0
+
+    def tap(*down):
+        nonlocal now_ms
+        raw = sum(1 << names.index(name) for name in down)
+        pressed = 0
+        for level in (raw, 0):
+            for _ in range(6):
+                now_ms += 10
+                keys.update(level, now_ms)
+                pressed |= keys.pressed
+        return pressed
+
+    tap()
+    assert tap("EDIT") == keys.bit("EDIT") and tap("UP") == keys.bit("UP")
+    assert tap("FN") == 0 and tap("EDIT") == keys.bit("EDIT") and tap("UP") == keys.bit("UP")
+    assert tap("FN") == 0 and tap("UP") == keys.bit("NEXT")
+    assert tap("FN") == tap("FN") == 0 and tap("UP") == keys.bit("ADDRESS_UP")
+    assert tap("FN", "UP") == keys.bit("UP")  # at once: FN is for the next one
+    assert keys.shift == 1
+
+
+def test_a_key_that_cannot_be_told_is_up():
+    keys = keys_of(COMPACT_KEYS, MASK)
+    up = 1 << COMPACT_KEYS.index("UP")
+    for now_ms in range(0, 100, 10):
+        keys.update(0, now_ms)
+    for now_ms in range(100, 200, 10):
+        keys.update(up, now_ms)
+    assert keys.down == keys.bit("UP")
+    keys.update(0, 210, up)
+    assert keys.down == 0
+    keys.update(up, 220)
+    assert not keys.pressed and not keys.at_rest
