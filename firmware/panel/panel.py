@@ -310,8 +310,9 @@ class Panel:
             self.stop_key.step(keys, self.selected, now_ms)
         page = self._cover or self._page
         guard = self.guard
-        if guard is not None and (keys.pressed or keys.repeated or down & self._jog_bits):
-            guard.note_keys(now_ms)
+        if guard is not None:
+            if keys.pressed or keys.repeated or keys.shift or down & self._jog_bits:
+                guard.note_keys(now_ms)
         if down & self._jog_bits:
             allowed = page.obeys and not self.stop_key.is_down
             if guard is not None and guard.locked:

@@ -397,6 +397,34 @@ def test_the_full_keypad_loads_nothing_of_this():
     assert "panel.keys.compact" in sys.modules
 
 
+def test_in_the_dark_fn_only_makes_light():
+    world = ready(settings={"light_minutes": 1})
+    world.run(62_000)
+    assert world.app.panel.guard.dark
+    world.press("FN")
+    world.run(100)
+    assert not world.app.panel.guard.dark and row_1(world).startswith("S: 10.0")
+    press(world, "UP")
+    assert row_1(world).startswith("S: 10.1")
+    world.run(62_000)
+    for key in ("JOG", "START", "P"):
+        world.press(key, 1500)
+        assert starts(world) == 0 and world.drives[1].hz() == 0
+        assert row_2(world) == "READY        A1", world.lcd()
+        world.run(62_000)
+    world.check()
+
+
+def test_behind_a_closed_lock_the_setpoint_can_be_typed_in():
+    world = ready(settings={"lock_code": 123})
+    press(world, "EDIT", "UP", "SET")
+    assert row_1(world).startswith("S: 11.0"), world.lcd()
+    world.press("JOG", 1000)
+    assert row_2(world) == "LOCK: HOLD PARAM" and world.drives[1].hz() == 0
+    stops_at_once(world)
+    world.check()
+
+
 # --- a board with other keys ---------------------------------------------------------------------
 
 

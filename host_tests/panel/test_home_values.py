@@ -131,28 +131,52 @@ def test_it_turns_left_with_a_minus():
     world.check()
 
 
-def test_percent_beyond_what_a_word_can_say():
-    world = show(runs("mm440"), "%")
+def drawn(world, values_shown):
+    """Row 1 behind the setpoint, drawn anew."""
     screen = world.app.panel.screen
-    world.app.panel.selected.drive.hiw = 0x7FFF
     screen.put(0, 0, 16, b"")
-    world.app.panel._home.values.draw(screen)
-    assert screen.rows()[0] == "        >>>>>%  ", screen.rows()
+    assert values_shown.draw(screen)
+    return screen.rows()[0][6:]
 
 
-def test_speeds_of_five_digits_and_a_sign_have_room():
+def test_percent_beyond_what_a_word_can_say():
+    from panel.pages.values import Values
+
+    world = runs("mm440")
+    values_shown = Values(world.app.panel)
+    values_shown.turn(1)
+    assert drawn(world, values_shown).strip() == "20.0%"
+    world.app.panel.selected.drive.hiw = 0x7FFF
+    assert drawn(world, values_shown) == "  >>>>>%  "
+
+
+def tells(world, number, value):
+    """From now on the drive has this value under a number."""
+    readings = world.drives[1].readings
+    tell = readings.value
+    readings.value = lambda asked, index: value if asked == number else tell(asked, index)
+
+
+def test_every_value_that_a_drive_may_tell_has_room():
     world = show(runs("mm440"), "rpm")
-    values_shown = world.app.panel._home.values
     for value, text in (
-        (-1_500_000, " -15000rpm"),
-        (1_500_000, "  15000rpm"),
-        (1_234, "     12rpm"),
+        (-15000.0, "-15000rpm"), (15000.0, "15000rpm"), (-9999.4, "-9999rpm"), (0.4, "0rpm"),
+        (0.5, "1rpm"), (-0.0, "0rpm"), (1e-30, "0rpm"), (131000.0, "131000rpm"),
+        (1e6, "-----rpm"), (-1e38, "-----rpm"), (float("inf"), "-----rpm"),
+    ):  # fmt: skip
+        tells(world, 22, value)
+        world.run(1500)
+        assert row_1(world)[7:].strip() == text, (value, world.lcd())
+    show(world, "A")
+    for value, text in (
+        (0.004, "0.00A"),
+        (49.5, "49.50A"),
+        (655.35, "655.4A"),
+        (-1.5, "-1.50A"),
     ):
-        values_shown._value = value
-        screen = world.app.panel.screen
-        screen.put(0, 0, 16, b"")
-        values_shown.draw(screen)
-        assert screen.rows()[0][6:] == text, screen.rows()
+        tells(world, 27, value)
+        world.run(1500)
+        assert row_1(world)[7:].strip() == text, (value, world.lcd())
 
 
 # --- what it does and what it does not -----------------------------------------------------------
@@ -306,32 +330,6 @@ def test_a_value_that_is_refused_later_is_dashes_and_asked_for_seldom():
     finally:
         rows[27] = kept
     world.check()
-
-
-def test_floats_are_read_without_floats():
-    from panel.pages import values as module
-    from uss import pkw
-
-    class Told:
-        state, width = pkw.DONE, pkw.DOUBLE
-
-    def hundredths(high, low):
-        Told.high, Told.low = high, low
-        return module._hundredths(Told, 0)
-
-    import struct
-
-    for value in (0.0, 1.0, -1.0, 0.01, 0.004, 0.006, 49.995, 560.25, 1395.0, -39000.0, 131000.5,
-                  1e-30, -0.0):  # fmt: skip
-        high, low = struct.unpack(">HH", struct.pack(">f", value))
-        assert abs(hundredths(high, low) - value * 100) <= 0.51, value
-    for value in (1e6, 1e38, float("inf"), -float("inf"), float("nan")):
-        high, low = struct.unpack(">HH", struct.pack(">f", value))
-        assert hundredths(high, low) is None, value
-    Told.width = pkw.WORD
-    assert module._hundredths(Told, 0) is None  # a drive that means something else by it
-    Told.width, Told.low = pkw.DOUBLE, 5
-    assert module._hundredths(Told, 10) is None
 
 
 def test_it_leaves_the_memory_with_the_frequency():

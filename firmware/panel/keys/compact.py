@@ -44,6 +44,7 @@ class CompactKeys:
         self._keys = keys = Keys(names, mask)  # as they are wired
         self.at_rest = False
         self.unsettled = keys.unsettled
+        self.held_repeats = keys.held_repeats
         self.forget = keys.forget
         self._fn = keys.bit("FN")
         self._jog = keys.bit("JOG")
@@ -63,6 +64,18 @@ class CompactKeys:
     def bits(self, names):
         return sum([self.bit(key) for key in names])
 
+    def pace(self, delay_ms, repeat_ms):
+        self._keys.pace(delay_ms, repeat_ms)
+        self.held_repeats = self._keys.held_repeats
+
+    def withhold(self, bits):
+        """As that of `Keys`; a FN counts as not pressed either."""
+        self.shift = 0
+        self.pressed &= ~bits
+        self.repeated &= ~bits
+        if not self.pressed:
+            self.forget()
+
     def update(self, raw, now_ms, unclear=0):
         keys = self._keys
         were_down = self.down
@@ -77,7 +90,8 @@ class CompactKeys:
             self.shift = 0
         self.unsettled = keys.unsettled
         self.at_rest = keys.at_rest and not self.shift
-        return ((self.down | were_down) & self._held | self.pressed | self.repeated) != 0
+        done = (self.down | were_down) & self._held | self.pressed | self.repeated
+        return (done | keys.pressed & self._fn) != 0
 
     def _press(self, pressed, now_ms):
         """These keys went down: each has the same function until it goes down again."""

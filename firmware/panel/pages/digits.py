@@ -36,6 +36,7 @@ class Digits(Page):
 
     modules = ("panel.pages.digits",)
     obeys = False
+    locks = False  # the setpoint may be moved while the lock is closed, and nothing else here
 
     def __init__(self, panel):
         Page.__init__(self, panel)
