@@ -350,6 +350,25 @@ def test_a_drive_that_nobody_can_command_is_not_added():
     world.check()
 
 
+def test_an_alarm_closes_it_also_while_a_picture_of_it_is_drawn():
+    world = running()
+    for step in range(24):
+        menu(world)
+        world.run(3 * step)
+        world.drives[1].unplug()
+        world.run(2500)
+        assert world.reads("MAY RUN") and not world.reads("DRIVES"), world.lcd()
+        world.drives[1].plug()
+        for _ in range(2):  # to its alarm, and to its fault
+            world.run(3000)
+            world.press("STOP")
+        world.run(1000)
+        world.press("START")
+        world.run(2000)
+        assert world.reads("RUNNING"), world.lcd()
+    world.check()
+
+
 def test_an_address_key_that_is_held_leaves_the_list_and_counts_through_all_addresses():
     world = World(main.start, (1, 4, 6), settings={"drives": [1]},
                   kinds={6: {"parameters": {2013: 127, 2014: 2000}}})  # fmt: skip
