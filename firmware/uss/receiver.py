@@ -194,6 +194,7 @@ class Receiver:
         """
         buffer = self.buffer
         awaited = self._awaited
+        self._coming = False  # these were announced; the reply was not yet
         count = min(added, awaited.size - self._echoed)
         if agreeing(buffer, 0, awaited.request, self._echoed, count) == count and count:
             self._echoed += count

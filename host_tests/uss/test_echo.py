@@ -86,6 +86,19 @@ def test_a_mirror_telegram_that_comes_back_twice_was_answered():
             assert bench.nodes[5].mirrored == 5
 
 
+def test_a_drive_that_is_silent_costs_no_more():
+    """The characters that the link has announced are those of the echo: no reply is coming."""
+    for bits in LINKS:
+        for layout in ((4, 2), (127, 4)):
+            sent = []
+            for echo in (True, False):
+                bench = bench_of([Node(1, *layout)], bits, baud=4800, echo=echo)
+                bench.nodes[1].plugged = False
+                bench.run(10_000_000)
+                sent.append(len(bench.sent))
+            assert sent[0] >= sent[1] - 2, (bits, layout, sent)
+
+
 def test_the_echo_of_a_mirror_telegram_is_no_answer():
     """Nobody is there. A scan must not find 32 drives on a line with an echo."""
     for bits in LINKS:
