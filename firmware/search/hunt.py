@@ -13,7 +13,7 @@ sends; another master ends the hunt.
 
 from micropython import const
 
-from uss.leave import persist
+from uss.leave import leave, persist
 from uss.master import LISTENING, Master
 from uss.finding.scan import ADDRESSES, NET_COUNTS, Scan
 from uss.timing import Timing
@@ -93,10 +93,16 @@ class Hunt:
         self.close()
 
     def close(self):
-        """Leave the line."""
+        """Leave the line, when the telegram that is under way is over."""
         if self._pacer is not None:
+            leave(self._bus, self._board.clock, self._go_on)
             persist(self._pacer.stop)
         self._bus = self._pacer = self._scan = None
+
+    def _go_on(self):
+        self._pacer.tend()
+        self._board.watchdog.feed()
+        self._board.idle()
 
     def _open(self, now_us):
         board = self._board

@@ -174,6 +174,23 @@ def test_stop_ends_the_search():
     assert world.wire.log.count == sent  # nothing is sent any more
 
 
+def test_a_telegram_that_is_under_way_when_stop_ends_the_search_is_sent_to_its_end():
+    world = line_of("1,2")
+    offered(world)
+    for step in range(12):
+        world.press("SET")
+        world.run(2000 + 7 * step)
+        world.press("STOP")
+        world.run(500)
+        assert "FOUND STOP=NO" not in row_2(world), world.lcd()
+        world.check()
+        while row_1(world) != "FIND DRIVES     ":
+            world.press("PARAM")
+            world.run(3000)
+            if row_2(world)[13:14] == "A":  # the panel
+                offered(world)
+
+
 def test_nobody_looks_for_drives_while_a_motor_runs():
     world = running()
     world.down("PARAM")
