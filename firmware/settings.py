@@ -61,6 +61,7 @@ class Settings:
         self.baud = baud
         self.drives = self.unsupervised = ()
         self.kinds = {}
+        self.repeats = {}
         self.dirty = True
 
     def remove(self, address):
@@ -68,7 +69,8 @@ class Settings:
         self._check_present(address)
         self.drives = tuple([one for one in self.drives if one != address])
         self.unsupervised = tuple([one for one in self.unsupervised if one != address])
-        self.kinds = {one: self.kinds[one] for one in self.kinds if one != str(address)}
+        for values in (self.kinds, self.repeats):
+            values.pop(str(address), None)
         self.dirty = True
 
     def set_kind(self, address, kind):
@@ -101,8 +103,11 @@ class Settings:
         accepted = [one for one in self.drives if one in self.unsupervised]
         self.drives = _replaced(self.drives, old, new)
         self.unsupervised = _replaced(accepted, old, new)
-        kinds, (old, new) = self.kinds, (str(old), str(new))
-        self.kinds = {new if one == old else one: kinds[one] for one in kinds}
+        for values in (self.kinds, self.repeats):
+            moved = values.pop(str(old), None)
+            values.pop(str(new), None)  # of a drive that is gone
+            if moved is not None:
+                values[str(new)] = moved
         self.dirty = True
 
     def complain(self, suspect, text):

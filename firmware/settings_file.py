@@ -21,6 +21,7 @@ from uss.timing import BAUD_RATES
 
 SIZE_MAX = 4096  # bytes of the file: a chip has to hold it, and what is made of it
 UNKNOWN_MAX = 2048  # of that, what is kept though it is not known
+REPEATS_MAX = 4
 
 # What may be wrong with the file as a whole, in place of the name of a setting.
 UNREADABLE, TOO_BIG, NO_JSON = "unreadable", "too big", "no JSON"
@@ -46,8 +47,9 @@ ADDRESSES = (  # name, default, fewest, meaning; addresses 0...31, each once, 31
     ("drives", (1,), 1, "in the order of the address keys"),
     ("unsupervised", (), 0, "drives accepted without a telegram time-out, P2014 = 0"),
 )
-BY_ADDRESS = (  # name, default, meaning; an object: address as text -> text
+BY_ADDRESS = (  # name, default, meaning; an object: address as text -> text or number
     ("kinds", {}, "family, and layout if unusual, of drives that are no mm420"),
+    ("repeats", {}, "2...4: how often a drive stands in the circulating list"),
 )
 DEFAULTS = {row[0]: row[1] for row in CHOICES + NUMBERS + ADDRESSES + BY_ADDRESS}
 
@@ -144,7 +146,8 @@ def _take(settings, stored):
             setattr(settings, name, tuple(value))
         else:
             settings.complain(name, "%r are not up to 31 addresses 0...31" % (value,))
-    settings.kinds = _kinds_of(settings, stored.get("kinds", {}))
+    settings.kinds = _by_address(settings, "kinds", stored, kind)
+    settings.repeats = _by_address(settings, "repeats", stored, _check_repeats)
     if settings.lowest_centihertz > settings.highest_centihertz:
         limits = (settings.lowest_centihertz, settings.highest_centihertz)
         settings.complain("lowest_centihertz", "%d is above highest_centihertz: %d" % limits)
@@ -169,18 +172,23 @@ def _take_fields(settings, found):
     _take(settings, stored)
 
 
-def _kinds_of(settings, stored):
-    """Those of the stored kinds that there are; complain about the others."""
-    known = {}
+def _by_address(settings, name, stored, check):
+    """What is stored for addresses, as far as `check` takes it; complain about the others."""
+    values, known = stored.get(name, {}), {}
     try:
-        for address in stored:
+        for address in values:
             if address != str(int(address)) or not 0 <= int(address) <= NODE_MAX:
                 raise ValueError("%r is no address 0...31" % (address,))
-            kind(stored[address])
-            known[address] = stored[address]
+            check(values[address])
+            known[address] = values[address]
     except (ValueError, TypeError, AttributeError) as error:  # no object, no text in it
-        settings.complain("kinds", str(error))
+        settings.complain(name, str(error))
     return known
+
+
+def _check_repeats(value):
+    if not is_number(value, 2, REPEATS_MAX):
+        raise ValueError("%r is not 2...%d" % (value, REPEATS_MAX))
 
 
 def _are_addresses(values, fewest):

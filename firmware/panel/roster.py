@@ -37,7 +37,7 @@ class Roster:
             if kind not in known:
                 known[kind] = _understood(kind)
             self._take(address, *known[kind])
-        self._desk.follow_list()
+        self._arrange()
 
     def add(self, address, kind):
         """Put a drive at the end; return its control.
@@ -48,7 +48,7 @@ class Roster:
         family, layout = _understood(kind)
         self._settings.add(address, kind)
         control = self._take(address, family, layout)
-        self._desk.follow_list()
+        self._arrange()
         return control
 
     def note_layout(self, drive):
@@ -66,6 +66,20 @@ class Roster:
         self._bus.turns.remove(control.drive)
         self._settings.remove(control.drive.address)
         self.controls.remove(control)
+        self._arrange()
+
+    def _arrange(self):
+        """The circulating list: some stand in it several times, as far apart as can be."""
+        repeats, controls = self._settings.repeats, self.controls
+        if repeats:
+            entries = []  # (when in the round, place), in thousandths of it
+            for place, control in enumerate(controls):
+                times = repeats.get(str(control.drive.address), 1)
+                first = 1000 * place // len(controls)
+                entries += [
+                    ((first + 1000 * turn // times) % 1000, place) for turn in range(times)
+                ]
+            self._bus.turns.arrange([controls[place].drive for _, place in sorted(entries)])
         self._desk.follow_list()
 
     def _take(self, address, family, layout):

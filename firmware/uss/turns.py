@@ -235,9 +235,10 @@ class Turns:
             self._outside_in = following
         self._attention[ANY] = 1
 
-    def longest_cycle_us(self):
-        """How long a round of the list takes if every drive replies at the last moment."""
-        counts = [drive.layout.net_max for drive in self.list]
+    def longest_cycle_us(self, entries=None):
+        """How long a round of the list, or of `entries` in its place, takes if every drive replies
+        at the last moment."""
+        counts = [drive.layout.net_max for drive in entries or self.list]
         return sum([self._longest_us(count, count) for count in counts])
 
     def _longest_us(self, request_count, reply_count):

@@ -40,8 +40,10 @@ def entries(world):
 def test_it_opens_and_closes():
     world = panel(addresses=(1, 2))
     menu(world)
-    assert row_1(world) == "MENU         1/5", world.lcd()
-    assert entries(world) == ["DRIVES", "ANY ADDRESS", "FIND DRIVES", "SETTINGS", "ABOUT"]
+    assert row_1(world) == "MENU         1/7", world.lcd()
+    assert entries(world) == [
+        "DRIVES", "ANY ADDRESS", "FIND DRIVES", "SETTINGS", "ORDER", "TURNS", "ABOUT"
+    ]  # fmt: skip
     press(world, "PARAM")
     assert row_2(world) == "READY        A1", world.lcd()
     menu(world)
@@ -69,6 +71,11 @@ def test_the_drives_at_a_glance_and_one_of_them_shown():
     world.run(3000)
     menu(world)
     press(world, "SET")
+    seen = {}
+    for _ in range(200):  # row 1 is that of announcements as well
+        world.run(50)
+        seen[row_1(world).strip()] = row_2(world)
+    assert seen["10.00 Hz     1/3"] == ">A1  RUNNING", seen
     assert entries(world) == ["A1  RUNNING", "A2  READY", "A3  FAULT"]
     press(world, "SET")
     assert entries(world) == ["SHOW IT", "REMOVE IT", "MM420 4+2", "10.00 Hz"]
@@ -267,6 +274,125 @@ def test_stop_acts_everywhere_in_the_menu_and_no_other_key_moves_a_motor():
         assert offs and offs[0] - pressed_us < 100_000, way
         world.run(4000)
         assert world.drives[1].hz() == 0
+        world.check()
+
+
+def lists(world, name):
+    """Open this list of the menu."""
+    menu(world)
+    while row_2(world) != ">" + name:
+        press(world, "DOWN")
+    press(world, "SET")
+
+
+def test_the_order_of_the_drives_is_that_of_the_address_keys():
+    world = panel(addresses=(1, 2, 3))
+    lists(world, "ORDER")
+    assert world.lcd() == ("ORDER        1/3", ">A1             "), world.lcd()
+    press(world, "DOWN", "DOWN", "SET")
+    assert world.lcd() == ("SET=KEEP     3/3", ">A3  UP DOWN    "), world.lcd()
+    press(world, "UP", "SET")
+    assert entries(world) == ["A3", "A2", "A1"]
+    press(world, "PARAM")
+    assert world.reads("THE PANEL BEGINS ANEW") or world.reads("EMERGENCY STOP"), world.lcd()
+    world.run(3000)
+    seen = []
+    for _ in range(4):
+        wait_until_known(world)
+        seen.append(row_2(world)[-2:])
+        press(world, "ADDRESS_UP")
+    assert seen == ["A1", "A3", "A2", "A1"] and kept(world)["drives"] == [1, 3, 2]
+    assert max(starts(world, address) for address in (1, 2, 3)) == 0
+    world.check()
+
+
+def test_a_drive_that_is_carried_goes_round_and_a_menu_that_closes_keeps_nothing():
+    world = panel(addresses=(1, 2, 3))
+    lists(world, "ORDER")
+    press(world, "SET", "UP", "SET")
+    assert row_1(world) == "ORDER        3/3"
+    assert entries(world) == ["A1", "A2", "A3"]
+    world.run(62_000)
+    assert kept(world)["drives"] == [1, 2, 3]
+    assert row_2(world) == "READY        A1", world.lcd()
+    world.check()
+
+
+def asked(world, address, ms=4000):
+    """How many telegrams this drive gets in a second."""
+    since_us = world.clock.now_us
+    world.run(ms)
+    return len(telegrams(world, since_us, address)) * 1000 / ms
+
+
+def test_a_drive_that_stands_several_times_in_the_list_is_asked_more_often():
+    world = panel(addresses=(1, 2, 3, 4))
+    wait_until_known(world)
+    world.run(10_000)  # all are known
+    lists(world, "TURNS")
+    press(world, "DOWN", "SET", "UP", "UP")
+    assert world.lcd() == ("SET=KEEP     2/4", ">A2  x3         "), world.lcd()
+    press(world, "SET")
+    world.run(4000)
+    wait_until_known(world)
+    assert kept(world)["repeats"] == {"2": 3}
+    world.run(10_000)
+    rates = [asked(world, address) for address in (2, 3, 4)]
+    assert 2.5 < rates[0] / rates[1] < 3.5 and 0.8 < rates[1] / rates[2] < 1.2, rates
+    list_of = [drive.address for drive in world.app.bus.turns.list]
+    assert sorted(list_of) == [1, 2, 2, 2, 3, 4]
+    spans = [place for place, address in enumerate(list_of + list_of) if address == 2]
+    assert max(after - before for before, after in zip(spans, spans[1:])) <= 3, list_of
+    lists(world, "TURNS")
+    press(world, "DOWN", "SET", "DOWN", "DOWN", "SET")
+    world.run(4000)
+    assert kept(world)["repeats"] == {}
+    world.check()
+
+
+def test_turns_follow_a_drive_that_comes_goes_or_gets_another_address():
+    world = World(main.start, (1, 2, 3, 9), settings={"drives": [1, 2, 3], "repeats": {"2": 2}})
+    world.run(3000)
+    wait_until_known(world)
+    turns = world.app.bus.turns
+    assert sorted([drive.address for drive in turns.list]) == [1, 2, 2, 3]
+    world.app.panel.add(9, "mm420")
+    world.run(3000)
+    assert sorted([drive.address for drive in turns.list]) == [1, 2, 2, 3, 9]
+    world.app.panel.show(world.app.panel.controls[1])
+    world.app.panel.remove()
+    world.run(3000)
+    assert [drive.address for drive in turns.list] == [1, 3, 9]
+    assert kept(world)["repeats"] == {} and kept(world)["drives"] == [1, 3, 9]
+    world.check()
+
+
+def test_nobody_is_asked_so_often_that_another_one_trips():
+    world = World(
+        main.start, (1, 2, 3, 4), kinds={3: {"parameters": {2014: 600}}}, parameters={2014: 5000}
+    )
+    world.run(15_000)
+    lists(world, "TURNS")
+    press(world, "SET", "UP")
+    press(world, "SET")
+    assert row_2(world) == "A3: P2014 SHORT", world.lcd()
+    world.run(4000)
+    assert not kept(world).get("repeats") and row_2(world) == ">A1  x1", world.lcd()
+    world.check()
+
+
+def test_order_and_turns_are_not_changed_while_a_motor_runs():
+    for name in ("ORDER", "TURNS"):
+        world = panel(addresses=(1, 2))
+        wait_until_known(world)
+        press(world, "START")
+        world.run(4000)
+        lists(world, name)
+        press(world, "SET")
+        if name == "TURNS":
+            press(world, "UP", "SET")
+        assert world.reads("STOP ALL FIRST"), (name, world.lcd())
+        assert world.drives[1].state == "running"
         world.check()
 
 

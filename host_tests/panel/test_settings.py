@@ -97,6 +97,11 @@ def test_a_value_that_cannot_be_gives_its_default_and_keeps_the_others():
         ("light_minutes", 61),
         ("lock_code", 10000),
         ("lock_code", "1234"),
+        ("repeats", {"1": 5}),
+        ("repeats", {"1": 1}),
+        ("repeats", {"32": 2}),
+        ("repeats", {"1": "2"}),
+        ("repeats", [2]),
         ("drives", []),
         ("drives", [32]),
         ("drives", [1, 1]),
@@ -245,7 +250,8 @@ def test_a_person_can_read_the_file():
         '  "lock_code": 0,\n'
         '  "drives": [2, 1],\n'
         '  "unsupervised": [2],\n'
-        '  "kinds": {}\n'
+        '  "kinds": {},\n'
+        '  "repeats": {}\n'
         "}\n"
     )
 

@@ -2,7 +2,7 @@
 """What can be done with one drive of the list, which `drives` hands on."""
 
 from panel import texts
-from panel.menu import Entries
+from panel.menu import Entries, words
 
 
 class List(Entries):
@@ -23,7 +23,7 @@ class List(Entries):
             texts.of(texts.SHOW_DRIVE),
             texts.of(texts.REMOVE_DRIVE),
             b"%s %d+%d" % (family.__name__.encode(), layout.pkw_words, layout.pzd_words),
-            self._frequency(),
+            words.speed(control),
         )[position]
 
     def choose(self, position, now_ms):
@@ -41,11 +41,3 @@ class List(Entries):
             except ValueError:  # the only one, or it may be running
                 panel.say(now_ms, texts.NOT_REMOVED)
         return None
-
-    def _frequency(self):
-        actual = self.argument.actual_centihertz()
-        if actual is None:
-            return texts.of(texts.UNKNOWN_VALUE)
-        unit = b"%" if self.argument.survey.is_percent() else b"Hz"
-        sign = b"-" if actual < 0 else b""
-        return b"%s%d.%02d %s" % (sign, abs(actual) // 100, abs(actual) % 100, unit)

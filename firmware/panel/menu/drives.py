@@ -1,15 +1,20 @@
 # SPDX-License-Identifier: MIT
-"""The drives of the panel at a glance: address, state, actual frequency. SET chooses one."""
+"""The drives of the panel at a glance. SET chooses one.
 
-from panel import texts, wording
-from panel.menu import Entries
+ 9.98 Hz    2/31        row 1: actual frequency; place in the list
+>A12 RUNNING            row 2: address and state
+"""
+
+from panel import wording
+from panel.menu import Entries, words
 
 
 class List(Entries):
-    title = texts.MENU_DRIVES
-
     def count(self):
         return len(self.panel.controls)
+
+    def heading(self, position):
+        return words.speed(self.panel.controls[position])
 
     def words(self, position):
         control = self.panel.controls[position]

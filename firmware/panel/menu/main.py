@@ -9,8 +9,11 @@ LISTS = (  # text, module; None: the search, which is a program of its own
     (texts.ANY_ADDRESS, "address"),
     (texts.FIND_DRIVES, None),
     (texts.MENU_SETTINGS, "settings"),
+    (texts.MENU_ORDER, "order"),
+    (texts.MENU_TURNS, "turns"),
     (texts.MENU_ABOUT, "about"),
 )
+OF_SEVERAL = ("order", "turns")  # drives
 
 
 class List(Entries):
@@ -18,13 +21,16 @@ class List(Entries):
 
     def __init__(self, panel, argument):
         Entries.__init__(self, panel, argument)
-        self._lists = LISTS
+        several = len(panel.controls) > 1
+        self._lists = [row for row in LISTS if several or row[1] not in OF_SEVERAL]
         if panel.settings.lock_code:
-            self._lists += ((texts.MENU_LOCK, None),)
+            self._lists.append((texts.MENU_LOCK, None))
 
     def first(self):
         """Whoever has no contact is looking for the drive."""
-        return 0 if self.panel.selected.drive.contact else LISTS.index((texts.FIND_DRIVES, None))
+        if self.panel.selected.drive.contact:
+            return 0
+        return self._lists.index((texts.FIND_DRIVES, None))
 
     def count(self):
         return len(self._lists)

@@ -39,6 +39,12 @@ NO_LOCK = b"NO LOCK"
 WRONG_CODE = b"WRONG CODE"
 UNLOCKED = b"UNLOCKED"
 
+NODE = b"A%d"
+CARRIED = b"A%d  UP DOWN"
+CARRYING = b"SET=KEEP"  # or its number of turns is changed
+TIMES = b"A%d  x%d"
+SHORT = b"A%d: P2014 SHORT"  # for so long a round of the bus
+
 ABOUT_VERSION = b"VERSION %s"
 LICENCE = b"LICENCE: MIT"
 FREE_MEMORY = b"FREE %d KB"
@@ -56,3 +62,13 @@ def reading(row, value):
     else:
         value = b"%d" % value
     return texts.of(text, value)
+
+
+def speed(control):
+    """The actual frequency of a drive in words, with its unit."""
+    actual = control.actual_centihertz()
+    if actual is None:
+        return texts.of(texts.UNKNOWN_VALUE)
+    unit = b"%" if control.survey.is_percent() else b"Hz"
+    sign = b"-" if actual < 0 else b""
+    return b"%s%d.%02d %s" % (sign, abs(actual) // 100, abs(actual) % 100, unit)
