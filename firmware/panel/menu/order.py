@@ -22,7 +22,7 @@ class List(Entries):
 
     def words(self, position):
         if self._carried is None:
-            return texts.of(words.NODE, self._drives[position])
+            return b"A%d" % self._drives[position]
         return texts.of(words.CARRIED, self._drives[self._carried])
 
     def heading(self, position):

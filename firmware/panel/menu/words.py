@@ -39,7 +39,6 @@ NO_LOCK = b"NO LOCK"
 WRONG_CODE = b"WRONG CODE"
 UNLOCKED = b"UNLOCKED"
 
-NODE = b"A%d"
 CARRIED = b"A%d  UP DOWN"
 CARRYING = b"SET=KEEP"  # or its number of turns is changed
 TIMES = b"A%d  x%d"
