@@ -338,6 +338,26 @@ def test_one_that_was_running_when_it_was_lost_is_told_to_stop_before_it_is_look
     assert pzd.ON not in bench.stws(2, sent)[30:] and not bench.drives[2].is_on()
 
 
+def test_all_its_stops_out_of_turn_come_first_also_where_it_is_lost_late():
+    """Until then it was told to run, in more telegrams than would do."""
+    bench = Search(present=(1, 2))
+    bench.master.turns.lost_us = 5_000_000
+    bench.contact()
+    drive = bench.drives[2]
+    drive.start(0x1000)
+    bench.run(300_000)
+    bench.nodes[2].plugged = False
+    since = len(bench.sent)
+    bench.run_until(lambda: bench.mirrors(2, since), 30_000_000)
+    stws = bench.stws(2, since)
+    assert stws.count(pzd.ON) > finding.STOPPED_MIN, stws
+    assert stws.count(pzd.OFF1) > 10, stws
+    drive.stop()  # STOP is pressed once more
+    since = len(bench.sent)
+    bench.run_until(lambda: len(bench.stws(2, since)) > 10, 20_000_000)
+    assert bench.mirrors(2, since) == []
+
+
 def test_one_that_falls_silent_again_is_looked_for_again():
     bench = Search({2: (3, 2)})
     drive, node = bench.drives[2], bench.nodes[2]

@@ -78,10 +78,10 @@ class Finder:
     """bus: the engine, `uss.master.Master`. mask: the clock's period - 1. enquire: what makes an
     Enquirer, for those who load it in a way of their own.
 
-    It looks for drives that have no contact and have not answered SILENT_MIN telegrams, or
-    STOPPED_MIN where they may run: in the layout that it finds they hear their STOP. A drive in
-    contact is left alone, unless its survey doubts it; when it falls silent, it is looked for
-    again.
+    It looks for drives that have no contact and have not answered SILENT_MIN telegrams. One that
+    may run has not answered STOPPED_MIN, of which those since it was lost said STOP, all that go
+    out of turn: in the layout that is found it hears its STOP. A drive in contact is left alone,
+    unless its survey doubts it; when it falls silent, it is looked for again.
     """
 
     def __init__(self, bus, mask, enquire=enquirer):
@@ -148,7 +148,9 @@ class Finder:
         if drive.contact:
             if not drive.doubted or drive.may_run():
                 return False
-        elif drive.silent < (STOPPED_MIN if drive.may_run() else SILENT_MIN):
+        elif drive.silent < SILENT_MIN:
+            return False
+        elif drive.may_run() and (drive.silent < STOPPED_MIN or drive.is_told_in_vain()):
             return False
         return self._turns.by_address[drive.address] is drive
 
