@@ -4,8 +4,8 @@
     of(MM440, 4)                # ((OUTPUT, 24, FLOAT), (SPEED, 22, FLOAT), ...)
     quantity, number, factor = row          # index 0 of the parameter
 
-Numbers: parameter lists of the MICROMASTER 420 and 440; list manual of the G120 for its r0022 to
-r0037. Rows with (?) are unverified. A drive that lacks one refuses it, and tells the others.
+Numbers: parameter lists of the MICROMASTER 420 and 440. Rows with (?) are unverified. A drive that
+lacks one refuses it, and tells the others.
 """
 
 # OUTPUT: frequency in Hz. SPEED: 1/min. CURRENT: A. VOLTAGE: that of the motor, and DC_LINK, V.
@@ -33,7 +33,7 @@ ROWS = {
     "CU240S": _VECTOR,  # (?)
     "G110": _MM4 + _INVERTER,  # (?) speed and temperature
     "V20": _VECTOR,  # (?) all of them
-    "G120": _VECTOR,
+    "G120": _VECTOR,  # (?) all of them
     "MM3": (  # (?) all of them
         (SPEED, 135, 100),
         (CURRENT, 132, 10),
