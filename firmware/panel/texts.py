@@ -258,15 +258,18 @@ NOT_REMOVED = b"NOT REMOVED"  # it is the only one, or may be running
 # --- the search for drives, see `search` ---------------------------------------------------------
 
 FIND_DRIVES = b"FIND DRIVES"
+FIND_DRIVES_S = b"FIND DRIVES %3ds"
 RATES_SET_GO = b"%d RATES SET=GO"
-BAUD_PERCENT = b"%d BAUD %d%%"
+BAUD_SECONDS = b"%d BAUD %ds"
+SEARCH_ENDS = b"ENDING"
 FOUND_STOP_ENDS = b"%d FOUND STOP=NO"
 TAKE_DRIVES = b"TAKE %d DRIVES?"
 SET_YES = b"SET=YES PARAM=NO"
 NOBODY_FOUND = b"NOBODY ANSWERED"
 CHECK_WIRES = b"WIRES? MAINS?"
-TAKEN = b"TAKEN"
-NOT_TAKEN = b"SET=TAKE"
+TAKEN = b"[X]"
+NOT_TAKEN = b"[ ]"
+FOUND_STATES = (b"WAITS", b"READY", b"RUNS", b"FAULT", b"INHIB")  # as `pzd` numbers them
 
 # --- announcements -------------------------------------------------------------------------------
 

@@ -13,18 +13,31 @@ sends; another master ends the hunt.
 
 from micropython import const
 
+from uss import pzd
 from uss.leave import leave, persist
-from uss.master import LISTENING, Master
-from uss.finding.scan import ADDRESSES, NET_COUNTS, Scan
+from uss.master import LISTEN_US, LISTENING, RESTING, Master
+from uss.finding.scan import ADDRESSES, NET_COUNTS, Scan, longest_us
 from uss.timing import Timing
 from hal.pacer import Pacer
 
+_MILLION = const(1_000_000)
 _PERCENT = const(100)
+_LOOP_US = const(1_000)
+
+
+def seconds_for(rates, reply_timeout_us, done_percent=0):
+    """How long these rates take if nobody answers. done_percent: so much of the first is done."""
+    left_us = rate_us = 0
+    for rate in reversed(rates):
+        timing = Timing(rate, reply_timeout_us)
+        rate_us = LISTEN_US + longest_us(timing, ADDRESSES, NET_COUNTS, _LOOP_US)
+        left_us += rate_us
+    return -(-(left_us - rate_us // _PERCENT * done_percent) // _MILLION)
 
 
 class Found:
-    """baud, address; family and layout as `enquiry` found them; off_time_ms: the drive trips after
-    so long without a telegram, 0: never, None: it does not tell.
+    """baud, address; family and layout as `enquiry` found them; state: one of `pzd`; off_time_ms:
+    the drive trips after so long without a telegram, 0: never, None: it does not tell.
     """
 
     def __init__(self, baud, address, node):
@@ -32,6 +45,7 @@ class Found:
         self.address = address
         self.family = node.family
         self.layout = node.layout
+        self.state = pzd.state(node.zsw)
         self.off_time_ms = node.off_time_ms
 
 
@@ -39,13 +53,14 @@ class Hunt:
     """board: of `hal`. rates: in the order of trying. reply_timeout_ms: as the settings have it.
 
     found: a list. baud: the rate that is tried. line_in_use: another master was heard, which has
-    ended it. over: it has come to its end, or was ended.
+    ended it. ends: it looks for no more. over: it has come to its end, or was ended.
     """
 
     def __init__(self, board, rates, reply_timeout_ms):
         self.found = []
         self.baud = rates[0]
         self.line_in_use = False
+        self.ends = False
         self.over = False
         self._board = board
         self._rates = rates
@@ -60,10 +75,10 @@ class Hunt:
         """How many drives have answered."""
         return len(self.found) + (len(self._scan.found) if self._scan else 0)
 
-    def percent(self):
-        """How much of it is done, as far as can be told."""
-        part = self._scan.progress(_PERCENT) if self._scan is not None else 0
-        return (_PERCENT * self._place + part) // len(self._rates)
+    def seconds_left(self):
+        """How long it still takes if no further drive answers."""
+        done = self._scan.progress(_PERCENT) if self._scan is not None else 0
+        return seconds_for(self._rates[self._place :], self._reply_timeout_us, done)
 
     def step(self, now_us):
         """Do what is next, which never takes long; answer whether it is over."""
@@ -82,7 +97,17 @@ class Hunt:
             self.end()
         elif bus.phase != LISTENING and self._scan.step(now_us):
             self._end_rate()
+        elif bus.phase == RESTING:
+            self._pacer.run()  # else an idle bus notices a telegram some milliseconds late
         return self.over
+
+    def finish(self):
+        """Look for no more. It is over as soon as each drive that was found has had its OFF1."""
+        self.ends = True
+        if self._scan is None or not self._scan.asked:
+            self.end()
+        else:
+            self._scan.finish()
 
     def end(self):
         """End it at once: what was found so far stays."""
@@ -119,7 +144,7 @@ class Hunt:
         self._keep()
         self.close()
         self._place += 1
-        self.over = self._place == len(self._rates)
+        self.over = self.ends or self._place == len(self._rates)
 
     def _keep(self):
         nodes = self._scan.nodes

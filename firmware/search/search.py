@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: MIT
 """The operator's side of the search: what to look for, how far it is, what to take.
 
-    FIND DRIVES             OFFER: UP and DOWN choose how many rates are tried
-    3 RATES SET=GO          SET begins, PARAM goes back to the panel
+    FIND DRIVES  20s        OFFER: UP and DOWN choose how many rates are tried, and say how long
+    3 RATES SET=GO          that takes if nobody answers. SET begins, PARAM goes back to the panel
 
-    19200 BAUD   41%        HUNTING: STOP ends it
+    19200 BAUD   12s        HUNTING: how long it still takes. STOP ends it
     2 FOUND STOP=NO
 
     A3 19200 G110           CHOOSING: UP and DOWN walk what was found, SET takes it or leaves it,
-    127+2    TAKE=SET       PARAM goes on
+    127+2  READY [X]        PARAM goes on
 
     TAKE 2 DRIVES?          ASKING: SET writes the settings, PARAM goes back to the panel
     SET=YES PARAM=NO
@@ -22,7 +22,7 @@ import on_demand
 from panel import texts
 from panel.keys import Acts, keys_of
 from panel.screen import GLYPHS, Screen
-from search.hunt import Hunt
+from search.hunt import Hunt, seconds_for
 from uss.timing import BAUD_RATES
 
 OFFER, HUNTING, CHOOSING, ASKING, NOBODY = range(5)
@@ -92,8 +92,7 @@ class Search:
         direction = acts.direction("UP", "DOWN") or acts.direction("NEXT", "PREVIOUS")
         if state == HUNTING:
             if acts.has("STOP"):
-                self._hunt.end()
-                self._end_hunt()
+                self._end_early()
         elif acts.has("PARAM"):
             if state == CHOOSING and self._taken:
                 self._state = ASKING
@@ -118,6 +117,13 @@ class Search:
         first = (self.settings.baud,)
         others = BAUD_RATES if self._all_rates else QUICK_RATES
         return first + tuple([rate for rate in others if rate not in first])
+
+    def _end_early(self):
+        """What was found so far stays; STOP once more does not even ask it what it is."""
+        if self._hunt.ends:
+            self._hunt.end()
+            self._end_hunt()
+        self._hunt.finish()
 
     def _end_hunt(self):
         found = self._hunt.found
@@ -160,11 +166,16 @@ class Search:
 
     def _rows_of(self, state):
         if state == OFFER:
-            return texts.of(texts.FIND_DRIVES), texts.of(texts.RATES_SET_GO, len(self._rates()))
+            rates = self._rates()
+            taking_s = seconds_for(rates, self.settings.reply_timeout_ms * 1000)
+            first = texts.of(texts.FIND_DRIVES_S, taking_s)
+            return first, texts.of(texts.RATES_SET_GO, len(rates))
         if state == HUNTING:
             hunt = self._hunt
+            if hunt.ends:
+                return texts.of(texts.SEARCH_ENDS), texts.of(texts.FOUND_STOP_ENDS, hunt.count())
             return (
-                texts.of(texts.BAUD_PERCENT, hunt.baud, hunt.percent()),
+                texts.of(texts.BAUD_SECONDS, hunt.baud, hunt.seconds_left()),
                 texts.of(texts.FOUND_STOP_ENDS, hunt.count()),
             )
         if state == CHOOSING:
@@ -178,4 +189,6 @@ class Search:
         words = one.family.__name__.encode()
         layout = b"%d+%d" % (one.layout.pkw_words, one.layout.pzd_words)
         mark = texts.of(texts.TAKEN if one in self._taken else texts.NOT_TAKEN)
-        return b"A%d %d %s" % (one.address, one.baud, words), b"%-8s%s" % (layout, mark)
+        state = texts.of(texts.FOUND_STATES[one.state])
+        first = b"A%d %d %s" % (one.address, one.baud, words)
+        return first, b"%-6s %-5s %s" % (layout, state, mark)

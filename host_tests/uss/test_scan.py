@@ -28,8 +28,8 @@ def only_mirrors(bench, until=None):
 
 
 def only_harmless(bench):
-    """Whether first mirrors were sent, and then nothing in which a word has bit 10 and is not
-    OFF1, wherever in it a drive may look for its control word."""
+    """Whether a mirror was sent first, and nothing in which a word has bit 10 and is not OFF1,
+    wherever in it a drive may look for its control word."""
     for telegram in bench.sent:
         net = telegram.characters[3:-1]
         for at in range(0, len(net), 2):
@@ -63,7 +63,7 @@ def test_an_empty_line_takes_as_long_as_was_said():
     assert 4_000 < promised_ms < 7_000
 
 
-def test_an_unknown_node_is_told_nothing_before_the_end_and_then_to_stop():
+def test_an_unknown_node_is_told_to_stop_and_nothing_else():
     """Bit 10 = 1 would tell it something, wherever in the telegram its control word may stand."""
     for mirrors in (True, False):
         nodes = [Node(address) for address in (1, 2, 17)]
@@ -236,6 +236,26 @@ def test_the_program_may_end_it():
     bench.run(1_000_000)
     assert scan.step(bench.now) and scan.stopped and len(bench.sent) == sent
     assert scan.will_trip == {3: None}
+
+
+def test_a_scan_that_is_to_look_no_further_stops_whom_it_has_found():
+    """Wherever that strikes; a motor may have been left running by somebody."""
+    for step in range(40):
+        bench = Bench([Node(0), Node(3, 127, 2)], listed=False)
+        scan = Scan(bench.master, MASK)
+        bench.loop = lambda: scan.step(bench.now & MASK)
+        bench.run(120_000 + 41_000 * step)
+        scan.finish()
+        asked = scan.asked
+        began = bench.now
+        bench.run_until(lambda: scan.over)
+        assert scan.stopped and scan.asked - asked <= 1
+        assert bench.now - began < 8_000_000, (step, bench.now - began)
+        assert sorted(scan.nodes) == sorted(scan.found), step
+        for address in scan.found:
+            assert bench.nodes[address].stw == 0x047E, step
+        assert only_harmless(bench)
+    assert sorted(scan.found) == [0, 3]
 
 
 # --- at which rate ------------------------------------------------------------------------------

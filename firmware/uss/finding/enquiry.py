@@ -21,7 +21,7 @@ from uss.families import GENERIC, can_be_set_to
 from uss.layout import PZD_WORDS_MAX, VARIABLE, Layout
 from uss.outside import DONE, TIMED_OUT, OutsideTelegram
 from uss.receiver import SILENT
-from uss.telegram import GOOD, NET, put_word
+from uss.telegram import GOOD, NET, get_word, put_word
 
 FRAME = 4  # characters of a telegram that are not net data
 NO_CHANNEL = -1  # instead of a value: the reply has no parameter channel in that place
@@ -51,8 +51,9 @@ class Node:
     any number.
 
     layout, family: as `bus.add` takes them. off_time_ms: the node trips after so long without a
-    telegram; 0: never, None: it does not tell. confirmed: it has told that layout; if not, it is
-    the most usual one of its length, and `family` is GENERIC.
+    telegram; 0: never, None: it does not tell. zsw: its status word in the last answer. confirmed:
+    it has told that layout; if not, it is the most usual one of its length, and `family` is
+    GENERIC.
     """
 
     def __init__(self, address, net_count, variable):
@@ -63,6 +64,7 @@ class Node:
         self.family = GENERIC
         self.off_time_ms = None
         self.confirmed = False
+        self.zsw = 0
 
     def __repr__(self):
         return "<%s %r>" % (self.family.name, self.layout)
@@ -91,6 +93,7 @@ class Enquirer:
             if self._silences < SILENCES and self._tries < TRIES:
                 return False  # the question is sent once more
         self._tries = self._silences = 0
+        self.node.zsw = question.zsw
         try:
             self._place = self._questions.send(question.value())
         except StopIteration:
@@ -199,6 +202,7 @@ class Question(OutsideTelegram):
 
     def __init__(self, address, layout, number, index=0):
         self.job = None if number is None else pkw.read(number, index)
+        self.zsw = 0
         self._layout = layout
         self._speaks = True  # the reply may be that of a parameter channel
         self._form = layout.pkw_words * 2
@@ -230,6 +234,8 @@ class Question(OutsideTelegram):
         self.finding = GOOD
         job = self.job
         pkw_count = count - FRAME - self._layout.pzd_count
+        if self._layout.pzd_words:
+            self.zsw = get_word(buffer, NET + pkw_count)
         if job is None or job.answer(buffer, NET, pkw_count, self._form):
             self.state = DONE
         else:

@@ -5,10 +5,9 @@ A node sends a mirror telegram back as it came and does nothing else with it (sp
 A-5.3). The net data are zeros: they hold no parameter task, and bit 10 is 0 wherever a control
 word may stand. So even a node that took it for an ordinary telegram would obey nothing in it.
 
-A drive that has heard a telegram may trip when it hears no more (P2014). So the scan asks every
-node that it found, and that is not on the bus, again and again until it is over. Before it ends it
-sends each of them OFF1 and asks what it is (`enquiry`), and when it will trip unless you add it to
-the bus.
+A node that was found, and that is not on the bus, is sent OFF1 at once and asked what it is
+(`enquiry`), and when it trips for want of telegrams (P2014): the scan asks it often enough for
+that until it is over. Then it will trip, unless you add it to the bus.
 
     scan = Scan(bus, clock.ticks_mask)
     while not scan.step(clock.ticks_us()):      # in your loop, which keeps the bus going
@@ -29,6 +28,7 @@ from uss.master import LISTENING, OFF, PAUSE_LOOK_US
 from uss.pzd import ZSW_RUNNING
 from uss.receiver import SILENT
 from uss.silence import SHARE
+from uss.telegram import NODE_MAX
 from uss.outside import DONE, PENDING, Mirror
 from uss.timing import BAUD_RATES, FRAME_CHARACTERS, Timing, elapsed
 
@@ -44,7 +44,8 @@ RATES = (9600, 19200, 38400, 57600, 115200, 187500, 4800, 2400, 76800, 93750, 12
 
 TRIES = const(3)  # telegrams to an address, if something came back, but not the telegram
 ACCOUNT_US = const(10_000)  # the bus takes so long to charge a silence to the silent drives' share
-KEEP_US = const(100_000)  # a node that was found is asked again after so long,
+KEEP_US = const(100_000)  # a node that does not tell when it trips is asked again after so long,
+KEEP_SHARE = const(3)  # the others after this part of the time,
 KEEP_MAX = const(2)  # but at most so many such nodes in a row
 
 
@@ -87,6 +88,7 @@ class Scan:
         self._enquires = enquire
         self._stops = self._count_stops()
         self._position = 0  # counts through the addresses, once for every length
+        self._address = 0  # that was probed last
         self._tries = 0
         self._another_length = False  # the next telegram is to show whether any length will do
         self._telegram = None  # the telegram that is under way
@@ -99,10 +101,10 @@ class Scan:
     @property
     def longest_ms(self):
         """How long it takes, in ms, to probe every address if none answers, with the time that the
-        drives of the bus take. The scan asks nodes that it found in between: then it takes up to
-        three times as long."""
-        longest_us = _longest_us(self._bus.timing, self._addresses, self._net_counts)
-        return longest_us * (SHARE if self._has_contact() else 1) // 1000
+        drives of the bus take. Each node that is found takes about half a second more; where many
+        trip soon, up to three times as long."""
+        alone_us = longest_us(self._bus.timing, self._addresses, self._net_counts)
+        return alone_us * (SHARE if self._has_contact() else 1) // 1000
 
     def progress(self, whole):
         """How much of `whole` is done, without the questions to nodes that are found."""
@@ -130,11 +132,18 @@ class Scan:
             self._go_on(now)
         return self.over
 
+    def finish(self):
+        """Look for no more nodes: the scan is over as soon as those it has found were told OFF1
+        and asked what they are."""
+        self._position = len(self._addresses) * len(self._net_counts)
+        self.stopped = True
+
     def end(self):
         """End the scan at once. A node that was found and not asked what it is may trip."""
         if not self.over:
             for address in self._kept:
-                self.will_trip.setdefault(address, None)
+                if address not in self.nodes or address == self._enquiring:
+                    self.will_trip.setdefault(address, None)
             self.over = self.stopped = True
 
     def _go_on(self, now):
@@ -147,10 +156,12 @@ class Scan:
             self._silent_at = None
         if self._bus.deadlines.silence_wait_us():
             return
-        if not self._is_searched():
-            self._ask()
-        elif not self._enquires or not self._enquire():
+        if self._enquires and not self._another_length and self._enquire():
+            return
+        if self._is_searched():
             self.over = True
+        else:
+            self._ask()
 
     def _send(self, telegram, take):
         """Post a telegram; `take` is called when it is over. False: too many wait already."""
@@ -165,17 +176,18 @@ class Scan:
     # --- who is there ---------------------------------------------------------------------------
 
     def _is_searched(self):
-        return self._position >= len(self._addresses) * len(self._net_counts)
+        whole = len(self._addresses) * len(self._net_counts)
+        return self._position >= whole and not self._another_length
 
     def _ask(self):
         """Send the next mirror telegram that can find something new."""
+        if self._another_length:
+            self._probe(self._address, self.found[self._address] + 2)
+            return
         while not self._is_searched():
             row, place = divmod(self._position, len(self._addresses))
             address, net_count = self._addresses[place], self._net_counts[row]
             drive = self._bus.turns.at(address)
-            if self._another_length:
-                self._probe(address, self.found[address] + 2)
-                return
             if address in self.found:
                 self._next()
             elif drive is None or not drive.contact and drive.silent:
@@ -189,6 +201,7 @@ class Scan:
                 return  # a drive of the bus that had no turn yet: the list asks it soon
 
     def _probe(self, address, net_count):
+        self._address = address
         if self._send(Mirror(address, bytes(net_count)), self._judge):
             self.asked += 1
 
@@ -227,18 +240,38 @@ class Scan:
 
     def _keep(self, now):
         """Ask the node that waits longest again, if it is time; return whether one was asked."""
-        waits = [(elapsed(now, at, self._mask), address) for address, at in self._kept.items()]
-        waited_us, address = max(waits or [(0, None)])
-        if waited_us < KEEP_US or self._kept_in_a_row >= KEEP_MAX:
+        late_us, address = -1, None
+        for kept, asked_at in self._kept.items():
+            waits_us = elapsed(now, asked_at, self._mask) - self._keep_us(kept)
+            if waits_us > late_us:
+                late_us, address = waits_us, kept
+        if address is None or self._kept_in_a_row >= KEEP_MAX:
             self._kept_in_a_row = 0
             return False
-        if self._send(Mirror(address, bytes(self.found[address])), self._note):
+        node = self.nodes.get(address)
+        if node is None or address == self._enquiring or not node.layout.pzd_words:
+            telegram = Mirror(address, bytes(self.found[address]))
+        else:  # a V20 trips unless it hears process data
+            telegram = Question(address, node.layout, None)
+        if self._send(telegram, self._note):
             self._kept_in_a_row += 1
         return True
 
-    def _note(self, mirror, now):
-        self._kept[mirror.node] = now
-        self._note_silence(mirror, now)
+    @property
+    def _enquiring(self):
+        """The address that is being asked what it is, or None."""
+        return self._enquirer.node.address if self._enquirer else None
+
+    def _keep_us(self, address):
+        """After so long it is to be asked again."""
+        if address == self._enquiring or address not in self.nodes:
+            return KEEP_US
+        off_time_ms = self.nodes[address].off_time_ms
+        return KEEP_US if off_time_ms is None else max(off_time_ms * 1000 // KEEP_SHARE, KEEP_US)
+
+    def _note(self, telegram, now):
+        self._kept[telegram.address & NODE_MAX] = now
+        self._note_silence(telegram, now)
 
     def _enquire(self):
         """Send the next question to a node that was found; False if none is left to ask."""
@@ -259,7 +292,9 @@ class Scan:
         self._note_silence(question, now)
         if self._enquirer.take(question):
             self._enquirer = None
-            if node.off_time_ms != 0:
+            if node.off_time_ms == 0:
+                self._kept.pop(node.address)
+            else:
                 self.will_trip[node.address] = node.off_time_ms
 
     # --- the bus --------------------------------------------------------------------------------
@@ -326,7 +361,7 @@ class RateScan:
         """How long it takes at the most, in ms, without the listening: when no node answers."""
         timings = [Timing(rate) for rate in self._rates]
         addresses, net_counts = self._addresses, self._net_counts
-        return sum([_longest_us(timing, addresses, net_counts) for timing in timings]) // 1000
+        return sum([longest_us(timing, addresses, net_counts) for timing in timings]) // 1000
 
     def step(self, now):
         """Do what is next; True when it is over. ValueError if the bus that was opened has drives.
@@ -398,9 +433,9 @@ def engine_of(bus):
     return getattr(bus, "engine", bus)
 
 
-def _longest_us(timing, addresses, net_counts):
-    """The time of mirror telegrams that nobody answers; an idle bus notices them late."""
-    waiting_us = PAUSE_LOOK_US + timing.start_interval_us
+def longest_us(timing, addresses, net_counts, look_us=PAUSE_LOOK_US):
+    """The time of mirror telegrams that nobody answers. look_us: an idle bus notices them so late."""
+    waiting_us = look_us + timing.start_interval_us
     waiting_us += timing.reply_timeout_us + timing.character_us
     probes_us = sum([waiting_us + timing.telegram_us(net_count) for net_count in net_counts])
     return len(addresses) * probes_us
