@@ -229,7 +229,10 @@ ASK_RESTART = (
     _START_OR_STOP,
 )
 
-ASK_SEARCH = ((b"LEAVE THE LINE &", b"FIND DRIVES?"), _DO_OR_NOT)
+ASK_SEARCH = (
+    (b"LEAVE THE LINE &", b"FIND DRIVES?", b"THOSE WITH P2014", b"MAY TRIP: F0072"),
+    _DO_OR_NOT,
+)
 
 # --- the menu, see `menu`; `menu.words` has more -------------------------------------------------
 
@@ -245,6 +248,14 @@ ANSWERS = b"ANSWERS"
 NOBODY = b"NOBODY"
 ADDED = b"ADDED"
 NOT_ADDED = b"NOT ADDED"  # 31 are there, or nothing of its telegrams is PZD1 and PZD2
+AT_THIS_RATE = b"AT THIS RATE"
+AT_ALL_RATES = b"AT ALL RATES"
+STOPS_FOUND = b"STOPS FOUND"  # whatever the search finds
+SET_BEGIN = b"SET=BEGIN"
+SEARCH_PERCENT = b"SEARCH %d%%"
+SO_MANY_FOUND = b"%d FOUND"
+FOUND = b"FOUND"
+TAKE_ALL = b"TAKE ALL %d"
 FAMILY = b"FAMILY"
 MENU_SETTINGS = b"SETTINGS"
 MENU_ORDER = b"ORDER"

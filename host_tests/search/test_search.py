@@ -27,11 +27,12 @@ def offered(world):
     world.run(1500)
     world.up("PARAM")
     world.run(200)
-    while row_2(world) != ">FIND DRIVES":
-        world.press("DOWN")
-        world.run(200)
-    world.press("SET")
-    world.run(300)
+    for wanted in (">FIND DRIVES", ">AT ALL RATES"):
+        while row_2(world) != wanted:
+            world.press("DOWN")
+            world.run(200)
+        world.press("SET")
+        world.run(300)
     assert row_2(world) == "SET=DO  PARAM=NO", world.lcd()
     world.press("SET")
     world.run(2500)
@@ -240,10 +241,9 @@ def test_nobody_looks_for_drives_while_a_motor_runs():
     world.down("PARAM")
     world.run(1500)
     world.up("PARAM")
-    world.press("DOWN")
-    world.press("DOWN")
-    world.press("SET")
-    world.run(300)
+    for key in ("DOWN", "DOWN", "SET", "DOWN", "SET"):
+        world.press(key)
+        world.run(300)
     assert row_2(world) == "STOP ALL FIRST", world.lcd()
     assert world.drives[1].state == "running"
     world.check()

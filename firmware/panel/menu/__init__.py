@@ -30,8 +30,12 @@ class Entries:
         """The entry that is shown first."""
         return 0
 
-    def step(self, position, now_us):
+    def step(self, position, now_ms):
         """Again and again while it is shown."""
+
+    def is_busy(self):
+        """Whether it has something to do that a minute without a key does not end."""
+        return False
 
     def count(self):
         """How many entries there are now, one at the least."""

@@ -58,7 +58,7 @@ class Menu(Page):
         shown.step(position, now_ms)
         if not self._lists:  # that has closed the menu
             return
-        if self._used_at_ms is None:
+        if self._used_at_ms is None or shown.is_busy():
             self._used_at_ms = now_ms
         stale = elapsed(now_ms, self._used_at_ms, self.panel.mask) >= _STALE_MS
         if stale or self.panel.selected.needs_attention():  # an alarm is not to be hidden

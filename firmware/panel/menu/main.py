@@ -4,10 +4,10 @@
 from panel import texts
 from panel.menu import Entries
 
-LISTS = (  # text, module; None: the search, which is a program of its own
+LISTS = (  # text, module
     (texts.MENU_DRIVES, "drives"),
     (texts.ANY_ADDRESS, "address"),
-    (texts.FIND_DRIVES, None),
+    (texts.FIND_DRIVES, "find"),
     (texts.MENU_SETTINGS, "settings"),
     (texts.MENU_ORDER, "order"),
     (texts.MENU_TURNS, "turns"),
@@ -30,7 +30,7 @@ class List(Entries):
         """Whoever has no contact is looking for the drive."""
         if self.panel.selected.drive.contact:
             return 0
-        return self._lists.index((texts.FIND_DRIVES, None))
+        return self._lists.index((texts.FIND_DRIVES, "find"))
 
     def count(self):
         return len(self._lists)
@@ -42,8 +42,5 @@ class List(Entries):
         text, name = self._lists[position]
         if text == texts.MENU_LOCK:
             self.panel.lock(now_ms)
-        elif name is None:
-            self.panel.offer_search(now_ms)
-        else:
-            return name, None
-        return None
+            return None
+        return name, None

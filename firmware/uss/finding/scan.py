@@ -110,6 +110,10 @@ class Scan:
         """How much of `whole` is done, without the questions to nodes that are found."""
         return whole * self._position // (len(self._addresses) * len(self._net_counts))
 
+    def asked_nodes(self):
+        """A list of (address, `enquiry.Node`) of those that have told what they are."""
+        return [(one, self.nodes[one]) for one in sorted(self.nodes) if one != self._enquiring]
+
     def step(self, now):
         """Do what is next, which never takes long; True when the scan is over.
 
@@ -131,6 +135,20 @@ class Scan:
         if self._bus.phase != LISTENING:
             self._go_on(now)
         return self.over
+
+    def keep(self, now):
+        """After it is over: go on asking the nodes that are not on the bus, so that they do not
+        trip. To be called in place of `step`."""
+        telegram = self._telegram
+        if telegram is not None:
+            if telegram.state == PENDING:
+                return
+            self._telegram = None
+            self._kept_in_a_row = 0
+            if telegram.address & NODE_MAX in self._kept:
+                self._note(telegram, now)
+        if self._bus.phase != LISTENING and not self._bus.deadlines.silence_wait_us():
+            self._keep(now)
 
     def finish(self):
         """Look for no more nodes: the scan is over as soon as those it has found were told OFF1
@@ -242,6 +260,8 @@ class Scan:
         """Ask the node that waits longest again, if it is time; return whether one was asked."""
         late_us, address = -1, None
         for kept, asked_at in self._kept.items():
+            if self._bus.turns.at(kept) is not None:
+                continue  # it has been added since
             waits_us = elapsed(now, asked_at, self._mask) - self._keep_us(kept)
             if waits_us > late_us:
                 late_us, address = waits_us, kept
@@ -434,7 +454,7 @@ def engine_of(bus):
 
 
 def longest_us(timing, addresses, net_counts, look_us=PAUSE_LOOK_US):
-    """The time of mirror telegrams that nobody answers. look_us: an idle bus notices them so late."""
+    """The time of mirror telegrams that nobody answers; an idle bus notices them look_us late."""
     waiting_us = look_us + timing.start_interval_us
     waiting_us += timing.reply_timeout_us + timing.character_us
     probes_us = sum([waiting_us + timing.telegram_us(net_count) for net_count in net_counts])
