@@ -266,6 +266,24 @@ REMOVE_DRIVE = b"REMOVE IT"
 REMOVED = b"REMOVED"
 NOT_REMOVED = b"NOT REMOVED"  # it is the only one, or may be running
 
+WHY_NO_CONTACT = b"WHY NO CONTACT"
+HEARD_OF = b"A%d HEARD"
+HEARD_NOTHING = b"NOTHING"
+HEARD_NOBODY = b"NO DRIVE AT ALL"  # none of the list answers
+IT_ANSWERS = b"IT ANSWERS NOW"
+OK_OF = b"%d OK OF %d"  # telegrams
+CHECK = b"CHECK"
+CHECK_PARAMETER = b"P%04d = %d"
+CHECK_RATE = b"P%04d=%d %d"  # number, code, bit/s
+CHECK_UNNAMED = (b"RATE %d", b"ADDRESS %d", b"PKW WORDS %d", b"PZD WORDS %d")
+CHECK_TWINS = b"ONLY ONE IS A%d"
+CHECK_PLUG = b"PLUG AND WIRES"
+CHECK_MAINS = b"DRIVE HAS MAINS"
+CHECK_SWAPPED = b"A AND B SWAPPED"
+CHECK_ENDS = b"ENDS TERMINATED"
+CHECK_SHIELD = b"SHIELD, GROUND"
+CHECK_MASTERS = b"NO OTHER MASTER"
+
 # --- the search for drives, see `search` ---------------------------------------------------------
 
 FIND_DRIVES = b"FIND DRIVES"

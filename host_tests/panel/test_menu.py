@@ -566,7 +566,7 @@ def test_the_family_of_a_drive_is_chosen():
     world.check()
 
 
-def test_without_contact_the_menu_begins_with_the_search():
+def test_without_contact_the_menu_begins_with_the_reason():
     world = panel()
     world.drives[1].unplug()
     world.run(3000)
@@ -574,7 +574,25 @@ def test_without_contact_the_menu_begins_with_the_search():
     world.run(1500)
     world.up("PARAM")
     world.run(300)
-    assert row_2(world) == ">FIND DRIVES", world.lcd()
+    assert row_2(world) == ">WHY NO CONTACT", world.lcd()
+
+
+def test_an_alarm_that_was_there_before_does_not_lock_it():
+    """A drive at another rate never confirms a STOP, and the rate is changed in the menu."""
+    world = panel(baud=9600, settings={"baud": 19200})
+    world.run(3000)
+    press(world, "STOP")
+    world.run(2000)
+    assert row_2(world) == "STOP UNCONFIRMED", world.lcd()
+    world.down("PARAM")
+    world.run(1500)
+    world.up("PARAM")
+    seen = set()
+    for _ in range(30):
+        world.run(100)
+        seen.add(world.lcd())
+    assert all([rows[1].startswith(">") for rows in seen]), seen
+    assert any([rows[0].startswith("A1 NOT STOPPED") for rows in seen]), seen
 
 
 def test_a_panel_that_nobody_has_set_up_offers_to_find_drives():

@@ -30,6 +30,7 @@ class Menu(Page):
         self._lists = []  # (name of the module, `List`, position in it), the one shown last
         self._used_at_ms = None
         on_demand.load("panel.menu.words")  # first: an import inside an import takes stack
+        self._alarmed = panel.selected.needs_attention()
         self._enter(*begin)
 
     def take_keys(self, acts, now_ms):
@@ -61,7 +62,9 @@ class Menu(Page):
         if self._used_at_ms is None or shown.is_busy():
             self._used_at_ms = now_ms
         stale = elapsed(now_ms, self._used_at_ms, self.panel.mask) >= _STALE_MS
-        if stale or self.panel.selected.needs_attention():  # an alarm is not to be hidden
+        # An alarm is not to be hidden; but one that nobody can end may need the menu.
+        alarmed, self._alarmed = self._alarmed, self.panel.selected.needs_attention()
+        if stale or self._alarmed and not alarmed:
             self.close()
 
     def close(self):
@@ -76,13 +79,21 @@ class Menu(Page):
         _, shown, position = self._lists[-1]
         count = shown.count()
         position = min(position, count - 1)  # what was last in it may have gone
-        width = _COUNT_COLUMN if count > 1 else texts.ROW_WIDTH
-        screen.put(0, 0, width, shown.heading(position))
-        if count > 1:
-            place = b"%5s" % (b"%d/%d" % (position + 1, count))
-            screen.put(0, width, texts.ROW_WIDTH - width, place)
+        if self._alarmed and self.panel.announcer.page_turns & 1:
+            self._draw_alarm(screen, self.panel.selected)
+        else:
+            width = _COUNT_COLUMN if count > 1 else texts.ROW_WIDTH
+            screen.put(0, 0, width, shown.heading(position))
+            if count > 1:
+                place = b"%5s" % (b"%d/%d" % (position + 1, count))
+                screen.put(0, width, texts.ROW_WIDTH - width, place)
         screen.put(1, 0, 1, texts.of(texts.MENU_MARK))
         screen.put(1, 1, texts.ROW_WIDTH - 1, shown.words(position))
+
+    def _draw_alarm(self, screen, control):
+        """That of the drive shown, in turn with the title: only the others are announced."""
+        text = texts.OTHER_UNCONFIRMED if control.stop_watch.unconfirmed else texts.OTHER_LOST
+        screen.put(0, 0, texts.ROW_WIDTH, b"A%d%s" % (control.drive.address, texts.of(text)))
 
     def _go(self, following, now_ms):
         """Where a list leads to, unless it has closed the menu."""

@@ -23,14 +23,10 @@ class List(Entries):
         Entries.__init__(self, panel, argument)
         several = len(panel.controls) > 1
         self._lists = [row for row in LISTS if several or row[1] not in OF_SEVERAL]
+        if not panel.selected.drive.contact:  # whoever has none is looking for the drive
+            self._lists.insert(0, (texts.WHY_NO_CONTACT, "contact"))
         if panel.settings.lock_code:
             self._lists.append((texts.MENU_LOCK, None))
-
-    def first(self):
-        """Whoever has no contact is looking for the drive."""
-        if self.panel.selected.drive.contact:
-            return 0
-        return self._lists.index((texts.FIND_DRIVES, "find"))
 
     def count(self):
         return len(self._lists)

@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: MIT
+"""The operator's manual, NO CONTACT: PARAM held says what was heard, and what to check."""
+
+import json
+
+from panel_bench import panel, row_1, row_2, settled, telegrams, wait_until_known
+from spoilt_bench import TROUBLES, spoil
+
+OFF1 = 0x047E
+
+
+def press(world, *keys):
+    for key in keys:
+        world.press(key)
+        world.run(300)
+
+
+def title(world):
+    """Row 1, which has to say now and then that something may run."""
+    while world.reads("A1 MAY RUN") or world.reads("NOT STOPPED"):
+        settled(world)
+    return settled(world)[0]
+
+
+def why(world):
+    """Hold PARAM, and SET: what was heard, and the steps."""
+    world.down("PARAM")
+    world.run(1500)
+    world.up("PARAM")
+    world.run(300)
+    assert row_2(world) == ">WHY NO CONTACT", world.lcd()
+    press(world, "SET")
+    heard, steps = row_2(world)[1:], []
+    count = int(title(world).split("/")[1])
+    assert title(world).startswith("A1 HEARD"), world.lcd()
+    press(world, "DOWN")
+    assert " OK OF " in row_2(world), world.lcd()
+    for _ in range(count - 2):
+        press(world, "DOWN")
+        assert title(world).startswith("CHECK"), world.lcd()
+        steps.append(row_2(world)[1:])
+    press(world, "DOWN")
+    assert title(world).startswith("A1 HEARD"), world.lcd()
+    return heard, steps
+
+
+def test_where_no_drive_answers_the_wires_of_the_panel_come_first():
+    world = panel(addresses=(1, 2))
+    for drive in world.drives.values():
+        drive.unplug()
+    world.run(3000)
+    heard, steps = why(world)
+    assert heard == "NO DRIVE AT ALL"
+    assert steps == [
+        "PLUG AND WIRES", "A AND B SWAPPED", "P2010=7 19200", "DRIVE HAS MAINS", "P2011 = 1",
+        "ENDS TERMINATED", "FIND DRIVES",
+    ]  # fmt: skip
+    world.drives[1].plug()
+    world.run(2000)
+    assert row_2(world) == ">IT ANSWERS NOW", world.lcd()
+    world.check()
+
+
+def test_where_the_others_answer_it_is_that_drive():
+    world = panel(addresses=(1, 2))
+    world.drives[1].power_off()
+    world.run(3000)
+    heard, steps = why(world)
+    assert heard == "NOTHING" and steps[:3] == ["DRIVE HAS MAINS", "PLUG AND WIRES", "P2011 = 1"]
+    press(world, "UP", "SET")  # the last step
+    assert row_1(world).startswith("FIND DRIVES"), world.lcd()
+    world.check()
+
+
+def test_what_is_heard_in_place_of_answers_says_what_to_check_first():
+    first = {
+        "NO CONTACT": ("NO DRIVE AT ALL", "PLUG AND WIRES"),
+        "LINE NOISE": ("LINE NOISE", "ONLY ONE IS A1"),
+        "OTHER LENGTH": ("OTHER LENGTH", "P2013 = 4"),
+        "WRONG DRIVE": ("WRONG DRIVE", "NO OTHER MASTER"),
+        "WRONG CHECK": ("WRONG CHECK", "SHIELD, GROUND"),
+    }
+    for how, _, words, _ in TROUBLES:
+        world = panel()
+        world.run(1000)
+        spoil(world.wire, world.drives[1], how)
+        world.run(2500)
+        heard, steps = why(world)
+        assert (heard, steps[0]) == first[words], how.__name__
+
+
+def test_the_rate_can_be_changed_from_there():
+    world = panel(baud=9600, settings={"baud": 19200})
+    world.run(3000)
+    press(world, "STOP")  # nobody confirms it
+    world.run(2000)
+    why(world)
+    while row_2(world) != ">P2010=7 19200":
+        press(world, "DOWN")
+    press(world, "SET")
+    assert title(world).startswith("BAUD RATE"), world.lcd()
+    press(world, "DOWN", "SET")
+    world.run(4000)
+    wait_until_known(world)
+    assert json.loads(world.flash.files["settings.json"].decode())["baud"] == 9600
+    world.check()
+
+
+def test_stop_is_stop_there():
+    world = panel(addresses=(1, 2))
+    world.drives[1].unplug()
+    world.run(3000)
+    why(world)
+    pressed_us = world.clock.now_us
+    press(world, "STOP")
+    assert OFF1 in [stw for _, stw in telegrams(world, pressed_us, 1)]
+    world.check()
