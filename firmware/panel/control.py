@@ -248,6 +248,10 @@ class Control:
         """Whether it may run though it should not: an alarm."""
         return self.lost_running or self.stop_watch.unconfirmed
 
+    def refused_by_source(self):
+        """Whether it obeys somebody else, or takes its setpoint from there: P0700, P1000."""
+        return permits.is_local(self.survey) or permits.is_foreign(self.survey)
+
     def own_jog_ends(self):
         """Whether it turns because a jog of this panel is still ramping down."""
         return self._jogged and self.stop_watch.active

@@ -421,6 +421,9 @@ class Panel:
         refusal = selected.take_refusal()
         if refusal:
             self.say(now_ms, wording.of(refusal, selected.survey.family))
+            if self._cover is None and selected.refused_by_source():
+                on_demand.load("panel.pages.question")
+                on_demand.call("panel.pages.set_up", "offer", self)
         if self._writer:
             self._take_written(now_ms)
         if selected.phase == ASKING and self._cover is None:

@@ -229,6 +229,13 @@ ASK_RESTART = (
     _START_OR_STOP,
 )
 
+# So that a drive obeys this panel: number, value.
+ASK_SET_UP = ((_TO_BE_WRITTEN, b"PANEL COMMANDS", b"THE DRIVE THEN"), _DO_OR_NOT)
+ASK_SET_UP_EEPROM = (
+    (_TO_BE_WRITTEN, b"INTO ITS EEPROM:", b"PANEL COMMANDS", b"THE DRIVE THEN"),
+    _DO_OR_NOT,
+)
+
 ASK_SEARCH = (
     (b"LEAVE THE LINE &", b"FIND DRIVES?", b"THOSE WITH P2014", b"MAY TRIP: F0072"),
     _DO_OR_NOT,

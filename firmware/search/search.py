@@ -129,7 +129,8 @@ class Search:
         found = self._hunt.found
         self._state = CHOOSING if found else NOBODY
         self._row = 0
-        rate = found[0].baud if found else 0
+        rates = [one.baud for one in found]
+        rate = max(rates, key=rates.count) if rates else 0
         self._taken = [one for one in found if one.baud == rate]
 
     def _choose(self, one):

@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: MIT
+"""The operator's manual, a drive that obeys somebody else: START says so and offers to set it up."""
+
+from boards.sim.drives.families import mm3
+from panel_bench import panel, row_2, settled, starts, wait_until_known
+
+LOCAL = {700: 2, 1000: 2, 2014: 1000}  # as delivered, but for the line
+INTO_EEPROM = {"A1: P0700=5", "INTO ITS EEPROM:", "PANEL COMMANDS", "THE DRIVE THEN"}
+
+
+def press(world, *keys):
+    for key in keys:
+        world.press(key)
+        world.run(400)
+
+
+def asked(world):
+    """What row 1 says in turn."""
+    seen = set()
+    for _ in range(100):
+        world.run(100)
+        seen.add(settled(world)[0].strip())
+    assert row_2(world) == "SET=DO  PARAM=NO", world.lcd()
+    return seen
+
+
+def test_a_drive_is_set_up_with_start_and_set_alone():
+    world = panel(parameters=LOCAL)
+    world.run(3000)
+    assert row_2(world) == "LOCAL        A1", world.lcd()
+    press(world, "START")
+    assert row_2(world) == "NO:P0700 NOT USS", world.lcd()
+    found = asked(world)
+    assert found == INTO_EEPROM, found
+    press(world, "SET")
+    world.run(4000)
+    press(world, "START")
+    world.run(1500)
+    assert "A1: P1000=5" in asked(world)
+    press(world, "SET")
+    world.run(4000)
+    wait_until_known(world)
+    press(world, "START")
+    world.run(4000)
+    assert world.drives[1].state == "running" and starts(world) == 1
+    press(world, "STOP")
+    world.run(4000)
+    world.drives[1].power_off()  # it is in the EEPROM
+    world.run(3000)
+    world.drives[1].power_on()
+    world.run(3000)
+    press(world, "STOP")
+    wait_until_known(world)
+    world.check()
+
+
+def test_any_other_key_writes_nothing():
+    for key in ("PARAM", "UP", "STOP", "START", "REVERSE"):
+        world = panel(parameters=LOCAL)
+        world.run(3000)
+        press(world, "START")
+        world.run(4000)
+        press(world, key)
+        world.run(3000)
+        assert row_2(world) == "LOCAL        A1", (key, world.lcd())
+        assert world.drives[1].parameters.ram[700][0] == 2 and starts(world) == 0
+        world.check()
+
+
+def test_a_micromaster_3_is_told_by_p910():
+    kinds = {1: {"family": mm3, "parameters": {910: 0, 93: 2}}}
+    world = panel(kinds=kinds, settings={"kinds": {"1": "mm3"}})
+    world.run(3000)
+    press(world, "START")
+    world.run(3500)
+    assert asked(world) == {"A1: P0910=1", "PANEL COMMANDS", "THE DRIVE THEN"}
+    press(world, "SET")
+    world.run(4000)
+    wait_until_known(world)
+    world.check()
+
+
+def test_a_motor_that_runs_on_other_commands_is_not_taken_over():
+    world = panel(parameters=LOCAL)
+    world.drives[1].process.words = lambda count: [0xFB34, 0x0CCD]
+    world.run(4000)
+    assert row_2(world) == "RUNS LOCALLY A1", world.lcd()
+    press(world, "START")
+    assert row_2(world) == "NO:P0700 NOT USS", world.lcd()
+    world.run(4000)
+    assert row_2(world) == "RUNS LOCALLY A1", world.lcd()
