@@ -155,7 +155,8 @@ class Surroundings:
 class World(Surroundings):
     """start: makes the firmware. polled: no receive interrupt. ticks_start, ticks_mask: of the
     chip's clock; or give a `clock` instead. store: keeps the panel's settings in place of the
-    flash; what it has already is not touched. The others are those of `Surroundings`. In the plain
+    flash; what it has already is not touched. unset: the panel has no settings file yet, as at its
+    first power-on. The others are those of `Surroundings`. In the plain
     world every step of the loop takes 2 ms; with a seed each step takes its own time. With an odd
     seed the UART's receive time-out comes again while characters are left (`Chip`).
     """
@@ -175,6 +176,7 @@ class World(Surroundings):
         store=None,
         kinds=None,
         clock=None,
+        unset=False,
     ):
         clock = clock or Clock(ticks_start, ticks_mask)
         Surroundings.__init__(
@@ -183,7 +185,9 @@ class World(Surroundings):
         stored = json.dumps(self.stored).encode()
         self.flash = Flash(busy=self._flash_is_busy)
         self.store = store or FileStore(SETTINGS_FILE, self.flash.open, self.flash)
-        if store is None:
+        if unset:
+            pass
+        elif store is None:
             self.flash.files[SETTINGS_FILE] = stored
         elif store.read(0) is None:
             store.replace(stored)

@@ -421,9 +421,8 @@ class Panel:
         refusal = selected.take_refusal()
         if refusal:
             self.say(now_ms, wording.of(refusal, selected.survey.family))
-            if self._cover is None and selected.refused_by_source():
-                on_demand.load("panel.pages.question")
-                on_demand.call("panel.pages.set_up", "offer", self)
+            if selected.refused_by_source():
+                self._offer("offer")
         if self._writer:
             self._take_written(now_ms)
         if selected.phase == ASKING and self._cover is None:
@@ -441,10 +440,18 @@ class Panel:
         selected = self.selected
         return selected.needs_attention() or selected.fault.active or self.announcer.has_alarm()
 
+    def _offer(self, what):
+        """To write a parameter that the drive shown needs."""
+        if self._cover is None:
+            on_demand.load("panel.pages.question")  # first: an import inside an import takes stack
+            on_demand.call("panel.pages.set_up", what, self)
+
     def _take_written(self, now_ms):
         write = self._writer.take_ended()
         if write:
             self.say(now_ms, *write.news(self.selected))
+            if write.outcome[0] is texts.ACCESS_TOO_LOW and write.control is self.selected:
+                self._offer("unlock")
         if self._writer.is_idle():
             self._writer = None
             on_demand.drop("panel.writer")

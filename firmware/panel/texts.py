@@ -178,6 +178,7 @@ OTHER_NOT_WRITTEN = b"A%d: NOT WRITTEN"
 # Why a drive refused a parameter task, by the error number of its reply (specification table 4.9,
 # and what drives add to it). NO_RIGHTS is reply 8, which carries no number.
 NO_RIGHTS = b"NO CHANGE RIGHTS"
+ACCESS_TOO_LOW = b"P0003 TOO LOW"
 REFUSALS = {
     0: b"NO SUCH PARAM.",
     1: b"READ ONLY",
@@ -201,7 +202,7 @@ REFUSALS = {
     107: b"TEXT IS FIXED",
     200: b"BELOW LIMIT NOW",
     201: b"ABOVE LIMIT NOW",
-    204: b"P0003 TOO LOW",
+    204: ACCESS_TOO_LOW,
 }
 OTHER_REFUSAL = b"REFUSED: %d"
 
@@ -229,7 +230,8 @@ ASK_RESTART = (
     _START_OR_STOP,
 )
 
-# So that a drive obeys this panel: number, value.
+# So that a drive obeys this panel, or lets it write: number, value.
+ASK_UNLOCK = ((_TO_BE_WRITTEN, b"PANEL MAY WRITE", b"MORE THEN"), _DO_OR_NOT)
 ASK_SET_UP = ((_TO_BE_WRITTEN, b"PANEL COMMANDS", b"THE DRIVE THEN"), _DO_OR_NOT)
 ASK_SET_UP_EEPROM = (
     (_TO_BE_WRITTEN, b"INTO ITS EEPROM:", b"PANEL COMMANDS", b"THE DRIVE THEN"),

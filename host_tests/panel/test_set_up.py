@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The operator's manual, a drive that obeys somebody else: START says so and offers to set it up."""
+"""The operator's manual, a drive that obeys somebody else: START offers to set it up."""
 
 from boards.sim.drives.families import mm3
 from panel_bench import panel, row_2, settled, starts, wait_until_known
@@ -89,3 +89,27 @@ def test_a_motor_that_runs_on_other_commands_is_not_taken_over():
     assert row_2(world) == "NO:P0700 NOT USS", world.lcd()
     world.run(4000)
     assert row_2(world) == "RUNS LOCALLY A1", world.lcd()
+
+
+def test_a_value_that_the_access_level_forbids_is_offered_again_after_p0003():
+    world = panel(parameters={2014: 0, 3: 1})
+    wait_until_known(world)
+    press(world, "START")
+    world.run(1500)
+    assert row_2(world) == "SET=FIX START=GO", world.lcd()
+    press(world, "SET")
+    assert row_2(world) == "P0003 TOO LOW", world.lcd()
+    world.run(3500)
+    found = asked(world)
+    assert found >= {"A1: P0003=3", "PANEL MAY WRITE", "MORE THEN"}, found
+    press(world, "SET")
+    world.run(3500)
+    press(world, "START")
+    world.run(1500)
+    press(world, "SET")
+    world.run(3500)
+    press(world, "START")
+    world.run(4000)
+    assert world.drives[1].state == "running", world.lcd()
+    assert world.drives[1].parameters.ram[2014][0] > 0
+    world.check()

@@ -74,18 +74,20 @@ usage: ./tools/panel [--speed N] [--drives 1,2=g110] [--baud 19200] [--settings 
   --baud RATE     baud rate of the line and its drives (19200, or that of the settings)
   --settings FILE keep the panel's settings in FILE; otherwise they end with the program. The panel
                   looks for the drives in FILE, whichever --drives simulates
+  --unset         the panel has no settings yet, as at its first power-on; with --settings, FILE
+                  must be a new one
   --keys WIRING   direct: each key has a pin of its own; matrix: all but START and STOP;
                   compact: eight keys in place of fourteen (direct)
   --seed N        other reply delays and loop times; 0 is the plain world (0)
   --polled        no receive interrupt: the link is polled
   --board BOARD   sim: the simulated board; pico: the firmware file for the Raspberry Pi Pico on an
-                  emulated one (sim). Not with --settings, --polled and --keys
+                  emulated one (sim). Not with --settings, --unset, --polled and --keys
   --flash FILE    pico: keep the chip's flash in FILE, and with it the settings of the panel
   --display KIND  pico: wires, four data lines, or backpack, on I2C (wires)
   --port PATH     talk to real drives on this serial port, which is set to 8E1 at --baud, or on a
                   pty, in real time; wait and hold in a script take theirs. --drives are those that
                   the panel looks for, families what it expects there. Not with --speed, --seed,
-                  --polled, --board
+                  --unset, --polled, --board
   --reply-timeout MS
                   port: how long a drive may take to answer, 20...500, the adapter's own delay
                   included (60, or that of the settings). It delays a STOP as well
@@ -175,6 +177,7 @@ OPTIONS = {
     "--drives": ("drives", None, str),
     "--baud": ("baud", None, one_of(BAUD_RATES, RATES)),
     "--settings": ("settings", None, str),
+    "--unset": ("unset", False, None),
     "--keys": ("keys", "direct", one_of(KEYPADS, WIRED)),
     "--seed": ("seed", 0, number),
     "--polled": ("polled", False, None),
@@ -194,10 +197,10 @@ OPTIONS = {
 
 
 # Options that one board alone knows.
-ONLY_SIM = ("--settings", "--polled", "--keys")
+ONLY_SIM = ("--settings", "--unset", "--polled", "--keys")
 ONLY_PICO = ("--flash", "--display")
 # Options that mean nothing on a real line, and the one that means something only there.
-NOT_PORT = ("--speed", "--seed", "--polled", "--board") + ONLY_PICO
+NOT_PORT = ("--speed", "--seed", "--unset", "--polled", "--board") + ONLY_PICO
 ONLY_PORT = ("--reply-timeout",)
 
 
@@ -270,6 +273,7 @@ def world_of(chosen):
         keys=chosen["keys"],
         store=store,
         kinds=kinds.simulated(drives),
+        unset=chosen["unset"],
     )
     return world, said + kinds.as_delivered(world.drives, baud)
 
@@ -483,7 +487,13 @@ def store_of(path, chosen):
     except OSError as error:
         if error.args[0] != ENOENT:
             raise
+        if chosen["unset"]:
+            store.replace(b"")  # fails now if it cannot be written
+            os.remove(path)
+            return store, None
         save(store, load(Stored(json.dumps(new_settings(chosen)).encode())))
+    if chosen["unset"]:
+        raise UsageError("--unset: %s holds settings already" % path)
     data = store.read(SIZE_MAX + 1)  # what `load` would make the best of is an error here
     return store, Kept(load(store), data)
 

@@ -4,7 +4,7 @@
     A0: P0700=5             in turn with what that means. SET writes this one parameter, any other
     SET=DO  PARAM=NO        key does not. The next START runs the drive, or asks for the next one
 
-What a drive needs stands in the table `meaning` of its family.
+What a drive needs stands in the tables `meaning` and `access` of its family.
 """
 
 from panel import texts
@@ -20,12 +20,23 @@ def offer(panel):
     """Ask about the drive that is shown, if a parameter would help and its motor stands."""
     control = panel.selected
     wanted = _wanted(control.survey)
-    if wanted is None or control.drive.zsw & ZSW_RUNNING or not control.drive.contact:
+    if wanted is not None:
+        eeprom = control.survey.family.has_eeprom_tasks
+        _ask(panel, texts.ASK_SET_UP_EEPROM if eeprom else texts.ASK_SET_UP, wanted, eeprom)
+
+
+def unlock(panel):
+    """The drive shown has refused a value because its access level is too low: ask about that."""
+    access = panel.selected.survey.family.access
+    if access is not None:
+        _ask(panel, texts.ASK_UNLOCK, (access[0], 0, access[1]), False)
+
+
+def _ask(panel, text, wanted, eeprom):
+    control = panel.selected
+    if control.drive.zsw & ZSW_RUNNING or not control.drive.contact:
         return
-    family = control.survey.family
     number, index, value = wanted
-    eeprom = family.has_eeprom_tasks
-    text = texts.ASK_SET_UP_EEPROM if eeprom else texts.ASK_SET_UP
 
     def write(now_ms):
         if not control.drive.zsw & ZSW_RUNNING:
