@@ -257,14 +257,6 @@ ANSWERS = b"ANSWERS"
 NOBODY = b"NOBODY"
 ADDED = b"ADDED"
 NOT_ADDED = b"NOT ADDED"  # 31 are there, or nothing of its telegrams is PZD1 and PZD2
-AT_THIS_RATE = b"AT THIS RATE"
-AT_ALL_RATES = b"AT ALL RATES"
-STOPS_FOUND = b"STOPS FOUND"  # whatever the search finds
-SET_BEGIN = b"SET=BEGIN"
-SEARCH_PERCENT = b"SEARCH %d%%"
-SO_MANY_FOUND = b"%d FOUND"
-FOUND = b"FOUND"
-TAKE_ALL = b"TAKE ALL %d"
 FAMILY = b"FAMILY"
 MENU_SETTINGS = b"SETTINGS"
 MENU_ORDER = b"ORDER"
@@ -276,22 +268,6 @@ REMOVED = b"REMOVED"
 NOT_REMOVED = b"NOT REMOVED"  # it is the only one, or may be running
 
 WHY_NO_CONTACT = b"WHY NO CONTACT"
-HEARD_OF = b"A%d HEARD"
-HEARD_NOTHING = b"NOTHING"
-HEARD_NOBODY = b"NO DRIVE AT ALL"  # none of the list answers
-IT_ANSWERS = b"IT ANSWERS NOW"
-OK_OF = b"%d OK OF %d"  # telegrams
-CHECK = b"CHECK"
-CHECK_PARAMETER = b"P%04d = %d"
-CHECK_RATE = b"P%04d=%d %d"  # number, code, bit/s
-CHECK_UNNAMED = (b"RATE %d", b"ADDRESS %d", b"PKW WORDS %d", b"PZD WORDS %d")
-CHECK_TWINS = b"ONLY ONE IS A%d"
-CHECK_PLUG = b"PLUG AND WIRES"
-CHECK_MAINS = b"DRIVE HAS MAINS"
-CHECK_SWAPPED = b"A AND B SWAPPED"
-CHECK_ENDS = b"ENDS TERMINATED"
-CHECK_SHIELD = b"SHIELD, GROUND"
-CHECK_MASTERS = b"NO OTHER MASTER"
 
 # --- the search for drives, see `search` ---------------------------------------------------------
 

@@ -98,7 +98,7 @@ def test_the_rate_can_be_changed_from_there():
     while row_2(world) != ">P2010=7 19200":
         press(world, "DOWN")
     press(world, "SET")
-    assert title(world).startswith("BAUD RATE"), world.lcd()
+    assert row_2(world) == ">BAUD 19200", world.lcd()
     press(world, "DOWN", "SET")
     world.run(4000)
     wait_until_known(world)

@@ -21,7 +21,7 @@ from micropython import const
 
 import on_demand
 from panel import texts
-from panel.menu import Entries
+from panel.menu import Entries, words
 from uss import pzd
 
 # The scan wants microseconds, and only to tell how much time has passed: 1024 for a millisecond,
@@ -36,19 +36,17 @@ class List(Entries):
     def __init__(self, panel, argument):
         Entries.__init__(self, panel, argument)
         self._scan = None
-        self._place = 0  # of the entry that is shown
 
-    @property
-    def title(self):
+    def heading(self, position):
         if self._scan is None:
-            return texts.STOPS_FOUND
+            return texts.of(words.STOPS_FOUND)
         nodes = self._nodes()
-        if 0 < self._place <= len(nodes):
-            address, node = nodes[self._place - 1]
+        if 0 < position <= len(nodes):
+            address, node = nodes[position - 1]
             return b"A%d %s" % (address, texts.of(texts.FOUND_STATES[pzd.state(node.zsw)]))
         if self._scan.over:
-            return texts.FOUND
-        return texts.of(texts.SEARCH_PERCENT, min(self._scan.progress(_PERCENT), _PERCENT))
+            return texts.of(words.FOUND)
+        return texts.of(words.SEARCH_PERCENT, min(self._scan.progress(_PERCENT), _PERCENT))
 
     def count(self):
         return 1 + len(self._nodes())
@@ -56,17 +54,16 @@ class List(Entries):
     def words(self, position):
         nodes = self._nodes()
         if self._scan is None:
-            return texts.of(texts.SET_BEGIN)
+            return texts.of(words.SET_BEGIN)
         if 0 < position <= len(nodes):
             node = nodes[position - 1][1]
-            words = (node.family.__name__.encode(), node.layout.pkw_words, node.layout.pzd_words)
-            return b"%s %d+%d" % words
+            family, layout = node.family.__name__.encode(), node.layout
+            return b"%s %d+%d" % (family, layout.pkw_words, layout.pzd_words)
         if not self._scan.over:
-            return texts.of(texts.SO_MANY_FOUND, len(nodes))
-        return texts.of(texts.TAKE_ALL, len(nodes)) if nodes else texts.of(texts.NOBODY)
+            return texts.of(words.SO_MANY_FOUND, len(nodes))
+        return texts.of(words.TAKE_ALL, len(nodes)) if nodes else texts.of(texts.NOBODY)
 
     def step(self, position, now_ms):
-        self._place = position
         scan = self._scan
         if scan is None:
             return

@@ -11,7 +11,7 @@ CHECK        4/8        the others: the most likely first, for what was heard. S
 from micropython import const
 
 from panel import texts
-from panel.menu import Entries
+from panel.menu import Entries, words
 from uss.drive import COUNTERS
 from uss.receiver import NOISE, OTHER_ADDRESS, OTHER_LENGTH, SILENCE, WRONG_CHECK
 
@@ -22,12 +22,12 @@ RATE, ADDRESS, PKW_WORDS, PZD_WORDS, TWINS = range(5)
 PLUG, MAINS, SWAPPED, ENDS, SHIELD, MASTERS, FIND = range(5, 12)
 _NUMBERS = ("baud_number", "address_number", "pkw_words_number", "pzd_words_number")
 _WORDS = {
-    PLUG: texts.CHECK_PLUG,
-    MAINS: texts.CHECK_MAINS,
-    SWAPPED: texts.CHECK_SWAPPED,
-    ENDS: texts.CHECK_ENDS,
-    SHIELD: texts.CHECK_SHIELD,
-    MASTERS: texts.CHECK_MASTERS,
+    PLUG: words.CHECK_PLUG,
+    MAINS: words.CHECK_MAINS,
+    SWAPPED: words.CHECK_SWAPPED,
+    ENDS: words.CHECK_ENDS,
+    SHIELD: words.CHECK_SHIELD,
+    MASTERS: words.CHECK_MASTERS,
     FIND: texts.FIND_DRIVES,
 }
 _OPENS = {PKW_WORDS: "families", FIND: "find"}  # a list of the menu
@@ -45,8 +45,8 @@ STEPS = {
     IN_USE: (MASTERS,),
 }
 _HEARD = {
-    ALONE: texts.HEARD_NOBODY,
-    SILENCE: texts.HEARD_NOTHING,
+    ALONE: words.HEARD_NOBODY,
+    SILENCE: words.HEARD_NOTHING,
     NOISE: texts.LINE_NOISE,
     OTHER_LENGTH: texts.OTHER_LENGTH,
     OTHER_ADDRESS: texts.WRONG_DRIVE,
@@ -60,15 +60,13 @@ class List(Entries):
 
     def __init__(self, panel, argument):
         Entries.__init__(self, panel, argument)
-        self._place = 0
         self._finding = self._heard()
         self._steps = STEPS[self._finding]
 
-    @property
-    def title(self):
-        if self._place < 2:
-            return texts.of(texts.HEARD_OF, self.panel.selected.drive.address)
-        return texts.CHECK
+    def heading(self, position):
+        if position < 2:
+            return texts.of(words.HEARD_OF, self.panel.selected.drive.address)
+        return texts.of(words.CHECK)
 
     def count(self):
         return 2 + len(self._steps)
@@ -76,15 +74,14 @@ class List(Entries):
     def words(self, position):
         drive = self.panel.selected.drive
         if position == 0:
-            return texts.of(texts.IT_ANSWERS if drive.contact else _HEARD[self._finding])
+            return texts.of(words.IT_ANSWERS if drive.contact else _HEARD[self._finding])
         if position == 1:
             counted = sum(drive.counters)
             good = drive.counters[COUNTERS.index("good")]
-            return texts.of(texts.OK_OF, min(good, _COUNTED_MAX), min(counted, _COUNTED_MAX))
+            return texts.of(words.OK_OF, min(good, _COUNTED_MAX), min(counted, _COUNTED_MAX))
         return self._check(self._steps[position - 2])
 
     def step(self, position, now_ms):
-        self._place = position
         if position < 2 and self._finding != self._heard():
             self._finding = self._heard()
             self._steps = STEPS[self._finding]
@@ -92,7 +89,7 @@ class List(Entries):
     def choose(self, position, now_ms):
         step = self._steps[position - 2] if position > 1 else None
         if step == RATE:
-            return "value", "baud"
+            return "value", words.SETTINGS[0]
         if step not in _OPENS:
             return None
         return _OPENS[step], self.panel.selected if step == PKW_WORDS else None
@@ -110,7 +107,7 @@ class List(Entries):
     def _check(self, step):
         drive = self.panel.selected.drive
         if step == TWINS:
-            return texts.of(texts.CHECK_TWINS, drive.address)
+            return texts.of(words.CHECK_TWINS, drive.address)
         if step in _WORDS:
             return texts.of(_WORDS[step])
         wanted = (
@@ -120,9 +117,9 @@ class List(Entries):
         family = self.panel.selected.survey.family
         number = getattr(family, _NUMBERS[step])
         if number is None:
-            return texts.of(texts.CHECK_UNNAMED[step], wanted)
+            return texts.of(words.CHECK_UNNAMED[step], wanted)
         if step == RATE:
             for code in family.baud_codes:
                 if family.baud_codes[code] == wanted:
-                    return texts.of(texts.CHECK_RATE, number, code, wanted)
-        return texts.of(texts.CHECK_PARAMETER, number, wanted)
+                    return texts.of(words.CHECK_RATE, number, code, wanted)
+        return texts.of(words.CHECK_PARAMETER, number, wanted)

@@ -2,7 +2,7 @@
 """Where to look for drives: beside those that are controlled, or without them at every rate."""
 
 from panel import texts
-from panel.menu import Entries
+from panel.menu import Entries, words
 
 
 class List(Entries):
@@ -16,7 +16,7 @@ class List(Entries):
         return 2
 
     def words(self, position):
-        return texts.of((texts.AT_THIS_RATE, texts.AT_ALL_RATES)[position])
+        return texts.of((words.AT_THIS_RATE, words.AT_ALL_RATES)[position])
 
     def choose(self, position, now_ms):
         if not position and not self.panel.line_in_use():

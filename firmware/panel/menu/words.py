@@ -8,7 +8,7 @@ from panel import texts
 
 # Settings that are a choice or a number: name, how it reads, decimals, whether it acts at once.
 # The panel begins anew with the others, for which no motor may run.
-SETTINGS = (
+SETTINGS = (  # the rate comes first: `contact`
     ("baud", b"BAUD %s", 0, False),
     ("second_stop", b"2ND STOP %s", 0, False),
     ("reply_timeout_ms", b"REPLY %s ms", 0, False),
@@ -43,6 +43,34 @@ CARRIED = b"A%d  UP DOWN"
 CARRYING = b"SET=KEEP"  # or its number of turns is changed
 TIMES = b"A%d  x%d"
 SHORT = b"A%d: P2014 SHORT"  # for so long a round of the bus
+
+# Drives that are looked for.
+AT_THIS_RATE = b"AT THIS RATE"
+AT_ALL_RATES = b"AT ALL RATES"
+STOPS_FOUND = b"STOPS FOUND"  # whatever the search finds
+SET_BEGIN = b"SET=BEGIN"
+SEARCH_PERCENT = b"SEARCH %d%%"
+SO_MANY_FOUND = b"%d FOUND"
+FOUND = b"FOUND"
+TAKE_ALL = b"TAKE ALL %d"
+
+# No contact: what was heard, and what to check.
+HEARD_OF = b"A%d HEARD"
+HEARD_NOTHING = b"NOTHING"
+HEARD_NOBODY = b"NO DRIVE AT ALL"  # none of the list answers
+IT_ANSWERS = b"IT ANSWERS NOW"
+OK_OF = b"%d OK OF %d"  # telegrams
+CHECK = b"CHECK"
+CHECK_PARAMETER = b"P%04d = %d"
+CHECK_RATE = b"P%04d=%d %d"  # number, code, bit/s
+CHECK_UNNAMED = (b"RATE %d", b"ADDRESS %d", b"PKW WORDS %d", b"PZD WORDS %d")
+CHECK_TWINS = b"ONLY ONE IS A%d"
+CHECK_PLUG = b"PLUG AND WIRES"
+CHECK_MAINS = b"DRIVE HAS MAINS"
+CHECK_SWAPPED = b"A AND B SWAPPED"
+CHECK_ENDS = b"ENDS TERMINATED"
+CHECK_SHIELD = b"SHIELD, GROUND"
+CHECK_MASTERS = b"NO OTHER MASTER"
 
 ABOUT_VERSION = b"VERSION %s"
 LICENCE = b"LICENCE: MIT"

@@ -22,7 +22,7 @@ the sum.
 
 from micropython import const
 
-from uss.finding.enquiry import Enquirer
+from uss.finding.enquiry import Enquirer, Question
 from uss.errors import WHY_SILENT, NoContact, UssError
 from uss.master import LISTENING, OFF, PAUSE_LOOK_US
 from uss.pzd import ZSW_RUNNING
@@ -47,6 +47,7 @@ ACCOUNT_US = const(10_000)  # the bus takes so long to charge a silence to the s
 KEEP_US = const(100_000)  # a node that does not tell when it trips is asked again after so long,
 KEEP_SHARE = const(3)  # the others after this part of the time,
 KEEP_MAX = const(2)  # but at most so many such nodes in a row
+LAST_QUESTIONS = const(20)  # after `finish`
 
 
 class Scan:
@@ -89,6 +90,7 @@ class Scan:
         self._stops = self._count_stops()
         self._position = 0  # counts through the addresses, once for every length
         self._address = 0  # that was probed last
+        self._last_questions = LAST_QUESTIONS
         self._tries = 0
         self._another_length = False  # the next telegram is to show whether any length will do
         self._telegram = None  # the telegram that is under way
@@ -152,7 +154,7 @@ class Scan:
 
     def finish(self):
         """Look for no more nodes: the scan is over as soon as those it has found were told OFF1
-        and asked what they are."""
+        and asked what they are, with LAST_QUESTIONS at the most."""
         self._position = len(self._addresses) * len(self._net_counts)
         self.stopped = True
 
@@ -303,6 +305,12 @@ class Scan:
             enquirer = Enquirer(address, self.found[address], address in self.variable)
             self._enquirer = enquirer
             self.nodes[address] = enquirer.node
+        if self.stopped:
+            self._last_questions -= 1
+            if self._last_questions < 0:
+                self.will_trip[self._enquiring] = None
+                self._enquirer = None
+                return False
         self._send(self._enquirer.question(), self._take_answer)
         return True
 
