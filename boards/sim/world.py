@@ -207,7 +207,9 @@ class World(Surroundings):
         until_us = clock.now_us + ms * 1000
         while clock.now_us < until_us:
             try:
-                self.app = self.app.step() or self.app
+                following = self.app.step()
+                if following:
+                    self._hand_over(following)
             except PowerCut:  # `flash.cut_at` was reached; power is back at once
                 self.flash.power_on()
                 self.reset()
@@ -279,6 +281,10 @@ class World(Surroundings):
         return Board(
             self.chip, self.lcd_chip, self.keypad, self.store, self._polled, loop_us, cause
         )
+
+    def _hand_over(self, following):
+        """Another program has the chip from now on."""
+        self.app = following
 
     def _flash_is_busy(self, us):
         # The firmware runs from the same flash, so it stands still meanwhile.

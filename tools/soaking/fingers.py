@@ -4,6 +4,8 @@
 Time passes in slices; after each slice judge and reader look.
 """
 
+from tools.soaking.judging.facts import DRAWN_STEPS, LEAVES, MENU, MS, SEEN_US
+
 SLICE_MS = 40
 DEEDS = 60
 CONTACT_MS = 40  # the shortest press of a hand
@@ -13,6 +15,19 @@ TAPPED = (
     "ADDRESS_DOWN", "PARAM", "NEXT", "PREVIOUS", "EDIT", "SET",
 )  # fmt: skip
 JOGS = ("JOG_RIGHT", "JOG_LEFT")
+WALKED = (  # in the menu
+    "UP", "DOWN", "DOWN", "DOWN", "SET", "SET", "SET", "SET", "PARAM", "NEXT", "PREVIOUS",
+    "ADDRESS_UP", "ADDRESS_DOWN", "STOP", "START", "REVERSE", "EDIT",
+) + JOGS  # fmt: skip
+OPENS = ("PARAM", "PARAM", "PARAM", "ADDRESS_UP", "ADDRESS_DOWN")  # the menu, held
+OPENS_MS = 1_500
+FIND, HUNTS, TAKES = "FIND DRIVES", "FOUND STOP=NO", "TAKE "
+CHOSEN = (  # entries of the menu that lead somewhere; one of a setting or of a family changes it
+    "DRIVES", "ANY ADDRESS", FIND, "SETTINGS", "ABOUT", "SHOW IT", "BAUD RATE", "SECOND STOP",
+    "REPLY ms", "LOST ms", "START cHz", "STEP cHz", "LOWEST cHz", "HIGHEST cHz",
+)  # fmt: skip
+LEFT_ALONE = ("...", "ANSWERS", "NOBODY", "IN THE LIST")  # of an address
+HOME_TRIES = 16
 
 
 class Fingers:
@@ -30,10 +45,12 @@ class Fingers:
         self.dice = plan.dice
         self.deeds = []
         self.drives = [world.drives[address] for address in plan.addresses]
+        self._seen_ms = SEEN_US // MS + DRAWN_STEPS * plan.loop_us // MS
         self.common = weights((
             (12, self.tap), (4, self.hold), (6, self.start), (5, self.stop), (9, self.jog),
             (4, self.chord), (4, self.long_stop), (5, self.edit), (4, self.rest), (3, self.select),
             (4, self.start_others), (3, self.start_under_stop), (5, self.run_long),
+            (6, self.walk_menu), (2, self.look_for_drives),
         ))  # fmt: skip
 
     # --- time -----------------------------------------------------------------------------------
@@ -57,7 +74,7 @@ class Fingers:
     # --- keys -----------------------------------------------------------------------------------
 
     def down(self, key):
-        if key not in self.witness.down:
+        if key not in self.witness.down and (key != "SET" or self._may_choose()):
             self.witness.key(key, True)
             self.note("%s down" % key)
             self.world.down(key)
@@ -175,6 +192,77 @@ class Fingers:
         for key in chosen:
             self.up(key)
             self.run(self.dice.one_of((1, 5, 30, 300)))
+
+    # --- the menu, and the search ---------------------------------------------------------------
+
+    def walk_menu(self):
+        """Press keys of all kinds in the menu, mostly while a motor runs; then one that matters."""
+        if self.dice.below(4):
+            self.run_long()
+        self.press(self.dice.one_of(OPENS), OPENS_MS)
+        for _ in range(self.dice.below(8)):
+            key = self.dice.one_of(WALKED)
+            self.run(self._seen_ms if key == "SET" else self.dice.one_of((20, 100, 900)))
+            self.press(key, self.dice.one_of((60, 100, 100, 100, 900)))
+        self.run(2 * self._seen_ms)
+        self.press(self.dice.one_of(("STOP", "STOP", "START") + JOGS), 2 * self._seen_ms)
+        self.run(self.dice.between(50, 3_000))
+        if self.dice.below(3):
+            self.go_home()
+
+    def look_for_drives(self):
+        """Leave the line for a search, up to the point where somebody changes his mind."""
+        if self.dice.below(4):
+            self.press("STOP")
+            self.run(self.dice.between(500, 3_000))
+        self.press("PARAM", OPENS_MS)
+        for _ in range(HOME_TRIES):
+            self.run(self._seen_ms)
+            if self.reader.rows[1].startswith(MENU + FIND):
+                break
+            self.press("DOWN")
+        self.press("SET")
+        self.run(self._seen_ms)
+        if self.reader.rows[0].strip() in LEAVES:
+            self.press("SET")
+            self.run(4_000)
+        if not self.witness.searches:
+            return
+        for _ in range(self.dice.between(1, 10)):
+            self.press(self.dice.one_of(("SET", "SET", "SET", "UP", "DOWN", "PARAM", "STOP")))
+            self.run(self.dice.one_of((300, 2_000, 9_000)))
+            if not self.witness.searches:
+                return
+        if self.dice.below(4):
+            self.go_home()
+
+    def go_home(self):
+        """Leave the menu, and the search."""
+        for _ in range(HOME_TRIES):
+            self.run(self._seen_ms)
+            if not self.is_away():
+                return
+            self.press("STOP" if HUNTS in self.reader.rows[1] else "PARAM")
+
+    def is_away(self):
+        """Whether the menu is on the display, or the search."""
+        return self.witness.searches or self.reader.rows[1].startswith(MENU)
+
+    def _may_choose(self):
+        """Whether SET changes nothing that the panel is told of drives and line. In the menu he
+        presses it only when he has read what he chooses."""
+        row_1, row_2 = self.reader.rows
+        if self.witness.searches:
+            return not row_1.startswith(TAKES)
+        witness = self.witness
+        if not witness.is_in_menu() and not row_2.startswith(MENU):
+            return True
+        moved_us = max(max(witness.up.values()), max(witness.pressed_us.values()))
+        is_read = self.world.clock.now_us - moved_us >= (self._seen_ms - SLICE_MS) * MS
+        entry = row_2[1:].rstrip()
+        is_drive = entry[:1] == "A" and entry[1:2].isdigit() and not entry.endswith(LEFT_ALONE)
+        is_known = entry in CHOSEN or "+" in entry or is_drive
+        return is_read and not witness.down and self.reader.steady and is_known
 
     def select(self):
         self.press(self.dice.one_of(("ADDRESS_UP", "ADDRESS_DOWN")), self.dice.one_of((60, 900)))

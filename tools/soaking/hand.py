@@ -58,6 +58,7 @@ class Hand(Mischief):
         self.note("everything is put in order")
         self.let_go()
         self.judge.look()
+        self.go_home()
         self.world.flash.cut_at = None
         self.run(2_500 + 8 * self.witness.cycle_us // MS)  # by then every requested write is done
         for drive in self.drives:
@@ -206,8 +207,10 @@ class Hand(Mischief):
         return drive.state == "running" or self.reader.rows[1] in GOES
 
     def _is_home(self):
-        """Leave parameter mode as soon as it is seen."""
+        """Leave the menu and parameter mode as soon as they are seen."""
         reader, witness = self.reader, self.witness
+        if self.is_away():
+            self.go_home()
         if (
             not reader.steady
             or witness.shown is None

@@ -719,23 +719,23 @@ MUTATIONS = (
         "a drive that answers is sent telegrams in other layouts",
         ("MIRROR",), 1,
         (
-            "uss/finder.py",
-            "if drive.contact or drive.silent < least:",
-            "if drive.silent > least:",
+            "uss/finding/finder.py",
+            "if drive.contact or drive.silent < SILENT_MIN:",
+            "if drive.silent > STOPPED_MIN:",
         ),
     ),
     Mutation(
         "looked for too soon",
         "a drive that may run is sent other telegrams before its STOP had a chance",
         ("MIRROR",), 16,
-        ("uss/finder.py", "STOPPED_MIN = const(30)", "STOPPED_MIN = const(3)"),
+        ("uss/finding/finder.py", "STOPPED_MIN = const(30)", "STOPPED_MIN = const(3)"),
     ),
     Mutation(
         "a mirror telegram that commands",
         "a drive that takes it for one of its own telegrams obeys what it says",
         ("MIRROR",), 2,
         (
-            "uss/outside.py",
+            "uss/finding/mirror.py",
             "            self.request[NET + index] = 0\n",
             "            self.request[NET + index] = 4\n",
         ),
@@ -745,7 +745,7 @@ MUTATIONS = (
         "looking for layouts takes the line from the drives that run",
         ("NEGLECTED",), 4,
         (
-            "uss/finder.py",
+            "uss/finding/finder.py",
             "        if self._turns.has_command() or silence.shared_us != silence.charged_us:\n"
             "            return False  # what the last one took is not accounted for yet\n",
             "        return not self._turns.has_command()\n",
@@ -756,7 +756,7 @@ MUTATIONS = (
         "a drive is given a layout in which nothing has come back",
         ("TELEGRAM",), 2,
         (
-            "uss/finder.py",
+            "uss/finding/finder.py",
             "        elif is_silent or self._tries >= TRIES:\n            self._row += 1\n",
             "        elif is_silent or self._tries >= TRIES:\n"
             "            self._find(_WORDS[self._row])\n            self._row += 1\n",
@@ -767,9 +767,76 @@ MUTATIONS = (
         "the layout of a drive is found out, and not used",
         ("RECOVERS",), 8,
         (
-            "uss/finder.py",
+            "uss/finding/finder.py",
             "            self._turns.relayout(self._drive, layout)\n",
             "            self._layout = layout\n",
+        ),
+    ),
+    Mutation(
+        "STOP dead in the menu",
+        "whoever reads a list cannot stop the motor",
+        ("STOP",), 1,
+        (
+            "panel/panel.py",
+            "        if down & self._stop_bit:\n",
+            "        if down & self._stop_bit and not hasattr(self._cover, \"_lists\"):\n",
+        ),
+    ),
+    Mutation(
+        "START acts in the menu",
+        "a motor starts that nobody has on the display",
+        ("START",), 1,
+        (
+            "panel/menu/engine.py",
+            "        if acts.has(\"PARAM\"):\n"
+            "            self._leave()\n",
+            "        if acts.has(\"START\"):\n"
+            "            self.panel.selected.start()\n"
+            "        if acts.has(\"PARAM\"):\n"
+            "            self._leave()\n",
+        ),
+    ),
+    Mutation(
+        "jog keys act in the menu",
+        "a motor jogs that nobody has on the display",
+        ("JOG",), 1,
+        (
+            "panel/panel.py",
+            "self.selected, page.obeys and not self.stop_key.is_down)",
+            "self.selected, not self.stop_key.is_down)",
+        ),
+    ),
+    Mutation(
+        "address key held starts",
+        "a key that only looks at addresses starts a motor",
+        ("START",), 1,
+        (
+            "panel/panel.py",
+            "            self._open_menu(now_ms, (\"address\", None))\n",
+            "            self._open_menu(now_ms, (\"address\", None))\n"
+            "            self.selected.start()\n",
+        ),
+    ),
+    Mutation(
+        "looked for before it is stopped",
+        "a drive that may run is sent mirror telegrams in place of its STOP",
+        ("MIRROR",), 1,
+        (
+            "uss/finding/finder.py",
+            "(drive.silent < STOPPED_MIN or drive.is_told_in_vain())",
+            "drive.silent < SILENT_MIN",
+        ),
+    ),
+    Mutation(
+        "search without a question",
+        "the panel leaves its drives for others, and nobody has said yes",
+        ("SEARCH",), 1,
+        (
+            "panel/panel.py",
+            "            return\n"
+            "        self._ask_search()\n",
+            "            return\n"
+            "        self._search(now_ms)\n",
         ),
     ),
 )  # fmt: skip

@@ -104,7 +104,8 @@ class Plan:
 
 
 class SoakWorld(World):
-    """A `World` that tells its `witness` when the chip restarts and when its flash is written.
+    """A `World` that tells its `witness` when the chip restarts, when another program has it, and
+    when its flash is written.
 
     digest: of all that has happened in it.
     """
@@ -147,6 +148,11 @@ class SoakWorld(World):
 
     def _uneven_loop_us(self):
         return self.random(LOOP_US // 4, self._longest_loop_us)
+
+    def _hand_over(self, following):
+        World._hand_over(self, following)
+        if self.witness is not None:
+            self.witness.handed_over(searches=not hasattr(following, "panel"))
 
     def _flash_is_busy(self, us):
         World._flash_is_busy(self, us)

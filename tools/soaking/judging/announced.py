@@ -12,6 +12,7 @@ trouble, each must be on the display for a second within 2 n s, again and again,
 
 from tools.soaking.judging.facts import (
     CHOICES,
+    MENU,
     MS,
     NEVER,
     NO_PARAMETERS,
@@ -187,7 +188,7 @@ class Announced:
     def _hides_state(self):
         """Whether the page is one that does not tell what the drive shown does."""
         row_2 = self.reader.rows[1]
-        return row_2 in CHOICES or is_parameter(row_2)
+        return row_2 in CHOICES or row_2.startswith(MENU) or is_parameter(row_2)
 
 
 def is_parameter(row_2):

@@ -28,6 +28,7 @@ class Case:
         self.unheard = 0  # requests since power-on, while no reply has come
         self.requests = 0  # ever, and so many of them up to the last reply that the panel is sure
         self.heard_requests = 0  # to have taken, or up to power-on
+        self.run_requests = NEVER  # and so many up to the last one with ON or JOG
         self.off_us = NEVER  # it was running by START, and stopped by something else than STOP
         self.ran = False  # since ON was sent first
         self.ran_us = NEVER  # seen running last

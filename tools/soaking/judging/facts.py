@@ -12,6 +12,7 @@ S = 1_000_000
 OFF1, OFF2, OFF3 = 0x047E, 0x047C, 0x047A
 ON, ON_REVERSE, JOG_RIGHT, JOG_LEFT = 0x047F, 0x0C7F, 0x057E, 0x067E
 ACKNOWLEDGE = 0x0080
+CONTROLS = 0x0400  # bit 10: a drive obeys a word only with it
 ON_BIT, JOG_BITS, JOG_RIGHT_BIT = 0x0001, 0x0300, 0x0100
 RUN = ON_BIT | JOG_BITS  # each of them turns the motor
 OFFS = (OFF1, OFF2, OFF3)
@@ -29,6 +30,8 @@ WRITES, RUNS_ON, RISKS = "SET=DO  PARAM=NO", "SET=FIX START=GO", "START=GO STOP=
 QUESTIONS = (WRITES, RUNS_ON)
 GOES = (RUNS_ON, RISKS)
 CHOICES = (WRITES, RUNS_ON, RISKS)
+MENU = ">"  # row 2 of every list of the menu begins so
+LEAVES = ("LEAVE THE LINE &", "FIND DRIVES?")  # row 1 of WRITES, before the search
 NO_PARAMETERS = "NO PARAMETERS"  # parameter mode, of a drive that can tell none
 UNTOLD = ("IT MAY RUN ON", "IF PANEL DIES")  # row 1 of RISKS, where no P2014 can be read
 
@@ -36,12 +39,15 @@ UNTOLD = ("IT MAY RUN ON", "IF PANEL DIES")  # row 1 of RISKS, where no P2014 ca
 # loop, two of them of its own and those of a drawing that is under way.
 SETTLED_US = 25 * MS
 STEPS = 5
+DRAWN_STEPS = 25  # a row that is the same for so long is drawn to its end
+SEEN_US = 300 * MS  # and a page that has come or gone is to be seen by then
 SHORT_CHORD_US = 120 * MS  # within this it is not known which of two keys came first
 DEAD_MAN_US = 300 * MS
 SECOND_STOP_US = 1_500 * MS
 ALL_STOP_US = 4_000 * MS
 START_S = 10  # a START that has not led to ON by then is forgotten, and 14 exchanges each
 HELD_SET_US = 1_400 * MS
+HELD_OPENS_US = 900 * MS  # PARAM opens the menu, an address key ANY ADDRESS
 WISH_US = 40 * S  # a write that SET has asked for is over by then, and 20 rounds of the line
 # Settings of a drive that runs are read so often: what setpoint and actual frequency mean, and its
 # limits, while it is shown and while not; in so many readings, and replies to each of those.
@@ -49,14 +55,17 @@ MEANT_US, MEANT_READS = 10 * S, 36
 LIMITED_SHOWN_US, LIMITED_US, LIMITED_READS = 2_500 * MS, 10 * S, 8
 READ_REPLIES = 2  # of a drive whose replies do not lag
 # A drive is sent a telegram in another layout, to be sent back, when it has no contact and has not
-# answered so many; so many, if it may run. At the least the list asks silent drives half the time.
-SILENT_MIN, STOPPED_MIN = 3, 30
+# answered so many; so many, if it may run, and these last ones said STOP. At the least the list
+# asks silent drives half the time.
+SILENT_MIN, STOPPED_MIN, TOLD_MIN = 3, 30, 10
 SHARED = 2
 # Of the loop, for each that runs and is not shown, where that takes longer: until its limits have
 # been read, and all its settings.
 LOOKED_STEPS, MEANT_STEPS = 200, 900
 LONG_US = 2 * S  # a P2014 that is longer, or 4 rounds, is a risk
 HUNG_MAX_US = 5 * S
+LEFT_US = 30 * S  # when SET has said so, the panel has left the line by then, and 20 rounds
+LOOKED_FOR_US = 2 * S  # what the menu asks an address is sent by then, and 4 rounds
 LOST_SAID_US = 700 * MS  # until the display says that a drive is lost
 STUCK_US = 5_000 * MS  # a bus that stands for so long makes the watchdog bite
 WATCHDOG_US = 2_000 * MS

@@ -16,6 +16,7 @@ from tools.soaking.judging.facts import (
     ACKNOWLEDGE,
     ALL_STOP_US,
     ALWAYS,
+    CONTROLS,
     DEAD_MAN_US,
     EEPROM_WRITES,
     HELD_SET_US,
@@ -35,11 +36,13 @@ from tools.soaking.judging.facts import (
     START_S,
     STOPPED_MIN,
     STUCK_US,
+    TOLD_MIN,
     ZSW_FAULT,
     ZSW_INHIBIT,
     ZSW_RUNNING,
     S,
 )
+from tools.soaking.judging.families import VARIABLE
 from tools.soaking.judging.refusals import reason_against, runs_on_unasked
 from tools.soaking.judging.rules import Broken
 from tools.soaking.judging.runs import (
@@ -98,12 +101,15 @@ class Judge:
             raise Broken("DISPLAY", world.lcd_chip.complaints()[0])
         spoken_us = max(self.tape.sent_us, witness.boot_us)
         if witness.stuck_us is not None:
-            if now - witness.stuck_us > STUCK_US + witness.exchange_us:
+            is_late = now - witness.stuck_us > STUCK_US + witness.exchange_us
+            if is_late and not witness.searches:  # no motor runs beside a search
                 raise Broken("WATCHDOG", "the bus stands since %d" % witness.stuck_us)
+        elif witness.searches:
+            pass  # it talks when it is told to
         elif witness.hung_us is None and now - max(spoken_us, witness.late_us) > self._patience_us:
             raise Broken("SILENT PANEL", "no telegram for %d ms" % ((now - spoken_us) // MS))
         self.judge_motors(now)
-        if now - self._counted_us > S:
+        if now - self._counted_us > S and not witness.searches:
             self._counted_us = now
             self._shares.look(now)
             witness.note_settings(now)
@@ -135,7 +141,9 @@ class Judge:
         tape = self.tape
         for row in tape.news():
             kind = tape.kind[row]
-            if kind == REQUEST:
+            if self.witness.searches and kind != MALFORMED:
+                self._judge_search(row, tape)
+            elif kind == REQUEST:
                 self._judge_request(row, tape)
             elif kind == MALFORMED:
                 raise Broken("TELEGRAM", "at %d" % tape.at_us[row])
@@ -148,6 +156,32 @@ class Judge:
                 kind = self.witness.kinds[tape.address[row]]
                 kind.returned(tape.count[row], self._is_sure(row, tape))
 
+    def _judge_search(self, row, tape):
+        """A telegram of the program that finds drives, or an answer. It reads, and says OFF1; a
+        drive that divides it in another way obeys nothing in it."""
+        address, count = tape.address[row], tape.count[row]
+        where = address, tape.at_us[row]
+        if tape.kind[row] not in (REQUEST, MIRRORED):
+            return
+        self.exchanges += 1
+        if self._begun_us != self.witness.boot_us:
+            self._judge_first(row, tape)
+        if tape.kind[row] == MIRRORED:
+            if not tape.is_blank(row):
+                raise Broken("MIRROR", "drive %d at %d, its net data are not nothing" % where)
+            return
+        for drive in self.drives:
+            pkw_words, pzd_words = drive.layout
+            takes = (count,) if pkw_words == VARIABLE else (pkw_words + pzd_words,)
+            if drive.address != address or count not in takes:
+                continue
+            stw = tape.word(row, -pzd_words) if count >= pzd_words else 0
+            if stw & CONTROLS and stw != OFF1:
+                raise Broken("CONTROL", "drive %d at %d, %04X" % (*where, stw))
+            task = tape.word(row, 0) >> 12 if pkw_words else 0
+            if task not in READS:
+                raise Broken("WRITE", "drive %d at %d, task %d" % (*where, task))
+
     def _judge_mirror(self, row, tape):
         """It looks for the layout of a drive that is silent; no drive acts on it."""
         now, address = tape.at_us[row], tape.address[row]
@@ -156,12 +190,17 @@ class Judge:
         self.exchanges += 1
         if self._begun_us != witness.boot_us:
             self._judge_first(row, tape)
-        if address not in witness.plan.listed and address not in witness.moved:
-            raise Broken("MIRROR", "%s, which is not in the list" % where)
         if not tape.is_blank(row):
             raise Broken("MIRROR", "%s, its net data are not nothing" % where)
-        # One that waits to be sent when the drive answers still goes out.
-        waited_us = 2 * (witness.exchange_us + self.plan.loop_us)
+        is_listed = address in witness.plan.listed
+        if witness.may_look(now) and (not is_listed or address in witness.moved):
+            self._shares.mirror(case, now)
+            return
+        if not is_listed and address not in witness.moved:
+            raise Broken("MIRROR", "%s, which is not in the list" % where)
+        # One that waits to be sent when the drive answers still goes out, perhaps behind another.
+        waits = 2 + 2 * witness.may_look(now)
+        waited_us = waits * (witness.exchange_us + self.plan.loop_us)
         recently_us = max(witness.boot_us, now - witness.lost_us * 9 // 10)
         if case.heard_us > recently_us and now - case.contact_us > waited_us:
             told = (where, (now - case.contact_us) // MS, (now - case.heard_us) // MS)
@@ -171,6 +210,9 @@ class Judge:
         misses = case.requests - case.heard_requests
         if misses < least and now - case.contact_us > waited_us:
             raise Broken("MIRROR", "%s, silent for %d telegrams" % (where, misses))
+        told = case.requests - case.run_requests
+        if may_run and told < TOLD_MIN and now - case.contact_us > waited_us:
+            raise Broken("MIRROR", "%s, told to stop in %d telegrams" % (where, told))
         self._shares.mirror(case, now)
 
     def _take_reply(self, row, tape):
@@ -287,6 +329,7 @@ class Judge:
             return
         self._judge_word(case, address, stw, now)
         if stw & RUN:
+            case.run_requests = case.requests
             self._judge_run(case, address, stw, hsw, now)
         else:
             self._judge_off(case, address, stw, now)
@@ -332,7 +375,7 @@ class Judge:
 
     def _judge_word(self, case, address, stw, now):
         known = self.witness.kinds[address].family.known
-        if not stw & 0x0400 or stw & ~ACKNOWLEDGE not in known:
+        if not stw & CONTROLS or stw & ~ACKNOWLEDGE not in known:
             raise Broken("CONTROL", "%04X to drive %d at %d" % (stw, address, now))
         if stw & ACKNOWLEDGE:
             if stw & RUN or now - case.acknowledge_us > 30 * S:
@@ -426,6 +469,9 @@ class Judge:
             raise Broken("JOG", "%s, the key was down at power-on" % where)
         if case.stw & ON_BIT:
             raise Broken("JOG", "%s, right behind ON" % where)
+        if witness.menu_us > now - 100 * MS:
+            if now - max(witness.menu_since_us, pressed_us) > witness.seen_us:
+                raise Broken("JOG", "%s, in the menu" % where)
 
     def _judge_setpoint(self, address, hsw, now, where, begins):
         if hsw & 0x8000 and self.witness.kinds[address].family.reverse:

@@ -12,7 +12,11 @@ from tools.soaking.judging.announced import Announced, is_parameter, said_in
 from tools.soaking.judging.case import drive_at
 from tools.soaking.judging.drive_settings import magnitude, scalings
 from tools.soaking.judging.facts import (
+    ALWAYS,
     CHOICES,
+    DRAWN_STEPS,
+    LEAVES,
+    MENU,
     MS,
     NEVER,
     ON_BIT,
@@ -28,10 +32,10 @@ from tools.soaking.judging.facts import (
 from tools.soaking.judging.rules import Broken
 
 SCREENS = 12
+COVERED_US = 1 * S  # what a held STOP does covers a row of the menu, and so long after
 EXPOSED_US = 6 * S
 PRESENT = 2  # of r2110: so many of its warnings are present, the others are gone
 WARNED_US = 5_500 * MS
-DRAWN_STEPS = 25  # of the loop: a row that is the same for so long is drawn to its end
 STATES = (  # what row 2 begins with, the state of the drive
     ("READY", "ready"), ("RUNNING", "running"), ("STOPPING", "stopping"), ("FAULT", "fault"),
     ("INHIBITED", "inhibited"),
@@ -89,7 +93,11 @@ class Reader:
                 self.witness.shows(self.address)
         self.announced.look(now)
         witness = self.witness
-        if self.rows[1] in QUESTIONS:
+        self._note_menu(now)
+        if self.rows[1] in QUESTIONS and self.rows[0].strip() in LEAVES:
+            witness.leaves_us = now
+            witness.question = None
+        elif self.rows[1] in QUESTIONS:
             self._read_question(now)
         else:
             witness.question = None
@@ -128,6 +136,14 @@ class Reader:
             if len(self.screens) >= SCREENS:
                 del self.screens[0]
             self.screens.append((now, rows[0], rows[1]))
+
+    def _note_menu(self, now):
+        witness = self.witness
+        if self.rows[1].startswith(MENU):
+            witness.sees_menu()
+        elif self.steady and "STOP" not in witness.down:
+            if now - witness.up["STOP"] > COVERED_US or self.address is not None:
+                witness.menu_since_us = ALWAYS
 
     def _read_question(self, now):
         witness = self.witness
@@ -314,7 +330,7 @@ def subject_in(row_1):
 
 def address_in(row_2):
     """The address that row 2 shows, None when something else stands there."""
-    if len(row_2) < 16 or row_2[13] != "A" or not row_2[14].isdigit():
+    if len(row_2) < 16 or row_2[0] == MENU or row_2[13] != "A" or not row_2[14].isdigit():
         return None
     if row_2[15] != " " and not row_2[15].isdigit():
         return None

@@ -13,11 +13,15 @@ from tools.soaking.judging.facts import (
     ALL_STOP_US,
     ALWAYS,
     DEAD_MAN_US,
+    DRAWN_STEPS,
+    HELD_OPENS_US,
     HUNG_MAX_US,
+    LEFT_US,
     LIMITED_READS,
     LIMITED_SHOWN_US,
     LIMITED_US,
     LONG_US,
+    LOOKED_FOR_US,
     LOOKED_STEPS,
     LOST_SAID_US,
     MEANT_READS,
@@ -31,6 +35,7 @@ from tools.soaking.judging.facts import (
     RUN,
     SECOND_STOP_US,
     SECOND_STOPS,
+    SEEN_US,
     SHORT_CHORD_US,
     WATCHDOG_US,
     WISH_US,
@@ -51,7 +56,7 @@ class Witness:
 
     The hand, its mischief and the world tell it things. Others write some fields: the judge writes
     `late_us`, `stirred_us` and `wishes`, and takes cases out of `owed`; the reader writes
-    what the display asks, `asked_us`, `go_us` and `question`.
+    what the display asks, `asked_us`, `go_us`, `leaves_us` and `question`, and `menu_us`.
     """
 
     def __init__(self, world, plan, judge):
@@ -81,6 +86,14 @@ class Witness:
         self.set_us = NEVER
         self.asked_us = NEVER  # the display asks something: the reader notes it
         self.go_us = NEVER  # it asks whether a drive may run though nothing watches its line
+        self.leaves_us = NEVER  # it asks whether the panel shall leave the line to find drives
+        self.left_us = NEVER  # SET has said yes to that
+        self.searches = False  # the program that finds drives has the line
+        self.menu_us = NEVER  # the menu was seen last,
+        self.menu_since_us = ALWAYS  # and first, without anything else in between
+        self.seen_us = SEEN_US + DRAWN_STEPS * plan.loop_us
+        self._menu_shown = None  # the drive that is shown behind the menu
+        self._menu_starts = ()  # cases, and which START of each counted when it was pressed there
         self.question = None  # address, number and value that it asks about, as far as it is known
         self.confirmed = []  # what SET has said yes to, until when: (instant, question)
         self.moved = {}  # addresses that a drive was given, or left, or was to -> True
@@ -136,6 +149,37 @@ class Witness:
         elif key == "SET":
             self._set_pressed(now)
 
+    def is_in_menu(self):
+        """Whether the menu covers all pages, as far as can be seen."""
+        return self.menu_since_us != ALWAYS
+
+    def sees_menu(self):
+        """The menu is on the display: what START was pressed in it for has come to nothing."""
+        self.menu_us = now = self.clock.now_us
+        if not self.is_in_menu():
+            self.menu_since_us = now
+            self._menu_shown = self.shown
+            self._menu_starts = ()
+        if self._menu_starts and now - self.pressed_us["START"] > self.seen_us:
+            for case, start_us in self._menu_starts:
+                if case.stw & RUN and case.used_us == self.pressed_us["START"]:
+                    raise Broken("START", "pressed at %d, in the menu" % case.used_us)
+                case.start_us = start_us
+            self._menu_starts = ()
+        if self._menu_shown is not None and now > self.unsure_us + self.seen_us:
+            self.shows(self._menu_shown)
+
+    def may_look(self, now):
+        """Whether the display may have an address that the panel asks: in the menu, or because an
+        address key is held."""
+        if now - self.menu_us < LOOKED_FOR_US + 4 * self.cycle_us:
+            return True
+        for key in ("ADDRESS_UP", "ADDRESS_DOWN"):
+            until_us = now if key in self.down else self.up[key]
+            if until_us - self.pressed_us[key] > HELD_OPENS_US:
+                return now - until_us < LOOKED_FOR_US + 4 * self.cycle_us
+        return False
+
     def candidates(self):
         """Cases of the drives that may be the one shown."""
         return (self.cases[self.shown],) if self.is_sure() else self.cases
@@ -149,6 +193,8 @@ class Witness:
         if self.down.get("START", NEVER) > recently:
             for case in self.cases:
                 case.start_us = now
+        if self.shown is not None:
+            self._menu_shown = self.shown
         self.shown = None
         self.unsure_us = ALWAYS
 
@@ -156,6 +202,8 @@ class Witness:
         stop_us = self.down.get("STOP")
         if stop_us is not None and now - stop_us > SHORT_CHORD_US:
             return
+        if self.is_in_menu() and not self._menu_starts:
+            self._menu_starts = [(case, case.start_us) for case in self.candidates()]
         for case in self.candidates():
             case.start_us = now
             if now - self.go_us < 500 * MS:
@@ -189,6 +237,13 @@ class Witness:
 
     def _set_pressed(self, now):
         self.set_us = now
+        if self.is_in_menu():  # it may choose another drive
+            if self.shown is not None:
+                self._menu_shown = self.shown
+            self.shown = None
+            self.unsure_us = max(self.unsure_us, now + 250 * MS)
+        if self.leaves_us > now - 500 * MS:
+            self.left_us = now
         if self.asked_us > now - 500 * MS:
             self.wishes["write"] = now + self.wish_us
             self.confirmed = [row for row in self.confirmed if row[0] > now]
@@ -214,9 +269,25 @@ class Witness:
         for case in self.cases:
             case.excused_us = ALWAYS
 
+    def handed_over(self, searches):
+        """Another program has left the line to this one: the search, or the panel anew."""
+        now = self.clock.now_us
+        self.judge.play()
+        if searches and now - self.left_us > LEFT_US + 20 * self.cycle_us:
+            raise Broken("SEARCH", "it begins at %d, and nobody asked for it" % now)
+        self.left_us = NEVER
+        stuck_us = self.stuck_us
+        self.booted()
+        self.boot_us -= self.plan.loop_us  # when it began, the loop had a step to end
+        self.searches = searches
+        if stuck_us is not None:
+            self.stuck_us = now
+
     def booted(self):
         """The chip has restarted; the firmware is about to begin."""
         now = self.clock.now_us
+        self.searches = False
+        self.menu_us, self.menu_since_us = NEVER, ALWAYS
         self.boot_us = now
         self.stirred_us = now
         self.stalled_us = now
