@@ -22,11 +22,10 @@ WALKED = (  # in the menu
 OPENS = ("PARAM", "PARAM", "PARAM", "ADDRESS_UP", "ADDRESS_DOWN")  # the menu, held
 OPENS_MS = 1_500
 FIND, HUNTS, TAKES = "FIND DRIVES", "FOUND STOP=NO", "TAKE "
-CHOSEN = (  # entries of the menu that lead somewhere; one of a setting or of a family changes it
-    "DRIVES", "ANY ADDRESS", FIND, "SETTINGS", "ABOUT", "SHOW IT", "BAUD RATE", "SECOND STOP",
-    "REPLY ms", "LOST ms", "START cHz", "STEP cHz", "LOWEST cHz", "HIGHEST cHz",
-)  # fmt: skip
-LEFT_ALONE = ("...", "ANSWERS", "NOBODY", "IN THE LIST")  # of an address
+SETTINGS, KEY_TEST = "SETTINGS", "HOLD PARAM: ENDS"  # row 1
+CHOSEN = ("DRIVES", "ANY ADDRESS", FIND, SETTINGS, "ABOUT", "SHOW IT")  # they change nothing
+LEFT_ALONE = ("...", "ANSWERS", "NOBODY", "IN THE LIST", "SET=ASK")  # of an address
+CHANGING = ("LOCK CODE", "P2014=0 OK")  # of the settings
 HOME_TRIES = 16
 
 
@@ -196,7 +195,7 @@ class Fingers:
     # --- the menu, and the search ---------------------------------------------------------------
 
     def walk_menu(self):
-        """Press keys of all kinds in the menu, mostly while a motor runs; then one that matters."""
+        """Press keys of all kinds in the menu, mostly while a motor runs, and one that matters."""
         if self.dice.below(4):
             self.run_long()
         self.press(self.dice.one_of(OPENS), OPENS_MS)
@@ -242,7 +241,9 @@ class Fingers:
             self.run(self._seen_ms)
             if not self.is_away():
                 return
-            self.press("STOP" if HUNTS in self.reader.rows[1] else "PARAM")
+            row_1, row_2 = self.reader.rows
+            held = row_1.startswith(KEY_TEST)
+            self.press("STOP" if HUNTS in row_2 else "PARAM", OPENS_MS if held else 100)
 
     def is_away(self):
         """Whether the menu is on the display, or the search."""
@@ -262,6 +263,8 @@ class Fingers:
         entry = row_2[1:].rstrip()
         is_drive = entry[:1] == "A" and entry[1:2].isdigit() and not entry.endswith(LEFT_ALONE)
         is_known = entry in CHOSEN or "+" in entry or is_drive
+        if row_1.startswith(SETTINGS):
+            is_known = entry not in CHANGING
         return is_read and not witness.down and self.reader.steady and is_known
 
     def select(self):

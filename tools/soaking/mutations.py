@@ -789,11 +789,11 @@ MUTATIONS = (
         (
             "panel/menu/engine.py",
             "        if acts.has(\"PARAM\"):\n"
-            "            self._leave()\n",
+            "            self._leave(now_ms)\n",
             "        if acts.has(\"START\"):\n"
             "            self.panel.selected.start()\n"
             "        if acts.has(\"PARAM\"):\n"
-            "            self._leave()\n",
+            "            self._leave(now_ms)\n",
         ),
     ),
     Mutation(
@@ -802,8 +802,8 @@ MUTATIONS = (
         ("JOG",), 1,
         (
             "panel/panel.py",
-            "self.selected, page.obeys and not self.stop_key.is_down)",
-            "self.selected, not self.stop_key.is_down)",
+            "            allowed = page.obeys and not self.stop_key.is_down\n",
+            "            allowed = not self.stop_key.is_down\n",
         ),
     ),
     Mutation(
