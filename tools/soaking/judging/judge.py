@@ -177,10 +177,10 @@ class Judge:
                 continue
             stw = tape.word(row, -pzd_words) if count >= pzd_words else 0
             if stw & CONTROLS and stw != OFF1:
-                raise Broken("CONTROL", "drive %d at %d, %04X" % (*where, stw))
+                raise Broken("CONTROL", "drive %d at %d, %04X" % (where + (stw,)))
             task = tape.word(row, 0) >> 12 if pkw_words else 0
             if task not in READS:
-                raise Broken("WRITE", "drive %d at %d, task %d" % (*where, task))
+                raise Broken("WRITE", "drive %d at %d, task %d" % (where + (task,)))
 
     def _judge_mirror(self, row, tape):
         """It looks for the layout of a drive that is silent; no drive acts on it."""
