@@ -257,7 +257,6 @@ ANSWERS = b"ANSWERS"
 NOBODY = b"NOBODY"
 ADDED = b"ADDED"
 NOT_ADDED = b"NOT ADDED"  # 31 are there, or nothing of its telegrams is PZD1 and PZD2
-FAMILY = b"FAMILY"
 MENU_SETTINGS = b"SETTINGS"
 MENU_ORDER = b"ORDER"
 MENU_TURNS = b"TURNS"

@@ -78,7 +78,10 @@ def test_the_drives_at_a_glance_and_one_of_them_shown():
     assert seen["10.00 Hz     1/3"] == ">A1  RUNNING", seen
     assert entries(world) == ["A1  RUNNING", "A2  READY", "A3  FAULT"]
     press(world, "SET")
-    assert entries(world) == ["SHOW IT", "REMOVE IT", "MM420 4+2", "10.00 Hz"]
+    assert entries(world) == [
+        "SHOW IT", "REMOVE IT", "FAMILY MM420", "PKW 4 WORDS", "PZD 2 WORDS", "LINK RS-485",
+        "10.00 Hz",
+    ]  # fmt: skip
     press(world, "PARAM", "DOWN", "SET", "SET")
     wait_until_known(world)
     assert row_2(world) == "READY        A2" and world.drives[1].state == "running"
@@ -552,17 +555,91 @@ def test_addresses_are_looked_at_beside_a_motor_that_runs():
     world.check()
 
 
-def test_the_family_of_a_drive_is_chosen():
-    world = panel()
+def chosen(world, what, wanted, setting=None):
+    """Choose for drive 1 what it is, and wait for the panel, which begins anew. setting: what
+    somebody changes at the drive, too: number and value."""
     menu(world)
-    press(world, "SET", "SET", "DOWN", "DOWN", "SET")
-    assert row_2(world) == ">MM420", world.lcd()
-    while row_2(world) != ">MM440":
-        press(world, "DOWN")
+    press(world, "SET", "SET")
+    go_to(world, what)
     press(world, "SET")
+    go_to(world, wanted)
+    press(world, "SET")
+    if setting:
+        world.drives[1].write(setting[0], 0, setting[1])
     world.run(4000)
+    stored = world.flash.files.get("settings.json", b'{"kinds": {}}')
+    return json.loads(bytes(stored).decode())["kinds"].get("1", "mm420")
+
+
+def go_to(world, start, most=40):
+    for _ in range(most):
+        if row_2(world).startswith(">" + start):
+            return
+        press(world, "DOWN")
+    raise AssertionError((start, world.lcd()))
+
+
+def test_family_layout_and_link_of_a_drive_are_chosen():
+    """What the next family can have, too, stays; what only one family has is not offered."""
+    kinds = simulated(listed_drives("1=mm440"))
+    world = World(main.start, (1,), kinds=kinds)
+    world.run(1000)
+    wait_until_known(world)
+    assert chosen(world, "FAMILY", "FAMILY MM440") == "mm440"
     assert row_2(world) == "READY        A1", world.lcd()
-    assert json.loads(world.flash.files["settings.json"].decode())["kinds"] == {"1": "mm440"}
+    assert chosen(world, "PZD", "PZD 6 WORDS", (2012, 6)) == "mm440/4+6"
+    assert row_2(world) == "READY        A1", world.lcd()
+    assert chosen(world, "PKW", "PKW 127 WORDS", (2013, 127)) == "mm440/127+6"
+    assert row_2(world) == "READY        A1", world.lcd()
+    assert chosen(world, "FAMILY", "FAMILY V20") == "v20/127+6"
+    assert chosen(world, "FAMILY", "FAMILY MM430") == "mm430/127+6"
+    assert chosen(world, "LINK", "LINK BOP") == "mm430-bop/127+6"
+    assert chosen(world, "FAMILY", "FAMILY MM440") == "mm440-bop/127+6"
+    press(world, "START")
+    assert row_2(world) == "NO:P0700 NOT USS", world.lcd()
+    assert chosen(world, "LINK", "LINK RS-485") == "mm440/127+6"
+    assert chosen(world, "FAMILY", "FAMILY MM3") == "mm3"
+    assert starts(world) == 0
+    world.check()
+
+
+def test_each_choice_is_one_that_the_family_has():
+    for kind, offered in (
+        ("mm3", (1, 1, 1)),
+        ("mm420", (4, 3, 2)),
+        ("mm440-bop", (4, 7, 2)),
+        ("g110", (4, 3, 1)),
+        ("v20", (4, 7, 1)),
+        ("g120", (4, 7, 1)),
+        ("generic", (4, 15, 1)),
+    ):
+        world = World(
+            main.start, (1,), kinds=simulated(listed_drives("1=" + kind)),
+            settings={"kinds": {"1": kind}},
+        )  # fmt: skip
+        world.run(2000)
+        menu(world)
+        press(world, "SET", "SET")
+        for what, count in zip(("PKW", "PZD", "LINK"), offered):
+            go_to(world, what)
+            press(world, "SET")
+            assert len(entries(world)) == count, (kind, what, entries(world))
+            press(world, "PARAM")
+
+
+def test_what_a_drive_is_does_not_change_while_a_motor_runs():
+    world = running()
+    before = world.app.settings.kinds
+    for what, wanted in (("FAMILY", "FAMILY V20"), ("PKW", "PKW 0"), ("LINK", "LINK BOP")):
+        menu(world)
+        press(world, "SET", "SET")
+        go_to(world, what)
+        press(world, "SET")
+        go_to(world, wanted)
+        press(world, "SET")
+        assert row_2(world) == "STOP ALL FIRST", (what, world.lcd())
+        press(world, "PARAM", "PARAM", "PARAM", "PARAM")
+        assert world.app.settings.kinds == before == {} and world.drives[1].state == "running"
     world.check()
 
 

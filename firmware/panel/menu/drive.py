@@ -1,8 +1,12 @@
 # SPDX-License-Identifier: MIT
 """What can be done with one drive of the list, which `drives` hands on."""
 
+from micropython import const
+
 from panel import texts
 from panel.menu import Entries, words
+
+_KIND = const(2)  # the first entry of what it is
 
 
 class List(Entries):
@@ -13,24 +17,21 @@ class List(Entries):
         return b"A%d" % self.argument.drive.address
 
     def count(self):
-        return 4
+        return _KIND + len(words.KIND) + 1
 
     def words(self, position):
-        control = self.argument
-        family = control.survey.family
-        layout = control.drive.layout
-        return (
-            texts.of(texts.SHOW_DRIVE),
-            texts.of(texts.REMOVE_DRIVE),
-            b"%s %d+%d" % (family.__name__.encode(), layout.pkw_words, layout.pzd_words),
-            words.speed(control),
-        )[position]
+        if position < _KIND:
+            return texts.of((texts.SHOW_DRIVE, texts.REMOVE_DRIVE)[position])
+        row = position - _KIND
+        if row == len(words.KIND):
+            return words.speed(self.argument)
+        return words.of_kind(row, kind_of(self.argument)[row])
 
     def choose(self, position, now_ms):
         panel = self.panel
-        if position == 2:
-            return "families", self.argument
-        if position > 1 or self.argument not in panel.controls:
+        if _KIND <= position < _KIND + len(words.KIND):
+            return "kind", (self.argument, position - _KIND)
+        if position >= _KIND or self.argument not in panel.controls:
             return None
         panel.show(self.argument)
         panel.close_menu()
@@ -41,3 +42,11 @@ class List(Entries):
             except ValueError:  # the only one, or it may be running
                 panel.say(now_ms, texts.NOT_REMOVED)
         return None
+
+
+def kind_of(control):
+    """What it is now, by row of words.KIND."""
+    family, layout = control.survey.family, control.drive.layout
+    base = family.com or family
+    link = words.LINKS[1 if family.com else 0]
+    return base.__name__, layout.pkw_words, layout.pzd_words, link

@@ -31,6 +31,12 @@ KEY_TEST = b"KEY TEST"
 KEY_TEST_ENDS = b"HOLD PARAM: ENDS"
 PRESS_A_KEY = b"PRESS A KEY"
 
+# What a drive is, and how that reads.
+FAMILY, PKW, PZD, LINK = range(4)
+KIND_TITLES = (b"FAMILY", b"PKW WORDS", b"PZD WORDS", b"LINK")
+KIND = (b"FAMILY %s", b"PKW %d WORDS", b"PZD %d WORDS", b"LINK %s")
+LINKS = (b"RS-485", b"BOP")  # of the terminals, of the keypad's plug
+
 LOCK_CODE = b"LOCK CODE"
 SET_NEXT = b"UP DOWN SET=NEXT"
 NEW_CODE = b"NEW CODE %s"
@@ -75,6 +81,11 @@ CHECK_MASTERS = b"NO OTHER MASTER"
 ABOUT_VERSION = b"VERSION %s"
 LICENCE = b"LICENCE: MIT"
 FREE_MEMORY = b"FREE %d KB"
+
+
+def of_kind(row, value):
+    """An entry of what a drive is, in words."""
+    return texts.of(KIND[row], value.encode() if isinstance(value, str) else value)
 
 
 def reading(row, value):

@@ -14,7 +14,7 @@ from uss.layout import STANDARD, Layout
 
 _BOP = "-bop"
 _PZD_USUAL = 2
-_PZD_MIN = 2  # STW and HSW: without them nobody commands a drive
+PZD_MIN = 2  # STW and HSW: without them nobody commands a drive
 
 
 def kind(text):
@@ -47,6 +47,6 @@ def _layout(words):
     if not (pkw_words.isdigit() and (pzd_words.isdigit() or not plus)):
         raise ValueError("/%s is no layout such as /4, or /4+6" % words)
     pzd_words = int(pzd_words) if plus else _PZD_USUAL
-    if pzd_words < _PZD_MIN:
+    if pzd_words < PZD_MIN:
         raise ValueError("a drive without PZD1 and PZD2 takes no commands")
     return Layout(int(pkw_words), pzd_words)
