@@ -7,6 +7,7 @@ from panel import texts
 from panel.menu import BACK, Entries, words
 from panel.menu.drive import kind_of
 from uss import families
+from uss.families.bop import on_bop
 from uss.families.kinds import PZD_MIN, text
 from uss.layout import Layout
 
@@ -52,7 +53,7 @@ class List(Entries):
     def _chosen(self, choice):
         """Family and layout; of another family those that it can have, too, stay."""
         family, layout, row = self._family, self._layout, self._row
-        on_bop = family.com is not None
+        is_bop = family.com is not None
         if row == words.PKW:
             return family, Layout(choice, layout.pzd_words)
         if row == words.PZD:
@@ -63,5 +64,5 @@ class List(Entries):
             if not (self._control.drive.contact and layout.suits(base)):
                 layout = base.layout
         else:
-            on_bop = choice != words.LINKS[0]
-        return families.on_bop(base) if on_bop and base.has_bop_link else base, layout
+            is_bop = choice != words.LINKS[0]
+        return on_bop(base) if is_bop and base.has_bop_link else base, layout
