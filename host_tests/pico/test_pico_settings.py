@@ -3,8 +3,10 @@
 written: either the old settings are there afterwards or the new ones, and the panel starts."""
 
 import os
+import struct
 
 from pico_bench import panel, running, says, scripted, set_off, stands, starts
+from tools.emulator.flash_image import FILES_AT
 from tools.emulator.world import PicoWorld, temporary
 
 INTERPRETERS = "pico"
@@ -23,6 +25,7 @@ for _ in range(6):
 while True:
     app.step()
 """
+FLASH_AT = 0x1000_0000  # in the RP2040's memory
 CUTS = 6  # instants at which power goes, spread over the flash operations of one saving
 
 
@@ -61,6 +64,21 @@ def test_what_was_stored_by_somebody_else_is_kept():
     world = panel(settings={"second_stop": "OFF2", "of_a_newer_firmware": [1, 2]})
     assert world.settings()["second_stop"] == "OFF2"
     assert world.settings()["of_a_newer_firmware"] == [1, 2]
+
+
+def test_another_firmware_file_leaves_the_settings_where_they_are():
+    """What a UF2 file writes ends before the files begin: block after block of 512 bytes."""
+    for name in ("panel", "stock"):
+        ends = 0
+        with open("build/pico/%s.uf2" % name, "rb") as file:
+            while True:
+                block = file.read(512)
+                if not block:
+                    break
+                assert block[:4] == b"UF2\n", name
+                at, size = struct.unpack("<II", block[12:20])
+                ends = max(ends, at + size - FLASH_AT)
+        assert 300_000 < ends <= FILES_AT, (name, ends)
 
 
 def test_power_that_goes_while_settings_are_written_leaves_the_old_ones_or_the_new_ones():

@@ -7,6 +7,7 @@ from types import SimpleNamespace
 import pytest
 
 import main
+import settings_file
 from deploy_bench import (
     FLASH,
     FROZEN,
@@ -20,6 +21,7 @@ from deploy_bench import (
     firmware,
     running,
 )
+from hal.store import FileStore
 from tiers import TOP
 from tools.deploying import arrival, deployment, image, plan, ports
 from tools.deploying.errors import DeployError
@@ -127,6 +129,19 @@ def test_what_others_have_put_there_stays():
         assert FLASH.files[path] == b"mine", path
     deploy(FakeChip(), firmware({}))
     assert names() == sorted(others)
+
+
+def test_settings_outlive_an_update_and_the_way_back():
+    before = b'{\n  "baud": 9600,\n  "drives": [7, 3],\n  "kinds": {"7": "g110/127"}\n}\n'
+    deployed()
+    FLASH.put("settings.json", before)
+    for sources in (NEWER, OLD):
+        deploy(FakeChip(), firmware(sources))
+        assert FLASH.files["settings.json"] == before
+    store = FileStore("settings.json", FLASH.open, FLASH)
+    settings = settings_file.load(store)  # as this firmware takes them over
+    assert (settings.baud, settings.drives, settings.kind(7)) == (9600, (7, 3), "g110/127")
+    assert settings.complaint is None
 
 
 def test_a_dry_run_tells_and_changes_nothing():
