@@ -102,8 +102,8 @@ def test_drives_are_found_beside_a_motor_that_runs_and_taken_one_by_one_or_all()
     assert [drive.state for drive in world.drives.values()].count("ready") == 4
     for address in (7, 3, 9, 12):
         press(world, "ADDRESS_UP")
-        wait_until_known(world)
-        assert row_2(world).endswith("A%d" % address), world.lcd()
+        world.run(3000)
+        assert world.app.panel.selected.drive.address == address
         press(world, "START")
         world.run(4000)
         assert world.drives[address].state == "running", world.lcd()

@@ -307,12 +307,16 @@ class Scan:
             self.nodes[address] = enquirer.node
         if self.stopped:
             self._last_questions -= 1
-            if self._last_questions < 0:
-                self.will_trip[self._enquiring] = None
-                self._enquirer = None
-                return False
+            if self._last_questions < 0:  # what it was sent last is OFF1 in its usual form
+                node = self._enquirer.node
+                self._send(Question(node.address, node.layout, None), self._give_up)
+                return True
         self._send(self._enquirer.question(), self._take_answer)
         return True
+
+    def _give_up(self, question, now):
+        self.will_trip[self._enquiring] = None
+        self._enquirer = None
 
     def _take_answer(self, question, now):
         node = self._enquirer.node
