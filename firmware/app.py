@@ -74,6 +74,7 @@ class App:
         self._fed_at_ms = 0
         self._save_failed_at_ms = None
         self._shows_next = False
+        self._following = None  # the program that has taken over
 
     def start(self):
         self._progress_at_ms = self._fed_at_ms = self._ticks_ms()
@@ -110,11 +111,16 @@ class App:
             self._save(0)
         if wanted == "app":
             self._say(texts.BEGINS_ANEW)
-            following = App(self.board)
+        # A chip has no room for two panels of 31 drives.
+        self.link = self.bus = self.pacer = self.panel = self._roster = self._finder = None
+        self.step_panel = self.refresh_bus = self._tend = None
+        if wanted == "app":
+            self._following = App(self.board)
         else:
-            following = on_demand.load("search.search").Search(self.board, self.settings)
-        following.start()
-        return following
+            search = on_demand.load("search.search").Search
+            self._following = search(self.board, self.settings)
+        self._following.start()
+        return self._following
 
     def _look_or_show(self, now_us):
         """The drives that are silent or wait too long; a piece of the display, and the pacer: both
@@ -171,8 +177,11 @@ class App:
 
         Ctrl-C does not cut this short, wherever it strikes.
         """
-        self._leave()
-        persist(self._say, texts.FAREWELL)
+        if self._following is not None:
+            self._following.close()
+        elif self.bus is not None:
+            self._leave()
+            persist(self._say, texts.FAREWELL)
 
     def _leave(self):
         try:

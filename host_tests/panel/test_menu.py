@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: MIT
 """The operator's manual, the menu: PARAM held for a second, UP and DOWN walk, SET, PARAM back."""
 
+import gc
 import json
 
+import app
 import main
 from boards.sim.drives.kinds import listed_drives, simulated
 from boards.sim.world import World
@@ -683,3 +685,58 @@ def test_a_panel_that_nobody_has_set_up_offers_to_find_drives():
     assert row_2(world) == "READY        A1", world.lcd()
     world.run(5000)
     assert row_2(world) == "READY        A1", world.lcd()
+
+
+# --- the panel begins anew -----------------------------------------------------------------------
+
+
+def interrupted_start(world, at):
+    """The next panel that starts is ended by Ctrl-C, before its bus is at work or right after."""
+    start = app.App.start
+
+    def start_and_end(one):
+        if at == "after":
+            start(one)
+        raise KeyboardInterrupt
+
+    app.App.start = start_and_end
+    world.app.panel.wants = "app"
+    try:
+        world.run(2000)
+        raise AssertionError("it was to be ended")
+    except KeyboardInterrupt:
+        world.app.close()  # as `main.loop` does
+    finally:
+        app.App.start = start
+
+
+def test_ctrl_c_while_the_panel_begins_anew_leaves_no_telegram_behind():
+    for at in ("before", "after"):
+        world = panel()
+        interrupted_start(world, at)
+        world.clock.advance(100_000)
+        sent = world.wire.log.count
+        world.clock.advance(1_000_000)
+        assert world.wire.log.count == sent, at
+
+
+def test_there_are_never_two_panels_in_memory():
+    """With 31 drives a chip has no room for them."""
+    world = panel(addresses=tuple(range(31)))
+    free = []
+    begin = app.App.__init__
+
+    def begin_and_note(one, board):
+        gc.collect()
+        free.append(gc.mem_alloc())
+        begin(one, board)
+
+    gc.collect()
+    before = gc.mem_alloc()
+    app.App.__init__ = begin_and_note
+    try:
+        world.app.panel.wants = "app"
+        world.run(500)
+    finally:
+        app.App.__init__ = begin
+    assert len(free) == 1 and free[0] < before - 31 * 700, (before, free)
