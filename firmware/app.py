@@ -74,7 +74,6 @@ class App:
         self._fed_at_ms = 0
         self._save_failed_at_ms = None
         self._shows_next = False
-        self._following = None  # the program that has taken over
 
     def start(self):
         self._progress_at_ms = self._fed_at_ms = self._ticks_ms()
@@ -111,16 +110,10 @@ class App:
             self._save(0)
         if wanted == "app":
             self._say(texts.BEGINS_ANEW)
-        # A chip has no room for two panels of 31 drives.
+        # A chip has no room for two panels of 31 drives: whoever still finds this finds no more.
         self.link = self.bus = self.pacer = self.panel = self._roster = self._finder = None
         self.step_panel = self.refresh_bus = self._tend = None
-        if wanted == "app":
-            self._following = App(self.board)
-        else:
-            search = on_demand.load("search.search").Search
-            self._following = search(self.board, self.settings)
-        self._following.start()
-        return self._following
+        return Handover(self.board, self.settings, wanted)
 
     def _look_or_show(self, now_us):
         """The drives that are silent or wait too long; a piece of the display, and the pacer: both
@@ -177,9 +170,7 @@ class App:
 
         Ctrl-C does not cut this short, wherever it strikes.
         """
-        if self._following is not None:
-            self._following.close()
-        elif self.bus is not None:
+        if self.bus is not None:
             self._leave()
             persist(self._say, texts.FAREWELL)
 
@@ -221,3 +212,28 @@ class App:
 def _enquirer(*node):
     """Asks a drive what it is; the module leaves the memory with it."""
     return on_demand.call("uss.finding.enquiry", "Enquirer", *node)
+
+
+class Handover:
+    """The program between two others: whoever has called the one before has let go of it when this
+    one makes the next. wanted: as `wants` of `Panel`."""
+
+    def __init__(self, board, settings, wanted):
+        self._board = board
+        self._settings = settings
+        self._wanted = wanted
+        self._following = None
+
+    def step(self):
+        """Answers the program that comes next, which is at work."""
+        if self._wanted == "app":
+            self._following = App(self._board)
+        else:
+            search = on_demand.load("search.search").Search
+            self._following = search(self._board, self._settings)
+        self._following.start()
+        return self._following
+
+    def close(self):
+        if self._following is not None:
+            self._following.close()
