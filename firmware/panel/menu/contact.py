@@ -5,7 +5,7 @@ A3 HEARD     1/8        the first entry: in words; and how many telegrams it has
 >NOTHING
 
 CHECK        4/8        the others: the most likely first, for what was heard. SET opens what
->P2010 = 19200          helps: the baud rate, the families, the search
+>P2010 = 19200          helps: the baud rate, its PKW and PZD words, the search
 """
 
 from micropython import const
@@ -30,7 +30,7 @@ _WORDS = {
     MASTERS: words.CHECK_MASTERS,
     FIND: texts.FIND_DRIVES,
 }
-_OPENS = {PKW_WORDS: "families", FIND: "find"}  # a list of the menu
+_KIND_ROWS = {PKW_WORDS: 1, PZD_WORDS: 2}  # of words.KIND
 
 ALONE, IN_USE = const(-1), const(-2)  # nobody answers at all; another master talks
 
@@ -90,9 +90,9 @@ class List(Entries):
         step = self._steps[position - 2] if position > 1 else None
         if step == RATE:
             return "value", words.SETTINGS[0]
-        if step not in _OPENS:
-            return None
-        return _OPENS[step], self.panel.selected if step == PKW_WORDS else None
+        if step in _KIND_ROWS:
+            return "kind", (self.panel.selected, _KIND_ROWS[step])
+        return ("find", None) if step == FIND else None
 
     def _heard(self):
         """What was heard: a key of STEPS."""
