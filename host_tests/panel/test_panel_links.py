@@ -36,6 +36,24 @@ def test_a_start_is_refused_where_the_other_link_commands():
         world.check()
 
 
+def test_start_and_set_give_it_to_the_link_that_the_panel_is_on():
+    world = panel_of("1=mm440-bop")
+    drive = world.drives[1]
+    for number in (700, 1000):
+        drive.write(number, 0, ELSEWHERE)
+    world.run(3000)
+    for number in (700, 1000):
+        world.press("START")
+        world.run(500)
+        assert world.reads("P%04d=4" % number), world.lcd()
+        world.press("SET")
+        world.run(4000)
+        assert drive.read(number) == 4 and starts(world) == 0, drive.report()
+    world.press("START")
+    world.run(4000)
+    assert row_2(world) == "RUNNING      A1" and starts(world) == 1, world.lcd()
+
+
 def test_what_the_other_link_is_set_to_is_no_matter():
     for kind in KINDS:
         world = panel_of("1=" + kind)
