@@ -720,8 +720,8 @@ MUTATIONS = (
         ("MIRROR",), 1,
         (
             "uss/finding/finder.py",
-            "if drive.contact or drive.silent < SILENT_MIN:",
-            "if drive.silent > STOPPED_MIN:",
+            "            if not drive.doubted or drive.may_run():\n                return False\n",
+            "            return True\n",
         ),
     ),
     Mutation(
@@ -757,18 +757,18 @@ MUTATIONS = (
         ("TELEGRAM",), 2,
         (
             "uss/finding/finder.py",
-            "        elif is_silent or self._tries >= TRIES:\n            self._row += 1\n",
+            "        elif is_silent or self._tries >= TRIES:\n            self._tries = 0\n",
             "        elif is_silent or self._tries >= TRIES:\n"
-            "            self._find(_WORDS[self._row])\n            self._row += 1\n",
+            "            self._find(_WORDS[self._row % 3], 2)\n            self._tries = 0\n",
         ),
     ),
     Mutation(
         "found and forgotten",
         "the layout of a drive is found out, and not used",
-        ("RECOVERS",), 8,
+        ("RECOVERS",), 2,
         (
             "uss/finding/finder.py",
-            "            self._turns.relayout(self._drive, layout)\n",
+            "            self._turns.relayout(drive, layout, drive.doubted)\n",
             "            self._layout = layout\n",
         ),
     ),
