@@ -455,6 +455,8 @@ class Panel:
         if self._writer.is_idle():
             self._writer = None
             on_demand.drop("panel.writer")
+            if self._page is self._home:
+                on_demand.drop("panel.pages.parameter_words")
 
 
 def _about(settings):

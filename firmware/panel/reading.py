@@ -9,7 +9,6 @@ In use:
     reading.drop()                      # it is about something else from now on
 """
 
-from panel import texts
 from uss import pkw
 
 
@@ -44,16 +43,3 @@ class Reading:
         if self.asked:
             self.asked = False
             self._job = None
-
-
-def failure(job):
-    """Why a job was not done: a text and the values in it."""
-    if job.state == pkw.UNANSWERED:
-        return (texts.NO_REPLY_TO_THIS,)
-    if job.state != pkw.REFUSED:
-        return (texts.NO_ANSWER,)
-    if job.error == pkw.NO_CHANGE_RIGHTS:
-        return (texts.NO_RIGHTS,)
-    if job.error in texts.REFUSALS:
-        return (texts.REFUSALS[job.error],)
-    return texts.OTHER_REFUSAL, job.error

@@ -148,63 +148,13 @@ SET_TO_LIMIT = b"LIMIT: %d.%02d"  # in place of what was beyond it
 HERTZ = b"Hz"
 PERCENT = b"%"
 
-# --- parameter mode ------------------------------------------------------------------------------
+# --- parameters; `pages.parameter_words` has more ------------------------------------------------
 
-# In front of a value, PARAMETER_WIDTH wide, and in place of one, VALUE_WIDTH wide.
-PARAMETER = b"P    :"  # with its number
-READ_PARAMETER = b"r    :"
-PARAMETER_WIDTH = 6
 VALUE_WIDTH = 6
-UNREAD_VALUE = b"     ?"
-REFUSED_VALUE = b" -----"  # the drive does not tell it
-
-NO_PARAMETERS = b"NO PARAMETERS"  # the drive has no parameter channel, or nobody knows any
-EDIT_FIRST = b"PRESS EDIT FIRST"
-READ_ONLY = b"READ ONLY"
-NOT_READ_YET = b"NOT READ YET"
+UNREAD_VALUE = b"     ?"  # in place of a value, VALUE_WIDTH wide
 STOP_FIRST = b"STOP ALL FIRST"  # no address changes while a drive runs
-ADDRESS_TAKEN = b"ADDRESS IS TAKEN"  # by another drive of this panel
 WRITER_BUSY = b"STILL WRITING"
-WRITTEN = b"WRITTEN (RAM)"
-WRITTEN_EEPROM = b"WRITTEN (EEPROM)"
-NO_ANSWER = b"NO ANSWER"
-NO_REPLY_TO_THIS = b"NO REPLY TO THIS"  # the drive answers, but falls silent on this task
-NOT_WRITTEN = b"NOT WRITTEN"
-
-# What became of a write to a drive that is not shown any more.
-OTHER_WRITTEN = b"A%d: WRITTEN"
-OTHER_NOT_WRITTEN = b"A%d: NOT WRITTEN"
-
-# Why a drive refused a parameter task, by the error number of its reply (specification table 4.9,
-# and what drives add to it). NO_RIGHTS is reply 8, which carries no number.
-NO_RIGHTS = b"NO CHANGE RIGHTS"
-ACCESS_TOO_LOW = b"P0003 TOO LOW"
-REFUSALS = {
-    0: b"NO SUCH PARAM.",
-    1: b"READ ONLY",
-    2: b"BEYOND LIMITS",
-    3: b"NO SUCH INDEX",
-    4: b"NOT AN ARRAY",
-    5: b"WRONG DATA TYPE",
-    6: b"MAY ONLY BE 0",
-    7: b"NOT CHANGEABLE",
-    11: NO_RIGHTS,
-    12: b"KEY WORD MISSING",
-    17: b"NOT IN THIS MODE",  # most often: not while it runs
-    18: b"DRIVE SAYS ERROR",
-    20: b"ILLEGAL VALUE",
-    101: b"INACTIVE NOW",
-    102: b"REPLY TOO LONG",
-    103: b"WRONG PKW LENGTH",
-    104: b"NOT THIS VALUE",
-    105: b"IS AN ARRAY",
-    106: b"TASK UNKNOWN",
-    107: b"TEXT IS FIXED",
-    200: b"BELOW LIMIT NOW",
-    201: b"ABOVE LIMIT NOW",
-    204: ACCESS_TOO_LOW,
-}
-OTHER_REFUSAL = b"REFUSED: %d"
+ACCESS_TOO_LOW = b"P0003 TOO LOW"  # a refusal of the drive: see `pages.set_up`
 
 # --- questions: what takes row 1 in turn, and the choice in row 2 --------------------------------
 
@@ -245,24 +195,10 @@ ASK_SEARCH = (
 
 # --- the menu, see `menu`; `menu.words` has more -------------------------------------------------
 
-MENU = b"MENU"
 MENU_MARK = b">"
-MENU_LOCK = b"LOCK"  # closes the lock
 LOCKED = b"LOCK: HOLD PARAM"  # until its code is given
-MENU_DRIVES = b"DRIVES"
-ANY_ADDRESS = b"ANY ADDRESS"
-IN_THE_LIST = b"IN THE LIST"
-ASKS = b"..."
-ANSWERS = b"ANSWERS"
-NOBODY = b"NOBODY"
 ADDED = b"ADDED"
 NOT_ADDED = b"NOT ADDED"  # 31 are there, or nothing of its telegrams is PZD1 and PZD2
-MENU_SETTINGS = b"SETTINGS"
-MENU_ORDER = b"ORDER"
-MENU_TURNS = b"TURNS"
-MENU_ABOUT = b"ABOUT"
-SHOW_DRIVE = b"SHOW IT"
-REMOVE_DRIVE = b"REMOVE IT"
 REMOVED = b"REMOVED"
 NOT_REMOVED = b"NOT REMOVED"  # it is the only one, or may be running
 

@@ -23,7 +23,8 @@ the new address for a while, and then takes it to be at the old one.
 from micropython import const
 
 from panel import texts
-from panel.reading import failure
+from panel.pages import parameter_words as words
+from panel.pages.parameter_words import failure
 from uss import pkw
 from uss.timing import elapsed
 
@@ -62,7 +63,7 @@ class Write:
         """The outcome for somebody who looks at this control, as a text and values."""
         if self.control is selected:
             return self.outcome
-        text = texts.OTHER_WRITTEN if self.done else texts.OTHER_NOT_WRITTEN
+        text = words.OTHER_WRITTEN if self.done else words.OTHER_NOT_WRITTEN
         return text, self.control.drive.address
 
 
@@ -158,7 +159,7 @@ class Writer:
                 self._tries += 1
                 self._ask()
             else:
-                self._end(texts.NOT_WRITTEN)
+                self._end(words.NOT_WRITTEN)
         elif may_have_moved and drive.silent:
             self._phase = LOOKING
             self._since_us = now_us
@@ -176,7 +177,7 @@ class Writer:
             self._settings.readdress(write.old_address, write.value)
             write.control.moved = True
         write.done = True
-        self._end(texts.WRITTEN_EEPROM if write.eeprom else texts.WRITTEN)
+        self._end(words.WRITTEN_EEPROM if write.eeprom else words.WRITTEN)
 
     def _end(self, *outcome):
         self._phase = IDLE
@@ -201,9 +202,9 @@ class Writer:
         drive = write.control.drive
         telegrams = (sum(drive.counters) - self._telegrams) & 0xFFFF
         if drive.stops != self._stops:  # that is for the drive, which is at the old address
-            self._give_up_probe(texts.NOT_WRITTEN)
+            self._give_up_probe(words.NOT_WRITTEN)
         elif not drive.silent and drive.answered_address == write.value:
-            self._give_up_probe(texts.ADDRESS_TAKEN)
+            self._give_up_probe(words.ADDRESS_TAKEN)
         elif telegrams >= _PROBES:
             self._bus.turns.readdress(drive, write.old_address)
             self._ask()
@@ -234,4 +235,4 @@ class Writer:
             self._confirm()
         elif elapsed(now_us, self._since_us, self._mask) >= self._patience_us:
             self._bus.turns.readdress(drive, write.old_address)
-            self._end(texts.NO_ANSWER)
+            self._end(words.NO_ANSWER)

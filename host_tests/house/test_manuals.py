@@ -15,6 +15,7 @@ import version
 from boards.sim.script import COMMANDS
 from panel import texts
 from panel.menu import words
+from panel.pages import parameter_words
 from tiers import TOP
 from tools.live import virtual_panel
 
@@ -146,7 +147,8 @@ def every_text(thing):
 
 def test_every_text_of_the_display_is_explained():
     said = section(PANEL, "What the display says")
-    found = [*every_text(vars(texts)), *every_text(vars(words))]
+    modules = (texts, parameter_words, words)
+    found = [text for module in modules for text in every_text(vars(module))]
     found = [row for row in found if row and row not in texts.SPLASH]
     assert len(found) > 100
     missing = [text for text in found if not re.search(pattern(text), said)]

@@ -3,6 +3,7 @@
 
 from panel import texts
 from panel.menu import words as menu_words
+from panel.pages import parameter_words
 from panel.screen import COLUMNS, ROWS, Screen
 from uss import families
 
@@ -85,7 +86,7 @@ def named_texts():
     """(name, text or texts) of all that the modules of texts have."""
     return [
         (name, getattr(module, name))
-        for module in (texts, menu_words)
+        for module in (texts, parameter_words, menu_words)
         for name in dir(module)
         if name[0] != "_" and name != "NOTHING"
     ]
@@ -132,8 +133,8 @@ def test_every_state_of_a_drive_fits_beside_its_fault_number():
 
 
 def test_parameter_names_fit_their_field():
-    for name in (texts.PARAMETER, texts.READ_PARAMETER):
+    for name in (parameter_words.PARAMETER, parameter_words.READ_PARAMETER):
         for words in all_words(name):
-            assert len(words) == texts.PARAMETER_WIDTH
+            assert len(words) == parameter_words.PARAMETER_WIDTH
     for family in families.FAMILIES:
         assert all(0 < number <= 9999 for number, _ in family.shown)

@@ -8,7 +8,7 @@ from version import VERSION
 
 
 class List(Entries):
-    title = texts.MENU_ABOUT
+    title = words.MENU_ABOUT
 
     def __init__(self, panel, argument):
         Entries.__init__(self, panel, argument)

@@ -10,7 +10,7 @@ from micropython import const
 
 import on_demand
 from panel import texts
-from panel.menu import Entries
+from panel.menu import Entries, words
 from uss.finding.mirror import Mirror
 from uss.pkw import DONE, PENDING
 from uss.telegram import NODE_MAX
@@ -23,7 +23,7 @@ _SILENCES = const(2)  # after which a drive takes one length only: one may have 
 
 
 class List(Entries):
-    title = texts.ANY_ADDRESS
+    title = words.ANY_ADDRESS
 
     def __init__(self, panel, argument):
         Entries.__init__(self, panel, argument)
@@ -49,14 +49,14 @@ class List(Entries):
         return NODE_MAX + 1
 
     def words(self, position):
-        what = texts.ASKS
+        what = words.ASKS
         if self._is_listed(position):
-            what = texts.IN_THE_LIST
+            what = words.IN_THE_LIST
         elif position == self._address and not self._is_wanted:
             if self._net_count:
-                what = texts.ANSWERS
+                what = words.ANSWERS
             elif self._is_nobody:
-                what = texts.NOBODY
+                what = words.NOBODY
         return b"A%-2d %s" % (position, texts.of(what))
 
     def step(self, position, now_ms):

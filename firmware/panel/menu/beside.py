@@ -61,7 +61,7 @@ class List(Entries):
             return b"%s %d+%d" % (family, layout.pkw_words, layout.pzd_words)
         if not self._scan.over:
             return texts.of(words.SO_MANY_FOUND, len(nodes))
-        return texts.of(words.TAKE_ALL, len(nodes)) if nodes else texts.of(texts.NOBODY)
+        return texts.of(words.TAKE_ALL, len(nodes)) if nodes else texts.of(words.NOBODY)
 
     def step(self, position, now_ms):
         scan = self._scan

@@ -21,7 +21,7 @@ class List(Entries):
 
     def words(self, position):
         if position < _KIND:
-            return texts.of((texts.SHOW_DRIVE, texts.REMOVE_DRIVE)[position])
+            return texts.of((words.SHOW_DRIVE, words.REMOVE_DRIVE)[position])
         row = position - _KIND
         if row == len(words.KIND):
             return words.speed(self.argument)

@@ -2,22 +2,22 @@
 """The first list of the menu."""
 
 from panel import texts
-from panel.menu import Entries
+from panel.menu import Entries, words
 
 LISTS = (  # text, module
-    (texts.MENU_DRIVES, "drives"),
-    (texts.ANY_ADDRESS, "address"),
+    (words.MENU_DRIVES, "drives"),
+    (words.ANY_ADDRESS, "address"),
     (texts.FIND_DRIVES, "find"),
-    (texts.MENU_SETTINGS, "settings"),
-    (texts.MENU_ORDER, "order"),
-    (texts.MENU_TURNS, "turns"),
-    (texts.MENU_ABOUT, "about"),
+    (words.MENU_SETTINGS, "settings"),
+    (words.MENU_ORDER, "order"),
+    (words.MENU_TURNS, "turns"),
+    (words.MENU_ABOUT, "about"),
 )
 OF_SEVERAL = ("order", "turns")  # drives
 
 
 class List(Entries):
-    title = texts.MENU
+    title = words.MENU
 
     def __init__(self, panel, argument):
         Entries.__init__(self, panel, argument)
@@ -26,7 +26,7 @@ class List(Entries):
         if not panel.selected.drive.contact:  # whoever has none is looking for the drive
             self._lists.insert(0, (texts.WHY_NO_CONTACT, "contact"))
         if panel.settings.lock_code:
-            self._lists.append((texts.MENU_LOCK, None))
+            self._lists.append((words.MENU_LOCK, None))
 
     def count(self):
         return len(self._lists)
@@ -36,7 +36,7 @@ class List(Entries):
 
     def choose(self, position, now_ms):
         text, name = self._lists[position]
-        if text == texts.MENU_LOCK:
+        if text == words.MENU_LOCK:
             self.panel.lock(now_ms)
             return None
         return name, None

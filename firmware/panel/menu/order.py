@@ -10,7 +10,7 @@ from panel.menu import Entries, words
 
 
 class List(Entries):
-    title = texts.MENU_ORDER
+    title = words.MENU_ORDER
 
     def __init__(self, panel, argument):
         Entries.__init__(self, panel, argument)

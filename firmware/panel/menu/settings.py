@@ -12,7 +12,7 @@ LISTS = (  # text, module, argument: what is more than a value
 
 
 class List(Entries):
-    title = texts.MENU_SETTINGS
+    title = words.MENU_SETTINGS
 
     def __init__(self, panel, argument):
         Entries.__init__(self, panel, argument)

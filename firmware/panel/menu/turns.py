@@ -15,7 +15,7 @@ _ROUNDS = const(3)  # within P2014, in which every drive answers late
 
 
 class List(Entries):
-    title = texts.MENU_TURNS
+    title = words.MENU_TURNS
 
     def __init__(self, panel, argument):
         Entries.__init__(self, panel, argument)

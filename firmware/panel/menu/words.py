@@ -6,6 +6,21 @@ A text that is said after the menu has closed stands in `panel.texts`.
 
 from panel import texts
 
+MENU = b"MENU"
+MENU_LOCK = b"LOCK"  # closes the lock
+MENU_DRIVES = b"DRIVES"
+ANY_ADDRESS = b"ANY ADDRESS"
+IN_THE_LIST = b"IN THE LIST"
+ASKS = b"..."
+ANSWERS = b"ANSWERS"
+NOBODY = b"NOBODY"
+MENU_SETTINGS = b"SETTINGS"
+MENU_ORDER = b"ORDER"
+MENU_TURNS = b"TURNS"
+MENU_ABOUT = b"ABOUT"
+SHOW_DRIVE = b"SHOW IT"
+REMOVE_DRIVE = b"REMOVE IT"
+
 # Settings that are a choice or a number: name, how it reads, decimals, whether it acts at once.
 # The panel begins anew with the others, for which no motor may run.
 SETTINGS = (  # the rate comes first: `contact`

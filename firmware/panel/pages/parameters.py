@@ -15,8 +15,10 @@ from micropython import const
 
 import on_demand
 from panel import texts
+from panel.pages import parameter_words as words
 from panel.pages import Page, warning
-from panel.reading import Reading, failure
+from panel.pages.parameter_words import failure
+from panel.reading import Reading
 from panel.screen import BUSY, EDITS
 from uss import pkw
 from uss.families.generic import CUTS_OFF, RESCALES
@@ -36,7 +38,7 @@ ASK = {CUTS_OFF: texts.ASK_CUTS_OFF, RESCALES: texts.ASK_RESCALES}
 class Parameters(Page):
     """Which parameter is shown, of which drive, and what is done with it."""
 
-    modules = ("panel.pages.parameters",)
+    modules = ("panel.pages.parameters", "panel.pages.parameter_words")
 
     def __init__(self, panel):
         Page.__init__(self, panel)
@@ -73,9 +75,9 @@ class Parameters(Page):
 
     def _toggle_edit(self, now_ms):
         if self._shown[self._row][1] is None:
-            self.panel.say(now_ms, texts.READ_ONLY)
+            self.panel.say(now_ms, words.READ_ONLY)
         elif self._value is None:
-            self.panel.say(now_ms, texts.NOT_READ_YET)
+            self.panel.say(now_ms, words.NOT_READ_YET)
         else:
             self._editing = not self._editing
             self._edited = self._value
@@ -83,7 +85,7 @@ class Parameters(Page):
     def _change(self, direction, acts, now_ms):
         highest = self._shown[self._row][1]
         if not self._editing:
-            self.panel.say(now_ms, texts.READ_ONLY if highest is None else texts.EDIT_FIRST)
+            self.panel.say(now_ms, words.READ_ONLY if highest is None else words.EDIT_FIRST)
             return
         pace = acts.pace(100 if highest > _FAST_SPAN else 1)
         value = max(0, min(highest, self._edited + direction * pace))
@@ -102,7 +104,7 @@ class Parameters(Page):
 
     def _set(self, now_ms):
         if not self._editing:
-            self.panel.say(now_ms, texts.EDIT_FIRST)
+            self.panel.say(now_ms, words.EDIT_FIRST)
             return
         number = self._shown[self._row][0]
         self._wish = (self._control, number, self._edited)
@@ -122,7 +124,7 @@ class Parameters(Page):
             return texts.NOTHING
         if self.panel.any_runs() or control.is_starting():
             return texts.STOP_FIRST
-        return texts.ADDRESS_TAKEN if self.panel.is_taken(value) else texts.NOTHING
+        return words.ADDRESS_TAKEN if self.panel.is_taken(value) else texts.NOTHING
 
     def _grant(self, now_ms, eeprom=False):
         """Write what was wished for."""
@@ -216,17 +218,17 @@ class Parameters(Page):
         if warning.draw(screen, self.panel):
             return
         if not self._shown:
-            screen.put(1, 0, _ADDRESS_COLUMN, texts.of(texts.NO_PARAMETERS))
+            screen.put(1, 0, _ADDRESS_COLUMN, texts.of(words.NO_PARAMETERS))
             return
         value = self._edited if self._editing else self._value
         number, highest = self._shown[self._row]
-        name = texts.READ_PARAMETER if highest is None else texts.PARAMETER
-        screen.put(1, 0, texts.PARAMETER_WIDTH, texts.of(name))
+        name = words.READ_PARAMETER if highest is None else words.PARAMETER
+        screen.put(1, 0, words.PARAMETER_WIDTH, texts.of(name))
         screen.digits(1, 1, 4, number)
         if value is not None:
-            screen.number(1, texts.PARAMETER_WIDTH, texts.VALUE_WIDTH, value * 100, 0)
+            screen.number(1, words.PARAMETER_WIDTH, texts.VALUE_WIDTH, value * 100, 0)
         else:
-            unknown = texts.REFUSED_VALUE if self._refused else texts.UNREAD_VALUE
-            screen.put(1, texts.PARAMETER_WIDTH, texts.VALUE_WIDTH, texts.of(unknown))
+            unknown = words.REFUSED_VALUE if self._refused else texts.UNREAD_VALUE
+            screen.put(1, words.PARAMETER_WIDTH, texts.VALUE_WIDTH, texts.of(unknown))
         mark = GLYPHS[BUSY] if self._write else GLYPHS[EDITS] if self._editing else b""
         screen.put(1, _MARK_COLUMN, 1, mark)
