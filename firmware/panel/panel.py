@@ -17,12 +17,11 @@ import on_demand
 from panel import texts, wording
 from panel.announcer import Announcer
 from panel.fault import DriveWarning
-from panel.keys import Acts, keys_of, unknown
+from panel.keys import Acts, keys_of
 from panel.keys.jog_keys import JogKeys
 from panel.keys.stop_key import StopKey
 from panel.neighbours import Neighbours
 from panel.pages.home import Home
-from panel.pages.splash import Splash
 from panel.pages.table import PAGES
 from panel.phases import ASKING, CHECKING
 from panel.screen import Screen
@@ -90,9 +89,9 @@ class Panel:
         self._is_new = settings.new  # nobody has set it up: it offers to find drives
         self.wants = None  # another program: "search", or "app", this one anew
         self.remembered = {}  # by module: where a page was when it was left
-        self._cover = Splash(self)  # a page that hides it: the splash, a question, or None
-        self._notices = _about(settings) or ([(notice,)] if notice else [])
-        self._notices += [(texts.KEY_UNKNOWN, _start_of(name, 9)) for name in unknown(key_names)]
+        splash = on_demand.load("panel.pages.splash")
+        self._cover = splash.Splash(self)  # a page that hides it: the splash, a question, or None
+        self._notices = splash.notices(settings, key_names, notice)
         self._message_at_ms = 0
         self._view = View(self, screen, keys)
         self._view.begin(self._cover)
@@ -457,17 +456,3 @@ class Panel:
             on_demand.drop("panel.writer")
             if self._page is self._home:
                 on_demand.drop("panel.pages.parameter_words")
-
-
-def _about(settings):
-    """What is wrong with the settings file: texts, with their values, said one after the other."""
-    if settings.complaint is None:
-        return []
-    about = (texts.SETTING, _start_of(settings.suspect, texts.ROW_WIDTH))
-    if settings.suspect in texts.SETTINGS_SUSPECTS:
-        about = (texts.SETTINGS_SUSPECTS[settings.suspect],)
-    return [(texts.SETTINGS_DAMAGED,), about]
-
-
-def _start_of(name, width):
-    return str(name)[:width].encode()

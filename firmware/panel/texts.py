@@ -5,14 +5,12 @@ In use:
 
     notice = texts.LINE_FAILED          # whoever keeps a text keeps it in English
     screen.put(1, 0, 12, texts.of(notice))          # and asks for its words when it shows them
-    texts.of(texts.KEY_UNKNOWN, b"FASTER")          # with what belongs into it
+    texts.of(texts.SET_TO_LIMIT, 50, 0)             # with what belongs into it
 
 So the language may change at any time. A further one is one more column of LANGUAGES; what has no
 word in it is said in English. Words are bytes, because a display takes character codes and
 indexing bytes allocates nothing.
 """
-
-from version import VERSION
 
 LANGUAGES = {"English": {}}  # by name: English words -> those of the language
 
@@ -91,15 +89,6 @@ MAY_RUN = b"MAY RUN"
 STOP_UNCONFIRMED = b"STOP UNCONFIRMED"
 ALL_STOPPED = b"ALL DRIVES: STOP"
 LINE_IN_USE = b"LINE IN USE"  # another master talks; nothing is sent
-SETTINGS_DAMAGED = b"SETTINGS DAMAGED"  # defaults are used for what is wrong
-# What is wrong, said after it: the name of a setting, as far as it fits, or this of the file.
-SETTINGS_SUSPECTS = {
-    "unreadable": b"FILE UNREADABLE",
-    "too big": b"FILE TOO BIG",
-    "no JSON": b"FILE IS NO JSON",
-}
-SETTING = b"%s"
-KEY_UNKNOWN = b"NO KEY %s"  # the board file names one that there is not
 NO_MEMORY = b"NO MEMORY LEFT"  # for a page
 NOT_SAVED = b"SETTINGS UNSAVED"  # the flash is full or broken
 WATCHDOG_RESTART = b"WATCHDOG RESTART"  # after the splash: the panel hung, and was restarted
@@ -238,6 +227,3 @@ SEVERAL_REMARKED = b"RUN, P2014 ?:"
 SEVERAL_TRIPPED = b"DRIVES FAULT:"
 SEVERAL_NOTED = b"DRIVES OFF:"
 SEVERAL_UNHEARD = b"MAY RUN:"
-
-# Shown after power-on, both rows: the panel's STOP goes over a wire and through two processors.
-SPLASH = (b"USS %s IS NO" % VERSION.encode(), b"EMERGENCY STOP")

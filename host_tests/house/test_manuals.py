@@ -15,7 +15,7 @@ import version
 from boards.sim.script import COMMANDS
 from panel import texts
 from panel.menu import words
-from panel.pages import parameter_words
+from panel.pages import parameter_words, splash
 from tiers import TOP
 from tools.live import virtual_panel
 
@@ -147,16 +147,16 @@ def every_text(thing):
 
 def test_every_text_of_the_display_is_explained():
     said = section(PANEL, "What the display says")
-    modules = (texts, parameter_words, words)
+    modules = (texts, splash, parameter_words, words)
     found = [text for module in modules for text in every_text(vars(module))]
-    found = [row for row in found if row and row not in texts.SPLASH]
+    found = [row for row in found if row and row not in splash.SPLASH]
     assert len(found) > 100
     missing = [text for text in found if not re.search(pattern(text), said)]
     assert not missing
 
 
 def test_the_splash_is_where_it_is_seen_first():
-    first, second = (texts.of(row).decode() for row in texts.SPLASH)
+    first, second = (texts.of(row).decode() for row in splash.SPLASH)
     assert version.VERSION in first
     assert f"`{first}` / `{second}`" in section(PICO, "First power-on")
 

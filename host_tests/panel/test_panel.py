@@ -9,6 +9,7 @@ import main
 import settings_file as settings
 from boards.sim.world import World
 from panel import texts
+from panel.pages import splash
 from panel_bench import OFF1, ON, panel, row_1, row_2, running, starts, telegrams, unsupervised
 from version import VERSION
 
@@ -454,7 +455,7 @@ def test_what_is_wrong_with_the_settings_file_is_named():
         world.run(3000)
         assert row_2(world) == row, (row_2(world), row)
         world.check()
-    assert set(texts.SETTINGS_SUSPECTS) == {
+    assert set(splash.SETTINGS_SUSPECTS) == {
         settings.NO_JSON, settings.TOO_BIG, settings.UNREADABLE,
     }  # fmt: skip
 

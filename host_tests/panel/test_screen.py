@@ -3,7 +3,7 @@
 
 from panel import texts
 from panel.menu import words as menu_words
-from panel.pages import parameter_words
+from panel.pages import parameter_words, splash
 from panel.screen import COLUMNS, ROWS, Screen
 from uss import families
 
@@ -86,7 +86,7 @@ def named_texts():
     """(name, text or texts) of all that the modules of texts have."""
     return [
         (name, getattr(module, name))
-        for module in (texts, parameter_words, menu_words)
+        for module in (texts, splash, parameter_words, menu_words)
         for name in dir(module)
         if name[0] != "_" and name != "NOTHING"
     ]

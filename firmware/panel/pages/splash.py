@@ -1,13 +1,44 @@
 # SPDX-License-Identifier: MIT
-"""The first thing shown after power-on: what this is, and what it is not."""
+"""The first thing shown after power-on: what this is, and what it is not. And what follows it."""
 
 from micropython import const
 
 from panel import texts
+from panel.keys import unknown
 from panel.pages import Page
 from uss.timing import elapsed
+from version import VERSION
 
 _SHOWN_MS = const(800)
+
+# Shown after power-on, both rows: the panel's STOP goes over a wire and through two processors.
+SPLASH = (b"USS %s IS NO" % VERSION.encode(), b"EMERGENCY STOP")
+
+SETTINGS_DAMAGED = b"SETTINGS DAMAGED"  # defaults are used for what is wrong
+# What is wrong, said after it: the name of a setting, as far as it fits, or this of the file.
+SETTINGS_SUSPECTS = {
+    "unreadable": b"FILE UNREADABLE",
+    "too big": b"FILE TOO BIG",
+    "no JSON": b"FILE IS NO JSON",
+}
+SETTING = b"%s"
+KEY_UNKNOWN = b"NO KEY %s"  # the board file names one that there is not
+_NAME_WIDTH = const(9)
+
+
+def notices(settings, key_names, notice):
+    """What is said one after the other when it has gone: texts, with their values."""
+    about = [(notice,)] if notice else []
+    if settings.complaint is not None:
+        suspect = (SETTING, _start_of(settings.suspect, texts.ROW_WIDTH))
+        if settings.suspect in SETTINGS_SUSPECTS:
+            suspect = (SETTINGS_SUSPECTS[settings.suspect],)
+        about = [(SETTINGS_DAMAGED,), suspect]
+    return about + [(KEY_UNKNOWN, _start_of(name, _NAME_WIDTH)) for name in unknown(key_names)]
+
+
+def _start_of(name, width):
+    return str(name)[:width].encode()
 
 
 class Splash(Page):
@@ -35,5 +66,5 @@ class Splash(Page):
                 self.panel.say(now_ms, texts.REFUSED_EARLY)
 
     def draw(self, screen, now_ms):
-        for row in range(len(texts.SPLASH)):
-            screen.put(row, 0, texts.ROW_WIDTH, texts.of(texts.SPLASH[row]))
+        for row in range(len(SPLASH)):
+            screen.put(row, 0, texts.ROW_WIDTH, texts.of(SPLASH[row]))
