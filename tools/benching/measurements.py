@@ -37,9 +37,11 @@ STW_AT = 11  # in a telegram with a PKW area of 4 words
 REFERENCE_CENTIHERTZ = 5_000  # P2000 of a simulated drive
 ACTUAL_AT = 10  # column of the actual frequency, in the first row
 KEY_MS = 200
+TAP_MS = 100
+BEGINS_MS = {"frozen": 300, "files": 700}
 CHANGES = 20  # of the display, then the other key
 
-BOOT_MS = 600
+BOOT_MS = 5_000  # to the prompt; as files it takes longer
 ON_CHIP = "tools/benching/on_chip.py"
 MASTER_ON_CHIP = "tools/benching/master_on_chip.py"
 DEPLOYED = "build/deployed"  # the firmware as tools/deploy copies it onto a chip
@@ -88,13 +90,16 @@ def at_the_prompt(world, program=ON_CHIP):
     `program`.
     """
     world.down("DOWN")
-    world.run(BOOT_MS)
+    if not world.run_until(lambda: b"not started" in world.usb, BOOT_MS):
+        raise RuntimeError("the chip does not come to its prompt: %r" % bytes(world.usb))
     world.repl.open()
     world.up("DOWN")
     with open(program) as file:
-        printed, error = world.repl.execute(file.read())
-    if error:
-        raise RuntimeError(error)
+        pieces = file.read().split("\n\n\n")  # no more than there is room for in one piece
+    for piece in ["import gc"] + pieces:
+        printed, error = world.repl.execute(piece + "\ngc.collect()")
+        if error:
+            raise RuntimeError(error)
 
 
 def result(world, ms):
@@ -420,6 +425,58 @@ def steps(quick, baud, drives):
     return checked(world, found)
 
 
+# What a person does at the menu: opens it, walks it, opens each of its lists, and in each list the
+# entries. MENU is a PARAM that is held, BACK one that is pressed until the home page is there.
+MENU, BACK = "menu", "back"
+HOME = "S:"  # row 1 of the home page begins with it
+HOLD_MS, READ_MS = 1_300, 300
+SCENE_MS = 8_500
+ENTRIES = 5
+OPENS = 2 * (MENU, BACK)
+WALKS = (MENU,) + ENTRIES * ("DOWN",) + (BACK,)
+LISTS = tuple(
+    (MENU,) + entry * ("DOWN",) + ("SET", "DOWN", "DOWN", "SET", "UP", BACK)
+    for entry in range(ENTRIES)
+)
+
+
+def menu(quick, how, drives):
+    """A step of the main loop while a person opens the menu, walks it, and opens each list.
+
+    how: as in `heap`.
+    """
+    scenes = (OPENS, WALKS) + LISTS
+    settled_ms = SETTLE_MS + LEARN_MS_A_DRIVE * int(drives)
+    world = world_at(19200, int(drives), **firmware_as(how))
+    at_the_prompt(world)
+    begun_ms = world.clock.now_us // 1000
+    call = (SCENE_MS, len(scenes), COLLECT_MS, False, settled_ms)
+    world.repl.begin("steps(%d, %d, %d, %r, %d)" % call)
+    settle(world)
+    for place, keys in enumerate(scenes):
+        # The chip is some way behind with its start, and more so as files.
+        begins_ms = begun_ms + settled_ms + place * SCENE_MS + BEGINS_MS[how]
+        world.run(max(0, begins_ms - world.clock.now_us // 1000))
+        for key in keys:
+            do_at_the_menu(world, key)
+        if world.clock.now_us // 1000 > begins_ms + SCENE_MS - BEGINS_MS[how]:
+            raise RuntimeError("%r takes more than %d ms" % (keys, SCENE_MS))
+    opening, walking, *lists = result(world, 2 * SCENE_MS)["steps"]
+    found = {"opening": opening, "walking": walking, "lists": sorted(sum(lists, []))}
+    return checked(world, {name: steps_of(table) for name, table in found.items()})
+
+
+def do_at_the_menu(world, key):
+    if key == BACK:
+        while not world.lcd()[0].startswith(HOME):
+            do_at_the_menu(world, "PARAM")
+        return
+    world.press("PARAM" if key == MENU else key, HOLD_MS if key == MENU else TAP_MS)
+    world.run(READ_MS)
+    if key == MENU and world.lcd()[0].startswith(HOME):
+        raise RuntimeError("the menu does not open: %r" % (world.lcd(),))
+
+
 def boot(quick, display):
     """From power-on to the first telegram, and to the home page."""
     world = world_at(19200, display=display)
@@ -438,11 +495,7 @@ def heap(quick, how, drives):
 
     how: "frozen", or "files", compiled by __main__.py, on a MicroPython without the panel.
     """
-    files = {"boot.py": TELLS_FREE}
-    if how == "files":
-        files.update(files_in(DEPLOYED))
-    program = "panel" if how == "frozen" else "stock"
-    world = world_at(19200, int(drives), program=program, files=files)
+    world = world_at(19200, int(drives), **firmware_as(how, {"boot.py": TELLS_FREE}))
     settle(world)
     world.run(LEARN_MS_A_DRIVE * int(drives))
     told = world.usb.count(b" bytes free")
@@ -450,6 +503,14 @@ def heap(quick, how, drives):
         raise RuntimeError("the chip tells no free heap: %r" % bytes(world.usb[-500:]))
     free = int(bytes(world.usb).rpartition(b" bytes free")[0].split()[-1])
     return checked(world, {"free": free})
+
+
+def firmware_as(how, files=()):
+    """Which program a chip has, "frozen" or as "files", and which other files beside it."""
+    files = dict(files)
+    if how == "files":
+        files.update(files_in(DEPLOYED))
+    return {"program": "panel" if how == "frozen" else "stock", "files": files}
 
 
 def files_in(folder, within=""):
@@ -607,6 +668,7 @@ MEASUREMENTS = {
         stop,
         hang,
         steps,
+        menu,
         picture,
         boot,
         heap,

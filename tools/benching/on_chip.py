@@ -16,7 +16,7 @@ import main
 from uss import pkw
 
 BUCKET_US = 20  # of a table of durations
-BUCKETS = 1000  # the last one holds what is longer, too
+BUCKETS = 300  # what is longer is listed: as files, the heap has no room for more in one piece
 
 idle_at = 0
 
@@ -45,27 +45,33 @@ class Tasks:
             drive.ask(job)
 
 
-def steps(phase_ms, phases, collect_ms, tasks=False):
+def steps(phase_ms, phases, collect_ms, tasks=False, settled_ms=0):
     """Step the panel; print {"steps": [[[us, count], ...] for each phase], "collections_us"}.
 
+    settled_ms: for so long before the first phase.
     tasks: each drive has a parameter task always pending; how many were done is "tasks".
     """
     ticks_us, ticks_ms, since = time.ticks_us, time.ticks_ms, time.ticks_diff
     tables = [array("H", bytes(2 * BUCKETS)) for _ in range(phases)]
+    longer = [[] for _ in range(phases)]
     collections = array("I")
     board.idle = idle
     app = main.start(board)
     asking = Tasks(app.bus.turns.drives if tasks else ())
     gc.collect()
     try:
+        step_for(app, settled_ms)
         began = collected = ticks_ms()
         passed = 0
         while passed < phases * phase_ms:
-            table = tables[passed // phase_ms]
+            phase = passed // phase_ms
             at = ticks_us()
             app.step()
             took = since(idle_at, at) // BUCKET_US
-            table[took if took < BUCKETS else BUCKETS - 1] += 1
+            if took < BUCKETS:
+                tables[phase][took] += 1
+            else:
+                longer[phase].append(took)
             if tasks:
                 asking.ask()
             now = ticks_ms()
@@ -78,10 +84,13 @@ def steps(phase_ms, phases, collect_ms, tasks=False):
                     collections.append(since(ticks_us(), at))
     finally:
         app.close()
-    found = [[[at * BUCKET_US, n] for at, n in enumerate(table) if n] for table in tables]
-    print(json.dumps({
-        "steps": found, "collections_us": list(collections), "tasks": asking.ended
-    }))  # fmt: skip
+    app = None
+    gc.collect()
+    print('{"collections_us": %s, "tasks": %d, "steps": [' % (list(collections), asking.ended))
+    for phase, table in enumerate(tables):  # there is no room for all of it in one piece
+        found = [[at * BUCKET_US, n] for at, n in enumerate(table) if n]
+        found += [[at * BUCKET_US, 1] for at in sorted(longer[phase])]
+        print(json.dumps(found), "]}" if phase == phases - 1 else ",")
 
 
 def memory(exchanges, settled_ms):

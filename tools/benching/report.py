@@ -69,6 +69,8 @@ An emulated Raspberry Pi Pico with the firmware frozen in (`tools/uf2`). The cac
 reads its flash is modelled: 16 KiB, two ways, lines of 8 bytes, 60 cycles for one that is not in
 it. Computing time is right to 30 %, the wires to the nanosecond. While it is measured, keys are
 pressed, the display changes, and garbage is collected every 100 ms, unless the row says otherwise.
+What the menu needs comes from the flash, a module in a step of the loop: frozen modules, or files,
+for which a step takes the time of the chip's file system.
 One drive, telegrams of 16 characters, replies after 2 characters, unless the row says otherwise.
 The intervals of the S7-200 (poll time of an active drive) and the S7-1200 (scan interval) are
 those of their system manuals; they offer no 187500."""

@@ -17,6 +17,13 @@ class List(Entries):
             texts.of(words.LICENCE),
             panel.board.name.encode(),
         ]
+        self._counted = False
+
+    def step(self, position, now_us):
+        """To count what is free takes as long as a collection does: once, in a step of its own."""
+        if self._counted:
+            return
+        self._counted = True
         free = on_demand.free_bytes()
         if free is not None:
             self._rows.append(texts.of(words.FREE_MEMORY, free // 1024))

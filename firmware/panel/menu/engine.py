@@ -13,6 +13,13 @@ from panel.menu import BACK
 from panel.pages import Page
 from uss.timing import elapsed
 
+# What a list wants besides, a step of the loop for each: from the bottom of the house up.
+_WANTS = {
+    "address": ("uss.finding", "uss.finding.mirror"),
+    "kind": ("uss.families.bop", "uss.families.kinds"),
+    "turns": ("uss.families.kinds", "settings_file"),
+    "value": ("uss.families.kinds", "settings_file"),
+}
 _STALE_MS = const(60_000)
 _COUNT_COLUMN = const(11)  # "12/31"
 
@@ -29,12 +36,12 @@ class Menu(Page):
         Page.__init__(self, panel)
         self._lists = []  # (name of the module, `List`, position in it), the one shown last
         self._used_at_ms = None
-        on_demand.load("panel.menu.words")  # first: an import inside an import takes stack
         self._alarmed = panel.selected.needs_attention()
         self._enter(*begin)
+        self._wanted.insert(0, "panel.menu.words")
 
     def take_keys(self, acts, now_ms):
-        if not (acts.pressed or acts.repeated):
+        if self._coming or not (acts.pressed or acts.repeated):
             return
         self._used_at_ms = now_ms
         name, shown, position = self._lists[-1]
@@ -55,6 +62,9 @@ class Menu(Page):
             self._lists[-1] = (name, shown, (position + direction) % shown.count())
 
     def step(self, keys, now_ms):
+        if self._coming:
+            self._come(now_ms)
+            return
         _, shown, position = self._lists[-1]
         shown.step(position, now_ms)
         if not self._lists:  # that has closed the menu
@@ -69,13 +79,16 @@ class Menu(Page):
 
     def close(self):
         """Close the whole menu."""
+        if self._coming:
+            self._forget(self._coming[0])
+            self._coming = None
         while self._lists:
-            on_demand.drop("panel.menu." + self._lists.pop()[0])
+            self._forget(self._lists.pop()[0])
         self.panel.uncover()
 
     def draw(self, screen, now_ms):
         if not self._lists:
-            return  # it has closed, in the middle of this picture
+            return  # the first one is yet to come, or all have closed in the middle of a picture
         _, shown, position = self._lists[-1]
         count = shown.count()
         position = min(position, count - 1)  # what was last in it may have gone
@@ -102,21 +115,39 @@ class Menu(Page):
         if following is BACK:
             self._leave(now_ms)
             return
-        try:
-            self._enter(*following)
-        except MemoryError:
-            on_demand.drop("panel.menu." + following[0])
-            self.panel.say(now_ms, texts.NO_MEMORY)
+        self._enter(*following)
 
     def _enter(self, name, argument):
-        shown = on_demand.load("panel.menu." + name).List(self.panel, argument)
-        self._lists.append((name, shown, shown.first()))
+        """That list comes with the steps that follow: each loads one module."""
+        self._coming = (name, argument)
+        self._wanted = list(_WANTS.get(name, ())) + ["panel.menu." + name]
+
+    def _come(self, now_ms):
+        name, argument = self._coming
+        try:
+            if self._wanted:
+                on_demand.load(self._wanted.pop(0))
+                return
+            shown = on_demand.load("panel.menu." + name).List(self.panel, argument)
+            self._lists.append((name, shown, shown.first()))
+        except MemoryError:
+            self.panel.say(now_ms, texts.NO_MEMORY)
+            self._forget(name)
+        self._coming = None
+        if not self._lists:
+            self.panel.uncover()
+
+    def _forget(self, name):
+        """What a list has needed leaves the memory."""
+        on_demand.drop("panel.menu." + name)
+        for module in _WANTS.get(name, ()):
+            on_demand.drop(module)
 
     def _leave(self, now_ms):
         """Back to the list above this one."""
         self._lists[-1][1].leave(now_ms)
         if not self._lists:  # that has closed the menu
             return
-        on_demand.drop("panel.menu." + self._lists.pop()[0])
+        self._forget(self._lists.pop()[0])
         if not self._lists:
             self.panel.uncover()

@@ -24,7 +24,8 @@ class List(Entries):
 
     def change(self, position, steps):
         name, settings = self.argument[0], self.panel.settings
-        self._value = on_demand.call("settings_file", "moved", settings, name, self._value, steps)
+        schema = on_demand.load("settings_file")  # it stays as long as this is shown
+        self._value = schema.moved(settings, name, self._value, steps)
         return True
 
     def choose(self, position, now_ms):
