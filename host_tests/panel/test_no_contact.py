@@ -106,12 +106,33 @@ def test_the_rate_can_be_changed_from_there():
     world.check()
 
 
-def test_stop_is_stop_there():
-    world = panel(addresses=(1, 2))
-    world.drives[1].unplug()
-    world.run(3000)
-    why(world)
+def test_stop_is_stop_at_every_step_and_behind_it():
+    opened = []
+    for how in (TROUBLES[0][0], TROUBLES[1][0], TROUBLES[4][0]):
+        world = panel(addresses=(1, 2))
+        world.run(1000)
+        spoil(world.wire, world.drives[1], how)
+        world.run(2500)
+        _, steps = why(world)
+        press(world, "DOWN")
+        press_stop(world, "counted")
+        for step in steps:
+            press(world, "DOWN", "SET")
+            if row_2(world)[1:] != step:
+                opened.append(step)
+                press_stop(world, step)
+                press(world, "PARAM")
+            assert row_2(world)[1:] == step, (step, world.lcd())
+            press_stop(world, step)
+        world.check()
+    assert opened == [
+        "P2010=7 19200", "P2013 = 4", "FIND DRIVES", "P2010=7 19200", "P2013 = 4", "P2012 = 2",
+    ], opened  # fmt: skip
+
+
+def press_stop(world, where):
     pressed_us = world.clock.now_us
     press(world, "STOP")
-    assert OFF1 in [stw for _, stw in telegrams(world, pressed_us, 1)]
-    world.check()
+    offs = [at_us for at_us, stw in telegrams(world, pressed_us, 1) if stw == OFF1]
+    assert offs and offs[0] - pressed_us < 150_000, (where, world.lcd())
+    assert row_2(world).startswith(">"), (where, world.lcd())

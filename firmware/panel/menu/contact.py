@@ -5,7 +5,7 @@ A3 HEARD     1/8        the first entry: in words; and how many telegrams it has
 >NOTHING
 
 CHECK        4/8        the others: the most likely first, for what was heard. SET opens what
->P2010 = 19200          helps: the baud rate, its PKW and PZD words, the search
+>P2010=7 19200          helps: the baud rate, its PKW and PZD words, the search
 """
 
 from micropython import const
