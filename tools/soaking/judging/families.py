@@ -210,6 +210,8 @@ class Kind:
         """The panel sends a telegram of so many net words. Whether it may."""
         pkw_words = count - self.pzd_words
         fitting = self.words & _fitting(pkw_words, task)
+        if not fitting and self._send_other(count, task):
+            return True
         if not fitting:
             fitting = self._found() & _fitting(pkw_words, task)
             self._came_back.clear()
