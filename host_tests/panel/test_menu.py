@@ -745,3 +745,30 @@ def test_there_are_never_two_panels_in_memory():
     finally:
         app.App.__init__ = begin
     assert len(free) == 1 and free[0] < before - 31 * 700, (before, free)
+
+
+class Watched:
+    """An app; `most` is how many modules came into memory in one step at the most."""
+
+    def __init__(self, app):
+        self.app = app
+        self.panel = app.panel
+        self.most = 0
+
+    def step(self):
+        before = set(sys.modules)
+        self.app.step()
+        self.most = max(self.most, len(set(sys.modules) - before))
+        return self
+
+
+def test_no_step_of_the_loop_waits_for_two_modules_of_the_menu():
+    world = panel()
+    world.app = watched = Watched(world.app)
+    for entry in range(5):
+        menu(world)
+        press(world, *(entry * ("DOWN",) + ("SET", "DOWN", "DOWN", "SET", "UP")))
+        while not row_1(world).startswith("S:"):
+            press(world, "PARAM")
+    assert watched.most == 1
+    world.check()
