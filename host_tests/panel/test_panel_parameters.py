@@ -511,6 +511,10 @@ def test_a_refusal_is_told_in_words():
         assert world.drives[1].read(number) == was
         assert name == "P2011" or "EEPROM" not in [row[2] for row in writes(world)]
         world.run(3100)
+        if text == "P0003 TOO LOW":  # the panel offers to raise it
+            assert row_2(world) == "SET=DO  PARAM=NO", world.lcd()
+            world.press("PARAM")
+            world.run(200)
         assert row_2(world) == "%s:     %d↕A1" % (name, value)
         world.press("EDIT")
         assert row_2(world) == "%s:     %d A1" % (name, was)
