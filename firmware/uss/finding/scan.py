@@ -35,8 +35,8 @@ from uss.timing import BAUD_RATES, FRAME_CHARACTERS, Timing, elapsed
 ADDRESSES = range(32)
 
 # Net characters of the layouts that drives are delivered with, or usually set to (PKW + PZD
-# words): 4 + 2, 3 + 2, 0 + 2, 4 + 4, 4 + 8.
-NET_COUNTS = (12, 10, 4, 16, 24)
+# words): 4 + 2, 3 + 2, 0 + 2, 4 + 4, 4 + 8, 0 + 4, 3 + 4.
+NET_COUNTS = (12, 10, 4, 16, 24, 8, 14)
 EVERY_NET_COUNT = range(2, 42, 2)  # of all fixed layouts: PKW 0, 3, 4 and PZD 0...16
 
 # The rates in the order in which they are worth trying; those of every interface first.
