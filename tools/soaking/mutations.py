@@ -721,7 +721,7 @@ MUTATIONS = (
         (
             "uss/finding/finder.py",
             "            if not drive.doubted or drive.may_run():\n                return False\n",
-            "            return True\n",
+            "            pass\n",
         ),
     ),
     Mutation(
@@ -757,15 +757,17 @@ MUTATIONS = (
         ("TELEGRAM",), 2,
         (
             "uss/finding/finder.py",
-            "        elif is_silent or self._tries >= TRIES:\n            self._tries = 0\n",
-            "        elif is_silent or self._tries >= TRIES:\n"
-            "            self._find(_WORDS[self._row % 3], 2)\n            self._tries = 0\n",
+            "            self._tries = 0\n            self._row += 1\n",
+            "            self._tries = 0\n"
+            "            if self._row < _FURTHER:\n"
+            "                self._find(_WORDS[self._row], self._layout.pzd_words)\n"
+            "            self._row += 1\n",
         ),
     ),
     Mutation(
         "found and forgotten",
         "the layout of a drive is found out, and not used",
-        ("RECOVERS",), 2,
+        ("RECOVERS",), 8,
         (
             "uss/finding/finder.py",
             "            self._turns.relayout(drive, layout, drive.doubted)\n",
