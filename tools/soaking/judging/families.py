@@ -184,8 +184,8 @@ class Kind:
     """How the panel divides its telegrams to one drive, as far as the line tells, and the family
     that its settings name.
 
-    pzd_words: of each telegram. It changes its PKW words only to those of a mirror telegram that
-    came back.
+    pzd_words: of each telegram, in the layout that is in force. It changes the layout only to one
+    in whose length a mirror telegram came back.
     """
 
     def __init__(self, name, pkw_words, pzd_words):
@@ -194,7 +194,9 @@ class Kind:
         self.told = pkw_words
         self.words = {pkw_words}  # of which one is in force
         self._known = {pkw_words}  # that the settings may name after a restart
-        self._came_back = {}  # since the last reply: PKW words -> whether the panel must know
+        self._told_pzd_words = pzd_words
+        self._other = None  # the layout before, which may be in force yet
+        self._came_back = {}  # since the last reply: net words -> whether the panel must know
         self._sights = {}
 
     def sight(self):
@@ -217,8 +219,37 @@ class Kind:
             self._came_back.clear()
             self._known |= fitting
         if not fitting:
-            return False
+            return self._send_other(count, task)
         self.words = fitting
+        return True
+
+    def _send_other(self, count, task):
+        """In the layout before. While the panel asks a drive what it is, it sends in both."""
+        if self._other is None:
+            return False
+        words, pzd_words = self._other
+        fitting = words & _fitting(count - pzd_words, task)
+        if fitting:
+            self._other = self.words, self.pzd_words
+            self.words, self.pzd_words = fitting, pzd_words
+        return bool(fitting)
+
+    def may_ask(self, count):
+        """Whether so many net words may be a question to a drive whose layout is looked for."""
+        back = self._came_back
+        return count in back or count >= 3 and any(one + 1 in back for one in back)
+
+    def learn(self, layout, count):
+        """The panel speaks to a drive of this layout as the drive has it. Whether it may be so."""
+        pkw_words, pzd_words = layout
+        least = 3 if pkw_words == VARIABLE else pkw_words
+        if count < least + pzd_words or pkw_words != VARIABLE and count > least + pzd_words:
+            return False
+        if self.words != {pkw_words} or self.pzd_words != pzd_words:
+            self._other = self.words, self.pzd_words
+            self.words, self.pzd_words = {pkw_words}, pzd_words
+            if pzd_words == self._told_pzd_words:
+                self._known.add(pkw_words)
         return True
 
     def may_be_reply(self, count):
@@ -236,22 +267,23 @@ class Kind:
 
     def returned(self, count, is_sure):
         """A mirror telegram of so many net words has come back."""
-        pkw_words = count - self.pzd_words
-        self._came_back[pkw_words] = is_sure or self._came_back.get(pkw_words, False)
+        self._came_back[count] = is_sure or self._came_back.get(count, False)
         if 3 in self.words and VARIABLE in self._found():
             self.words = self.words | {VARIABLE}  # its telegrams without a task look the same
 
     def restarted(self):
         self._came_back.clear()
-        self.words = set(self._known)
+        if self.pzd_words == self._told_pzd_words:
+            self.words = set(self._known)
 
     def _found(self):
         """What the panel may have found out."""
         found = set()
-        for words, is_sure in self._came_back.items():
-            if words + 1 in self._came_back:
+        for count, is_sure in self._came_back.items():
+            words = count - self.pzd_words
+            if count + 1 in self._came_back:
                 found.add(VARIABLE)
-                if is_sure and self._came_back[words + 1]:
+                if is_sure and self._came_back[count + 1]:
                     continue
             if words in (0, 3, 4):
                 found.add(words)

@@ -11,6 +11,7 @@ each telegram by the keys as they were when it began.
     judge.witness.key("START", True)    # before the key moves
 """
 
+from tools.soaking.judging.case import drive_at
 from tools.soaking.judging.drive_settings import magnitude, scalings
 from tools.soaking.judging.facts import (
     ACKNOWLEDGE,
@@ -79,6 +80,7 @@ class Judge:
         self._shares = Shares(witness)
         self._patience_us = SILENT_US + witness.exchange_us
         self._unsettled = []  # replies that may still be spoilt: row, case, whether it has stopped
+        self._is_question = False  # the last telegram asked a drive what it is
         self._begun_us = None  # the power-on whose first telegram was judged last
         self._counted_us = 0
 
@@ -147,9 +149,12 @@ class Judge:
                 self._judge_request(row, tape)
             elif kind == MALFORMED:
                 raise Broken("TELEGRAM", "at %d" % tape.at_us[row])
+            elif kind == REPLY and self._is_question:
+                self._shares.answered()
             elif kind == REPLY:
                 self._take_reply(row, tape)
             elif kind == MIRRORED:
+                self._is_question = False
                 self._judge_mirror(row, tape)
             else:
                 self._shares.answered()
@@ -202,6 +207,9 @@ class Judge:
         waits = 2 + 2 * witness.may_look(now)
         waited_us = waits * (witness.exchange_us + self.plan.loop_us)
         recently_us = max(witness.boot_us, now - witness.lost_us * 9 // 10)
+        if case.heard_us > recently_us and not witness.is_able(address):
+            self._shares.mirror(case, now)
+            return  # its answers may make no sense
         if case.heard_us > recently_us and now - case.contact_us > waited_us:
             told = (where, (now - case.contact_us) // MS, (now - case.heard_us) // MS)
             raise Broken("MIRROR", "%s, in contact for %d ms, heard %d ms ago" % told)
@@ -266,7 +274,8 @@ class Judge:
             if not tape.is_settled(row, now):
                 waiting.append(one)
             elif self._is_sure(row, tape) and kind.is_sure_reply(tape.count[row]):
-                kind.answered()
+                if self.witness.is_able(tape.address[row]):
+                    kind.answered()
                 case.replies += 1
                 case.heard_requests = max(case.heard_requests, requests)
                 heard_us = tape.end_us[row]
@@ -295,6 +304,10 @@ class Judge:
         case = self.cases[address]
         kind = self.witness.kinds[address]
         self.exchanges += 1
+        self._is_question = kind.may_ask(tape.count[row]) and self._asks(row, tape, kind)
+        if self._is_question:
+            self._shares.mirror(case, now)
+            return
         pkw_words = tape.count[row] - kind.pzd_words
         pke = tape.word(row, 0) if pkw_words > 0 else 0
         task = pke >> 12
@@ -336,6 +349,22 @@ class Judge:
         case.stw = stw & ~ACKNOWLEDGE
         case.hsw = hsw
         case.sent_us = now
+
+    def _asks(self, row, tape, kind):
+        """Whether a telegram asks a drive what it is, in a layout that it does not have: it obeys
+        nothing in that. In its own, the panel may just have found it."""
+        now, address, count = tape.at_us[row], tape.address[row], tape.count[row]
+        drive = drive_at(self.world, address)
+        if drive is not None and count >= drive.layout[1]:
+            stw = tape.word(row, -drive.layout[1])
+            if stw & CONTROLS and kind.learn(drive.layout, count):
+                self.witness.layout_changed(address, now)
+                return False
+        if count >= kind.pzd_words and tape.word(row, -kind.pzd_words) & CONTROLS:
+            return False
+        if tape.word(row, 0) >> 12 not in READS:
+            raise Broken("WRITE", "drive %d at %d, which is asked what it is" % (address, now))
+        return True
 
     def _judge_layout(self, row, tape, kind, task):
         """The panel divides its telegrams as its settings say, or as a mirror telegram did that
