@@ -219,7 +219,7 @@ class Kind:
             self._came_back.clear()
             self._known |= fitting
         if not fitting:
-            return self._send_other(count, task)
+            return False
         self.words = fitting
         return True
 
