@@ -430,12 +430,17 @@ def steps(quick, baud, drives):
 MENU, BACK = "menu", "back"
 HOME = "S:"  # row 1 of the home page begins with it
 HOLD_MS, READ_MS = 1_300, 300
-SCENE_MS = 8_500
-ENTRIES = 5
+SCENE_MS = 10_000
+ENTRIES = 7
+FIND = 2  # the entry in whose list SET would begin a search, which is another program
 OPENS = 2 * (MENU, BACK)
 WALKS = (MENU,) + ENTRIES * ("DOWN",) + (BACK,)
 LISTS = tuple(
-    (MENU,) + entry * ("DOWN",) + ("SET", "DOWN", "DOWN", "SET", "UP", BACK)
+    (MENU,)
+    + entry * ("DOWN",)
+    + ("SET", "DOWN", "DOWN")
+    + (() if entry == FIND else ("SET", "UP"))
+    + (BACK,)
     for entry in range(ENTRIES)
 )
 

@@ -66,7 +66,7 @@ def steps(phase_ms, phases, collect_ms, tasks=False, settled_ms=0):
         while passed < phases * phase_ms:
             phase = passed // phase_ms
             at = ticks_us()
-            app.step()
+            app = app.step() or app
             took = since(idle_at, at) // BUCKET_US
             if took < BUCKETS:
                 tables[phase][took] += 1
@@ -88,9 +88,12 @@ def steps(phase_ms, phases, collect_ms, tasks=False, settled_ms=0):
     gc.collect()
     print('{"collections_us": %s, "tasks": %d, "steps": [' % (list(collections), asking.ended))
     for phase, table in enumerate(tables):  # there is no room for all of it in one piece
-        found = [[at * BUCKET_US, n] for at, n in enumerate(table) if n]
-        found += [[at * BUCKET_US, 1] for at in sorted(longer[phase])]
-        print(json.dumps(found), "]}" if phase == phases - 1 else ",")
+        print("," if phase else "", "[")
+        rows = [(at, n) for at, n in enumerate(table) if n] + [(at, 1) for at in longer[phase]]
+        for place, (at, n) in enumerate(sorted(rows)):
+            print("," if place else "", [at * BUCKET_US, n])
+        print("]")
+    print("]}")
 
 
 def memory(exchanges, settled_ms):
