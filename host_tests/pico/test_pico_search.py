@@ -59,9 +59,9 @@ def runs_and_stops(world, address):
 def test_drives_at_two_rates_are_found_and_those_of_the_first_one_run():
     world, choices = found("1,3=g110,8=mm420/factory")
     assert choices == [
-        ("A1 19200 MM420", "4+2     TAKEN"),
-        ("A3 19200 G110", "127+2   TAKEN"),
-        ("A0 9600 MM420", "127+2   SET=TAKE"),
+        ("A1 19200 MM420", "4+2    READY [X]"),
+        ("A3 19200 G110", "127+2  READY [X]"),
+        ("A0 9600 MM420", "127+2  READY [ ]"),
     ]
     taken(world)
     settings = world.settings()
@@ -79,7 +79,7 @@ def test_drives_at_two_rates_are_found_and_those_of_the_first_one_run():
 
 def test_a_drive_as_delivered_is_taken_set_up_and_run_at_its_own_rate():
     world, choices = found("8=mm420/factory")
-    assert choices == [("A0 9600 MM420", "127+2   TAKEN")]
+    assert choices == [("A0 9600 MM420", "127+2  READY [X]")]
     taken(world)
     settings = world.settings()
     assert (settings["baud"], settings["drives"]) == (9600, [0])
