@@ -55,6 +55,8 @@ ROWS = rows_like(
         (704, "function of digital input 4", "U16", "", 1, 0, 99, 0, "CT", 2, ""),
         (720, "number of digital inputs", "U16", "", 1, None, None, 3, "", 3, ""),
         (750, "number of analog inputs", "U16", "", 1, None, None, 1, "", 3, ""),
+        (756, "type of the analog input", "U16", "", 1, 0, 1, 0, "CT", 2, ""),
+        (776, "type of the analog output", "U16", "", 1, 0, 0, 0, "CT", 2, "0...20 mA"),
         (1000, "frequency setpoint source", "U16", "", 1, 0, 66, 2, "CT", 1,
          "units main, tens additional: 0 none, 1 motor potentiometer, 2 analog input, 3 fixed "
          "frequency, 4 USS on BOP link, 5 USS on COM link, 6 CB"),
