@@ -26,6 +26,7 @@ RULES = (
     ("firmware/settings.py", ("uss",), ()),
     ("firmware/settings_file.py", ("on_demand", "settings", "uss"), ("json",)),
     ("firmware/search", ("search", "panel", "on_demand", "uss", "hal"), ("micropython",)),
+    ("firmware/catalogue", ("on_demand",), ("io", "micropython")),
     ("firmware/strict_json.py", (), ("json",)),
     ("firmware/version.py", (), ()),
     ("firmware/uss", ("uss",), ("struct", "array", "micropython")),
@@ -44,8 +45,8 @@ RULES = (
     ("boards", ("chips", "hal"), ("machine", "micropython", "os")),
 )
 PROJECT = (
-    "app", "panel", "settings", "settings_file", "on_demand", "search", "strict_json", "version",
-    "uss", "hal", "boards", "chips", "main",
+    "app", "catalogue", "panel", "settings", "settings_file", "on_demand", "search", "strict_json",
+    "version", "uss", "hal", "boards", "chips", "main",
 )  # fmt: skip
 
 # What the engine and the panel do without: only programs beside the panel import these.
