@@ -7,6 +7,8 @@ main.py: so a changed board.py can be tried without building anything.
 """
 
 import os
+import sys
+import tempfile
 
 # The order in which they are frozen is part of the firmware's bytes, and that of a listing is not
 # the same everywhere.
@@ -24,3 +26,14 @@ freeze("$(PORT_DIR)/modules", ("_boot.py", "_boot_fat.py", "rp2.py"))  # the por
 freeze("../../firmware", tuple(python_files("../../firmware")))
 freeze("..", ("chips/rp2.py",))
 module("board.py")
+
+# The catalogue's tables, as constants; `tools` is found from the top of the tree.
+sys.path.insert(0, os.path.abspath("../.."))
+from tools.deploying import packing  # noqa: E402
+
+tables = tempfile.TemporaryDirectory()
+for path, source in packing.modules("../../firmware/catalogue").items():
+    os.makedirs(os.path.join(tables.name, os.path.dirname(path)), exist_ok=True)
+    with open(os.path.join(tables.name, path), "w") as file:
+        file.write(source)
+    freeze(tables.name, (path,))

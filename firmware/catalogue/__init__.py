@@ -13,11 +13,7 @@ cell that is empty there is that of the family that it is like. A row costs a se
 of some milliseconds on a chip: `paced` splits it, and gives None where there is more to do.
 """
 
-from io import BytesIO
-
 from micropython import const
-
-import on_demand
 
 FAMILIES = ("mm440", "mm430", "mm420", "mm410", "g110", "v20", "g120", "mm3")
 
@@ -33,6 +29,7 @@ LINE = b"|"  # between the lines of a text
 ALL = b"0-32767"
 
 _NEAR = const(256)  # bytes; what is nearer is found by reading on
+_PIECE = const(128)  # bytes that are read at once
 _READING, _PARAMETER = const(18), const(16)  # r and P, of which a table has one order
 _LIKE, _COMMAND_SETS, _DRIVE_SETS = const(2), const(3), const(4)  # of the head
 
@@ -100,7 +97,7 @@ def _rows(family, kind, numbers):
     as_a_whole = kind not in b"\x01\x06\x10"  # neither A nor F nor P: what stands together
     missing = True
     with _table(family) as table:
-        head = _cells(table.readline())
+        head = _cells(_line(table))
         like = head[_LIKE].decode()
         for part in numbers.split():
             first, _, last = part.partition(b"-")
@@ -132,20 +129,21 @@ def _completed(row, like):
 
 def _between(table, first, last):
     """The rows with these keys, and None after each look for the first."""
-    low, high = 0, table.seek(0, 2)
+    packed = hasattr(table, "bring")
+    low, high = (0, 0) if packed else (0, table.seek(0, 2))
     while high - low > _NEAR:
         middle = (low + high) // 2
         table.seek(middle)
-        table.readline()  # what is left of a row
-        line = _line(table)
+        _line(table)
+        line = _row(table)
         if line and _key(line[1:], line[0]) < first:
             low = table.tell() - len(line)
         else:
             high = middle
         yield None
-    table.seek(low)
+    table.bring(first) if packed else table.seek(low)
     while True:
-        line = _line(table)
+        line = _row(table)
         key = _key(line[1:], line[0]) if line else last + 1
         if key > last:
             return
@@ -160,18 +158,31 @@ def _table(family):
     try:
         return open(__file__.rpartition("/")[0] + "/" + family + ".tsv", "rb")
     except OSError:
-        name = "catalogue.table_" + family
-        table = on_demand.load(name).TABLE
-        on_demand.drop(name)
-        return BytesIO(table)  # which reads it where it is
+        from catalogue.packed import Packed
+
+        return Packed(family)
+
+
+def _row(table):
+    """The next row; empty at the end."""
+    line = _line(table)
+    while line and not 65 <= line[0] & 0xDF <= 90:  # no letter: the head, a remark
+        line = _line(table)
+    return line
 
 
 def _line(table):
-    """The next row; empty at the end."""
-    line = table.readline()
-    while line and not 65 <= line[0] & 0xDF <= 90:  # no letter: the head, a remark
-        line = table.readline()
-    return line
+    """What is left of a line. `readline` would ask the file system for byte after byte."""
+    line = b""
+    while True:
+        piece = table.read(_PIECE)
+        end = piece.find(b"\n") + 1
+        if end:
+            table.seek(end - len(piece), 1)
+            return line + piece[:end]
+        line += piece
+        if not piece:
+            return line
 
 
 def _key(cell, kind):

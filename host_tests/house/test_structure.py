@@ -26,7 +26,7 @@ RULES = (
     ("firmware/settings.py", ("uss",), ()),
     ("firmware/settings_file.py", ("on_demand", "settings", "uss"), ("json",)),
     ("firmware/search", ("search", "panel", "on_demand", "uss", "hal"), ("micropython",)),
-    ("firmware/catalogue", ("on_demand",), ("io", "micropython")),
+    ("firmware/catalogue", ("catalogue", "on_demand"), ("deflate", "io", "micropython", "struct")),
     ("firmware/strict_json.py", (), ("json",)),
     ("firmware/version.py", (), ()),
     ("firmware/uss", ("uss",), ("struct", "array", "micropython")),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What has to be on the chip's file system: the firmware and a board file, compiled or not.
+"""What has to be on the chip's file system: firmware, tables, a board file; compiled or not.
 
     firmware = Firmware.read(top, "pico")
     firmware.compile(compiler)          # a function: path, source -> bytes of the .mpy file
@@ -20,6 +20,7 @@ from tools.deploying.errors import DeployError
 MAIN = "main.py"
 BOARD = "board.py"
 STAY_SOURCE = (MAIN, BOARD)
+TABLE = ".tsv"  # of the catalogue, which is read row by row
 CHIPS = re.compile(rb"^(?:from|import) chips(?:\.| import )(\w+)", re.MULTILINE)
 
 # Header of an .mpy file (MicroPython, py/persistentcode.c): "M", version, features, bits of a
@@ -29,7 +30,7 @@ MPY_MAGIC = ord("M")
 
 
 class Firmware:
-    """sources: {path on the chip, ending in .py: bytes}."""
+    """sources: {path on the chip, ending in .py or .tsv: bytes}."""
 
     def __init__(self, sources):
         self.sources = sources
@@ -41,7 +42,8 @@ class Firmware:
         folder = Path(top) / "firmware"
         sources = {
             path.relative_to(folder).as_posix(): path.read_bytes()
-            for path in sorted(folder.rglob("*.py"))
+            for ending in ("*.py", "*" + TABLE)
+            for path in sorted(folder.rglob(ending))
         }
         boards = Path(top) / "boards"
         own = (boards / board / BOARD).read_bytes()
@@ -56,7 +58,7 @@ class Firmware:
 
     def compile(self, compiler):
         for path, source in self.sources.items():
-            if path not in STAY_SOURCE:
+            if not stays(path):
                 self.compiled[path[:-3] + ".mpy"] = compiler(path, source)
 
     def files(self, chip_mpy):
@@ -67,11 +69,16 @@ class Firmware:
 
     def compiled_files(self):
         """{path: bytes} for a chip that takes the compiled files."""
-        return {path: self.sources[path] for path in STAY_SOURCE} | self.compiled
+        return {path: self.sources[path] for path in self.sources if stays(path)} | self.compiled
 
     def suits(self, chip_mpy):
         """Whether the chip takes every one of the compiled files."""
         return all(suits(data, chip_mpy) for data in self.compiled.values())
+
+
+def stays(path):
+    """Whether the file lies on the chip as it lies here."""
+    return path in STAY_SOURCE or path.endswith(TABLE)
 
 
 def suits(mpy_file, chip_mpy):

@@ -63,7 +63,8 @@ pico_fingerprint() (
     cd "$top"
     {
         pico_recipe "$1"
-        [[ $1 == stock ]] || find firmware boards/chips boards/pico -name '*.py' -print0 | LC_ALL=C sort -z |
+        [[ $1 == stock ]] || find firmware boards/chips boards/pico tools/deploying/packing.py \
+            \( -name '*.py' -o -name '*.tsv' \) -print0 | LC_ALL=C sort -z |
             xargs -0 sha256sum
     } | sha256sum
 )

@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: MIT
+"""The tables of the catalogue as modules to be frozen, which firmware/catalogue/packed.py reads.
+
+    modules(top / "firmware/catalogue")     # {"catalogue/table_mm440.py": text}
+
+A frozen constant stays in the flash, of which the file system leaves little. So the rows are
+compressed, in blocks that are small enough to be unpacked one at a time.
+"""
+
+import struct
+import zlib
+from pathlib import Path
+
+BLOCK_BYTES = 2048
+WINDOW_BITS = 11
+
+
+def modules(folder):
+    """{path in the firmware: source} of every table in this folder."""
+    return {
+        f"catalogue/table_{path.stem}.py": module(path.read_bytes())
+        for path in sorted(Path(folder).glob("*.tsv"))
+    }
+
+
+def module(table):
+    """The source of the module for the bytes of a table."""
+    packed = b""
+    index = b""
+    for first, block in blocks(table):
+        index += struct.pack("<II", first, len(packed))
+        packer = zlib.compressobj(9, zlib.DEFLATED, -WINDOW_BITS)
+        packed += packer.compress(block) + packer.flush()
+    return f"BLOCKS = {packed!r}\nINDEX = {index!r}\n"
+
+
+def blocks(table):
+    """Pairs: the key of the first row, and rows without remarks. The head belongs to the first."""
+    head, *rows = [line for line in table.splitlines(keepends=True) if not line.startswith(b"#")]
+    first, block = 0, head
+    for row in rows:
+        if len(block) + len(row) > BLOCK_BYTES:
+            yield first, block
+            first, block = key(row), b""
+        block += row
+    yield first, block
+
+
+def key(row):
+    """What the rows are in the order of, as the reader counts it."""
+    kind = "P" if row[:1] in b"Ppr" else chr(row[0])
+    number, _, value = row.split(b"\t", 1)[0][1:].partition(b".")
+    return (ord(kind) & 0x1F) << 24 | int(number) << 9 | int(value or 0)
