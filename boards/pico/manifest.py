@@ -6,7 +6,9 @@ this folder. A file on the chip's file system goes before a frozen one of that n
 main.py: so a changed board.py can be tried without building anything.
 """
 
+import atexit
 import os
+import shutil
 import sys
 import tempfile
 
@@ -27,13 +29,15 @@ freeze("../../firmware", tuple(python_files("../../firmware")))
 freeze("..", ("chips/rp2.py",))
 module("board.py")
 
-# The catalogue's tables, as constants; `tools` is found from the top of the tree.
+# The catalogue's tables, as constants; `tools` is found from the top of the tree. What is frozen
+# is compiled after this file has been read.
 sys.path.insert(0, os.path.abspath("../.."))
 from tools.deploying import packing  # noqa: E402
 
-tables = tempfile.TemporaryDirectory()
+tables = tempfile.mkdtemp()
+atexit.register(shutil.rmtree, tables)
+os.mkdir(os.path.join(tables, "catalogue"))
 for path, source in packing.modules("../../firmware/catalogue").items():
-    os.makedirs(os.path.join(tables.name, os.path.dirname(path)), exist_ok=True)
-    with open(os.path.join(tables.name, path), "w") as file:
+    with open(os.path.join(tables, path), "w") as file:
         file.write(source)
-    freeze(tables.name, (path,))
+    freeze(tables, (path,))

@@ -97,6 +97,7 @@ def _rows(family, kind, numbers):
     as_a_whole = kind not in b"\x01\x06\x10"  # neither A nor F nor P: what stands together
     missing = True
     with _table(family) as table:
+        yield None
         head = _cells(_line(table))
         like = head[_LIKE].decode()
         for part in numbers.split():
@@ -106,8 +107,7 @@ def _rows(family, kind, numbers):
                 if row:
                     missing = False
                     if like and not as_a_whole and b"" in row:
-                        yield None
-                        row = _completed(row, like)
+                        row = yield from _completed(row, like)
                     row = [b"" if cell == b"-" else cell for cell in row]
                     if row[INDICES:] and row[INDICES] in (b"CDS", b"DDS"):
                         sets = _COMMAND_SETS if row[INDICES] == b"CDS" else _DRIVE_SETS
@@ -121,7 +121,9 @@ def _completed(row, like):
     """With what is empty from the row with the same key of the other family."""
     key = _key(row[KEY][1:], row[KEY][0])
     with _table(like) as table:
+        yield None
         for other in _between(table, key, key):
+            yield None
             if other:
                 return [cell or from_other for cell, from_other in zip(row, other)]
     return row
@@ -129,26 +131,32 @@ def _completed(row, like):
 
 def _between(table, first, last):
     """The rows with these keys, and None after each look for the first."""
-    packed = hasattr(table, "bring")
-    low, high = (0, 0) if packed else (0, table.seek(0, 2))
+    if hasattr(table, "bring"):
+        yield table.bring(first)
+    else:
+        yield from _bring(table, first)
+    while True:
+        line = _row(table)
+        key = _key(line[1:], line[0]) if line else last + 1
+        if key > last:
+            return
+        yield _cells(line) if key >= first else None
+
+
+def _bring(table, first):
+    """Search a file: the next row is that with this key, or one before it that is near."""
+    low, high = 0, table.seek(0, 2)
     while high - low > _NEAR:
         middle = (low + high) // 2
         table.seek(middle)
-        _line(table)
+        _line(table)  # what is left of it
         line = _row(table)
         if line and _key(line[1:], line[0]) < first:
             low = table.tell() - len(line)
         else:
             high = middle
         yield None
-    table.bring(first) if packed else table.seek(low)
-    while True:
-        line = _row(table)
-        key = _key(line[1:], line[0]) if line else last + 1
-        if key > last:
-            return
-        if key >= first:
-            yield _cells(line)
+    table.seek(low)
 
 
 def _table(family):

@@ -3,11 +3,12 @@
 
 A module such as `catalogue.table_mm440` holds it, made by tools/deploying/packing.py:
 
+    HEAD        the first line
     BLOCKS      the blocks one after the other, raw deflate
     INDEX       8 bytes for each: the key of its first row, and where it begins
 
-It is read as a file is, but that `bring` finds the block of a key. One block is in memory at a
-time, for as long as somebody reads.
+It is read as a file is, but that `bring` finds the block of a key. What is unpacked on the way is
+in memory, 128 bytes at a time, and the window of 2 KB, for as long as somebody reads.
 """
 
 import struct
@@ -30,7 +31,9 @@ class Packed:
         on_demand.drop(name)
         self._index = module.INDEX
         self._blocks = BytesIO(module.BLOCKS)  # which reads it where it is
-        self._load(0)
+        self._place = 0  # of the block, in the index
+        self._stream = BytesIO(module.HEAD)
+        self._last = self._left = b""
 
     def __enter__(self):
         return self
@@ -40,15 +43,19 @@ class Packed:
 
     def read(self, count):
         """Not beyond the end of a block, which is the end of a row."""
-        piece = self._text.read(count)
+        piece, self._left = self._left, b""
+        if not piece:
+            piece = self._stream.read(count)
         if not piece and self._place + _ENTRY_BYTES < len(self._index):
-            self._load(self._place + _ENTRY_BYTES)
-            piece = self._text.read(count)
+            self._begin(self._place + _ENTRY_BYTES)
+            piece = self._stream.read(count)
+        self._last = piece
         return piece
 
     def seek(self, offset, _):
-        """Within what was read last."""
-        self._text.seek(offset, 1)
+        """Back within what was read last."""
+        if offset:
+            self._left = self._last[offset:]
 
     def bring(self, key):
         """The next row is the first of the last block that may have this key."""
@@ -59,9 +66,10 @@ class Packed:
                 low = middle
             else:
                 high = middle
-        self._load(low * _ENTRY_BYTES)
+        self._begin(low * _ENTRY_BYTES)
 
-    def _load(self, place):
+    def _begin(self, place):
         self._place = place
+        self._left = b""
         self._blocks.seek(struct.unpack_from(_ENTRY, self._index, place)[1])
-        self._text = BytesIO(DeflateIO(self._blocks, RAW, _WINDOW_BITS).read())
+        self._stream = DeflateIO(self._blocks, RAW, _WINDOW_BITS)

@@ -64,16 +64,17 @@ def test_packed_tables_say_the_same(tmp_path, tier):
     assert packed == run(tier, EVERYTHING, "firmware")
 
 
-def test_a_packed_table_is_searched_at_once(tmp_path):
-    assert run("unix64", PACED, firmware_without_tables(tmp_path)) == "[1120, 1121]\n"
+def test_a_packed_table_is_searched_by_its_index(tmp_path):
+    pieces = run("unix64", PACED, firmware_without_tables(tmp_path))
+    assert pieces.endswith("None, 1120, 1121]\n") and pieces.count("None") < 40, pieces
 
 
 def test_a_block_is_small_enough_to_be_unpacked():
     for family in catalogue.FAMILIES:
         table = (TOP / "firmware/catalogue" / (family + ".tsv")).read_bytes()
-        blocks = list(packing.blocks(table))
+        rows = [line for line in table.splitlines(keepends=True) if line[:1] != b"#"][1:]
+        blocks = list(packing.blocks(rows))
         assert max(len(block) for _, block in blocks) <= packing.BLOCK_BYTES
-        rows = [line for line in table.splitlines(keepends=True) if line[:1] != b"#"]
         assert b"".join(block for _, block in blocks) == b"".join(rows)
 
 

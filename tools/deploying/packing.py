@@ -4,7 +4,7 @@
     modules(top / "firmware/catalogue")     # {"catalogue/table_mm440.py": text}
 
 A frozen constant stays in the flash, of which the file system leaves little. So the rows are
-compressed, in blocks that are small enough to be unpacked one at a time.
+compressed, in blocks, so that a search need not unpack what stands before a row.
 """
 
 import struct
@@ -27,17 +27,17 @@ def module(table):
     """The source of the module for the bytes of a table."""
     packed = b""
     index = b""
-    for first, block in blocks(table):
+    head, *rows = [line for line in table.splitlines(keepends=True) if not line.startswith(b"#")]
+    for first, block in blocks(rows):
         index += struct.pack("<II", first, len(packed))
         packer = zlib.compressobj(9, zlib.DEFLATED, -WINDOW_BITS)
         packed += packer.compress(block) + packer.flush()
-    return f"BLOCKS = {packed!r}\nINDEX = {index!r}\n"
+    return f"HEAD = {head!r}\nBLOCKS = {packed!r}\nINDEX = {index!r}\n"
 
 
-def blocks(table):
-    """Pairs: the key of the first row, and rows without remarks. The head belongs to the first."""
-    head, *rows = [line for line in table.splitlines(keepends=True) if not line.startswith(b"#")]
-    first, block = 0, head
+def blocks(rows):
+    """Pairs: the key of the first row, and rows one after the other."""
+    first, block = key(rows[0]), b""
     for row in rows:
         if len(block) + len(row) > BLOCK_BYTES:
             yield first, block
