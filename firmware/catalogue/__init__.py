@@ -17,8 +17,8 @@ from micropython import const
 
 FAMILIES = ("mm440", "mm430", "mm420", "mm410", "g110", "v20", "g120", "mm3")
 
-# Columns. A text in both languages: the column, and EN or DE. SOURCE and UNSURE end every row.
-KEY, NAME, SOURCE, UNSURE = 0, 1, -2, -1
+# Columns. A text in both languages: the column, and EN or DE. UNSURE and SOURCE end every row.
+KEY, NAME, UNSURE, SOURCE = 0, 1, -2, -1
 EN, DE = 0, 1
 TYPE, INDICES, UNIT, FORM, LOWEST, HIGHEST, DEFAULT, LEVEL, STATES, ASKS = range(3, 13)
 CAUSE, REMEDY = 3, 5  # of a fault or a warning

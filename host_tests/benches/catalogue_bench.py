@@ -12,13 +12,13 @@ FOLDER = "firmware/catalogue/"
 
 # By letter: names of the columns.
 COLUMNS = {
-    "A": "key en de cause_en cause_de remedy_en remedy_de source unsure".split(),
-    "G": "key en de numbers source unsure".split(),
+    "A": "key en de cause_en cause_de remedy_en remedy_de unsure source".split(),
+    "G": "key en de numbers unsure source".split(),
     "P": (
-        "key en de type indices unit form lowest highest default level states asks source unsure"
+        "key en de type indices unit form lowest highest default level states asks unsure source"
     ).split(),
-    "S": "key en de number index value note_en note_de source unsure".split(),
-    "V": "key en de source unsure".split(),
+    "S": "key en de number index value note_en note_de unsure source".split(),
+    "V": "key en de unsure source".split(),
 }
 COLUMNS["F"] = COLUMNS["A"]
 ORDER = "AFGPSV"

@@ -5,7 +5,21 @@ import gc
 import sys
 
 import catalogue
-from catalogue import DE, DEFAULT, EN, FORM, HIGHEST, LINE, NAME, NUMBERS, REMEDY, UNIT
+from catalogue import (
+    DE,
+    DEFAULT,
+    EN,
+    FORM,
+    HIGHEST,
+    INDICES,
+    LINE,
+    NAME,
+    NUMBERS,
+    REMEDY,
+    SOURCE,
+    UNIT,
+    UNSURE,
+)
 
 NOT_TRACED = """
     test_the_first_and_the_last_row_of_each_kind_are_found test_a_search_finds_every_parameter
@@ -102,6 +116,37 @@ def test_the_steps_that_make_a_drive_ready():
 def test_data_sets_are_indices():
     assert catalogue.indices(catalogue.find("mm440", 304)) == 3
     assert catalogue.indices(catalogue.find("mm440", 10)) == 1
+
+
+def test_a_family_says_only_what_is_different():
+    like, row = catalogue.find("mm440", 1000), catalogue.find("mm420", 1000)
+    assert row[NAME + DE] == like[NAME + DE] == b"Sollwertquelle"
+    assert (like[HIGHEST], row[HIGHEST]) == (b"77", b"66")
+    assert catalogue.fault("mm420", 1) == catalogue.fault("mm440", 1)[:SOURCE] + [b"GK"]
+
+
+def test_a_family_says_that_there_is_nothing():
+    assert catalogue.find("mm440", 207)[UNSURE] == b"i"
+    assert catalogue.find("mm420", 207)[UNSURE] == b""
+
+
+def test_a_family_has_no_more_than_stands_in_its_table():
+    assert catalogue.find("mm440", 1240) and catalogue.find("mm440", 1460)
+    assert catalogue.find("mm420", 1240) and catalogue.find("mm420", 1460) is None
+    assert catalogue.warning("mm440", 590) and catalogue.warning("mm420", 590) is None
+
+
+def test_one_data_set_where_a_family_has_no_more():
+    assert catalogue.find("mm440", 304)[INDICES] == b"3 DDS"
+    assert catalogue.find("mm420", 304)[INDICES] == b"1 DDS"
+    assert catalogue.find("mm440", 700)[INDICES] == b"3 CDS"
+
+
+def test_a_list_of_values_is_replaced_as_a_whole():
+    own = [catalogue.number(row, 1) for row in catalogue.choices("mm420", b"v1000")]
+    assert 6 in own and 7 not in own  # no second analog input
+    assert len(list(catalogue.choices("mm420", b"v2009"))) == 2  # that of the MM440
+    assert list(catalogue.steps("mm430", 1)) == list(catalogue.steps("mm440", 1))
 
 
 def test_a_step_of_the_main_loop_asks_for_a_piece():

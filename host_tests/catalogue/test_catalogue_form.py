@@ -115,7 +115,7 @@ def test_every_row_has_a_source_that_the_manual_explains():
         re.findall(r"^\| `(\w+)` \|", (TOP / "firmware/catalogue/README.md").read_text(), re.M)
     )
     for place, _kind, cells in written_rows():
-        source, unsure = cells[-2:]
+        unsure, source = cells[-2:]
         assert source in known, (place, source)
         assert set(unsure) <= set("ntilda-"), (place, unsure)
     assert {"GK", "PL440"} <= known
