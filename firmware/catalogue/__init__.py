@@ -33,6 +33,8 @@ _PIECE = const(128)  # bytes that are read at once
 _READING, _PARAMETER = const(18), const(16)  # r and P, of which a table has one order
 _LIKE, _COMMAND_SETS, _DRIVE_SETS = const(2), const(3), const(4)  # of the head
 
+_frozen = []  # families without a file
+
 
 def find(family, number, kind="P"):
     for row in rows(family, b"%d" % number, kind):
@@ -163,12 +165,14 @@ def _table(family):
     """A table as a stream of bytes: a file, or what is frozen into the firmware."""
     if family not in FAMILIES:
         raise ValueError("no catalogue of %s" % family)
-    try:
-        return open(__file__.rpartition("/")[0] + "/" + family + ".tsv", "rb")
-    except OSError:
-        from catalogue.packed import Packed
+    if family not in _frozen:
+        try:
+            return open(__file__.rpartition("/")[0] + "/" + family + ".tsv", "rb")
+        except OSError:
+            _frozen.append(family)
+    from catalogue.packed import Packed
 
-        return Packed(family)
+    return Packed(family)
 
 
 def _row(table):

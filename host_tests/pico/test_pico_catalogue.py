@@ -31,7 +31,9 @@ def look_around():
             if catalogue.number(group) in (1, 3, 9):
                 gc.collect()
                 took, longest = look(family, group[catalogue.NUMBERS])
-                worst, piece = max(worst, took), max(piece, longest)
+                worst = max(worst, took)
+                if catalogue.number(group) > 1:  # the first look finds out that there is no file
+                    piece = max(piece, longest)
     assert catalogue.fault("v20", 72)[catalogue.NAME] == b"USS/Modbus lost"
     assert catalogue.find("mm420", 1120)[catalogue.NAME + catalogue.DE] == b"Hochlaufzeit"
     return worst // 1000, piece
