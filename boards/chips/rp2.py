@@ -7,15 +7,28 @@ RP2040 and RP2350; where only one place is named, both chips have it there.
 """
 
 import sys
+
+# Before anything else is asked of the chip: on another one, not even the next imports would work.
+ADDRESSES = {  # where the chips differ: watchdog, UART 1, I2C 0 (RP2040 2.2, RP2350 2.2)
+    "RP2040": (0x4005_8000, 0x4003_8000, 0x4004_4000),
+    "RP2350": (0x400D_8000, 0x4007_8000, 0x4009_0000),
+}
+CHIP = sys.implementation._machine.rpartition(" with ")[2]
+if CHIP not in ADDRESSES:
+    raise ValueError("this firmware knows %s, no %s" % (" and ".join(sorted(ADDRESSES)), CHIP))
+
+import os
 import time
 
 import machine
+import micropython
 import rp2
 from machine import I2C, UART, WDT, Pin, Timer
 
-from hal.display.probe import answers
+from hal.display.probe import answers, free
 from hal.keypad import Keypad
 from hal.link.rp2_rs485 import Rp2Link
+from hal.store import FileStore
 
 # --- which part of the chip does what ------------------------------------------------------------
 
@@ -27,19 +40,12 @@ RECEIVE_BUFFER, SEND_BUFFER = 256, 32  # characters; nothing is sent through the
 BACKPACK_I2C = 0
 BACKPACK_HZ = 100_000  # the most that a PCF8574 takes
 BACKPACK_TIMEOUT_US = 5_000  # a transfer takes 1 ms; this long only when its wires are shorted
-BACKPACK_CLOCKS, BACKPACK_PULSE_US = 9, 5  # a byte and its acknowledgement, at 100 kHz
 WATCHDOG_MS = 2_000
+SETTINGS_FILE = "settings.json"
 
 # --- registers -----------------------------------------------------------------------------------
 
 GPIO_IN = 0xD000_0004  # the levels of all pins (SIO, RP2040 2.3.1.7)
-ADDRESSES = {  # where the chips differ: watchdog, UART 1, I2C 0 (RP2040 2.2, RP2350 2.2)
-    "RP2040": (0x4005_8000, 0x4003_8000, 0x4004_4000),
-    "RP2350": (0x400D_8000, 0x4007_8000, 0x4009_0000),
-}
-CHIP = sys.implementation._machine.rpartition(" with ")[2]
-if CHIP not in ADDRESSES:
-    raise ValueError("this firmware knows %s, no %s" % (" and ".join(sorted(ADDRESSES)), CHIP))
 WATCHDOG, UART_REGISTERS, I2C_REGISTERS = ADDRESSES[CHIP]
 
 # The watchdog (RP2040 4.7.6). Writing to the second address clears bits.
@@ -57,6 +63,9 @@ def expect(chip):
         raise ValueError("this board file is for the %s, and here is a %s" % (chip, CHIP))
 
 
+micropython.alloc_emergency_exception_buf(100)
+
+
 class Clock:
     """The functions of `time` as they are: their period is 2**30 on this port."""
 
@@ -66,6 +75,15 @@ class Clock:
         self.ticks_us = time.ticks_us
         self.ticks_ms = time.ticks_ms
         self.sleep_us = time.sleep_us
+
+
+def low(number):
+    """The pin as an output that is low."""
+    return Pin(number, Pin.OUT, value=0)
+
+
+def make_store():
+    return FileStore(SETTINGS_FILE, open, os)
 
 
 def idle():
@@ -185,18 +203,10 @@ def make_posted_i2c(sda, scl, clock):
 
 
 def make_i2c(sda, scl):
-    """The I2C of the backpack, after its wires were made free: a reset in the middle of a transfer
-    leaves the backpack waiting for a clock, and it holds SDA low.
-    """
+    """The I2C of the backpack, after its wires were made free."""
     data = Pin(sda, Pin.IN, Pin.PULL_UP)
     pulse = Pin(scl, Pin.OPEN_DRAIN, Pin.PULL_UP, value=1)
-    for _ in range(BACKPACK_CLOCKS):
-        time.sleep_us(BACKPACK_PULSE_US)
-        if data.value():
-            break
-        pulse.value(0)
-        time.sleep_us(BACKPACK_PULSE_US)
-        pulse.value(1)
+    free(data, pulse, time.sleep_us)
     return I2C(BACKPACK_I2C, sda=data, scl=pulse, freq=BACKPACK_HZ, timeout=BACKPACK_TIMEOUT_US)
 
 

@@ -1,33 +1,23 @@
 # SPDX-License-Identifier: MIT
 """The panel on a Raspberry Pi Pico: which pin is what. README.md beside it shows the wiring.
 
-The attributes below the tables are those that `hal` asks of any board. The board looks for the
-display: it takes a backpack on I2C if one answers, and four data lines otherwise.
-
 If you wire it differently, put a changed copy as board.py on the chip's file system: MicroPython
 finds it there before the one that is frozen into the firmware.
 """
 
-import os
-
-import micropython
-from machine import Pin
-
 from chips import rp2
-from hal.store import FileStore
 
-# --- what is wired where: GPIO numbers ----------------------------------------------------------
+name, CHIP = "RASPBERRY PICO", "RP2040"
 
-BUS_SEND = 4
-BUS_RECEIVE = 5  # of UART 1
-DRIVER_ENABLE = 6  # with a pull-down of 10 kohm: a driver that is on while the chip boots blocks
+# GPIO numbers
+BUS_SEND, BUS_RECEIVE = 4, 5  # receive: of UART 1
+DRIVER_ENABLE = 6  # with a pull-down: a driver that is on while the chip boots blocks the bus
 
-BACKPACK_SDA = 0
-BACKPACK_SCL = 1
+BACKPACK_SDA, BACKPACK_SCL = 0, 1
 BACKPACK_ADDRESSES = (0x27, 0x3F)  # PCF8574 and PCF8574A, as they are sold: A0...A2 open
 
-LCD_REGISTER_SELECT = 7  # six pins in a row: register select, enable, D4...D7; R/W to ground
-LCD_ENABLE = 8
+# Six pins in a row: register select, enable, D4...D7; R/W to ground. Used if no backpack answers.
+LCD_REGISTER_SELECT, LCD_ENABLE = 7, 8
 
 KEYS = (  # each to ground; none at GP15, whose pull-up fails a while when USB comes (RP2040-E5)
     ("START", 13),
@@ -47,16 +37,8 @@ KEYS = (  # each to ground; none at GP15, whose pull-up fails a while when USB c
 )
 NORMALLY_CLOSED = ("STOP",)  # () for a STOP that closes: then a broken wire is not noticed
 
-SETTINGS_FILE = "settings.json"
-
-rp2.expect("RP2040")
-
-# Before anything else: nobody drives the bus.
-driver_enable = Pin(DRIVER_ENABLE, Pin.OUT, value=0)
-
-micropython.alloc_emergency_exception_buf(100)
-
-name = "RASPBERRY PICO"
+rp2.expect(CHIP)
+driver_enable = rp2.low(DRIVER_ENABLE)  # before anything else: nobody drives the bus
 reset_cause = rp2.why_it_booted()
 clock = rp2.Clock()
 display = rp2.make_display(
@@ -64,7 +46,7 @@ display = rp2.make_display(
 )
 backlight = getattr(display, "backlight", None)  # a backpack switches it
 keypad = rp2.make_keypad(KEYS, NORMALLY_CLOSED)
-store = FileStore(SETTINGS_FILE, open, os)
+store = rp2.make_store()
 watchdog = rp2.Watchdog()
 timer = rp2.make_timer()
 idle = rp2.idle

@@ -1,43 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What panel.uf2 holds besides MicroPython: everything that runs, compiled beforehand, in flash.
+"""What the firmware file of this board holds: tools/uf2 builds it."""
 
-Read by MicroPython's tools/makemanifest.py, which defines the functions used here; paths start at
-this folder. A file on the chip's file system goes before a frozen one of that name, except for
-main.py: so a changed board.py can be tried without building anything.
-"""
-
-import atexit
-import os
-import shutil
-import sys
-import tempfile
-
-# The order in which they are frozen is part of the firmware's bytes, and that of a listing is not
-# the same everywhere.
-
-
-def python_files(folder):
-    for path, folders, files in os.walk(folder):
-        folders.sort()
-        for file in sorted(files):
-            if file.endswith(".py"):
-                yield os.path.relpath(os.path.join(path, file), folder)
-
-
-freeze("$(PORT_DIR)/modules", ("_boot.py", "_boot_fat.py", "rp2.py"))  # the port's own
-freeze("../../firmware", tuple(python_files("../../firmware")))
-freeze("..", ("chips/rp2.py",))
+include("../chips/manifest.py")
 module("board.py")
-
-# The catalogue's tables, as constants; `tools` is found from the top of the tree. What is frozen
-# is compiled after this file has been read.
-sys.path.insert(0, os.path.abspath("../.."))
-from tools.deploying import packing  # noqa: E402
-
-tables = tempfile.mkdtemp()
-atexit.register(shutil.rmtree, tables)
-os.mkdir(os.path.join(tables, "catalogue"))
-for path, source in packing.modules("../../firmware/catalogue").items():
-    with open(os.path.join(tables, path), "w") as file:
-        file.write(source)
-    freeze(tables, (path,))

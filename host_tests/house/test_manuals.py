@@ -218,7 +218,7 @@ def test_every_exit_status_of_the_panel_is_explained():
 
 def test_every_command_has_a_row():
     there = [path.name for path in (TOP / "tools").iterdir() if path.is_file() and not path.suffix]
-    assert sorted(re.findall(r"^\| \[`\./tools/(\w+)`\]", text(TOOLS), re.M)) == sorted(there)
+    assert sorted(re.findall(r"^\| \[`\./tools/([\w-]+)`\]", text(TOOLS), re.M)) == sorted(there)
 
 
 # ---- the version ----------------------------------------------------------------------------

@@ -41,10 +41,10 @@ RULES = (
     ("boards/sim/drives", ("boards.sim",), None),
     ("boards/sim/line", ("boards.sim",), None),
     ("boards/port", ("boards.port", "boards.sim"), None),
-    ("boards/chips", ("hal",), ("machine", "sys", "time", "rp2", "esp32")),
-    ("boards", ("chips", "hal"), ("machine", "micropython", "os")),
     # Not of the chip: makemanifest.py runs it on a PC.
-    ("boards/pico/manifest.py", (), ("atexit", "os", "shutil", "sys", "tempfile", "tools")),
+    ("boards/chips/manifest.py", (), ("atexit", "os", "shutil", "sys", "tempfile", "tools")),
+    ("boards/chips", ("hal",), ("machine", "micropython", "os", "sys", "time", "rp2", "esp32")),
+    ("boards", ("chips",), ()),
 )
 PROJECT = (
     "app", "catalogue", "panel", "settings", "settings_file", "on_demand", "search", "strict_json",
@@ -78,6 +78,8 @@ UNDERSTOOD = (
     ("", 'to (type )?"None"', "the same"),
     ("", "No overloads for", "types of arguments: our own functions have no overloads"),
     ("", r'class "(Settings|Switches|Description)\*?"', "an attribute for each row of a table"),
+    ("", 'class "Board\\*?"', "what a board file defines"),
+    ("boards/sim/ports/", 'class "(Chip|WDT)\\*?"', "of a kind that is made there"),
     ("firmware/panel/", 'class "NoWatch"', "a stand-in that is never asked for it"),
     ("firmware/uss/", r'"tuple\[.*Unknown, \.\.\.\].*"', "a family, loaded when it is named"),
     ("firmware/hal/", r'class "set\[', "a word of the PIO assembler"),

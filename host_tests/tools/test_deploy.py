@@ -23,7 +23,7 @@ from deploy_bench import (
 )
 from hal.store import FileStore
 from tiers import TOP
-from tools.deploying import arrival, deployment, image, plan, ports
+from tools.deploying import arrival, deployment, image, plan, ports, targets
 from tools.deploying.errors import DeployError
 
 INTERPRETERS = "host"
@@ -173,7 +173,9 @@ def test_remove_takes_away_all_that_was_copied():
         (b"M\x06\x13\x1f", 0x1306, True),  # machine code for ARMv6-M
         (b"M\x06\x00\x1f", 0x1206, True),  # the sub-version is about machine code
         (b"M\x06\x13\x1f", 0x1206, False),
-        (b"M\x06\x13\x1f", 0x1706, False),  # for another processor
+        (b"M\x06\x13\x1f", 0x1706, True),  # a later ARM (persistentcode.h, ARCH_TEST)
+        (b"M\x06\x17\x1f", 0x1306, False),  # an earlier one
+        (b"M\x06\x13\x1f", 0x2B06, False),  # for another processor
         (b"M\x06\x00\x1f", 0x1307, False),
         (b"M\x06\x00\x1f", 0, False),  # a chip that takes none
         (b"C\x06\x00\x1f", 0x1306, False),  # of CircuitPython
@@ -323,6 +325,11 @@ def test_a_list_never_makes_us_remove_what_is_not_ours_to_list(path):
         (("micropython", (1, 24, 1), RP2040, MPY), "", "1.24.1 is too old: 1.25"),
         (("micropython", (1, 25, 0), "Raspberry Pi Pico2 with RP2350", 7942), "", "RP2350"),
         (("micropython", (1, 25, 0), "rp2", MPY), "", "for the RP2040"),
+        (
+            ("micropython", (1, 25, 0), "Pico2 with RP2350", MPY),
+            "",
+            "for the RP2040, not for Pico2",
+        ),
         (None, "main blinky", "another program is frozen"),
     ],
 )
@@ -524,6 +531,32 @@ def test_the_one_pico_is_found_among_other_ports():
     assert ports.choose([OTHER, usb("/dev/ttyACM0"), usb("/dev/ttyS0", None, None)]) == (
         "/dev/ttyACM0"
     )
+
+
+def test_an_esp32_s3_is_found_and_what_may_be_a_line_of_drives_is_not():
+    s3 = usb("/dev/ttyACM3", 0x303A, 0x4001)
+    assert ports.choose([OTHER, usb("/dev/ttyACM0"), s3], chip="ESP32S3") == "/dev/ttyACM3"
+    for chip in ("ESP32", "ESP32S3"):
+        with pytest.raises(DeployError, match="behind a USB adapter: name that, --port"):
+            ports.choose([OTHER, usb("/dev/ttyUSB1", 0x10C4, 0xEA60)], True, chip)
+
+
+def test_the_firmware_for_each_board_is_what_its_chip_takes():
+    """Version 6.3 of .mpy files; numbers of machine code: py/persistentcode.h."""
+    compiler_of = {"RP2040": 4, "RP2350": 7, "ESP32S3": 10, "ESP32": 10}
+    for board, chip, chips_file in (
+        ("pico", "RP2040", "chips/rp2.py"),
+        ("pico2", "RP2350", "chips/rp2.py"),
+        ("esp32s3", "ESP32S3", "chips/esp32.py"),
+        ("esp32", "ESP32", "chips/esp32.py"),
+    ):
+        made = image.Firmware.read(TOP, board)
+        assert made.chip == chip and chips_file in made.sources
+        code = {"armv6m": 4, "xtensawin": 10}[targets.TARGETS[chip].machine_code]
+        compiled = bytes((ord("M"), 6, code << 2 | 3))
+        assert image.suits(compiled, (compiler_of[chip] << 2 | 3) << 8 | 6), chip
+        assert not image.suits(compiled, ((14 - code) << 2 | 3) << 8 | 6), chip
+        assert not image.suits(compiled, (compiler_of[chip] << 2 | 2) << 8 | 6), chip
 
 
 def test_several_picos_are_listed():

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""Copies the firmware onto a Raspberry Pi Pico with MicroPython, and restarts it.
+"""Copies the firmware onto a Raspberry Pi Pico or an ESP32 with MicroPython, and restarts it.
 
-Ctrl-C ends what runs on the Pico: a panel stops all its drives first. Only files that differ are
+Ctrl-C ends what runs on the chip: a panel stops all its drives first. Only files that differ are
 copied; settings.json and the files of others stay. Exit status: 0 the panel runs with this
 firmware, or the dry run came to its end; 1 it failed; 2 wrong usage.
 """
@@ -21,6 +21,7 @@ from tools.deploying.deployment import Deployment, Options  # noqa: E402
 from tools.deploying.errors import DeployError  # noqa: E402
 from tools.deploying.image import BOARD, Firmware, mpy_cross  # noqa: E402
 from tools.deploying.ports import choose, waits_for_uf2  # noqa: E402
+from tools.deploying.targets import chip_of  # noqa: E402
 
 VIRTUAL = "sim"
 
@@ -33,7 +34,11 @@ def arguments(words):
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     add = parser.add_argument
-    add("--port", metavar="PATH", help="serial port of the Pico; needed when there are several")
+    add(
+        "--port",
+        metavar="PATH",
+        help="serial port of the chip; for one of several, or behind a USB adapter",
+    )
     real = [name for name in boards if name != VIRTUAL]
     add("--board", default="pico", choices=real, help="a folder of boards/; pico unless named")
     add("--board-file", metavar="FILE", help=f"a {BOARD} of your own, over any that is there")
@@ -50,9 +55,9 @@ def arguments(words):
 
 def firmware_for(chosen):
     if chosen.remove:
-        return Firmware({})
+        return Firmware({}, chip_of((TOP / "boards" / chosen.board / BOARD).read_bytes()))
     firmware = Firmware.read(TOP, chosen.board, chosen.board_file)
-    compiler = mpy_cross()
+    compiler = mpy_cross(firmware.chip)
     if compiler:
         firmware.compile(compiler)
     return firmware
@@ -60,7 +65,7 @@ def firmware_for(chosen):
 
 def deploy(chosen, say):
     firmware = firmware_for(chosen)  # a mistake in it is told before any drive is stopped
-    port = chosen.port or choose(comports(), waits_for_uf2())
+    port = chosen.port or choose(comports(), waits_for_uf2(), firmware.chip)
     options = Options(chosen.dry_run, chosen.replace, bool(chosen.board_file))
     chip = Chip(port)
     try:

@@ -38,7 +38,7 @@ def wait_for_panel(open_chip, now_s=time.monotonic, sleep_s=time.sleep):
             if chip:
                 chip.close()
     if RUNS not in heard:
-        raise DeployError(f"the panel has not started. From the Pico came:\n{_shown(heard)}")
+        raise DeployError(f"the panel has not started. From the chip came:\n{_shown(heard)}")
 
 
 def _listen(chip, heard, deadline, now_s, sleep_s):

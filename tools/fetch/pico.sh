@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 # The firmware for the Raspberry Pi Pico: build/pico/panel.uf2, with everything of ours frozen in,
-# and build/pico/stock.uf2, plain MicroPython. To be sourced after version.sh, folder.sh,
-# packages.sh and pytest.sh.
+# and build/pico/stock.uf2, plain MicroPython; build/pico/pico2.uf2 is the panel for a Pico 2. To
+# be sourced after version.sh, folder.sh, packages.sh and pytest.sh.
 #
 # What the machine has installed takes no part, but for python3 and apt: the versions are named
 # here, and the same sources give the same bytes. The first firmware takes a minute or two, the
@@ -18,12 +18,23 @@ pico_released=2025-04-15    # the date that MicroPython says it is of
 pico_requirements=$top/tools/fetch/pico_requirements.txt
 pico_make=$build/pico_make
 
-# get_pico_firmware panel|stock: sees to it that build/pico/NAME.uf2 is there and made of what the
+# The firmware files: which board of MicroPython's each is for, the family that its UF2 blocks name
+# (Raspberry Pi's boot ROMs take no other), and our board file.
+pico_target() {
+    case $1 in
+        pico2) echo RPI_PICO2 0xe48bff59 pico2 ;;
+        *) echo RPI_PICO 0xe48bff56 pico ;;
+    esac
+}
+
+# get_pico_firmware panel|stock|pico2: sees to it that build/pico/NAME.uf2 is there and made of what the
 # tree holds now. Returns 1, having said why, when it cannot be made; then there is none.
 get_pico_firmware() {
     pico_is_current "$1" && return
+    local has=has_pico_compiler
+    [[ $1 != pico2 ]] || has=has_pico2_compiler
     has_python &&
-        fill pico_compiler has_pico_compiler make_pico_compiler &&
+        fill pico_compiler "$has" make_pico_compiler &&
         fill pico_tools has_pico_tools make_pico_tools &&
         fill pico_sources has_pico_sources make_pico_sources &&
         mkdir -p "$build/pico" && (
@@ -61,9 +72,10 @@ pico_versions() {
 # One number for everything that decides what the firmware will be.
 pico_fingerprint() (
     cd "$top"
+    read -r _ _ board < <(pico_target "$1")
     {
         pico_recipe "$1"
-        [[ $1 == stock ]] || find firmware boards/chips boards/pico tools/deploying/packing.py \
+        [[ $1 == stock ]] || find firmware boards/chips "boards/$board" tools/deploying/packing.py \
             \( -name '*.py' -o -name '*.tsv' \) -print0 | LC_ALL=C sort -z |
             xargs -0 sha256sum
     } | sha256sum
@@ -72,6 +84,7 @@ pico_fingerprint() (
 # How it is made, in words that change when that changes: bash tells functions without comments.
 pico_recipe() {
     declare -p top pico_micropython pico_sdk pico_released pico_often
+    pico_target "$1"
     pico_flags "$1"
     declare -f pico_manifest compile_pico_firmware put_into_memory prepare_pico_make pico_do
     cat "$pico_requirements"
@@ -79,8 +92,10 @@ pico_recipe() {
 
 # The manifest of a firmware, for makemanifest.py.
 pico_manifest() {
-    if [[ $1 == panel ]]; then
-        echo "include('$top/boards/pico/manifest.py')"
+    local board
+    read -r _ _ board < <(pico_target "$1")
+    if [[ $1 != stock ]]; then
+        echo "include('$top/boards/$board/manifest.py')"
     else
         echo "freeze('\$(PORT_DIR)/modules', ('_boot.py', '_boot_fat.py', 'rp2.py'))"
         echo "include('\$(MPY_DIR)/extmod/asyncio')"
@@ -95,7 +110,7 @@ pico_manifest() {
 # again: with room for 192 it takes half as long.
 # The description is what `picotool info` tells of a file; its version is MicroPython's.
 pico_flags() {
-    [[ $1 != panel ]] ||
+    [[ $1 == stock ]] ||
         echo -DMICROPY_OPT_MAP_LOOKUP_CACHE_SIZE=2048 -DVM_MAX_STATE_ON_STACK=96 \
             -DMICROPY_ALLOC_GC_STACK_SIZE=192 \
             "-DPICO_PROGRAM_DESCRIPTION='\"USS panel $(panel_version)\"'"
@@ -123,7 +138,7 @@ make_pico_firmware() {
         mv "$pico_make/$name/$name.uf2" "$build/pico/" &&
         {
             echo "$fingerprint"
-            [[ $name != panel ]] || echo "USS panel $(panel_version)"
+            [[ $name == stock ]] || echo "USS panel $(panel_version)"
             cat "$build"/pico_{sources,compiler}/versions
         } >"$build/pico/$name.made_of" &&
         say "    ready after $((SECONDS - started)) s"
@@ -132,12 +147,13 @@ make_pico_firmware() {
 # What is frozen in is frozen anew each time: makemanifest.py does not notice a file that was taken
 # away.
 compile_pico_firmware() {
-    local name=$1 place=$pico_make/$1
+    local name=$1 place=$pico_make/$1 family
+    read -r _ family _ < <(pico_target "$name")
     rm -rf "$place"/frozen_* &&
         quietly "$place/log" pico_do ninja -C "$place" firmware &&
-        { [[ $name != panel ]] || put_into_memory "$place"; } &&
+        { [[ $name == stock ]] || put_into_memory "$place"; } &&
         quietly "$place/log" pico_do python "$build/pico_sources/micropython/tools/uf2conv.py" \
-            -f 0xe48bff56 -b 0x10000000 -c -o "$place/$name.uf2" "$place/firmware.bin"
+            -f "$family" -b 0x10000000 -c -o "$place/$name.uf2" "$place/firmware.bin"
 }
 
 # The linker's script puts what has this name into the memory, as the SDK's own functions do. A
@@ -158,7 +174,8 @@ put_into_memory() {
 # The place is good for as long as the recipe stays the same, which names the place of the tree as
 # well; a compiler or sources that are fetched again take it away.
 prepare_pico_make() {
-    local name=$1 place=$pico_make/$1 made_for
+    local name=$1 place=$pico_make/$1 made_for board
+    read -r board _ < <(pico_target "$name")
     made_for=$(pico_recipe "$name")
     [[ -e $place/made_for && $(<"$place/made_for") == "$made_for" ]] && return
     say "    everything, which takes a minute"
@@ -166,7 +183,7 @@ prepare_pico_make() {
         pico_manifest "$name" >"$place/manifest.py" &&
         quietly "$place/log" pico_do CFLAGS="$(pico_flags "$name")" cmake -G Ninja \
             -S "$build/pico_sources/micropython/ports/rp2" -B "$place" \
-            -DMICROPY_BOARD=RPI_PICO -DPICO_NO_PICOTOOL=1 \
+            -DMICROPY_BOARD="$board" -DPICO_NO_PICOTOOL=1 \
             -DMICROPY_FROZEN_MANIFEST="$place/manifest.py" \
             -DPython3_EXECUTABLE="$build/pico_tools/programs/python" \
             -DPICO_TOOLCHAIN_PATH="$build/pico_compiler/usr/bin" &&
@@ -210,6 +227,11 @@ has_pico_compiler() {
     [[ -s $1/versions ]]
 }
 
+# One that was fetched earlier may lack the library for the Pico 2.
+has_pico2_compiler() {
+    has_pico_compiler "$1" && compgen -G "$1/usr/lib/gcc/*/*/thumb/v8-m.main+fp/softfp" >/dev/null
+}
+
 # Of the libraries that the compiler asks for, those that apt itself does without are taken along.
 unpack_pico_compiler() {
     local folder=$1 release=$2 view=$1/view libraries package
@@ -233,10 +255,11 @@ unpack_pico_compiler() {
         echo '!<arch>' >"$folder/usr/lib/arm-none-eabi/newlib/libstdc++.a"
 }
 
-# The libraries for other chips than the Pico's (which is thumb/v6-m), and what nobody calls: 100 MB
-# are left of 800.
+# The libraries for other chips than the Pico's (thumb/v6-m) and the Pico 2's (thumb/v8-m.main with
+# a floating point unit that functions do not rely on), and what nobody calls: 120 MB are left of 800.
 pico_compiler_without=(
-    'thumb/v[78]*' thumb/nofp arm/v5te 'arm-none-eabi/[0-9]*/lib*.a' 'newlib/lib*.a' '*_nano.a'
+    'thumb/v7*' 'thumb/v8-[!m]*' thumb/v8-m.base thumb/v8-m.main 'thumb/v8-m.main+dp'
+    'thumb/v8-m.main+fp/hard' thumb/nofp arm/v5te 'arm-none-eabi/[0-9]*/lib*.a' 'newlib/lib*.a' '*_nano.a'
     lto1 '*-lto-dump' plugin ./usr/share
 )
 

@@ -513,11 +513,11 @@ class Timer:
 
 
 class WDT:
-    """machine.WDT: cannot be stopped, only fed; a reset ends it. ValueError: over 8388 ms."""
+    """machine.WDT: cannot be stopped, only fed; a reset ends it. ValueError: over `longest_ms`."""
 
-    def __init__(self, chip, timeout_ms=5000):
-        if not 0 < timeout_ms <= 8388:
-            raise ValueError("timeout exceeds 8388")
+    def __init__(self, chip, timeout_ms=5000, longest_ms=8388):
+        if not 0 < timeout_ms <= longest_ms:
+            raise ValueError("timeout exceeds %d" % longest_ms)
         self._chip = chip
         self._timeout_us = timeout_ms * 1000
         self._alive = True

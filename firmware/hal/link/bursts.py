@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """The receiving half of a link: what a UART hears, burst by burst.
 
-`rp2_rs485` and `rs485` add the half that sends. A burst is over when the line has been
-silent for 32 bits; then the UART interrupts (IRQ_RXIDLE, receive time-out of a PL011).
+`rp2_rs485`, `rs485` and `self_directed` add the half that sends. A burst is over when the line has
+been silent for 32 bits; then the UART interrupts (IRQ_RXIDLE, receive time-out of a PL011).
 MicroPython's handler on the RP2040 moves characters from the UART's FIFO of 32 to a buffer of 256,
 and leaves one in the FIFO so that the time-out will come. This has two consequences:
 
@@ -36,15 +36,21 @@ class Bursts:
     program can look into the UART's FIFO: holds(), whether characters stand in it; clear(uart),
     which moves them to the buffer, drops those that find no room, and does not jump (see
     `_on_idle`). None: each look takes the characters that there are.
+
+    idle: None for a PL011, or how long after the last character IRQ_RXIDLE comes at the least, and
+    how much later than twice that at the most; in microseconds.
     """
 
-    def __init__(self, uart, clock, baud, copy, fifo=None, interrupts=True, hard=True):
+    def __init__(self, uart, clock, baud, copy, fifo=None, interrupts=True, hard=True, idle=None):
         self.on_activity = _nobody
         self.clock = clock
         self.interrupts = interrupts
         self.received_at = 0
         self._idle_us = IDLE_BITS * 1_000_000 // baud
         self.resolution_us = self._idle_us if interrupts else POLLED_RESOLUTION_US
+        if idle is not None:
+            self._idle_us, late_us = idle
+            self.resolution_us = self._idle_us + late_us
         self._uart = uart
         self._ticks_us = clock.ticks_us
         self._mask = clock.ticks_mask

@@ -26,11 +26,20 @@ class Rs485Link(Bursts):
     """uart: 8E1 at `baud`, buffers of at least 256 characters. driver_enable: a Pin, 1 sends.
 
     timer: for the driver enable only. interrupts: False if the UART has none. hard: False if the
-    port has only soft interrupts (ESP32). fifo: as in `Bursts`.
+    port has only soft interrupts (ESP32). fifo, idle: as in `Bursts`.
     """
 
     def __init__(
-        self, uart, driver_enable, timer, clock, baud, interrupts=True, hard=True, fifo=None
+        self,
+        uart,
+        driver_enable,
+        timer,
+        clock,
+        baud,
+        interrupts=True,
+        hard=True,
+        fifo=None,
+        idle=None,
     ):
         self.sent_at = 0
         self.late_releases = 0  # transmissions that did not end when they should have
@@ -44,7 +53,7 @@ class Rs485Link(Bursts):
         self._releases = 0
         self._on_timer = self._release  # bound once: binding allocates
         driver_enable.value(0)
-        Bursts.__init__(self, uart, clock, baud, _copy, fifo, interrupts, hard)
+        Bursts.__init__(self, uart, clock, baud, _copy, fifo, interrupts, hard, idle)
 
     def send(self, buffer, count):
         self._sending = True
