@@ -50,6 +50,8 @@ class App:
         board.watchdog.feed()  # it bites from now on, whatever hangs before the loop is reached
         self.board = board
         self.settings = settings = on_demand.call("settings_file", "load", board.store)
+        if getattr(board, "must_supervise", False):
+            settings.unsupervised = ()  # what was accepted on another board
         mask = board.clock.ticks_mask
         self.link = board.make_link(settings.baud)
         timing = Timing(settings.baud, settings.reply_timeout_ms * 1000)

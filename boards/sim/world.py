@@ -269,12 +269,15 @@ class World(Surroundings):
     def _boot(self):
         cause = "WATCHDOG" if self._bitten else ""
         self._bitten = self._dipped = False
-        self.chip = Chip(self.clock, self.wire, timeout_again=bool(self.seed & 1))
+        self.chip = self.make_chip()
         self.chip.on_bite = self._bite
         self.chips.append(self.chip)
         self.clock.advance(BOOT_US)
         loop_us = self._uneven_loop_us if self.seed else None
         self.app = self.start(self.make_board(loop_us, cause))
+
+    def make_chip(self):
+        return Chip(self.clock, self.wire, timeout_again=bool(self.seed & 1))
 
     def make_board(self, loop_us, cause):
         """The board around the chip that has just booted. As `Board`."""

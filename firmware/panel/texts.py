@@ -128,6 +128,7 @@ REFUSED_NO_JOG = b"NO: HAS NO JOG"
 REFUSED_UNSUPERVISED = b"NO JOG: P2014=0"
 REFUSED_LONG = b"NO: P2014 LONG"
 REFUSED_FN = b"NO: FN IS ON"  # this key of a compact keypad does nothing behind FN
+REFUSED_UNWATCHED = b"NO: SET P2014"  # on a board that cannot do without
 REFUSED_DIGITS = b"NO: SET OR PARAM"  # first: the setpoint is being edited
 
 # --- the setpoint digit by digit, and the units of what row 1 shows ------------------------------
@@ -150,6 +151,7 @@ ACCESS_TOO_LOW = b"P0003 TOO LOW"  # a refusal of the drive: see `pages.set_up`
 _DO_OR_NOT = b"SET=DO  PARAM=NO"
 _START_OR_STOP = b"START=GO STOP=NO"
 _FIX_OR_START = b"SET=FIX START=GO"  # SET writes P2014, START takes the risk
+FIX_OR_STOP, CANNOT_START = b"SET=FIX STOP=NO", b"IT CANNOT START"  # no START=GO there
 _TO_BE_WRITTEN = b"A%d: P%04d=%d"
 
 ASK_CUTS_OFF = ((_TO_BE_WRITTEN, b"PANEL MAY LOSE", b"THE DRIVE BY IT"), _DO_OR_NOT)

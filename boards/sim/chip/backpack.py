@@ -53,10 +53,14 @@ class Backpack:
     def power_on(self):
         """Power comes, or comes back, for the backpack and its display."""
         self._lcd.power_on()
-        self._lcd.wire(self._outputs[RS], self._outputs[E], [self._outputs[bit] for bit in DATA])
+        self.join()
         # All outputs are high now (data sheet, power-on reset), R/W too: so the controller is
         # being read and takes nothing. Its initialisation undoes what the first byte may do to it.
         self._level = 0
+
+    def join(self):
+        """Its outputs are the controller's wires, as they still are after a reset of the chip."""
+        self._lcd.wire(self._outputs[RS], self._outputs[E], [self._outputs[bit] for bit in DATA])
 
     @property
     def lit(self):

@@ -23,6 +23,9 @@ class RiskQuestion(Question):
         self._risk = risk = control.question()
         text, values, can_fix, self._value = risks.ask(control, risk)
         answers = {"START": self._accept}
+        if risk == risks.SUPERVISION and getattr(panel.board, "must_supervise", False):
+            answers["START"] = self._refuse
+            text = text[0], texts.FIX_OR_STOP if can_fix else texts.CANNOT_START
         if can_fix:
             answers["SET"] = self._supervise
         Question.__init__(self, panel, text, values, answers, _READING_MS)
@@ -45,6 +48,10 @@ class RiskQuestion(Question):
             self.panel.say(now_ms, texts.REFUSED_STOP)
         else:
             self._control.accept_risk(self._risk, self._value)
+
+    def _refuse(self, now_ms):
+        """On this board nobody may take that risk."""
+        self.panel.say(now_ms, texts.REFUSED_UNWATCHED)
 
     def _supervise(self, now_ms):
         """Have the drive stop by itself when this panel falls silent."""
