@@ -240,10 +240,23 @@ def mistakes(config, folder):
             yield "%s:%d: %s" % (path, line, one["message"])
 
 
-def test_pyright_finds_nothing():
-    """tools/pyright.json says what it looks for."""
-    found = list(mistakes("tools/pyright.json", TOP))
+@pytest.mark.parametrize("config", ("pyright.json", "pyright_esp32.json"))
+def test_pyright_finds_nothing(config):
+    """tools/pyright.json says what it looks for, with the stubs of the RP2040's port; the other
+    file is for what runs on an ESP32 alone."""
+    found = list(mistakes("tools/" + config, TOP))
     assert not found, "\n".join(found)
+
+
+def test_pyright_would_notice_what_an_esp32_has_not(tmp_path):
+    stubs = os.path.join(TOP, "build/pyright/esp32")
+    if not os.path.exists(stubs) and not strict():
+        pytest.skip("no pyright is here: tools/test with USS_STRICT=1 fetches it")
+    config = {"include": ["."], "stubPath": stubs, "reportMissingModuleSource": "none"}
+    (tmp_path / "pyrightconfig.json").write_text(json.dumps(config))
+    (tmp_path / "planted.py").write_text("import machine\nmachine.WDT().stop()\nimport rp2\n")
+    found = list(mistakes(str(tmp_path), str(tmp_path)))
+    assert [one.split(":")[1] for one in found] == ["2", "3"], found
 
 
 def test_pyright_would_notice(tmp_path):
