@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: MIT
+"""What is wired to which pin, by the table of a board file: read, not run."""
+
+import ast
+from pathlib import Path
+
+TOP = Path(__file__).resolve().parents[2]
+
+BUS = (
+    ("BUS_SEND", "bus DI"),
+    ("BUS_RECEIVE", "bus RO"),
+    ("DRIVER_ENABLE", "bus DE, /RE, pull-down"),
+    ("BACKPACK_SDA", "SDA of a backpack"),
+    ("BACKPACK_SCL", "SCL of a backpack"),
+)
+LCD = ("LCD RS", "LCD E", "LCD D4", "LCD D5", "LCD D6", "LCD D7")
+
+
+def table(board):
+    """The constants of boards/NAME/board.py."""
+    found = {}
+    for node in ast.parse((TOP / "boards" / board / "board.py").read_text()).body:
+        if not isinstance(node, ast.Assign):
+            continue
+        try:
+            value = ast.literal_eval(node.value)
+        except ValueError:
+            continue
+        target = node.targets[0]
+        if isinstance(target, ast.Tuple):
+            found.update(zip([name.id for name in target.elts], value))
+        else:
+            found[target.id] = value
+    return found
+
+
+def wires(board):
+    """{number of a pin: what is wired to it}."""
+    names = table(board)
+    found = {names[name]: what for name, what in BUS if names.get(name) is not None}
+    if "LCD_REGISTER_SELECT" in names:
+        found.update({names["LCD_REGISTER_SELECT"] + at: what for at, what in enumerate(LCD)})
+    for key, number in names["KEYS"]:
+        closed = ", normally closed" if key in names["NORMALLY_CLOSED"] else ""
+        found[number] = f"key {key}{closed}"
+    for row, number in enumerate(names.get("ROWS", ())):
+        found[number] = f"keys, row {row + 1}"
+    for column, number in enumerate(names.get("COLUMNS", ())):
+        found[number] = f"keys, column {column + 1}"
+    return found
