@@ -91,6 +91,22 @@ def test_a_mistake_is_found(row, tmp_path):
     assert status == 1 and says in said, said
 
 
+def test_a_compact_keypad_is_whole_with_eight_keys(tmp_path):
+    lines = (TOP / "boards/pico/board.py").read_text().splitlines(keepends=True)
+    begin = next(at for at, line in enumerate(lines) if line.startswith("KEYS = ("))
+    end = lines.index(")\n", begin)
+    names = ("START", "STOP", "REVERSE", "JOG", "UP", "DOWN", "P", "FN")
+    keys = [
+        f'    ("{name}", {13 + at * (at != 2) - 10 * (at == 2)}),\n'
+        for at, name in enumerate(names)
+    ]
+    file = tmp_path / "board.py"
+    file.write_text("".join(lines[: begin + 1] + keys + lines[end:]))
+    assert check(file)[0] == 0, check(file)[1]
+    file.write_text("".join(lines[: begin + 1] + keys[:-1] + lines[end:]))
+    assert "no key FN" in check(file)[1]
+
+
 def test_pico_and_pico_2_are_wired_alike():
     """One picture and one manual serve both."""
     tables = []

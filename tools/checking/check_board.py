@@ -13,7 +13,7 @@ from boards.sim.line.wire import Wire
 from boards.sim.ports.chips import CHIPS
 from boards.sim.ports.loading import chip_of, load
 from boards.sim.ports.machine import Port
-from panel.keys import NAMES
+from panel.keys import COMPACT_NAMES, NAMES
 
 USAGE = "usage: tools/check-board NAME|FILE   (a folder of boards/, or a board.py of your own)"
 LINES_MAX = 60
@@ -24,6 +24,7 @@ BAUD = 19_200
 OF_PINS = ("pin", "output", "pull", "flash", "psram", "strapping", "prompt", "led", "board", "e5",
            "uart pin", "i2c pin")  # fmt: skip
 
+COMPACT = ("START", "STOP", "REVERSE", "UP", "DOWN") + COMPACT_NAMES  # a keypad of eight
 PINS = ("BUS_SEND", "BUS_RECEIVE", "DRIVER_ENABLE", "BACKPACK_SDA", "BACKPACK_SCL")
 LCD_WIRES = ("RS", "E", "D4", "D5", "D6", "D7")  # six pins in a row
 
@@ -139,10 +140,12 @@ def driver_is_low(board, port):
 
 def keys(board):
     names = getattr(getattr(board, "keypad", None), "names", ())
+    known = NAMES + COMPACT_NAMES
     for name in names:
-        if name not in NAMES:
-            yield "the panel knows no key %s: %s" % (name, " ".join(NAMES))
-    missing = [name for name in NAMES if name not in names]
+        if name not in known:
+            yield "the panel knows no key %s: %s" % (name, " ".join(known))
+    is_compact = any(name in names for name in COMPACT_NAMES)
+    missing = [name for name in (COMPACT if is_compact else NAMES) if name not in names]
     if missing:
         yield "no key %s" % " ".join(missing)
     for name in ("START", "STOP"):
