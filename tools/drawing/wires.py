@@ -26,11 +26,8 @@ def table(board):
             value = ast.literal_eval(node.value)
         except ValueError:
             continue
-        target = node.targets[0]
-        if isinstance(target, ast.Tuple):
-            found.update(zip([name.id for name in target.elts], value))
-        else:
-            found[target.id] = value
+        names = ast.unparse(node.targets[0]).strip("()").split(", ")
+        found.update(zip(names, value) if len(names) > 1 else {names[0]: value})
     return found
 
 
