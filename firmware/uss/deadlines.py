@@ -324,9 +324,9 @@ class Deadlines:
         least_us = self._least_us
         if self.silence.wait_us < -_RARE_US:
             least_us = min(self._trips_us, 2 * least_us)
-        # Where one exchange takes more than a third of P2014, silent drives may go unasked for 13 s,
-        # or until the drive stands. To risk more is no better: it outlives two lost telegrams in a
-        # row, and a silence between them would leave it one.
+        # Where one exchange takes more than a third of P2014, silent drives may go unasked for
+        # 13 s, or until the drive stands. To risk more is no better: it outlives two lost
+        # telegrams in a row, and a silence between them would leave it one.
         room_us = max(least_us - needed_us, needed_us >> 2)
         return self.silence.silent_exchange_us + longer_us < room_us
 
