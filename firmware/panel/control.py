@@ -73,6 +73,15 @@ class Control:
     Nobody else writes a field of it.
     """
 
+    # Most drives never need these: each takes memory of its own when it first differs.
+    moving = False
+    moved = False
+    reversed = False
+    remark = texts.NOTHING
+    lost_running = False
+    absence_known = False
+    _jogged = False  # what turns, or ramps down, is a jog of this panel
+
     def __init__(self, drive, survey, desk):
         self.drive = drive
         self.survey = survey
@@ -80,22 +89,15 @@ class Control:
         self.setpoint = Setpoint(drive, survey, desk.settings)
         self.stop_watch = NO_WATCH
         self.fault = NO_FAULT
-        self.moving = False
-        self.moved = False
         self.phase = IDLE
-        self.reversed = False
         self.refusal = texts.NOTHING
         self.notice = texts.NOTHING
-        self.remark = texts.NOTHING
-        self.lost_running = False
-        self.absence_known = False
         self._command = None  # the last one that was obeyed; most drives never need one
         # bus.dead_man_trips when START was pressed, until that START is prepared.
         self._start_trips = _PREPARED
         self._now_us = 0
         self._contact = False  # as last seen
         self._quiet_zsw = _UNKNOWN  # drive.zsw when there was nothing to watch
-        self._jogged = False  # what turns, or ramps down, is a jog of this panel
         self._judged = -1  # version of the survey when its status word was judged
         self._stirred_at_us = None  # it last ran, or may have; None: it rests for sure
 
@@ -310,8 +312,11 @@ class Control:
         self.fault.step(now_us)
         if drive.contact != self._contact:
             self._contact = drive.contact
-            self.lost_running = drive.was_running and not drive.contact
-            self.absence_known = False
+            is_lost_running = drive.was_running and not drive.contact
+            if is_lost_running != self.lost_running:
+                self.lost_running = is_lost_running
+            if self.absence_known:
+                self.absence_known = False
         if self.phase == CHECKING:
             self._finish_check(now_us)
             return  # that may have taken long

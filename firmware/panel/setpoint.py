@@ -22,8 +22,9 @@ class Setpoint:
     writes drive.hsw, which goes out with ON only.
     """
 
+    _negative = False  # most drives never need it: it takes memory when it first differs
+
     def __init__(self, drive, survey, settings):
-        self._negative = False
         self.centihertz = settings.setpoint_centihertz
         self._asked_centihertz = settings.setpoint_centihertz  # what the operator set
         self._settings = settings

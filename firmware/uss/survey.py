@@ -82,6 +82,14 @@ class Survey:
     """
 
     latest_scaling = None  # the newest of any drive: most drives of a bus have the same, shared
+
+    # Most drives never need these: each takes memory of its own when it first differs.
+    wrong = rows.NOTHING_WRONG
+    unreadable = False
+    unchecked = 0
+    count = None
+    _asked_next = None  # the job on its way behind `_asked`
+    _unanswered = None  # by row: how often the drive fell silent on it
     _odd = 0  # answers in a row that make no sense
 
     def __init__(self, drive, family, mask, spares):
@@ -93,17 +101,11 @@ class Survey:
         self.complete = False
         self.scaling = None
         self.actual = None
-        self.wrong = rows.NOTHING_WRONG
-        self.unreadable = False
         self.version = 0
-        self.unchecked = 0
-        self.count = None
         self._mask = mask
         self._job = pkw.read(0)  # the survey's own job; a second one comes from the spares
         self._spares = spares
-        self._asked = None  # the job on its way that was asked first,
-        self._asked_next = None  # and the one after it
-        self._unanswered = None  # by row: how often the drive fell silent on it; mostly None
+        self._asked = None  # the job on its way that was asked first
         self._row = _FIRST  # the next row of the round
         self._turn = 0  # counts; rows of the round and of _WATCHED take turns
         self._changed = _NOTHING  # the row whose value is new and not judged yet
@@ -153,7 +155,7 @@ class Survey:
 
     def drop_recheck(self):
         """Give up the recheck: the operator does not wait for it any more."""
-        self.unchecked = 0
+        self._check_no_more()
         self.drive.want_turns(False)
 
     def step(self, now_us, reread_us=REREAD_US):
@@ -190,19 +192,24 @@ class Survey:
         if row == rows.REFERENCE or row == rows.ABSOLUTE:
             self._judge_scaling()
         else:
-            self.wrong = rows.wrong_rows(self.family.meaning, self.values)
+            self._judge_meaning()
             if self.scaling is None:
                 self._judge_scaling()  # another data set has made it unknown
         self._judge()
 
+    def _check_no_more(self):
+        if self.unchecked:
+            self.unchecked = 0
+
     def _forget(self):
-        self.unchecked = 0
+        self._check_no_more()
         self._changed = _NOTHING
         self._row = _FIRST
         self._disown()
         if self.count:
             self.count.forget()
-        self._unanswered = None
+        if self._unanswered:
+            self._unanswered = None
         known = self.unreadable or self.complete
         for row in range(len(self.values)):
             blank = 0 if row in _LATER else _UNKNOWN
@@ -211,11 +218,11 @@ class Survey:
         self._asks = self._askable()  # another layout, perhaps
         if known or self.is_percent():
             self.scaling = None
-            self.wrong = rows.wrong_rows(self.family.meaning, self.values)
+            self._judge_meaning()
             if self._contact:
                 self._judge_scaling()  # it may be known without a question
             self._judge()
-            self.unreadable = False
+            self._note_readable()
 
     def _askable(self):
         """The rows that the drive can be asked for: three PKW words carry no double word."""
@@ -298,7 +305,8 @@ class Survey:
         if job is not self._job:
             self._spares.append(job)
         self._asked = self._asked_next
-        self._asked_next = None
+        if self._asked:
+            self._asked_next = None
         if row == _NOTHING:
             return
         if self.unchecked:
@@ -401,9 +409,18 @@ class Survey:
             if values[row] == _UNKNOWN and self._is_missing(row):
                 self.complete = False
         if self.complete:
-            self.unreadable = False
+            self._note_readable()
             has_sign = tells and self.family.hiw_is_signed
             self.drive.tell_speed(self.scaling.full_scale() if has_sign else 0)
+
+    def _judge_meaning(self):
+        wrong = rows.wrong_rows(self.family.meaning, self.values)
+        if wrong is not self.wrong:
+            self.wrong = wrong
+
+    def _note_readable(self):
+        if self.unreadable:
+            self.unreadable = False
 
     def _is_missing(self, row):
         """Whether a value is still to be told."""
@@ -417,7 +434,8 @@ class Survey:
             reference = 0
         elif self.is_percent():
             reference = _HUNDRED_PERCENT if reference and not is_absolute else 0
-            self.unreadable = self.unreadable or is_absolute
+            if is_absolute:
+                self.unreadable = True
         if reference < pzd.REFERENCE_MIN:
             self.scaling = None
         elif self.scaling is None or not self.scaling.is_of(reference, is_absolute):

@@ -258,8 +258,8 @@ MUTATIONS = (
         ("MAY RUN",), 11,
         (
             "panel/control.py",
-            "self.lost_running = drive.was_running and not drive.contact",
-            "self.lost_running = False",
+            "is_lost_running = drive.was_running and not drive.contact",
+            "is_lost_running = False",
         ),
     ),
     Mutation(
@@ -656,8 +656,8 @@ MUTATIONS = (
         ),
         (
             "uss/survey.py",
-            "self.unreadable = self.unreadable or is_absolute",
-            "is_absolute = False",
+            "            if is_absolute:\n                self.unreadable = True\n",
+            "            is_absolute = False\n",
         ),
     ),
     Mutation(
