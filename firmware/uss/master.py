@@ -128,6 +128,8 @@ class Master:
 
         looks: there is time to look after drives that are silent or wait too long, if that is due.
         """
+        if (now - self._refreshed_at) & self._mask > DEAD_MAN_US and not self._dead_man:
+            self._check_dead_man(now)  # nothing has entered the engine since: no timer does
         self._refreshed_at = now
         self._dead_man = False
         if looks and (now - self.deadlines.looked_at) & self._mask >= LOOK_US:

@@ -2,6 +2,7 @@
 """The operator's manual, when something fails: the drive, the line, the panel, its clock."""
 
 import main
+from boards.sim.chip.machine import Timer
 from boards.sim.world import World
 from panel_bench import (
     ERROR,
@@ -218,6 +219,23 @@ def test_every_drive_is_stopped_when_the_loop_hangs():
         offs = [at_us for at_us, stw in telegrams(world, hung_us, address) if stw == OFF1]
         assert offs and offs[0] - hung_us <= 400_000 + 2 * 22_000
     world.check()
+
+
+def test_a_hang_that_nothing_interrupts_stops_the_motor_when_it_is_over():
+    """The timers are dead, and the loop itself has kept the line going: after the hang the first
+    telegram already says OFF1."""
+    world = running()
+    for peripheral in world.chip.peripherals:
+        if isinstance(peripheral, Timer):
+            peripheral.die()
+    world.run(500)
+    assert row_2(world) == "RUNNING      A1"
+    hung_us = world.clock.now_us
+    world.hang(400)
+    world.run(500)
+    sent = [stw for _, stw in telegrams(world, hung_us, 1)]
+    assert sent and ON not in sent, sent
+    assert starts(world) == 1
 
 
 def test_start_between_two_hangs_does_not_outlive_the_second():
