@@ -196,6 +196,7 @@ class Kind:
         self._known = {pkw_words}  # that the settings may name after a restart
         self._told_pzd_words = pzd_words
         self._other = None  # the layout before, which may be in force yet
+        self._mirrored = None  # net words of the last mirror telegram
         self._came_back = {}  # since the last reply: net words -> whether the panel must know
         self._sights = {}
 
@@ -235,9 +236,17 @@ class Kind:
         return bool(fitting)
 
     def may_ask(self, count):
-        """Whether so many net words may be a question to a drive whose layout is looked for."""
+        """Whether so many net words may be a question to a drive whose layout is looked for. One
+        that answers, but makes no sense, is asked in its own length, behind one that is longer.
+        """
         back = self._came_back
+        if count + 1 == self._mirrored and _fitting(count - self.pzd_words, 0) & self.words:
+            return True
         return count in back or count >= 3 and any(one + 1 in back for one in back)
+
+    def mirror(self, count):
+        """A mirror telegram of so many net words is sent."""
+        self._mirrored = count
 
     def learn(self, layout, count):
         """The panel speaks to a drive of this layout as the drive has it. Whether it may be so."""
@@ -272,6 +281,7 @@ class Kind:
             self.words = self.words | {VARIABLE}  # its telegrams without a task look the same
 
     def restarted(self):
+        self._mirrored = None
         self._came_back.clear()
         if self.pzd_words == self._told_pzd_words:
             self.words = set(self._known)

@@ -193,6 +193,7 @@ class Judge:
         witness, case = self.witness, self.cases[address]
         where = "drive %d at %d" % (address, now)
         self.exchanges += 1
+        witness.kinds[address].mirror(tape.count[row])
         if self._begun_us != witness.boot_us:
             self._judge_first(row, tape)
         if not tape.is_blank(row):
