@@ -4,6 +4,7 @@
 Time passes in slices; after each slice judge and reader look.
 """
 
+from tools.soaking.judging.announced import is_parameter
 from tools.soaking.judging.facts import DRAWN_STEPS, LEAVES, MENU, MS, SEEN_US
 
 SLICE_MS = 40
@@ -19,6 +20,8 @@ WALKED = (  # in the menu
     "UP", "DOWN", "DOWN", "DOWN", "SET", "SET", "SET", "SET", "PARAM", "NEXT", "PREVIOUS",
     "ADDRESS_UP", "ADDRESS_DOWN", "STOP", "START", "REVERSE", "EDIT",
 ) + JOGS  # fmt: skip
+TYPES = ("UP", "UP", "DOWN", "DOWN", "NEXT", "PREVIOUS")  # digits
+TYPED_BY = ("SET", "SET", "SET", "EDIT", "PARAM", "STOP", "ADDRESS_UP")
 OPENS = ("PARAM", "PARAM", "PARAM", "ADDRESS_UP", "ADDRESS_DOWN")  # the menu, held
 OPENS_MS = 1_500
 FIND, HUNTS, TAKES = "FIND DRIVES", "FOUND STOP=NO", "TAKE "
@@ -191,6 +194,20 @@ class Fingers:
         for key in chosen:
             self.up(key)
             self.run(self.dice.one_of((1, 5, 30, 300)))
+
+    def type_digits(self):
+        """Set the setpoint digit by digit, mostly while a motor runs, or change one's mind."""
+        if is_parameter(self.reader.rows[1]):
+            self.press("PARAM")
+        if self.dice.below(4):
+            self.run_long()
+        self.press("EDIT")
+        for _ in range(1 + self.dice.below(7)):
+            self.run(self.dice.one_of((20, 100, 900)))
+            self.press(self.dice.one_of(TYPES), self.dice.one_of((60, 100, 100, 900)))
+        self.run(self.dice.one_of((20, 2 * self._seen_ms, 6_000)))
+        self.press(self.dice.one_of(TYPED_BY))
+        self.run(self.dice.between(50, 3_000))
 
     # --- the menu, and the search ---------------------------------------------------------------
 

@@ -35,6 +35,8 @@ class Mischief(Fingers):
         self.common += 6 * [self.distrust] + 2 * [self.meddle_while_it_runs]
         if plan.has_families:
             self.common += 6 * [self.turn_round]
+        if plan.types:
+            self.common += 8 * [self.type_digits]
         if plan.troubles > 1:
             self.common += len(self.common) * [self.two_troubles]
         for drive in self.drives:

@@ -538,6 +538,17 @@ MUTATIONS = (
         ),
     ),
     Mutation(
+        "digits take effect without SET",
+        "a motor goes faster while somebody still types what it shall turn with",
+        ("RISES",), 1,
+        (
+            "panel/pages/digits.py",
+            "        self._centihertz += ((digit + direction) % 10 - digit) * worth\n",
+            "        self._centihertz += ((digit + direction) % 10 - digit) * worth\n"
+            "        self._control.change(self._centihertz - self._control.setpoint.centihertz)\n",
+        ),
+    ),
+    Mutation(
         "one START, two runs",
         "a motor that was without mains for a moment starts again by itself",
         ("TURNS", "START"), 184,

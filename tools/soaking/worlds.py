@@ -20,6 +20,8 @@ from tools.soaking.judging.facts import S, exchange_us, lost_us
 ABLE = ((mm420, {}), (mm420, {}), (mm440, {}))
 OTHERS = ((g110, {}), (mm420, {2013: 3}), (mm440, {2012: 4}), (v20, {2013: 4, 2014: 0}))
 
+TYPES_IN = 4  # in one world of so many somebody types digits
+
 # One world in so many has drives of all families and layouts. Of these the panel is told the
 # truth, or another layout, now and then that it is a drive of which nothing is known.
 FAMILIES_IN = 3
@@ -49,7 +51,7 @@ class Plan:
     """seed, dice, addresses, listed (these, and the addresses of the panel's list without a
     drive), baud, settings, keys, polled, echo, level (CLEAN, ROUGH, WILD), loop_us (the longest
     step of the main loop), and further arguments of a `World`: `ticks_start`, `ticks_mask`,
-    `kinds`. pzd_words: the most of a telegram.
+    `kinds`. pzd_words: the most of a telegram. types: the operator sets setpoints digit by digit.
 
     troubles: how many things the hand lets fail at once, 1 or 2.
     """
@@ -80,6 +82,7 @@ class Plan:
         self.echo = not dice.below(10)
         self.settings = _settings(dice, self.addresses)
         self.settings["drives"] = list(self.listed)
+        self.types = Dice(seed, 13).below(TYPES_IN) == 0
         # Drives of all families.
         self.families = families = Dice(seed, 11)
         self.has_families = families.below(FAMILIES_IN) == 0

@@ -35,7 +35,7 @@ class Case:
         self.rested_us = NEVER  # heard at rest last, in answer to an OFF
         self.turned_us = NEVER  # ON or JOG sent last
         self.highest_hsw = 0  # that the run may have: what UP left, or less
-        self.raised_us = NEVER  # UP or SET was down for it last
+        self.raised_us = NEVER  # UP, or SET after digits, was down for it last
         self.exposed_us = ALWAYS  # so long the motor was to run on without a panel, by its start
         self.reached = False  # HIW has come up to HSW since one of them, or the direction, changed
         self.run_starts = 0  # of its motor, in this run

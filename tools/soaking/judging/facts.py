@@ -31,6 +31,7 @@ QUESTIONS = (WRITES, RUNS_ON)
 GOES = (RUNS_ON, RISKS)
 CHOICES = (WRITES, RUNS_ON, RISKS)
 MENU = ">"  # row 2 of every list of the menu begins so
+TYPED = "NEW"  # row 2 begins so while the setpoint is set digit by digit
 LEAVES = ("LEAVE THE LINE &", "FIND DRIVES?")  # row 1 of WRITES, before the search
 NO_PARAMETERS = "NO PARAMETERS"  # parameter mode, of a drive that can tell none
 UNTOLD = ("IT MAY RUN ON", "IF PANEL DIES")  # row 1 of RISKS, where no P2014 can be read

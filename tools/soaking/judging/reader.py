@@ -23,6 +23,7 @@ from tools.soaking.judging.facts import (
     QUESTIONS,
     RISKS,
     RUNS_ON,
+    TYPED,
     UNTOLD,
     ZSW_FAULT,
     ZSW_RUNNING,
@@ -70,6 +71,7 @@ class Reader:
         self._exposed_us = 0  # that its P2014 is longer by now was said, or could not be
         self._warned_us = NEVER  # a warning of the drive shown was read last
         self._unwarned_us = 0  # it had none, or something else was to be seen
+        self._types = False  # row 2 has digits that are typed in, or a message hides them
         self._subject = None  # of a question, as read last
         self._is_untold = False  # the question on the display is about a P2014 that nobody reads
         self._hz = None  # of the drive shown, then; None: that was too long ago
@@ -94,6 +96,7 @@ class Reader:
         self.announced.look(now)
         witness = self.witness
         self._note_menu(now)
+        self._note_digits(now)
         if self.rows[1] in QUESTIONS and self.rows[0].strip() in LEAVES:
             witness.leaves_us = now
             witness.question = None
@@ -144,6 +147,15 @@ class Reader:
         elif self.steady and "STOP" not in witness.down:
             if now - witness.up["STOP"] > COVERED_US or self.address is not None:
                 witness.menu_since_us = ALWAYS
+
+    def _note_digits(self, now):
+        row_2 = self.rows[1]
+        if row_2.startswith(TYPED):
+            self._types = True
+        elif self.steady and self.address is not None or row_2.startswith(MENU):
+            self._types = False
+        if self._types:
+            self.witness.typed_us = now
 
     def _read_question(self, now):
         witness = self.witness
@@ -201,6 +213,7 @@ class Reader:
             self._warned_us = now  # the drive has no number for it
         hidden = is_parameter(row_2) or row_2 in CHOICES or self.reads("STOP UNCONFIRMED")
         hidden = hidden or "STOP" in self.witness.down  # row 2 tells what that does
+        hidden = hidden or self._types
         hidden = hidden or address_in(row_2) is None and said_in(row_2) is None  # a message
         lost = now - case.answered_us > self.witness.lost_us // 2
         if hidden or lost or not case.zsw & ZSW_WARNING or case.zsw & ZSW_FAULT:

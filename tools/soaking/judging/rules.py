@@ -17,7 +17,7 @@ RULES = {
     "LOST": "no ON and no JOG goes to a drive that has not answered for the lost time",
     "DEAD MAN": "no ON and no JOG is sent once the main loop has stood still for 300 ms",
     "TURNS": "a motor is switched on only by an ON or a JOG just sent, and once for each START",
-    "RISES": "while a drive runs nothing raises its setpoint but UP and SET",
+    "RISES": "while a drive runs nothing raises its setpoint but UP, and SET after digits",
     # what makes it stop
     "STOP": "STOP is in the next telegram to that drive, beats START, and holds until START",
     "SECOND STOP": "OFF2 or OFF3, as the settings say, when STOP was held for 1.5 s; until heard",

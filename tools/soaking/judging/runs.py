@@ -3,7 +3,7 @@
 
 A reply ends a run if the drive has tripped, or stands although it was not told to. If a motor
 starts once more, after a moment without mains, the panel must stop it before long. While a run
-goes on, only UP raises its setpoint, or SET, which takes one that was typed in.
+goes on, only UP raises its setpoint, or SET where the display has digits that are typed in.
 
     if is_over(case, zsw) or is_standstill(case, hiw): ...
 """

@@ -56,7 +56,8 @@ class Witness:
 
     The hand, its mischief and the world tell it things. Others write some fields: the judge writes
     `late_us`, `stirred_us` and `wishes`, and takes cases out of `owed`; the reader writes
-    what the display asks, `asked_us`, `go_us`, `leaves_us` and `question`, and `menu_us`.
+    what the display asks, `asked_us`, `go_us`, `leaves_us` and `question`, `menu_us`, and
+    `typed_us`.
     """
 
     def __init__(self, world, plan, judge):
@@ -89,6 +90,7 @@ class Witness:
         self.leaves_us = NEVER  # it asks whether the panel shall leave the line to find drives
         self.left_us = NEVER  # SET has said yes to that
         self.searches = False  # the program that finds drives has the line
+        self.typed_us = NEVER  # the display has digits of a setpoint that is typed in
         self.menu_us = NEVER  # the menu was seen last,
         self.menu_since_us = ALWAYS  # and first, without anything else in between
         self.seen_us = SEEN_US + DRAWN_STEPS * plan.loop_us
@@ -124,7 +126,7 @@ class Witness:
         """A key is about to move."""
         self.judge.look()
         self.stirred_us = now = self.clock.now_us
-        if key in ("UP", "SET"):  # SET takes a setpoint that was typed in
+        if key == "UP" or key == "SET" and self._may_take_digits(now):
             for case in self.candidates():
                 case.raised_us = now
         if not down:
@@ -152,6 +154,12 @@ class Witness:
     def is_in_menu(self):
         """Whether the menu covers all pages, as far as can be seen."""
         return self.menu_since_us != ALWAYS
+
+    def _may_take_digits(self, now):
+        """Whether SET may take a setpoint that was typed in: the display has its digits, or may
+        have had them since EDIT was pressed."""
+        opened_us = max(self.pressed_us["EDIT"], self.stalled_us)
+        return now - max(self.typed_us, opened_us) < self.seen_us
 
     def sees_menu(self):
         """The menu is on the display: what START was pressed in it for has come to nothing."""
