@@ -67,6 +67,25 @@ def test_a_start_that_nobody_pressed_is_noticed():
     assert [line for line in told if "A%d ON" % soak.plan.addresses[0] in line], told
 
 
+def test_set_may_raise_a_setpoint_where_the_display_has_digits_and_nowhere_else():
+    soak = Soak(13, drives=1)
+    hand, case = soak.hand, soak.judge.cases[soak.plan.addresses[0]]
+    hand.run(2_000)
+
+    def may_raise():
+        before_us = case.raised_us
+        hand.press("SET")
+        hand.run(2_000)
+        return case.raised_us > before_us
+
+    assert not may_raise()
+    hand.press("EDIT")
+    hand.run(5_000)
+    assert soak.reader.rows[1].startswith("NEW"), soak.reader.rows
+    assert may_raise()
+    assert not may_raise(), "the digits are gone"
+
+
 def test_a_reply_that_somebody_talked_into_may_have_been_taken_or_not():
     clock = Clock()
     wire = Wire(clock, 19200)
