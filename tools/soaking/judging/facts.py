@@ -59,6 +59,7 @@ READ_REPLIES = 2  # of a drive whose replies do not lag
 # answered so many; so many, if it may run, and these last ones said STOP. At the least the list
 # asks silent drives half the time.
 SILENT_MIN, STOPPED_MIN, TOLD_MIN = 3, 30, 10
+DOUBTED_US = 30 * S  # answers that a bad line has spoilt make a drive look like another, so long
 SHARED = 2
 # Of the loop, for each that runs and is not shown, where that takes longer: until its limits have
 # been read, and all its settings.

@@ -19,6 +19,7 @@ from tools.soaking.judging.facts import (
     ALWAYS,
     CONTROLS,
     DEAD_MAN_US,
+    DOUBTED_US,
     EEPROM_WRITES,
     HELD_SET_US,
     JOG_BITS,
@@ -208,7 +209,8 @@ class Judge:
         waits = 2 + 2 * witness.may_look(now)
         waited_us = waits * (witness.exchange_us + self.plan.loop_us)
         recently_us = max(witness.boot_us, now - witness.lost_us * 9 // 10)
-        if case.heard_us > recently_us and not witness.is_able(address):
+        is_doubtful = now - witness.late_us < DOUBTED_US + 20 * witness.cycle_us
+        if case.heard_us > recently_us and (is_doubtful or not witness.is_able(address)):
             self._shares.mirror(case, now)
             return  # its answers may make no sense
         if case.heard_us > recently_us and now - case.contact_us > waited_us:
