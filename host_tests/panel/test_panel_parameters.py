@@ -336,6 +336,30 @@ def test_set_asks_first():
         world.check()
 
 
+def test_set_does_not_answer_a_question_that_a_message_hides():
+    """The drive falls silent on the parameter, which is read on: row 2 says so. SET takes that
+    away, and when the question is to be read again, SET answers it."""
+    world = edit(parameter("P0700"), 6)
+    drive = world.drives[1]
+    hear = drive.slave.hear
+
+    def hear_selectively(burst):
+        reads = bytes(burst.data[3 : min(5, burst.count)]) == b"\x12\xbc"  # P0700
+        return None if reads else hear(burst)
+
+    drive.slave.hear = hear_selectively
+    world.press("SET")
+    wait_for(world, "NO REPLY TO THIS")
+    assert row_1(world).startswith("A1: P0700=6")
+    world.press("SET")
+    world.run(1000)
+    assert row_2(world) == ASKED and not writes(world)
+    world.press("SET")
+    wait_for(world, "WRITTEN (RAM)")
+    assert writes(world) == [(1, 700, "RAM", 6)]
+    world.check()
+
+
 def test_set_again_writes_into_ram():
     world = parameter("P1000")
     write(world, 3)

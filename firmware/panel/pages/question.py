@@ -15,13 +15,15 @@ from panel.pages import Page
 from uss.timing import elapsed
 
 _STALE_MS = const(30_000)  # whoever caused it is gone by then
+_UNREAD_MS = const(500)  # until row 2 is drawn, and seen, when a message has left it
 
 
 class Question(Page):
     """text: (texts for row 1 in turn, text of row 2), one of texts.ASK_...; values: what belongs
     into the former. answers: key -> function of now_ms.
 
-    deaf_ms: so long after it appeared no answer counts, because nobody has read it yet.
+    deaf_ms: so long after it appeared no answer counts, because nobody has read it yet. Nor does
+    one while a message hides which keys answer.
     """
 
     modules = ("panel.pages.question",)
@@ -35,6 +37,7 @@ class Question(Page):
         self._answers = answers
         self._deaf_ms = deaf_ms
         self._shown_at_ms = None
+        self._hidden_at_ms = None  # a message was in row 2, until then
 
     def take_keys(self, acts, now_ms):
         if not acts.pressed:
@@ -43,7 +46,8 @@ class Question(Page):
         for key in self._answers:
             if acts.pressed == acts.bit(key):  # two keys at once are no answer
                 chosen = self._answers[key]
-        if chosen is not None and self._shown_for_ms(now_ms) < self._deaf_ms:
+        is_unread = self._hidden_at_ms is not None or self._shown_for_ms(now_ms) < self._deaf_ms
+        if chosen is not None and is_unread:
             return
         self.close()
         acts.forget()  # a key that said no, and is held, does nothing else
@@ -53,6 +57,11 @@ class Question(Page):
     def step(self, keys, now_ms):
         if self._shown_at_ms is None:
             self._shown_at_ms = now_ms
+        if self.panel.message:
+            self._hidden_at_ms = now_ms
+        elif self._hidden_at_ms is not None:
+            if elapsed(now_ms, self._hidden_at_ms, self.panel.mask) >= _UNREAD_MS:
+                self._hidden_at_ms = None
         is_stale = self._shown_for_ms(now_ms) >= _STALE_MS
         if is_stale or self.panel.selected.needs_attention():  # an alarm is not to be hidden
             self.close()
