@@ -772,3 +772,59 @@ def test_no_step_of_the_loop_waits_for_two_modules_of_the_menu():
             press(world, "PARAM")
     assert watched.most == 1
     world.check()
+
+
+def test_stop_is_for_the_drive_that_is_shown_and_for_the_one_in_row_2():
+    world = panel(addresses=(1, 2, 3))
+    wait_until_known(world)
+    press(world, "START", "ADDRESS_DOWN")
+    wait_until_known(world)
+    press(world, "START", "ADDRESS_UP")  # A1 and A3 run, and A1 is shown again
+    world.run(3000)
+    menu(world)
+    press(world, "STOP")
+    assert row_2(world) == "A1: STOP", world.lcd()
+    assert world.drives[3].state == "running"
+    world.run(4000)
+
+    press(world, "PARAM", "START")
+    world.run(3000)
+    menu(world)
+    press(world, "SET", "UP")
+    assert row_2(world) == ">A3  RUNNING", world.lcd()
+    press(world, "STOP")
+    assert row_2(world) == "A1 A3: STOP", world.lcd()
+    world.run(4000)
+    assert world.drives[1].state == world.drives[3].state == "ready"
+    world.check()
+
+
+def test_stop_names_the_drive_that_an_address_key_has_shown_on_its_way_to_any_address():
+    world = panel(addresses=(1, 2))
+    wait_until_known(world)
+    press(world, "START")
+    world.run(3000)
+    world.press("ADDRESS_UP", 1500)
+    world.run(300)
+    assert row_1(world).startswith(("ANY ADDRESS", "A1 RUN")), world.lcd()
+    press(world, "STOP")
+    assert row_2(world) == "A2: STOP", world.lcd()
+    while "A1  IN THE LIST" not in row_2(world):
+        press(world, "UP")
+    press(world, "STOP")
+    assert row_2(world) == "A2 A1: STOP", world.lcd()
+    world.run(4000)
+    assert world.drives[1].state == "ready"
+    world.check()
+
+
+def test_a_key_that_moves_a_motor_says_that_the_menu_is_open():
+    world = panel()
+    wait_until_known(world)
+    menu(world)
+    for key in ("START", "REVERSE", "JOG_RIGHT", "JOG_LEFT"):
+        press(world, key)
+        assert row_2(world) == "NO: MENU IS OPEN", (key, world.lcd())
+        press(world, "DOWN")
+    assert starts(world) == 0 and world.drives[1].state == "ready"
+    world.check()

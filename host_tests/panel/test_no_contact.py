@@ -106,6 +106,22 @@ def test_the_rate_can_be_changed_from_there():
     world.check()
 
 
+def test_a_drive_that_somebody_has_given_another_address_is_found_from_there():
+    world = panel(addresses=(1, 2))
+    world.run(1000)
+    world.drives[1].write(2011, 0, 4)
+    world.run(3000)
+    why(world)
+    while row_2(world) != ">P2011 = 1":
+        press(world, "DOWN")
+    press(world, "SET")
+    assert row_2(world) == ">A1  IN THE LIST", world.lcd()
+    press(world, "DOWN", "DOWN", "DOWN")
+    world.run(3000)
+    assert row_2(world) == ">A4  ANSWERS", world.lcd()
+    world.check()
+
+
 def test_stop_is_stop_at_every_step_and_behind_it():
     opened = []
     for how in (TROUBLES[0][0], TROUBLES[1][0], TROUBLES[4][0]):
@@ -126,7 +142,8 @@ def test_stop_is_stop_at_every_step_and_behind_it():
             press_stop(world, step)
         world.check()
     assert opened == [
-        "P2010=7 19200", "P2013 = 4", "FIND DRIVES", "P2010=7 19200", "P2013 = 4", "P2012 = 2",
+        "P2011 = 1", "P2010=7 19200", "P2013 = 4", "FIND DRIVES", "P2010=7 19200", "P2013 = 4",
+        "P2012 = 2",
     ], opened  # fmt: skip
 
 
@@ -135,4 +152,4 @@ def press_stop(world, where):
     press(world, "STOP")
     offs = [at_us for at_us, stw in telegrams(world, pressed_us, 1) if stw == OFF1]
     assert offs and offs[0] - pressed_us < 150_000, (where, world.lcd())
-    assert row_2(world).startswith(">"), (where, world.lcd())
+    assert row_2(world) == "A1: STOP", (where, world.lcd())

@@ -21,6 +21,7 @@ class Entries:
     """
 
     title = b""
+    tells_stop = True  # STOP says which drive it has stopped
 
     def __init__(self, panel, argument=None):
         self.panel = panel
@@ -48,6 +49,16 @@ class Entries:
     def words(self, position):
         """The entry in words, at most 15 of them."""
         return b""
+
+    def control_at(self, position):
+        """The `Control` of the drive that the entry names, or None. STOP is for it, too."""
+
+    def control_of(self, address):
+        """The `Control` of the drive with this address, or None."""
+        for control in self.panel.controls:
+            if control.drive.address == address:
+                return control
+        return None
 
     def choose(self, position, now_ms):
         """SET was pressed on it."""

@@ -59,6 +59,9 @@ class List(Entries):
                 what = words.NOBODY
         return b"A%-2d %s" % (position, texts.of(what))
 
+    def control_at(self, position):
+        return self.control_of(position)
+
     def step(self, position, now_ms):
         """Ask the address that is shown."""
         if self._telegram.state == PENDING:

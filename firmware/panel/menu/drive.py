@@ -27,6 +27,9 @@ class List(Entries):
             return words.speed(self.argument)
         return words.of_kind(row, kind_of(self.argument)[row])
 
+    def control_at(self, position):
+        return self.argument
+
     def choose(self, position, now_ms):
         panel = self.panel
         if _KIND <= position < _KIND + len(words.KIND):

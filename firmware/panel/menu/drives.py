@@ -21,5 +21,8 @@ class List(Entries):
         state = wording.of(wording.text(control), control.survey.family)
         return b"A%-2d %s" % (control.drive.address, state)
 
+    def control_at(self, position):
+        return self.panel.controls[position]
+
     def choose(self, position, now_ms):
         return "drive", self.panel.controls[position]

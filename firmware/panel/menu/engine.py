@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Shows the lists of the menu, one over the other, and walks them. See `panel.menu`.
 
-STOP acts as on every page; nothing in here starts a motor. A menu that nobody has used for a
-minute closes.
+STOP acts as on every page, and stops the drive that row 2 names, too. Nothing in here starts a
+motor. A menu that nobody has used for a minute closes.
 """
 
 from micropython import const
@@ -20,6 +20,7 @@ _WANTS = {
     "turns": ("uss.families.kinds", "settings_file"),
     "value": ("uss.families.kinds", "settings_file"),
 }
+_REFUSED = ("START", "REVERSE", "JOG_RIGHT", "JOG_LEFT")  # they move a motor
 _STALE_MS = const(60_000)
 _COUNT_COLUMN = const(11)  # "12/31"
 
@@ -41,6 +42,8 @@ class Menu(Page):
         self._wanted.insert(0, "panel.menu.words")
 
     def take_keys(self, acts, now_ms):
+        if acts.has("STOP") and self._lists:
+            self._stop(now_ms)
         if self._coming or not (acts.pressed or acts.repeated):
             return
         self._used_at_ms = now_ms
@@ -60,6 +63,8 @@ class Menu(Page):
             self._go(shown.choose(min(position, shown.count() - 1), now_ms), now_ms)
         elif direction and not shown.change(position, -direction * acts.pace(100)):
             self._lists[-1] = (name, shown, (position + direction) % shown.count())
+        elif any([acts.has(key) for key in _REFUSED]):
+            self._say(now_ms, "MENU_IS_OPEN")
 
     def step(self, keys, now_ms):
         if self._coming:
@@ -107,6 +112,24 @@ class Menu(Page):
         """That of the drive shown, in turn with the title: only the others are announced."""
         text = texts.OTHER_UNCONFIRMED if control.stop_watch.unconfirmed else texts.OTHER_LOST
         screen.put(0, 0, texts.ROW_WIDTH, b"A%d%s" % (control.drive.address, texts.of(text)))
+
+    def _stop(self, now_ms):
+        """STOP has stopped the drive shown, and row 2 may name another one: that stops as well,
+        since the operator looks at it. The display says which drives that are.
+        """
+        _, shown, position = self._lists[-1]
+        panel = self.panel
+        address = panel.selected.drive.address
+        named = shown.control_at(min(position, shown.count() - 1))
+        if named in panel.controls and named is not panel.selected:
+            named.stop_unseen()
+            self._say(now_ms, "STOPPED_TWO", address, named.drive.address)
+        elif shown.tells_stop:
+            self._say(now_ms, "STOPPED", address)
+
+    def _say(self, now_ms, name, *values):
+        """A text of `words`, which came with a step of its own."""
+        self.panel.say(now_ms, getattr(on_demand.load("panel.menu.words"), name), *values)
 
     def _go(self, following, now_ms):
         """Where a list leads to, unless it has closed the menu."""

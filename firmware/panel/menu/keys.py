@@ -8,6 +8,7 @@ from panel.menu import BACK, Entries, words
 
 class List(Entries):
     title = words.KEY_TEST
+    tells_stop = False  # the name of the key is what is wanted here
 
     def __init__(self, panel, argument):
         Entries.__init__(self, panel, argument)

@@ -38,6 +38,9 @@ class List(Entries):
     def words(self, position):
         return words.of_kind(self._row, self._choices[position])
 
+    def control_at(self, position):
+        return self._control
+
     def choose(self, position, now_ms):
         panel = self.panel
         if self._choices[position] == kind_of(self._control)[self._row]:

@@ -28,6 +28,9 @@ class List(Entries):
     def heading(self, position):
         return texts.of(self.title if self._carried is None else words.CARRYING)
 
+    def control_at(self, position):
+        return self.control_of(self._drives[position])
+
     def choose(self, position, now_ms):
         if self.panel.any_runs():
             self.panel.say(now_ms, texts.STOP_FIRST)

@@ -31,6 +31,9 @@ class List(Entries):
         times = self._times or self._stored(position)
         return texts.of(words.TIMES, self.panel.controls[position].drive.address, times)
 
+    def control_at(self, position):
+        return self.panel.controls[position]
+
     def change(self, position, steps):
         if self._times is None:
             return False

@@ -7,6 +7,9 @@ A text that is said after the menu has closed stands in `panel.texts`.
 from panel import texts
 
 MENU = b"MENU"
+MENU_IS_OPEN = b"NO: MENU IS OPEN"  # of a key that moves a motor
+STOPPED = b"A%d: STOP"
+STOPPED_TWO = b"A%d A%d: STOP"
 MENU_LOCK = b"LOCK"  # closes the lock
 MENU_DRIVES = b"DRIVES"
 ANY_ADDRESS = b"ANY ADDRESS"
