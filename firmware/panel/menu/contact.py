@@ -5,7 +5,7 @@ A3 HEARD     1/8        the first entry: in words; and how many telegrams it has
 >NOTHING
 
 CHECK        4/8        the others: the most likely first, for what was heard. SET opens what
->P2010=7 19200          helps: the baud rate, its PKW and PZD words, the search
+>P2010=7 19200          helps: the baud rate, any address, its PKW and PZD words, the search
 """
 
 from micropython import const
@@ -92,6 +92,8 @@ class List(Entries):
             return "value", words.SETTINGS[0]
         if step in _KIND_ROWS:
             return "kind", (self.panel.selected, _KIND_ROWS[step])
+        if step == ADDRESS:
+            return "address", None
         return ("find", None) if step == FIND else None
 
     def _heard(self):
