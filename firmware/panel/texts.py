@@ -188,10 +188,11 @@ ASK_SEARCH = (
 
 MENU_MARK = b">"
 LOCKED = b"LOCK: HOLD PARAM"  # until its code is given
-ADDED = b"ADDED"
-NOT_ADDED = b"NOT ADDED"  # 31 are there, or nothing of its telegrams is PZD1 and PZD2
-REMOVED = b"REMOVED"
-NOT_REMOVED = b"NOT REMOVED"  # it is the only one, or may be running
+ADDED = b"A%d ADDED"
+ALL_ADDED = b"%d ADDED"
+NOT_ADDED = b"A%d NOT ADDED"  # 31 are there, or nothing of its telegrams is PZD1 and PZD2
+REMOVED = b"A%d REMOVED"
+NOT_REMOVED = b"A%d NOT REMOVED"  # it is the only one, or may be running
 
 WHY_NO_CONTACT = b"WHY NO CONTACT"
 

@@ -88,7 +88,7 @@ def test_drives_are_found_beside_a_motor_that_runs_and_taken_one_by_one_or_all()
     ]
     assert entries(world) == found
     press(world, "DOWN", "DOWN", "SET")  # the second one
-    assert row_2(world) == "ADDED", world.lcd()
+    assert row_2(world) == "A7 ADDED", world.lcd()  # row 1 has the next one by now
     world.run(3000)
     del found[1]
     assert title(world).startswith("A9 READY"), world.lcd()
@@ -97,6 +97,7 @@ def test_drives_are_found_beside_a_motor_that_runs_and_taken_one_by_one_or_all()
     assert row_2(world) == ">TAKE ALL 3", world.lcd()
     assert entries(world) == found
     press(world, "SET")
+    assert "3 ADDED" in world.lcd()[1], world.lcd()
     world.run(4000)
     assert row_2(world) == "RUNNING      A1" and world.drives[1].state == "running", world.lcd()
     assert [drive.state for drive in world.drives.values()].count("ready") == 4

@@ -98,19 +98,19 @@ def test_a_drive_is_removed_unless_it_runs():
     world.run(3000)
     menu(world)
     press(world, "SET", "SET", "DOWN", "SET")
-    assert row_2(world) == "NOT REMOVED", world.lcd()
+    assert row_2(world) == "A1 NOT REMOVED", world.lcd()
     world.run(4000)
     press(world, "STOP")
     world.run(4000)
     menu(world)
     press(world, "SET", "SET", "DOWN", "SET")
-    assert row_2(world) == "REMOVED", world.lcd()
+    assert row_2(world) == "A1 REMOVED", world.lcd()
     world.run(4000)
     assert row_2(world) == "READY        A2"
     assert json.loads(world.flash.files["settings.json"].decode())["drives"] == [2]
     menu(world)
     press(world, "SET", "SET", "DOWN", "SET")  # it is the only one
-    assert row_2(world) == "NOT REMOVED", world.lcd()
+    assert row_2(world) == "A2 NOT REMOVED", world.lcd()
     world.check()
 
 
@@ -451,7 +451,7 @@ def test_a_drive_of_any_family_layout_and_link_is_taken_from_its_address_as_what
             if not row_2(world).startswith(">"):
                 break
         world.run(200)  # for the display
-        assert row_2(world) == "ADDED", (kind, world.lcd())
+        assert row_2(world) == "A7 ADDED", (kind, world.lcd())
         wait_until_known(world)
         world.run(200)
         found = world.app.settings.kinds.get("7")
@@ -477,7 +477,7 @@ def test_a_drive_that_nobody_can_command_is_not_added():
         if not row_2(world).startswith(">"):
             break
     world.run(200)
-    assert row_2(world) == "NOT ADDED", world.lcd()
+    assert row_2(world) == "A7 NOT ADDED", world.lcd()
     assert world.app.settings.drives == (1,) and "7" not in world.app.settings.kinds
     world.check()
 
@@ -526,9 +526,9 @@ def test_an_address_key_that_is_held_leaves_the_list_and_counts_through_all_addr
         press(world, "SET")
         for _ in range(30):
             world.run(100)
-            if row_2(world) == "ADDED":
+            if row_2(world) == "A%d ADDED" % address:
                 break
-        assert row_2(world) == "ADDED", world.lcd()
+        assert row_2(world) == "A%d ADDED" % address, world.lcd()
         world.run(4000)
         press(world, "STOP")  # it has tripped since it was asked and left alone
         wait_until_known(world)
@@ -783,7 +783,7 @@ def test_stop_is_for_the_drive_that_is_shown_and_for_the_one_in_row_2():
     world.run(3000)
     menu(world)
     press(world, "STOP")
-    assert row_2(world) == "A1: STOP", world.lcd()
+    assert row_2(world) == ">A1: STOP", world.lcd()
     assert world.drives[3].state == "running"
     world.run(4000)
 
@@ -793,7 +793,7 @@ def test_stop_is_for_the_drive_that_is_shown_and_for_the_one_in_row_2():
     press(world, "SET", "UP")
     assert row_2(world) == ">A3  RUNNING", world.lcd()
     press(world, "STOP")
-    assert row_2(world) == "A1 A3: STOP", world.lcd()
+    assert row_2(world) == ">A1 A3: STOP", world.lcd()
     world.run(4000)
     assert world.drives[1].state == world.drives[3].state == "ready"
     world.check()
@@ -808,11 +808,11 @@ def test_stop_names_the_drive_that_an_address_key_has_shown_on_its_way_to_any_ad
     world.run(300)
     assert row_1(world).startswith(("ANY ADDRESS", "A1 RUN")), world.lcd()
     press(world, "STOP")
-    assert row_2(world) == "A2: STOP", world.lcd()
+    assert row_2(world) == ">A2: STOP", world.lcd()
     while "A1  IN THE LIST" not in row_2(world):
         press(world, "UP")
     press(world, "STOP")
-    assert row_2(world) == "A2 A1: STOP", world.lcd()
+    assert row_2(world) == ">A2 A1: STOP", world.lcd()
     world.run(4000)
     assert world.drives[1].state == "ready"
     world.check()
@@ -824,7 +824,21 @@ def test_a_key_that_moves_a_motor_says_that_the_menu_is_open():
     menu(world)
     for key in ("START", "REVERSE", "JOG_RIGHT", "JOG_LEFT"):
         press(world, key)
-        assert row_2(world) == "NO: MENU IS OPEN", (key, world.lcd())
+        assert row_2(world) == ">NO: IN THE MENU", (key, world.lcd())
         press(world, "DOWN")
     assert starts(world) == 0 and world.drives[1].state == "ready"
+    world.check()
+
+
+def test_whoever_removes_another_drive_still_has_the_one_shown_that_he_had():
+    world = panel(addresses=(1, 2, 3))
+    wait_until_known(world)
+    press(world, "START")
+    world.run(3000)
+    menu(world)
+    press(world, "SET", "DOWN", "SET", "DOWN", "SET")
+    assert world.lcd()[1].startswith("A2 REMOVED"), world.lcd()
+    press(world, "STOP")
+    world.run(4000)
+    assert world.drives[1].state == "ready" and row_2(world) == "READY        A1", world.lcd()
     world.check()

@@ -152,4 +152,4 @@ def press_stop(world, where):
     press(world, "STOP")
     offs = [at_us for at_us, stw in telegrams(world, pressed_us, 1) if stw == OFF1]
     assert offs and offs[0] - pressed_us < 150_000, (where, world.lcd())
-    assert row_2(world) == "A1: STOP", (where, world.lcd())
+    assert row_2(world) == ">A1: STOP", (where, world.lcd())

@@ -106,11 +106,15 @@ class List(Entries):
         """Into the list of the panel. The drive that is shown stays the same."""
         panel = self.panel
         shown = panel.selected
+        address = nodes[0][0]
         try:
             for address, node in nodes:
                 kind = on_demand.call("uss.families.kinds", "text", node.family, node.layout)
                 panel.add(address, kind)
-            panel.say(now_ms, texts.ADDED)
+            if len(nodes) == 1:  # row 1 speaks of the next one already
+                panel.say(now_ms, texts.ADDED, address)
+            else:
+                panel.say(now_ms, texts.ALL_ADDED, len(nodes))
         except ValueError:  # there are 31
-            panel.say(now_ms, texts.NOT_ADDED)
+            panel.say(now_ms, texts.NOT_ADDED, address)
         panel.show(shown)

@@ -36,14 +36,17 @@ class List(Entries):
             return "kind", (self.argument, position - _KIND)
         if position >= _KIND or self.argument not in panel.controls:
             return None
+        shown, address = panel.selected, self.argument.drive.address
         panel.show(self.argument)
         panel.close_menu()
         if position == 1:
             try:
                 panel.remove()
-                panel.say(now_ms, texts.REMOVED)
+                if shown is not self.argument:  # STOP is for the drive that it was for
+                    panel.show(shown)
+                panel.say(now_ms, texts.REMOVED, address)
             except ValueError:  # the only one, or it may be running
-                panel.say(now_ms, texts.NOT_REMOVED)
+                panel.say(now_ms, texts.NOT_REMOVED, address)
         return None
 
 

@@ -22,6 +22,7 @@ _WANTS = {
 }
 _REFUSED = ("START", "REVERSE", "JOG_RIGHT", "JOG_LEFT")  # they move a motor
 _STALE_MS = const(60_000)
+_TOLD_MS = const(3_000)
 _COUNT_COLUMN = const(11)  # "12/31"
 
 
@@ -37,11 +38,15 @@ class Menu(Page):
         Page.__init__(self, panel)
         self._lists = []  # (name of the module, `List`, position in it), the one shown last
         self._used_at_ms = None
+        self._told = None  # words in place of the entry, for a while or until a key is pressed
+        self._told_at_ms = 0
         self._alarmed = panel.selected.needs_attention()
         self._enter(*begin)
         self._wanted.insert(0, "panel.menu.words")
 
     def take_keys(self, acts, now_ms):
+        if acts.pressed:
+            self._told = None
         if acts.has("STOP") and self._lists:
             self._stop(now_ms)
         if self._coming or not (acts.pressed or acts.repeated):
@@ -64,12 +69,14 @@ class Menu(Page):
         elif direction and not shown.change(position, -direction * acts.pace(100)):
             self._lists[-1] = (name, shown, (position + direction) % shown.count())
         elif any([acts.has(key) for key in _REFUSED]):
-            self._say(now_ms, "MENU_IS_OPEN")
+            self._say(now_ms, "IN_THE_MENU")
 
     def step(self, keys, now_ms):
         if self._coming:
             self._come(now_ms)
             return
+        if self._told and elapsed(now_ms, self._told_at_ms, self.panel.mask) >= _TOLD_MS:
+            self._told = None
         _, shown, position = self._lists[-1]
         shown.step(position, now_ms)
         if not self._lists:  # that has closed the menu
@@ -106,7 +113,7 @@ class Menu(Page):
                 place = b"%5s" % (b"%d/%d" % (position + 1, count))
                 screen.put(0, width, texts.ROW_WIDTH - width, place)
         screen.put(1, 0, 1, texts.of(texts.MENU_MARK))
-        screen.put(1, 1, texts.ROW_WIDTH - 1, shown.words(position))
+        screen.put(1, 1, texts.ROW_WIDTH - 1, self._told or shown.words(position))
 
     def _draw_alarm(self, screen, control):
         """That of the drive shown, in turn with the title: only the others are announced."""
@@ -128,8 +135,11 @@ class Menu(Page):
             self._say(now_ms, "STOPPED", address)
 
     def _say(self, now_ms, name, *values):
-        """A text of `words`, which came with a step of its own."""
-        self.panel.say(now_ms, getattr(on_demand.load("panel.menu.words"), name), *values)
+        """A text of `words`, which came with a step of its own, in place of the entry. Behind the
+        mark of the menu: what the list does meanwhile goes on.
+        """
+        self._told = texts.of(getattr(on_demand.load("panel.menu.words"), name), *values)
+        self._told_at_ms = now_ms
 
     def _go(self, following, now_ms):
         """Where a list leads to, unless it has closed the menu."""

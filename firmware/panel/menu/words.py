@@ -7,7 +7,7 @@ A text that is said after the menu has closed stands in `panel.texts`.
 from panel import texts
 
 MENU = b"MENU"
-MENU_IS_OPEN = b"NO: MENU IS OPEN"  # of a key that moves a motor
+IN_THE_MENU = b"NO: IN THE MENU"  # a key that moves a motor was pressed
 STOPPED = b"A%d: STOP"
 STOPPED_TWO = b"A%d A%d: STOP"
 MENU_LOCK = b"LOCK"  # closes the lock
