@@ -24,9 +24,11 @@ TYPES = ("UP", "UP", "DOWN", "DOWN", "NEXT", "PREVIOUS")  # digits
 TYPED_BY = ("SET", "SET", "SET", "EDIT", "PARAM", "STOP", "ADDRESS_UP")
 OPENS = ("PARAM", "PARAM", "PARAM", "ADDRESS_UP", "ADDRESS_DOWN")  # the menu, held
 OPENS_MS = 1_500
-FIND, HUNTS, TAKES = "FIND DRIVES", "FOUND STOP=NO", "TAKE "
+FIND, LEAVING, HUNTS, TAKES = "FIND DRIVES", "AT ALL RATES", "FOUND STOP=NO", "TAKE "
 SETTINGS, KEY_TEST = "SETTINGS", "HOLD PARAM: ENDS"  # row 1
-CHOSEN = ("DRIVES", "ANY ADDRESS", FIND, SETTINGS, "ABOUT", "SHOW IT")  # they change nothing
+CHOSEN = (  # they change nothing
+    "DRIVES", "ANY ADDRESS", FIND, "AT THIS RATE", LEAVING, SETTINGS, "ABOUT", "SHOW IT",
+)  # fmt: skip
 LEFT_ALONE = ("...", "ANSWERS", "NOBODY", "IN THE LIST", "SET=ASK")  # of an address
 CHANGING = ("LOCK CODE", "P2014=0 OK")  # of the settings
 HOME_TRIES = 16
@@ -232,12 +234,13 @@ class Fingers:
             self.press("STOP")
             self.run(self.dice.between(500, 3_000))
         self.press("PARAM", OPENS_MS)
-        for _ in range(HOME_TRIES):
-            self.run(self._seen_ms)
-            if self.reader.rows[1].startswith(MENU + FIND):
-                break
-            self.press("DOWN")
-        self.press("SET")
+        for entry in (FIND, LEAVING):
+            for _ in range(HOME_TRIES):
+                self.run(self._seen_ms)
+                if self.reader.rows[1].startswith(MENU + entry):
+                    break
+                self.press("DOWN")
+            self.press("SET")
         self.run(self._seen_ms)
         if self.reader.rows[0].strip() in LEAVES:
             self.press("SET")

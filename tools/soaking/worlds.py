@@ -154,7 +154,8 @@ class SoakWorld(World):
 
     def _hand_over(self, following):
         World._hand_over(self, following)
-        if self.witness is not None:
+        between = not hasattr(following, "board")  # it only makes the next one
+        if self.witness is not None and not between:
             self.witness.handed_over(searches=not hasattr(following, "panel"))
 
     def _flash_is_busy(self, us):
