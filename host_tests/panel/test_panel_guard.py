@@ -201,6 +201,10 @@ def test_a_question_takes_start_and_stop_while_the_lock_is_closed_and_writes_not
     press(world, "SET")
     assert row_2(world) == LOCKED, world.lcd()
     press(world, "START")
+    world.run(1000)
+    assert row_2(world) == "SET=FIX START=GO", "START came while the question was hidden"
+    assert world.drives[1].state == "ready"
+    press(world, "START")
     world.run(4000)
     assert world.drives[1].state == "running" and world.drives[1].read(2014) == 0
     press(world, "STOP")

@@ -169,6 +169,9 @@ def test_a_refusal_of_the_drive_is_told():
         world.press("SET")
         wait_for(world, text, 1000)
         assert world.drives[1].read(2014) == 0 and starts(world) == 0
+        if number == 3:  # the panel offers to raise it
+            world.press("PARAM")
+            world.run(500)
         world.press("START")
         wait_for(world, ASKED, 4000)
         world.check()
