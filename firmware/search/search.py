@@ -114,9 +114,12 @@ class Search:
             self._state = OFFER
 
     def _rates(self):
-        first = (self.settings.baud,)
-        others = BAUD_RATES if self._all_rates else QUICK_RATES
-        return first + tuple([rate for rate in others if rate not in first])
+        """The likely ones first: the slow ones take minutes, and STOP keeps what was found."""
+        rates = [self.settings.baud]
+        for rate in QUICK_RATES + (BAUD_RATES if self._all_rates else ()):
+            if rate not in rates:
+                rates.append(rate)
+        return tuple(rates)
 
     def _end_early(self):
         """What was found so far stays; STOP once more does not even ask it what it is."""

@@ -293,6 +293,20 @@ def test_all_rates_are_tried():
     assert row_2(world) == "13 RATES SET=GO", world.lcd()
 
 
+def test_of_all_rates_the_usual_ones_come_first_and_stop_keeps_what_they_brought():
+    world = line_of("1,8=mm420/factory")  # as delivered: address 0, 9600 baud
+    offered(world)
+    world.press("DOWN")
+    world.run(300)
+    assert row_2(world) == "13 RATES SET=GO", world.lcd()
+    world.press("SET")
+    world.run(25_000)
+    world.press("STOP")
+    world.run(3000)
+    assert [rows[0].split()[:2] for rows in choices(world)] == [["A1", "19200"], ["A0", "9600"]]
+    world.check()
+
+
 def test_a_failure_while_it_searches_leaves_the_settings_as_they_were():
     world = line_of("1,2")
     before = stored(world)
