@@ -33,7 +33,8 @@ from panel.screen import GLYPHS
 # From the bottom of the house up, too.
 PAGES_AT_HAND = (
     "panel.pages.parameter_words", "panel.writer", "panel.pages.question", "panel.pages.risk",
-    "panel.pages.parameters", "panel.menu.engine",
+    "panel.pages.parameters", "panel.menu.words", "panel.menu.engine", "panel.menu.main",
+    "uss.families.kinds", "settings_file",
 )  # fmt: skip
 _FAREWELL_STEPS = const(100)  # for the display to show that nothing is controlled any more
 _SAVE_AGAIN_MS = const(10_000)  # after the store failed

@@ -21,16 +21,10 @@ def keep(names):
     """Load these modules for good, if there is room: to load one takes some milliseconds."""
     _kept.clear()
     gc.collect()
-    free = free_bytes()
-    if free is None or free >= ROOMY_BYTES:
+    if not hasattr(gc, "mem_free") or gc.mem_free() >= ROOMY_BYTES:
         for name in names:
             load(name)
             _kept.append(name)
-
-
-def free_bytes():
-    """What is left of the heap, as far as is known; None where the heap grows."""
-    return gc.mem_free() if hasattr(gc, "mem_free") else None
 
 
 def load(name):

@@ -98,7 +98,6 @@ CHECK_MASTERS = b"NO OTHER MASTER"
 
 ABOUT_VERSION = b"VERSION %s"
 LICENCE = b"LICENCE: MIT"
-FREE_MEMORY = b"FREE %d KB"
 
 
 def of_kind(row, value):
