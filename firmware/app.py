@@ -34,7 +34,8 @@ from panel.screen import GLYPHS
 PAGES_AT_HAND = (
     "panel.pages.parameter_words", "panel.writer", "panel.pages.question", "panel.pages.risk",
     "panel.pages.parameters", "panel.menu.words", "panel.menu.engine", "panel.menu.main",
-    "uss.families.kinds", "settings_file",
+    "uss.families.kinds", "settings_file", "uss.finding", "uss.finding.mirror",
+    "panel.menu.address", "panel.menu.find", "panel.menu.turns",
 )  # fmt: skip
 _FAREWELL_STEPS = const(100)  # for the display to show that nothing is controlled any more
 _SAVE_AGAIN_MS = const(10_000)  # after the store failed
