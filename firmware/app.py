@@ -37,6 +37,9 @@ PAGES_AT_HAND = (
     "uss.families.kinds", "settings_file", "uss.finding", "uss.finding.mirror",
     "panel.menu.address", "panel.menu.find", "panel.menu.turns",
 )  # fmt: skip
+_OF_THE_SEARCH = (
+    "search.search", "search.hunt", "search.words", "uss.finding.scan", "uss.finding.enquiry",
+)  # fmt: skip
 _FAREWELL_STEPS = const(100)  # for the display to show that nothing is controlled any more
 _SAVE_AGAIN_MS = const(10_000)  # after the store failed
 _LONG_US = const(900)  # a step that has taken so long is not to do two more things
@@ -232,6 +235,8 @@ class Handover:
     def step(self):
         """Answers the program that comes next, which is at work."""
         if self._wanted == "app":
+            for module in _OF_THE_SEARCH:
+                on_demand.drop(module)
             self._following = App(self._board)
         else:
             search = on_demand.load("search.search").Search

@@ -188,28 +188,11 @@ ASK_SEARCH = (
 
 MENU_MARK = b">"
 LOCKED = b"LOCK: HOLD PARAM"  # until its code is given
-ADDED = b"A%d ADDED"
-ALL_ADDED = b"%d ADDED"
-NOT_ADDED = b"A%d NOT ADDED"  # 31 are there, or nothing of its telegrams is PZD1 and PZD2
-REMOVED = b"A%d REMOVED"
-NOT_REMOVED = b"A%d NOT REMOVED"  # it is the only one, or may be running
 
-WHY_NO_CONTACT = b"WHY NO CONTACT"
 
-# --- the search for drives, see `search` ---------------------------------------------------------
+# --- the search for drives; `search.words` has more ----------------------------------------------
 
 FIND_DRIVES = b"FIND DRIVES"
-FIND_DRIVES_S = b"FIND DRIVES %3ds"
-RATES_SET_GO = b"%d RATES SET=GO"
-BAUD_SECONDS = b"%d BAUD %ds"
-SEARCH_ENDS = b"ENDING"
-FOUND_STOP_ENDS = b"%d FOUND STOP=NO"
-TAKE_DRIVES = b"TAKE %d DRIVES?"
-SET_YES = b"SET=YES PARAM=NO"
-NOBODY_FOUND = b"NOBODY ANSWERED"
-CHECK_WIRES = b"WIRES? MAINS?"
-TAKEN = b"[X]"
-NOT_TAKEN = b"[ ]"
 FOUND_STATES = (b"WAITS", b"READY", b"RUNS", b"FAULT", b"INHIB")  # as `pzd` numbers them
 
 # --- announcements -------------------------------------------------------------------------------

@@ -22,6 +22,7 @@ import on_demand
 from panel import texts
 from panel.keys import Acts, keys_of
 from panel.screen import GLYPHS, Screen
+from search import words
 from search.hunt import Hunt, seconds_for
 from uss.timing import BAUD_RATES
 
@@ -81,9 +82,7 @@ class Search:
     def _leave(self):
         """Back to the panel."""
         self.close()
-        app = on_demand.load("app").App(self.board)
-        app.start()
-        self._following = app
+        self._following = on_demand.load("app").Handover(self.board, self.settings, "app")
 
     # --- keys -----------------------------------------------------------------------------------
 
@@ -172,27 +171,27 @@ class Search:
         if state == OFFER:
             rates = self._rates()
             taking_s = seconds_for(rates, self.settings.reply_timeout_ms * 1000)
-            first = texts.of(texts.FIND_DRIVES_S, taking_s)
-            return first, texts.of(texts.RATES_SET_GO, len(rates))
+            first = texts.of(words.FIND_DRIVES_S, taking_s)
+            return first, texts.of(words.RATES_SET_GO, len(rates))
         if state == HUNTING:
             hunt = self._hunt
             if hunt.ends:
-                return texts.of(texts.SEARCH_ENDS), texts.of(texts.FOUND_STOP_ENDS, hunt.count())
+                return texts.of(words.SEARCH_ENDS), texts.of(words.FOUND_STOP_ENDS, hunt.count())
             return (
-                texts.of(texts.BAUD_SECONDS, hunt.baud, hunt.seconds_left()),
-                texts.of(texts.FOUND_STOP_ENDS, hunt.count()),
+                texts.of(words.BAUD_SECONDS, hunt.baud, hunt.seconds_left()),
+                texts.of(words.FOUND_STOP_ENDS, hunt.count()),
             )
         if state == CHOOSING:
             return self._choice(self._hunt.found[self._row])
         if state == ASKING:
-            return texts.of(texts.TAKE_DRIVES, len(self._taken)), texts.of(texts.SET_YES)
-        heard = texts.LINE_IN_USE if self._hunt.line_in_use else texts.NOBODY_FOUND
-        return texts.of(heard), texts.of(texts.CHECK_WIRES)
+            return texts.of(words.TAKE_DRIVES, len(self._taken)), texts.of(words.SET_YES)
+        heard = texts.LINE_IN_USE if self._hunt.line_in_use else words.NOBODY_FOUND
+        return texts.of(heard), texts.of(words.CHECK_WIRES)
 
     def _choice(self, one):
-        words = one.family.__name__.encode()
+        family = one.family.__name__.encode()
         layout = b"%d+%d" % (one.layout.pkw_words, one.layout.pzd_words)
-        mark = texts.of(texts.TAKEN if one in self._taken else texts.NOT_TAKEN)
+        mark = texts.of(words.TAKEN if one in self._taken else words.NOT_TAKEN)
         state = texts.of(texts.FOUND_STATES[one.state])
-        first = b"A%d %d %s" % (one.address, one.baud, words)
+        first = b"A%d %d %s" % (one.address, one.baud, family)
         return first, b"%-6s %-5s %s" % (layout, state, mark)

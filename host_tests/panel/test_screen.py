@@ -5,6 +5,7 @@ from panel import texts
 from panel.menu import words as menu_words
 from panel.pages import parameter_words, splash
 from panel.screen import COLUMNS, ROWS, Screen
+from search import words as search_words
 from uss import families
 
 
@@ -86,7 +87,7 @@ def named_texts():
     """(name, text or texts) of all that the modules of texts have."""
     return [
         (name, getattr(module, name))
-        for module in (texts, splash, parameter_words, menu_words)
+        for module in (texts, splash, parameter_words, menu_words, search_words)
         for name in dir(module)
         if name[0] != "_" and name != "NOTHING"
     ]

@@ -2,6 +2,7 @@
 """The operator's manual, drives that nobody has set up: found, taken, and run, by keys alone."""
 
 import json
+import sys
 
 import main
 from boards.sim.drives.kinds import listed_drives, simulated
@@ -239,6 +240,22 @@ def test_how_long_it_takes_is_said_beforehand_and_holds():
     world.run(300)
     said_s = int(row_1(world)[12:15])
     assert 0.8 * said_s < hunted(world) / 1000 < said_s + 1.5 < 30, said_s
+
+
+def test_the_search_leaves_the_memory():
+    """A chip that has the firmware as files has no room for it beside a panel of 31 drives."""
+    world = panel()
+    offered(world)
+    assert "search.search" in sys.modules
+    hunted(world)
+    world.press("PARAM")
+    world.run(300)
+    if world.lcd()[1].startswith("SET=YES"):
+        world.press("SET")
+    world.run(3000)
+    assert row_2(world).endswith("A1"), world.lcd()
+    left = [name for name in sys.modules if name.startswith("search.")]
+    assert not left and "uss.finding.scan" not in sys.modules, left
 
 
 def test_nobody_looks_for_drives_while_a_motor_runs():

@@ -117,9 +117,9 @@ class List(Entries):
         try:
             kind = on_demand.call("uss.families.kinds", "text", node.family, node.layout)
             panel.add(self._address, kind)
-            panel.say(now_ms, texts.ADDED, self._address)
+            panel.say(now_ms, words.ADDED, self._address)
         except ValueError:  # 31 are there, or it has no PZD words to be commanded by
-            panel.say(now_ms, texts.NOT_ADDED, self._address)
+            panel.say(now_ms, words.NOT_ADDED, self._address)
 
     def _is_listed(self, address):
         return self.panel.bus.turns.at(address) is not None

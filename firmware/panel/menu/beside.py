@@ -112,9 +112,9 @@ class List(Entries):
                 kind = on_demand.call("uss.families.kinds", "text", node.family, node.layout)
                 panel.add(address, kind)
             if len(nodes) == 1:  # row 1 speaks of the next one already
-                panel.say(now_ms, texts.ADDED, address)
+                panel.say(now_ms, words.ADDED, address)
             else:
-                panel.say(now_ms, texts.ALL_ADDED, len(nodes))
+                panel.say(now_ms, words.ALL_ADDED, len(nodes))
         except ValueError:  # there are 31
-            panel.say(now_ms, texts.NOT_ADDED, address)
+            panel.say(now_ms, words.NOT_ADDED, address)
         panel.show(shown)

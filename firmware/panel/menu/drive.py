@@ -44,9 +44,9 @@ class List(Entries):
                 panel.remove()
                 if shown is not self.argument:  # STOP is for the drive that it was for
                     panel.show(shown)
-                panel.say(now_ms, texts.REMOVED, address)
+                panel.say(now_ms, words.REMOVED, address)
             except ValueError:  # the only one, or it may be running
-                panel.say(now_ms, texts.NOT_REMOVED, address)
+                panel.say(now_ms, words.NOT_REMOVED, address)
         return None
 
 

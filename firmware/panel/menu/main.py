@@ -24,7 +24,7 @@ class List(Entries):
         several = len(panel.controls) > 1
         self._lists = [row for row in LISTS if several or row[1] not in OF_SEVERAL]
         if not panel.selected.drive.contact:  # whoever has none is looking for the drive
-            self._lists.insert(0, (texts.WHY_NO_CONTACT, "contact"))
+            self._lists.insert(0, (words.WHY_NO_CONTACT, "contact"))
         if panel.settings.lock_code:
             self._lists.append((words.MENU_LOCK, None))
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The texts of the menu's own lists, in memory only while the menu is open. See `panel.texts`.
 
-A text that is said after the menu has closed stands in `panel.texts`.
+What others say as well stands in `panel.texts`.
 """
 
 from panel import texts
@@ -17,6 +17,12 @@ IN_THE_LIST = b"IN THE LIST"
 ASKS = b"..."
 ANSWERS = b"ANSWERS"
 NOBODY = b"NOBODY"
+ADDED = b"A%d ADDED"
+ALL_ADDED = b"%d ADDED"
+NOT_ADDED = b"A%d NOT ADDED"  # 31 are there, or nothing of its telegrams is PZD1 and PZD2
+REMOVED = b"A%d REMOVED"
+NOT_REMOVED = b"A%d NOT REMOVED"  # it is the only one, or may be running
+WHY_NO_CONTACT = b"WHY NO CONTACT"
 MENU_SETTINGS = b"SETTINGS"
 MENU_ORDER = b"ORDER"
 MENU_TURNS = b"TURNS"
