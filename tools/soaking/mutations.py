@@ -150,11 +150,10 @@ MUTATIONS = (
         ("START",), 1,
         (
             "panel/control.py",
-            "            self._contact = drive.contact\n            self.lost_running",
+            "            self._contact = drive.contact\n",
             "            self._contact = drive.contact\n            if self.runs():\n"
             "                self._obey(self.desk.bus.dead_man_trips)\n"
-            "                self.drive.start(self.drive.hsw, self._on())\n"
-            "            self.lost_running",
+            "                self.drive.start(self.drive.hsw, self._on())\n",
         ),
     ),
     Mutation(

@@ -144,6 +144,7 @@ class Reader:
         witness = self.witness
         if self.rows[1].startswith(MENU):
             witness.sees_menu()
+            witness.named = addresses_in(self.rows)
         elif self.steady and "STOP" not in witness.down:
             if now - witness.up["STOP"] > COVERED_US or self.address is not None:
                 witness.menu_since_us = ALWAYS
@@ -339,6 +340,12 @@ def subject_in(row_1):
         if not text.isdigit():
             return None
     return tuple(int(text) for text in texts)
+
+
+def addresses_in(rows):
+    """All that the menu names: A3, wherever."""
+    words = " ".join(rows).replace(MENU, " ").replace(":", " ").split()
+    return [int(word[1:]) for word in words if word[:1] == "A" and word[1:].isdigit()]
 
 
 def address_in(row_2):

@@ -56,8 +56,8 @@ class Witness:
 
     The hand, its mischief and the world tell it things. Others write some fields: the judge writes
     `late_us`, `stirred_us` and `wishes`, and takes cases out of `owed`; the reader writes
-    what the display asks, `asked_us`, `go_us`, `leaves_us` and `question`, `menu_us`, and
-    `typed_us`.
+    what the display asks, `asked_us`, `go_us`, `leaves_us` and `question`, `menu_us`,
+    `named` and `typed_us`.
     """
 
     def __init__(self, world, plan, judge):
@@ -93,6 +93,7 @@ class Witness:
         self.typed_us = NEVER  # the display has digits of a setpoint that is typed in
         self.menu_us = NEVER  # the menu was seen last,
         self.menu_since_us = ALWAYS  # and first, without anything else in between
+        self.named = ()  # addresses in there, which a STOP is for, too
         self.seen_us = SEEN_US + DRAWN_STEPS * plan.loop_us
         self._menu_shown = None  # the drive that is shown behind the menu
         self._menu_starts = ()  # cases, and which START of each counted when it was pressed there
@@ -225,6 +226,8 @@ class Witness:
         if self.is_sure():
             case = self.cases[self.shown]
             self.stopping = (case,)
+            if self.is_in_menu():
+                self.stopping = self._stopped_in_menu(now)
             if self.second_stop != OFF1:
                 self.second_owed = case
             case.brakes = not case.stw & RUN
@@ -234,6 +237,15 @@ class Witness:
             case.owed_requests = 0
             if case not in self.owed:
                 self.owed.append(case)
+
+    def _stopped_in_menu(self, now):
+        """The case of the drive shown and those that the menu names; None: it may have moved."""
+        moved_us = max(at_us for key, at_us in self.pressed_us.items() if key != "STOP")
+        moved_us = max([moved_us] + [at_us for key, at_us in self.up.items() if key != "STOP"])
+        if now - moved_us < self.seen_us or len(self.down) > 1:
+            return None
+        named = [one for one in self.named if one < len(self.cases)]
+        return tuple([self.cases[one] for one in [self.shown] + named])
 
     def _stop_is_up(self, now, held_us):
         if now - self.stop_from_us > SECOND_STOP_US - 50 * MS:
