@@ -181,8 +181,8 @@ class Witness:
     def may_look(self, now):
         """Whether the display may have an address that the panel asks: in the menu, or because an
         address key is held."""
-        if now - self.menu_us < LOOKED_FOR_US + 4 * self.cycle_us:
-            return True
+        if self.is_in_menu() or now - self.menu_us < LOOKED_FOR_US + 4 * self.cycle_us:
+            return True  # a STOP that is held hides its second row
         for key in ("ADDRESS_UP", "ADDRESS_DOWN"):
             until_us = now if key in self.down else self.up[key]
             if until_us - self.pressed_us[key] > HELD_OPENS_US:
