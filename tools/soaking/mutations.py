@@ -607,7 +607,7 @@ MUTATIONS = (
     Mutation(
         "an exception",
         "a page that fails takes the panel with it",
-        ("EXCEPTION",), 2,
+        ("EXCEPTION",), 5,
         (
             "panel/view.py",
             "        screen.put(0, 10, 6, texts.of(texts.BEYOND_VALUE))\n",
@@ -623,19 +623,19 @@ MUTATIONS = (
     Mutation(
         "MM3 reversed as an MM4",
         "REVERSE turns a MICROMASTER 3 right by the word that turns an MM4 left",
-        ("SHOWN",), 63,
+        ("SHOWN",), 25,
         ("uss/families/mm3.py", "on_reverse = 0x147F", "on_reverse = 0x0C7F"),
     ),
     Mutation(
         "MM3 started as an MM4",
         "a MICROMASTER 3 is sent a word without a direction",
-        ("CONTROL",), 11,
+        ("CONTROL",), 3,
         ("uss/families/mm3.py", "    on = 0x0C7F", "    on = 0x047F"),
     ),
     Mutation(
         "HIW of an MM3 has a sign",
         "a motor that turns left reads as one that turns right, where bit 14 of ZSW tells it",
-        ("SHOWN",), 63,
+        ("SHOWN",), 25,
         (
             "uss/pzd.py",
             "if family.hiw_is_signed or zsw & ZSW_RUNS_RIGHT or hiw & 0x8000:",
@@ -645,7 +645,7 @@ MUTATIONS = (
     Mutation(
         "percent sent as hertz",
         "10.0% goes out as 10 Hz of 50 Hz",
-        ("SHOWN", "SETPOINT"), 3,
+        ("SHOWN", "SETPOINT"), 11,
         ("uss/survey.py", "_HUNDRED_PERCENT = const(10_000)", "_HUNDRED_PERCENT = const(5_000)"),
     ),
     Mutation(
@@ -726,7 +726,7 @@ MUTATIONS = (
     Mutation(
         "looked for though it answers",
         "a drive that answers is sent telegrams in other layouts",
-        ("MIRROR",), 1,
+        ("MIRROR",), 2,
         (
             "uss/finding/finder.py",
             "            if not drive.doubted or drive.may_run():\n                return False\n",
