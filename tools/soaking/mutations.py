@@ -310,7 +310,7 @@ MUTATIONS = (
     Mutation(
         "foreign commands ignored",
         "START is obeyed though the drive takes its commands elsewhere",
-        ("REFUSED",), 41,
+        ("REFUSED",), 63,
         (
             "panel/permits.py",
             "    return survey.wrong[rows.COMMAND] != rows.RIGHT\n",
@@ -709,7 +709,7 @@ MUTATIONS = (
     Mutation(
         "jogs without a jog",
         "a drive whose family has no jog is sent that of another",
-        ("CONTROL",), 6,
+        ("CONTROL",), 14,
         (
             "panel/permits.py",
             "    if not control.survey.family.jog_right:\n"
