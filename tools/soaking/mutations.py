@@ -786,7 +786,7 @@ MUTATIONS = (
     Mutation(
         "STOP dead in the menu",
         "whoever reads a list cannot stop the motor",
-        ("STOP",), 1,
+        ("STOP",), 8,
         (
             "panel/panel.py",
             "        if down & self._stop_bit:\n",
@@ -796,7 +796,7 @@ MUTATIONS = (
     Mutation(
         "START acts in the menu",
         "a motor starts that nobody has on the display",
-        ("START",), 1,
+        ("START",), 8,
         (
             "panel/menu/engine.py",
             "        if acts.has(\"PARAM\"):\n"
