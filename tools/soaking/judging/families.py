@@ -197,6 +197,7 @@ class Kind:
         self._told_pzd_words = pzd_words
         self._other = None  # the layout before, which may be in force yet
         self._mirrored = None  # net words of the last mirror telegram
+        self._takes_any = False  # that and a shorter one came back: it is asked in any length
         self._came_back = {}  # since the last reply: net words -> whether the panel must know
         self._sights = {}
 
@@ -240,13 +241,15 @@ class Kind:
         that answers, but makes no sense, is asked in its own length, behind one that is longer.
         """
         back = self._came_back
-        if count + 1 == self._mirrored and _fitting(count - self.pzd_words, 0) & self.words:
+        is_own = _fitting(count - self.pzd_words, 0) & self.words
+        if count + 1 == self._mirrored and is_own or self._takes_any and not is_own:
             return True
         return count in back or count >= 3 and any(one + 1 in back for one in back)
 
     def mirror(self, count):
         """A mirror telegram of so many net words is sent."""
         self._mirrored = count
+        self._takes_any = False
 
     def learn(self, layout, count):
         """The panel speaks to a drive of this layout as the drive has it. Whether it may be so."""
@@ -277,11 +280,13 @@ class Kind:
     def returned(self, count, is_sure):
         """A mirror telegram of so many net words has come back."""
         self._came_back[count] = is_sure or self._came_back.get(count, False)
+        self._takes_any = count - 1 in self._came_back
         if 3 in self.words and VARIABLE in self._found():
             self.words = self.words | {VARIABLE}  # its telegrams without a task look the same
 
     def restarted(self):
         self._mirrored = None
+        self._takes_any = False
         self._came_back.clear()
         if self.pzd_words == self._told_pzd_words:
             self.words = set(self._known)
