@@ -242,7 +242,7 @@ class Kind:
         """
         back = self._came_back
         is_own = _fitting(count - self.pzd_words, 0) & self.words
-        if count + 1 == self._mirrored and is_own or self._takes_any and not is_own:
+        if self._takes_any or count + 1 == self._mirrored and is_own:
             return True
         return count in back or count >= 3 and any(one + 1 in back for one in back)
 
