@@ -490,7 +490,7 @@ MUTATIONS = (
     Mutation(
         "a warning without its number",
         "what a drive warns of is not shown",
-        ("SHOWN",), 10,
+        ("SHOWN",), 42,
         (
             "panel/pages/warning.py",
             "report.active and panel.announcer.page_turns & 1",
