@@ -352,7 +352,7 @@ class Control:
 
     def _obey(self, dead_man_trips):
         """Obey a key: what was said of the run before is over."""
-        self.remark = texts.NOTHING
+        self._forget_remark()
         self._quiet_zsw = _UNKNOWN
         if self._command is None:
             self._command = Command(
@@ -400,7 +400,8 @@ class Control:
             command.send(now_us)
             command.exposure_ms = risks.exposure_ms(self)
             self.stop_watch.end()
-            self._jogged = False
+            if self._jogged:
+                self._jogged = False
             self.phase = RUNNING
             self.drive.start(self.drive.hsw, self._on())
 
@@ -421,13 +422,17 @@ class Control:
 
     def _look_at_supervision(self):
         """Whether it would run on longer without this panel than when it was started."""
-        self.remark = texts.NOTHING
+        self._forget_remark()
         if risks.exposure_ms(self) > self._command.exposure_ms:
             is_long = self.survey.values[rows.SUPERVISION] > 0
             if self.phase == JOGGING:  # that is refused
                 self._take_back(texts.RUNS_LONG if is_long else texts.UNSUPERVISED)
             else:
                 self.remark = texts.RUNS_LONG if is_long else texts.RUNS_FOR_EVER
+
+    def _forget_remark(self):
+        if self.remark:
+            self.remark = texts.NOTHING
 
     def _watch_stop(self, now_us):
         """Watch whether a drive that must stand comes to rest: after a STOP from the key on, one
