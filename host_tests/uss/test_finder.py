@@ -12,6 +12,7 @@ from fleet_bench import Fleet
 from round_bench import MASK, MIRROR, RUNNING, Bench, Node, framed
 from uss import pzd
 from uss.finding import finder as finding
+from uss.finding.enquiry import NO_CHANNEL, Question
 from uss.finding.finder import Finder
 from uss.layout import STANDARD, VARIABLE, Layout
 from uss.outside import Mirror
@@ -172,6 +173,23 @@ def test_a_drive_that_is_doubted_is_asked_if_it_stands():
     line.run(8_000)
     assert not line.drives[2].doubted
     line.check()
+
+
+def test_an_answer_to_another_question_is_no_status_word():
+    """The list asks a drive that is doubted as well, so an answer may be to the list's question.
+    Taken for a status word it made a drive of 3 + 2 words one of 0 + 5, which heard no STOP.
+    """
+    for layout, net, value in (
+        (Layout(3, 2), b"\x70\xc8\x80\x00\x00\x66\xfb\x31\x00\x00", None),  # P2200: error 102
+        (Layout(3, 2), b"\x12\xbc\x00\x00\x00\x05\xfb\x31\x00\x00", None),  # P0700 = 5
+        (Layout(3, 2), b"\x00\x00\x00\x00\x00\x00\xfb\x31\x00\x00", None),
+        (Layout(3, 2), b"\xfb\x31\x00\x00\x00\x00\x00\x00\x00\x00", NO_CHANNEL),
+        (Layout(4, 2), b"\xeb\x31\x00\x00\x00\x00\x00\x00\x00\x00\x00\x00", NO_CHANNEL),
+        (Layout(3, 2), b"\x10\x0d\x80\x00\x00\x03\xfb\x31\x00\x00", 3),  # P2013
+    ):
+        question = Question(11, layout, 2013)
+        question.take(bytearray(framed(11, net)), len(net) + 4, 0)
+        assert question.value() == value, net
 
 
 def test_how_long_it_takes():

@@ -586,7 +586,7 @@ MUTATIONS = (
     Mutation(
         "runs on longer, unsaid",
         "somebody takes the supervision of a motor that runs away, and nobody is told",
-        ("SHOWN", "ANNOUNCED"), 125,
+        ("SHOWN", "ANNOUNCED"), 219,
         (
             "panel/control.py",
             "        if risks.exposure_ms(self) > self._command.exposure_ms:\n",
@@ -851,3 +851,15 @@ MUTATIONS = (
         ),
     ),
 )  # fmt: skip
+
+# No seed that was tried finds these, since the operator walks the menu and looks for drives as
+# well: a life of two minutes gets there too rarely. Each still has to fit the firmware's text.
+UNFOUND = (
+    "the next one's turn is lost",
+    "faster without a key",
+    "one START, two runs",
+    "hertz believed",
+    "percent of what",
+    "limits in 1/min halved",
+    "looked for too soon",
+)

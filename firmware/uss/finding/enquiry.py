@@ -24,6 +24,8 @@ from uss.receiver import SILENT
 from uss.telegram import GOOD, NET, get_word, put_word
 
 FRAME = 4  # characters of a telegram that are not net data
+# Of PKE: replies have AK 0...8, and SP, which a status word has in bit 11, is 0 (A-4.3.3.1).
+_AK_END, _SP = 0x9000, 0x08
 NO_CHANNEL = -1  # instead of a value: the reply has no parameter channel in that place
 TRIES = 6  # of one question: a drive's answers may lag
 SILENCES = 2  # after so many silences to a question the drive has no answer to it
@@ -239,5 +241,6 @@ class Question(OutsideTelegram):
         if job is None or job.answer(buffer, NET, pkw_count, self._form):
             self.state = DONE
         else:
-            self._speaks = buffer[NET] == buffer[NET + 1] == 0  # AK 0: no reply yet
+            # No reply yet, or one to somebody else's question: the list asks this drive as well.
+            self._speaks = get_word(buffer, NET) < _AK_END and not buffer[NET] & _SP
             self.state = TIMED_OUT
