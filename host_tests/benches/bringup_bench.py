@@ -8,7 +8,7 @@ ask(bare, "codes()")                # what the chip answers
 import os
 
 from boards.sim.clock import Event
-from tools.emulator.station import Figures
+from tools.emulator.station import RATE_SHIFT, UNIT_BAUD, Figures
 from tools.emulator.world import PicoWorld
 
 ON_CHIP = "tools/bringing_up/on_chip.py"
@@ -37,7 +37,13 @@ class Jumper:
         arrives = self._alters(byte) if self._alters else byte
         if arrives is not None:
             end_ns = at_ns + 11_000_000_000 // self.baud
-            self._world.chip.tell(end_ns, "C", arrives, flaws)
+            rate = self.baud // UNIT_BAUD << RATE_SHIFT
+            self._world.chip.tell(end_ns, "C", arrives, rate | flaws)
+
+    def tune(self, baud):
+        self.baud = baud
+
+    talk_at = tune
 
     def driver(self, at_ns, on):
         pass

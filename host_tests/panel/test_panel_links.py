@@ -46,6 +46,7 @@ def test_start_and_set_give_it_to_the_link_that_the_panel_is_on():
         world.press("START")
         world.run(500)
         assert world.reads("P%04d=4" % number), world.lcd()
+        world.run(3500)  # until the refusal has left the row that says which keys answer
         world.press("SET")
         world.run(4000)
         assert drive.read(number) == 4 and starts(world) == 0, drive.report()
