@@ -142,14 +142,14 @@ class Panel:
             on_demand.drop(module)
         self._cover = None
 
-    def write(self, now_ms, control, number, index, value, eeprom=False):
-        """The `Write` of a parameter, whose outcome the panel will say; None where it has said
+    def write(self, now_ms, *what):
+        """The `Write` of a parameter, made with `what`, whose outcome the panel will say; None where it has said
         already why it cannot be tried.
         """
         if self._writer is None:
             writer = on_demand.load("panel.writer").Writer
             self._writer = writer(self.bus, self.settings, self.mask)
-        write = self._writer.write(control, number, index, value, eeprom)
+        write = self._writer.write(*what)
         if write.outcome is None:
             return write
         self.say(now_ms, *write.outcome)
@@ -158,6 +158,11 @@ class Panel:
     def close_menu(self):
         """Close the menu that covers the page."""
         self._cover.close()
+
+    def show_page(self, now_ms, place):
+        """Close the menu, and show this page of the table."""
+        self.close_menu()
+        self._turn_page(now_ms, place)
 
     def heed_settings(self, locked=False):
         """Settings that act at once have changed. locked: where they have a lock, it is closed."""
@@ -358,7 +363,7 @@ class Panel:
         if acts.pressed & self._address_bits:
             self._select(acts.direction("ADDRESS_UP", "ADDRESS_DOWN"))
         if acts.has("PARAM"):
-            self._turn_page(now_ms, (self._place + 1) % len(PAGES))
+            self._turn_page(now_ms, PAGES[self._place][2])
 
     def _is_locked(self, page, now_ms):
         """The lock is closed: what it refuses is not done. Answers whether nothing is left."""
@@ -391,8 +396,8 @@ class Panel:
         self._page = self._home
         try:
             if self._place:
-                module, page = PAGES[self._place]
-                self._page = getattr(on_demand.load("panel.pages." + module), page)(self)
+                module, page, _ = PAGES[self._place]
+                self._page = getattr(on_demand.load(module), page)(self)
         except MemoryError:
             self._place = 0
             self.say(now_ms, texts.NO_MEMORY)

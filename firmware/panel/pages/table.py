@@ -1,6 +1,11 @@
 # SPDX-License-Identifier: MIT
-"""The pages, in the order in which PARAM shows them; the first one is the home page, which is
-always loaded. The others are `on_demand`: module of `panel.pages`, and class.
+"""The pages: module, class, and the page that PARAM shows next. The first one is the home page,
+which is always loaded; the others are `on_demand`. The last one is reached through the menu.
 """
 
-PAGES = (("home", "Home"), ("parameters", "Parameters"))
+HOME, PARAMETERS, PARAMETER = range(3)
+PAGES = (
+    ("panel.pages.home", "Home", PARAMETERS),
+    ("panel.pages.parameters", "Parameters", HOME),
+    ("panel.lookup.parameter", "Parameter", HOME),
+)
