@@ -15,8 +15,8 @@ _STRETCH = 4  # each stretch before a number is so much longer than the one befo
 
 def following(family, numbers, number):
     """None for each look, then the row; no row where the group has none."""
-    before, (first, last), behind = _split(numbers, number)
-    for first, last in [(number + 1, last)] + behind + before + [(first, number)]:
+    before, part, behind = _split(numbers, number)
+    for first, last in [(number + 1, part[1])] + behind + before + [(part[0], number)]:
         if first <= last:
             for row in rows(family, b"%d-%d" % (first, last), paced=True):
                 yield row
@@ -26,8 +26,8 @@ def following(family, numbers, number):
 
 def preceding(family, numbers, number):
     """The same in the other direction."""
-    before, (first, last), behind = _split(numbers, number)
-    parts = [(number, last)] + behind + before + [(first, number - 1)]
+    before, part, behind = _split(numbers, number)
+    parts = [(number, part[1])] + behind + before + [(part[0], number - 1)]
     for first, last in reversed(parts):
         count = 1
         while first <= last:
@@ -51,4 +51,4 @@ def _split(numbers, number):
     for place, (first, last) in enumerate(parts):
         if first <= number <= last:
             return parts[:place], parts[place], parts[place + 1 :]
-    return [], (number, number), parts
+    return [], (number + 1, number), parts  # it is none of them

@@ -52,7 +52,8 @@ class Panel:
     `message`, words that are shown for a while, or None; `stop_key`; `announcer`; `guard`, a
     `Guard` or None; `setpoint_step` in centihertz; `remembered`; `settings`; `bus`; `board`;
     `mask`. For `App`: `wants`. Nobody else writes a field of it: pages call `say`, `cover`,
-    `uncover`, `write`, `add`, `remove`, `heed_settings`, `begin_anew` and `lock`.
+    `uncover`, `write`, `show_page`, `turn_page`, `add`, `remove`,
+    `heed_settings`, `begin_anew` and `lock`.
     """
 
     def __init__(self, roster, bus, board, settings, mask, notice=texts.NOTHING):
@@ -143,7 +144,7 @@ class Panel:
         self._cover = None
 
     def write(self, now_ms, *what):
-        """The `Write` of a parameter, made with `what`, whose outcome the panel will say; None where it has said
+        """The `Write` made with `what`, whose outcome the panel will say; None where it has said
         already why it cannot be tried.
         """
         if self._writer is None:
@@ -162,7 +163,7 @@ class Panel:
     def show_page(self, now_ms, place):
         """Close the menu, and show this page of the table."""
         self.close_menu()
-        self._turn_page(now_ms, place)
+        self.turn_page(now_ms, place)
 
     def heed_settings(self, locked=False):
         """Settings that act at once have changed. locked: where they have a lock, it is closed."""
@@ -182,7 +183,7 @@ class Panel:
         self.guard.lock()
         if self._cover is not None and not self._cover.locks:
             self.close_menu()
-        self._turn_page(now_ms, 0)
+        self.turn_page(now_ms, 0)
         self.say(now_ms, texts.LOCKED)
 
     def begin_anew(self):
@@ -363,7 +364,7 @@ class Panel:
         if acts.pressed & self._address_bits:
             self._select(acts.direction("ADDRESS_UP", "ADDRESS_DOWN"))
         if acts.has("PARAM"):
-            self._turn_page(now_ms, PAGES[self._place][2])
+            self.turn_page(now_ms, PAGES[self._place][2])
 
     def _is_locked(self, page, now_ms):
         """The lock is closed: what it refuses is not done. Answers whether nothing is left."""
@@ -377,7 +378,7 @@ class Panel:
         return held or not (acts.pressed or acts.repeated)
 
     def _open_menu(self, now_ms, begin=("main", None)):
-        self._turn_page(now_ms, 0)  # PARAM has gone to another one when it went down
+        self.turn_page(now_ms, 0)  # PARAM has gone to another one when it went down
         try:
             self.cover(on_demand.load("panel.menu.engine").Menu(self, begin))
         except MemoryError:
@@ -389,7 +390,7 @@ class Panel:
         else:
             self.wants = "search"
 
-    def _turn_page(self, now_ms, place):
+    def turn_page(self, now_ms, place):
         """Another page of the table. The one before leaves the memory."""
         before = self._page
         self._place = place

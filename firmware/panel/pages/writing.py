@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""What SET does on a page of parameters: it writes into the drive's RAM, and, as long as it is held
-alone, into the EEPROM as well once that is confirmed. What is risky asks first.
+"""What SET does on a page of parameters: it writes into the drive's RAM, and, as long as it is
+held alone, into the EEPROM as well once that is confirmed. What is risky asks first.
 
     writing = Writing(panel)
     writing.set(now_ms, what, risk, words)      # SET was pressed

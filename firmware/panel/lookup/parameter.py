@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: MIT
+"""The page of one parameter, any that the drive shown has; the menu leads to it.
+
+    Ramp-up time            its name, in turn with its limits and what its value is called
+    P1120[0]  10.00s        number, index, value and unit
+
+`inspection` does the work. It comes with the steps that follow, a module in each.
+"""
+
+import on_demand
+from panel import texts
+from panel.pages import Page
+from panel.pages.table import HOME
+
+# From the bottom of the house up.
+_WANTED = (
+    "catalogue", "catalogue.beside", "panel.lookup", "panel.lookup.words",
+    "panel.pages.parameter_words", "panel.pages.writing", "panel.lookup.favourites",
+    "panel.lookup.value", "panel.lookup.editing", "panel.lookup.inspection",
+)  # fmt: skip
+
+
+class Parameter(Page):
+    """Begins with what the menu has left in `Panel.remembered`: see `inspection`."""
+
+    modules = ("panel.lookup.parameter",) + _WANTED
+
+    def __init__(self, panel):
+        Page.__init__(self, panel)
+        self._wanted = list(_WANTED)
+        self._inspection = None
+        self._was_whole = True
+
+    @property
+    def whole(self):
+        """It has both rows, unless an alarm of the drive shown needs them."""
+        self._was_whole = not self.panel.selected.needs_attention()
+        return self._was_whole
+
+    @property
+    def obeys(self):
+        """While something is typed no motor starts, and PARAM ends that."""
+        return self._inspection is None or not self._inspection.is_typing()
+
+    def step(self, keys, now_ms):
+        if self._inspection is not None:
+            self._inspection.step(keys, now_ms)
+            return
+        try:
+            if self._wanted:
+                on_demand.load(self._wanted.pop(0))
+            else:
+                module = on_demand.load("panel.lookup.inspection")
+                self._inspection = module.Inspection(self.panel)
+        except MemoryError:
+            self.panel.turn_page(now_ms, HOME)
+            self.panel.say(now_ms, texts.NO_MEMORY)
+
+    def take_keys(self, acts, now_ms):
+        if self._inspection is not None:
+            self._inspection.take_keys(acts, now_ms)
+
+    def draw(self, screen, now_ms):
+        rows = texts.NOTHING, texts.NOTHING
+        if not self._was_whole:  # the alarm has ended since the picture was begun
+            screen.put(1, 0, texts.STATE_WIDTH, texts.NOTHING)
+            return
+        if self._inspection is not None:
+            rows = self._inspection.rows(now_ms)
+        for place in range(2):
+            screen.put(place, 0, texts.ROW_WIDTH, rows[place])
