@@ -132,12 +132,13 @@ def test_the_elements_of_a_g120_are_asked_for_by_their_tasks():
 
 def test_stop_acts_while_the_text_is_read():
     world = world_of()
-    world.drives[1].warn(501)
+    world.drives[1].warn(600)
     press(world, "START")
     world.run(3000)
-    wait(world, "WARN A0501")
-    go_to(world, "WHAT IS A0501")
+    wait(world, "WARN A0600")
+    go_to(world, "WHAT IS A0600")
     world.run(500)
+    assert world.drives[1].state == "running"
     pressed_us = world.clock.now_us
     press(world, "STOP")
     assert telegrams(world, pressed_us, 1)[1][1] == OFF1
