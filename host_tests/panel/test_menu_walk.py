@@ -2,8 +2,8 @@
 """STOP on every page of the menu, found by walking it: no list of pages stands here.
 
 The walk begins where a held PARAM leads, and knows what a person sees: an entry behind ">", its
-place in a list (3/7), a question, a parameter. DOWN and SET lead on. Each place is reached anew, with the motor
-running, or, where the panel refuses that, standing.
+place in a list (3/7), a question, a parameter. DOWN and SET lead on. Each place is reached anew,
+with the motor running, or, where the panel refuses that, standing.
 """
 
 import os
@@ -118,7 +118,9 @@ def ways():
         world = go(begin, way)
         while True:
             here = place(world)
-            if here is None and begin is not standing and begin is not silent:  # refused, perhaps since the motor runs
+            if (
+                here is None and begin is not standing and begin is not silent
+            ):  # refused, perhaps since the motor runs
                 open_ways.append((standing, way))
             if here is None or here in seen:
                 break
