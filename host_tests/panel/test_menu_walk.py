@@ -118,9 +118,7 @@ def ways():
         world = go(begin, way)
         while True:
             here = place(world)
-            if (
-                here is None and begin is not standing and begin is not silent
-            ):  # refused, perhaps since the motor runs
+            if here is None and begin in (running, warned):  # refused, perhaps since it runs
                 open_ways.append((standing, way))
             if here is None or here in seen:
                 break
@@ -159,6 +157,7 @@ def press_stop(world, where):
     was_question = row_2(world).endswith("PARAM=NO")
     world.down("STOP")
     world.run(400)
+    settled(world)  # what is being written to the display can be read a moment later
     assert world.reads("STOP, HOLD: OFF3"), (where, world.lcd())
     world.up("STOP")
     offs = [at_us for at_us, stw in telegrams(world, pressed_us, 1) if stw == OFF1]
