@@ -103,7 +103,7 @@ class Panel:
         # What is not done at once takes turns, so that each step of the loop stays short.
         self._turns = (
             self._draw, self._ask, self._leave, self._watch,
-            self._draw, self._follow, self._leave, self._look_around,
+            self._draw, self._follow, self._work, self._look_around,
         )  # fmt: skip
 
     def step(self, raw_keys, now_ms, now_us, unclear_keys=0):
@@ -290,6 +290,13 @@ class Panel:
 
     def _leave(self, _now_ms, _now_us):
         return not self._puts_off()
+
+    def _work(self, now_ms, now_us):
+        """A page that has something to look for does it faster; others leave the step."""
+        if self._page.is_busy and self._cover is None:
+            self._page.work(now_ms)
+            return False
+        return self._leave(now_ms, now_us)
 
     def _puts_off(self):
         """Keys that are unsettled take long already: what can wait does, once."""

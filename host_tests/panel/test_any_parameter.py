@@ -209,6 +209,16 @@ def test_edit_again_types_a_choice_that_has_no_text():
     world.check()
 
 
+def test_edit_pressed_twice_does_not_wait_for_the_texts():
+    world = world_of()
+    look_up(world, 700)
+    world.press("EDIT", 40)
+    world.press("EDIT", 40)
+    wait(world, "NEW 5")
+    world.run(500)
+    world.check()
+
+
 def test_bits_are_read_and_changed_one_by_one():
     world = world_of()
     look_up(world, 52)

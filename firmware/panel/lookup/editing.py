@@ -22,7 +22,7 @@ class Editing:
 
     def __init__(self, shown):
         self._shown = shown
-        self._search = Search()
+        self.search = Search()
         form = shown.form
         ways = [DIGITS]
         if form.list:
@@ -38,6 +38,7 @@ class Editing:
         """Another way to change it; `way` is None where there is no further one."""
         shown = self._shown
         self.way = way = self._ways.pop(0) if self._ways else None
+        self.search.begin(None)  # what the way before has looked for
         self._bits = shown.high << 16 | shown.low
         self._is_changed = False
         self._form = form = shown.form
@@ -84,21 +85,21 @@ class Editing:
 
     def step(self):
         """Look on for the texts."""
-        if self._search.rows is None:
+        if self.search.rows is None:
             return
-        row = self._search.step()
+        row = self.search.step()
         if row and self.way == CHOICES:
             self._choices.append((catalogue.number(row, 1), text(row)))
         elif row and catalogue.number(row, 1) == self._bit:
             self._name = text(row)
-        elif self.way == BITS and self._search.rows is None and self._name is _MISSING:
+        elif self.way == BITS and self.search.rows is None and self._name is _MISSING:
             self._name = texts.NOTHING
 
     def rows(self, is_away):
         """Both rows. is_away: the place that UP and DOWN change is not shown now."""
         shown = self._shown
         if self.way == CHOICES:
-            name = _MISSING if self._search.rows is not None else texts.NOTHING
+            name = _MISSING if self.search.rows is not None else texts.NOTHING
             for number, its_name in self._choices:
                 if number == self._number:
                     name = its_name
@@ -118,7 +119,7 @@ class Editing:
         return None, row + unit if len(row) + len(unit) <= texts.ROW_WIDTH else row
 
     def _choose(self, direction):
-        if not direction or self._search.rows is not None or not self._choices:
+        if not direction or self.search.rows is not None or not self._choices:
             return
         numbers = [number for number, _ in self._choices]
         if self._number in numbers:
@@ -133,4 +134,4 @@ class Editing:
         self._look_for(b"%s.%d" % (self._form.list[1:], bit))
 
     def _look_for(self, numbers):
-        self._search.begin(catalogue.rows(self._shown.table, numbers, "V", paced=True))
+        self.search.begin(catalogue.rows(self._shown.table, numbers, "V", paced=True))

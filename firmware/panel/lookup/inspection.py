@@ -26,6 +26,8 @@ from uss.timing import elapsed
 FAVOURITES = None
 FIRST, TYPED = const(-1), const(-2)
 
+_WORK_US = const(900)  # then it is enough for a step: no piece takes more than 2.6 ms
+_PIECES_MAX = const(6)
 _READ_MS = const(500)  # between an answer and the next question
 _STALE_MS = const(60_000)  # what nobody goes on typing is dropped
 _BLINK_MS = const(800)  # of these the digit is away for
@@ -58,7 +60,7 @@ class Inspection:
         self._turn_to(max(number, 0))
         if number == FIRST:
             self._search.begin(beside.following(self.table, self._numbers, number))
-            self._is_moving = True
+            self._is_moving = self._is_coming = True
 
     def is_typing(self):
         """Whether a number or a value is being typed."""
@@ -79,7 +81,8 @@ class Inspection:
             index = family.link_index if number in family.linked else 0
         self.index = index
         self.row = row
-        self._is_moving = False
+        self._is_moving = False  # another parameter of the group is looked for
+        self._is_coming = False  # and none was shown before
         if row is None and self.table:
             rows = catalogue.rows(self.table, b"%d" % number, paced=True)
             self._search.begin(rows)
@@ -216,7 +219,6 @@ class Inspection:
     def step(self, keys, now_ms):
         if self.panel.selected is not self._control:
             self._turn_to(self.number)
-        self._look_on()
         if self.is_typing() and self._is_over(self._used_at_ms, _STALE_MS, now_ms):
             self._typed = self._editing = None
         contact = self._control.drive.contact and self._control.drive.layout.pkw_words
@@ -236,6 +238,8 @@ class Inspection:
             self.form = None
             self._editing = None
             self._due = True
+        elif self._is_coming or self.is_searching() and not (self._reading.asked or self._due):
+            return  # that is enough for a step
         elif self._reading.asked:
             self._take_answer(now_ms)
         else:
@@ -244,8 +248,24 @@ class Inspection:
     def _is_over(self, since_ms, wait_ms, now_ms):
         return since_ms is not None and elapsed(now_ms, since_ms, self.panel.mask) >= wait_ms
 
+    def is_searching(self):
+        """Whether something is looked for in the catalogue."""
+        rows = self._editing.search.rows if self._editing is not None else None
+        return not (rows is self._search.rows is self._names.rows is None)
+
+    def look_on(self):
+        """As many pieces of it as fit a step of the loop."""
+        ticks_us = self.panel.board.clock.ticks_us
+        began_us = ticks_us()
+        for _ in range(_PIECES_MAX):
+            if self._look_on() or not self.is_searching():
+                return
+            if elapsed(ticks_us(), began_us, self.panel.mask) >= _WORK_US:
+                return
+
     def _look_on(self):
-        """One piece of what is looked for in the catalogue."""
+        """One piece. Answers whether it has brought a row."""
+        row = None
         if self._search.rows is not None:
             row = self._search.step()
             if row and self._is_moving:
@@ -255,13 +275,14 @@ class Inspection:
                 self.form = None  # it is read anew, with what is known now
                 self._due = True
             elif self._search.rows is None:
-                self._is_moving = False
+                self._is_moving = self._is_coming = False
         elif self._editing is not None:
             self._editing.step()
         elif self._names.rows is not None:
             row = self._names.step()
             if row and catalogue.number(row, 1) == self._named_value:
                 self._value_name = text(row)
+        return row is not None
 
     def _ask(self, now_ms):
         if self._due or self._is_over(self._read_at_ms, _READ_MS, now_ms):
@@ -314,6 +335,8 @@ class Inspection:
             if is_away:
                 number = number[: self._place] + b"_" + number[self._place + 1 :]
             return texts.of(words.TYPE_NUMBER), number
+        if self._is_coming:
+            return _MISSING, texts.NOTHING
         if self._editing is not None:
             row_1, row_2 = self._editing.rows(is_away)
             if row_1 is None:

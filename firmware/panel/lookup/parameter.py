@@ -42,9 +42,20 @@ class Parameter(Page):
         """While something is typed no motor starts, and PARAM ends that."""
         return self._inspection is None or not self._inspection.is_typing()
 
+    @property
+    def is_busy(self):
+        return self._inspection is None or self._inspection.is_searching()
+
     def step(self, keys, now_ms):
         if self._inspection is not None:
             self._inspection.step(keys, now_ms)
+        if self.is_busy:
+            self.work(now_ms)
+
+    def work(self, now_ms):
+        """Look on in the catalogue; before that, load another module."""
+        if self._inspection is not None:
+            self._inspection.look_on()
             return
         try:
             if self._wanted:

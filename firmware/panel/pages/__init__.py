@@ -18,9 +18,11 @@ class Page:
     announces: what has to be said of other drives is said while it is shown
     values: draw in row 1 what stands there in place of the actual frequency; None: nothing does
     modules: nobody needs them in memory when it is gone
+    is_busy: it has more to do than `step` can, and a `work(now_ms)` that goes on with it
     """
 
     modules = ()
+    is_busy = False
     whole = False
     tells_state = False
     obeys = True
