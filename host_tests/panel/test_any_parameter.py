@@ -176,6 +176,24 @@ def test_the_drive_decides_about_limits():
     world.check()
 
 
+def test_no_telegram_off_time_is_written_with_which_the_drive_would_trip():
+    world = world_of()
+    look_up(world, 2014)
+    before = world.drives[1].read(2014)
+    press(world, "EDIT")
+    for place, digit in zip((8, 7, 6, 5, 4), "10000"):  # from the ones on
+        for _ in range(10):
+            if row_2(world)[place] == digit:
+                break
+            press(world, "UP")
+        press(world, "PREVIOUS")
+    wait(world, "NEW 00001")
+    press(world, "SET")
+    assert row_2(world) == "BELOW LIMIT NOW", world.lcd()
+    assert world.drives[1].read(2014) == before
+    world.check()
+
+
 def test_a_choice_by_its_text_asks_first_where_it_is_risky():
     world = world_of()
     drive = world.drives[1]
