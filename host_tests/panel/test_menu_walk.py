@@ -155,6 +155,7 @@ def press_stop(world, where):
     """OFF1 is on the wire at once, and the display goes on telling where one is."""
     pressed_us = world.clock.now_us
     was_question = row_2(world).endswith("PARAM=NO")
+    was_parameter = is_parameter(row_2(world))
     world.down("STOP")
     world.run(400)
     settled(world)  # what is being written to the display can be read a moment later
@@ -166,8 +167,14 @@ def press_stop(world, where):
     assert world.drives[1].hz() == 0 and world.drives[1].state != "running", where
     if was_question:  # which STOP answers with no
         assert row_2(world)[-2:] == "A1", (where, world.lcd())
+    elif was_parameter:
+        for _ in range(40):  # what the drive has refused is said for three seconds
+            if is_parameter(row_2(world)):
+                break
+            world.run(100)
+        assert is_parameter(row_2(world)), (where, world.lcd())
     else:
-        assert row_2(world).startswith(">") or is_parameter(row_2(world)), (where, world.lcd())
+        assert row_2(world).startswith(">"), (where, world.lcd())
     world.check()
 
 

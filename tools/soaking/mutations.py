@@ -185,7 +185,7 @@ MUTATIONS = (
         "no question",
         "a parameter that cuts the panel off is written at once",
         ("WRITE",), 1,
-        ("panel/pages/writing.py", "if risk is not None and not", "if number < 0 and not"),
+        ("panel/pages/writing.py", "if risk is not None and not", "if risk == -1 and not"),
     ),
     Mutation(
         "setpoint limit dropped",
