@@ -52,8 +52,7 @@ class Panel:
     `message`, words that are shown for a while, or None; `stop_key`; `announcer`; `guard`, a
     `Guard` or None; `setpoint_step` in centihertz; `remembered`; `settings`; `bus`; `board`;
     `mask`. For `App`: `wants`. Nobody else writes a field of it: pages call `say`, `cover`,
-    `uncover`, `write`, `show_page`, `turn_page`, `add`, `remove`,
-    `heed_settings`, `begin_anew` and `lock`.
+    `uncover`, `write`, `add`, `remove`, `heed_settings`, `begin_anew` and `lock`.
     """
 
     def __init__(self, roster, bus, board, settings, mask, notice=texts.NOTHING):
@@ -103,7 +102,7 @@ class Panel:
         # What is not done at once takes turns, so that each step of the loop stays short.
         self._turns = (
             self._draw, self._ask, self._leave, self._watch,
-            self._draw, self._follow, self._work, self._look_around,
+            self._draw, self._follow, self._leave, self._look_around,
         )  # fmt: skip
 
     def step(self, raw_keys, now_ms, now_us, unclear_keys=0):
@@ -143,14 +142,14 @@ class Panel:
             on_demand.drop(module)
         self._cover = None
 
-    def write(self, now_ms, *what):
-        """The `Write` made with `what`, whose outcome the panel will say; None where it has said
+    def write(self, now_ms, control, number, index, value, eeprom=False):
+        """The `Write` of a parameter, whose outcome the panel will say; None where it has said
         already why it cannot be tried.
         """
         if self._writer is None:
             writer = on_demand.load("panel.writer").Writer
             self._writer = writer(self.bus, self.settings, self.mask)
-        write = self._writer.write(*what)
+        write = self._writer.write(control, number, index, value, eeprom)
         if write.outcome is None:
             return write
         self.say(now_ms, *write.outcome)
@@ -159,11 +158,6 @@ class Panel:
     def close_menu(self):
         """Close the menu that covers the page."""
         self._cover.close()
-
-    def show_page(self, now_ms, place):
-        """Close the menu, and show this page of the table."""
-        self.close_menu()
-        self.turn_page(now_ms, place)
 
     def heed_settings(self, locked=False):
         """Settings that act at once have changed. locked: where they have a lock, it is closed."""
@@ -183,7 +177,7 @@ class Panel:
         self.guard.lock()
         if self._cover is not None and not self._cover.locks:
             self.close_menu()
-        self.turn_page(now_ms, 0)
+        self._turn_page(now_ms, 0)
         self.say(now_ms, texts.LOCKED)
 
     def begin_anew(self):
@@ -291,13 +285,6 @@ class Panel:
     def _leave(self, _now_ms, _now_us):
         return not self._puts_off()
 
-    def _work(self, now_ms, now_us):
-        """A page that has something to look for does it faster; others leave the step."""
-        if self._page.is_busy and self._cover is None:
-            self._page.work(now_ms)
-            return False
-        return self._leave(now_ms, now_us)
-
     def _puts_off(self):
         """Keys that are unsettled take long already: what can wait does, once."""
         self._put_off = self._keys.unsettled and not self._put_off
@@ -371,7 +358,7 @@ class Panel:
         if acts.pressed & self._address_bits:
             self._select(acts.direction("ADDRESS_UP", "ADDRESS_DOWN"))
         if acts.has("PARAM"):
-            self.turn_page(now_ms, PAGES[self._place][2])
+            self._turn_page(now_ms, (self._place + 1) % len(PAGES))
 
     def _is_locked(self, page, now_ms):
         """The lock is closed: what it refuses is not done. Answers whether nothing is left."""
@@ -385,7 +372,7 @@ class Panel:
         return held or not (acts.pressed or acts.repeated)
 
     def _open_menu(self, now_ms, begin=("main", None)):
-        self.turn_page(now_ms, 0)  # PARAM has gone to another one when it went down
+        self._turn_page(now_ms, 0)  # PARAM has gone to another one when it went down
         try:
             self.cover(on_demand.load("panel.menu.engine").Menu(self, begin))
         except MemoryError:
@@ -397,15 +384,15 @@ class Panel:
         else:
             self.wants = "search"
 
-    def turn_page(self, now_ms, place):
+    def _turn_page(self, now_ms, place):
         """Another page of the table. The one before leaves the memory."""
         before = self._page
         self._place = place
         self._page = self._home
         try:
             if self._place:
-                module, page, _ = PAGES[self._place]
-                self._page = getattr(on_demand.load(module), page)(self)
+                module, page = PAGES[self._place]
+                self._page = getattr(on_demand.load("panel.pages." + module), page)(self)
         except MemoryError:
             self._place = 0
             self.say(now_ms, texts.NO_MEMORY)

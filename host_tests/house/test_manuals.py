@@ -14,7 +14,6 @@ import settings_file as settings
 import version
 from boards.sim.script import COMMANDS
 from panel import texts
-from panel.lookup import words as lookup_words
 from panel.menu import words
 from panel.pages import parameter_words, splash
 from search import words as search_words
@@ -149,7 +148,7 @@ def every_text(thing):
 
 def test_every_text_of_the_display_is_explained():
     said = section(PANEL, "What the display says")
-    modules = (texts, splash, parameter_words, words, search_words, lookup_words)
+    modules = (texts, splash, parameter_words, words, search_words)
     found = [text for module in modules for text in every_text(vars(module))]
     found = [row for row in found if row and row not in splash.SPLASH]
     assert len(found) > 100

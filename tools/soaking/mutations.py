@@ -185,7 +185,7 @@ MUTATIONS = (
         "no question",
         "a parameter that cuts the panel off is written at once",
         ("WRITE",), 1,
-        ("panel/pages/writing.py", "if risk is not None and not", "if risk == -1 and not"),
+        ("panel/pages/parameters.py", "if number in ask_first and not", "if number < 0 and not"),
     ),
     Mutation(
         "setpoint limit dropped",
@@ -383,8 +383,8 @@ MUTATIONS = (
         ("WRITE",), 1,
         (
             "panel/writer.py",
-            "write.number, write.index, high, low)",
-            "write.number, write.index, high, low ^ 1)",
+            "write.number, write.index, 0, write.value)",
+            "write.number, write.index, 0, write.value ^ 1)",
         ),
     ),
     Mutation(

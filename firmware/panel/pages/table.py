@@ -1,11 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The pages: module, class, and the page that PARAM shows next. The first one is the home page,
-which is always loaded; the others are `on_demand`. The last one is reached through the menu.
+"""The pages, in the order in which PARAM shows them; the first one is the home page, which is
+always loaded. The others are `on_demand`: module of `panel.pages`, and class.
 """
 
-HOME, PARAMETERS, PARAMETER = range(3)
-PAGES = (
-    ("panel.pages.home", "Home", PARAMETERS),
-    ("panel.pages.parameters", "Parameters", HOME),
-    ("panel.lookup.parameter", "Parameter", HOME),
-)
+PAGES = (("home", "Home"), ("parameters", "Parameters"))
