@@ -8,6 +8,7 @@ import struct
 
 import pytest
 
+from conftest import strict
 from tiers import TOP
 
 INTERPRETERS = "host"
@@ -43,7 +44,7 @@ ALIKE = (
 
 def defined(chip, header, name):
     path = SDK / CHIPS[chip] / "hardware_regs/include/hardware/regs" / header
-    if not path.exists():
+    if not path.exists() and not strict():
         pytest.skip("the SDK is not here: tools/uf2 fetches it")
     found = re.search(rf"#define {name}\s+(?:_u\()?(0x[0-9a-f]+|\d+)", path.read_text(), re.I)
     assert found, (header, name)
@@ -74,14 +75,14 @@ def test_what_is_the_same_on_both_chips(chip, row):
 def test_writing_to_an_address_3000h_higher_clears_bits():
     for chip in CHIPS.values():
         path = SDK / chip / "hardware_regs/include/hardware/regs/addressmap.h"
-        if not path.exists():
+        if not path.exists() and not strict():
             pytest.skip("the SDK is not here: tools/uf2 fetches it")
         words = re.search(r"#define REG_ALIAS_CLR_BITS (.*)", path.read_text())[1]
         assert words.replace(" ", "") == "(_u(0x3)<<_u(12))"
 
 
 def blocks_of(file):
-    if not file.exists():
+    if not file.exists() and not strict():
         pytest.skip("no firmware is here: tools/uf2 --board pico2 builds it")
     data = file.read_bytes()
     return [data[at : at + 512] for at in range(0, len(data), 512)]
