@@ -31,8 +31,8 @@ class Silence:
 
     `rests`: by address, whether a drive rests. `resting`: how many do. `wait_us`: how long until
     the share has room for one more silence; `Deadlines` counts it down, and below 0 there has been
-    room for so long. `charged_us`: how much of `shared_us` is settled. The loop writes these, and
-    all else.
+    room for so long. `charged_us`: how much of `shared_us` is settled. `spared`: a resting drive
+    that the list leaves to those who ask it something else. The loop writes these, and all else.
     """
 
     def __init__(self, turns):
@@ -43,6 +43,7 @@ class Silence:
         self.resting = 0
         self.wait_us = 0
         self.charged_us = 0
+        self.spared = None
         self.silent_exchange_us = 0  # how long a telegram without a reply takes at the most
         self._turns = turns
         self._asked = None  # the drive that was given a turn last
@@ -119,8 +120,9 @@ class Silence:
             asked = self._turns.by_address[greatest(self.rests, 0, NODES, last)]
             if asked is not None:  # a Ctrl-C in `relayout` leaves none there
                 self._asked = asked
-                self._is_asked = True
-                asked.ask_soon()
+                self._is_asked = asked is not self.spared
+                if self._is_asked:
+                    asked.ask_soon()
 
     def _is_anyone_there(self):
         """1 if a drive answers, or may run. Without one, no drive loses time to the silent

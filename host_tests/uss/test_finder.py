@@ -141,6 +141,17 @@ def test_other_pzd_words_than_the_list_says_are_found():
         line.check()
 
 
+def test_one_that_answers_late_is_asked_by_nobody_else_meanwhile():
+    """It takes the list's telegrams as well, of another length, and answered them to our questions
+    and our questions to them: it was asked in vain for minutes."""
+    for late in (1, 2):
+        line = Line({2: (127, 2)}, runs=False)
+        line.motors[2].stale_replies = late
+        line.found_after(2, 10_000)
+        assert layout_of(line.drives[2]) == (127, 2) and line.found == [line.drives[2]]
+        line.check()
+
+
 def test_a_drive_that_is_doubted_is_asked_if_it_stands():
     """It is in contact: its telegrams have the length that the list says, or any."""
     for layout, words in (

@@ -131,7 +131,7 @@ class Finder:
         elif state == _AWAIT or state == _HEAR:
             self._await(now, state)
         elif self._drive.layout is not self._layout or not self._is_lost(self._drive):
-            self._state = _LOOK
+            self._end()
         elif state == _ASK:
             self._ask(now)
         elif state == _ENQUIRE:
@@ -255,12 +255,15 @@ class Finder:
         if telegram.state == PENDING:
             if elapsed(now, self._posted_at, self._mask) >= _PATIENCE_US:
                 self._mirror = Mirror(0, bytes(_NET_MAX))  # the engine has failed with that one
-                self._state = _LOOK
+                self._end()
         elif state == _AWAIT:
             self._state = _ASK
             self._judge(telegram)
         else:
             self._state = _ENQUIRE
+            # It may answer telegrams late. Then a telegram of the list, which it may take as well,
+            # would get the answer.
+            self._silence.spared = None if telegram.finding else self._drive
             if self._enquirer.take(telegram):
                 self._conclude(self._enquirer.node)
                 self._enquirer = None
@@ -269,7 +272,7 @@ class Finder:
         """Of the mirror telegram that is over."""
         if mirror.state == DONE:
             if mirror.node != self._drive.address:
-                self._state = _LOOK  # it has another address since
+                self._end()  # it has another address since
             elif self._answered:
                 self._ask_it(True)
             else:
@@ -331,7 +334,7 @@ class Finder:
         if layout is None:
             self._layouts[self._found] = layout = Layout(self._found >> 5, self._found & 0x1F)
         drive = self._drive
-        self._state = _LOOK
+        self._end()
         try:
             self._turns.relayout(drive, layout, drive.doubted)
         except ValueError:  # it answered at the last moment
@@ -344,4 +347,8 @@ class Finder:
         self._in_vain[drive.address] = 1
         if drive.doubted:
             drive.doubted = False
+        self._end()
+
+    def _end(self):
+        self._silence.spared = None
         self._state = _LOOK

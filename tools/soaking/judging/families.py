@@ -264,6 +264,12 @@ class Kind:
                 self._known.add(pkw_words)
         return True
 
+    def may_be_taken_for_variable(self):
+        """Whether the panel may take the three PKW words of a drive for a variable number: its
+        telegrams without a task look the same, until the drive has no room for a double word.
+        """
+        return 3 in self.words and VARIABLE in self._known
+
     def may_be_reply(self, count):
         """Whether a drive in the layout that is in force may answer with so many net words."""
         pkw_words = count - self.pzd_words

@@ -209,14 +209,16 @@ class Judge:
         waits = 2 + 2 * witness.may_look(now)
         waited_us = waits * (witness.exchange_us + self.plan.loop_us)
         recently_us = max(witness.boot_us, now - witness.lost_us * 9 // 10)
+        may_run = case.turned_us > max(case.rested_us, witness.boot_us)
         is_doubtful = now - witness.late_us < DOUBTED_US + 20 * witness.cycle_us
+        if witness.kinds[address].may_be_taken_for_variable() and not may_run:
+            is_doubtful = True
         if case.heard_us > recently_us and (is_doubtful or not witness.is_able(address)):
             self._shares.mirror(case, now)
             return  # its answers may make no sense
         if case.heard_us > recently_us and now - case.contact_us > waited_us:
             told = (where, (now - case.contact_us) // MS, (now - case.heard_us) // MS)
             raise Broken("MIRROR", "%s, in contact for %d ms, heard %d ms ago" % told)
-        may_run = case.turned_us > max(case.rested_us, witness.boot_us)
         least = STOPPED_MIN if may_run else SILENT_MIN
         misses = case.requests - case.heard_requests
         if misses < least and now - case.contact_us > waited_us:

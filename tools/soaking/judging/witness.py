@@ -185,8 +185,9 @@ class Witness:
             return True  # a STOP that is held hides its second row
         for key in ("ADDRESS_UP", "ADDRESS_DOWN"):
             until_us = now if key in self.down else self.up[key]
-            if until_us - self.pressed_us[key] > HELD_OPENS_US:
-                return now - until_us < LOOKED_FOR_US + 4 * self.cycle_us
+            is_late = now - until_us >= LOOKED_FOR_US + 4 * self.cycle_us
+            if until_us - self.pressed_us[key] > HELD_OPENS_US and not is_late:
+                return True
         return False
 
     def candidates(self):
