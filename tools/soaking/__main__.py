@@ -49,6 +49,11 @@ def parser():
         action="store_true",
         help="several drives run, and two things fail at once, in every second thing that happens",
     )
+    add(
+        "--at-home",
+        action="store_true",
+        help="the operator opens neither the menu nor the search, so that more else happens",
+    )
     add("--jobs", type=count(1, 1000), default=2, metavar="N", help="processes at a time (2)")
     add("--fuzz", type=count(1, 10**12), metavar="BYTES", help="feed the receiver instead")
     add(
@@ -244,7 +249,8 @@ def sayings(workers, said):
 
 
 def soak(wanted):
-    arguments = ["soak", wanted.minutes, wanted.drives or 0, 2 if wanted.two_troubles else 1]
+    troubles, roams = 1 + wanted.two_troubles, 1 - wanted.at_home
+    arguments = ["soak", wanted.minutes, wanted.drives or 0, troubles, roams]
     workers, said = start(wanted, arguments)
     tally = Tally(wanted.seeds)
     crashed = 0
@@ -267,8 +273,9 @@ def soak(wanted):
 def again(wanted, what):
     drives = " --drives %d" % wanted.drives if wanted.drives else ""
     troubles = " --two-troubles" if wanted.two_troubles else ""
-    return "./tools/soak --seeds 1 --first %d --minutes %r%s%s --interpreter %s" % (
-        what["seed"], wanted.minutes, drives, troubles, what["interpreter"],
+    home = " --at-home" if wanted.at_home else ""
+    return "./tools/soak --seeds 1 --first %d --minutes %r%s%s%s --interpreter %s" % (
+        what["seed"], wanted.minutes, drives, troubles, home, what["interpreter"],
     )  # fmt: skip
 
 

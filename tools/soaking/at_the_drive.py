@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """What a person sets at the keypad of a drive during a soak, by the family of the drive.
 
-people = AT_THE_DRIVE[drive.family.NAME]
+people = people_at(drive)
 for number, value in people.order: ...
 """
 
@@ -10,9 +10,12 @@ from tools.soaking.judging.families import (
     G110,
     G120,
     GENERIC,
+    LINKED,
     MM3,
     MM420,
     MM440,
+    USS,
+    USS_ON_BOP,
     V20,
 )
 
@@ -54,6 +57,14 @@ MM4 = People(
     ((2009, 1), (2009, 1)),
 )  # fmt: skip
 
+ON_BOP = {  # what stands for these on the BOP link: numbers, and pairs of number and value
+    (2019, 1): (2016, 1),
+    (700, USS): (700, USS_ON_BOP),
+    (1000, USS): (1000, USS_ON_BOP),
+    (840, 2036 << 16): (840, 2032 << 16),
+    (1070, 2018 << 16 | 1): (1070, 2015 << 16 | 1),
+}
+
 AT_THE_DRIVE = {
     MM420: MM4,
     MM440: MM4,
@@ -85,3 +96,23 @@ AT_THE_DRIVE = {
         ((1080, 300.0),),
     ),
 }  # fmt: skip
+
+
+def people_at(drive):
+    """Those at that drive: a `People`."""
+    people = AT_THE_DRIVE[drive.family.NAME]
+    return _on_bop(people) if drive.family.LINK["index"] else people
+
+
+def _on_bop(people):
+    rows = people.order, people.meddled, people.doubts, people.more
+    return People(_linked(people.off_time), *[tuple(map(_row_on_bop, each)) for each in rows])
+
+
+def _row_on_bop(row):
+    number, value = ON_BOP.get(row, row)
+    return ON_BOP.get(number, _linked(number)), value
+
+
+def _linked(number):
+    return (number, 1) if number in LINKED else number

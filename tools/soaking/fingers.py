@@ -54,8 +54,9 @@ class Fingers:
             (12, self.tap), (4, self.hold), (6, self.start), (5, self.stop), (9, self.jog),
             (4, self.chord), (4, self.long_stop), (5, self.edit), (4, self.rest), (3, self.select),
             (4, self.start_others), (3, self.start_under_stop), (5, self.run_long),
-            (6, self.walk_menu), (2, self.look_for_drives),
         ))  # fmt: skip
+        if plan.roams:
+            self.common += weights(((6, self.walk_menu), (2, self.look_for_drives)))
 
     # --- time -----------------------------------------------------------------------------------
 

@@ -11,8 +11,9 @@ everything in order and checks whether the panel controls its drives again.
 
 import json
 
+from boards.sim.drives.families import setting_of
 from boards.sim.world import supervision, supervision_ms
-from tools.soaking.at_the_drive import AT_THE_DRIVE
+from tools.soaking.at_the_drive import people_at
 from tools.soaking.fingers import SLICE_MS
 from tools.soaking.judging.announced import is_parameter
 from tools.soaking.judging.facts import GOES, MS, S
@@ -67,7 +68,7 @@ class Hand(Mischief):
                 drive.plug()
             if not drive.mains:
                 self.power_on(drive)
-            for number, value in AT_THE_DRIVE[drive.family.NAME].order:
+            for number, value in people_at(drive).order:
                 self.set_at_drive(drive, number, value)
             self.supervise_again(drive)
             for number in WARNINGS:
@@ -79,10 +80,11 @@ class Hand(Mischief):
 
     def supervise_again(self, drive):
         """Give a drive a longer telegram off time if none could keep the one that it has."""
-        number = drive.family.LINK["off time"]
-        if 0 < drive.read(number) * drive.family.LINK["unit us"] < SHORT_US:
+        link = drive.family.LINK
+        if 0 < drive.read(link["off time"], link["index"]) * link["unit us"] < SHORT_US:
             ms = supervision_ms(self.plan.baud, len(self.plan.listed))
-            self.set_at_drive(drive, number, supervision(drive.family, ms)[number])
+            for setting in supervision(drive.family, ms).items():
+                self.set_at_drive(drive, *setting)
 
     def follow_addresses(self):
         """Give a drive that is not at an address of the panel's list such an address, of its own
@@ -94,7 +96,7 @@ class Hand(Mischief):
                 fitting = [one for one in free if self.witness.kinds[one].can_find(drive)]
                 address = (fitting or free)[-1]
                 free.remove(address)
-                self.set_at_drive(drive, drive.family.LINK["address"], address)
+                self.set_at_drive(drive, setting_of(drive.family, "address"), address)
 
     def prove_control(self):
         """Check that drives in another layout were found, that START runs the drive shown, and

@@ -5,7 +5,7 @@ It tells the witness of each thing before it happens.
 """
 
 from boards.sim.chip.machine import Timer
-from tools.soaking.at_the_drive import AT_THE_DRIVE
+from tools.soaking.at_the_drive import people_at
 from tools.soaking.fingers import JOGS, SLICE_MS, Fingers, weights
 from tools.soaking.judging.facts import GOES
 from tools.soaking.worlds import bears_silences
@@ -120,7 +120,7 @@ class Mischief(Fingers):
 
     def meddle(self):
         drive = self.any_drive()
-        people = AT_THE_DRIVE[drive.family.NAME]
+        people = people_at(drive)
         number, value = self.dice.one_of(people.meddled)
         if self.set_at_drive(drive, number, value):
             self.note("drive %d: P%s=%s at the drive itself" % (drive.address, number, value))
@@ -169,8 +169,7 @@ class Mischief(Fingers):
         self.press("STOP")
         self.run(self.dice.between(500, 2_000))
         drive = None if self.witness.shown is None else self.reader.drive_at(self.witness.shown)
-        name = self.drives[0].family.NAME if drive is None else drive.family.NAME
-        people = AT_THE_DRIVE[name]
+        people = people_at(self.drives[0] if drive is None else drive)
         doubts = people.doubts + people.more if self.plan.has_families else people.doubts
         number, value = self.dice.one_of(doubts)
         if drive is None or drive.state == "off":

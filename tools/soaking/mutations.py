@@ -8,8 +8,11 @@ copy of firmware/, and soaks that with the row's seed.
 
 class Mutation:
     """name; why it matters; rules, one of which the soak must name; the seed that finds it;
-    changes, each (file below firmware/, old text, new text).
+    changes, each (file below firmware/, old text, new text). roams: the operator opens menu and
+    search.
     """
+
+    roams = True
 
     def __init__(self, name, why, rules, seed, *changes):
         self.name = name
@@ -28,6 +31,12 @@ class Mutation:
                     f"mutation {self.name}: firmware/{name} has {text.count(old)} times\n{old}"
                 )
             path.write_text(text.replace(old, new), encoding="utf-8")
+
+
+class AtHome(Mutation):
+    """Found by an operator who opens neither menu nor search, because he needs all of his time."""
+
+    roams = False
 
 
 MUTATIONS = (
@@ -546,7 +555,7 @@ MUTATIONS = (
             "        self._control.change(self._centihertz - self._control.setpoint.centihertz)\n",
         ),
     ),
-    Mutation(
+    AtHome(
         "one START, two runs",
         "a motor that was without mains for a moment starts again by itself",
         ("TURNS", "START"), 184,
@@ -654,7 +663,7 @@ MUTATIONS = (
         ("SHOWN",), 11,
         ("panel/texts.py", 'ACTUAL_PERCENT = b"%F:"', 'ACTUAL_PERCENT = b" F:"'),
     ),
-    Mutation(
+    AtHome(
         "percent of what",
         "START is obeyed though the drive takes 0.01 Hz for what the panel sends as percent",
         ("REFUSED",), 753,
@@ -733,7 +742,7 @@ MUTATIONS = (
             "            pass\n",
         ),
     ),
-    Mutation(
+    AtHome(
         "looked for too soon",
         "a drive that may run is sent other telegrams before its STOP had a chance",
         ("MIRROR",), 16,
@@ -857,9 +866,6 @@ MUTATIONS = (
 UNFOUND = (
     "the next one's turn is lost",
     "faster without a key",
-    "one START, two runs",
     "hertz believed",
-    "percent of what",
     "limits in 1/min halved",
-    "looked for too soon",
 )

@@ -27,13 +27,14 @@ TOLD_S = 30  # of virtual time between two calls of `progress`
 class Soak:
     """Fields: seed, plan, world, judge, reader, weather, hand.
 
-    drives: how many; None: the seed decides. broken: the exception that ended it, or None.
+    drives: how many; None: the seed decides. troubles, roams: see `Plan`. broken: the exception
+    that ended it, or None.
     """
 
-    def __init__(self, seed, drives=None, troubles=1):
+    def __init__(self, seed, drives=None, troubles=1, roams=True):
         self.seed = seed
         self.broken = None
-        self.plan = plan = Plan(seed, drives, troubles)
+        self.plan = plan = Plan(seed, drives, troubles, roams)
         self.world = world = SoakWorld(main.start, plan)
         self.judge = judge = Judge(world, plan)
         self.reader = reader = Reader(world, plan, judge.witness)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """One process of a soak, on MicroPython: takes seeds from standard input, tells how they ended.
 
-    micropython tools/soaking/worker.py soak MINUTES [DRIVES]       # then a seed a line
+    micropython tools/soaking/worker.py soak MINUTES [DRIVES TROUBLES ROAMS]
     micropython tools/soaking/worker.py fuzz BYTES
 
 It answers lines of JSON: {"at": seconds} now and then, {"seed": ...} at the end of each.
@@ -28,8 +28,8 @@ def progress(seconds):
     tell(at=seconds)
 
 
-def soak_seed(seed, minutes, drives="0", troubles="1"):
-    soak = Soak(seed, int(drives) or None, int(troubles))
+def soak_seed(seed, minutes, drives="0", troubles="1", roams="1"):
+    soak = Soak(seed, int(drives) or None, int(troubles), roams != "0")
     soak.run(int(float(minutes) * 60), progress)
     broken, rule, told = soak.broken, None, []
     if broken is not None:

@@ -8,7 +8,7 @@ The same seed gives the same world, whatever the other arguments of the soak.
 """
 
 from boards.sim.board import LOOP_US
-from boards.sim.drives.families import g110, mm420, mm440, named, v20
+from boards.sim.drives.families import BOP, WITH_BOP, g110, mm420, mm440, named, v20
 from boards.sim.drives.switches import SWITCHES
 from boards.sim.world import World, supervision, supervision_ms
 from tools.soaking.dice import Dice
@@ -26,6 +26,7 @@ TYPES_IN = 4  # in one world of so many somebody types digits
 # truth, or another layout, now and then that it is a drive of which nothing is known.
 FAMILIES_IN = 3
 FAMILIES = ("mm420", "mm440", "mm3", "mm3", "g110", "v20", "g120", "g120", "generic")
+ON_BOP_IN = 3  # of so many MICROMASTER 4 one has its USS on the BOP link
 PKW_WORDS = (0, 3, 4, 127)
 PZD_WORDS = (2, 2, 2, 4)
 
@@ -53,12 +54,14 @@ class Plan:
     step of the main loop), and further arguments of a `World`: `ticks_start`, `ticks_mask`,
     `kinds`. pzd_words: the most of a telegram. types: the operator sets setpoints digit by digit.
 
-    troubles: how many things the hand lets fail at once, 1 or 2.
+    troubles: how many things the hand lets fail at once, 1 or 2. roams: it opens the menu and the
+    search; else there is more time for the rest.
     """
 
-    def __init__(self, seed, drives=None, troubles=1):
+    def __init__(self, seed, drives=None, troubles=1, roams=True):
         self.seed = seed
         self.troubles = troubles
+        self.roams = roams
         self.dice = dice = Dice(seed)
         # Later additions to the worlds have their own dice, so that they do not change the rest.
         self.more = more = Dice(seed, 7)
@@ -86,6 +89,7 @@ class Plan:
         # Drives of all families.
         self.families = families = Dice(seed, 11)
         self.has_families = families.below(FAMILIES_IN) == 0
+        self.links = Dice(seed, 17)
         self.pzd_words = families.one_of(PZD_WORDS) if self.has_families else PZD_WORDS[0]
         self.kinds = {address: _kind(self, address) for address in self.addresses}
         if self.has_families:
@@ -101,7 +105,10 @@ class Plan:
         ) + ("; the drives are %s" % self._real_kinds() if self.has_families else "")  # fmt: skip
 
     def _real_kinds(self):
-        found = ["%d %s" % (one, self.kinds[one]["family"].NAME) for one in self.addresses]
+        families = [self.kinds[one]["family"] for one in self.addresses]
+        links = [BOP if family.LINK["index"] else "" for family in families]
+        names = [family.NAME + link for family, link in zip(families, links)]
+        found = ["%d %s" % pair for pair in zip(self.addresses, names)]
         layouts = ["%d+%d" % self.kinds[one]["layout"] for one in self.addresses]
         return ", ".join("%s %s" % pair for pair in zip(found, layouts))
 
@@ -242,6 +249,9 @@ def _put_family(plan, address):
         fixed and (address > 30 or plan.pzd_words != fixed[1])
     ):
         name, family, fixed = "mm420", mm420, None
+    if name in WITH_BOP and not is_generic and plan.links.below(ON_BOP_IN) == 0:
+        name += BOP
+        family = named(name)
     layout = fixed or (pkw_words, plan.pzd_words)
     off_time_ms = kind["parameters"].get(mm420.LINK["off time"], 0)
     kind.update(family=family, parameters=supervision(family, off_time_ms), layout=layout)

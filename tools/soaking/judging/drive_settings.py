@@ -10,7 +10,7 @@ replies of the drive: old values are allowed until enough of both have passed.
 """
 
 from tools.soaking.judging.facts import ALWAYS
-from tools.soaking.judging.families import G120, MM3, RPM_PER_HZ, SPEEDS
+from tools.soaking.judging.families import G120, LINKED, MM3, RPM_PER_HZ, SPEEDS
 
 KEPT = 8  # values that were replaced
 HIGHEST_HZ = 650  # that any drive may have
@@ -55,7 +55,7 @@ class Values:
         self.off_time_us = 0
         if sight.reads_words:
             number, unit_us = family.off_time
-            self.off_time_us = _read(drive, number, 0) * unit_us
+            self.off_time_us = _read(drive, number, 0, _index_of(drive, number)) * unit_us
         self.ended_us = self.ended_at = ALWAYS
 
     def key(self):
@@ -150,12 +150,16 @@ def _real_absolute(drive):
     """Whether PZD2 is in 0.01 Hz."""
     if drive.family.NAME == MM3:
         return drive.read(95) == 2
-    return bool(_read(drive, 2009, 0))
+    return bool(_read(drive, 2009, 0, _index_of(drive, 2009)))
 
 
 def _steps_per_hz(drive):
     """Of an MM3."""
     return 100 if drive.read(95) else 10
+
+
+def _index_of(drive, number):
+    return drive.family.LINK["index"] if number in LINKED else 0
 
 
 def _read(drive, number, missing, index=0):

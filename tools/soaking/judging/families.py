@@ -14,7 +14,8 @@ from tools.soaking.judging.facts import JOG_LEFT, JOG_RIGHT, OFFS, ON, ON_REVERS
 USUAL = "mm420"  # where the settings name none
 VARIABLE = 127  # PKW words: as many as a task needs, 3 at the least
 PZD_USUAL = 2
-USS = 5  # P0700, P1000, a digit of P0719
+USS, USS_ON_BOP = 5, 4  # P0700, P1000, a digit of P0719
+LINKED = (2009, 2010, 2011, 2012, 2013, 2014, 2024)  # their index is the link's
 ACTUAL_HZ = 21 << 16  # P2019[1]: r0021, the actual frequency
 
 MM4_DANGEROUS = (  # DESIGN, rule 7
@@ -25,15 +26,16 @@ MM4_DANGEROUS = (  # DESIGN, rule 7
 
 class Family:
     """What the documents say of a family. drives: names of the simulated ones that it is right
-    for. layout: PKW words, if it has only these.
+    for. layout: PKW words, if it has only these. index: of its link, 1: the BOP link.
 
     on, reverse, jogs: its control words; reverse 0: a negative setpoint reverses it. signed: HIW
     has a sign; else bit 14 of ZSW is the direction.
 
-    sources: of commands and of setpoints, (number, right value, whether it is a double word); a
-    digit of `selection` goes before them. reference: number and unit ("Hz", "1/min", "steps";
-    None: nobody knows it). absolute: number and value with which PZD2 is in 0.01 Hz. limits:
-    numbers of the lowest and the highest frequency. off_time: number and unit in microseconds.
+    uss: what P0700 and the like are for this link. command, setpoint: their sources, (number,
+    right value, whether it is a double word); a digit of `selection` goes before them.
+    reference: number and unit ("Hz", "1/min", "steps"; None: nobody knows it). absolute: number
+    and value with which PZD2 is in 0.01 Hz. limits: numbers of the lowest and the highest
+    frequency. off_time: number and unit in microseconds.
     sent: parameter with its index, and the value with which HIW is the frequency. counter: of
     telegrams. warnings: the number of the list of them.
 
@@ -46,6 +48,7 @@ class Family:
         self,
         drives,
         layout=None,
+        index=0,
         on=ON,
         reverse=ON_REVERSE,
         jogs=(JOG_RIGHT, JOG_LEFT),
@@ -67,6 +70,8 @@ class Family:
     ):
         self.drives = drives
         self.layout = layout
+        self.index = index
+        self.uss = USS_ON_BOP if index else USS
         self.on = on
         self.reverse = reverse
         self.jogs = jogs
@@ -89,20 +94,34 @@ class Family:
 
     def is_right_for(self, drive):
         """Whether a panel that is told this family controls that simulated drive."""
-        return drive.family.NAME in self.drives
+        return drive.family.NAME in self.drives and drive.family.LINK["index"] == self.index
+
+    def read(self, drive, number):
+        """Of that drive, on this link."""
+        return drive.read(number, self.index if number in LINKED else 0)
 
 
-def _mm4(drives, absolute=(2009, 1), pid=((2200, 0, True),), permanent=(2010, 2011, 2012, 2013)):
+def _mm4(
+    drives,
+    absolute=(2009, 1),
+    pid=((2200, 0, True),),
+    permanent=(2010, 2011, 2012, 2013),
+    index=0,
+):
+    uss, command, received, sent = (
+        (USS_ON_BOP, 2032, 2015, 2016) if index else (USS, 2036, 2018, 2019)
+    )  # fmt: skip
     return Family(
         drives,
+        index=index,
         selection=719,
-        command=((700, USS, False), (840, 2036 << 16, True)),
-        setpoint=((1000, USS, False), (1070, 2018 << 16 | 1, True)) + pid,
+        command=((700, uss, False), (840, command << 16, True)),
+        setpoint=((1000, uss, False), (1070, received << 16 | 1, True)) + pid,
         reference=(2000, "Hz"),
         absolute=absolute,
         limits=(1080, 1082),
         off_time=(2014, 1_000),
-        sent=((2019, 1), ACTUAL_HZ),
+        sent=((sent, 1), ACTUAL_HZ),
         counter=2024,
         warnings=2110,
         address=2011,
@@ -117,6 +136,8 @@ G110, V20, MM3, G120 = "SINAMICS G110", "SINAMICS V20", "MICROMASTER 3", "SINAMI
 FAMILIES = {  # as the settings name them
     "mm420": _mm4((MM420, MM440)),
     "mm440": _mm4((MM440,)),
+    "mm420-bop": _mm4((MM420, MM440), index=1),
+    "mm440-bop": _mm4((MM440,), index=1),
     "g110": _mm4((G110,), None, ()),
     "v20": _mm4((V20,), None, permanent=(2010, 2011, 2012, 2013, 2023)),
     "mm3": Family(

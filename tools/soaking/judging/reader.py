@@ -33,7 +33,7 @@ from tools.soaking.judging.facts import (
 from tools.soaking.judging.rules import Broken
 
 SCREENS = 12
-COVERED_US = 1 * S  # what a held STOP does covers a row of the menu, and so long after
+COVERED_US = 3_500 * MS  # what a STOP does covers a row of the menu, and so long after
 EXPOSED_US = 6 * S
 PRESENT = 2  # of r2110: so many of its warnings are present, the others are gone
 WARNED_US = 5_500 * MS
@@ -192,6 +192,8 @@ class Reader:
             return
         if case.acknowledge_us > case.answered_us or "STOP" in witness.down:
             return
+        if witness.is_in_menu():
+            return  # row 1 says it in turn with the name of the list: `Announced` waits for that
         for text in MAY_RUN:
             if self.reads(text):
                 return
@@ -286,9 +288,9 @@ class Reader:
         if address_in(row_2) != address:
             return
         if row_2[0] == "P" and row_2[5] == ":" and row_2[6:12].strip().isdigit():
-            number = int(row_2[1:5])
-            if int(row_2[6:12]) != drive.read(number) and row_2[12] == " ":
-                raise Broken("SHOWN", "%s and it is %s" % (row_2, drive.read(number)))
+            value = witness.kinds[address].family.read(drive, int(row_2[1:5]))
+            if int(row_2[6:12]) != value and row_2[12] == " ":
+                raise Broken("SHOWN", "%s and it is %s" % (row_2, value))
         for text, state in STATES:
             if row_2.startswith(text):
                 if drive.state != state and now - self._state_us > S:

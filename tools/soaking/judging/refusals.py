@@ -8,7 +8,6 @@ In use:
 
 from tools.soaking.judging.case import drive_at
 from tools.soaking.judging.facts import LONG_US, MS, S
-from tools.soaking.judging.families import USS
 
 TAKEN_US = 1 * S  # the panel may not have seen so recent a change at the drive
 
@@ -30,7 +29,7 @@ def reason_against(witness, case, address, pressed_us, jogs):
         return wrong
     if sight.is_percent and family.absolute:
         number, value = family.absolute
-        if drive.read(number) == value:
+        if family.read(drive, number) == value:
             return "P%04d is %d, and nobody knows 100 %%" % (number, value)
     return _wrong(drive, sight, units, family.setpoint)
 
@@ -44,7 +43,7 @@ def _knows(witness, case, address, pressed_us, jogs):
 
 def _wrong(drive, sight, selected, sources):
     """Which of these sources is not USS. selected: a digit of P0719; 0: the others decide."""
-    if selected not in (0, USS):
+    if selected not in (0, sight.family.uss):
         return "P0719 is %s" % drive.read(719)
     for number, value, is_double in () if selected else sources:
         if sight.reads(is_double) and drive.read(number) != value:
@@ -67,5 +66,5 @@ def runs_on_unasked(witness, case, address, pressed_us, jogs):
     if not _knows(witness, case, address, pressed_us, jogs):
         return False
     number, unit_us = sight.family.off_time
-    off_time_us = drive.read(number) * unit_us
+    off_time_us = sight.family.read(drive, number) * unit_us
     return not off_time_us or off_time_us > 2 * max(LONG_US, 4 * witness.cycle_us)

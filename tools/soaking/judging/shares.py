@@ -130,7 +130,7 @@ class Shares:
         if drive is not None and sight is not None and sight.reads_words:
             if sight.family.is_right_for(drive):
                 number, unit_us = sight.family.off_time
-                off_time_us = drive.read(number) * unit_us
+                off_time_us = sight.family.read(drive, number) * unit_us
         return (off_time_us or witness.lost_us) // 3
 
     def _judge_task(self, case, address, task, now):
