@@ -4,8 +4,8 @@
 Each row of tools/soaking/mutations.py is soaked with the seed that is known to find it, then with
 others: a change of firmware or simulation may have made another life of that one. A seed is the
 same life on every interpreter (test_soak_interpreters.py); these are lived on CPython, for its
-speed, or on PyPy where there are many. Where a change takes the text of a row away this fails: give the row its new text. Better
-seeds are looked for by
+speed, or on PyPy where there are many. Where a change takes the text of a row away this fails:
+give the row its new text. Better seeds are looked for by
 
     PYTHONPATH=. build/pytest/bin/python host_tests/tools/test_soak_mutations.py [NAME ...]
 """
