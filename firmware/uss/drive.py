@@ -103,8 +103,10 @@ class Drive:
     """
 
     outside = False  # it is in the list; for telegrams outside it see `outside`
-    doubted = False  # its replies make no sense: perhaps they are divided differently
-    doubts = 0  # how often that was noticed, of any drive
+    doubts = 0  # how often a drive was doubted, of any drive
+
+    # Forty-seven fields. One more would take 96 bytes more of each drive. None may come later: the
+    # table of the fields must not grow while the engine, in an interrupt, writes into it.
 
     def __init__(self, address, mask, attention=None, layout=STANDARD):
         if not 0 <= address <= NODE_MAX:
@@ -129,6 +131,7 @@ class Drive:
         self.near = pzd.FULL_SCALE // _PERCENT * 2  # 2 % of HIW's full scale, even; 0: no speed
         self.tells_status = True  # ZSW is its status word; False: ZSW says nothing of the motor
         self.further = None  # PZD words beyond two: those to the drive, then those from it
+        self.doubted = False  # its replies make no sense: perhaps they are divided differently
         # Written by the engine.
         self.void = 0
         self.zsw = 0
@@ -151,7 +154,6 @@ class Drive:
         self.acknowledged = 0  # `acknowledgements` that a valid reply has confirmed
         self._tried_at = 0  # the last valid reply; without contact, the last telegram
         self._toggled = 0  # bits of STW that are inverted by `control`
-        self._behind = layout.pzd_count + 1  # characters of a telegram from its PZD on
         self._sent_stw = 0
         self._hsw = 0  # `hsw` when the telegram was built
         self._edge = _NO_EDGE  # `acknowledgements` when bit 7 was sent
@@ -240,7 +242,6 @@ class Drive:
         self.layout = other.layout
         self.request = other.request
         self.size = other.size
-        self._behind = other._behind
         self.sealed = self.steady = False
 
     def call(self):
@@ -395,7 +396,7 @@ class Drive:
         channel = self.channel
         if not channel.idle:
             self.sealed = False
-            size = NET + channel.fill(self.request, NET, now) + self._behind
+            size = NET + channel.fill(self.request, NET, now) + self.layout.pzd_count + 1
             if size != self.size:  # variable length: the PZD have moved
                 self.size = size
                 self.steady = False
@@ -429,7 +430,7 @@ class Drive:
             self._note_order(stw, hsw)
         self.sealed = self.steady = False  # if this fails half way, the next `fill` does it anew
         self._sent_stw = _UNKNOWN
-        behind = self._behind
+        behind = self.layout.pzd_count + 1  # characters of the telegram from its PZD on
         if behind >= 3:
             request = self.request
             at = self.size - behind
@@ -475,7 +476,7 @@ class Drive:
             self.contacts = (self.contacts + 1) & _COUNTER_MASK
             self.was_running = False
             self.contact = True
-        behind = self._behind
+        behind = self.layout.pzd_count + 1
         at = count - behind
         zsw = buffer[at] << 8 | buffer[at + 1] if behind > 1 else 0
         if behind >= 5:

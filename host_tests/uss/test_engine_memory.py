@@ -8,6 +8,8 @@ MemoryError. On the 32-bit port small integers have 31 bits, as on the RP2040 an
 import gc
 import sys
 
+import micropython
+
 import main
 from boards.sim.drives.families import generic
 from boards.sim.world import World
@@ -238,6 +240,18 @@ def test_a_drive_takes_less_than_600_bytes():
     used = taken(lambda: [Drive(1, MASK, shared) for _ in range(100)]) / 100
     print("%d bytes" % used)
     assert used < 600 * WORD // 4
+
+
+def test_a_drive_that_is_doubted_takes_no_more():
+    """An interrupt that comes while the table of its fields grows finds some missing, and what it
+    writes is lost: a STOP, for one."""
+    drive = Drive(1, MASK)
+    micropython.heap_lock()
+    try:
+        drive.doubt()
+    finally:
+        micropython.heap_unlock()
+    assert drive.doubted
 
 
 def test_a_bus_with_31_drives_takes_less_than_32_kb():
