@@ -27,7 +27,8 @@ OPENS_MS = 1_500
 FIND, LEAVING, HUNTS, TAKES = "FIND DRIVES", "AT ALL RATES", "FOUND STOP=NO", "TAKE "
 SETTINGS, KEY_TEST = "SETTINGS", "HOLD PARAM: ENDS"  # row 1
 CHOSEN = (  # they change nothing
-    "DRIVES", "ANY ADDRESS", FIND, "AT THIS RATE", LEAVING, SETTINGS, "ABOUT", "SHOW IT",
+    "DRIVES", "ANY ADDRESS", FIND, "AT THIS RATE", "SET=BEGIN", LEAVING, SETTINGS, "ABOUT",
+    "SHOW IT",
 )  # fmt: skip
 LEFT_ALONE = ("...", "ANSWERS", "NOBODY", "IN THE LIST", "SET=ASK")  # of an address
 CHANGING = ("LOCK CODE", "P2014=0 OK")  # of the settings
@@ -283,7 +284,7 @@ class Fingers:
         is_read = self.world.clock.now_us - moved_us >= (self._seen_ms - SLICE_MS) * MS
         entry = row_2[1:].rstrip()
         is_drive = entry[:1] == "A" and entry[1:2].isdigit() and not entry.endswith(LEFT_ALONE)
-        is_known = entry in CHOSEN or "+" in entry or is_drive
+        is_known = entry in CHOSEN or is_drive
         if row_1.startswith(SETTINGS):
             is_known = entry not in CHANGING
         return is_read and not witness.down and self.reader.steady and is_known
