@@ -31,8 +31,8 @@ class Silence:
 
     `rests`: by address, whether a drive rests. `resting`: how many do. `wait_us`: how long until
     the share has room for one more silence; `Deadlines` counts it down, and below 0 there has been
-    room for so long. `charged_us`: how much of `shared_us` is settled. `spared`: a resting drive
-    that the list leaves to those who ask it something else. The loop writes these, and all else.
+    room for so long. `charged_us`: how much of `shared_us` is settled. `spared`: see `spare`. The
+    loop writes these, and all else.
     """
 
     def __init__(self, turns):
@@ -91,10 +91,22 @@ class Silence:
         if self._asked is not None and self._asked.silent > SILENT_MAX:
             self.wait_us = max(self.wait_us, _ROUND_US // max(self.resting, 1))
 
+    def spare(self, drive):
+        """The list leaves this drive to those who ask it something else, unless it may run. None:
+        it leaves nobody any more."""
+        before, self.spared = self.spared, drive
+        if before is not drive:
+            if before is not None and self._turns.by_address[before.address] is before:
+                self.look_after(before)
+            if drive is not None:
+                self.look_after(drive)
+
     def look_after(self, drive):
         """Let the drive rest, or bring it back into the round, as it should be."""
         rests = 0
-        if drive.may_rest():
+        if drive is self.spared and drive.contact:
+            rests = 0 if drive.may_run() else 1
+        elif drive.may_rest():
             # A drive that was never asked has a turn before it rests, unless time is owed.
             rests = self.rests[drive.address] or drive.silent or self.wait_us > 0
             rests = 1 if rests and self._is_anyone_there() else 0

@@ -22,7 +22,7 @@ def found(text):
     assert says(world, "3 RATES SET=GO")
     world.press("SET")
     assert says(world, "FOUND STOP=NO")
-    assert world.run_until(lambda: "FOUND" not in row_2(world), HUNT_MS), world.lcd()
+    assert world.run_until(lambda: row_2(world).endswith("[X]"), HUNT_MS), world.lcd()
     world.run(200)  # for the display
     rows = []
     while world.lcd() not in rows:

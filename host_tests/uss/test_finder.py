@@ -152,6 +152,54 @@ def test_one_that_answers_late_is_asked_by_nobody_else_meanwhile():
         line.check()
 
 
+def test_one_that_is_doubted_and_answers_late_is_asked_by_nobody_else_either():
+    """The list's task came between the question and its answer, each time. What nobody had told
+    was taken for its layout: its control word stood in the wrong place, and it heard no STOP."""
+    for layout, words in (
+        (Layout(VARIABLE, 4), (3, 4)),
+        (STANDARD, (3, 3)),
+        (Layout(3, 3), (4, 2)),
+    ):
+        for late in (0, 1, 2):
+            line = Line({2: words}, layout=layout, runs=False)
+            line.motors[2].stale_replies = late
+            line.found_after(2)
+            drive = line.drives[2]
+            drive.doubt()
+            line.run_until(lambda: line.found, 10_000)
+            assert layout_of(drive) == words, (layout, words, late, layout_of(drive))
+            line.run(1_000)
+            assert drive.contact and not drive.doubted
+            line.check()
+
+
+def test_a_drive_that_is_doubted_and_tells_nothing_keeps_its_layout():
+    line = Line({2: (3, 4)}, layout=Layout(VARIABLE, 4), runs=False)
+    line.motors[2].stale_replies = 1_000_000
+    line.found_after(2)
+    line.drives[2].doubt()
+    line.run(10_000)
+    assert not line.found and not line.drives[2].doubted and line.drives[2].contact
+    assert layout_of(line.drives[2]) == (VARIABLE, 4)
+    line.check()
+
+
+def test_a_drive_that_is_doubted_and_answers_late_can_be_started():
+    line = Line({2: (3, 4)}, layout=Layout(VARIABLE, 4), runs=False)
+    line.motors[2].stale_replies = 4
+    line.found_after(2)
+    line.drives[2].doubt()
+    silence = line.master.deadlines.silence
+    line.run_until(lambda: silence.spared is line.drives[2])
+    line.drives[2].start(0x1000)
+    line.run(2_000)
+    assert line.motors[2].state == "running" and silence.spared is None
+    line.drives[2].stop()
+    line.run(8_000)
+    assert line.motors[2].state != "running"
+    line.check()
+
+
 def test_a_drive_that_is_doubted_is_asked_if_it_stands():
     """It is in contact: its telegrams have the length that the list says, or any."""
     for layout, words in (

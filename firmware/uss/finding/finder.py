@@ -42,6 +42,7 @@ from uss.drive import NODES, Drive
 from uss.pkw import DONE, PENDING
 from uss.finding.mirror import Mirror
 from uss.master import CLOSED, LISTENING, OFF
+from uss.telegram import GOOD
 
 SILENT_MIN = const(3)  # telegrams that a drive has not answered before it is looked for,
 STOPPED_MIN = const(30)  # and that one which may run has not: first of all it is sent its STOP
@@ -102,7 +103,10 @@ class Finder:
         self._answered = 0  # net characters of what came back
         self._tries = 0
         self._mirror = Mirror(0, bytes(_NET_MAX))
-        self._enquirer = None  # while it is asked what it is, and
+        self._enquirer = None  # while it is asked what it is,
+        # and whether it answers late: a telegram of the list, which it may take as well, would get
+        # the answer, or keep it from answering; and
+        self._is_late = False
         self._telegram = self._mirror  # what is under way
         self._posted_at = 0
         self._silences = 0  # `silence.count` after the last one that did not come back
@@ -261,12 +265,18 @@ class Finder:
             self._judge(telegram)
         else:
             self._state = _ENQUIRE
-            # It may answer telegrams late. Then a telegram of the list, which it may take as well,
-            # would get the answer.
-            self._silence.spared = None if telegram.finding else self._drive
+            if telegram.state != DONE and telegram.finding == GOOD:
+                self._is_late = True
+            self._silence.spare(self._drive if self._is_late and self._may_wait(now) else None)
             if self._enquirer.take(telegram):
                 self._conclude(self._enquirer.node)
                 self._enquirer = None
+
+    def _may_wait(self, now):
+        """Whether the list may leave the drive to the enquiry, as far as contact goes."""
+        drive = self._drive
+        bound_us = self._bus.deadlines.bound_us(drive)
+        return not drive.contact or drive.silent_us(now, self._mask) < bound_us
 
     def _judge(self, mirror):
         """Of the mirror telegram that is over."""
@@ -310,13 +320,18 @@ class Finder:
     def _ask_it(self, variable):
         """The length does not tell the layout."""
         self._enquirer = self._enquire_by(self._drive.address, self._answered, variable, False)
+        self._is_late = False
         self._state = _ENQUIRE
 
     def _conclude(self, node):
         """It has told its layout, or has nothing to tell it by."""
         layout = node.layout
-        if node.variable and not node.confirmed:
-            layout = Layout(VARIABLE, self._layout.pzd_words)
+        if not node.confirmed:
+            if self._drive.contact and layout.pkw_words:
+                self._give_up()  # the one that it has is as likely
+                return
+            if node.variable:
+                layout = Layout(VARIABLE, self._layout.pzd_words)
         self._find(layout.pkw_words, layout.pzd_words)
         if layout.pzd_words < _PZD_MIN <= self._layout.pzd_words:
             self._give_up()
@@ -350,5 +365,5 @@ class Finder:
         self._end()
 
     def _end(self):
-        self._silence.spared = None
+        self._silence.spare(None)
         self._state = _LOOK
