@@ -43,12 +43,24 @@ class Chip:
         self._waiting = []  # (at_ns, record and content), in the order of time
         self._record = bytearray(RECORD_BYTES)
 
-    def begin(self, program, watch, baud, flash=None, keep=False, usb=True, i2c=(), model=None):
+    def begin(
+        self,
+        program,
+        watch,
+        baud,
+        flash=None,
+        keep=False,
+        usb=True,
+        i2c=(),
+        model=None,
+        jumpers=(),
+    ):
         """A new chip in place of the old one; power comes now.
 
         program: path of a UF2 file. watch: GPIOs whose output is told ("E"). baud: of the line.
         flash: path of a flash image to begin with; keep: and the program in it stays. i2c:
-        addresses that acknowledge. model: what is modelled otherwise than `usual` says.
+        addresses that acknowledge. model: what is modelled otherwise than `usual` says. jumpers:
+        (from, to) of the wires that join a GPIO to another one.
         """
         self._waiting = []
         wanted = {
@@ -60,6 +72,7 @@ class Chip:
             "watch": list(watch),
             "i2c": list(i2c),
             "model": dict(usual),
+            "jumpers": [list(jumper) for jumper in jumpers],
         }
         wanted["model"].update(model or {})
         self.tell(self.now_ns, "N", content=json.dumps(wanted).encode())

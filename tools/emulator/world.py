@@ -51,7 +51,7 @@ KEY_PINS = {
 DISPLAYS = ("wires", "backpack")
 PROGRAMS = ("panel", "stock")
 
-LOW, HIGH, NOBODY = 0, 1, 2  # of a wire, in the records
+LOW, HIGH, NOBODY, SHORTED_HIGH = 0, 1, 2, 3  # of a wire, in the records
 RUN_PIN, POWER = 0, 1  # kinds of reset that a world can do
 RESET_CAUSES = {1: "watchdog", 2: "reset", 3: "power"}
 
@@ -98,7 +98,8 @@ class PicoWorld(Surroundings):
     chip's file system. flash: path of a flash image to begin with, of which all but the program
     stays, and which gets no settings if it has some. new: nobody has given the panel settings yet;
     baud is that of the line alone. model: settings of the emulated chip that
-    differ from the usual ones, as {"receive_timeout": "again"}: README.md.
+    differ from the usual ones, as {"receive_timeout": "again"}: README.md. jumpers: (from, to) of
+    wires between two GPIOs; one from TX to RX makes the chip hear itself.
 
     figures        of the line, see `station.Figures`
     restarts       [(at_us, cause)], also as `reset_causes`; cause: "watchdog", "reset" or "power"
@@ -125,6 +126,7 @@ class PicoWorld(Surroundings):
         model=None,
         kinds=None,
         new=False,
+        jumpers=(),
     ):
         if display not in DISPLAYS:
             raise ValueError("a display is one of: %s" % " ".join(DISPLAYS))
@@ -145,7 +147,7 @@ class PicoWorld(Surroundings):
         self._outputs = {}
         if new:
             self.stored = None
-        self._begin_chip(program_path(program), baud, display, files or {}, flash, model)
+        self._begin_chip(program_path(program), baud, display, files or {}, flash, model, jumpers)
         self.station = Station(self.wire, self.chip.tell, self._origin_ns)
         self.figures = self.station.figures
         self.backpack = None
@@ -253,7 +255,7 @@ class PicoWorld(Surroundings):
 
     # --- inside ---------------------------------------------------------------------------------
 
-    def _begin_chip(self, program, baud, display, files, flash, model):
+    def _begin_chip(self, program, baud, display, files, flash, model, jumpers):
         """Put the files on a flash, and power to a chip with it."""
         image = FlashImage(flash)
         if self.stored is not None and image.read(SETTINGS_FILE) is None:
@@ -267,7 +269,7 @@ class PicoWorld(Surroundings):
             devices = [0x27]
         else:
             watch += [LCD_RS, LCD_E] + list(LCD_DATA)
-        self.chip.begin(program, watch, baud, path, i2c=devices, model=model)
+        self.chip.begin(program, watch, baud, path, i2c=devices, model=model, jumpers=jumpers)
         try:
             self._settle()
         finally:

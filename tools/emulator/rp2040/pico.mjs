@@ -22,6 +22,7 @@ import { UsbSerial } from './usb.mjs';
 import { BY_TIMER, ChipReset, HAD_POWER_ON, HAD_RUN_PIN, Watchdog } from './watchdog.mjs';
 
 const LINE = { tx: 4, rx: 5, uart: 1 }; // GPIO numbers and the UART at the RX pin
+const BITS = 11; // of a character on the line
 const START = 0x10000000; // of the second-stage boot loader, at the beginning of the flash
 const ROM = bootRom();
 const RUNS_IN_BUSY_FLASH = 'the program runs in the flash while that is being written';
@@ -32,7 +33,7 @@ const WHY = { watchdog: 1, software: 2, runPin: 2, power: 3 }; // the chip resta
 const MODEL = {
   cache_miss_cycles: [60, 0], // 0: no cache is modelled, the flash is as fast as RAM
   flash_times: ['typical', 'maximum'], // of the data sheet
-  receive_timeout: ['once', 'again'], // cleared while characters are left in the FIFO
+  receive_timeout: ['once', 'again', 'never'], // cleared while characters are left in the FIFO
 };
 
 function modelOf(wanted) {
@@ -48,7 +49,7 @@ function modelOf(wanted) {
 }
 
 export class Pico {
-  // options: { baud, watch, i2c, usb, seed, model }; image(bytes) fills the flash.
+  // options: { baud, watch, i2c, usb, seed, model, jumpers }; image(bytes) fills the flash.
   constructor(options, image, nanos, report) {
     this.report = report;
     this.model = modelOf(options.model ?? {});
@@ -59,9 +60,11 @@ export class Pico {
     this.flash = new Flash((code, duration) => report.flash(code, duration), options.seed ?? 1,
       this.model.flash_times);
     image(this.flash.bytes);
-    this.decoder = new LineDecoder(this.baud, (...character) => report.character(...character));
+    this.jumpers = options.jumpers ?? []; // [from, to] of each: GPIO numbers
+    this.hearsItself = this.jumpers.some(([from, to]) => from === LINE.tx && to === LINE.rx);
+    this.decoder = new LineDecoder(this.baud, (...character) => this.said(...character));
     this.wires = new Wires((gpio, state) => this.pinChanged(gpio, state),
-      (gpio) => this.wireMoved(gpio), this.addresses.size ? [SDA, SCL] : []);
+      (...move) => this.wireMoved(...move), this.addresses.size ? [SDA, SCL] : []);
     this.written = (address, byte) => report.written(address, byte);
     this.bus = new BitBangedI2c(this.addresses, this.written,
       (low) => this.wires.drive(SDA, low ? LOW : RELEASED));
@@ -97,7 +100,7 @@ export class Pico {
     const { peripherals, clock } = mcu;
     for (const index of [0, 1]) {
       const uart = new TimedUart(mcu, index, () => this.wires.uartMoved(index),
-        (baud) => this.uartTuned(index, baud), this.model.receive_timeout === 'again');
+        (baud) => this.uartTuned(index, baud), this.model.receive_timeout);
       mcu.uart[index] = peripherals[0x40034 + 4 * index] = uart;
       mcu.pio[index] = peripherals[0x50200 + 0x100 * index] = new TimedPio(mcu, index);
     }
@@ -182,7 +185,17 @@ export class Pico {
     if (gpio === LINE.tx) this.decoder.change(state === LOW ? 0 : 1);
   }
 
-  wireMoved(gpio) {
+  // A character is over, but for half a bit, at the TX pin. A jumper brings it to the RX pin.
+  said(start, byte, parityWrong, stopWrong) {
+    this.report.character(start, byte, parityWrong, stopWrong);
+    if (!this.hearsItself) return;
+    const { baud, clock } = this;
+    const heard = () => this.receive(byte, !!parityWrong, !!stopWrong, baud);
+    clock.createAlarm(heard).at(start + (BITS * 1e9) / baud);
+  }
+
+  wireMoved(gpio, level) {
+    for (const [from, to] of this.jumpers) if (from === gpio) this.wires.drive(to, level);
     if (gpio !== SDA && gpio !== SCL) return;
     this.bus.levels(this.wires.level[SDA], this.wires.level[SCL]);
   }

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
-// The wires at the chip's pins: three states on each side, and who is told of them.
+// The wires at the chip's pins: three states on each side, and shorts; who is told of them.
 //
-// A pin's level is what the chip drives, else what the outside drives, else what the pulls make of
-// it. The chip reads that level back, also of a pin that it drives itself (in rp2040js an input
+// A pin's level is that of a short, else what the chip drives, else what the outside drives, else
+// what the pulls make of it. The chip reads that level back, also of a pin that it drives itself (in rp2040js an input
 // knows only what it was told). Pins whose function is UART show the level of their TX line.
 import { GPIOPin } from './library.mjs';
 
 export const LOW = 0, HIGH = 1, RELEASED = 2;
+const SHORTED_HIGH = 3; // of the outside alone
 const PINS = 30;
 const FUNCTION_UART = 2;
 const UART_OF_TX_PIN = { 0: 0, 4: 1, 8: 1, 12: 0, 16: 0, 20: 1, 24: 1, 28: 0 };
@@ -84,6 +85,7 @@ export class Wires {
   }
 
   resolve(gpio, value) {
+    if (this.outside[gpio] === SHORTED_HIGH) return HIGH;
     if (value <= HIGH) return value;
     if (this.outside[gpio] !== RELEASED) return this.outside[gpio];
     if (value === PULL_UP || this.pulledUp.includes(gpio)) return HIGH;

@@ -17,7 +17,7 @@ const RX_LEVEL = 1 << 4, TX_LEVEL = 1 << 5, RX_TIMEOUT = 1 << 6; // in RIS, IMSC
 const FRAMING_ERROR = 1 << 7, PARITY_ERROR = 1 << 8, OVERRUN_ERROR = 1 << 10;
 const BUSY = 0x08, RX_EMPTY = 0x10, TX_FULL = 0x20, RX_FULL = 0x40, TX_EMPTY = 0x80, CTS = 0x01;
 const PARITY_ENABLED = 0x02, EVEN = 0x04, TWO_STOP = 0x08, FIFOS = 0x10; // in LCR_H
-const UART_ON = 0x001, TX_ON = 0x100, RX_ON = 0x200; // in CR
+const UART_ON = 0x001, LOOPBACK = 0x080, TX_ON = 0x100, RX_ON = 0x200; // in CR
 const RX_DMA = 1, TX_DMA = 2; // in DMACR
 const LEVELS = [4, 8, 16, 24, 28];
 const TIMEOUT_BITS = 32;
@@ -25,16 +25,16 @@ const BAUD_TOLERANCE = 0.03;
 
 export class TimedUart extends BasePeripheral {
   // onLevel(): the level of the TX line has changed. onRate(baud): it was set to a rate.
-  // timeoutAgain: the receive time-out that was cleared is there again as long as its characters
-  // are left in the FIFO.
-  constructor(mcu, index, onLevel, onRate, timeoutAgain) {
+  // receiveTimeout: 'again', when it was cleared it is there again as long as its characters are
+  // left in the FIFO; 'once', it is not; 'never', it does not come at all.
+  constructor(mcu, index, onLevel, onRate, receiveTimeout) {
     super(mcu, 'UART' + index);
     const { irq, dreq } = mcu.uart[index];
     this.irq = irq;
     this.dreq = dreq;
     this.onLevel = onLevel;
     this.onRate = onRate;
-    this.timeoutAgain = timeoutAgain;
+    this.receiveTimeout = receiveTimeout;
     this.bitAlarm = mcu.clock.createAlarm(() => this.nextBit());
     this.timeoutAlarm = mcu.clock.createAlarm(() => this.timeout());
     this.level = 1; // of the TX line
@@ -52,6 +52,7 @@ export class TimedUart extends BasePeripheral {
     this.overrun = false;
     this.timedOut = false; // the FIFO holds characters, and for 32 bits nothing came or was read
     this.bits = null; // of the character being sent: levels, one for each bit
+    this.byte = 0; // and what it is
     this.bitsSent = 0;
     this.bitsStart = 0;
     this.setLevel(1);
@@ -89,7 +90,7 @@ export class TimedUart extends BasePeripheral {
 
   begin() {
     if (this.bits || !this.tx.length || !(this.cr & UART_ON) || !(this.cr & TX_ON)) return;
-    const byte = this.tx.shift();
+    const byte = this.byte = this.tx.shift();
     const count = 5 + ((this.lcr >> 5) & 3);
     const bits = [0];
     let odd = 0;
@@ -113,6 +114,7 @@ export class TimedUart extends BasePeripheral {
     let at = this.bitsSent;
     if (at === bits.length) {
       this.bits = null;
+      if (this.cr & LOOPBACK && this.cr & RX_ON) this.push(this.byte, false, false);
       this.begin();
       this.update();
       return;
@@ -134,7 +136,7 @@ export class TimedUart extends BasePeripheral {
 
   // A character of 8 data bits with even parity has come in from a line of `lineBaud`.
   receive(byte, parityWrong, framingWrong, lineBaud) {
-    if (!(this.cr & UART_ON) || !(this.cr & RX_ON)) return;
+    if (!(this.cr & UART_ON) || !(this.cr & RX_ON) || this.cr & LOOPBACK) return;
     const ratio = 1e9 / this.bitNanos / lineBaud;
     if (!(Math.abs(ratio - 1) <= BAUD_TOLERANCE)) {
       byte ^= 0x5a; // read at the wrong instants, it is anything but what was sent
@@ -171,7 +173,7 @@ export class TimedUart extends BasePeripheral {
   }
 
   timeout() {
-    if (!this.rx.length) return;
+    if (!this.rx.length || this.receiveTimeout === 'never') return;
     this.timedOut = true;
     this.ris |= RX_TIMEOUT;
     this.update();
@@ -228,7 +230,7 @@ export class TimedUart extends BasePeripheral {
       case FBRD: this.fbrd = value & 0x3f; break;
       case LCR_H: // it makes the divisors act as well
         this.lcr = value & 0xff;
-        if (this.ibrd) this.onRate(1e9 / this.bitNanos);
+        if (this.ibrd && !(this.cr & LOOPBACK)) this.onRate(1e9 / this.bitNanos);
         break;
       case CR:
         this.cr = value & 0xffff;
@@ -238,7 +240,7 @@ export class TimedUart extends BasePeripheral {
       case IMSC: this.imsc = value & 0x7ff; break;
       case ICR:
         this.ris &= ~this.rawWriteValue;
-        if (this.timeoutAgain && this.timedOut) this.ris |= RX_TIMEOUT;
+        if (this.receiveTimeout === 'again' && this.timedOut) this.ris |= RX_TIMEOUT;
         break;
       case DMACR: this.dmacr = value & 7; break;
     }
