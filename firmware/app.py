@@ -64,10 +64,11 @@ class App:
         self._finder = None
         self._doubts = Drive.doubts
         self.pacer = Pacer(self.bus, self.link, board.clock, board.timer)
-        self._roster = roster = Roster(self.bus, settings, mask)
+        defect = texts.DEFECTS[getattr(self.link, "defect", "")]
+        self._roster = roster = Roster(self.bus, settings, mask, defect)
         board.display.define(GLYPHS)
-        notice = texts.WATCHDOG_RESTART if board.reset_cause else texts.NOTHING
-        self.panel = Panel(roster, self.bus, board, settings, mask, notice)
+        restart = texts.WATCHDOG_RESTART if board.reset_cause else texts.NOTHING
+        self.panel = Panel(roster, self.bus, board, settings, mask, (defect, restart))
         on_demand.keep(PAGES_AT_HAND)
         self._mask = mask
         self.ticks_us = board.clock.ticks_us

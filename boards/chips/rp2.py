@@ -167,7 +167,7 @@ def make_link(send, receive, driver_enable, clock, baud):
         rxbuf=RECEIVE_BUFFER,
         txbuf=SEND_BUFFER,
     )
-    return Rp2Link(
+    link = Rp2Link(
         uart,
         UART_REGISTERS,
         BUS_STATE_MACHINE,
@@ -177,6 +177,19 @@ def make_link(send, receive, driver_enable, clock, baud):
         clock,
         baud,
     )
+    link.defect = find_defect(driver_enable, receive_pin, clock, baud)
+    return link
+
+
+def find_defect(driver_enable, receive_pin, clock, baud):
+    """Of the bus, with its link made: see `hal.link.rp2_check`, which leaves the memory again."""
+    import hal.link.rp2_check
+
+    try:
+        check = hal.link.rp2_check.find
+        return check(machine.mem32, UART_REGISTERS, driver_enable, receive_pin, clock, baud)
+    finally:
+        del sys.modules["hal.link.rp2_check"], hal.link.rp2_check
 
 
 # --- display -------------------------------------------------------------------------------------

@@ -45,6 +45,8 @@ link                    half duplex; the driver enable is the link's affair
     sending_us(now_us)  interrupt. Microseconds until the last stop bit has left and the driver is
                         off, at least 1; 0 when that is over
     sent_at             clock.ticks_us() of that instant
+    defect              optional; what it found wrong with itself when it was made: "", or of
+                        hal.link.rp2_check.DEFECTS
     foreseen            optional; True: sent_at holds as soon as `send` has returned
     receive(buffer, at) -> int   interrupt. Moves what was received to buffer[at:], as far as there
                         is room, and answers how many characters. The caller must process them: a

@@ -43,14 +43,21 @@ class Desk:
     """What the controls of a panel share. bus: the `Master`, its drives added. settings: a
     `Settings`. mask: the clock's period - 1.
 
-    longest_off_time_ms: a longer P2014 is a risk. off_time_ms: one that fits this bus.
+    defect: what is wrong with the line's hardware, of texts, or NOTHING. longest_off_time_ms: a
+    longer P2014 is a risk. off_time_ms: one that fits this bus.
     """
 
-    def __init__(self, bus, settings, mask):
+    def __init__(self, bus, settings, mask, defect=texts.NOTHING):
         self.bus = bus
         self.settings = settings
         self.mask = mask
+        self.defect = defect
         self.follow_list()
+
+    def note_answer(self):
+        """A drive answers: the line was low while nobody held it up, or its wires were crossed."""
+        if self.defect == texts.LINE_LOW:
+            self.defect = texts.NOTHING
 
     def follow_list(self):
         """The list of the bus has changed."""
@@ -312,6 +319,8 @@ class Control:
         self.fault.step(now_us)
         if drive.contact != self._contact:
             self._contact = drive.contact
+            if drive.contact:
+                self.desk.note_answer()
             is_lost_running = drive.was_running and not drive.contact
             if is_lost_running != self.lost_running:
                 self.lost_running = is_lost_running

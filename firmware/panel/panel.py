@@ -45,8 +45,8 @@ HELD_KEYS = ("STOP", "JOG_RIGHT", "JOG_LEFT")
 class Panel:
     """roster: the `Roster`, its drives. key_names: as the keypad has its bits.
 
-    settings: a `Settings`. mask: the clock's period - 1. board: contract of `hal`. notice: a text
-    that is said after the splash, or NOTHING; what is wrong with the settings goes before it.
+    settings: a `Settings`. mask: the clock's period - 1. board: contract of `hal`. notices: texts
+    that are said after the splash, or NOTHING; what is wrong with the settings comes after them.
 
     For pages and view: `selected`, the control that is shown; `warning`, its `DriveWarning`;
     `message`, words that are shown for a while, or None; `stop_key`; `announcer`; `guard`, a
@@ -55,7 +55,7 @@ class Panel:
     `uncover`, `write`, `add`, `remove`, `heed_settings`, `begin_anew` and `lock`.
     """
 
-    def __init__(self, roster, bus, board, settings, mask, notice=texts.NOTHING):
+    def __init__(self, roster, bus, board, settings, mask, notices=()):
         self._turn = 0  # asked for in every step, so it is first: as in `Master`
         self._acting = False  # keys that were pressed are still to do what they do
         self._trips = 0  # bus.dead_man_trips when they were
@@ -91,7 +91,7 @@ class Panel:
         self.remembered = {}  # by module: where a page was when it was left
         splash = on_demand.load("panel.pages.splash")
         self._cover = splash.Splash(self)  # a page that hides it: the splash, a question, or None
-        self._notices = splash.notices(settings, key_names, notice)
+        self._notices = splash.notices(settings, key_names, notices)
         self._message_at_ms = 0
         self._view = View(self, screen, keys)
         self._view.begin(self._cover)

@@ -64,6 +64,8 @@ def _why_not(control, why_not_this):
     state = drive.state()
     if drive.off != pzd.OFF1:
         return texts.REFUSED_STOPPING
+    if control.desk.defect:
+        return control.desk.defect
     if not drive.contact:
         return texts.REFUSED_SILENT
     if control.moving:

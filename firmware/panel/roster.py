@@ -12,6 +12,7 @@ import on_demand
 
 # From the bottom of the house up: an import inside an import inside an import takes stack.
 from uss.survey import Survey, spare_jobs
+from panel import texts
 from panel.control import Control, Desk
 
 
@@ -19,18 +20,18 @@ _KINDS = "uss.families.kinds"
 
 
 class Roster:
-    """bus: the `Master`. settings: a `Settings`. mask: the clock's period - 1.
+    """bus: the `Master`. settings: a `Settings`. mask: the clock's period - 1. defect: see `Desk`.
 
     controls: at least one, the same list for good. Nobody else changes it.
     """
 
-    def __init__(self, bus, settings, mask):
+    def __init__(self, bus, settings, mask, defect=texts.NOTHING):
         self.controls = []
         self._bus = bus
         self._settings = settings
         self._mask = mask
         self._spares = spare_jobs()
-        self._desk = Desk(bus, settings, mask)
+        self._desk = Desk(bus, settings, mask, defect)
         known = {}  # most drives are of the same kind
         for address in settings.drives:
             kind = settings.kind(address)

@@ -38,7 +38,7 @@ def text(control):
     """The state in words, at most STATE_WIDTH wide. A motor that turns outranks a notice."""
     drive, survey = control.drive, control.survey
     if not drive.contact:
-        return _TROUBLES[drive.trouble]
+        return control.desk.defect or _TROUBLES[drive.trouble]
     if tells_no_status(survey):
         return texts.STATUS_UNKNOWN
     state = drive.state()

@@ -26,14 +26,14 @@ KEY_UNKNOWN = b"NO KEY %s"  # the board file names one that there is not
 _NAME_WIDTH = const(9)
 
 
-def notices(settings, key_names, notice):
+def notices(settings, key_names, first):
     """What is said one after the other when it has gone: texts, with their values."""
-    about = [(notice,)] if notice else []
+    about = [(notice,) for notice in first if notice]
     if settings.complaint is not None:
         suspect = (SETTING, _start_of(settings.suspect, texts.ROW_WIDTH))
         if settings.suspect in SETTINGS_SUSPECTS:
             suspect = (SETTINGS_SUSPECTS[settings.suspect],)
-        about = [(SETTINGS_DAMAGED,), suspect]
+        about += [(SETTINGS_DAMAGED,), suspect]
     return about + [(KEY_UNKNOWN, _start_of(name, _NAME_WIDTH)) for name in unknown(key_names)]
 
 
