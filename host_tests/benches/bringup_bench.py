@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """A bare emulated Pico for the checks of tools/bringup: plain MicroPython, and the files it needs.
 
-bare = bare_pico()                  # GP4 is joined to GP5
+bare = bare_pico()                  # GP4 is joined to GP5, GP6 to GP3
 ask(bare, "codes()")                # what the chip answers
 """
 
@@ -11,21 +11,25 @@ from boards.sim.clock import Event
 from tools.emulator.station import RATE_SHIFT, UNIT_BAUD, Figures
 from tools.emulator.world import PicoWorld
 
-ON_CHIP = "tools/bringing_up/on_chip.py"
-CALL_MS = 30_000
+PLACE = "bringup/"  # on the chip
+CALL_MS = 120_000
+BITES_MS = 10_000
 LOOK_US = 20
+IMPORT = "import sys\nsys.path.insert(0, '/bringup')\nfrom on_chip import *\nfrom on_line import *"
+
+HEARS_ITSELF, DRIVER = (4, 5), (6, 3)  # the two jumpers
+BOTH = (HEARS_ITSELF, DRIVER)
 
 
-class Jumper:
-    """A wire from GP4 to GP5 in place of the transceiver: the chip hears what it sends.
+class BadWire:
+    """A bad wire from GP4 to GP5. alters: a function of the character, that answers what arrives,
+    None for nothing.
 
-    The chip tells a character when it is over; LOOK_US is how often somebody looks for it. alters:
-    a function of the character, that answers what arrives, None for nothing.
+    The chip tells a character when it is over; LOOK_US is how often somebody looks for it.
     """
 
-    def __init__(self, world, alters=None, baud=115_200, look_us=LOOK_US):
-        self.baud = baud
-        self._look_us = look_us
+    def __init__(self, world, alters):
+        self.baud = 115_200
         self.figures = Figures()
         self.complaints = []
         self._world = world
@@ -34,7 +38,7 @@ class Jumper:
         self._looked()
 
     def sent(self, at_ns, byte, flaws):
-        arrives = self._alters(byte) if self._alters else byte
+        arrives = self._alters(byte)
         if arrives is not None:
             end_ns = at_ns + 11_000_000_000 // self.baud
             rate = self.baud // UNIT_BAUD << RATE_SHIFT
@@ -55,12 +59,14 @@ class Jumper:
 
     def _looked(self):
         clock = self._world.clock
-        clock.schedule(self._look, clock.now_us + self._look_us)
+        clock.schedule(self._look, clock.now_us + LOOK_US)
 
 
 def files(changes=()):
     """What tools/bringup puts onto the chip. changes: (file, old, new) of each."""
-    found = {"chips/rp2.py": read("boards/chips/rp2.py"), "on_chip.py": read(ON_CHIP)}
+    found = {"chips/rp2.py": read("boards/chips/rp2.py")}
+    for name in ("on_chip.py", "on_line.py", "rp2_pulses.py", "boot.py"):
+        found[name] = read("tools/bringing_up/" + name)
     for folder in ("hal", "hal/display", "hal/link"):
         for name in os.listdir("firmware/" + folder):
             if name.endswith(".py"):
@@ -76,16 +82,32 @@ def read(path):
         return file.read()
 
 
-def bare_pico(joined=True, changes=(), alters=None, baud=115_200):
-    world = PicoWorld("stock", addresses=(), baud=baud, files=files(changes))
-    if joined:
-        world.station = Jumper(world, alters, baud)
-    world.repl.open()
-    world.repl.execute("from on_chip import *", CALL_MS)
+def bare_pico(jumpers=BOTH, changes=(), alters=None, **options):
+    """changes, alters: see `files` and `BadWire`. options: of `PicoWorld`."""
+    held = {PLACE + path: content for path, content in files(changes).items()}
+    world = PicoWorld("stock", addresses=(), baud=115_200, files=held, jumpers=jumpers, **options)
+    if alters:
+        world.station = BadWire(world, alters)
+    begin(world)
     return world
+
+
+def begin(world):
+    world.repl.open()
+    _, error = world.repl.execute(IMPORT, CALL_MS)
+    assert not error, error
 
 
 def ask(world, call):
     printed, error = world.repl.execute("print(repr(%s))" % call, CALL_MS)
     assert not error, error
     return eval(printed.strip())
+
+
+def bite(world):
+    """The chip hangs with its driver on until its watchdog bites, and starts again."""
+    world.repl.execute("import os\nos.rename('/bringup/boot.py', '/boot.py')")
+    world.repl.begin("hang()")
+    assert world.run_until(lambda: world.resets, BITES_MS)
+    world.repl.wait_for(b">>> ", BITES_MS)
+    begin(world)

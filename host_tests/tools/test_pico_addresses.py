@@ -16,7 +16,11 @@ INTERPRETERS = "host"
 SDK = TOP / "build/pico_sources/sdk/usr/src/pico-sdk/src"
 CHIPS = {"RP2040": "rp2040", "RP2350": "rp2350"}
 FLASH, FLASH_END = 0x1000_0000, 0x1040_0000
+ON_LINE = TOP / "tools/bringing_up/on_line.py"
 PICO2 = TOP / "build/pico/pico2.uf2"
+
+# Counters of the flash's cache, of tools/bringing_up/on_line.py; the reads stand behind the hits.
+CACHE_HITS = {"RP2040": 0x1400_000C, "RP2350": 0x400C_800C}
 
 # Of boards/chips/rp2.py, `ADDRESSES` in turn.
 BASES = ("WATCHDOG_BASE", "UART1_BASE", "I2C0_BASE")
@@ -30,6 +34,17 @@ ALIKE = (
     ("uart.h", "UART_UARTDR_OFFSET", 0x00),
     ("uart.h", "UART_UARTFR_OFFSET", 6 * 4),  # `registers[6]` in hal.link.rp2_rs485
     ("uart.h", "UART_UARTFR_RXFE_BITS", 0x10),
+    ("uart.h", "UART_UARTIBRD_OFFSET", 0x24),  # and so on: hal.link.rp2_check
+    ("uart.h", "UART_UARTFBRD_OFFSET", 0x28),
+    ("uart.h", "UART_UARTLCR_H_OFFSET", 0x2C),
+    ("uart.h", "UART_UARTCR_OFFSET", 0x30),
+    ("uart.h", "UART_UARTIMSC_OFFSET", 0x38),
+    ("uart.h", "UART_UARTRIS_OFFSET", 0x3C),
+    ("uart.h", "UART_UARTICR_OFFSET", 0x44),
+    ("uart.h", "UART_UARTCR_LBE_BITS", 0x80),
+    ("uart.h", "UART_UARTRIS_RTRIS_BITS", 0x40),
+    ("uart.h", "UART_UARTFR_BUSY_BITS", 0x08),
+    ("watchdog.h", "WATCHDOG_SCRATCH0_OFFSET", 0x0C),  # tools/bringing_up/on_chip.py
     ("i2c.h", "I2C_IC_DATA_CMD_OFFSET", 0x10),
     ("i2c.h", "I2C_IC_RAW_INTR_STAT_OFFSET", 0x34),
     ("i2c.h", "I2C_IC_TXFLR_OFFSET", 0x74),
@@ -70,6 +85,14 @@ def test_the_addresses_are_those_of_the_sdk(chip):
 def test_what_is_the_same_on_both_chips(chip, row):
     header, name, value = row
     assert defined(chip, header, name) == value
+
+
+@pytest.mark.parametrize("chip", CHIPS)
+def test_the_counters_of_the_cache_are_those_of_the_sdk(chip):
+    base = defined(chip, "addressmap.h", "XIP_CTRL_BASE")
+    assert base + defined(chip, "xip.h", "XIP_CTR_HIT_OFFSET") == CACHE_HITS[chip]
+    assert base + defined(chip, "xip.h", "XIP_CTR_ACC_OFFSET") == CACHE_HITS[chip] + 4
+    assert "0x%04X_%04X" % divmod(CACHE_HITS[chip], 1 << 16) in ON_LINE.read_text()
 
 
 def test_writing_to_an_address_3000h_higher_clears_bits():

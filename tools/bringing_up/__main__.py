@@ -1,30 +1,53 @@
 # SPDX-License-Identifier: MIT
-"""Checks a bare Raspberry Pi Pico or Pico 2, with MicroPython on it, before it is wired.
+"""Checks a Raspberry Pi Pico or Pico 2, with MicroPython on it, before and while it is wired.
 
-The board is bare: no transceiver, no display, no keys; one short wire joins GP4 to GP5 (pins 6
-and 7). Each check is a line, PASS or FAIL with its figure; what fails is explained. Nothing of it
-stays on the chip, but what ran there is ended. Please send us the report, also if all is well:
-nobody has run the firmware on a real chip yet.
+First the board is bare: no transceiver, no display, no keys; one short wire joins GP4 to GP5
+(pins 6 and 7), another one GP6 to GP3 (pins 9 and 5). Later, without these wires, --wired says
+what is there. Each of sixteen checks is a line: PASS or FAIL with its figure, or NOT CHECKED and
+why. What fails is explained. Nothing of it stays on the chip, but what ran there is ended. Please
+send us the report, also if all is well: nobody has run the firmware on a real chip yet.
 """
 
 import argparse
 import sys
+import time
 from pathlib import Path
 
 from serial.tools.list_ports import comports
 
 TOP = Path(__file__).resolve().parents[2]
 sys.path[0] = str(TOP)
+sys.path.append(str(TOP / "firmware"))
 
-from tools.bringing_up.checks import CHECKS, line_of  # noqa: E402
+from tools.bringing_up.checks import (  # noqa: E402
+    CHECKS,
+    DISPLAY,
+    DRIVE,
+    JUMPERS,
+    NOTHING,
+    RESTART,
+    TRANSCEIVER,
+    WHY_NOT,
+    judge_identity,
+    line_of,
+)
 from tools.deploying.chip import Chip  # noqa: E402
 from tools.deploying.errors import DeployError  # noqa: E402
 from tools.deploying.ports import choose, waits_for_uf2  # noqa: E402
+from uss.timing import BAUD_RATES  # noqa: E402
+from version import VERSION  # noqa: E402
 
-ON_CHIP = Path(__file__).with_name("on_chip.py")
+HERE = Path(__file__).parent
+ON_CHIP = ("on_chip.py", "on_line.py", "rp2_pulses.py", "boot.py")
 PLACE = "bringup"  # a folder on the chip, for as long as this lasts
+BOOT, BITTEN = "boot.py", f"{PLACE}/bitten"
+OLDEST = "the firmware needs MicroPython 1.25 or newer"
+RESTART_S = 60  # until a chip that has restarted is at its prompt; an emulated one takes its time
+AGAIN_S = 0.2
 REPORT = "bringup.txt"
-ASK = "The board is bare, and GP4 is joined to GP5? This sends on these pins. yes/no: "
+ASK_BARE = "The board is bare, GP4 is joined to GP5 and GP6 to GP3? This sends on them. yes/no: "
+ASK_WIRED = "The jumpers are gone, and no motor can start? This sends on the bus. yes/no: "
+ASK_PAGE = "Does the display show the characters {first:02X}h to {last:02X}h? yes/no: "
 
 
 def arguments(words):
@@ -35,14 +58,25 @@ def arguments(words):
     )
     add = parser.add_argument
     add("--port", metavar="PATH", help="serial port of the Pico; needed when there are several")
-    add("--yes", action="store_true", help="the board is bare: do not ask")
+    add(
+        "--wired",
+        choices=(DISPLAY, TRANSCEIVER, DRIVE),
+        action="append",
+        help="this is there, and no jumper; may be given several times",
+    )
+    add("--address", type=int, default=1, choices=range(32), metavar="N",
+        help="of the drive; it gets OFF1; 1")  # fmt: skip
+    add("--baud", type=int, default=19_200, choices=BAUD_RATES, metavar="RATE",
+        help="of the wired bus; 19200")  # fmt: skip
+    add("--yes", action="store_true", help="it is as --wired says: do not ask")
     add("--report", metavar="FILE", default=REPORT, help=f"where the report goes; {REPORT}")
     return parser.parse_args(words)
 
 
 def files():
     """{path on the chip: bytes}: `chips/rp2.py` and `hal` of this tree, whatever is deployed."""
-    found = {"chips/rp2.py": (TOP / "boards/chips/rp2.py").read_bytes()}
+    found = {name: (HERE / name).read_bytes() for name in ON_CHIP}
+    found["chips/rp2.py"] = (TOP / "boards/chips/rp2.py").read_bytes()
     for path in sorted((TOP / "firmware/hal").rglob("*.py")):
         found[path.relative_to(TOP / "firmware").as_posix()] = path.read_bytes()
     return {f"{PLACE}/{path}": data for path, data in found.items()}
@@ -54,71 +88,151 @@ def folders(paths):
                    for end in range(1, path.count("/") + 1)})  # fmt: skip
 
 
-def remove(chip, paths):
-    chip.load()
-    for path in paths:
-        if chip.call("look", [path]):
-            chip.call("remove", path)
-    chip.call("remove_empty", folders(paths)[::-1])
+class Bench:
+    """The chip on the table. say(line): tells the person, and the report. asks: whether there is
+    a person to answer."""
+
+    def __init__(self, port, options, say):
+        self._port = port
+        self._options = options
+        self._say = say
+        self._chip = Chip(port)
+        wired = options.wired
+        self._present = {NOTHING, *wired} if wired else {NOTHING, JUMPERS, RESTART}
+        self._why_not = dict(WHY_NOT)
+        self.passed, self.failed = [], []
+
+    def close(self):
+        self._chip.close()
+
+    def run(self):
+        wanted = files()
+        self._to_the_prompt()
+        self._chip.load()
+        try:
+            for folder in folders(wanted):
+                self._chip.call("make_folder", folder)
+            for path, data in wanted.items():
+                self._chip.write(path, data)
+            if RESTART in self._present:
+                self._restart()
+            self._import()
+            about, fits = judge_identity(self._chip.call("identity"))
+            self._say(f"USS panel {VERSION}, {about}")
+            if not fits:
+                raise DeployError(OLDEST)
+            for check in CHECKS:
+                self._make(check)
+        finally:
+            self._to_the_prompt()
+            self._chip.load()
+            self._remove([*wanted, BITTEN])
+
+    def _to_the_prompt(self):
+        self._chip.interrupt()
+        self._chip.enter()
+
+    def _import(self):
+        self._chip.execute(f"import sys\nsys.path.insert(0, '/{PLACE}')")
+        self._chip.execute("from on_chip import *\nfrom on_line import *")
+
+    def _restart(self):
+        """Hang the chip with its driver on, until the watchdog restarts it."""
+        if self._chip.call("look", [BOOT]):
+            self._present.discard(RESTART)
+            self._why_not[RESTART] = "the chip has a boot.py of its own: take it off first"
+            return
+        self._chip.call("replace", f"{PLACE}/{BOOT}", BOOT)
+        self._import()
+        self._chip.begin("hang()")
+        self._chip.close()
+        deadline = time.monotonic() + RESTART_S
+        while True:
+            try:
+                self._chip = Chip(self._port)
+                self._to_the_prompt()
+                return
+            except DeployError:
+                self._chip.close()
+                if time.monotonic() > deadline:
+                    raise
+                time.sleep(AGAIN_S)
+
+    def _make(self, check):
+        if check.needs not in self._present:
+            figure, right = self._why_not[check.needs], None
+        elif check.pages and self._options.yes:
+            figure, right = "somebody has to look: leave out --yes", None
+        else:
+            figure, right = self._judged(check)
+        self._say(line_of(check, figure, right))
+        if right:
+            self.passed.append(check)
+        elif right is False:
+            self.failed.append(check)
+            self._say(f"      What to do: {check.remedy}.")
+
+    def _judged(self, check):
+        options = self._options
+        given = check.filled(options.address, options.baud)
+        try:
+            if not check.pages:
+                return check.judge(self._chip.call(check.function, *given))
+            return check.judge([
+                (self._chip.call(check.function, *given, page), confirmed(page))
+                for page in check.pages
+            ])  # fmt: skip
+        except DeployError as error:
+            return str(error), False
+
+    def _remove(self, paths):
+        for path in paths:
+            if self._chip.call("look", [path]):
+                self._chip.call("remove", path)
+        self._chip.call("remove_empty", folders(paths)[::-1])
 
 
-def run(chip, say):
-    """Run all checks; how many failed."""
-    wanted = files()
-    chip.interrupt()
-    chip.enter()
-    chip.load()
-    try:
-        for folder in folders(wanted):
-            chip.call("make_folder", folder)
-        for path, data in wanted.items():
-            chip.write(path, data)
-        chip.execute(f"import sys\nsys.path.insert(0, '/{PLACE}')")
-        chip.execute(ON_CHIP.read_text())
-        return sum(not passes(chip, check, say) for check in CHECKS)
-    finally:
-        chip.interrupt()
-        chip.enter()
-        remove(chip, wanted)
+def confirmed(page):
+    return input(ASK_PAGE.format(first=page, last=page + 31)).strip() == "yes"
 
 
-def passes(chip, check, say):
-    try:
-        figure, right = check.judge(chip.call(check.function, *check.arguments))
-    except DeployError as error:
-        figure, right = str(error), False
-    say(line_of(check, figure, right))
-    if not right:
-        say(f"      it should show that {check.proves}.")
-        say(f"      What to do: {check.remedy}.")
-    return right
+def summary(bench):
+    """The last lines: what the chip has confirmed of what the firmware takes for granted."""
+    made = len(bench.passed) + len(bench.failed)
+    yield f"{len(bench.passed)} of {made} passed, {len(CHECKS) - made} not checked."
+    for checks, words in ((bench.passed, "confirms"), (bench.failed, "does not confirm")):
+        if checks:
+            yield f"This chip {words} that"
+            yield from (f"  {check.number:2} {check.proves}" for check in checks)
 
 
 def main():
-    chosen = arguments(sys.argv[1:])
+    options = arguments(sys.argv[1:])
     lines = []
 
     def say(line):
         print(line, flush=True)
         lines.append(line)
 
-    if not chosen.yes and input(ASK).strip() != "yes":
+    ask = ASK_WIRED if options.wired else ASK_BARE
+    if not options.yes and input(ask).strip() != "yes":
         return 1
     try:
-        chip = Chip(chosen.port or choose(comports(), waits_for_uf2()))
+        bench = Bench(options.port or choose(comports(), waits_for_uf2()), options, say)
         try:
-            failed = run(chip, say)
+            bench.run()
         finally:
-            chip.close()
+            bench.close()
     except DeployError as error:
         print(f"tools/bringup: {error}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
         print("tools/bringup: interrupted", file=sys.stderr)
         return 1
-    say(f"{len(CHECKS) - failed} of {len(CHECKS)} checks passed.")
-    Path(chosen.report).write_text("\n".join(lines) + "\n")
-    return 1 if failed else 0
+    for line in summary(bench):
+        say(line)
+    Path(options.report).write_text("\n".join(lines) + "\n")
+    return 1 if bench.failed else 0
 
 
 if __name__ == "__main__":

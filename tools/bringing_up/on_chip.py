@@ -1,54 +1,30 @@
 # SPDX-License-Identifier: MIT
-"""The checks of tools/bringup inside the chip, an RP2040 or RP2350. This file is MicroPython.
+"""The checks of tools/bringup that need no line. This file is MicroPython, for an RP2040 or
+RP2350; on_line.py has the others.
 
-tools/bringup sends it over the serial line, with `chips` and `hal` of the tree beside it. Each
-function prints nothing and answers its figures; `checks.py` judges them. GP4 is joined to GP5.
+Each function answers its figures, and `checks.py` judges them.
 """
 
 import gc
 import os
+import sys
 import time
 
 import machine
+import micropython
+import on_line
 
 from chips import rp2
 
-SEND, RECEIVE, DRIVER_ENABLE = 4, 5, 6
 SDA, SCL = 0, 1
-BURSTS = (16, 24, 25, 32, 64, 200)
-MARGIN_US = 3_000
-UART_ERRORS = 4  # offset of UARTRSR: the errors of the character that was read last
-SCRATCH = "bringup.tmp"
+LIGHT = b"\x08"  # to a backpack: the light is on, the display is not spoken to
+LCD_REGISTER_SELECT, LCD_ENABLE = 7, 8
+PATIENCE_MS = 2_000
+
+# Registers of the watchdog that live through its restart, and that nobody else uses.
+HUNG_US, DROVE = rp2.WATCHDOG + 0x0C, rp2.WATCHDOG + 0x10
 
 ticks_us, ticks_diff = time.ticks_us, time.ticks_diff
-
-
-class Line:
-    """The link at a rate, and when its interrupt came."""
-
-    def __init__(self, baud):
-        self.baud = baud
-        self.came_at = 0
-        self.came = 0
-        driver = rp2.low(DRIVER_ENABLE)
-        self.link = rp2.make_link(SEND, RECEIVE, driver, rp2.Clock(), baud)
-        self.heard = bytearray(300)
-        self.link.on_activity = self.note
-
-    def note(self):
-        self.came_at = ticks_us()
-        self.came += 1
-
-    def send(self, data):
-        """How many characters came back, whether they are these, and how long after the last stop
-        bit the interrupt came, in us; -1: it did not come."""
-        self.came = 0
-        self.link.send(data, len(data))
-        wait_us = self.link.sending_us(ticks_us()) + 80_000_000 // self.baud + MARGIN_US
-        time.sleep_us(wait_us)
-        late_us = ticks_diff(self.came_at, self.link.sent_at) if self.came else -1
-        count = max(self.link.receive(self.heard, 0), 0)
-        return count, self.heard[:count] == data, late_us
 
 
 def identity():
@@ -57,47 +33,41 @@ def identity():
     return rp2.CHIP, os.uname().release, machine.freq() // 1_000_000, gc.mem_free()
 
 
-def driver_is_low():
-    """The level of the driver enable, before anything has touched it, and why the chip booted."""
-    return machine.mem32[rp2.GPIO_IN] >> DRIVER_ENABLE & 1, rp2.why_it_booted()
+def heap():
+    """Bytes of the heap, free or not."""
+    return gc.mem_free() + gc.mem_alloc()
 
 
-def bursts(baud):
-    """For each burst: characters sent, those that came back, whether right, interrupt after us."""
-    line = Line(baud)
-    try:
-        return [(count,) + line.send(bytes(range(count))) for count in BURSTS]
-    finally:
-        line.link.close()
+def hang():
+    """Switches the driver on, starts the watchdog and hangs until that bites: does not return."""
+    micropython.kbd_intr(-1)  # or a Ctrl-C would end it
+    line = on_line.Line(300)
+    line.link.send(bytes(250), 250)  # so the driver is on for 9 s
+    time.sleep_ms(10)
+    machine.mem32[DROVE] = machine.Pin(on_line.DRIVER_JUMPER, machine.Pin.IN).value()
+    watchdog = rp2.Watchdog()
+    began = ticks_us()
+    watchdog.feed()
+    while True:
+        machine.mem32[HUNG_US] = ticks_diff(ticks_us(), began)
 
 
-def codes():
-    """All 256 characters at 115200: how many came back, whether right, error bits of the UART."""
-    line = Line(115_200)
-    came, right, errors = 0, True, 0
-    try:
-        for first in range(0, 256, 32):
-            count, same, _ = line.send(bytes(range(first, first + 32)))
-            came += count
-            right = right and same
-            errors |= machine.mem32[rp2.UART_REGISTERS + UART_ERRORS] & 15
-        return came, right, errors
-    finally:
-        line.link.close()
+def driver_after_bite():
+    """Levels of the driver enable, by its jumper: before the watchdog bit, and at the first
+    statement afterwards."""
+    with open("/bringup/bitten") as file:
+        return machine.mem32[DROVE], int(file.read())
 
 
-def unread():
-    """400 characters that nobody reads; then 16 more: how many of these came, whether right."""
-    line = Line(115_200)
-    try:
-        for _ in range(2):
-            line.link.send(bytes(200), 200)
-            time.sleep_ms(25)
-        while line.link.receive(line.heard, 0) > 0:
-            pass
-        return line.send(bytes(range(16)))[:2]
-    finally:
-        line.link.close()
+def watchdog():
+    """How long the chip hung before it bit, in us; why the chip restarted; and whether one that
+    was stopped leaves the chip alone for 3 s."""
+    hung_us, cause = machine.mem32[HUNG_US], rp2.why_it_booted()
+    stopped = rp2.Watchdog()
+    stopped.feed()
+    stopped.stop()
+    time.sleep_ms(3_000)
+    return hung_us, cause, True
 
 
 def saves(count):
@@ -105,15 +75,16 @@ def saves(count):
     longest = 0
     for number in range(count):
         began = time.ticks_ms()
-        with open(SCRATCH, "wb") as file:
+        with open(on_line.SCRATCH, "wb") as file:
             file.write(bytes([number]) * 1024)
         longest = max(longest, time.ticks_diff(time.ticks_ms(), began))
-    os.remove(SCRATCH)
+    os.remove(on_line.SCRATCH)
     return longest
 
 
 def timers(count):
-    """Callbacks of 1 ms under collections: how many came, the latest in us, whether hard."""
+    """Callbacks of 1 ms, some of them with a collection or with blanks to the USB port: how many
+    came, the latest in us, whether hard."""
     timer = rp2.make_timer()
     late = []
     state = [0, 0]
@@ -128,35 +99,49 @@ def timers(count):
         timer.init(mode=timer.ONE_SHOT, period=1_000, tick_hz=1_000_000, callback=come)
         if turn % 8 == 0:
             gc.collect()
+        elif turn % 8 == 4:
+            sys.stdout.write(" " * 64)
         time.sleep_ms(3)
         if state[0]:
             late.append(ticks_diff(state[1], began) - 1_000)
     timer.deinit()
-    return len(late), max(late), isinstance(timer, rp2.HardTimer)
+    return len(late), max(late, default=0), isinstance(timer, rp2.HardTimer)
 
 
-def i2c_absent():
-    """How long a write to nobody takes, in us; -1: somebody acknowledges."""
-    i2c = rp2.make_i2c(SDA, SCL)
-    began = ticks_us()
-    try:
-        i2c.writeto(0x27, b"\x08")
-    except OSError:
-        return ticks_diff(ticks_us(), began)
-    return -1
+def i2c(addresses, pieces):
+    """How long a write to nobody takes at the most, in us; if somebody acknowledges, -1 - how many
+    of so many writes failed."""
+    bus = rp2.make_i2c(SDA, SCL)
+    longest_us = 0
+    for address in addresses:
+        began = ticks_us()
+        try:
+            bus.writeto(address, LIGHT)
+        except OSError:
+            longest_us = max(longest_us, ticks_diff(ticks_us(), began))
+        else:
+            return -1 - _failures(bus, address, pieces)
+    return longest_us
 
 
-def watchdog_stops():
-    """Whether a watchdog of 2 s that was stopped leaves the chip alone for 3 s."""
-    watchdog = rp2.Watchdog()
-    watchdog.feed()
-    watchdog.stop()
-    time.sleep_ms(3_000)
+def _failures(bus, address, pieces):
+    failed = 0
+    for _ in range(pieces):
+        try:
+            bus.writeto(address, LIGHT)
+        except OSError:
+            failed += 1
+    return failed
+
+
+def show(addresses, first):
+    """32 character codes from `first` on, on the display: whether its driver says all is shown."""
+    clock = rp2.Clock()
+    display = rp2.make_display(SDA, SCL, addresses, LCD_REGISTER_SELECT, LCD_ENABLE, clock)
+    picture = bytearray(range(first, first + 32))
+    began = time.ticks_ms()
+    while not display.show(picture):
+        if time.ticks_diff(time.ticks_ms(), began) > PATIENCE_MS:
+            return False
+        time.sleep_ms(1)
     return True
-
-
-def watchdog_bites():
-    """Starts it, and does not come back."""
-    rp2.Watchdog().feed()
-    while True:
-        pass

@@ -88,6 +88,13 @@ class Chip:
             raise DeployError(f"on the chip: {_last_line(failed.decode('utf-8', 'replace'))}")
         return printed.decode("utf-8", "replace")
 
+    def begin(self, code):
+        """Start it at the raw prompt, and leave it alone."""
+        try:
+            self._line.exec_raw_no_follow(code)
+        except LINE_ERRORS as error:
+            raise DeployError(f"{self.port} does not answer any more: {error}") from None
+
     def load(self):
         """Load the functions of on_chip.py into the interpreter."""
         self.execute('import os\nos.chdir("/")')
