@@ -256,7 +256,8 @@ MUTATIONS = (
         ("MAY RUN",), 31,
         (
             "panel/wording.py",
-            "    if not drive.contact:\n        return _TROUBLES[drive.trouble]\n",
+            "    if not drive.contact:\n"
+            "        return control.desk.defect or _TROUBLES[drive.trouble]\n",
             "",
         ),
     ),

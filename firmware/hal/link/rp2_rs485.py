@@ -92,6 +92,7 @@ class Rp2Link(Bursts):
     """
 
     foreseen = True
+    defect = ""  # who makes the link looks for one: rp2_check
 
     def __init__(self, uart, registers, state_machine, dma, tx_pin, driver_enable, clock, baud):
         self.sent_at = 0
