@@ -51,11 +51,14 @@ def took_us(world):
     return ended_us - began_us
 
 
-def test_it_takes_less_than_20_ms_and_a_sound_board_starts():
+def test_it_takes_less_than_20_ms():
     for baud in RATES:
         world = switched_on(files={"boot.py": TIMED}, baud=baud)
-        world.run(BOOT_MS)
+        assert world.run_until(lambda w=world: len(w.led) > 2, BOOT_MS)
         assert 0 < took_us(world) < LONGEST_US, (baud, world.led)
+
+
+def test_a_sound_board_starts():
     world = switched_on()
     assert world.run_until(lambda: row_2(world).startswith("READY"), BOOT_MS)
     start(world)
@@ -130,7 +133,7 @@ def test_a_line_that_is_merely_busy_is_no_defect():
         talk(world, baud, BUSY_MS)
         assert world.run_until(lambda w=world: w.figures.driver, BOOT_MS)
         assert world.clock.now_us < BUSY_MS * 1_000
-        world.run(1_000)
+        world.run(500)
         assert not any(world.reads(text) for text in ALL), world.lcd()
 
 
