@@ -371,11 +371,16 @@ class Control:
             self._command.give(self._now_us, dead_man_trips)
 
     def _prepare(self):
-        """Begin what `start` has left to this turn: a step with a key in it takes long already."""
+        """Begin what `start` has left to its turns: a step with a key in it takes long already, and
+        so does one that needs memory, the first time.
+        """
+        had_command, had_count = self._command is not None, self.survey.count is not None
         self._obey(self._start_trips)
-        self._start_trips = _PREPARED
-        self.survey.count_anew()
-        self.survey.recheck()
+        if had_command:
+            self.survey.count_anew()
+            if had_count:
+                self._start_trips = _PREPARED
+                self.survey.recheck()
 
     def _finish_check(self, now_us):
         """ON, if the drive has told its settings and there is nothing against it."""

@@ -121,6 +121,9 @@ class Panel:
         if self._acting:
             self._act(now_ms)
             return False
+        if self._place and self._page is self._home:
+            self._make_page(now_ms)
+            return False
         if self.stop_key.left:
             self.stop_key.stop_next()
             return False
@@ -385,20 +388,29 @@ class Panel:
             self.wants = "search"
 
     def _turn_page(self, now_ms, place):
-        """Another page of the table. The one before leaves the memory."""
+        """Another page of the table: the next step makes it. The one before leaves the memory."""
         before = self._page
         self._place = place
         self._page = self._home
         try:
-            if self._place:
-                module, page = PAGES[self._place]
-                self._page = getattr(on_demand.load("panel.pages." + module), page)(self)
+            if place:
+                on_demand.load("panel.pages." + PAGES[place][0])
         except MemoryError:
-            self._place = 0
-            self.say(now_ms, texts.NO_MEMORY)
+            self._refuse_page(now_ms)
         for module in before.modules:
             on_demand.drop(module)
         self._page.open()
+
+    def _make_page(self, now_ms):
+        module, page = PAGES[self._place]
+        try:
+            self._page = getattr(on_demand.load("panel.pages." + module), page)(self)
+        except MemoryError:
+            self._refuse_page(now_ms)
+
+    def _refuse_page(self, now_ms):
+        self._place = 0
+        self.say(now_ms, texts.NO_MEMORY)
 
     def _select(self, direction):
         """Show the next drive, or the one before."""

@@ -48,9 +48,6 @@ class Parameters(Page):
         self._read_at_ms = 0
         self._forget()
 
-    def open(self):
-        self._forget()
-
     # --- keys -----------------------------------------------------------------------------------
 
     def take_keys(self, acts, now_ms):

@@ -278,11 +278,13 @@ class Kind:
         least = 3 if pkw_words == VARIABLE else pkw_words
         if count < least + pzd_words or pkw_words != VARIABLE and count > least + pzd_words:
             return False
-        if self.words != {pkw_words} or self.pzd_words != pzd_words:
+        if pzd_words == self.pzd_words and self.words & _fitting(count - pzd_words, 0):
+            self.words = self.words | {pkw_words}  # this one looks the same in both
+        else:
             self._other = self.words, self.pzd_words
             self.words, self.pzd_words = {pkw_words}, pzd_words
-            if pzd_words == self._told_pzd_words:
-                self._known.add(pkw_words)
+        if pzd_words == self._told_pzd_words:
+            self._known.add(pkw_words)
         return True
 
     def may_be_taken_for_variable(self):
