@@ -87,26 +87,27 @@ class Control:
     remark = texts.NOTHING
     lost_running = False
     absence_known = False
+    stop_watch = NO_WATCH
+    fault = NO_FAULT
+    phase = IDLE
+    refusal = texts.NOTHING
+    notice = texts.NOTHING
+    _command = None  # the last one that was obeyed
+    _start_trips = _PREPARED  # bus.dead_man_trips when START was pressed, until it is prepared
+    _stirred_at_us = None  # it last ran, or may have; None: it rests for sure
     _jogged = False  # what turns, or ramps down, is a jog of this panel
+
+    # Eight fields that all drives need. One more would take 16 bytes more of each.
 
     def __init__(self, drive, survey, desk):
         self.drive = drive
         self.survey = survey
         self.desk = desk
         self.setpoint = Setpoint(drive, survey, desk.settings)
-        self.stop_watch = NO_WATCH
-        self.fault = NO_FAULT
-        self.phase = IDLE
-        self.refusal = texts.NOTHING
-        self.notice = texts.NOTHING
-        self._command = None  # the last one that was obeyed; most drives never need one
-        # bus.dead_man_trips when START was pressed, until that START is prepared.
-        self._start_trips = _PREPARED
         self._now_us = 0
         self._contact = False  # as last seen
         self._quiet_zsw = _UNKNOWN  # drive.zsw when there was nothing to watch
         self._judged = -1  # version of the survey when its status word was judged
-        self._stirred_at_us = None  # it last ran, or may have; None: it rests for sure
 
     # --- what an operator does ------------------------------------------------------------------
 
@@ -190,12 +191,14 @@ class Control:
 
     def take_refusal(self):
         """The refusal, which is forgotten by this."""
-        refusal, self.refusal = self.refusal, texts.NOTHING
+        refusal = self.refusal
+        if refusal:
+            self.refusal = texts.NOTHING
         return refusal
 
     def keep_quiet(self):
         """Forget what it would say and ask: another drive is shown."""
-        self.refusal = texts.NOTHING
+        self.take_refusal()
         self.drop_question()
         if self.phase != CHECKING:
             self.survey.drop_recheck()
