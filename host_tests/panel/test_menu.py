@@ -9,7 +9,7 @@ import app
 import main
 from boards.sim.drives.kinds import listed_drives, simulated
 from boards.sim.world import World
-from panel_bench import panel, row_1, row_2, running, starts, telegrams, wait_until_known
+from panel_bench import panel, row_1, row_2, running, said, starts, telegrams, wait_until_known
 from version import VERSION
 
 OFF1 = 0x047E
@@ -85,7 +85,7 @@ def test_the_drives_at_a_glance_and_one_of_them_shown():
     ]  # fmt: skip
     press(world, "PARAM", "DOWN", "SET", "SET")
     wait_until_known(world)
-    assert row_2(world) == "READY        A2" and world.drives[1].state == "running"
+    assert "READY        A2" in said(world, 2_000) and world.drives[1].state == "running"
     world.check()
 
 

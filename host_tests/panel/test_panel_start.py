@@ -445,7 +445,7 @@ def test_a_drive_that_ran_before_is_not_left_waiting_with_on_either():
 def test_a_start_that_was_taken_back_asks_the_drive_nothing_more():
     world = panel()
     world.down("START")
-    world.run(40)
+    world.run(150)  # it begins in the turns that follow
     drive = world.app.bus.turns.drives[0]
     assert drive.asking
     world.press("STOP", 20)
