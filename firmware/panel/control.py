@@ -374,8 +374,8 @@ class Control:
             self._command.give(self._now_us, dead_man_trips)
 
     def _prepare(self):
-        """Begin what `start` has left to its turns: a step with a key in it takes long already, and
-        so does one that needs memory, the first time.
+        """Begin what `start` has left to its turns: a step with a key in it takes long already,
+        and so does one that needs memory, the first time.
         """
         had_command, had_count = self._command is not None, self.survey.count is not None
         self._obey(self._start_trips)
