@@ -288,6 +288,9 @@ class Control:
         Answers whether the setpoint had news to take: then it took long, and the step is for
         nothing else.
         """
+        if self._command is None and self.phase == CHECKING:
+            self._obey(self._start_trips)  # in a turn of its own: its command takes memory
+            return False
         survey = self.survey
         is_shown = reread_us == REREAD_US
         if self.drive.wanted:
@@ -374,21 +377,17 @@ class Control:
             self._command.give(self._now_us, dead_man_trips)
 
     def _prepare(self):
-        """Begin what `start` has left to its turns: a step with a key in it takes long already,
-        and so does one that needs memory, the first time.
-        """
-        had_command, had_count = self._command is not None, self.survey.count is not None
+        """Begin what `start` has left to this turn: a step with a key in it takes long already."""
         self._obey(self._start_trips)
-        if had_command:
-            self.survey.count_anew()
-            if had_count:
-                self._start_trips = _PREPARED
-                self.survey.recheck()
+        self._start_trips = _PREPARED
+        self.survey.count_anew()
+        self.survey.recheck()
 
     def _finish_check(self, now_us):
         """ON, if the drive has told its settings and there is nothing against it."""
         if self._start_trips != _PREPARED:
-            self._prepare()
+            if self._command is not None:
+                self._prepare()
             return
         if self.setpoint.has_news():
             return  # HSW may be another once `ask` has taken them
