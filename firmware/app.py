@@ -64,7 +64,7 @@ class App:
         self._finder = None
         self._doubts = Drive.doubts
         self.pacer = Pacer(self.bus, self.link, board.clock, board.timer)
-        defect = texts.DEFECTS[getattr(self.link, "defect", "")]
+        defect = texts.DEFECTS.get(getattr(self.link, "defect", ""), texts.NOTHING)
         self._roster = roster = Roster(self.bus, settings, mask, defect)
         board.display.define(GLYPHS)
         restart = texts.WATCHDOG_RESTART if board.reset_cause else texts.NOTHING
