@@ -280,7 +280,7 @@ class Kind:
             return False
         if pzd_words == self.pzd_words and self.words & _fitting(count - pzd_words, 0):
             self.words = self.words | {pkw_words}  # this one looks the same in both
-        else:
+        elif self.words != {pkw_words} or self.pzd_words != pzd_words:
             self._other = self.words, self.pzd_words
             self.words, self.pzd_words = {pkw_words}, pzd_words
         if pzd_words == self._told_pzd_words:
