@@ -82,9 +82,9 @@ class Enquirer:
         self._place = next(self._questions)
         self._tries = self._silences = 0
 
-    def question(self):
-        """The telegram to be sent next."""
-        return Question(self.node.address, *self._place)
+    def question(self, off=pzd.OFF1):
+        """The telegram to be sent next. off: the control word that the node is owed."""
+        return Question(self.node.address, *self._place, off)
 
     def take(self, question):
         """A telegram is over. Whether it was the last one."""
@@ -196,13 +196,13 @@ def _link(address, layout, known, number):
 
 
 class Question(OutsideTelegram):
-    """An ordinary telegram to a node outside the list, with OFF1 and a parameter to read, or None.
+    """An ordinary telegram outside the list's turns, with an OFF and a parameter to read, or None.
 
     DONE: the node has answered; `job` holds the answer, or the refusal. TIMED_OUT: the node was
     silent, or, if `finding` is GOOD, its answer belongs to an older question.
     """
 
-    def __init__(self, address, layout, number, index=0):
+    def __init__(self, address, layout, number, index=0, off=pzd.OFF1):
         self.job = None if number is None else pkw.read(number, index)
         self.zsw = 0
         self._layout = layout
@@ -214,7 +214,7 @@ class Question(OutsideTelegram):
         if self.job is not None:
             net[:FRAME] = self.job.words[:FRAME]  # PKE and IND; the others are 0
         if layout.pzd_words:
-            put_word(net, layout.net_count - layout.pzd_count, pzd.OFF1)
+            put_word(net, layout.net_count - layout.pzd_count, off)
         OutsideTelegram.__init__(self, address, net)
 
     def fits(self, net_count):

@@ -8,7 +8,7 @@ acts on none of them: their net data are zeros, and so is bit 10 wherever a cont
 Where one comes back, the drive gets that layout by `Turns.relayout`, and the list asks it in it. A
 drive of variable length also sends back one that is a word longer. Where the length does not tell
 the layout, because it is variable or the drive has other PZD words (P2012), the drive is asked:
-`enquiry`. That goes with OFF1, which it is owed anyway.
+`enquiry`. Each question carries the OFF that the drive is owed.
 
 A drive may also answer in contact, and its answers make no sense: its survey doubts it. It is
 asked what it is as well, if it is seen to stand.
@@ -140,7 +140,7 @@ class Finder:
             self._ask(now)
         elif state == _ENQUIRE:
             if self._has_room(self._answered):
-                self._post(self._enquirer.question(), now, _HEAR)
+                self._post(self._enquirer.question(self._drive.off), now, _HEAR)
         else:
             return self._set()
         return None
