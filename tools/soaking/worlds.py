@@ -76,7 +76,7 @@ class Plan:
         self.polled = not dice.below(5)
         self.keys = "matrix" if not dice.below(3) else "direct"
         self.ticks_mask = (1 << (24, 27, 30, 30)[dice.below(4)]) - 1
-        if len(self.listed) > 3 or self.baud < 9600:  # a round takes long beside 16 s
+        if len(self.listed) > 3 or self.baud <= 9600:  # a round takes long beside 16 s
             self.ticks_mask |= (1 << 27) - 1
         self.supervised = dice.below(4)  # 0: no drive supervises its line
         self.ticks_start = dice.below(self.ticks_mask)

@@ -34,6 +34,8 @@ MENU = ">"  # row 2 of every list of the menu begins so
 TYPED = "NEW"  # row 2 begins so while the setpoint is set digit by digit
 LEAVES = ("LEAVE THE LINE &", "FIND DRIVES?")  # row 1 of WRITES, before the search
 NO_PARAMETERS = "NO PARAMETERS"  # parameter mode, of a drive that can tell none
+NOT_USS = "NOT USS"  # a START is refused: what the drive obeys is another one
+OFFERED = (700, 719, 1000)  # one of these is then offered, into the EEPROM
 UNTOLD = ("IT MAY RUN ON", "IF PANEL DIES")  # row 1 of RISKS, where no P2014 can be read
 
 # How long the panel may take: a key settles in 20 ms and bounces for up to 5; five steps of the

@@ -28,6 +28,7 @@ from tools.soaking.judging.facts import (
     MS,
     NEVER,
     OFF1,
+    OFFERED,
     ON_BIT,
     RAM_WRITES,
     READS,
@@ -213,14 +214,15 @@ class Judge:
         is_doubtful = now - witness.late_us < DOUBTED_US + 20 * witness.cycle_us
         if witness.kinds[address].may_be_taken_for_variable() and not may_run:
             is_doubtful = True
-        if case.heard_us > recently_us and (is_doubtful or not witness.is_able(address)):
+        misses = case.requests - case.heard_requests
+        answers = case.answered_us > recently_us or not misses  # a round may take longer
+        if answers and (is_doubtful or not witness.is_able(address)):
             self._shares.mirror(case, now)
             return  # its answers may make no sense
         if case.heard_us > recently_us and now - case.contact_us > waited_us:
             told = (where, (now - case.contact_us) // MS, (now - case.heard_us) // MS)
             raise Broken("MIRROR", "%s, in contact for %d ms, heard %d ms ago" % told)
         least = STOPPED_MIN if may_run else SILENT_MIN
-        misses = case.requests - case.heard_requests
         if misses < least and now - case.contact_us > waited_us:
             raise Broken("MIRROR", "%s, silent for %d telegrams" % (where, misses))
         told = case.requests - case.run_requests
@@ -629,7 +631,8 @@ class Judge:
         if task in EEPROM_WRITES and family.save is not None:
             raise Broken("EEPROM", "%s, which no task can write" % where)
         if number == family.save or task in EEPROM_WRITES and number not in family.permanent:
-            if now > witness.wishes.get("eeprom", NEVER):
+            is_offered = number in OFFERED and now <= witness.wishes.get("offer", NEVER)
+            if now > witness.wishes.get("eeprom", NEVER) and not is_offered:
                 raise Broken("EEPROM", where)
 
     def _is_confirmed(self, written, family, now):

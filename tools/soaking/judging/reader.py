@@ -19,6 +19,7 @@ from tools.soaking.judging.facts import (
     MENU,
     MS,
     NEVER,
+    NOT_USS,
     ON_BIT,
     QUESTIONS,
     RISKS,
@@ -95,6 +96,8 @@ class Reader:
                 self.witness.shows(self.address)
         self.announced.look(now)
         witness = self.witness
+        if self.reads(NOT_USS):
+            witness.refused_us = now
         self._note_menu(now)
         self._note_digits(now)
         if self.rows[1] in QUESTIONS and self.rows[0].strip() in LEAVES:

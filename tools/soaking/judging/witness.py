@@ -83,10 +83,11 @@ class Witness:
         self.stalled_us = NEVER  # the end of the last standstill of any kind
         self.weather = None  # a `Weather`: what befalls the line
         self.late_us = NEVER  # the line was not its best lately
-        self.wishes = {}  # "write" and "eeprom" -> until when
+        self.wishes = {}  # "write", "eeprom" and "offer" -> until when
         self.set_us = NEVER
         self.asked_us = NEVER  # the display asks something: the reader notes it
         self.go_us = NEVER  # it asks whether a drive may run though nothing watches its line
+        self.refused_us = NEVER  # a START was refused, because the drive obeys somebody else
         self.leaves_us = NEVER  # it asks whether the panel shall leave the line to find drives
         self.left_us = NEVER  # SET has said yes to that
         self.searches = False  # the program that finds drives has the line
@@ -269,6 +270,8 @@ class Witness:
             self.wishes["write"] = now + self.wish_us
             self.confirmed = [row for row in self.confirmed if row[0] > now]
             self.confirmed.append((now + self.wish_us, self.question))
+            if self.refused_us > now - WISH_US:
+                self.wishes["offer"] = now + self.wish_us
             self.shown = None
             self.unsure_us = now + 2 * S + 3 * self.cycle_us
 
