@@ -173,6 +173,19 @@ def test_one_that_is_doubted_and_answers_late_is_asked_by_nobody_else_either():
             line.check()
 
 
+def test_the_questions_carry_the_off_that_the_drive_is_owed():
+    """One that was owed OFF3 was asked with OFF1, and ramped down slowly."""
+    line = Line({2: (127, 4)}, runs=False)
+    line.drives[2].stop(pzd.OFF3)
+    line.motors[2].plug()
+    heard = set()
+    while not line.found:
+        line.run(4)
+        heard.add(line.motors[2].stw)
+    assert heard == {0, pzd.OFF3}
+    line.check()
+
+
 def test_a_drive_that_is_doubted_and_tells_nothing_keeps_its_layout():
     line = Line({2: (3, 4)}, layout=Layout(VARIABLE, 4), runs=False)
     line.motors[2].stale_replies = 1_000_000
