@@ -10,6 +10,7 @@ module level:
     INTERPRETERS = "unix64 unix32"      # a part of: unix64 unix32 coverage cpython
     INTERPRETERS = "pico"               # beside an emulated Pico: tools/emulator/world.py
     INTERPRETERS = "pico pico_again"    # ... whose UART behaves in either way the documents allow
+    INTERPRETERS = "pico pico_hard"     # ... on both builds: with soft timers and with hard ones
     INTERPRETERS = "host"               # an ordinary pytest file, with fixtures and all
 
 Tracing lines makes a test some ten times slower. Long ones that run no line of their own stay out:
@@ -65,7 +66,8 @@ def pytest_pycollect_makemodule(module_path, parent):
 def pytest_collection_modifyitems(session, items):
     if strict():
         for tier, reason in session.config.stash[SURVEY].missing.items():
-            items.append(MissingTier.from_parent(session, name=f"tier {tier}", reason=reason))
+            if TIERS[tier].required:
+                items.append(MissingTier.from_parent(session, name=f"tier {tier}", reason=reason))
 
 
 @pytest.hookimpl(wrapper=True)

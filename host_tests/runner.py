@@ -27,18 +27,36 @@ PROMISES = {
     "cpython": ("cpython", 0, True),
     "pico": ("micropython", 63, False),
     "pico_again": ("micropython", 63, False),
+    "pico_hard": ("micropython", 63, False),
+    "pico_hard_again": ("micropython", 63, False),
 }
 
-# The tiers with an emulated Pico: what it does otherwise than usual (tools/emulator/README.md).
-PICOS = {"pico": {}, "pico_again": {"receive_timeout": "again"}}
+# The tiers with an emulated Pico: which build of the firmware it has, what callbacks the timers of
+# that take, and what the chip does otherwise than usual (tools/emulator/README.md).
+AGAIN = {"receive_timeout": "again"}
+PICOS = {
+    "pico": ("", "soft", {}),
+    "pico_again": ("", "soft", AGAIN),
+    "pico_hard": ("_hard", "hard", {}),
+    "pico_hard_again": ("_hard", "hard", AGAIN),
+}
 
-# What the emulated Pico is made of; tools/test puts it there.
+# What the emulated Pico is made of, besides firmware; tools/test puts it there.
 PICO_FILES = (
     "build/emulator/bootrom.bin",
     "build/emulator/node_modules/rp2040js/package.json",
-    "build/pico/panel.uf2",
-    "build/pico/stock.uf2",
 )
+
+# On the chip: what it runs, and what callbacks its timers take.
+TELL = """
+import sys, machine
+print(sys.version.split("; ")[1].split(" on ")[0])
+try:
+    machine.Timer(period=1000, callback=print, hard=True).deinit()
+    print("hard")
+except TypeError:
+    print("soft")
+"""
 
 # Bytes between two collections. Fewer, and a test with many objects collects most of the time;
 # more, and MicroPython takes ever longer to find the last holes in its heap.
@@ -53,11 +71,13 @@ def main(tier, path=None, *names):
     sys.path[:] = search_path()
     version = prove(tier)
     if tier in PICOS:
-        from tools.emulator import chip
+        from tools.emulator import chip, world
 
-        chip.usual.update(PICOS[tier])
+        world.build, timers, model = PICOS[tier]
+        chip.usual.update(model)
+        version = pico(timers) if path is None else version
     if path is None:
-        print(pico() if tier in PICOS else version)
+        print(version)
         return
     lines = None
     if tier == "coverage":
@@ -116,11 +136,14 @@ def prove(tier):
     return "%s, small integers of %d bits" % (sys.version.split("; ")[-1], found[1])
 
 
-def pico():
-    """Boots the emulated Pico and returns a line about it; ends the process when it does not."""
+def pico(timers):
+    """Boots the emulated Pico and returns a line about it; ends the process when it does not, or
+    when its timers are others."""
     import json
 
-    for path in PICO_FILES:
+    from tools.emulator.world import PROGRAMS, PicoWorld, program_path
+
+    for path in PICO_FILES + tuple(program_path(name) for name in PROGRAMS):
         try:
             open(path).close()
         except OSError:
@@ -128,16 +151,18 @@ def pico():
             sys.exit(1)
     with open(PICO_FILES[1]) as package:
         emulator = json.load(package)["version"]
-    from tools.emulator.world import PicoWorld
-
     world = PicoWorld("stock", addresses=())
     world.repl.open()
-    version, error = world.repl.execute("import sys; print(sys.version)")
+    told, error = world.repl.execute(TELL)
     if error:
         print("the emulated Pico does not run: " + error)
         sys.exit(1)
-    version = version.split("; ")[1].split(" on ")[0]
-    return "%s on an emulated RP2040 (rp2040js %s)" % (version, emulator)
+    version, found = told.split("\r\n")[:2]
+    if found != timers:
+        print("this is not the firmware with %s timers: %s has %s" % (timers, version, found))
+        sys.exit(1)
+    line = "%s with %s timers on an emulated RP2040 (rp2040js %s)"
+    return line % (version, timers, emulator)
 
 
 def small_integer_bits():

@@ -4,6 +4,8 @@
 A tier is one interpreter; runner.py is what runs inside it. `pico` is one of them with an emulated
 Raspberry Pi Pico beside it, for the files that ask for it; `pico_again` is the same with a UART
 whose receive time-out comes again while characters are left (tools/emulator/README.md).
+`pico_hard` and `pico_hard_again` are these two with the firmware of a later MicroPython, whose
+timers have hard callbacks (tools/fetch/pico.sh).
 
 `survey` asks each tier for its version; a FileRun runs functions of one file on one tier and
 publishes a verdict for each, also when the process crashes or hangs in the middle: then the
@@ -38,6 +40,8 @@ class Tier(NamedTuple):
     command: tuple[str, ...]
     remedy: str  # the command that lets tools/test have the tier
     everywhere: bool = True  # False: only files that name it run there
+    required: bool = True  # False: it may be missing also where nothing else may
+    twin: str = ""  # the tier that runs on the very same: where that one is, this one is
 
 
 # Alone with the standard library, printing at once, leaving no caches in firmware/, and with
@@ -51,11 +55,17 @@ def _micropython(name: str, heap: str = "32M") -> tuple[str, ...]:
 
 # It becomes the interpreter, with the chip at the end of two pipes.
 BESIDE_A_CHIP = (sys.executable, "-I", "-B", f"{TOP}/tools/emulator/launch.py")
+PICO = (*BESIDE_A_CHIP, *_micropython("unix64", heap="64M"))
 
 
-def _pico(name: str) -> Tier:
-    command = (*BESIDE_A_CHIP, *_micropython("unix64", heap="64M"))
-    return Tier(name, command, "tools/panel --board pico (it takes 550 MB)", everywhere=False)
+def _pico(name: str, twin: str = "") -> Tier:
+    remedy = "tools/panel --board pico (it takes 550 MB)"
+    return Tier(name, PICO, remedy, everywhere=False, twin=twin)
+
+
+def _pico_hard(name: str, twin: str = "") -> Tier:
+    remedy = "USS_STRICT=1 tools/test, while Debian testing has its MicroPython"
+    return Tier(name, PICO, remedy, everywhere=False, required=False, twin=twin)
 
 
 TIERS = {
@@ -66,7 +76,9 @@ TIERS = {
         Tier("coverage", _micropython("coverage"), "apt-get install gcc libc6-dev make python3"),
         Tier("cpython", (sys.executable, *CPYTHON_OPTIONS), ""),
         _pico("pico"),
-        _pico("pico_again"),
+        _pico("pico_again", twin="pico"),
+        _pico_hard("pico_hard"),
+        _pico_hard("pico_hard_again", twin="pico_hard"),
     )
 }
 
@@ -87,23 +99,32 @@ def survey() -> Survey:
     """Asks every tier what it is, and so learns which are here and are what they promise."""
     found = Survey({}, {})
     for tier in TIERS.values():
-        try:
-            answer = subprocess.run(
-                [*tier.command, RUNNER, tier.name],
-                cwd=TOP,
-                stdin=subprocess.DEVNULL,
-                capture_output=True,
-                text=True,
-                timeout=SURVEY_TIMEOUT_S,
-            )
-        except FileNotFoundError:
-            found.missing[tier.name] = f"there is no {tier.command[0]}"
-        except (OSError, subprocess.TimeoutExpired) as error:
-            found.missing[tier.name] = str(error)
+        for heard in found:
+            if tier.twin in heard:
+                heard[tier.name] = heard[tier.twin]
+                break
         else:
-            heard = found.versions if answer.returncode == 0 else found.missing
-            heard[tier.name] = _one_line(answer.stdout) or _one_line(answer.stderr)
+            is_here, line = _ask(tier)
+            (found.versions if is_here else found.missing)[tier.name] = line
     return found
+
+
+def _ask(tier):
+    """Whether it is here, and its version or why not."""
+    try:
+        answer = subprocess.run(
+            [*tier.command, RUNNER, tier.name],
+            cwd=TOP,
+            stdin=subprocess.DEVNULL,
+            capture_output=True,
+            text=True,
+            timeout=SURVEY_TIMEOUT_S,
+        )
+    except FileNotFoundError:
+        return False, f"there is no {tier.command[0]}"
+    except (OSError, subprocess.TimeoutExpired) as error:
+        return False, str(error)
+    return answer.returncode == 0, _one_line(answer.stdout) or _one_line(answer.stderr)
 
 
 def _one_line(output):

@@ -7,9 +7,9 @@ import struct
 
 from pico_bench import panel, running, says, scripted, set_off, stands, starts
 from tools.emulator.flash_image import FILES_AT
-from tools.emulator.world import PicoWorld, temporary
+from tools.emulator.world import PROGRAMS, PicoWorld, program_path, temporary
 
-INTERPRETERS = "pico"
+INTERPRETERS = "pico pico_again pico_hard pico_hard_again"
 
 # At SET the panel has something to save: drive 2 is accepted as it is.
 ACCEPT = "app.settings.accept_unsupervised(2)\nwhile True:\n    app.step()"
@@ -68,9 +68,9 @@ def test_what_was_stored_by_somebody_else_is_kept():
 
 def test_another_firmware_file_leaves_the_settings_where_they_are():
     """What a UF2 file writes ends before the files begin: block after block of 512 bytes."""
-    for name in ("panel", "stock"):
+    for name in PROGRAMS:
         ends = 0
-        with open("build/pico/%s.uf2" % name, "rb") as file:
+        with open(program_path(name), "rb") as file:
             while True:
                 block = file.read(512)
                 if not block:

@@ -183,10 +183,7 @@ def test_what_would_silently_not_run_is_refused(run_pytest):
 
 
 def test_a_missing_tier_is_named_and_under_ci_it_is_a_failure(run_pytest, tmp_path):
-    (tmp_path / "without_coverage.py").write_text(
-        "from tiers import TIERS\n"
-        "TIERS['coverage'] = TIERS['coverage']._replace(command=('/no/such/program',))\n"
-    )
+    (tmp_path / "without_coverage.py").write_text(without("coverage"))
     source = here("cpython") + "def test_a(): pass\n"
     relaxed = run_pytest(source, "-p", "without_coverage")
     assert relaxed.returncode == 0
@@ -195,6 +192,25 @@ def test_a_missing_tier_is_named_and_under_ci_it_is_a_failure(run_pytest, tmp_pa
     for environment in ({"CI": "true"}, {"USS_STRICT": "1"}):
         strict = run_pytest(source, "-p", "without_coverage", "-k", "test_a", **environment)
         assert strict.returncode == 1 and "FAILED" in strict.stdout
+
+
+def test_a_tier_that_nobody_has_to_have_is_named_and_no_failure(run_pytest, tmp_path):
+    (tmp_path / "without_hard.py").write_text(without("pico_hard", "pico_hard_again"))
+    source = 'INTERPRETERS = "cpython pico_hard"\ndef test_a(): pass\n'
+    run = run_pytest(source, "-p", "without_hard", "-k", "test_a", USS_STRICT="1")
+    assert "tier pico_hard" not in run.stdout.partition("Not run")[0]
+    assert run.stdout.count("Not run: tier pico_hard") == 2
+    assert "1 passed" in run.stdout, run.stdout
+
+
+def without(*names):
+    """A plugin that takes these tiers away."""
+    return (
+        "from tiers import TIERS, Tier\n"
+        f"for name in {names}:\n"
+        "    name, _, *others = TIERS[name]\n"
+        "    TIERS[name] = Tier(name, ('/no/such/program',), *others)\n"
+    )
 
 
 def test_an_interpreter_that_is_not_what_it_should_be_is_refused():
@@ -464,8 +480,9 @@ PICO_STAND_IN = r"""
     has_pico_sources() { has_pico_compiler "$1"; }
     make_pico_compiler() { echo gcc 1 >"$1/versions"; }
     make_pico_tools() { : >"$1/versions"; }
-    make_pico_sources() { echo micropython 2 >"$1/versions"; }
+    make_pico_sources() { echo micropython 2 >"$2/versions"; }
     pico_do() {
+        shift
         case $1 in
             ninja)
                 mkdir -p "$3/CMakeFiles"
@@ -516,7 +533,8 @@ def test_a_firmware_is_built_anew_when_something_in_it_has_changed(pico):
         change()
         assert get_firmware(pico, "panel")[0], number
         assert not get_firmware(pico, "panel")[0], number
-    assert get_firmware(pico, "panel", "pico_released=2026-01-01;")[0]
+    released = "pico_edition() { echo 1.25.0 2026-01-01 2.1.1 trixie; };"
+    assert get_firmware(pico, "panel", released)[0]
 
 
 def test_what_is_not_in_a_firmware_does_not_have_it_built_anew(pico):
@@ -534,9 +552,10 @@ def test_what_is_not_in_a_firmware_does_not_have_it_built_anew(pico):
 
 def test_the_panel_and_stock_differ_in_what_is_frozen(pico):
     manifest = f"include('{pico.top}/boards/pico/manifest.py')"
-    assert manifest in get_firmware(pico, "panel")[1]
-    stock = get_firmware(pico, "stock")[1]
-    assert manifest not in stock and "freeze('$(PORT_DIR)/modules'" in stock
+    for build in ("", "_hard"):
+        assert manifest in get_firmware(pico, f"panel{build}")[1]
+        stock = get_firmware(pico, f"stock{build}")[1]
+        assert manifest not in stock and "freeze('$(PORT_DIR)/modules'" in stock
 
 
 def test_what_runs_most_often_is_kept_in_memory_in_the_panel(pico):
@@ -545,7 +564,8 @@ def test_what_runs_most_often_is_kept_in_memory_in_the_panel(pico):
     assert panel.startswith(".text.first\n.time_critical.second\n")
     (pico.top / "firmware" / "app.py").write_text("second\n")  # what is compiled stays
     assert get_firmware(pico, "panel", own)[1].startswith(".text.first\n.time_critical.second\n")
-    assert get_firmware(pico, "stock", own)[1].startswith(".text.first\n.text.second\n")
+    for stock in ("stock", "stock_hard"):
+        assert get_firmware(pico, stock, own)[1].startswith(".text.first\n.text.second\n")
 
 
 def test_a_function_that_another_compiler_does_not_make_is_named_and_left_out(pico):
@@ -558,7 +578,7 @@ def test_a_function_that_another_compiler_does_not_make_is_named_and_left_out(pi
 def test_a_firmware_that_cannot_be_built_is_not_there_and_says_why(pico):
     get_firmware(pico, "panel")
     (pico.top / "firmware" / "app.py").write_text("second\n")
-    fail = 'pico_do() { [[ $1 != ninja ]] || { echo "error compiling app.py"; return 1; }; };'
+    fail = 'pico_do() { [[ $2 != ninja ]] || { echo "error compiling app.py"; return 1; }; };'
     run = pico.shell(f"{PICO_STAND_IN} {fail} get_pico_firmware panel", PICO_FILES)
     assert run.returncode == 1 and "error compiling app.py" in run.stderr
     assert os.listdir(pico.top / "build" / "pico") == []
@@ -627,6 +647,55 @@ def test_sources_are_taken_in_the_very_version_that_was_tried(pico, offered, say
     stand_in = f"packages_version() {{ echo {offered}; }}"
     run = pico.shell(f"{stand_in}; pico_offers view micropython 1.25.0", PICO_FILES)
     assert (run.returncode, run.stderr.strip()) == (bool(says), says)
+
+
+@pytest.mark.parametrize(
+    "name, release, version, released",
+    [
+        ("panel", "trixie", "1.25.0", "2025-04-15"),
+        ("panel_hard", "testing", "1.26.1", "2025-09-11"),
+    ],
+)
+def test_a_firmware_has_the_version_and_date_of_its_own_sources(
+    pico, tmp_path, name, release, version, released
+):
+    (tmp_path / "os-release").write_text("ID=debian\n")
+    run = pico.shell(
+        f'os_release="{tmp_path}/os-release"; pico_releases "$(pico_sources_of {name})";'
+        f"pico_do {name} bash -c 'echo $MICROPY_GIT_TAG; date -ud @$SOURCE_DATE_EPOCH +%F;"
+        " echo $PYTHONHASHSEED'",
+        PICO_FILES,
+    )
+    assert run.stdout.split() == [release, f"v{version}", released, "0"], run.stderr
+
+
+def test_a_testing_that_has_moved_on_is_said_in_a_line_and_costs_nothing_else(pico):
+    gone = """
+        make_pico_sources() { pico_offers view micropython 1.26.1; }
+        packages_version() { echo 1.28.0-1; }
+    """
+    run = pico.shell(f"{PICO_STAND_IN} {gone} get_pico_firmware panel_hard", PICO_FILES)
+    assert run.returncode == 1
+    assert run.stderr.strip() == "micropython 1.26.1 is wanted there, and it has 1.28.0-1"
+    assert get_firmware(pico, "panel")[0]
+
+
+PORT = "    pico_platform\n    pico_platform_compiler\n    pico_platform_panic\n"
+
+
+@pytest.mark.parametrize(
+    "there", [PORT, PORT.replace("_compiler", "_common\n    pico_platform_compiler")]
+)
+def test_the_part_that_the_sdk_has_more_is_named_once(pico, tmp_path, there):
+    file = tmp_path / "CMakeLists.txt"
+    file.write_text(there)
+    run = pico.shell(f'name_common_part "{file}"', PICO_FILES)
+    assert run.returncode == 0, run.stderr
+    assert file.read_text().split() == [
+        f"pico_platform{part}" for part in ("", "_common", "_compiler", "_panic")
+    ]
+    file.write_text("another port\n")
+    assert pico.shell(f'name_common_part "{file}"', PICO_FILES).returncode == 1
 
 
 def have_firmware(machine):

@@ -10,7 +10,6 @@ rows.py has the bars. Runs on the Unix port, started by __main__.py; by hand
 
 import gc
 import json
-import os
 import sys
 import time
 
@@ -45,7 +44,6 @@ BOOT_MS = 5_000  # to the prompt; as files it takes longer
 ON_CHIP = "tools/benching/on_chip.py"
 MASTER_ON_CHIP = "tools/benching/master_on_chip.py"
 DEPLOYED = "build/deployed"  # the firmware as tools/deploy copies it onto a chip
-FOLDER = 0x4000  # kind of an entry of ilistdir
 LEARN_MS_A_DRIVE = 1_000  # for a drive that is not shown to tell its settings
 TELLS_FREE_MS = 2_000
 TELLS_FREE = (
@@ -514,20 +512,10 @@ def firmware_as(how, files=()):
     """Which program a chip has, "frozen" or as "files", and which other files beside it."""
     files = dict(files)
     if how == "files":
+        from tools.emulator.flash_image import files_in
+
         files.update(files_in(DEPLOYED))
     return {"program": "panel" if how == "frozen" else "stock", "files": files}
-
-
-def files_in(folder, within=""):
-    """{path: content} of all that is in a folder."""
-    files = {}
-    for name, kind, *_ in os.ilistdir(folder):
-        if kind == FOLDER:
-            files.update(files_in(folder + "/" + name, within + name + "/"))
-        else:
-            with open(folder + "/" + name, "rb") as file:
-                files[within + name] = file.read()
-    return files
 
 
 def picture(quick, baud, drives):

