@@ -129,11 +129,13 @@ class HardTimer:
     ONE_SHOT = Timer.ONE_SHOT
 
     def __init__(self, timer):
-        self._init = timer.init
+        self._timer = timer
         self.deinit = timer.deinit
 
     def init(self, mode, period, tick_hz, callback):
-        self._init(mode=mode, period=period, tick_hz=tick_hz, callback=callback, hard=True)
+        # By its name: a call of a bound `timer.init` takes heap for so many arguments.
+        timer = self._timer
+        timer.init(mode=mode, period=period, tick_hz=tick_hz, callback=callback, hard=True)
 
 
 def make_timer():
