@@ -40,6 +40,7 @@ PAGES_AT_HAND = (
 _OF_THE_SEARCH = (
     "search.search", "search.hunt", "search.words", "uss.finding.scan", "uss.finding.enquiry",
 )  # fmt: skip
+_FINDER = ("uss.finding", "uss.finding.mirror", "uss.finding.finder")
 _FAREWELL_STEPS = const(100)  # for the display to show that nothing is controlled any more
 _SAVE_AGAIN_MS = const(10_000)  # after the store failed
 _LONG_US = const(900)  # a step that has taken so long is not to do two more things
@@ -144,12 +145,18 @@ class App:
         if finder is None:
             # Most panels never need it.
             if self.bus.deadlines.silence.count >= _SILENCES or Drive.doubts != self._doubts:
-                finder = on_demand.load("uss.finding.finder").Finder
-                self._finder = finder(self.bus, self._mask, _enquirer)
+                self._load_finder()
             return
         found = finder.step(now_us)
         if found is not None:
             self._roster.note_layout(found)
+
+    def _load_finder(self):
+        """One of its modules; when all are there, the finder."""
+        missing = on_demand.missing(_FINDER)
+        module = on_demand.load(missing[0] if missing else _FINDER[-1])
+        if not missing:
+            self._finder = module.Finder(self.bus, self._mask, _enquirer)
 
     def _save_if_quiet(self, now_ms):
         """Writing flash holds everything up for a while, interrupts too: only when no drive runs,

@@ -33,6 +33,11 @@ def load(name):
     return sys.modules[name]
 
 
+def missing(names):
+    """Those of them that are not in memory."""
+    return [name for name in names if name not in sys.modules]
+
+
 def drop(name):
     """Forget it. Its memory is free as soon as nobody uses what was in it."""
     if name in _kept:
