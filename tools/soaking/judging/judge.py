@@ -82,7 +82,8 @@ class Judge:
         self._shares = Shares(witness)
         self._patience_us = SILENT_US + witness.exchange_us
         self._unsettled = []  # replies that may still be spoilt: row, case, whether it has stopped
-        self._is_question = False  # the last telegram asked a drive what it is
+        self._may_ask = False  # the last telegram may have asked a drive what it is,
+        self._is_question = False  # and has
         self._begun_us = None  # the power-on whose first telegram was judged last
         self._counted_us = 0
 
@@ -216,6 +217,8 @@ class Judge:
             is_doubtful = True
         misses = case.requests - case.heard_requests
         answers = case.answered_us > recently_us or not misses  # a round may take longer
+        if case.heard_us == case.told_us:  # an answer to a question is no contact yet
+            is_doubtful = answers = True
         if answers and (is_doubtful or not witness.is_able(address)):
             self._shares.mirror(case, now)
             return  # its answers may make no sense
@@ -245,6 +248,8 @@ class Judge:
             case.excused_us = now + 2 * S + self.witness.cycle_us
             case.heard_us = NEVER
         case.answered_us = now
+        if self._may_ask:
+            case.told_us = now
         case.unheard = 0
         case.asked_us = NEVER
         case.zsw = zsw
@@ -311,7 +316,8 @@ class Judge:
         case = self.cases[address]
         kind = self.witness.kinds[address]
         self.exchanges += 1
-        self._is_question = kind.may_ask(tape.count[row]) and self._asks(row, tape, kind)
+        self._may_ask = kind.may_ask(tape.count[row])
+        self._is_question = self._may_ask and self._asks(row, tape, kind)
         if self._is_question:
             self._shares.mirror(case, now)
             return
