@@ -7,13 +7,14 @@ function is a pytest item of its own: `uss/test_telegram.py::unix32::test_bcc_co
 `-k`, `-x`, node ids and the summary work as ever. A file that is not for every tier says so at
 module level:
 
-    INTERPRETERS = "unix64 unix32"      # a part of: unix64 unix32 coverage cpython
+    INTERPRETERS = "unix64 unix32"      # a part of: unix64 unix32 cpython
     INTERPRETERS = "pico"               # beside an emulated Pico: tools/emulator/world.py
     INTERPRETERS = "pico pico_again"    # ... whose UART behaves in either way the documents allow
     INTERPRETERS = "pico pico_hard"     # ... on both builds: with soft timers and with hard ones
     INTERPRETERS = "host"               # an ordinary pytest file, with fixtures and all
 
-Tracing lines makes a test some ten times slower. Long ones that run no line of their own stay out:
+On CPython the lines that run are noted, which takes twice the time. Long tests that run no line of
+their own are left out of that:
 
     NOT_TRACED = "test_every_baud_rate test_ten_minutes"
 """
@@ -157,15 +158,12 @@ class MicroPythonFile(pytest.File):
         unknown = [name for name in self.interpreters if name not in TIERS]
         if unknown:
             raise self.CollectError(f"INTERPRETERS names {unknown[0]!r}, which is not a tier")
-        not_traced = words(self.tree, "NOT_TRACED") or []
-        for name in not_traced:
+        for name in words(self.tree, "NOT_TRACED") or []:
             if name not in functions:
                 raise self.CollectError(f"NOT_TRACED names {name!r}, which is no test here")
-        traced = {name: functions[name] for name in functions if name not in not_traced}
         for name in self.interpreters:
             if name in self.config.stash[SURVEY].versions:
-                chosen = traced if name == "coverage" else functions
-                yield TierOfFile.from_parent(self, name=name, functions=chosen)
+                yield TierOfFile.from_parent(self, name=name, functions=functions)
 
     def functions(self):
         """Name -> line. What would silently not run as a test is refused."""

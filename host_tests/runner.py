@@ -19,16 +19,15 @@ import sys
 # function printed; the traceback stands between "raised" and "failed".
 MARK = "\x1e"
 
-# What each tier promises: implementation, bits of an integer that needs no heap, line tracing.
+# What each tier promises: implementation, bits of an integer that needs no heap.
 PROMISES = {
-    "unix64": ("micropython", 63, False),
-    "unix32": ("micropython", 31, False),
-    "coverage": ("micropython", 63, True),
-    "cpython": ("cpython", 0, True),
-    "pico": ("micropython", 63, False),
-    "pico_again": ("micropython", 63, False),
-    "pico_hard": ("micropython", 63, False),
-    "pico_hard_again": ("micropython", 63, False),
+    "unix64": ("micropython", 63),
+    "unix32": ("micropython", 31),
+    "cpython": ("cpython", 0),
+    "pico": ("micropython", 63),
+    "pico_again": ("micropython", 63),
+    "pico_hard": ("micropython", 63),
+    "pico_hard_again": ("micropython", 63),
 }
 
 # The tiers with an emulated Pico: which build of the firmware it has, what callbacks the timers of
@@ -64,7 +63,6 @@ COLLECT_AFTER = 4_000_000
 
 # Relative to the top of the tree, which is the working directory.
 IMPORT_FOLDERS = ("", "firmware", "host_tests/benches")
-TRACED_FOLDER = "firmware/"
 
 
 def main(tier, path=None, *names):
@@ -79,20 +77,19 @@ def main(tier, path=None, *names):
     if path is None:
         print(version)
         return
-    lines = None
-    if tier == "coverage":
-        leave_heap_unlocked()
-        lines = LineTracer()
+    tracer = LineTracer() if tier == "cpython" else NoTracer()
     if hasattr(gc, "threshold"):
         gc.threshold(COLLECT_AFTER)
     folder, _, file_name = path.rpartition("/")
     if folder not in IMPORT_FOLDERS:
         sys.path.insert(0, folder)
-    module = __import__(file_name[: -len(".py")])
+    with tracer:
+        module = __import__(file_name[: -len(".py")])
+    not_traced = getattr(module, "NOT_TRACED", "").split()
     for name in names or test_functions(module):
-        run(name, getattr(module, name))
-    if lines:
-        lines.report()
+        with NoTracer() if name in not_traced else tracer:
+            run(name, getattr(module, name))
+    tracer.report()
 
 
 def report(*words):
@@ -127,7 +124,7 @@ def search_path():
 
 def prove(tier):
     """Returns a line about the interpreter; ends the process when it is not as promised."""
-    found = (sys.implementation.name, small_integer_bits(), hasattr(sys, "settrace"))
+    found = (sys.implementation.name, small_integer_bits())
     if found != PROMISES[tier]:
         print("this is not %s: %r wanted, %r found" % (tier, PROMISES[tier], found))
         sys.exit(1)
@@ -230,56 +227,41 @@ def source_line(path, number):
 # ---- line coverage --------------------------------------------------------------------------
 
 
-def leave_heap_unlocked():
-    """Replaces heap_lock and heap_unlock by functions that do nothing.
+class NoTracer:
+    """Looks away."""
 
-    Tracing takes heap for every call, so code that runs with the heap locked would not be seen,
-    and that is the whole bus engine. What may not allocate is proven on unix64 and unix32.
-    """
-    import micropython
-
-    class Unlocked:
+    def __enter__(self):
         pass
 
-    for name in dir(micropython):
-        setattr(Unlocked, name, getattr(micropython, name))
-    Unlocked.heap_lock = Unlocked.heap_unlock = lambda: None
-    sys.modules["micropython"] = Unlocked
+    def __exit__(self, *_):
+        pass
+
+    def report(self):
+        pass
 
 
 class LineTracer:
-    """Notes which lines of the firmware ran, in a byte for each line."""
+    """Notes which lines of the firmware run inside of `with`, by the library `coverage`."""
 
     def __init__(self):
-        self.seen = {}  # file name -> a byte for each line
-        tracers = {}  # file name -> the tracer of its lines, None when it is not traced
+        from coverage import Coverage
 
-        def trace_call(frame, event, argument):
-            name = frame.f_code.co_filename
-            try:
-                return tracers[name]
-            except KeyError:
-                tracers[name] = self.line_tracer(name)
-                return tracers[name]
+        self.coverage = Coverage(None, config_file=False, source=["firmware"])
+        # A test that traces on its own account ends this; that is no news to anybody.
+        self.coverage.set_option("run:disable_warnings", ["trace-changed", "no-data-collected"])
 
-        sys.settrace(trace_call)
+    def __enter__(self):
+        self.coverage.start()
 
-    def line_tracer(self, name):
-        if not name.startswith(TRACED_FOLDER):
-            return None
-        with open(name) as source:
-            seen = self.seen[name] = bytearray(1 + sum(1 for _ in source))
-
-        def trace_line(frame, event, argument):
-            seen[frame.f_lineno] = 1
-            return trace_line
-
-        return trace_line
+    def __exit__(self, *_):
+        self.coverage.stop()
 
     def report(self):
-        sys.settrace(None)
-        for name, seen in self.seen.items():
-            report("lines", name, " ".join(str(line) for line, hit in enumerate(seen) if hit))
+        from os.path import relpath
+
+        seen = self.coverage.get_data()
+        for name in seen.measured_files():
+            report("lines", relpath(name), *map(str, seen.lines(name)))
 
 
 if __name__ == "__main__":

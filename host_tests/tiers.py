@@ -73,7 +73,6 @@ TIERS = {
     for tier in (
         Tier("unix64", _micropython("unix64"), "apt-get install micropython"),
         Tier("unix32", _micropython("unix32"), "apt-get install gcc-multilib make python3"),
-        Tier("coverage", _micropython("coverage"), "apt-get install gcc libc6-dev make python3"),
         Tier("cpython", (sys.executable, *CPYTHON_OPTIONS), ""),
         _pico("pico"),
         _pico("pico_again", twin="pico"),
@@ -136,7 +135,8 @@ class FileRun:
     """The run of functions of one file on one tier: in one process or, after a crash, in more.
 
     `publish(name, verdict)` is called once for every function, `note_lines(file, numbers)` with
-    the lines that the coverage tier saw run. `run` is for a thread; `stop` may come from another.
+    the lines that were seen to run on CPython. `run` is for a thread; `stop` may come from
+    another.
     """
 
     def __init__(self, tier, path, names, timeout_s, publish, note_lines):

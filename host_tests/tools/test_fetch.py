@@ -183,14 +183,14 @@ def test_what_would_silently_not_run_is_refused(run_pytest):
 
 
 def test_a_missing_tier_is_named_and_under_ci_it_is_a_failure(run_pytest, tmp_path):
-    (tmp_path / "without_coverage.py").write_text(without("coverage"))
+    (tmp_path / "without_unix32.py").write_text(without("unix32"))
     source = here("cpython") + "def test_a(): pass\n"
-    relaxed = run_pytest(source, "-p", "without_coverage")
+    relaxed = run_pytest(source, "-p", "without_unix32")
     assert relaxed.returncode == 0
-    assert "Not run: tier coverage (there is no /no/such/program)" in relaxed.stdout
-    assert "apt-get install gcc" in relaxed.stdout
+    assert "Not run: tier unix32 (there is no /no/such/program)" in relaxed.stdout
+    assert "apt-get install gcc-multilib" in relaxed.stdout
     for environment in ({"CI": "true"}, {"USS_STRICT": "1"}):
-        strict = run_pytest(source, "-p", "without_coverage", "-k", "test_a", **environment)
+        strict = run_pytest(source, "-p", "without_unix32", "-k", "test_a", **environment)
         assert strict.returncode == 1 and "FAILED" in strict.stdout
 
 
@@ -226,32 +226,32 @@ def test_an_interpreter_that_is_not_what_it_should_be_is_refused():
 # ---- line coverage --------------------------------------------------------------------------
 
 
-def test_only_statements_that_leave_code_count():
-    assert line_coverage.statements(
-        '"""Text."""\n'
-        "TABLE = (\n"  # 2
-        "    1,\n"
-        ")\n"
-        "@decorated\n"  # 5
-        "def function(a,\n"
-        "             b):\n"
-        '    """Text."""\n'
-        "    global c\n"
-        "    if a:\n"  # 10
-        "        pass\n"
-        "    while True:\n"
-        "        return b\n"  # 13
-    ) == {2: 4, 5: 7, 10: 10, 13: 13}
-
-
-def test_the_table_rounds_down_and_joins_neighbours(tmp_path):
+def test_the_table_names_lines_that_nothing_ran(tmp_path):
     (tmp_path / "firmware").mkdir()
-    (tmp_path / "firmware" / "a.py").write_text("a = 1\nb = 2\n\nc = 3\nd = 4\ne = 5\nf = 6\n")
+    (tmp_path / "firmware" / "a.py").write_text('"""Text."""\nb = 2\n\nc = 3\nd = 4\ne = 5\n')
+    (tmp_path / "firmware" / "never.py").write_text("a = 1\n")
     coverage = line_coverage.LineCoverage(tmp_path)
-    coverage.note("firmware/a.py", [1, 5])
-    _, row, total = coverage.report()
-    assert row.split(maxsplit=5) == ["firmware/a.py", "6", "2", "33", "%", "2-4, 6-7"]
-    assert total.split() == ["total", "6", "2", "33", "%"]
+    coverage.note("firmware/a.py", [1, 2])
+    coverage.note("firmware/a.py", [6])
+    rows = [row.split(maxsplit=4)[1:] for row in coverage.report()]
+    assert ["4", "2", "50%", "4-5"] in rows and ["1", "1", "0%", "1"] in rows, rows
+    assert rows[-1] == ["5", "3", "40%"]
+
+
+def test_the_lines_of_a_test_are_noted_unless_it_is_not_to_be_traced(run_pytest):
+    source = (
+        'INTERPRETERS = "cpython"\nfrom uss.timing import characters_us, elapsed\n'
+        "def test_a(): assert characters_us(9600, 1) == 1146\n"
+        "def test_b(): assert elapsed(3, 1, 255) == 2\n"
+    )
+
+    def lines_not_run(source):
+        run = run_pytest(source)
+        assert "2 passed" in run.stdout, run.stdout
+        row = next(row for row in run.stdout.splitlines() if "uss/timing.py" in row)
+        return int(row.split()[2])
+
+    assert lines_not_run(source + 'NOT_TRACED = "test_b"\n') == lines_not_run(source) + 2
 
 
 # ---- obtaining MicroPython ------------------------------------------------------------------

@@ -4,7 +4,6 @@
 #
 #   unix64     the one people use: 1.25 or newer, installed, or fetched
 #   unix32     small integers of 31 bits, as on the microcontrollers
-#   coverage   reports every line that it runs (sys.settrace)
 #
 # Each lands in build/NAME/micropython: a link to what is installed, a script that starts unpacked
 # packages, or a program built here.
@@ -41,7 +40,6 @@ ways_to() {
     case $1 in
         unix64) echo link_installed unpack_packages build_from_source ;;
         unix32) echo unpack_packages build_from_source ;;
-        coverage) echo build_from_source ;;
     esac
 }
 
@@ -175,25 +173,16 @@ compile() {
 }
 
 # Nothing is frozen in, so that no cross compiler has to be built first; and what the panel does
-# not use is left out, so that a C library is all that has to be installed. Without threads tracing
-# is twice as fast. git may not look above build/, or it would take the version of this tree for
-# that of MicroPython.
+# not use is left out, so that a C library is all that has to be installed. Built for speed and at a
+# fixed address, the tests take two thirds of the time on it. git may not look above build/, or it
+# would take the version of this tree for that of MicroPython.
 make_port() {
-    local name=$1 flags=-Wno-error settings=(
+    local name=$1 settings=(
         FROZEN_MANIFEST= MICROPY_PY_THREAD=0 MICROPY_PY_FFI=0 MICROPY_PY_BTREE=0
         MICROPY_PY_SSL=0 MICROPY_SSL_MBEDTLS=0
+        "COPT=-O2 -DNDEBUG" "CFLAGS_EXTRA=-Wno-error -fno-pie" LDFLAGS_EXTRA=-no-pie
     )
-    case $name in
-        unix32)
-            settings+=(MICROPY_FORCE_32BIT=1)
-            ;;
-        coverage)
-            # Constants stay statements that run. With 64 bytes a block of the heap, the frame
-            # that every call allocates is one block, which is found ten times faster than two.
-            flags+=' -DMICROPY_PY_SYS_SETTRACE=1 -DMICROPY_COMP_CONST=0'
-            flags+=' -DMICROPY_BYTES_PER_GC_BLOCK=64'
-            ;;
-    esac
+    [[ $name == unix32 ]] && settings+=(MICROPY_FORCE_32BIT=1)
     GIT_CEILING_DIRECTORIES=$build make -C "$2" -j"$(nproc)" \
-        "BUILD=build-$name" "CFLAGS_EXTRA=$flags" "${settings[@]}"
+        "BUILD=build-$name" "${settings[@]}"
 }
