@@ -65,6 +65,8 @@ def pytest_pycollect_makemodule(module_path, parent):
 
 @pytest.hookimpl(trylast=True)  # after -k and the like have taken their pick
 def pytest_collection_modifyitems(session, items):
+    # pytest runs the ordinary files itself: first, while the pool runs the others.
+    items.sort(key=lambda item: isinstance(item, Function))
     if strict():
         for tier, reason in session.config.stash[SURVEY].missing.items():
             if TIERS[tier].required:
@@ -259,7 +261,8 @@ class Failure:
 class Pool:
     """Runs the files ahead of pytest, as many at a time as there are processors.
 
-    pytest asks for verdict after verdict, in the order in which the files are run.
+    pytest runs the ordinary files meanwhile. Then it asks for verdict after verdict, in the order
+    in which the files are run.
     """
 
     def __init__(self, timeout_s):
