@@ -29,15 +29,15 @@ freeze("$(PORT_DIR)/modules", ("_boot.py", "_boot_fat.py", "rp2.py"))  # the por
 freeze("../../firmware", tuple(python_files("../../firmware")))
 freeze("..", ("chips/rp2.py",))
 
-# The catalogue's tables, as constants; `tools` is found from the top of the tree. What is frozen
+# The tables, as constants; `tools` is found from the top of the tree. What is frozen
 # is compiled after this file has been read.
 sys.path.insert(0, os.path.abspath("../.."))
 from tools.deploying import packing  # noqa: E402
 
 tables = tempfile.mkdtemp()
 atexit.register(shutil.rmtree, tables)
-os.mkdir(os.path.join(tables, "catalogue"))
-for path, source in packing.modules("../../firmware/catalogue").items():
+for path, source in packing.modules("../../firmware").items():
+    os.makedirs(os.path.join(tables, os.path.dirname(path)), exist_ok=True)
     with open(os.path.join(tables, path), "w") as file:
         file.write(source)
     freeze(tables, (path,))

@@ -61,6 +61,8 @@ timer                   of the chip: init(mode=timer.ONE_SHOT, period=us, tick_h
 
 display
     rows, columns       2 and 16
+    rom                 optional; the characters that it has: "A00", as if it were missing, or
+                        "A02", which has accented letters at the codes of ISO 8859-1
     define(glyphs)      before the first show: the pictures of character codes 0...7, 8 bytes each,
                         one for every row of dots from the top, bit 4 the leftmost of 5
     show(picture)       picture: bytearray of 32 character codes, row by row. Brings the display a

@@ -64,7 +64,7 @@ class Panel:
         self.selected = controls[0]
         self.announcer = Announcer(controls, mask)
         self.warning = DriveWarning(self.selected.drive, mask, self.selected.survey.family)
-        self.screen = screen = Screen()
+        self.screen = screen = Screen(getattr(board.display, "rom", "A00"))
         self.mask = mask
         self.message = None
         self.bus = bus
@@ -165,6 +165,7 @@ class Panel:
     def heed_settings(self, locked=False):
         """Settings that act at once have changed. locked: where they have a lock, it is closed."""
         settings = self.settings
+        texts.speak(settings.language)
         self.setpoint_step = settings.setpoint_step_centihertz
         keys = self._keys
         keys.pace(settings.key_delay_ms, settings.key_repeat_ms)

@@ -2,6 +2,8 @@
 """The picture that a display shows: two rows of sixteen character codes.
 
 Drawing writes into the picture and allocates nothing; a display driver finds the differences.
+Words come in ISO 8859-1, those of `texts` and those of the catalogue alike, and this is the only
+place that knows what the display has for their letters.
 
     screen.put(1, 0, 12, texts.RUNNING)         # in a field of 12, blanks after it
     screen.number(0, 2, 5, -1000, 2)            # -10.00 in a field of 5: "-10.0"
@@ -15,11 +17,27 @@ ROWS = const(2)
 COLUMNS = const(16)
 
 # Character codes with pictures of our own, 5 x 8 dots, and the pictures one after the other.
-BUSY, EDITS = range(2)
+BUSY, EDITS = range(2)  # 2, 3, 4: see the table below
 GLYPHS = bytes(
     (0x1F, 0x11, 0x0A, 0x04, 0x0A, 0x11, 0x1F, 0x00)  # an hourglass
     + (0x04, 0x0E, 0x15, 0x04, 0x04, 0x15, 0x0E, 0x04)  # an arrow up and down
+    + (0x0A, 0x00, 0x0E, 0x11, 0x1F, 0x11, 0x11, 0x00)  # A, O and U with two dots, which ROM A00 lacks
+    + (0x0A, 0x00, 0x0E, 0x11, 0x11, 0x11, 0x0E, 0x00)
+    + (0x0A, 0x00, 0x11, 0x11, 0x11, 0x11, 0x0E, 0x00)
 )
+
+# What the display has for the characters 80h...FFh of ISO 8859-1, by its ROM. A00, which most have:
+# a letter that it lacks goes without its accent. A02 has them where ISO 8859-1 has them.
+_OF_ROM_A00 = (
+    b"????????????????????????????????"
+    b"\x20!\xec\xed?\x5c|?\"ca<--R-"
+    b"\xdf?23'\xe4?\xa5,1o>????"
+    b"AAAA\x02AACEEEEIIII"
+    b"DNOOOO\x03xOUUU\x04YP\xe2"
+    b"aaaa\xe1aaceeeeiiii"
+    b"d\xeeoooo\xef\xfdouuu\xf5ypy"
+)
+_ACCENTED = const(0x80)  # the first of them
 
 _BLANK = const(0x20)
 _BLANKS = bytes((_BLANK,)) * COLUMNS
@@ -32,16 +50,22 @@ _DIVISORS = (100, 10, 1)  # of hundredths, by the decimals that are left
 
 
 class Screen:
-    """picture: a bytearray of ROWS * COLUMNS codes, row by row."""
+    """picture: a bytearray of ROWS * COLUMNS codes, row by row. rom: of the display, "A00" or
+    "A02".
+    """
 
-    def __init__(self):
+    def __init__(self, rom="A00"):
         self.picture = bytearray(b" " * (ROWS * COLUMNS))
+        self._codes = bytes(range(_ACCENTED, 0x100)) if rom == "A02" else _OF_ROM_A00
 
     def put(self, row, column, width, text):
-        """Write `text` (bytes) into a field of `width`, cut or filled with blanks on the right."""
+        """Write `text` into a field of `width`, cut or filled with blanks on the right.
+
+        text: bytes in ISO 8859-1, and below 8 the pictures of our own.
+        """
         at = row * COLUMNS + column
         count = min(len(text), width)
-        fast.copy(text, self.picture, at, count)
+        fast.translate(text, self.picture, at, count, self._codes)
         fast.copy(_BLANKS, self.picture, at + count, width - count)
 
     def number(self, row, column, width, hundredths, decimals):
@@ -77,8 +101,14 @@ class Screen:
 
     def rows(self):
         """Both rows as text, for people and tests."""
-        text = "".join(chr(code) for code in self.picture)
+        text = "".join(self._letter(code) for code in self.picture)
         return text[:COLUMNS], text[COLUMNS:]
+
+    def _letter(self, code):
+        """As `put` was given it."""
+        of_rom = code < _BLANK or code >= _ACCENTED
+        place = self._codes.find(bytes((code,))) if of_rom else -1
+        return chr(code if place < 0 else _ACCENTED + place)
 
     def _digits(self, at, width, digits, decimals, negative):
         """Write `digits`, a point before the last `decimals`; False when the field is short."""

@@ -7,14 +7,17 @@ In use:
     screen.put(1, 0, 12, texts.of(notice))          # and asks for its words when it shows them
     texts.of(texts.SET_TO_LIMIT, 50, 0)             # with what belongs into it
 
-So the language may change at any time. A further one is one more column of LANGUAGES; what has no
-word in it is said in English. Words are bytes, because a display takes character codes and
-indexing bytes allocates nothing.
+So the language may change at any time. `languages.tsv` has a column for each; who adds a text adds
+its row there. What has none is said in English. Words are bytes, one for each character, in
+ISO 8859-1 (`screen` knows the display), because indexing bytes allocates nothing.
 """
 
-LANGUAGES = {"English": {}}  # by name: English words -> those of the language
+import on_demand
 
-_spoken = LANGUAGES["English"]
+_ENGLISH = {}
+
+_language = "en"
+_spoken = _ENGLISH  # has the words of a text: get(text, text)
 
 
 def of(text, *values):
@@ -29,9 +32,15 @@ def filled(parts, *values):
 
 
 def speak(language):
-    """From now on every text is in this one of LANGUAGES."""
-    global _spoken
-    _spoken = LANGUAGES[language]
+    """From now on every text is in this language, as the settings name it: "en", "de"."""
+    global _language, _spoken
+    if language == _language:
+        return
+    _language, _spoken = language, _ENGLISH
+    if language != "en":
+        _spoken = on_demand.load("panel.languages").Language(language)
+    else:
+        on_demand.drop("panel.languages")
 
 
 NOTHING = b""

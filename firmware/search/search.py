@@ -42,7 +42,7 @@ class Search:
         names = board.keypad.names
         self._keys = keys = keys_of(names, mask)
         self._acts = Acts(keys)
-        self.screen = Screen()
+        self.screen = Screen(getattr(board.display, "rom", "A00"))
         board.display.define(GLYPHS)
         self._state = OFFER
         self._all_rates = False
@@ -194,4 +194,6 @@ class Search:
         mark = texts.of(words.TAKEN if one in self._taken else words.NOT_TAKEN)
         state = texts.of(texts.FOUND_STATES[one.state])
         first = b"A%d %d %s" % (one.address, one.baud, family)
-        return first, b"%-6s %-5s %s" % (layout, state, mark)
+        second = b"%-5s %s" % (state, mark)
+        room = texts.ROW_WIDTH - len(second) - 1
+        return first, b"%s%s %s" % (layout, b" " * (room - len(layout)), second)

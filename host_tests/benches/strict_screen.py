@@ -15,8 +15,8 @@ BLANK = 0x20
 
 
 class StrictScreen(Screen):
-    def __init__(self):
-        Screen.__init__(self)
+    def __init__(self, rom="A00"):
+        Screen.__init__(self, rom)
         self._drawn = bytearray(ROWS * COLUMNS)  # 1: in this picture, and no blank
 
     def put(self, row, column, width, text):

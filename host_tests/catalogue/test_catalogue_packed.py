@@ -43,8 +43,9 @@ def firmware_without_tables(folder):
     (folder / "catalogue").mkdir()
     for name in ("catalogue/__init__.py", "catalogue/packed.py", "on_demand.py"):
         (folder / name).write_bytes((TOP / "firmware" / name).read_bytes())
-    for path, source in packing.modules(TOP / "firmware/catalogue").items():
-        (folder / path).write_text(source)
+    for path, source in packing.modules(TOP / "firmware").items():
+        if path.startswith("catalogue/"):
+            (folder / path).write_text(source)
     return folder
 
 

@@ -21,7 +21,7 @@ from tools.deploying.targets import TARGETS, USUAL, chip_of
 MAIN = "main.py"
 BOARD = "board.py"
 STAY_SOURCE = (MAIN, BOARD)
-TABLE = ".tsv"  # of the catalogue, which is read row by row
+TABLE = ".tsv"  # of the catalogue, of the languages: read row by row
 CHIPS = re.compile(rb"^(?:from|import) chips(?:\.| import )(\w+)", re.MULTILINE)
 
 # Header of an .mpy file (MicroPython, py/persistentcode.c): "M", version, features, bits of a

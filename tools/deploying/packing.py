@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: MIT
-"""The tables of the catalogue as modules to be frozen, which firmware/catalogue/packed.py reads.
+"""The tables as modules to be frozen, which firmware/catalogue/packed.py and
+firmware/panel/languages.py read.
 
-    modules(top / "firmware/catalogue")     # {"catalogue/table_mm440.py": text}
+    modules(top / "firmware")               # {"catalogue/table_mm440.py": text}
 
 A frozen constant stays in the flash, of which the file system leaves little. So the rows are
-compressed, in blocks, so that a search need not unpack what stands before a row.
+compressed, in blocks, so that a search need not unpack what stands before a row. The words of the
+languages are looked for while a motor runs, and stay as they are.
 """
 
 import struct
@@ -15,12 +17,20 @@ BLOCK_BYTES = 2048
 WINDOW_BITS = 11
 
 
-def modules(folder):
+def modules(firmware):
     """{path in the firmware: source} of every table in this folder."""
-    return {
+    tables = {
         f"catalogue/table_{path.stem}.py": module(path.read_bytes())
-        for path in sorted(Path(folder).glob("*.tsv"))
+        for path in sorted(Path(firmware, "catalogue").glob("*.tsv"))
     }
+    path = Path(firmware, "panel/languages.tsv")
+    return tables | {f"panel/table_{path.stem}.py": as_it_is(path.read_bytes())}
+
+
+def as_it_is(table):
+    """The source of the module for the words of the languages: the rows that have any."""
+    rows = [row for row in table.splitlines(keepends=True) if b"\t" in row and row[:1] != b"#"]
+    return f"TABLE = {b''.join(rows)!r}\n"
 
 
 def module(table):

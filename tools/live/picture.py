@@ -39,6 +39,14 @@ STAND_INS = {
     "\u2190": "<",
     "\u00a5": "Y",  # the ROM's yen sign
     "\u00b0": "o",
+    "\u00c4": "A",  # umlauts: a letter has one place
+    "\u00d6": "O",
+    "\u00dc": "U",
+    "\u00e4": "a",
+    "\u00f6": "o",
+    "\u00fc": "u",
+    "\u00df": "s",
+    "\u00b5": "u",
 }
 
 # The shaft, seen from its end, turning to the right. The mark shows it behind a gear, as slow as
@@ -157,12 +165,14 @@ class Picture:
         )
 
     def _written(self, line):
-        if self._boxes:
-            return line
-        return "".join(
-            character if ord(character) < 0x80 else STAND_INS.get(character, "?")
-            for character in line
-        )
+        return line if self._boxes else in_ascii(line)
+
+
+def in_ascii(line):
+    """A line for a terminal without UTF-8, as wide as it is."""
+    return "".join(
+        character if ord(character) < 0x80 else STAND_INS.get(character, "?") for character in line
+    )
 
 
 def prompt(command):

@@ -24,7 +24,8 @@ from boards.sim.world import World
 from hal.store import FileStore
 from settings_file import SIZE_MAX, load, save
 from strict_json import fields
-from tools.live.terminal_panel import live
+from tools.live.picture import in_ascii
+from tools.live.terminal_panel import live, shows_boxes
 from uss.telegram import NODE_MAX
 from uss.timing import BAUD_RATES
 
@@ -588,9 +589,14 @@ def tell_notices(world):
 
 def show(line):
     try:
-        print(line)
+        print(legible(line, 1))
     except OSError as error:
         raise StreamError(error)
+
+
+def legible(line, descriptor):
+    """The line as a person can read it there. What goes into a file or a pipe is UTF-8."""
+    return line if shows_boxes(os.getenv) or not isatty(descriptor) else in_ascii(line)
 
 
 def run_script(world, name):
@@ -663,7 +669,7 @@ def judged(world):
 
 def complain(message, status=0):
     """A line on standard error; answers the status."""
-    print("panel: %s" % message, file=sys.stderr)
+    print(legible("panel: %s" % message, 2), file=sys.stderr)
     return status
 
 

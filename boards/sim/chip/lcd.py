@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The display's controller as a chip: an HD44780U with ROM A00, 2 x 16, on four data lines.
+"""The display's controller as a chip: an HD44780U with ROM A00 or A02, 2 x 16, on four data lines.
 
 It takes nibbles from pins, executes instructions, keeps its memory while the microcontroller
 resets, and complains about what the data sheet forbids (Hitachi, ADE-207-272). It is as slow as
@@ -43,13 +43,20 @@ NO_CELL = "a character was written to an address that does not exist"
 
 UNREADABLE = "▒"
 
-# ROM A00 where it differs from ASCII, for the characters in use.
-ROM = {0x5C: "¥", 0x7E: "→", 0x7F: "←", 0xDF: "°", 0xFF: "█"}
+# ROM A00 where it differs from ASCII, for the characters in use. Table 4 of the data sheet.
+ROM = {
+    0x5C: "¥", 0x7E: "→", 0x7F: "←", 0xA5: "·", 0xDF: "°", 0xE1: "ä", 0xE2: "ß", 0xE4: "µ",
+    0xEE: "ñ", 0xEF: "ö", 0xF5: "ü", 0xFD: "÷", 0xFF: "█",
+}  # fmt: skip
+A02_ACCENTED = 0xA0  # from here on ROM A02 has the characters of ISO 8859-1, as good as
 
 # What a person sees in the dots of a character that the firmware has drawn itself.
 LOOKS = {
     bytes((0x1F, 0x11, 0x0A, 0x04, 0x0A, 0x11, 0x1F, 0x00)): "⧗",
     bytes((0x04, 0x0E, 0x15, 0x04, 0x04, 0x15, 0x0E, 0x04)): "↕",
+    bytes((0x0A, 0x00, 0x0E, 0x11, 0x1F, 0x11, 0x11, 0x00)): "Ä",
+    bytes((0x0A, 0x00, 0x0E, 0x11, 0x11, 0x11, 0x0E, 0x00)): "Ö",
+    bytes((0x0A, 0x00, 0x11, 0x11, 0x11, 0x11, 0x0E, 0x00)): "Ü",
 }
 
 
@@ -68,7 +75,7 @@ class _Line:
 
 
 class Lcd:
-    """clock: of the world. Power comes now.
+    """clock: of the world. rom: "A00" or "A02". Power comes now.
 
     ddram, cgram        80 characters, 40 for each row; 8 rows of dots for each of 8 characters
     characters, dots    how many bytes were written to each
@@ -79,7 +86,8 @@ class Lcd:
                         byte whose low one has not come, or -1
     """
 
-    def __init__(self, clock):
+    def __init__(self, clock, rom="A00"):
+        self.rom = rom
         self.ddram = bytearray(2 * ROW_LENGTH)
         self.cgram = bytearray(64)
         self.characters = 0
@@ -311,7 +319,9 @@ class Lcd:
         )
 
     def _look(self, code):
-        if code in ROM:
+        if self.rom == "A02" and code >= A02_ACCENTED:
+            return chr(code)
+        if code in ROM and self.rom == "A00":
             return ROM[code]
         if 0x20 <= code < 0x7E:
             return chr(code)

@@ -44,7 +44,15 @@ SETTINGS = (  # the rate comes first: `contact`
     ("key_delay_ms", b"KEY WAIT %s ms", 0, True),
     ("key_repeat_ms", b"KEY RATE %s ms", 0, True),
     ("light_minutes", b"LIGHT %s min", 0, True),
+    ("language", b"LANG. %s", 0, True),
 )
+CHOICES = {  # values that are no numbers: how each reads. A language reads as it calls itself
+    "OFF3": b"OFF3",
+    "OFF2": b"OFF2",
+    "none": b"none",
+    "en": b"English",
+    "de": b"Deutsch",
+}
 LIGHT_STAYS = b"LIGHT STAYS ON"  # light_minutes is 0
 SET_KEEPS = b"UP DOWN SET=KEEP"
 KEPT = b"KEPT"
@@ -117,7 +125,7 @@ def reading(row, value):
     if name == "light_minutes" and not value:
         return texts.of(LIGHT_STAYS)
     if isinstance(value, str):
-        value = value.encode()
+        value = texts.of(CHOICES[value])
     elif decimals:
         value = b"%d.%02d" % (value // 100, value % 100)
     else:

@@ -12,7 +12,7 @@ from version import VERSION
 _SHOWN_MS = const(800)
 
 # Shown after power-on, both rows: the panel's STOP goes over a wire and through two processors.
-SPLASH = (b"USS %s IS NO" % VERSION.encode(), b"EMERGENCY STOP")
+SPLASH = (b"USS %s IS NO", b"EMERGENCY STOP")  # with the version in it
 
 SETTINGS_DAMAGED = b"SETTINGS DAMAGED"  # defaults are used for what is wrong
 # What is wrong, said after it: the name of a setting, as far as it fits, or this of the file.
@@ -66,5 +66,5 @@ class Splash(Page):
                 self.panel.say(now_ms, texts.REFUSED_EARLY)
 
     def draw(self, screen, now_ms):
-        for row in range(len(SPLASH)):
-            screen.put(row, 0, texts.ROW_WIDTH, texts.of(SPLASH[row]))
+        screen.put(0, 0, texts.ROW_WIDTH, texts.of(SPLASH[0], VERSION.encode()))
+        screen.put(1, 0, texts.ROW_WIDTH, texts.of(SPLASH[1]))

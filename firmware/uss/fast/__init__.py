@@ -11,13 +11,15 @@ what each of them means).
 try:
     from uss.fast.viper import (
         agreeing, calling, copy, exclusive_or, frame, get_words, greatest, is_reply, reply_about,
+        translate,
     )  # fmt: skip
 except (ImportError, AttributeError, NameError, SyntaxError, ValueError):
     from uss.fast.python import (
         agreeing, calling, copy, exclusive_or, frame, get_words, greatest, is_reply, reply_about,
+        translate,
     )  # fmt: skip
 
 __all__ = (
     "agreeing", "calling", "copy", "exclusive_or", "frame", "get_words", "greatest", "is_reply",
-    "reply_about",
+    "reply_about", "translate",
 )  # fmt: skip

@@ -60,6 +60,13 @@ def copy(source, target, at, count):
         target[at + index] = source[index]
 
 
+def translate(source, target, at, count, codes):
+    """As `copy`, with codes[character - 128] in place of each character from 128 on."""
+    for index in range(count):
+        code = source[index]
+        target[at + index] = codes[code - 128] if code >= 128 else code
+
+
 def greatest(values, at, count, start):
     """The number of the greatest of `count` characters from values[at:] on; -1 if all are 0.
 

@@ -78,6 +78,17 @@ def copy(source: ptr8, target: ptr8, at: int, count: int):
 
 
 @micropython.viper
+def translate(source: ptr8, target: ptr8, at: int, count: int, codes: ptr8):
+    index = 0
+    while index < count:
+        code = source[index]
+        if code >= 128:
+            code = codes[code - 128]
+        target[at + index] = code
+        index += 1
+
+
+@micropython.viper
 def greatest(values: ptr8, at: int, count: int, start: int) -> int:
     found = -1
     highest = 0

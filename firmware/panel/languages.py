@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: MIT
+"""The words of a language that is not English, read one by one from `languages.tsv`.
+
+    German = Language("de")
+    German.get(b"RUNNING", b"RUNNING")          # b"L\xc4UFT", in ISO 8859-1
+
+A row of the table is a text in English and its words in every other language, which the first row
+names; where these are missing, the text is in English. The table stays in flash: what was shown
+last is kept, and any other text costs a search of some milliseconds, once.
+"""
+
+from io import BytesIO
+
+from micropython import const
+
+import on_demand
+
+_KEPT = const(24)  # more than a page and what is announced meanwhile have
+_PIECE = const(256)
+_ROW_MAX = const(128)  # bytes of a row
+
+
+class Language:
+    """name: as the first row of the table has it."""
+
+    def __init__(self, name):
+        self._name = name.encode()
+        self._kept = {}
+
+    def get(self, text, _):
+        """The words of a text, as that of a dictionary."""
+        words = self._kept.get(text)
+        if words is None:
+            try:
+                words = self._read(text) or text
+                if len(self._kept) >= _KEPT:
+                    self._kept.clear()
+                self._kept[text] = words
+            except (OSError, MemoryError):  # better in English than not at all
+                words = text
+        return words
+
+    def _read(self, text):
+        with _table() as table:
+            names = _row(table)
+            table.seek(0)
+            if self._name in names and _find(table, b"\n%s\t" % text):
+                cells = _row(table)
+                column = names.index(self._name)
+                if column < len(cells):
+                    return bytes([ord(letter) for letter in cells[column].decode()])
+        return text
+
+
+def _table():
+    """As a stream of bytes: a file, or what is frozen into the firmware."""
+    try:
+        return open(__file__.rpartition("/")[0] + "/languages.tsv", "rb")
+    except OSError:
+        return BytesIO(on_demand.load("panel.table_languages").TABLE)
+
+
+def _row(table):
+    """The cells of the row that begins here."""
+    return table.read(_ROW_MAX).split(b"\n", 1)[0].split(b"\t")
+
+
+def _find(table, wanted):
+    """Whether that stands there; what is read next follows its first byte."""
+    # Piece by piece in the same bytes: whatever a search takes from the heap is to be collected.
+    overlap = len(wanted)
+    window = bytearray(overlap + _PIECE)
+    whole = memoryview(window)
+    room = whole[overlap:]
+    while True:
+        count = table.readinto(room)
+        if not count:
+            return False
+        end = overlap + count
+        found = window.find(wanted, 0, end)
+        if found >= 0:
+            table.seek(found + 1 - end, 1)
+            return True
+        whole[:overlap] = whole[count:end]
