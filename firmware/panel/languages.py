@@ -18,6 +18,7 @@ import on_demand
 _KEPT = const(24)  # more than a page and what is announced meanwhile have
 _PIECE = const(256)
 _ROW_MAX = const(128)  # bytes of a row
+_FAILURES = (OSError, MemoryError)  # a tuple that is made when there is no memory raises anew
 
 
 class Language:
@@ -36,7 +37,7 @@ class Language:
                 if len(self._kept) >= _KEPT:
                     self._kept.clear()
                 self._kept[text] = words
-            except (OSError, MemoryError):  # better in English than not at all
+            except _FAILURES:  # better in English than not at all
                 words = text
         return words
 

@@ -21,7 +21,16 @@ BUSY, EDITS = range(2)  # 2, 3, 4: see the table below
 GLYPHS = bytes(
     (0x1F, 0x11, 0x0A, 0x04, 0x0A, 0x11, 0x1F, 0x00)  # an hourglass
     + (0x04, 0x0E, 0x15, 0x04, 0x04, 0x15, 0x0E, 0x04)  # an arrow up and down
-    + (0x0A, 0x00, 0x0E, 0x11, 0x1F, 0x11, 0x11, 0x00)  # A, O and U with two dots, which ROM A00 lacks
+    + (
+        0x0A,
+        0x00,
+        0x0E,
+        0x11,
+        0x1F,
+        0x11,
+        0x11,
+        0x00,
+    )  # A, O and U with two dots, which ROM A00 lacks
     + (0x0A, 0x00, 0x0E, 0x11, 0x11, 0x11, 0x0E, 0x00)
     + (0x0A, 0x00, 0x11, 0x11, 0x11, 0x11, 0x0E, 0x00)
 )
@@ -30,7 +39,7 @@ GLYPHS = bytes(
 # a letter that it lacks goes without its accent. A02 has them where ISO 8859-1 has them.
 _OF_ROM_A00 = (
     b"????????????????????????????????"
-    b"\x20!\xec\xed?\x5c|?\"ca<--R-"
+    b'\x20!\xec\xed?\x5c|?"ca<--R-'
     b"\xdf?23'\xe4?\xa5,1o>????"
     b"AAAA\x02AACEEEEIIII"
     b"DNOOOO\x03xOUUU\x04YP\xe2"

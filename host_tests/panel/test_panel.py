@@ -8,9 +8,8 @@ START asks, STOP promises, and becomes of it when something fails is in the file
 import main
 import settings_file as settings
 from boards.sim.world import World
-from panel import texts
 from panel.pages import splash
-from panel_bench import OFF1, ON, panel, row_1, row_2, running, starts, telegrams, unsupervised
+from panel_bench import OFF1, ON, panel, row_1, row_2, running, starts, telegrams
 from version import VERSION
 
 NOT_TRACED = (
@@ -35,27 +34,6 @@ def test_a_second_later_it_shows_setpoint_frequency_state_and_address():
     world = panel()
     assert world.lcd() == ("S: 10.0 F:  0.00", "READY        A1 ")
     world.check()
-
-
-def test_the_language_changes_while_the_panel_runs():
-    german = {texts.READY: b"BEREIT", texts.LINE_FAILED: b"LEITUNG WEG"}
-    world = running(**unsupervised())
-    world.drives[1].unplug()
-    world.run(4000)
-    world.drives[1].plug()
-    world.run(12000)
-    assert row_2(world) == "LINE FAILED  A1", world.lcd()
-    texts.LANGUAGES["Deutsch"] = german
-    try:
-        texts.speak("Deutsch")
-        world.run(200)
-        assert row_2(world) == "LEITUNG WEG  A1"  # also what was noted before
-        world.press("STOP")
-        world.run(1000)
-        assert row_2(world) == "BEREIT       A1"
-    finally:
-        texts.speak("English")
-        del texts.LANGUAGES["Deutsch"]
 
 
 def test_the_display_works_a_week_after_power_on_as_well():

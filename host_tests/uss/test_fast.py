@@ -10,7 +10,7 @@ from uss.fast import python
 ROUNDS = 3000
 NAMES = (
     "exclusive_or", "is_reply", "agreeing", "get_words", "copy", "greatest", "frame", "calling",
-    "reply_about",
+    "reply_about", "translate",
 )  # fmt: skip
 
 
