@@ -18,7 +18,8 @@ import on_demand
 _KEPT = const(24)  # more than a page and what is announced meanwhile have
 _PIECE = const(256)
 _ROW_MAX = const(128)  # bytes of a row
-_FAILURES = (OSError, MemoryError)  # a tuple that is made when there is no memory raises anew
+# The table is missing or damaged, or there is no memory: not even for this tuple, if made then.
+_FAILURES = (OSError, ImportError, ValueError, MemoryError)
 
 
 class Language:

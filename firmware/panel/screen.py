@@ -35,8 +35,8 @@ GLYPHS = bytes(
     + (0x0A, 0x00, 0x11, 0x11, 0x11, 0x11, 0x0E, 0x00)
 )
 
-# What the display has for the characters 80h...FFh of ISO 8859-1, by its ROM. A00, which most have:
-# a letter that it lacks goes without its accent. A02 has them where ISO 8859-1 has them.
+# What the display has for the characters 80h...FFh of ISO 8859-1. Most have ROM A00: a letter that
+# it lacks goes without its accent. ROM A02 has them where ISO 8859-1 has them.
 _OF_ROM_A00 = (
     b"????????????????????????????????"
     b'\x20!\xec\xed?\x5c|?"ca<--R-'

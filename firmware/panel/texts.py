@@ -36,11 +36,14 @@ def speak(language):
     global _language, _spoken
     if language == _language:
         return
-    _language, _spoken = language, _ENGLISH
+    _language, _spoken = "en", _ENGLISH
+    on_demand.drop("panel.languages")
     if language != "en":
-        _spoken = on_demand.load("panel.languages").Language(language)
-    else:
-        on_demand.drop("panel.languages")
+        try:
+            _spoken = on_demand.load("panel.languages").Language(language)
+            _language = language
+        except (ImportError, MemoryError):
+            pass  # better in English than not at all
 
 
 NOTHING = b""

@@ -14,9 +14,8 @@ import settings_file as settings
 import version
 from boards.sim.script import COMMANDS
 from panel import texts
-from panel.menu import words
-from panel.pages import parameter_words, splash
-from search import words as search_words
+from panel.pages import splash
+from text_bench import named, parts
 from tiers import TOP
 from tools.live import virtual_panel
 
@@ -137,28 +136,18 @@ def pattern(text):
     return re.sub("%0?[0-9]?d", r"\\d+", r"\s*".join(words)).replace("%s", ".+").replace("%%", "%")
 
 
-def every_text(thing):
-    """All texts in the module in English, in whatever they stand: bytes, tuples, dictionaries."""
-    if isinstance(thing, bytes):
-        yield thing
-    elif isinstance(thing, (tuple, dict)) and thing is not texts.LANGUAGES:
-        for value in thing.values() if isinstance(thing, dict) else thing:
-            yield from every_text(value)
-
-
 def test_every_text_of_the_display_is_explained():
     said = section(PANEL, "What the display says")
-    modules = (texts, splash, parameter_words, words, search_words)
-    found = [text for module in modules for text in every_text(vars(module))]
-    found = [row for row in found if row and row not in splash.SPLASH]
+    found = [text for _, _, value in named() for text in parts(value)]
+    found = [row for row in found if row not in splash.SPLASH]
     assert len(found) > 100
     missing = [text for text in found if not re.search(pattern(text), said)]
     assert not missing
 
 
 def test_the_splash_is_where_it_is_seen_first():
-    first, second = (texts.of(row).decode() for row in splash.SPLASH)
-    assert version.VERSION in first
+    first = texts.of(splash.SPLASH[0], version.VERSION.encode()).decode()
+    second = splash.SPLASH[1].decode()
     assert f"`{first}` / `{second}`" in section(PICO, "First power-on")
 
 

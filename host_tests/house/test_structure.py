@@ -10,6 +10,7 @@ import sys
 
 import pytest
 
+import text_bench
 from conftest import strict
 from tiers import TOP
 
@@ -330,6 +331,28 @@ def test_every_module_of_the_firmware_says_what_it_is():
     for path in python_files("firmware") + python_files("boards"):
         with open(os.path.join(TOP, path), encoding="utf-8") as source:
             assert ast.get_docstring(ast.parse(source.read())), path
+
+
+def texts_in(source):
+    """The words of capitals among the bytes of a module, as a display shows them."""
+    return [
+        node.value
+        for node in ast.walk(ast.parse(source))
+        if isinstance(node, ast.Constant)
+        and isinstance(node.value, bytes)
+        and re.search(rb"[A-Z]{3}", node.value)
+    ]
+
+
+def test_every_text_of_the_display_is_in_a_module_that_is_translated():
+    known = {module.__name__.replace(".", "/") for module in text_bench.MODULES}
+    for folder in ("firmware/panel", "firmware/search"):
+        for path in python_files(folder):
+            module = path.removeprefix("firmware/").removesuffix(".py")
+            if module not in known:
+                source = (TOP / path).read_text(encoding="utf-8")
+                assert not texts_in(source), f"{path}: text_bench.MODULES does not have it"
+    assert texts_in('SAID = (b"RUNNING", b"A%d")') == [b"RUNNING"]
 
 
 def test_the_package_of_the_protocol_lists_its_modules():

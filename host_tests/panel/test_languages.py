@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""The languages of the panel: every text has words in each, they fit, and it changes while it runs.
+"""The languages of the panel: every text has words in each, and they fit. An operator chooses one
+while the panel runs.
 
 If you add a text, add its row to firmware/panel/languages.tsv, and here, if its place is narrower
 than a row, how wide that is, and if numbers belong into it, the widest of these.
@@ -7,6 +8,7 @@ than a row, how wide that is, and if numbers belong into it, the widest of these
 
 import json
 import sys
+from io import BytesIO
 
 from micropython import heap_lock, heap_unlock
 
@@ -14,6 +16,8 @@ import catalogue
 import on_demand
 import settings_file
 from boards.sim.chip.lcd import ROM
+from boards.sim.script import Script
+from hal.display.hd44780 import Hd44780
 from panel import texts
 from panel.languages import Language
 from panel.menu import words as menu_words
@@ -22,6 +26,8 @@ from panel.screen import GLYPHS, Screen
 from panel_bench import panel, row_1, row_2, running, said, starts, unsupervised
 from search import words as search_words
 from text_bench import columns, named, parts, rows
+from tools.live.hand import Hand
+from tools.live.picture import Picture
 from uss import families
 from version import VERSION
 
@@ -34,11 +40,11 @@ ROW_MAX = 128  # bytes: what is read of a row of the table
 ORDINARY = {texts: ROW, splash: ROW, parameter_words: ROW, menu_words: ENTRY, search_words: ROW}
 NARROW = {  # by module: names, place
     texts: (
-        ("NO_CONTACT LINE_NOISE OTHER_LENGTH WRONG_DRIVE WRONG_CHECK DRIVER_STUCK UART_BROKEN", STATE),
-        ("LINE_LOW DEFECTS CHECKING NOT_READY READY STARTING RUNNING RUNS_FOR_EVER RUNS_LONG", STATE),
-        ("RUNS_FASTER STOPPING JOGS_RIGHT JOGS_LEFT INHIBITED LOCAL RUNS_LOCALLY", STATE),
-        ("STATUS_UNKNOWN LINE_FAILED PANEL_HUNG ENGINE_FAILED STOPPED_ITSELF DID_NOT_START", STATE),
-        ("TAKEN_AWAY DRIVE_RESET UNSUPERVISED MAY_RUN", STATE),
+        ("NO_CONTACT LINE_NOISE OTHER_LENGTH WRONG_DRIVE WRONG_CHECK DRIVER_STUCK", STATE),
+        ("UART_BROKEN LINE_LOW DEFECTS CHECKING NOT_READY READY STARTING RUNNING", STATE),
+        ("RUNS_FOR_EVER RUNS_LONG RUNS_FASTER STOPPING JOGS_RIGHT JOGS_LEFT INHIBITED", STATE),
+        ("LOCAL RUNS_LOCALLY STATUS_UNKNOWN LINE_FAILED PANEL_HUNG ENGINE_FAILED", STATE),
+        ("STOPPED_ITSELF DID_NOT_START TAKEN_AWAY DRIVE_RESET UNSUPERVISED MAY_RUN", STATE),
         ("FAULT WARNING", STATE - len(" F01910")),
         ("FAULT_LETTER WARNING_LETTER ADDRESS PERCENT MENU_MARK", 1),
         ("SETPOINT HERTZ", 2),
@@ -192,6 +198,8 @@ def test_every_text_fits_its_place_in_every_language():
                 values = most(text)
                 shown = words % values if values else words
                 assert 0 < len(shown) <= width, (language, name, shown, width)
+                if name in ("PARAMETER", "READ_PARAMETER"):
+                    assert len(shown) == width, "the number is written into it"
                 seen += 1
     assert seen > 400, seen
 
@@ -268,16 +276,17 @@ def test_what_has_no_words_is_in_english():
 
 def test_without_the_table_all_is_in_english():
     module = on_demand.load("panel.languages")
-    usual = module._table
 
-    def broken():
-        raise OSError(5)
+    def missing(path, mode):
+        raise OSError(2)
 
-    module._table = broken
-    try:
+    def damaged(path, mode):
+        return BytesIO(b"en\tde\nRUNNING\tL\xc3\xc3UFT\n")
+
+    for module.open in (missing, damaged):
         assert module.Language("de").get(b"RUNNING", b"") == b"RUNNING"
-    finally:
-        module._table = usual
+    del module.open
+    assert module.Language("de").get(b"RUNNING", b"") == b"L\xc4UFT"
 
 
 def test_what_was_found_is_kept_and_takes_no_memory():
@@ -538,19 +547,34 @@ def test_a_text_of_the_catalogue_is_shown_with_the_same_letters():
     screen = world.app.panel.screen
     screen.put(0, 0, 16, name)
     assert screen.rows()[0] == "Rücklaufzeit    "
-    world.app.panel.step = world.app.step_panel = lambda *_: True  # nothing else is drawn
+    world.app.step_panel = lambda *_: True  # nothing else is drawn
     world.run(200)
     assert row_1(world) == "Rücklaufzeit    ", world.lcd()
 
 
 def test_every_umlaut_is_on_a_display_with_either_rom():
-    words = bytes([ord(letter) for letter in "ÄÖÜäöüß°µ"])
+    letters = "ÄÖÜäöüß°µ"
     for rom in ("A00", "A02"):
+        Hd44780.rom = rom  # as a board file says of its display
         world = panel()
+        del Hd44780.rom
         world.lcd_chip.rom = rom
-        world.app.panel.screen._codes = Screen(rom)._codes
-        world.app.panel.screen.put(0, 0, 16, words)
-        world.app.step_panel = lambda *_: True
+        world.app.panel.screen.put(0, 0, ROW, bytes([ord(letter) for letter in letters]))
+        world.app.step_panel = lambda *_: True  # nothing else is drawn
         world.run(200)
-        assert row_1(world).rstrip() == "ÄÖÜäöüß°µ", (rom, world.lcd())
-        assert world.app.panel.screen.rows()[0].rstrip() == "ÄÖÜäöüß°µ"
+        assert row_1(world).rstrip() == letters, (rom, world.lcd())
+        assert world.app.panel.screen.rows()[0].rstrip() == letters
+
+
+def test_a_script_reads_umlauts_and_prints_them():
+    world = german()
+    press(world, "START")
+    world.run(4000)
+    shown = []
+    script = Script(world, "script", shown.append)
+    script.run(["expect LÄUFT", "lcd"])
+    assert shown[1] == "|LÄUFT        A1 |", shown
+    picture = Picture(world, Hand(world), boxes=True).lines([], [])
+    assert any(["LÄUFT        A1" in line for line in picture])
+    picture = Picture(world, Hand(world), boxes=False).lines([], [])
+    assert any(["LAUFT        A1" in line for line in picture])

@@ -70,7 +70,7 @@ def test_the_picture_has_the_size_of_the_display():
 
 
 def test_letters_are_those_of_iso_8859_1():
-    """Capital umlauts are pictures of the panel's own; what the ROM lacks goes without its accent."""
+    """Capital umlauts are pictures of the panel's own; other letters may lose their accent."""
     screen = Screen()
     screen.put(0, 0, 16, b"\xc4\xd6\xdc\xe4\xf6\xfc\xdf \xb0\xb5 \xe9\xc7\xa7")
     assert bytes(screen.picture[:14]) == b"\x02\x03\x04\xe1\xef\xf5\xe2 \xdf\xe4 eC?"

@@ -238,6 +238,7 @@ def test_a_person_can_read_the_file():
         "{\n"
         '  "baud": 19200,\n'
         '  "second_stop": "OFF3",\n'
+        '  "language": "en",\n'
         '  "reply_timeout_ms": 20,\n'
         '  "lost_ms": 1000,\n'
         '  "setpoint_centihertz": 1000,\n'
@@ -257,13 +258,13 @@ def test_a_person_can_read_the_file():
 
 
 def test_what_a_newer_firmware_stored_is_kept():
-    newer = {"language": "de", "baud": 9600, "motors": {"1": ["a", None]}, "pi": 3.141592653589793}
+    newer = {"colour": "red", "baud": 9600, "motors": {"1": ["a", None]}, "pi": 3.141592653589793}
     store = stored(newer)
     chosen = settings.load(store)
     assert chosen.complaint is None
     settings.save(store, chosen)
     again = json.loads(store.read())
-    assert (again["language"], again["motors"]) == ("de", {"1": ["a", None]})
+    assert (again["colour"], again["motors"]) == ("red", {"1": ["a", None]})
     assert b"3.141592653589793" in store.read(), "also where numbers have fewer digits"
     assert again["baud"] == 9600
 

@@ -70,6 +70,16 @@ def test_every_character_code_has_a_look():
     bench = started()
     bench.letters(b"A\x5cz{|}\x7e\x7f\xdf\xff\x00\x10\x80\xa1\xe0 ")
     assert bench.lcd.text()[0] == "A¥z{|}→←°█▒▒▒▒▒ "
+    bench.command(0x80)
+    bench.letters(b"\xe1\xef\xf5\xe2\xe4\xee\xfd\xa5")
+    assert bench.lcd.text()[0][:8] == "äöüßµñ÷·"
+
+
+def test_rom_a02_has_the_letters_of_europe():
+    bench = started()
+    bench.lcd.rom = "A02"
+    bench.letters(b"\x5c~\xc4\xd6\xdc\xe4\xf6\xfc\xdf\xe9")
+    assert bench.lcd.text()[0] == "\\~ÄÖÜäöüßé      "
 
 
 def test_a_character_of_ones_own_is_known_by_its_dots():

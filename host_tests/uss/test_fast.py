@@ -171,6 +171,22 @@ def test_characters_are_copied_to_the_same_place():
         assert copied[:at] == before[:at] and copied[at + count :] == before[at + count :]
 
 
+def test_characters_from_128_on_are_translated():
+    random.seed(14)
+    in_python = python.translate
+    codes = characters(128)
+    for _ in range(ROUNDS // 10):
+        source, before = characters(20), characters(40)
+        at, count = random.randrange(20), random.randrange(21)
+        written, expected = bytearray(before), bytearray(before)
+        fast.translate(source, written, at, count, codes)
+        in_python(source, expected, at, count, codes)
+        assert written == expected
+        assert written[:at] == before[:at] and written[at + count :] == before[at + count :]
+    fast.translate(b"A\x7f\x80\xff", written, 0, 4, codes)
+    assert written[:4] == bytes((0x41, 0x7F, codes[0], codes[127]))
+
+
 def test_micropython_has_the_machine_code():
     """Or the comparisons above would compare a function with itself."""
     has_viper = True

@@ -323,7 +323,7 @@ class Lcd:
             return chr(code)
         if code in ROM and self.rom == "A00":
             return ROM[code]
-        if 0x20 <= code < 0x7E:
+        if 0x20 <= code < 0x7E or code == 0x7E and self.rom == "A02":
             return chr(code)
         if code < 0x10:
             first = (code & 7) * 8
