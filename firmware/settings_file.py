@@ -29,7 +29,7 @@ UNREADABLE, TOO_BIG, NO_JSON = "unreadable", "too big", "no JSON"
 CHOICES = (  # name, default, what it may be, meaning
     ("baud", 19200, BAUD_RATES, "bit/s"),
     ("second_stop", "OFF3", ("OFF3", "OFF2", "none"), "what holding STOP for 1.5 s sends"),
-    ("language", "en", ("en", "de"), "of the display: columns of panel/languages.tsv"),
+    ("language", "en", ("en", "de"), "of the display: columns of panel/languages/words.tsv"),
 )
 LIMITS = ("lowest_centihertz", "highest_centihertz")  # of the setpoint: never crossed
 NUMBERS = (  # name, default, lowest, highest, meaning

@@ -18,7 +18,7 @@
     announcer   what has to be said of drives besides what the page tells, one after the other
     screen      the picture of 2 x 16 characters
     texts       every word that can be seen
-    languages   the same words in another language, from languages.tsv
+    languages   the same words in another language, from languages/words.tsv
 
 Knows no pins and no telegram bytes; time is an argument.
 """

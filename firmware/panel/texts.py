@@ -7,9 +7,9 @@ In use:
     screen.put(1, 0, 12, texts.of(notice))          # and asks for its words when it shows them
     texts.of(texts.SET_TO_LIMIT, 50, 0)             # with what belongs into it
 
-So the language may change at any time. `languages.tsv` has a column for each; who adds a text adds
-its row there. What has none is said in English. Words are bytes, one for each character, in
-ISO 8859-1 (`screen` knows the display), because indexing bytes allocates nothing.
+So the language may change at any time. `languages/words.tsv` has a column for each; who adds a
+text adds its row there. What has none is said in English. Words are bytes, one for each character,
+in ISO 8859-1 (`screen` knows the display), because indexing bytes allocates nothing.
 """
 
 import on_demand

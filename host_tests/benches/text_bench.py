@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Every text of the panel, and the rows of `languages.tsv` that say it in other languages.
+"""Every text of the panel, and the rows of `languages/words.tsv` that say it in other languages.
 
 A module that has texts stands in MODULES; host_tests/house/test_structure.py finds one that is
 missing.
@@ -11,7 +11,7 @@ from panel.pages import parameter_words, splash
 from search import words as search_words
 
 MODULES = (texts, splash, parameter_words, menu_words, search_words)
-TABLE = "firmware/panel/languages.tsv"
+TABLE = "firmware/panel/languages/words.tsv"
 
 
 def named():

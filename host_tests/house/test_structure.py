@@ -35,6 +35,7 @@ RULES = (
     ("firmware/uss/s7", ("uss",), ("struct", "array", "micropython")),
     ("firmware/uss/tasks", ("uss",), ("struct", "array", "micropython")),
     ("firmware/panel", ("panel", "on_demand", "uss", "version"), ("micropython",)),
+    ("firmware/panel/languages", ("on_demand",), ("io", "micropython")),
     ("firmware/hal", ("hal",), ("micropython",)),
     ("firmware/hal/display/rp2_", ("hal",), ("micropython", "rp2")),  # only this chip has it
     ("firmware/hal/link/rp2_", ("hal",), ("micropython", "array", "rp2")),
@@ -341,6 +342,7 @@ def texts_in(source):
         if isinstance(node, ast.Constant)
         and isinstance(node.value, bytes)
         and re.search(rb"[A-Z]{3}", node.value)
+        and len(node.value) < 32  # no table of characters
     ]
 
 

@@ -2,8 +2,8 @@
 """The languages of the panel: every text has words in each, and they fit. An operator chooses one
 while the panel runs.
 
-If you add a text, add its row to firmware/panel/languages.tsv, and here, if its place is narrower
-than a row, how wide that is, and if numbers belong into it, the widest of these.
+If you add a text, add its row to firmware/panel/languages/words.tsv, and here, if its place is
+narrower than a row, how wide that is, and if numbers belong into it, the widest of these.
 """
 
 import json
@@ -250,7 +250,7 @@ def test_the_settings_offer_the_columns_of_the_table():
 
 
 def test_a_row_is_read_as_a_whole():
-    with open("firmware/panel/languages.tsv", "rb") as table:
+    with open("firmware/panel/languages/words.tsv", "rb") as table:
         for line in table:
             assert len(line) <= ROW_MAX, line
 

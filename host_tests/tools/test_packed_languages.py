@@ -26,8 +26,8 @@ for text in %r:
 def test_a_firmware_file_says_the_same(tmp_path, tier):
     if not (TOP / "build" / tier / "micropython").exists():
         pytest.skip("no " + tier)
-    (tmp_path / "panel").mkdir()
-    for name in ("panel/__init__.py", "panel/languages.py", "on_demand.py"):
+    (tmp_path / "panel/languages").mkdir(parents=True)
+    for name in ("panel/__init__.py", "panel/languages/__init__.py", "on_demand.py"):
         (tmp_path / name).write_bytes((TOP / "firmware" / name).read_bytes())
     for path, source in packing.modules(TOP / "firmware").items():
         if path.startswith("panel/"):
@@ -43,5 +43,5 @@ def test_a_firmware_file_says_the_same(tmp_path, tier):
 
 def test_deploying_copies_the_table_as_it_is():
     firmware = Firmware.read(TOP, "pico")
-    path = "panel/languages.tsv"
+    path = "panel/languages/words.tsv"
     assert firmware.files(0)[path] == (TOP / "firmware" / path).read_bytes()

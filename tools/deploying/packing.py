@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The tables as modules to be frozen, which firmware/catalogue/packed.py and
-firmware/panel/languages.py read.
+firmware/panel/languages/__init__.py read.
 
     modules(top / "firmware")               # {"catalogue/table_mm440.py": text}
 
@@ -23,8 +23,8 @@ def modules(firmware):
         f"catalogue/table_{path.stem}.py": module(path.read_bytes())
         for path in sorted(Path(firmware, "catalogue").glob("*.tsv"))
     }
-    path = Path(firmware, "panel/languages.tsv")
-    return tables | {f"panel/table_{path.stem}.py": as_it_is(path.read_bytes())}
+    words = Path(firmware, "panel/languages/words.tsv").read_bytes()
+    return tables | {"panel/languages/table.py": as_it_is(words)}
 
 
 def as_it_is(table):

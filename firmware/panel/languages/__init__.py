@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The words of a language that is not English, read one by one from `languages.tsv`.
+"""The words of a language that is not English, read one by one from `words.tsv`.
 
     German = Language("de")
     German.get(b"RUNNING", b"RUNNING")          # b"L\xc4UFT", in ISO 8859-1
@@ -57,9 +57,9 @@ class Language:
 def _table():
     """As a stream of bytes: a file, or what is frozen into the firmware."""
     try:
-        return open(__file__.rpartition("/")[0] + "/languages.tsv", "rb")
+        return open(__file__.rpartition("/")[0] + "/words.tsv", "rb")
     except OSError:
-        return BytesIO(on_demand.load("panel.table_languages").TABLE)
+        return BytesIO(on_demand.load("panel.languages.table").TABLE)
 
 
 def _row(table):
