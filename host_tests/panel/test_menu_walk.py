@@ -139,7 +139,7 @@ def press_stop(world, where):
     pressed_us = world.clock.now_us
     was_question = not row_2(world).startswith(">")
     world.down("STOP")
-    world.run(400)
+    world.run(500)  # said from 300 ms on, and then drawn and shown
     assert world.reads("STOP, HOLD: OFF3"), (where, world.lcd())
     world.up("STOP")
     offs = [at_us for at_us, stw in telegrams(world, pressed_us, 1) if stw == OFF1]
