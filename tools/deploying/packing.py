@@ -4,9 +4,9 @@ firmware/panel/languages/__init__.py read.
 
     modules(top / "firmware")               # {"catalogue/table_mm440.py": text}
 
-A frozen constant stays in the flash, of which the file system leaves little. So the rows are
-compressed, in blocks, so that a search need not unpack what stands before a row. The words of the
-languages are looked for while a motor runs, and stay as they are.
+A frozen constant stays in the flash, of which the file system leaves little. So the rows of
+the catalogue are compressed, in blocks, so that a search need not unpack what stands before a row;
+the words of the languages, which are few, as a whole.
 """
 
 import struct
@@ -15,6 +15,7 @@ from pathlib import Path
 
 BLOCK_BYTES = 2048
 WINDOW_BITS = 11
+WORDS_WINDOW_BITS = 9
 
 
 def modules(firmware):
@@ -24,13 +25,13 @@ def modules(firmware):
         for path in sorted(Path(firmware, "catalogue").glob("*.tsv"))
     }
     words = Path(firmware, "panel/languages/words.tsv").read_bytes()
-    return tables | {"panel/languages/table.py": as_it_is(words)}
+    return tables | {"panel/languages/table.py": words_module(words)}
 
 
-def as_it_is(table):
+def words_module(table):
     """The source of the module for the words of the languages: the rows that have any."""
     rows = [row for row in table.splitlines(keepends=True) if b"\t" in row and row[:1] != b"#"]
-    return f"TABLE = {b''.join(rows)!r}\n"
+    return f"PACKED = {deflated(b''.join(rows), WORDS_WINDOW_BITS)!r}\n"
 
 
 def module(table):
@@ -40,9 +41,13 @@ def module(table):
     head, *rows = [line for line in table.splitlines(keepends=True) if not line.startswith(b"#")]
     for first, block in blocks(rows):
         index += struct.pack("<II", first, len(packed))
-        packer = zlib.compressobj(9, zlib.DEFLATED, -WINDOW_BITS)
-        packed += packer.compress(block) + packer.flush()
+        packed += deflated(block, WINDOW_BITS)
     return f"HEAD = {head!r}\nBLOCKS = {packed!r}\nINDEX = {index!r}\n"
+
+
+def deflated(data, window_bits):
+    packer = zlib.compressobj(9, zlib.DEFLATED, -window_bits)
+    return packer.compress(data) + packer.flush()
 
 
 def blocks(rows):

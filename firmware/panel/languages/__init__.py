@@ -18,6 +18,7 @@ import on_demand
 _KEPT = const(24)  # more than a page and what is announced meanwhile have
 _PIECE = const(256)
 _ROW_MAX = const(128)  # bytes of a row
+_WINDOW_BITS = const(9)  # of packing.py
 # The table is missing or damaged, or there is no memory: not even for this tuple, if made then.
 _FAILURES = (OSError, ImportError, ValueError, MemoryError)
 
@@ -26,8 +27,15 @@ class Language:
     """name: as the first row of the table has it."""
 
     def __init__(self, name):
-        self._name = name.encode()
         self._kept = {}
+        self._column = 0  # there are no words in it
+        try:
+            with _table() as table:
+                names = _cells(table.read(_ROW_MAX))
+            if name.encode() in names:
+                self._column = names.index(name.encode())
+        except _FAILURES:
+            pass
 
     def get(self, text, _):
         """The words of a text, as that of a dictionary."""
@@ -44,13 +52,9 @@ class Language:
 
     def _read(self, text):
         with _table() as table:
-            names = _row(table)
-            table.seek(0)
-            if self._name in names and _find(table, b"\n%s\t" % text):
-                cells = _row(table)
-                column = names.index(self._name)
-                if column < len(cells):
-                    return bytes([ord(letter) for letter in cells[column].decode()])
+            cells = _find(table, b"\n%s\t" % text) if self._column else ()
+        if self._column < len(cells):
+            return bytes([ord(letter) for letter in cells[self._column].decode()])
         return text
 
 
@@ -59,16 +63,19 @@ def _table():
     try:
         return open(__file__.rpartition("/")[0] + "/words.tsv", "rb")
     except OSError:
-        return BytesIO(on_demand.load("panel.languages.table").TABLE)
+        from deflate import RAW, DeflateIO
+
+        table = on_demand.load("panel.languages.table")
+        return DeflateIO(BytesIO(table.PACKED), RAW, _WINDOW_BITS)
 
 
-def _row(table):
-    """The cells of the row that begins here."""
-    return table.read(_ROW_MAX).split(b"\n", 1)[0].split(b"\t")
+def _cells(row):
+    """The cells of a row, and of nothing that comes after it."""
+    return row.split(b"\n", 1)[0].split(b"\t")
 
 
 def _find(table, wanted):
-    """Whether that stands there; what is read next follows its first byte."""
+    """The cells of the row that begins like this, behind the end of the one before; or none."""
     # Piece by piece in the same bytes: whatever a search takes from the heap is to be collected.
     overlap = len(wanted)
     window = bytearray(overlap + _PIECE)
@@ -77,10 +84,9 @@ def _find(table, wanted):
     while True:
         count = table.readinto(room)
         if not count:
-            return False
+            return ()
         end = overlap + count
         found = window.find(wanted, 0, end)
         if found >= 0:
-            table.seek(found + 1 - end, 1)
-            return True
+            return _cells(bytes(whole[found + 1 : end]) + table.read(_ROW_MAX))
         whole[:overlap] = whole[count:end]
