@@ -6,16 +6,16 @@ firmware/panel/languages/__init__.py read.
 
 A frozen constant stays in the flash, of which the file system leaves little. So the rows of
 the catalogue are compressed, in blocks, so that a search need not unpack what stands before a row;
-the words of the languages, which are few, as a whole.
+the words of the languages, which are looked for while a motor runs, only lack the English texts.
 """
 
 import struct
 import zlib
+from itertools import accumulate
 from pathlib import Path
 
 BLOCK_BYTES = 2048
 WINDOW_BITS = 11
-WORDS_WINDOW_BITS = 9
 
 
 def modules(firmware):
@@ -25,13 +25,29 @@ def modules(firmware):
         for path in sorted(Path(firmware, "catalogue").glob("*.tsv"))
     }
     words = Path(firmware, "panel/languages/words.tsv").read_bytes()
-    return tables | {"panel/languages/table.py": words_module(words)}
+    return tables | words_modules(words)
 
 
-def words_module(table):
-    """The source of the module for the words of the languages: the rows that have any."""
-    rows = [row for row in table.splitlines(keepends=True) if b"\t" in row and row[:1] != b"#"]
-    return f"PACKED = {deflated(b''.join(rows), WORDS_WINDOW_BITS)!r}\n"
+def words_modules(table):
+    """{path in the firmware: source} of the words of each language. No text stands in there, but
+    its check sum.
+    """
+    (_, *names), *rows = [
+        line.split("\t") for line in table.decode().splitlines() if not line.startswith("#")
+    ]
+    sources = {}
+    for column, name in enumerate(names, 1):
+        said = [(row[0].encode(), row[column]) for row in rows if row[column:] and row[column]]
+        keys = [zlib.crc32(text) for text, _ in said]
+        assert len(set(keys)) == len(keys)
+        words = [words.encode("latin-1") for _, words in said]
+        ends = accumulate(map(len, words), initial=0)
+        sources[f"panel/languages/words_{name}.py"] = (
+            f"KEYS = {struct.pack(f'<{len(keys)}I', *keys)!r}\n"
+            f"PLACES = {struct.pack(f'<{len(keys) + 1}H', *ends)!r}\n"
+            f"WORDS = {b''.join(words)!r}\n"
+        )
+    return sources
 
 
 def module(table):
@@ -41,13 +57,9 @@ def module(table):
     head, *rows = [line for line in table.splitlines(keepends=True) if not line.startswith(b"#")]
     for first, block in blocks(rows):
         index += struct.pack("<II", first, len(packed))
-        packed += deflated(block, WINDOW_BITS)
+        packer = zlib.compressobj(9, zlib.DEFLATED, -WINDOW_BITS)
+        packed += packer.compress(block) + packer.flush()
     return f"HEAD = {head!r}\nBLOCKS = {packed!r}\nINDEX = {index!r}\n"
-
-
-def deflated(data, window_bits):
-    packer = zlib.compressobj(9, zlib.DEFLATED, -window_bits)
-    return packer.compress(data) + packer.flush()
 
 
 def blocks(rows):

@@ -5,11 +5,13 @@
     German.get(b"RUNNING", b"RUNNING")          # b"L\xc4UFT", in ISO 8859-1
 
 A row of the table is a text in English and its words in every other language, which the first row
-names; where these are missing, the text is in English. The table stays in flash: what was shown
-last is kept, and any other text costs a search of some milliseconds, once.
+names; where these are missing, the text is in English. A firmware file has the table as modules,
+which tools/deploying/packing.py makes: `words_de`. Either stays in flash. What was shown last is
+kept; any other text costs a search, once, of some milliseconds in a file.
 """
 
-from io import BytesIO
+from binascii import crc32
+from struct import pack, unpack_from
 
 from micropython import const
 
@@ -18,7 +20,7 @@ import on_demand
 _KEPT = const(24)  # more than a page and what is announced meanwhile have
 _PIECE = const(256)
 _ROW_MAX = const(128)  # bytes of a row
-_WINDOW_BITS = const(9)  # of packing.py
+
 # The table is missing or damaged, or there is no memory: not even for this tuple, if made then.
 _FAILURES = (OSError, ImportError, ValueError, MemoryError)
 
@@ -29,11 +31,15 @@ class Language:
     def __init__(self, name):
         self._kept = {}
         self._column = 0  # there are no words in it
+        self._module = None
         try:
-            with _table() as table:
-                names = _cells(table.read(_ROW_MAX))
-            if name.encode() in names:
-                self._column = names.index(name.encode())
+            try:
+                with _table() as table:
+                    names = _cells(table.read(_ROW_MAX))
+                if name.encode() in names:
+                    self._column = names.index(name.encode())
+            except OSError:
+                self._module = on_demand.load("panel.languages.words_" + name)
         except _FAILURES:
             pass
 
@@ -51,22 +57,19 @@ class Language:
         return words
 
     def _read(self, text):
+        if self._module:
+            return _unpacked(self._module, text)
+        if not self._column:
+            return text
         with _table() as table:
-            cells = _find(table, b"\n%s\t" % text) if self._column else ()
+            cells = _find(table, b"\n%s\t" % text)
         if self._column < len(cells):
             return bytes([ord(letter) for letter in cells[self._column].decode()])
         return text
 
 
 def _table():
-    """As a stream of bytes: a file, or what is frozen into the firmware."""
-    try:
-        return open(__file__.rpartition("/")[0] + "/words.tsv", "rb")
-    except OSError:
-        from deflate import RAW, DeflateIO
-
-        table = on_demand.load("panel.languages.table")
-        return DeflateIO(BytesIO(table.PACKED), RAW, _WINDOW_BITS)
+    return open(__file__.rpartition("/")[0] + "/words.tsv", "rb")
 
 
 def _cells(row):
@@ -90,3 +93,17 @@ def _find(table, wanted):
         if found >= 0:
             return _cells(bytes(whole[found + 1 : end]) + table.read(_ROW_MAX))
         whole[:overlap] = whole[count:end]
+
+
+def _unpacked(module, text):
+    """KEYS are the check sums of the texts, 4 bytes each; PLACES where their WORDS begin, 2 bytes
+    each, and one more.
+    """
+    key = pack("<I", crc32(text))
+    at = module.KEYS.find(key)
+    while at > 0 and at & 3:
+        at = module.KEYS.find(key, at + 1)
+    if at < 0:
+        return text
+    first, end = unpack_from("<HH", module.PLACES, at >> 1)
+    return module.WORDS[first:end]
