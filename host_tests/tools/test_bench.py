@@ -9,6 +9,9 @@ import json
 import subprocess
 import sys
 
+import pytest
+
+from conftest import strict
 from tiers import TOP
 from tools.benching import report, rows
 
@@ -76,9 +79,55 @@ def test_every_task_is_a_measurement_that_exists_and_has_a_row():
         node.name: len(node.args.args) for node in tree.body if isinstance(node, ast.FunctionDef)
     }
     for task in rows.TASKS:
-        assert arguments[task.name] == len(task.command), task  # quick stands for the name
+        if not task.beside:
+            assert arguments[task.name] == len(task.command), task  # quick stands for the name
         assert [row for row in rows.ROWS if row.task == task], task
     assert {row.task for row in rows.ROWS} == set(rows.TASKS)
+
+
+def test_a_run_on_the_host_alone_leaves_what_was_measured_on_the_chip():
+    first = report.page(judged({"it": 5}), ["old"], "2026-01-31", "./tools/bench", False)
+    host = report.judge([HOST], {ON_HOST: {"it": 77}})
+    later = report.with_host(first, host, ["new"], "2026-02-01", "./tools/bench --host", False)
+    assert later.count("## On the chip") == later.count("## On this host") == 1
+    assert "| a duration | <= 5 | 5 | met |" in later
+    assert "| a speed | >= 5 | 77 | met |" in later and "| 9 |" not in later
+    assert later.index("2026-01-31") < later.index("On this host") < later.index("2026-02-01")
+    again = report.with_host(later, host, ["new"], "2026-02-01", "./tools/bench --host", False)
+    assert again == later
+
+
+def library_figures(exchange_us, fastest_us):
+    figures = {name: {"parse_us": 30.0, "exchange_us": 90.0} for name in rows.OTHERS}
+    figures["UModbus"]["exchange_us"] = fastest_us
+    figures["Uss"] = {"parse_us": 10.0, "exchange_us": exchange_us}
+    return figures
+
+
+def test_the_library_is_held_against_the_fastest_of_the_others():
+    for exchange_us, fastest_us, verdict in ((10.0, 30.0, "met"), (10.0, 29.9, "NOT MET")):
+        figures = {rows.LIBRARIES: library_figures(exchange_us, fastest_us)}
+        lines = report.judge([row for row in rows.ROWS if row.task.beside], figures)
+        told = {line.row.what: line for line in lines}
+        assert told["an exchange, this library"].verdict == verdict
+        assert told["a reply parsed, this library"].verdict == "met"
+        assert told["an exchange, PyModbus"].figure == "90.0 us: 9.0 times ours"
+        assert report.status(lines) == 0
+        assert "### Beside other libraries" in report.page(lines, [], "", "", False)
+
+
+def test_the_library_can_be_measured_beside_the_others():
+    """Each reads the right values, and none from a spoilt reply, or this ends with an error."""
+    interpreter = TOP / "build" / "libraries" / "bin" / "python"
+    if not interpreter.exists() and not strict():
+        pytest.skip("the other libraries are not here: tools/bench --host fetches them")
+    measure = [interpreter, "-I", "-B", BENCH / "libraries.py", "quick", "libraries"]
+    done = subprocess.run(measure, cwd=TOP, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stderr
+    figures = json.loads(done.stdout)
+    assert figures.keys() == {"Uss", *rows.OTHERS}
+    for name, told in figures.items():
+        assert told["parse_us"] > 0 and told["exchange_us"] > 0, name
 
 
 def test_what_is_measured_on_the_host_alone_can_be_measured():
@@ -137,6 +186,13 @@ def test_the_bars_of_the_line_are_where_the_design_puts_them():
 def test_a_command_line_that_cannot_be_understood_is_status_2():
     assert bench() == (0, "")
     assert bench("--quick", "--only", "stop", "--only", "boot") == (0, "")
-    for arguments in (("--only",), ("--only", "coffee"), ("--fast",), ("stop",)):
+    assert bench("--host", "--only", "libraries") == (0, "")
+    for arguments in (
+        ("--host", "--only", "stop"),
+        ("--only",),
+        ("--only", "coffee"),
+        ("--fast",),
+        ("stop",),
+    ):
         status, said = bench(*arguments)
         assert status == 2 and "usage: tools/bench" in said, arguments

@@ -16,6 +16,7 @@ from boards.sim.world import World
 from fleet_bench import Fleet
 from uss import pkw, pzd
 from uss.drive import ATTENTION, Drive
+from uss.fast import python
 from uss.layout import Layout
 from uss.master import Master
 from uss.outside import Broadcast, Mirror, Special
@@ -240,6 +241,19 @@ def test_a_drive_takes_less_than_600_bytes():
     used = taken(lambda: [Drive(1, MASK, shared) for _ in range(100)]) / 100
     print("%d bytes" % used)
     assert used < 600 * WORD // 4
+
+
+def test_the_loops_without_machine_code_take_no_heap():
+    """A port that compiles none runs these in interrupts."""
+    request, received = bytearray(24), bytearray(64)
+    micropython.heap_lock()
+    try:
+        python.frame(request, 24, 1)
+        python.copy(request, received, 0, 24)
+        answers = python.is_reply(received, 24, request)
+    finally:
+        micropython.heap_unlock()
+    assert not answers and received[:24] == request
 
 
 def test_a_drive_that_is_doubted_takes_no_more():

@@ -41,6 +41,15 @@ def test_the_exclusive_or_is_the_same():
     assert fast.exclusive_or(b"", 0) == 0 and fast.exclusive_or(b"\x02\xd6", 2) == 0xD4
 
 
+def test_a_whole_buffer_is_summed_up_as_any_part_of_it():
+    random.seed(12)
+    in_python = python.exclusive_or
+    for _ in range(ROUNDS):
+        count = random.randrange(257)
+        buffer = characters(count)
+        assert in_python(buffer, count) == in_python(buffer + b"\xa5", count), buffer
+
+
 def test_the_rows_are_found_in_which_somebody_calls():
     random.seed(18)
     in_python = python.calling

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: MIT
 """tools/bench: measures, prints one table, writes it into tools/bench.md.
 
-    python3 tools/benching [--only NAME ...] [--quick]
+    python3 tools/benching [--host] [--only NAME ...] [--quick]
 
-Every measurement is a separate process (measurements.py); two run at a time. This program knows no
-chip, and leaves the judging to rows.py. Standard library only, CPython 3.11 or newer.
+Every measurement is a separate process (measurements.py, libraries.py); two run at a
+time. This program knows no chip, and leaves the judging to rows.py. Standard library only, CPython
+3.11 or newer.
 """
 
 import argparse
@@ -28,6 +29,7 @@ LAUNCH = [sys.executable, "-I", "-B", "tools/emulator/launch.py"]
 MICROPYTHON = ["build/unix64/micropython", "-X"]
 HEAPS = {True: "heapsize=64M", False: "heapsize=16M"}  # beside a chip; alone, as tools/panel
 PROGRAM = "tools/benching/measurements.py"
+LIBRARIES = ["build/libraries/bin/python", "-I", "-B", "tools/benching/libraries.py"]
 OUTPUT = TOP / "tools" / "bench.md"
 AT_A_TIME = 2
 TIMEOUT_S = 900  # of one measurement; the longest takes five minutes on a slow machine
@@ -40,6 +42,11 @@ def parser():
         epilog="Exit status: 0 all bars of the chip hold, 1 one does not, 2 wrong arguments.",
     )
     arguments.add_argument(
+        "--host",
+        action="store_true",
+        help="only what needs no Pico: the host alone, and the library beside others",
+    )
+    arguments.add_argument(
         "--only", metavar="NAME", action="append", choices=names(), help=" ".join(names())
     )
     arguments.add_argument(
@@ -49,11 +56,16 @@ def parser():
     return arguments
 
 
+def program_of(task):
+    """What measures it; how exactly, and which task, comes after that."""
+    if task.beside:
+        return LIBRARIES
+    return [*(LAUNCH if task.on_chip else []), *MICROPYTHON, HEAPS[task.on_chip], PROGRAM]
+
+
 def measure(task, quick):
     """The figures of one task, or {"error": text}."""
-    beside = LAUNCH if task.on_chip else []
-    interpreter = [*MICROPYTHON, HEAPS[task.on_chip]]
-    command = [*beside, *interpreter, PROGRAM, "quick" if quick else "full", *task.command]
+    command = [*program_of(task), "quick" if quick else "full", *task.command]
     environment = {name: value for name, value in os.environ.items() if name != "MICROPYPATH"}
     process = subprocess.Popen(
         command,
@@ -113,22 +125,32 @@ def versions():
     built = [line for line in read("build/pico/panel.made_of").splitlines()[1:] if line]
     package = read("build/emulator/node_modules/rp2040js/package.json")
     emulator = "rp2040js " + json.loads(package)["version"] if package else "no rp2040js"
-    host = "host: %s, %s CPUs" % (platform.machine(), os.cpu_count())
+    cpython = platform.python_version()
+    host = "host: %s, %s CPUs, CPython %s" % (platform.machine(), os.cpu_count(), cpython)
     return [*built, emulator, host]
 
 
 def main(arguments):
     options = parser().parse_args(arguments)
+    tasks = [
+        task
+        for task in TASKS
+        if (not options.only or task.name in options.only) and not (options.host and task.on_chip)
+    ]
+    if not tasks:
+        parser().error("nothing of that is measured on the host alone")
     if options.check:
         return 0
-    tasks = [task for task in TASKS if not options.only or task.name in options.only]
     figures = measure_all(tasks, options.quick)
     judged = report.judge([row for row in ROWS if row.task in figures], figures)
     command = " ".join(["./tools/bench", *arguments])
     today = datetime.date.today().isoformat()
-    text = report.page(judged, versions(), today, command, options.quick)
+    made = [versions(), today, command, options.quick]
+    text = report.page(judged, *made)
     print(text)
     if not options.quick and not options.only:
+        if options.host:
+            text = report.with_host(OUTPUT.read_text(encoding="utf-8"), judged, *made)
         OUTPUT.write_text(text + "\n", encoding="utf-8")
     return report.status(judged)
 

@@ -50,19 +50,53 @@ def table(judged):
 def page(judged, versions, date, command, quick):
     """All of it, Markdown."""
     chip = [line for line in judged if line.row.task.on_chip]
-    host = [line for line in judged if not line.row.task.on_chip]
     parts = ["# What the firmware does, in figures", INTRODUCTION]
     if quick:
         parts.append("QUICK: few samples. What is rare may not have shown itself.")
-    parts.append("%s, `%s`\n\n    %s" % (date, command, "\n    ".join(versions)))
+    parts.append(origin(versions, date, command))
     if chip:
         parts += ["## On the chip", CHIP, table(chip)]
-    if host:
-        parts += ["## On this host", table(host)]
-    return "\n\n".join(parts)
+    return "\n\n".join(parts + host_parts(judged))
+
+
+def with_host(page_before, judged, versions, date, command, quick):
+    """A page of an earlier run, with what was measured on the host in place of what it says."""
+    kept = page_before.partition("\n\n" + HOST_HEAD)[0].rstrip()
+    head, *parts = host_parts(judged)
+    return "\n\n".join([kept, head, origin(versions, date, command), *parts])
+
+
+def origin(versions, date, command):
+    return "%s, `%s`\n\n    %s" % (date, command, "\n    ".join(versions))
+
+
+def host_parts(judged):
+    """The paragraphs about the host, the first of which is the heading; [] if there are none."""
+    host = [line for line in judged if not line.row.task.on_chip]
+    alone = [line for line in host if not line.row.task.beside]
+    beside = [line for line in host if line.row.task.beside]
+    parts = [HOST_HEAD] if host else []
+    if alone:
+        parts.append(table(alone))
+    if beside:
+        parts += ["### Beside other libraries", BESIDE, table(beside)]
+    return parts
 
 
 INTRODUCTION = "Written by `tools/bench`. A figure that does not reach its bar is shown as it is."
+
+HOST_HEAD = "## On this host"
+
+BESIDE = """\
+CPython, one process, in turn; of each the median of seven runs, in the processor's time: what a
+library sleeps does not count. Each has a transport in memory that answers at once, and each reply
+has ten words: 24 characters of USS (4 PKW and 6 PZD words), 25 of Modbus RTU (ten registers).
+Parsed: check the reply, take the words out. An exchange: build a request, hand it over, take the
+reply, check it, take the values out. Ours goes through `uss.bus`: each exchange has a parameter's
+question and its answer, and keeps the list, the deadlines and the counters of the bus besides.
+TurboCtl, the other master of USS, knows one kind of pump, and makes numbers and bits of the
+words; MinimalModbus, PyModbus and uModbus talk Modbus. tools/benching/requirements.txt has their
+versions."""
 
 CHIP = """\
 An emulated Raspberry Pi Pico with the firmware frozen in (`tools/uf2`). The cache through which it

@@ -10,10 +10,13 @@ from typing import NamedTuple
 
 
 class Task(NamedTuple):
-    """command: function of measurements.py and its arguments."""
+    """command: function of measurements.py and its arguments. beside: measured by libraries.py,
+    beside other libraries.
+    """
 
     command: tuple
     on_chip: bool = True
+    beside: bool = False
 
     @property
     def name(self):
@@ -58,6 +61,7 @@ FIRST_TELEGRAM_US = 500_000
 PICTURE_US = 100_000
 FREE_BYTES = {"frozen": 135 * 1024, "files": 38 * 1024}
 SIMULATION_TIMES = 100
+LIBRARY_TIMES = 3  # as fast as the fastest of the others
 
 HANGS = (("pass", "drive"), ("sleep", "drive"), ("collect", "drive"), ("pass", "silent"))
 HOW_IT_LIES = {"frozen": "frozen", "files": "as files on plain MicroPython"}
@@ -93,6 +97,8 @@ HEAPS = {
 }
 CODEC = Task(("codec",), on_chip=False)
 SIMULATION = Task(("simulation",), on_chip=False)
+LIBRARIES = Task(("libraries",), on_chip=False, beside=True)
+OTHERS = ("TurboCtl", "MinimalModbus", "PyModbus", "UModbus")
 
 # The long ones first, so that the last one does not run alone for long.
 TASKS = (
@@ -100,7 +106,7 @@ TASKS = (
     *ASKING_LINES.values(), *STOPS.values(),
     FULL_STEPS, STEPS, *MENUS.values(), *HANGING.values(), SAVING, CUTS, *MIXED.values(),
     LINES[9600], LINES[19200], LINES[38400], *PICTURES.values(), *BOOTS.values(), *HEAPS.values(),
-    CODEC, SIMULATION,
+    CODEC, SIMULATION, LIBRARIES,
 )  # fmt: skip
 
 
@@ -403,6 +409,33 @@ def rules_row(task):
     )
 
 
+def library_row(name, what, key):
+    """The time of one of the other libraries."""
+
+    def show(figures):
+        own = figures["Uss"][key]
+        return "%.1f us: %.1f times ours" % (figures[name][key], figures[name][key] / own)
+
+    return Row(LIBRARIES, "%s, %s" % (what, name), "", show, None)
+
+
+def own_library_row(what, key):
+    """Our time, beside that of the fastest of the others."""
+
+    def times(figures):
+        return min(figures[name][key] for name in OTHERS) / figures["Uss"][key]
+
+    return Row(
+        LIBRARIES,
+        "%s, this library" % what,
+        ">= %d times as fast as the fastest other" % LIBRARY_TIMES,
+        lambda figures: "%.1f us: %.1f times" % (figures["Uss"][key], times(figures)),
+        lambda figures: times(figures) >= LIBRARY_TIMES,
+    )
+
+
+LIBRARY_TEXT = {"parse_us": "a reply parsed", "exchange_us": "an exchange"}
+
 FULL = "31 drives, %d baud"
 ASKING = {
     (baud, drives): "%s, %d baud, a parameter task always pending" % (of_drives(drives), baud)
@@ -467,5 +500,13 @@ ROWS = (
         ">= %d" % SIMULATION_TIMES,
         lambda figures: "%d" % figures["times"],
         lambda figures: figures["times"] >= SIMULATION_TIMES and not figures["complaints"],
+    ),
+    *(
+        row
+        for key, what in LIBRARY_TEXT.items()
+        for row in (
+            own_library_row(what, key),
+            *(library_row(name, what, key) for name in OTHERS),
+        )
     ),
 )

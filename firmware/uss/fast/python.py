@@ -8,6 +8,10 @@ Each has a twin in machine code in `viper`.
 def exclusive_or(buffer, count):
     """Exclusive or of the first `count` characters."""
     check = 0
+    if count == len(buffer):  # without an index a loop takes half the time
+        for character in buffer:
+            check ^= character
+        return check
     for index in range(count):
         check ^= buffer[index]
     return check
@@ -18,7 +22,8 @@ def frame(buffer, size, address):
     buffer[0] = 0x02
     buffer[1] = size - 2
     buffer[2] = address
-    buffer[size - 1] = exclusive_or(buffer, size - 1)
+    buffer[size - 1] = 0  # a request is as long as its buffer, mostly
+    buffer[size - 1] = exclusive_or(buffer, size)
 
 
 def is_reply(buffer, count, request):
@@ -50,8 +55,9 @@ def agreeing(buffer, at, other, other_at, count):
 
 def get_words(buffer, at, words, to, count):
     """Copy `count` words, high byte first, from buffer[at:] to words[to:], an array("H")."""
-    for index in range(count):
-        words[to + index] = buffer[at + 2 * index] << 8 | buffer[at + 2 * index + 1]
+    for index in range(to, to + count):
+        words[index] = buffer[at] << 8 | buffer[at + 1]
+        at += 2
 
 
 def copy(source, target, at, count):
@@ -97,7 +103,6 @@ def reply_about(net, at, words):
     """AK of the parameter reply in `net` from index `at` on, if its PNU and IND are those of the
     task `words`; else 0. Bit 11 of PKE belongs to neither AK nor PNU.
     """
-    same = not (net[at] ^ words[0]) & 0x07
-    for index in range(1, 4):
-        same = same and net[at + index] == words[index]
-    return net[at] >> 4 if same else 0
+    if net[at + 1] != words[1] or net[at + 3] != words[3] or net[at + 2] != words[2]:
+        return 0
+    return 0 if (net[at] ^ words[0]) & 0x07 else net[at] >> 4
