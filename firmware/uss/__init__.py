@@ -35,6 +35,7 @@ For programs that need more than the panel:
     scaling          PZD2 in percent, Hz and 1/min, floating point
 
 Wings on top of that. Neither the panel nor the modules above import them:
+    br               for people who write PLC programs: the blocks of a B&R project
     bus              for people who write Python: the master in a few words, plain errors, a scan
     s7               for people who write PLC programs: the blocks of the S7-200's USS library
     tasks            jobs of more than one value, for both: arrays, descriptions, texts; change

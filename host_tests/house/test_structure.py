@@ -32,6 +32,7 @@ RULES = (
     ("firmware/version.py", (), ()),
     ("firmware/uss", ("uss",), ("struct", "array", "micropython")),
     ("firmware/uss/bus", ("uss",), ("struct", "array", "micropython")),
+    ("firmware/uss/br", ("uss",), ("struct", "array", "micropython")),
     ("firmware/uss/s7", ("uss",), ("struct", "array", "micropython")),
     ("firmware/uss/tasks", ("uss",), ("struct", "array", "micropython")),
     ("firmware/panel", ("panel", "on_demand", "uss", "version"), ("micropython",)),
@@ -54,8 +55,8 @@ PROJECT = (
 )  # fmt: skip
 
 # What the engine and the panel do without: only programs beside the panel import these.
-WINGS = ("uss.bus", "uss.s7", "uss.tasks")
-WING_ROOMS = ("firmware/uss/bus", "firmware/uss/s7", "firmware/uss/tasks")
+WINGS = ("uss.br", "uss.bus", "uss.s7", "uss.tasks")
+WING_ROOMS = ("firmware/uss/br", "firmware/uss/bus", "firmware/uss/s7", "firmware/uss/tasks")
 
 # Private names that tests reach: place, and why there is no other way.
 PRIVATE = {
@@ -153,6 +154,7 @@ def test_the_rule_would_notice():
         ("firmware/uss/master.py", "time"),
         ("firmware/uss/master.py", "uss.tasks.arrays"),
         ("firmware/panel/panel.py", "uss.bus"),
+        ("firmware/panel/panel.py", "uss.br.codes"),
         ("firmware/uss/master.py", "hal.pacer.Pacer"),
         ("firmware/panel/panel.py", "machine.Pin"),
         ("firmware/panel/panel.py", "hal.pacer"),

@@ -1,0 +1,180 @@
+# SPDX-License-Identifier: MIT
+"""The blocks that make and read telegrams, held against the telegrams that the source prints."""
+
+from uss.br import codes
+from uss.br.blocks import RxCreatePZD, RxDecompose, TxCompose, TxCreatePZD
+from uss.br.structures import BUFFER, RxPZD, Telegram, TxPZD
+
+
+class Bench:
+    """All four, with their structures, as for a drive of 0 + 2 words at address 0."""
+
+    def __init__(self, pkw_words=0, pzd_words=2, address=0):
+        self.tx_pzd, self.rx_pzd = TxPZD(), RxPZD()
+        self.sent, self.received = Telegram(), Telegram()
+        self.tx_buffer, self.rx_buffer = bytearray(BUFFER), bytearray(BUFFER)
+        for telegram in (self.sent, self.received):
+            telegram.Par.PKW_lengh = pkw_words
+            telegram.Par.PZD_lengh = pzd_words
+        self.sent.Par.ADR = address
+        self.create = TxCreatePZD(self.tx_pzd, self.sent)
+        self.compose = TxCompose(self.sent, self.tx_buffer)
+        self.decompose = RxDecompose(self.rx_buffer, self.received, self.sent)
+        self.read = RxCreatePZD(self.received, self.rx_pzd)
+
+    def carry_out(self, block):
+        """The code with which the block ends."""
+        block.Cmd.Create = False
+        block()
+        block.Cmd.Create = True
+        block()
+        status = block.Status
+        assert status.Done != status.Error and not status.Ready and not status.Busy
+        return status.ErrorID
+
+    def send(self):
+        assert self.carry_out(self.create) == 0
+        assert self.carry_out(self.compose) == 0
+        return bytes(self.tx_buffer[: self.sent.Frame.LGE + 2])
+
+    def receive(self, characters):
+        self.rx_buffer[: len(characters)] = characters
+        self.decompose.Cmd.ErrorAcknowledge = True
+        self.decompose()
+        self.decompose.Cmd.ErrorAcknowledge = False
+        return self.carry_out(self.decompose)
+
+
+def test_the_telegrams_of_the_source():
+    """Figure 4.3: 0 + 2 words, OFF1 and then ON with a setpoint of 0."""
+    bench = Bench()
+    assert bench.send() == bytes.fromhex("020600047e00007e")
+    bench.tx_pzd.Par.Run = True
+    assert bench.send() == bytes.fromhex("020600047f00007f")
+
+
+def test_each_member_sets_its_bit():
+    for members, word in (
+        ("", 0x047E), ("Run", 0x047F), ("FaultAcknowledge", 0x04FE), ("JOGRight", 0x057E),
+        ("JOGLeft", 0x067E), ("Run Reverse", 0x0C7F),
+    ):  # fmt: skip
+        bench = Bench()
+        for name in members.split():
+            setattr(bench.tx_pzd.Par, name, True)
+        assert bench.carry_out(bench.create) == 0
+        assert bench.tx_pzd.ControlWord == bench.sent.Body.PZD[1] == word
+
+
+def test_the_setpoint_is_a_fraction_of_the_reference():
+    for freq, reference, word in (
+        (50.0, 50.0, 0x4000), (25.0, 50.0, 0x2000), (-50.0, 50.0, 0xC000), (-100.0, 50.0, 0x8000),
+        (99.997, 50.0, 0x7FFF), (1.0, 650.0, 0x0019), (0, 1, 0),
+    ):  # fmt: skip
+        bench = Bench()
+        bench.tx_pzd.Par.Freq, bench.tx_pzd.Par.RefFreq = freq, reference
+        assert bench.carry_out(bench.create) == 0, freq
+        assert bench.sent.Body.PZD[2] == word, (freq, "%04X" % bench.sent.Body.PZD[2])
+        assert abs(bench.tx_pzd.MainSetpoint.Percent - 100 * freq / reference) < 1e-3
+
+
+def test_wrong_frequencies():
+    for freq, reference, code in (
+        (0.0, 0.9, 101), (0.0, 651, 101), (0.0, None, 101), (0.0, "50", 101), (100.0, 50.0, 102),
+        (-100.1, 50.0, 102), (None, 50.0, 102), (float("inf"), 50.0, 102),
+    ):  # fmt: skip
+        bench = Bench()
+        bench.tx_pzd.Par.Freq, bench.tx_pzd.Par.RefFreq = freq, reference
+        assert bench.carry_out(bench.create) == code, (freq, reference)
+
+
+def test_what_cannot_be_composed():
+    for change, code in (
+        (lambda one: setattr(one.Frame, "STX", 3), 200),
+        (lambda one: setattr(one.Par, "PKW_lengh", 2), 201),
+        (lambda one: setattr(one.Par, "PZD_lengh", 17), 202),
+        (lambda one: (setattr(one.Par, "PKW_lengh", 0), setattr(one.Par, "PZD_lengh", 0)), 203),
+        (lambda one: setattr(one.Par, "ADR", 32), 204),
+        (lambda one: one.Body.PKW.insert(4, 0x10000), 206),
+        (lambda one: one.Body.PZD.insert(1, -1), 209),
+        (lambda one: one.Body.PZD.insert(2, 1.5), 209),
+    ):
+        bench = Bench(pkw_words=4)
+        assert bench.carry_out(bench.compose) == 0
+        change(bench.sent)
+        assert bench.carry_out(bench.compose) == code, code
+        assert codes.text(code)
+
+
+def test_a_reply_is_taken_apart():
+    bench = Bench()
+    bench.send()
+    assert bench.receive(bytes.fromhex("0206 00 fb34 2000 eb".replace(" ", ""))) == 0
+    assert bench.received.Body.PZD[1:3] == [0xFB34, 0x2000]
+    assert (bench.received.Frame.STX, bench.received.Frame.LGE) == (2, 6)
+    assert (bench.received.Frame.ADR, bench.received.Frame.BCC) == (0, 0xEB)
+    assert bench.carry_out(bench.read) == 0
+    status, actual = bench.rx_pzd.StatusWord, bench.rx_pzd.ActualValue
+    assert status.DriveRunning and status.MotorRunsRight and not status.DriveReady
+    assert (actual.HEX, actual.Percent, actual.Freq) == (0x2000, 50.0, 25.0)
+
+
+def test_what_comes_back_wrong():
+    for text, code in (
+        ("0306 00 fb34 2000 ea", 300), ("0202 00 fb34 2000 ef", 301), ("0208 00 fb34 2000 e5", 302),
+        ("0206 20 fb34 2000 cb", 303), ("0206 00 fb34 2000 ec", 308), ("0206 01 fb34 2000 ea", 310),
+    ):  # fmt: skip
+        bench = Bench()
+        bench.send()
+        assert bench.receive(bytes.fromhex(text.replace(" ", ""))) == code, text
+    for member, value, code in (("PKW_lengh", 1, 304), ("PZD_lengh", 99, 305)):
+        bench = Bench()
+        setattr(bench.received.Par, member, value)
+        assert bench.receive(bytes(8)) == code
+    bench = Bench()
+    bench.received.Par.RefFreq = 0
+    assert bench.carry_out(bench.read) == 400
+    bench = Bench()
+    bench.received.Body.PZD[2] = 0x10000
+    assert bench.carry_out(bench.read) == 401
+
+
+def test_with_variable_length_a_reply_may_be_longer_than_its_request():
+    bench = Bench(pkw_words=127, address=3)
+    assert len(bench.send()) == 14
+    request = Bench(pkw_words=4, address=3)
+    request.sent.Body.PKW[1:5] = [0x2457, 0, 0x4248, 0]
+    request.sent.Body.PZD[1:3] = [0xFB31, 0]
+    assert request.carry_out(request.compose) == 0
+    assert bench.receive(request.tx_buffer[:16]) == 0
+    assert bench.received.Body.PKW[1:5] == [0x2457, 0, 0x4248, 0]
+    assert bench.received.Body.PZD[1:3] == [0xFB31, 0]
+    fixed = Bench(pkw_words=3, address=3)
+    fixed.send()
+    assert fixed.receive(request.tx_buffer[:16]) == 302
+
+
+def test_a_block_works_by_its_edge_and_an_error_stays_until_it_is_acknowledged():
+    bench = Bench()
+    create, status = bench.create, bench.create.Status
+    create()
+    assert status.Ready and not status.Done
+    bench.tx_pzd.Par.RefFreq = 0
+    create.Cmd.Create = True
+    create()
+    assert status.Error and status.ErrorID == 101
+    bench.tx_pzd.Par.RefFreq = 50.0
+    for level in (True, False, True):
+        create.Cmd.Create = level
+        create()
+        assert status.Error and status.ErrorID == 101
+    create.Cmd.ErrorAcknowledge = True
+    create()
+    assert not status.Error and status.Ready and not status.Done
+    create.Cmd.ErrorAcknowledge = create.Cmd.Create = False
+    create()
+    create.Cmd.Create = True
+    create()
+    assert status.Done
+    create.Cmd.Reset = True
+    create()
+    assert status.Ready and not status.Done
