@@ -32,12 +32,6 @@ from uss.s7 import codes
 
 MANUAL = "firmware/uss/s7/README.md"
 
-# Codes of the B&R blocks, and all that may stand beside them.
-B_AND_R = (
-    [100, 101, 102, 103] + list(range(200, 216)) + list(range(300, 311)) + [400, 401]
-    + list(range(500, 508)) + [600, 60, 8071, 8072, 8073, 8078, 8079] + list(range(8251, 8259))
-)  # fmt: skip
-
 S7_200_PINS = {
     "USS_INIT": "EN MODE BAUD ACTIVE DONE ERROR",
     "USS_CTRL": "EN RUN OFF2 OFF3 F_ACK DIR DRIVE TYPE SPEED_SP RESP_R ERROR STATUS SPEED RUN_EN"
@@ -52,14 +46,6 @@ S7_1200_PINS = {
     "USS_Read_Param (USS_RPM)": "REQ DRIVE PARAM INDEX USS_DB DONE ERROR STATUS VALUE",
     "USS_Write_Param (USS_WPM)": "REQ DRIVE PARAM INDEX EEPROM VALUE USS_DB DONE ERROR STATUS",
 }
-B_AND_R_MEMBERS = (
-    "Run FaultAcknowledge JOGRight JOGLeft Reverse RefFreq Freq PKW_lengh PZD_lengh"
-    " ControllSequence ADDR DriveReady DriveReadyToRun DriveRunning DriveFault OFF2 OFF3 ONInhibit"
-    " DriveWarning DeviationSetpoint PZDControl FreqOverMax Warning MotorHoldingBreake"
-    " MotorOverload MotorRunsRight InverterOverload HEX Percent Receive Start Stop"
-    " ErrorAcknowledge Create Reset Open Close Ready Busy Done Error ErrorID StepNo"
-)
-
 
 class NoLink:
     interrupts = True
@@ -126,7 +112,7 @@ def test_every_name_in_the_tables_exists():
     for quoted in text.split("`")[1::2]:
         if "\n" not in quoted and "." in quoted and re.match("^[A-Za-z_0-9.]+$", quoted):
             names.add(quoted)
-    names = {name for name in names if name not in ("uss.s7", "uss.bus", "hal.pacer")}
+    names = {name for name in names if name not in ("uss.s7", "uss.br", "uss.bus", "hal.pacer")}
     assert len(names) > 60
     for name in names:
         parts = name.split(".")
@@ -192,17 +178,6 @@ def test_the_pins_of_the_s7_200_are_those_of_the_blocks():
         kind(port)(EN=False, XMT_REQ=False, DRIVE=0, PARAM=0, INDEX=0)
     for kind in (s7.USS_WPM_W, s7.USS_WPM_D, s7.USS_WPM_R):
         kind(port)(EN=False, XMT_REQ=False, EEPROM=False, DRIVE=0, PARAM=0, INDEX=0, VALUE=0)
-
-
-def test_every_code_and_member_of_the_b_and_r_blocks_has_a_row():
-    codes = []
-    members = ""
-    for cells in rows("The B&R blocks"):
-        codes += code_numbers(cells[0])
-        members += " " + cells[1].replace(",", " ").replace(".", " ")
-    assert sorted(codes) == sorted(B_AND_R)
-    for name in B_AND_R_MEMBERS.split():
-        assert name in members.split(), name
 
 
 class Board:

@@ -1,16 +1,26 @@
 # SPDX-License-Identifier: MIT
 """The examples of tools/examples: each fits a screen, and does what it says."""
 
-from tools.examples import broadcast_stop, one_drive, own_program, parameters, three_drives
+from tools.examples import (
+    broadcast_stop,
+    one_drive,
+    own_program,
+    parameters,
+    plc_br,
+    plc_s7,
+    three_drives,
+)
 from tools.examples.simulation import Stage, names
 
 NOT_TRACED = """
 test_one_drive_runs_for_ten_seconds_and_stops test_three_drives_follow_each_other
 test_own_program_obeys_its_keys_until_ctrl_c test_own_program_says_why_the_pump_does_not_run
 test_a_second_time_the_drives_have_tripped_and_run_all_the_same
-test_broadcast_stops_all_three_at_once test_whatever_ends_an_example_stops_its_motors
+test_broadcast_stops_all_three_at_once test_the_plc_of_siemens_runs_its_motor
+test_the_plc_of_b_and_r_runs_its_motor_and_turns_it_round test_whatever_ends_an_example_stops_its_motors
 """
 
+EXAMPLES = (broadcast_stop, one_drive, own_program, parameters, plc_br, plc_s7, three_drives)
 CODE_LINES_MAX = 25  # that a reader has before the eyes at once
 PRINTED = []
 
@@ -18,7 +28,7 @@ PRINTED = []
 def stage(**options):
     """A board with three drives; what an example prints goes to PRINTED."""
     del PRINTED[:]
-    for example in (broadcast_stop, one_drive, own_program, parameters, three_drives):
+    for example in EXAMPLES:
         example.print = note
     return Stage(**options)
 
@@ -35,7 +45,7 @@ def code_lines(text):
 
 
 def test_each_fits_a_screen():
-    assert len(names()) == 5
+    assert len(names()) == len(EXAMPLES)
     for name in names():
         with open("tools/examples/%s.py" % name) as file:
             lines = code_lines(file.read())
@@ -129,6 +139,34 @@ def test_own_program_hears_stop_while_a_start_waits_for_the_drive():
     ]
     assert {low for at_us, low in sent if 3_000_000 < at_us < 4_000_000} == {0x7F}
     assert {low for at_us, low in sent if at_us > 4_050_000} == {0x7E}
+    world.check()
+
+
+def test_the_plc_of_siemens_runs_its_motor():
+    for _ in range(2):  # the second time the drive has tripped meanwhile
+        world = stage()
+        seen = []
+        world.at(12, lambda: seen.append(world.drives[1].hz()))
+        world.play(plc_s7.main)
+        world.clock.advance(5_000_000)
+        assert abs(seen[0] - 25.0) < 0.01 and world.drives[1].hz() == 0
+        assert world.drives[1].read(1120) == 2.0
+        assert PRINTED[11] == "12 s   50 %  no error" and PRINTED[2] == " 3 s    0 %  no error"
+        assert PRINTED[-1] == "P1120 = 2.00: no error; P1082 = 50.00"
+        world.check()
+
+
+def test_the_plc_of_b_and_r_runs_its_motor_and_turns_it_round():
+    world = stage()
+    world.play(plc_br.main)
+    world.clock.advance(5_000_000)  # longer than P2014: F0072
+    assert world.drives[1].report().find("fault") > 0
+    seen = []
+    world.at(7, lambda: seen.append(world.drives[1].hz()))
+    world.at(12.5, lambda: seen.append(world.drives[1].hz()))
+    world.play(plc_br.main)
+    assert abs(seen[0] - 10.0) < 0.01 and abs(seen[1] + 10.0) < 0.01, seen
+    assert PRINTED[-1] == "no error" and " 7 s   10.0 Hz" in PRINTED
     world.check()
 
 
