@@ -83,6 +83,7 @@ ANY = const(96)
 ATTENTION = const(97)
 
 OFFS = (pzd.OFF1, pzd.OFF2, pzd.OFF3)
+NO_CONTROL = const(0)  # in place of an OFF: bit 10 is 0, and the drive is told nothing
 
 # Bits of STW that `control` may change, and those that are 1 in every control word of `pzd`. The
 # others start, stop, acknowledge, turn round or give up control.

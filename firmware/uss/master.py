@@ -36,6 +36,7 @@ _PAUSE_US = const(1_000_000)  # a pause ends after so long, even if `resume` is 
 PAUSE_LOOK_US = const(5_000)  # how soon the end of a pause, or a command, is noticed
 _SHARED_EXCHANGES = const(1_000)  # so many after its last telegram another master counts as gone
 _OFTEN = const(0xFFFF)  # `silent` of what is not repeated
+_NO_CONTROL = const(0)  # a copy from `drive` for the compiler
 _FAILURES_MAX = const(3)  # exceptions in a row after which nothing is known of the drives any more
 
 _GOOD = const(0)  # a copy from `telegram` for the compiler: every exchange needs it
@@ -172,9 +173,11 @@ class Master:
         return self._receiver.echo
 
     def stop_all(self):
-        """Send OFF1 to every drive, a telegram each; drives that run get theirs first."""
+        """Send OFF1 to every drive, a telegram each; drives that run get theirs first. Those that
+        this bus does not control are told nothing."""
         for drive in self.turns.drives:
-            drive.stop()
+            if drive.off != _NO_CONTROL:
+                drive.stop()
 
     def off(self):
         """Leave the line to others: send OFF1 to every drive, then nothing until `on`.

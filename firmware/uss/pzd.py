@@ -30,6 +30,7 @@ JOG_LEFT = const(0x067E)
 
 # --- status word --------------------------------------------------------------------------------
 
+ZSW_READY = const(0x0031)  # to switch on, and neither OFF2 nor OFF3 is in force
 ZSW_RUNNING = const(0x0004)
 ZSW_FAULT = const(0x0008)
 ZSW_INHIBIT = const(0x0040)

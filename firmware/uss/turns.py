@@ -23,7 +23,7 @@ which of these rest, `deadlines` which drives need more turns. `master` does the
 from micropython import const
 
 from uss import pkw, telegram
-from uss.drive import ANY, ATTENTION, COMMANDS, NODES, OVERDUE, WANTS, Drive
+from uss.drive import ANY, ATTENTION, COMMANDS, NO_CONTROL, NODES, OVERDUE, WANTS, Drive
 from uss.deadlines import Deadlines
 from uss.fast import calling, greatest
 from uss.layout import STANDARD
@@ -89,10 +89,11 @@ class Turns:
 
     # --- for the loop ---------------------------------------------------------------------------
 
-    def add(self, address, layout=None):
+    def add(self, address, layout=None, make=Drive):
         """Put a drive at the end of the circulating list; return its `Drive`.
 
-        layout: how its telegrams are divided, STANDARD if not given. The same address again gives
+        layout: how its telegrams are divided, STANDARD if not given. make: what makes it, see
+        `families.drive_maker`. The same address again gives
         the same drive one more turn. ValueError if the address is not 0...31, the list is full,
         or the drive has another layout already.
         """
@@ -100,7 +101,7 @@ class Turns:
             raise ValueError("the circulating list holds %d entries" % _LIST_MAX)
         drive = self.at(address)
         if drive is None:
-            drive = Drive(address, self._mask, self._attention, layout or STANDARD)
+            drive = make(address, self._mask, self._attention, layout or STANDARD)
             # New lists, because an interrupt may have come in while it walks the old ones.
             self.by_address[address] = drive
             self.drives = self.drives + [drive]
@@ -116,11 +117,11 @@ class Turns:
     def remove(self, drive):
         """Take a drive off the bus: it gets no telegrams any more.
 
-        ValueError if it is not on this bus, or may be running.
+        ValueError if it is not on this bus, or may be running under control of this bus.
         """
         if drive not in self.drives:
             raise ValueError("drive %d is not on this bus" % drive.address)
-        if drive.may_run():
+        if drive.may_run() and drive.off != NO_CONTROL:
             raise ValueError("drive %d may be running" % drive.address)
         self.deadlines.forget(drive)
         self.drives = [other for other in self.drives if other is not drive]

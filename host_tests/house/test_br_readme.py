@@ -4,9 +4,10 @@ those of the code, every name in them is one of the library, and its example run
 
 import re
 
+from test_s7_readme import Board
+
 from boards.sim.drives.drive import Drive as SimulatedDrive
 from boards.sim.drives.families import g110
-from test_s7_readme import Board
 from uss import br, drive, layout, master, timing
 from uss.br import codes, structures
 

@@ -47,6 +47,7 @@ S7_1200_PINS = {
     "USS_Write_Param (USS_WPM)": "REQ DRIVE PARAM INDEX EEPROM VALUE USS_DB DONE ERROR STATUS",
 }
 
+
 class NoLink:
     interrupts = True
     resolution_us = 0

@@ -4,13 +4,14 @@
 from tools.examples import (
     broadcast_stop,
     one_drive,
+    own_family,
     own_program,
     parameters,
     plc_br,
     plc_s7,
     three_drives,
 )
-from tools.examples.simulation import Stage, names
+from tools.examples.simulation import DRIVES, Stage, names
 
 NOT_TRACED = """
 test_one_drive_runs_for_ten_seconds_and_stops test_three_drives_follow_each_other
@@ -20,7 +21,9 @@ test_broadcast_stops_all_three_at_once test_the_plc_of_siemens_runs_its_motor
 test_the_plc_of_b_and_r_runs_its_motor_and_turns_it_round test_whatever_ends_an_example_stops_its_motors
 """
 
-EXAMPLES = (broadcast_stop, one_drive, own_program, parameters, plc_br, plc_s7, three_drives)
+EXAMPLES = (
+    broadcast_stop, one_drive, own_family, own_program, parameters, plc_br, plc_s7, three_drives,
+)  # fmt: skip
 CODE_LINES_MAX = 25  # that a reader has before the eyes at once
 PRINTED = []
 
@@ -167,6 +170,18 @@ def test_the_plc_of_b_and_r_runs_its_motor_and_turns_it_round():
     world.play(plc_br.main)
     assert abs(seen[0] - 10.0) < 0.01 and abs(seen[1] + 10.0) < 0.01, seen
     assert PRINTED[-1] == "no error" and " 7 s   10.0 Hz" in PRINTED
+    world.check()
+
+
+def test_a_slave_of_ones_own_family_is_asked_without_control_and_then_runs():
+    world = stage(addresses=(1,), kinds=DRIVES["own_family"])
+    stws = []
+    world.play(own_family.main)
+    for _, from_panel, characters in world.wire.log.last(5000):
+        if from_panel and len(characters) == 24:
+            stws.append(characters[11] << 8 | characters[12])
+    assert PRINTED == ["P2012 = 6, inhibited, ZSW 0040", "50.0 %, running, ZSW 8804"], PRINTED
+    assert set(stws) == {0x0000, 0x047E, 0x047F} and stws[-1] == 0x047E
     world.check()
 
 

@@ -16,6 +16,7 @@ from boards.sim.world import World
 from fleet_bench import Fleet
 from uss import pkw, pzd
 from uss.drive import ATTENTION, Drive
+from uss.families.status import TranslatedDrive
 from uss.fast import python
 from uss.layout import Layout
 from uss.master import Master
@@ -241,6 +242,19 @@ def test_a_drive_takes_less_than_600_bytes():
     used = taken(lambda: [Drive(1, MASK, shared) for _ in range(100)]) / 100
     print("%d bytes" % used)
     assert used < 600 * WORD // 4
+
+
+def test_a_status_word_with_other_bits_takes_no_heap():
+    says = ((0x0001, 0x0001, pzd.ZSW_READY), (0x0800, 0x0800, pzd.ZSW_RUNNING))
+    drive = TranslatedDrive(says, 1, MASK, None, Layout(4, 2))
+    reply = bytearray(16)
+    reply[11] = 0x88
+    micropython.heap_lock()
+    try:
+        drive.take(reply, 16, 1000)
+    finally:
+        micropython.heap_unlock()
+    assert (drive.zsw, drive.word(1)) == (pzd.ZSW_RUNNING, 0x8800)
 
 
 def test_the_loops_without_machine_code_take_no_heap():

@@ -20,6 +20,7 @@ from errno import errorcode
 # Lower layers first, or the 32-bit build runs out of stack.
 import boards.sim.drives.parameters  # noqa: F401
 from boards.sim.clock import Event
+from boards.sim.drives.families import pump
 from boards.sim.drives.kinds import as_delivered, listed_drives, simulated
 from boards.sim.world import World
 
@@ -29,6 +30,9 @@ TAP_S = 0.1
 # Example: what a person does meanwhile, seconds of its time and key.
 CTRL_C = "Ctrl-C"
 SOMEBODY = {"own_program": ((2.0, "START"), (12.0, "STOP"), (40.0, CTRL_C))}
+
+# Example: its drives, where those of --drives would not do.
+DRIVES = {"own_family": {1: {"family": pump}}}
 
 USAGE = "usage: ./tools/example %s|FILE.py [--drives 1,2=g110]"
 
@@ -104,7 +108,7 @@ def understood(words):
             raise UsageError("%s and %s: one at a time" % (chosen, word))
         else:
             chosen = word + equals + given
-    return chosen, drives or kinds("1,2,3")
+    return chosen, drives or DRIVES.get(chosen) or kinds("1,2,3")
 
 
 def program(name):

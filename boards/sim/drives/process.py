@@ -50,6 +50,7 @@ from boards.sim.drives.words import (
     POWER,
     POWER_FACTOR,
     READY,
+    READY_TO_RUN,
     RECEIVED,
     RUN_TIME,
     RUNNING,
@@ -116,9 +117,11 @@ class Process(Inverter):
         self._state_bits = style["states"]
         self._right_at_zero = style["right at zero"]
         self._signed = style["signed"]
+        self._own_status = style.get("status", ())
         self._obeyed_bits = style["obeyed bits"]
         self._control_fault = style["control fault"]
         self._warning_numbers = style["warnings"]
+        self._obeys = False  # the last telegram had STW bit 10
         self._alarms = 0  # bits of LIMITED ... BOTH_JOGS that are present
         Inverter.__init__(self, clock, parameters, family, switches)
         self._sets = DataSets(self._sources, family.LINK["index"])
@@ -163,7 +166,8 @@ class Process(Inverter):
         """Take over the PZD words of a telegram, unless STW bit 10 declares them invalid."""
         if not words:
             return
-        if words[0] & BY_PLC:
+        self._obeys = words[0] & BY_PLC != 0
+        if self._obeys:
             self._take_over(words)
         elif self._control_fault and self.state == RUNNING:
             self.trip(self._control_fault)
@@ -309,6 +313,8 @@ class Process(Inverter):
         hz = self.hz()
         if self.state == OFF:
             return 0
+        if self._own_status:
+            return self._own_zsw(hz)
         stw = self._stw
         zsw = self._state_bits[self.state] & ~self._look_round(hz)
         if stw & NO_OFF2:
@@ -328,6 +334,22 @@ class Process(Inverter):
         if self._switches.bare_standby and self.state == READY:
             zsw = zsw & ZSW_SECOND_PROFILE | ZSW_REACHED
         return zsw
+
+    def _own_zsw(self, hz):
+        """Status word 1 of a drive that has its own bits: rows of (bit, what it says)."""
+        gains = self._motor.slope(self._clock.now_us) * hz  # above 0 the motor becomes faster
+        says = {
+            "ready": self.state in (READY, READY_TO_RUN),
+            "operates": self.state == RUNNING,
+            "fault": self.state == FAULT,
+            "faster": gains > 0,
+            "slower": gains < 0,
+            "inhibited": self.state == INHIBITED,
+            "warns": self.memory.is_warning(),
+            "turns": hz != 0,
+            "obeys": self._obeys,
+        }
+        return sum([bit for bit, what in self._own_status if says[what]])
 
     def zsw2(self):
         """Status word 2, r0053."""

@@ -35,7 +35,7 @@ from uss.br.structures import (
     DriveSequence,
     DriveSetup,
 )
-from uss.families import G110
+from uss.families import G110, drive_maker
 from uss.layout import Layout
 from uss.leave import leave, persist
 from uss.master import CLOSED, OFF
@@ -247,7 +247,9 @@ class DriveController:
             return
         layout = Layout(lengths.PKW_lengh, lengths.PZD_lengh)
         family = self._families.get(address, G110)
-        self._motors[address] = _Motor(self.bus.turns.add(address, layout), family)
+        self._motors[address] = _Motor(
+            self.bus.turns.add(address, layout, drive_maker(family)), family
+        )
         self._arranged = None
 
 

@@ -19,7 +19,7 @@ stops every motor.
 
 # Lower layers first: an import inside an import inside an import takes stack.
 from uss.timing import Timing, elapsed
-from uss.drive import COUNTERS
+from uss.drive import COUNTERS, NO_CONTROL
 from uss import bits, families, master, outside, pkw, pzd
 from uss.bus import pkw_errors
 from uss.errors import WHY_SILENT, UssError
@@ -44,6 +44,8 @@ STATES = ("not ready", "ready", "running", "fault", "inhibited")
 NO_CONTACT = "no contact"
 MAY_RUN = "no contact, may run"
 
+NOT_CONTROLLED = "drive %d was added without control"
+LEFT_ALONE = "drive %d runs, and this bus has no control of it: it is left alone"
 LINE_IN_USE = "another master is on the line"
 
 # Why there is no contact with drive %d, indexed by `drive.Drive.trouble`.
@@ -63,8 +65,10 @@ class Drive:
     `engine` is the `drive.Drive` behind it.
     """
 
-    def __init__(self, bus, engine, family, scale, unsupervised):
+    def __init__(self, bus, engine, family, scale, unsupervised, control=True):
         self.bus = bus
+        self.has_control = control
+        self.left_alone = False  # it ran, although this bus has no control of it
         self.engine = engine
         self.family = family
         self.unsupervised = unsupervised
@@ -130,7 +134,10 @@ class Drive:
         self.stop(pzd.OFF3)
 
     def acknowledge(self):
-        """Acknowledge a fault, unless the drive is told to run. Does not wait."""
+        """Acknowledge a fault, unless the drive is told to run. Does not wait. UssError: this bus
+        has no control of it."""
+        if not self.has_control:
+            raise UssError(NOT_CONTROLLED % self.engine.address)
         self.engine.acknowledge()
 
     def control(self, bits, on):
@@ -456,6 +463,8 @@ class Drive:
     def _check_start(self, needs_setpoint):
         """Read what must be known of the drive; raise NotStarted if it must not be started now."""
         self._raise_unless_asked()
+        if not self.has_control:
+            raise NotStarted(NOT_CONTROLLED % self.engine.address)
         if self.engine.stopped_by_engine():
             self._refuse(
                 "was stopped: it was lost, tripped, switched itself off, or step() was not called "
@@ -556,6 +565,8 @@ class Drive:
     def _why_not_asked(self):
         """Why the bus sends the drive no telegrams any more, in words; None if it does."""
         bus = self.bus
+        if self.left_alone:
+            return LEFT_ALONE % self.engine.address
         if bus.engine.phase != master.CLOSED and self not in bus.drives:
             return "drive %d is not on the bus" % self.engine.address
         return bus.why_silent()
@@ -582,6 +593,7 @@ class Master:
             raise ValueError("another Master has this link: close() that one first")
         self.engine = master.Master(link, timing, clock.ticks_mask, lost_ms * 1000)
         self._link = link
+        self._uncontrolled = 0  # so many drives were added without control
         link.bus = self
         self._idle = idle
         self._pacer = None
@@ -594,14 +606,16 @@ class Master:
 
     # --- the list -------------------------------------------------------------------------------
 
-    def add(self, address, family=None, layout=None, scale=None, unsupervised=False):
+    def add(self, address, family=None, layout=None, scale=None, unsupervised=False, control=True):
         """Put a drive at the end of the circulating list; return its `Drive`.
 
         The same address again gives the same drive, unchanged, one more turn. family: of
         `families`; GENERIC by default. layout: how its telegrams are divided, if not as the
         family's usually are. scale: a `scaling.Scale` for a drive that cannot tell its own; what
         the drive tells goes first. unsupervised: the drive may run although its telegram-off time
-        is 0 or unknown, so that nothing would stop it if the program died. ValueError if the
+        is 0 or unknown, so that nothing would stop it if the program died. control: False reads and writes parameters
+        alone: bit 10 of STW is 0, nothing starts or stops the drive but an explicit `stop`, and it
+        is left alone as soon as it is seen to run. ValueError if the
         address is beyond 31, the family cannot be set to the layout, the list is full, or the
         drive is there already with another family or layout. TypeError.
         """
@@ -616,9 +630,13 @@ class Master:
         layout = layout or family.layout
         if not families.can_be_set_to(family, layout):
             raise ValueError("a %s has no %r" % (family.name, layout))
-        engine = self.engine.turns.add(address, layout)
-        drive = Drive(self, engine, family, scale, unsupervised)
+        if not control and not family.takes_no_control:
+            raise ValueError("a %s takes no telegrams without control" % family.name)
+        make = families.drive_maker(family, control)
+        engine = self.engine.turns.add(address, layout, make)
+        drive = Drive(self, engine, family, scale, unsupervised, control)
         self.drives.append(drive)
+        self._uncontrolled += not control
         return drive
 
     def remove(self, drive):
@@ -705,6 +723,17 @@ class Master:
                 engine.recover(now)
                 raise
         engine.refresh(now)
+        if self._uncontrolled:
+            self._leave_alone()
+
+    def _leave_alone(self):
+        """Drop the drives that run without control of this bus: telegrams would keep a drive from
+        noticing that whoever told it to run is gone."""
+        for drive in self.drives:
+            engine = drive.engine
+            if engine.off == NO_CONTROL and engine.contact and engine.zsw & pzd.ZSW_RUNNING:
+                drive.left_alone = True
+                self.remove(drive)
 
     def rest(self):
         """Do a step, then sleep a tenth of a millisecond."""
@@ -735,8 +764,10 @@ class Master:
     # --- all together ---------------------------------------------------------------------------
 
     def stop_all(self):
-        """Send OFF1 to every drive, a telegram each; drives that run get theirs first."""
-        self.engine.stop_all()
+        """Send OFF1 to every drive, a telegram each; drives that run get theirs first. This takes
+        control of those that were added without."""
+        for drive in self.drives:
+            drive.stop()
 
     def broadcast_stop(self):
         """Send OFF1 to all drives at once in a single telegram, then to each one its own, as

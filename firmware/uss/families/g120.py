@@ -47,6 +47,7 @@ class G120(GENERIC):
         (2040, 0, WORD, None),  # (?) the type
     ) + (None,) * (COUNT_OF_ROWS - 7)
     on_reverse = pzd.ON_REVERSE
+    takes_no_control = False  # (?) while it runs it trips with F07220
     stw_bits = "STW_BITS_G120"
     zsw_bits = "ZSW_BITS_G120"
     integer_doubles = MM420.integer_doubles  # (?)

@@ -82,6 +82,13 @@ class GENERIC:
     hiw_is_signed = True  # else HIW is the magnitude, and bit 14 of ZSW the direction
     is_cumulative = True  # bits 0, 1 and 2 of ZSW add up to xx7h; else the last stands alone
 
+    # What ZSW says, where that is not what the specification's says: (mask, value, what it means
+    # if these bits have this value: ZSW_READY, ZSW_RUNNING, ZSW_FAULT, ZSW_INHIBIT, ZSW_WARNING,
+    # ZSW_RUNS_RIGHT of `pzd`). A drive that says nothing of being ready: (0, 0, ZSW_READY).
+    zsw_says = None
+    # Bit 10 of STW may be 0 towards it while it stands: it takes parameters and no control.
+    takes_no_control = True  # specification C-5.2.1: the process data are not valid then
+
     # What the bits of the words are called: tables of `bits`, each a name there or itself.
     stw_bits = "STW_BITS_PROFILE"
     zsw_bits = "ZSW_BITS_PROFILE"

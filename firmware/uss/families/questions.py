@@ -2,9 +2,11 @@
 """What a program asks of a family besides its values; all of it is found in `uss.families`.
 
 baud_code(MM440, 19200)                     # 7
+turns.add(1, Pump.layout, drive_maker(Pump))    # as the family's status word wants it
 can_be_set_to(MM440, Layout(4, 8))          # True
 """
 
+from uss.drive import NO_CONTROL, Drive
 from uss.families.rows import SOURCE, STEPS, WORD
 
 
@@ -14,6 +16,29 @@ def baud_code(family, baud):
         if rate == baud:
             return code
     raise ValueError("%s has no code for %r baud" % (family.name, baud))
+
+
+def drive_maker(family, control=True):
+    """What `Turns.add` makes a drive of the family with. control: False if the drive is told
+    nothing but parameters: bit 10 of STW is 0."""
+    if family.zsw_says is None and control:
+        return Drive
+
+    def make(*arguments):
+        drive = _make(family, arguments)
+        if not control:
+            drive.off = NO_CONTROL
+        return drive
+
+    return make
+
+
+def _make(family, arguments):
+    if family.zsw_says is None:
+        return Drive(*arguments)
+    from uss.families.status import TranslatedDrive  # here, because few programs need it
+
+    return TranslatedDrive(family.zsw_says, *arguments)
 
 
 def can_be_set_to(family, layout):

@@ -24,7 +24,7 @@ from micropython import const
 
 from uss import pkw, pzd
 from uss.s7 import codes
-from uss.families import MM3, MM4
+from uss.families import MM3, MM4, drive_maker
 from uss.master import DEAD_MAN_US, OFF
 from uss.leave import leave, persist
 from uss.s7.parameters import (  # noqa: F401  (also blocks of this library)
@@ -248,7 +248,9 @@ class Port:
                 self._remove(address)
 
     def _add(self, address):
-        self.drives[address] = self.bus.turns.add(address, self.families[address].layout)
+        self.drives[address] = self.bus.turns.add(
+            address, self.families[address].layout, drive_maker(self.families[address])
+        )
 
     def _remove(self, address):
         self.bus.turns.remove(self.drives[address])
@@ -405,7 +407,8 @@ class USS_CTRL(Block):
         self.RESP_R = counters[0] != self._counters[0]
         self._counters = counters
         if self.RESP_R:
-            self.STATUS = zsw = drive.zsw
+            self.STATUS = drive.word(1)
+            zsw = drive.zsw
             self.SPEED = PERCENT.percent(pzd.signed_hiw(self._family, drive.hiw, zsw))
             self.RUN_EN = zsw & pzd.ZSW_RUNNING != 0
             self.D_DIR = zsw & pzd.ZSW_RUNS_RIGHT != 0
