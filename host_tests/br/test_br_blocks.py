@@ -120,9 +120,13 @@ def test_a_reply_is_taken_apart():
 
 def test_what_comes_back_wrong():
     for text, code in (
-        ("0306 00 fb34 2000 ea", 300), ("0202 00 fb34 2000 ef", 301), ("0208 00 fb34 2000 e5", 302),
-        ("0206 20 fb34 2000 cb", 303), ("0206 00 fb34 2000 ec", 308), ("0206 01 fb34 2000 ea", 310),
-    ):  # fmt: skip
+        ("0306 00 fb34 2000 ea", 300),
+        ("0202 00 fb34 2000 ef", 301),
+        ("0208 00 fb34 2000 e5", 302),
+        ("0206 20 fb34 2000 cb", 303),
+        ("0206 00 fb34 2000 ec", 308),
+        ("0206 01 fb34 2000 ea", 310),
+    ):
         bench = Bench()
         bench.send()
         assert bench.receive(bytes.fromhex(text.replace(" ", ""))) == code, text

@@ -19,8 +19,8 @@ MEMBERS = (
     " ControllSequence ADDR DriveReady DriveReadyToRun DriveRunning DriveFault OFF2 OFF3 ONInhibit"
     " DriveWarning DeviationSetpoint PZDControl FreqOverMax Warning MotorHoldingBreake"
     " MotorOverload MotorRunsRight InverterOverload HEX Percent Receive Start Stop"
-    " ErrorAcknowledge Create Reset Open_Send Open_Receive Open Close Ready Busy Done Error ErrorID"
-    " StepNo TON_Delay_min TON_Delay_max STX LGE BCC ADR PKW PZD ControlWord MainSetpoint"
+    " ErrorAcknowledge Create Reset Open_Send Open_Receive Open Close Ready Busy Done Error"
+    " ErrorID StepNo TON_Delay_min TON_Delay_max STX LGE BCC ADR PKW PZD ControlWord MainSetpoint"
     " StatusWord ActualValue"
 )
 

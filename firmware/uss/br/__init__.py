@@ -233,7 +233,7 @@ class DriveController:
         self._sequence = read
 
     def _is_as_set_up(self, drive):
-        """Whether its telegrams are divided as DriveSetup says; what is wrong there says nothing."""
+        """Whether its telegrams are divided as DriveSetup says, unless that is wrong."""
         lengths, layout = self.DriveSetup[drive.address].Lengh, drive.layout
         if check_lengths(lengths):
             return True

@@ -613,9 +613,9 @@ class Master:
         `families`; GENERIC by default. layout: how its telegrams are divided, if not as the
         family's usually are. scale: a `scaling.Scale` for a drive that cannot tell its own; what
         the drive tells goes first. unsupervised: the drive may run although its telegram-off time
-        is 0 or unknown, so that nothing would stop it if the program died. control: False reads and writes parameters
-        alone: bit 10 of STW is 0, nothing starts or stops the drive but an explicit `stop`, and it
-        is left alone as soon as it is seen to run. ValueError if the
+        is 0 or unknown, so that nothing would stop it if the program died. control: False reads
+        and writes parameters alone: bit 10 of STW is 0, nothing but an explicit `stop` tells the
+        drive anything, and it is left alone as soon as it is seen to run. ValueError if the
         address is beyond 31, the family cannot be set to the layout, the list is full, or the
         drive is there already with another family or layout. TypeError.
         """
