@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """A slave that no family of the library knows: what a program says of it holds."""
 
-from boards.sim.drives.families import pump
+from boards.sim.drives import pump
 from bus_bench import Bench, refusal
 from tools.examples.own_family import TurboPump
 from uss import bits, families, pkw

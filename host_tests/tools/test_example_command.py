@@ -48,7 +48,9 @@ def example(*words):
 def test_without_a_name_it_tells_which_there_are():
     status, printed = example()
     assert status == 2
-    assert printed.startswith("usage: ./tools/example broadcast_stop|one_drive|own_program|")
+    assert printed.startswith(
+        "usage: ./tools/example broadcast_stop|one_drive|own_family|own_program|"
+    )
 
 
 def test_what_there_is_not_is_said_in_a_line():

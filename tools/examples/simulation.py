@@ -20,7 +20,7 @@ from errno import errorcode
 # Lower layers first, or the 32-bit build runs out of stack.
 import boards.sim.drives.parameters  # noqa: F401
 from boards.sim.clock import Event
-from boards.sim.drives.families import pump
+from boards.sim.drives import pump
 from boards.sim.drives.kinds import as_delivered, listed_drives, simulated
 from boards.sim.world import World
 

@@ -4,7 +4,8 @@ tasks.
 
 The bits are those that TurboCtl (1.1.1, turboctl/telegram/codes.py) lists for a Leybold TURBOVAC
 i/iX, and so are the length and the tasks. All else, parameters and scaling, is that of
-generic.py: nobody measured a pump. Tables and columns are those of mm420.py.
+generic.py: nobody measured a pump. It is like a file of `families`, with the tables and columns of
+mm420.py, but --drives does not name it.
 
     Drive(clock, wire, 1, family=pump)
 """
