@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 """What a firmware file of the panel holds besides MicroPython: everything that runs, compiled
-beforehand, in flash. The manifest of a board includes this, and adds its board.py.
+beforehand, in flash, and the library for Python programs. The manifest of a board includes this, and adds its board.py.
 
 Read by MicroPython's tools/makemanifest.py, which defines the functions used here; paths start at
 this folder. A file on the chip's file system goes before a frozen one of that name, except for
@@ -13,6 +13,9 @@ import shutil
 import sys
 import tempfile
 
+# For programs that the panel has no room for beside itself: they run on plain MicroPython.
+LEFT_OUT = ("uss/br/", "uss/s7/", "uss/tasks/")
+
 # The order in which they are frozen is part of the firmware's bytes, and that of a listing is not
 # the same everywhere.
 
@@ -21,8 +24,9 @@ def python_files(folder):
     for path, folders, files in os.walk(folder):
         folders.sort()
         for file in sorted(files):
-            if file.endswith(".py"):
-                yield os.path.relpath(os.path.join(path, file), folder)
+            inside = os.path.relpath(os.path.join(path, file), folder)
+            if file.endswith(".py") and not inside.startswith(LEFT_OUT):
+                yield inside
 
 
 freeze("$(PORT_DIR)/modules", ("_boot.py", "_boot_fat.py", "rp2.py"))  # the port's own

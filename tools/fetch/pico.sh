@@ -18,12 +18,13 @@ pico_requirements=$top/tools/fetch/pico_requirements.txt
 pico_make=$build/pico_make
 
 # The firmware files: which board of MicroPython's each is for, the family that its UF2 blocks name
-# (Raspberry Pi's boot ROMs take no other), our board file, and the sources.
+# (Raspberry Pi's boot ROMs take no other), our board file, the sources, and the KiB that the board's
+# file system leaves (PICO_FLASH_SIZE_BYTES - MICROPY_HW_FLASH_STORAGE_BYTES of its mpconfigboard.h).
 pico_target() {
     case $1 in
-        pico2) echo RPI_PICO2 0xe48bff59 pico2 pico_sources ;;
-        *_hard) echo RPI_PICO 0xe48bff56 pico pico_sources_hard ;;
-        *) echo RPI_PICO 0xe48bff56 pico pico_sources ;;
+        pico2) echo RPI_PICO2 0xe48bff59 pico2 pico_sources 1024 ;;
+        *_hard) echo RPI_PICO 0xe48bff56 pico pico_sources_hard 640 ;;
+        *) echo RPI_PICO 0xe48bff56 pico pico_sources 640 ;;
     esac
 }
 
@@ -74,7 +75,7 @@ no_pico_firmware() {
 
 pico_sources_of() {
     local sources
-    read -r _ _ _ sources < <(pico_target "$1")
+    read -r _ _ _ sources _ < <(pico_target "$1")
     echo "$sources"
 }
 
@@ -167,14 +168,24 @@ make_pico_firmware() {
 # What is frozen in is frozen anew each time: makemanifest.py does not notice a file that was taken
 # away.
 compile_pico_firmware() {
-    local name=$1 place=$pico_make/$1 family sources
-    read -r _ family _ sources < <(pico_target "$name")
+    local name=$1 place=$pico_make/$1 family sources room_kib
+    read -r _ family _ sources room_kib < <(pico_target "$name")
     rm -rf "$place"/frozen_* &&
         quietly "$place/log" pico_do "$name" ninja -C "$place" firmware &&
         { [[ $name == stock* ]] || put_into_memory "$name"; } &&
+        fits_before_the_files "$place/firmware.bin" $((room_kib * 1024)) &&
         quietly "$place/log" \
             pico_do "$name" python "$build/$sources/micropython/tools/uf2conv.py" \
             -f "$family" -b 0x10000000 -c -o "$place/$name.uf2" "$place/firmware.bin"
+}
+
+# The linker knows nothing of the file system, which stands behind the program.
+fits_before_the_files() {
+    local size
+    size=$(stat -c %s "$1")
+    ((size <= $2)) && return
+    say "    it has $size bytes, $((size - $2)) more than the files on the flash leave"
+    return 1
 }
 
 # The linker's script puts what has this name into the memory, as the SDK's own functions do. A
@@ -197,7 +208,7 @@ put_into_memory() {
 # library than the one that MicroPython and our compiler have.
 prepare_pico_make() {
     local name=$1 place=$pico_make/$1 made_for board sources
-    read -r board _ _ sources < <(pico_target "$name")
+    read -r board _ _ sources _ < <(pico_target "$name")
     made_for=$(pico_recipe "$name")
     [[ -e $place/made_for && $(<"$place/made_for") == "$made_for" ]] && return
     say "    everything, which takes a minute"
