@@ -31,6 +31,11 @@ MISTAKES = (
     ("pico", "watchdog = rp2.Watchdog()\n", "", "no watchdog: see firmware/hal"),
     ("pico", "keypad = rp2.make", "keys = rp2.make", "no keypad: see firmware/hal"),
     ("pico", "watchdog = rp2.Watchdog()", "watchdog = clock", "watchdog has no feed"),
+    ("pico", "idle = rp2.idle", "idle = 5", "idle is no function: see firmware/hal"),
+    ("pico", "timer = rp2.make_timer()", "timer = None", "timer has no init: see firmware/hal"),
+    ("pico", '("UP", 18)', '("UP", "18")', "'18' is no number of a pin"),
+    ("pico", '("UP", 18),', '("UP", 18', "SyntaxError('invalid syntax',) (line "),
+    ("pico", "SCL = 0, 1", "SCL = 0", "TypeError(\"'int' object isn't iterable\",) (line "),
     ("pico", '"RASPBERRY PICO"', '"RASPBERRY PICO OF MINE"', "name has more than 16"),
     ("pico", "rp2.low(DRIVER_ENABLE)", "None", "DRIVER_ENABLE is no output that is low"),
     ("pico", 'CHIP = "RASPBERRY PICO", "RP2040"', 'CHIP = "X", "Z80"', "no line `name, CHIP"),
@@ -51,6 +56,8 @@ MISTAKES = (
     ("esp32s3", '("UP", 4)', '("UP", 48)', "GPIO48 has the board's RGB LED"),
     ("esp32s3", '("UP", 4)', '("UP", 22)', "invalid pin: GPIO22 (key UP)"),
     ("esp32s3", "DRIVER_ENABLE = 16", "DRIVER_ENABLE = 45", "GPIO45 decides how the chip boots"),
+    ("esp32s3", "must_supervise = True", "must_supervise = False", "must_supervise is not True"),
+    ("esp32", "must_supervise = True", "", "must_supervise is not True"),
     ("esp32", '("START", 13)', '("START", 34)', "GPIO34 has no pull-up (key START)"),
     ("esp32", "ROWS = (25, 26, 27)", "ROWS = (25, 26, 39)", "GPIO39 can only be input (ROWS[2])"),
     ("esp32", "COLUMNS = (18,", "COLUMNS = (27,", "ROWS[2] and COLUMNS[0] are both at pin 27"),
@@ -91,6 +98,13 @@ def test_a_mistake_is_found(row, tmp_path):
     assert status == 1 and says in said, said
 
 
+def test_a_file_that_is_no_text_is_told_as_one(tmp_path):
+    file = tmp_path / "board.py"
+    file.write_bytes(b"\xff\xfe\x00")
+    status, said = check(file)
+    assert status == 1 and said == f"{file}: it cannot be read: UnicodeError()\n"
+
+
 def test_a_compact_keypad_is_whole_with_eight_keys(tmp_path):
     lines = (TOP / "boards/pico/board.py").read_text().splitlines(keepends=True)
     begin = next(at for at, line in enumerate(lines) if line.startswith("KEYS = ("))
@@ -119,6 +133,6 @@ def test_pico_and_pico_2_are_wired_alike():
 
 def test_it_says_how_it_is_called():
     assert check("--help")[0] == 0
-    for word in ("nix", "boards", "--wrong"):
+    for word in ("nix", "boards", "--wrong", "/nix/board.py"):
         status, said = check(word)
         assert status == 2 and "usage: tools/check-board" in said

@@ -221,6 +221,17 @@ def test_a_board_file_for_a_chip_that_nobody_knows_is_refused(tmp_path):
         image.Firmware.read(TOP, "pico", own)
 
 
+def test_a_board_file_with_a_slip_is_refused_before_any_drive_is_stopped(tmp_path):
+    own = tmp_path / "mine.py"
+    for text, says in (
+        (b"from chips import rp2\nKEYS = (\n", r"mine\.py, line 2: '\(' was never closed"),
+        (b"\xff\xfe\x00", r"mine\.py: "),
+    ):
+        own.write_bytes(text)
+        with pytest.raises(DeployError, match=says):
+            image.Firmware.read(TOP, "pico", own)
+
+
 # ---- what is not ours -----------------------------------------------------------------------
 
 

@@ -9,6 +9,7 @@ send us the report, also if all is well: nobody has run the firmware on a real c
 """
 
 import argparse
+import os
 import sys
 import time
 from pathlib import Path
@@ -192,8 +193,17 @@ class Bench:
         self._chip.call("remove_empty", folders(paths)[::-1])
 
 
+def agreed(question):
+    """Whether a person says yes; nobody there to ask is no."""
+    try:
+        return input(question).strip() == "yes"
+    except EOFError:
+        print()
+        return False
+
+
 def confirmed(page):
-    return input(ASK_PAGE.format(first=page, last=page + 31)).strip() == "yes"
+    return agreed(ASK_PAGE.format(first=page, last=page + 31))
 
 
 def summary(bench):
@@ -206,6 +216,26 @@ def summary(bench):
             yield from (f"  {check.number:2} {check.proves}" for check in checks)
 
 
+def writable(report):
+    """Raises DeployError unless the report can be written: that is said now, not after a minute."""
+    place = report if report.exists() else report.parent
+    if report.is_dir() or not os.access(place, os.W_OK):
+        raise DeployError(f"the report cannot be written: {report}")
+
+
+def made(options, say):
+    """The bench, its checks made. DeployError: they could not be."""
+    writable(Path(options.report))
+    if not options.yes and not agreed(ASK_WIRED if options.wired else ASK_BARE):
+        raise DeployError("nothing was sent, for you did not say yes")
+    bench = Bench(options.port or choose(comports(), waits_for_uf2()), options, say)
+    try:
+        bench.run()
+    finally:
+        bench.close()
+    return bench
+
+
 def main():
     options = arguments(sys.argv[1:])
     lines = []
@@ -214,25 +244,22 @@ def main():
         print(line, flush=True)
         lines.append(line)
 
-    ask = ASK_WIRED if options.wired else ASK_BARE
-    if not options.yes and input(ask).strip() != "yes":
-        return 1
+    bench, ended = None, ""
     try:
-        bench = Bench(options.port or choose(comports(), waits_for_uf2()), options, say)
-        try:
-            bench.run()
-        finally:
-            bench.close()
+        bench = made(options, say)
     except DeployError as error:
-        print(f"tools/bringup: {error}", file=sys.stderr)
-        return 1
+        ended = str(error)
     except KeyboardInterrupt:
-        print("tools/bringup: interrupted", file=sys.stderr)
-        return 1
-    for line in summary(bench):
-        say(line)
-    Path(options.report).write_text("\n".join(lines) + "\n")
-    return 1 if bench.failed else 0
+        ended = "interrupted"
+    if bench:
+        for line in summary(bench):
+            say(line)
+    else:
+        print(f"tools/bringup: {ended}", file=sys.stderr)
+    if lines:
+        whole = [*lines, f"broken off: {ended}"] if ended else lines
+        Path(options.report).write_text("\n".join(whole) + "\n")
+    return 0 if bench and not bench.failed else 1
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@
 for finding in findings("boards/pico/board.py"): print(finding)
 """
 
+import io
 import os
 import sys
 
@@ -24,6 +25,8 @@ BAUD = 19_200
 OF_PINS = ("pin", "output", "pull", "flash", "psram", "strapping", "prompt", "led", "board", "e5",
            "uart pin", "i2c pin")  # fmt: skip
 
+SOFT_PORTS = ("esp32",)  # all callbacks there wait for the interpreter
+
 COMPACT = ("START", "STOP", "REVERSE", "UP", "DOWN") + COMPACT_NAMES  # a keypad of eight
 PINS = ("BUS_SEND", "BUS_RECEIVE", "DRIVER_ENABLE", "BACKPACK_SDA", "BACKPACK_SCL")
 LCD_WIRES = ("RS", "E", "D4", "D5", "D6", "D7")  # six pins in a row
@@ -37,10 +40,11 @@ OBJECTS = (
     ("keypad", ("names", "read", "unclear")),
     ("store", ("read", "replace", "set_aside")),
     ("watchdog", ("feed", "stop")),
-    ("timer", ()),
+    ("timer", ("init", "deinit")),
     ("make_link", ()),
     ("idle", ()),
 )
+FUNCTIONS = ("make_link", "idle")
 LINK = ("clock", "interrupts", "resolution_us", "on_activity", "send", "sending_us", "sent_at",
         "receive", "received_at", "close")  # fmt: skip
 
@@ -64,7 +68,11 @@ def wires(board):
 
 def findings(path):
     """Texts of what is wrong with a board file, in the order of the file's life."""
-    chip = chip_of(path)
+    try:
+        chip = chip_of(path)
+    except (ValueError, SyntaxError) as error:  # or bytes that are no text
+        yield "it cannot be read: %r" % error
+        return
     if chip not in CHIPS:
         known = " ".join(sorted(CHIPS))
         yield 'no line `name, CHIP = "...", "..."` with a chip that is known here: %s' % known
@@ -79,7 +87,7 @@ def findings(path):
         board = load(path, port)
     except Exception as error:
         yield from told(port, {})
-        yield "it cannot be loaded: %r" % error
+        yield "it cannot be loaded: %r%s" % (error, line_of(error, path))
         return
     link = None
     failure = None
@@ -94,11 +102,21 @@ def findings(path):
         yield "DRIVER_ENABLE is no output that is low before the bus is made"
     yield from keys(board)
     yield from objects(board)
+    yield from supervision(board, CHIPS[chip])
     if failure:
         yield failure
     for name in LINK:
         if link is not None and not hasattr(link, name):
             yield "its link has no %s" % name
+
+
+def line_of(error, path):
+    """Where in the file that happened."""
+    traceback = io.StringIO()
+    sys.print_exception(error, traceback)
+    mark = '"%s", line ' % path
+    last = traceback.getvalue().rpartition(mark)[2] if mark in traceback.getvalue() else ""
+    return " (line %s)" % last.split(",")[0].split("\n")[0] if last else ""
 
 
 def told(port, whats):
@@ -155,6 +173,13 @@ def keys(board):
         yield "STOP is not normally closed: nobody will notice a broken wire"
 
 
+def supervision(board, model):
+    """Where callbacks are soft, a hang in C stops them all, and only the drive's own time-out is
+    left."""
+    if model.port in SOFT_PORTS and getattr(board, "must_supervise", False) is not True:
+        yield "must_supervise is not True: if the chip hangs, nothing stops a drive without P2014"
+
+
 def objects(board):
     for name, parts in OBJECTS:
         if not hasattr(board, name):
@@ -163,6 +188,9 @@ def objects(board):
         for part in parts:
             if not hasattr(getattr(board, name), part):
                 yield "%s has no %s: see firmware/hal/__init__.py" % (name, part)
+    for name in FUNCTIONS:
+        if hasattr(board, name) and not callable(getattr(board, name)):
+            yield "%s is no function: see firmware/hal/__init__.py" % name
     if len(getattr(board, "name", "")) > NAME_MAX:
         yield "name has more than %d characters" % NAME_MAX
 

@@ -10,6 +10,7 @@ sooner. main.py and board.py stay as they are: MicroPython starts no main.mpy, a
 what people change on the chip.
 """
 
+import ast
 import re
 import subprocess
 import tempfile
@@ -51,6 +52,7 @@ class Firmware:
         boards = Path(top) / "boards"
         own = (boards / board / BOARD).read_bytes()
         sources[BOARD] = Path(board_file).read_bytes() if board_file else own
+        _check(sources[BOARD], board_file or board)
         # The board's own as well: a changed copy that stays on the chip imports the same.
         for name in sorted({*CHIPS.findall(own), *CHIPS.findall(sources[BOARD])}):
             path = f"chips/{name.decode()}.py"
@@ -82,6 +84,19 @@ class Firmware:
     def suits(self, chip_mpy):
         """Whether the chip takes every one of the compiled files."""
         return all(suits(data, chip_mpy) for data in self.compiled.values())
+
+
+def _check(source, name):
+    """Raises DeployError if a board file is no program: it is not compiled here, and the chip would
+    find out only when the panel that ran there is gone."""
+    try:
+        ast.parse(source)
+    except (SyntaxError, ValueError) as error:
+        line = getattr(error, "lineno", None)
+        raise DeployError(
+            f"{name}{f', line {line}' if line else ''}: {getattr(error, 'msg', error)}"
+            " (tools/check-board finds more)"
+        ) from None
 
 
 def stays(path):

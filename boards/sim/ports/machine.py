@@ -81,7 +81,11 @@ class Port:
 
 
 def number_of(pin):
-    return pin if isinstance(pin, int) else pin.number
+    if isinstance(pin, int):
+        return pin
+    if not hasattr(pin, "number"):
+        raise ValueError("%r is no number of a pin" % (pin,))
+    return pin.number
 
 
 # Each port has classes of its own: programs use their constants, as Pin.PULL_UP.
