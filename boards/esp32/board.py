@@ -2,7 +2,7 @@
 """The panel on an ESP32-DevKitC: which pin is what. README.md beside it shows the wiring.
 
 The transceiver finds its direction by itself. For one with a driver enable, up to 9600 baud, give
-DRIVER_ENABLE the number of a pin: GPIO4 is free.
+DRIVER_ENABLE the number of a pin: on a module without PSRAM GPIO17 is free.
 
 If you wire it differently, put a changed copy as board.py on the chip's file system.
 """
@@ -12,7 +12,7 @@ from chips import esp32
 name, CHIP = "ESP32", "ESP32"
 
 # GPIO numbers
-BUS_SEND, BUS_RECEIVE = 17, 16
+BUS_SEND, BUS_RECEIVE = 33, 4  # 16 and 17 belong to the PSRAM of a WROVER module
 DRIVER_ENABLE = None
 
 BACKPACK_SDA, BACKPACK_SCL = 21, 22

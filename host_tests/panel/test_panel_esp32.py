@@ -74,6 +74,20 @@ def test_three_drives_start_run_and_stop_at_every_rate():
             world.check()
 
 
+def test_where_the_heap_lies_in_psram_collections_may_take_100_ms():
+    """Nobody has measured how long they take there. STOP comes later by as much."""
+    for ms, exchanges in ((60, 39), (100, 36)):
+        world = all_running("esp32", 19_200)
+        world.collection_us = ms * 1000
+        assert rate_of(world) >= exchanges, (ms, rate_of(world))
+        for _ in world.drives:
+            assert press_stop(world) <= DEBOUNCE_MS + 2 * exchange_ms(19_200) + 15 + ms, ms
+            world.press("ADDRESS_UP")
+        world.run(15_000)
+        assert not any(drive.hz() for drive in world.drives.values()), ms
+        world.check()
+
+
 def test_keys_that_bounce_and_drives_that_are_slow():
     for seed in (3, 4):
         for board in BOARDS:
@@ -93,6 +107,9 @@ def test_what_is_written_where_for_the_driver_enable():
     world.reset()  # and again with each life of the chip
     world.run(500)
     assert world.port.mem32.written == wanted
+    world.board.make_link(9_600)  # and after each `init` of the UART, which clears the first
+    assert world.port.mem32.written == 2 * wanted
+    assert world.port.mem32.levels[wanted[0][0]] == wanted[0][1]
     assert switched_on("esp32").port.mem32.written == []
 
 
@@ -170,8 +187,8 @@ def test_a_driver_that_a_timer_switches_is_refused_above_9600_baud():
 
     world = switched_on("esp32", baud=9_600)
     with open("boards/esp32/board.py") as source:
-        text = source.read().replace("DRIVER_ENABLE = None", "DRIVER_ENABLE = 4")
-    assert text.count("DRIVER_ENABLE = 4") == 1
+        text = source.read().replace("DRIVER_ENABLE = None", "DRIVER_ENABLE = 17")
+    assert text.count("DRIVER_ENABLE = 17") == 1
     path = "build/board_with_driver.py"
     with open(path, "w") as file:
         file.write(text)

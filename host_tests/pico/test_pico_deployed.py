@@ -4,6 +4,7 @@ system and runs from its memory. How it gets there: test_pico_deploy.py."""
 
 import os
 
+from boards.sim.ports.chips import HEAP_BYTES
 from pico_bench import QUICK, says, stands, start, starts
 from tools.emulator.flash_image import files_in
 from tools.emulator.world import PicoWorld, temporary
@@ -11,14 +12,31 @@ from tools.emulator.world import PicoWorld, temporary
 INTERPRETERS = "pico pico_hard"
 
 BOOT_MS = 15_000
+ALL = tuple(range(1, 32))
+LEARN_MS = 31_000  # for 31 drives to tell what they are
+TELL_MS = 2_000
+TELLS = b"""
+import gc
+from machine import Timer
+def tell(_):
+    gc.collect()
+    print("TAKEN", gc.mem_alloc(), "FREE", gc.mem_free(), "END")
+timer = Timer(period=%d, mode=Timer.PERIODIC, callback=tell)
+""" % TELL_MS  # fmt: skip
+FREE_BYTES = 38 * 1024
+# Of an ESP32, where the bytecode takes as much: boards/esp32/README.md says which ones will do.
+ESP32_FREE_BYTES = 40 * 1024
+WILL_DO = ("ESP32-S3", "ESP32 with PSRAM")
 
 
-def deployed():
+def deployed(files=(), **options):
     folder = temporary()
     write = "build/mpremote/bin/python -B tools/benching/deployed.py %s" % folder
     assert os.system(write) == 0
     try:
-        return PicoWorld("stock", files=files_in(folder), parameters=QUICK)
+        everything = dict(files_in(folder))
+        everything.update(files)
+        return PicoWorld("stock", files=everything, parameters=QUICK, **options)
     finally:
         os.system("rm -r %s" % folder)
 
@@ -31,4 +49,18 @@ def test_a_panel_that_was_deployed_runs_its_drive_and_stops_it():
     world.press("STOP")
     assert stands(world) and says(world, "READY") and starts(world) == 1
     assert not world.restarts
+    world.check()
+
+
+def test_with_31_drives_there_is_memory_left_here_and_on_the_esp32s_that_the_manual_names():
+    world = deployed({"boot.py": TELLS}, addresses=ALL)
+    assert says(world, "READY", BOOT_MS)
+    world.run(LEARN_MS)
+    world.usb[:] = b""
+    assert world.run_until(lambda: b"END" in world.usb, 2 * TELL_MS)
+    told = bytes(world.usb).split()
+    taken, free = (int(told[told.index(word) + 1]) for word in (b"TAKEN", b"FREE"))
+    assert free >= FREE_BYTES, free
+    for chip, heap in HEAP_BYTES.items():
+        assert (heap - taken >= ESP32_FREE_BYTES) == (chip in WILL_DO), (chip, heap - taken)
     world.check()

@@ -197,6 +197,15 @@ def test_without_a_cache_the_flash_is_as_fast_as_ram():
     close_to(first_us, second_us, 5)
 
 
+def test_where_nobody_says_otherwise_there_is_a_cache():
+    """So the tests of the panel, line, failures and settings have one."""
+    world = PicoWorld("stock", ())
+    world.repl.open()
+    does(world, LOOKS)
+    first_us, second_us = map(int, does(world, "print(took_us(1024), took_us(1024))").split())
+    close_to(first_us - second_us, WAY_LINES * MISS_US, 0.1 * WAY_LINES * MISS_US)
+
+
 def test_a_flash_as_slow_as_its_data_sheet_allows():
     world = stock(model={"flash_times": "maximum"})
     took_us = number(

@@ -125,11 +125,8 @@ def test_every_row_is_met_and_has_its_source():
     met = {(CHIPS[chip].port, name) for name, chip, _ in REFUSED}
     for chip in CHIPS.values():
         for name, refusal in chip.refusals.items():
-            assert (chip.port, name) in met or ("esp32", name) in met and name in COMMON, name
+            assert (chip.port, name) in met, (chip.port, name)
             assert refusal.source and refusal.text, name
-
-
-COMMON = ("watchdog time", "watchdog stop", "uart handler", "uart trigger", "i2c absent")
 
 
 def test_what_the_port_takes_is_taken():

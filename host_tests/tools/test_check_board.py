@@ -64,7 +64,7 @@ MISTAKES = (
     (
         "esp32",
         "DRIVER_ENABLE = None",
-        "DRIVER_ENABLE = 4",
+        "DRIVER_ENABLE = 17",
         "a timer switches the driver off too late",
     ),
 )

@@ -52,7 +52,7 @@ import gc
 from machine import Timer
 def tell(_):
     gc.collect()
-    print(gc.mem_free(), "bytes free")
+    print(gc.mem_alloc(), "taken", gc.mem_free(), "bytes free")
 timer = Timer(period=%d, mode=Timer.PERIODIC, callback=tell)
 """
     % TELLS_FREE_MS
@@ -494,7 +494,7 @@ def boot(quick, display):
 
 
 def heap(quick, how, drives):
-    """Free heap of the panel as it runs, once it knows so many drives: a timer tells it.
+    """Heap of the panel as it runs and knows so many drives, taken and free: a timer tells it.
 
     how: "frozen", or "files", compiled by __main__.py, on a MicroPython without the panel.
     """
@@ -504,8 +504,8 @@ def heap(quick, how, drives):
     told = world.usb.count(b" bytes free")
     if not world.run_until(lambda: world.usb.count(b" bytes free") > told, 2 * TELLS_FREE_MS):
         raise RuntimeError("the chip tells no free heap: %r" % bytes(world.usb[-500:]))
-    free = int(bytes(world.usb).rpartition(b" bytes free")[0].split()[-1])
-    return checked(world, {"free": free})
+    *_, taken, _, free = bytes(world.usb).rpartition(b" bytes free")[0].split()
+    return checked(world, {"taken": int(taken), "free": int(free)})
 
 
 def firmware_as(how, files=()):

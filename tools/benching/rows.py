@@ -8,6 +8,8 @@ tasks. Nothing here measures.
 from collections.abc import Callable
 from typing import NamedTuple
 
+from boards.sim.ports.chips import HEAP_BYTES
+
 
 class Task(NamedTuple):
     """command: function of measurements.py and its arguments. beside: measured by libraries.py,
@@ -60,6 +62,8 @@ READ_US = 100_000  # a step that reads a module from a file: a third of the dead
 FIRST_TELEGRAM_US = 500_000
 PICTURE_US = 100_000
 FREE_BYTES = {"frozen": 135 * 1024, "files": 38 * 1024}
+ESP32_FREE_BYTES = 40 * 1024
+TOO_SMALL = ("ESP32 without PSRAM",)  # boards/esp32/README.md says so
 SIMULATION_TIMES = 100
 LIBRARY_TIMES = 3  # as fast as the fastest of the others
 
@@ -398,6 +402,22 @@ def heap_row(how, drives):
     )
 
 
+def esp32_heap_row(chip):
+    """The same bytecode, on a chip that is not emulated: what it takes here, of the heap there."""
+
+    def free(figures):
+        return HEAP_BYTES[chip] - figures["taken"]
+
+    has_bar = chip not in TOO_SMALL
+    return Row(
+        HEAPS["files", 31],
+        "free heap of an %s, by what its MicroPython prints, as files, 31 drives" % chip,
+        ">= %d KB" % (ESP32_FREE_BYTES // 1024) if has_bar else "",
+        lambda figures: "%.1f KB" % (free(figures) / 1024),
+        (lambda figures: free(figures) >= ESP32_FREE_BYTES) if has_bar else None,
+    )
+
+
 def rules_row(task):
     """A broken rule of line or display is a figure too."""
     return Row(
@@ -490,6 +510,7 @@ ROWS = (
     *(picture_row(drives) for drives in PICTURES),
     *(row for display in BOOTS for row in boot_rows(display)),
     *(heap_row(*which) for which in HEAPS),
+    *map(esp32_heap_row, HEAP_BYTES),
     cuts_row(),
     *(rules_row(task) for task in TASKS if task.on_chip and task.name != "hang"),
     Row(CODEC, "receiver, characters per second", "", lambda f: "%d" % f["receiver"], None),

@@ -217,7 +217,7 @@ def summary(bench):
 
 
 def writable(report):
-    """Raises DeployError unless the report can be written: that is said now, not after a minute."""
+    """Raises DeployError unless the report can be written: better now than after a minute."""
     place = report if report.exists() else report.parent
     if report.is_dir() or not os.access(place, os.W_OK):
         raise DeployError(f"the report cannot be written: {report}")

@@ -30,6 +30,14 @@ class ChipModel:
         ]
 
 
+# What Python can have of an ESP32's memory, in bytes, by what MicroPython prints of it: mem_info()
+# says "total" and "max new split", idf_heap_info() the largest block beside the heap.
+HEAP_BYTES = {
+    "ESP32-S3": 64_000 + 188_352,  # without PSRAM: MicroPython, pull request 12141
+    "ESP32 with PSRAM": 4_098_240,  # "total" of 4 MB, less what ESP-IDF takes
+    "ESP32 without PSRAM": 64_000 + 112_216,  # MicroPython, issue 7214
+}
+
 CHIPS = {
     "ESP32": ChipModel(
         "Generic ESP32 module with ESP32",

@@ -8,12 +8,16 @@ uart_timer_callback).
 """
 
 from boards.sim.chip import machine as sim
+from boards.sim.ports.chips import CHIPS
 
 RXIDLE = 0x1000
 RX = 0x02
 BREAK = 0x20
 IDLE_BITS, IDLE_MIN_US = 24, 500
 FIFO = 128
+# UART 1 of the ESP32-S3: UART_RS485_CONF_REG (ESP-IDF, components/soc/esp32s3: uart_reg.h). Whoever
+# makes the UART clears it: uart_hal_init() sets the mode of a plain UART.
+RS485_CONF = {(CHIPS["ESP32S3"].machine, 1): 0x6001_0000 + 0x4C}
 RP2_UART_PINS = {0: (0, 12, 16, 28), 1: (4, 8, 20, 24)}  # of TX; RX is the next one
 
 
@@ -60,6 +64,7 @@ class SoftUart(sim.UART):
         self._number = number
         self._idle_tick_us = max(-(-IDLE_BITS * 1_000_000 // baud), IDLE_MIN_US)
         self._burst_began_us = None
+        port.mem32.levels.pop(RS485_CONF.get((port.model.machine, number)), 0)
         sim.UART.__init__(self, port.chip, baud)
 
     def irq(self, handler=None, trigger=0, hard=False):

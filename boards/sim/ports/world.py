@@ -15,6 +15,7 @@ from boards.sim.chip.machine import WDT
 from boards.sim.clock import Event
 from boards.sim.line.wire import Transceiver
 from boards.sim.ports.chips import CHIPS
+from boards.sim.ports.esp32_uart import RS485_CONF
 from boards.sim.ports.loading import chip_of, load
 from boards.sim.ports.machine import Port
 from boards.sim.ports.soft import COLLECTION_EVERY_US, COLLECTION_US, SoftChip
@@ -43,7 +44,8 @@ class Wire:
 class PortWorld(World):
     """path: of a board file. The others are those of `World`.
 
-    port, board   of the present life of the chip
+    port, board     of the present life of the chip
+    collection_us   how long one takes
     """
 
     def __init__(self, start, path, **options):
@@ -53,6 +55,7 @@ class PortWorld(World):
         self.port = None
         self.board = None
         self._next_collection_us = COLLECTION_EVERY_US
+        self.collection_us = COLLECTION_US
         options.setdefault("keys", "matrix" if "MATRIX" in open(path).read() else "direct")
         World.__init__(self, start, **options)
 
@@ -100,7 +103,7 @@ class PortWorld(World):
         if clock.now_us >= self._next_collection_us and not self._bitten:
             self._next_collection_us = clock.now_us + COLLECTION_EVERY_US
             self.chip.hold()
-            clock.advance(COLLECTION_US)
+            clock.advance(self.collection_us)
             self.chip.let_go()
 
     def _wire_uart(self, uart):
@@ -141,4 +144,7 @@ class PortWorld(World):
 
 # UART 1 of the ESP32-S3: its RS-485 register, the bit that turns it on; the GPIO matrix, and the
 # signal U1DTR (ESP-IDF, components/soc/esp32s3: uart_reg.h, gpio_reg.h, gpio_sig_map.h).
-DTR = {CHIPS["ESP32S3"].machine: ((0x6001_0000 + 0x4C, 1, 0x6000_4000 + 0x554, 17),)}
+DTR = {
+    machine: ((register, 1, 0x6000_4000 + 0x554, 17),)
+    for (machine, _), register in RS485_CONF.items()
+}
