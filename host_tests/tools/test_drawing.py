@@ -8,9 +8,9 @@ import pytest
 
 from tiers import TOP
 from tools.drawing.__main__ import files
-from tools.drawing.layouts import LAYOUTS, sides
+from tools.drawing.layouts import LAYOUTS, RESISTOR, modules, sides
 from tools.drawing.picture import CHARACTER, EDGE, FONT, texts_of
-from tools.drawing.wires import table, wires
+from tools.drawing.wires import keep_off, table, wires
 
 INTERPRETERS = "host"
 
@@ -49,6 +49,46 @@ def test_each_wire_and_each_pin_is_in_the_picture(board):
     led_out = [pin for side in sides(board) for pin in side]
     for number in wires(board):
         assert form % number in led_out, number
+
+
+# What a module is joined to, by the constants of the board file.
+JOINED = {
+    "DI": "BUS_SEND",
+    "TXD": "BUS_SEND",
+    "RO": "BUS_RECEIVE",
+    "RXD": "BUS_RECEIVE",
+    "DE, /RE": "DRIVER_ENABLE",
+    "LV1": "BACKPACK_SDA",
+    "LV2": "BACKPACK_SCL",
+}
+
+
+@pytest.mark.parametrize("board", LAYOUTS)
+def test_transceiver_and_level_shifter_are_at_the_pins_of_the_board_file(board):
+    names, met = table(board), set()
+    for _, left, _ in modules(board):
+        for what, pin in left:
+            number = re.fullmatch(r"GP(?:IO)?(\d+)", what)
+            if number:
+                assert int(number[1]) == names[JOINED[pin]], (what, pin)
+                met.add(JOINED[pin])
+    assert met == {name for name in JOINED.values() if names[name] is not None}
+
+
+@pytest.mark.parametrize("board", LAYOUTS)
+def test_the_resistor_that_silences_the_driver_is_that_of_the_manual(board):
+    shown = [text for _, _, text, _ in texts_of(board)]
+    way = "to ground" if table(board)["DRIVER_ENABLE"] is not None else "to 3V3"
+    assert shown.count(f"{RESISTOR[board]} {way}") == 1
+    assert RESISTOR[board] in (TOP / "boards" / board / "README.md").read_text()
+
+
+@pytest.mark.parametrize("board", LAYOUTS)
+def test_a_pin_that_has_a_wire_is_not_one_to_leave_alone(board):
+    """Or the picture would say so."""
+    assert not set(wires(board)) & set(keep_off(board))
+    if board == "pico":
+        assert [text for _, _, text, _ in texts_of(board)].count("no key here") == 1
 
 
 def rows_of_manual(board):
@@ -92,8 +132,14 @@ def test_wokwi_has_the_same_wires():
         if what.startswith("LCD "):
             assert joined[number] == "lcd:" + what[4:]
         elif what.startswith("key "):
-            assert joined[number] == what[4:].split(",")[0] + ":1.l"
+            pin = "2" if "normally closed" in what else "1.l"
+            assert joined[number] == what[4:].split(",")[0] + ":" + pin
         else:
             assert number not in joined
+    kinds = {part["id"]: part["type"] for part in made["parts"]}
+    grounded = {one for one, other, _, _ in made["connections"] if other == "pico:GND.1"}
+    # A button of Wokwi closes: with one STOP would be down for ever.
+    assert kinds["STOP"] == "wokwi-slide-switch" and "STOP:1" in grounded
+    assert kinds["START"] == "wokwi-pushbutton" and "START:2.l" in grounded
     ids = [part["id"] for part in made["parts"]]
     assert len(set(ids)) == len(ids)

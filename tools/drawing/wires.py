@@ -2,9 +2,13 @@
 """What is wired to which pin, by the table of a board file: read, not run."""
 
 import ast
+import sys
 from pathlib import Path
 
 TOP = Path(__file__).resolve().parents[2]
+
+sys.path.append(str(TOP))
+from boards.sim.ports.chips import CHIPS  # noqa: E402
 
 BUS = (
     ("BUS_SEND", "bus DI"),
@@ -28,6 +32,26 @@ def table(board):
             continue
         names = ast.unparse(node.targets[0]).strip("()").split(", ")
         found.update(zip(names, value) if len(names) > 1 else {names[0]: value})
+    return found
+
+
+# Why a pin is better left alone, by the name of the refusal of boards/sim/ports.
+KEEP_OFF = {
+    "flash": "flash: leave alone",
+    "psram": "PSRAM: leave alone",
+    "strapping": "boot: leave alone",
+    "prompt": "prompt: leave alone",
+    "led": "RGB LED: leave alone",
+    "output": "input only",
+    "e5": "no key here",
+}
+
+
+def keep_off(board):
+    """{number of a pin: why it is better left alone}."""
+    found = {}
+    for what, numbers in CHIPS[table(board)["CHIP"]].pins:
+        found.update({number: KEEP_OFF[what] for number in numbers if what in KEEP_OFF})
     return found
 
 

@@ -34,11 +34,17 @@ def diagram():
             joined.append([f"lcd:{what[4:]}", f"pico:GP{number}", "green", []])
         elif what.startswith("key "):
             key = what[4:].split(",")[0]
-            attrs = {"label": key, "color": COLOURS[keys % len(COLOURS)]}
             column, row = divmod(keys, 7)
-            parts.append(part("pushbutton", key, 70 * row, 160 + 130 * column, attrs))
-            joined.append([f"{key}:1.l", f"pico:GP{number}", "blue", []])
-            joined.append([f"{key}:2.l", "pico:GND.1", "black", []])
+            place = (70 * row, 160 + 130 * column)
+            if "normally closed" in what:  # a button of Wokwi closes; this lies on 1 until slid
+                parts.append(part("slide-switch", key, *place, {"value": ""}))
+                pin, ground = "2", "1"
+            else:
+                attrs = {"label": key, "color": COLOURS[keys % len(COLOURS)]}
+                parts.append(part("pushbutton", key, *place, attrs))
+                pin, ground = "1.l", "2.l"
+            joined.append([f"{key}:{pin}", f"pico:GP{number}", "blue", []])
+            joined.append([f"{key}:{ground}", "pico:GND.1", "black", []])
             keys += 1
     made = {"version": 1, "author": "USS panel", "editor": "wokwi", "parts": parts}
     made["connections"] = joined

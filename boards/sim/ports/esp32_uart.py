@@ -15,8 +15,8 @@ RX = 0x02
 BREAK = 0x20
 IDLE_BITS, IDLE_MIN_US = 24, 500
 FIFO = 128
-# UART 1 of the ESP32-S3: UART_RS485_CONF_REG (ESP-IDF, components/soc/esp32s3: uart_reg.h). Whoever
-# makes the UART clears it: uart_hal_init() sets the mode of a plain UART.
+# UART 1 of the ESP32-S3: UART_RS485_CONF_REG (ESP-IDF, components/soc/esp32s3: uart_reg.h). It is
+# cleared when the UART is made: uart_hal_init() sets the mode of a plain UART.
 RS485_CONF = {(CHIPS["ESP32S3"].machine, 1): 0x6001_0000 + 0x4C}
 RP2_UART_PINS = {0: (0, 12, 16, 28), 1: (4, 8, 20, 24)}  # of TX; RX is the next one
 
