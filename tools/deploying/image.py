@@ -87,8 +87,8 @@ class Firmware:
 
 
 def _check(source, name):
-    """Raises DeployError if a board file is no program. It goes onto the chip as it is, which would
-    find out when the panel that ran there is gone."""
+    """Raises DeployError if a board file is no program. It goes onto the chip as it is, and there
+    it would be found out when the panel that ran is gone."""
     try:
         ast.parse(source)
     except (SyntaxError, ValueError) as error:
