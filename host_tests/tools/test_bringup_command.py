@@ -13,6 +13,29 @@ from tiers import TOP
 INTERPRETERS = "host"
 
 COMMAND = TOP / "tools" / "bringup"
+PYTHON = TOP / "build" / "mpremote" / "bin" / "python"
+
+# The command, with a board whose cable is pulled after the first check.
+PULLED = """
+import sys
+sys.path[0] = %r
+from tools.bringing_up import __main__ as command
+
+class Bench:
+    def __init__(self, port, options, say):
+        self.say = say
+
+    def run(self):
+        self.say("PASS   1  comes once")
+        raise command.DeployError("the port is gone")
+
+    def close(self):
+        pass
+
+command.Bench = Bench
+sys.argv[1:] = ["--yes", "--port", "nix"]
+sys.exit(command.main())
+""" % str(TOP)
 
 
 def bringup(*words, folder, answer=""):
@@ -53,3 +76,12 @@ def test_a_report_that_cannot_be_written_is_told_before_anything_is_sent(report,
 def test_a_word_that_is_wrong_is_named(words, tmp_path):
     ended = bringup(*words, folder=tmp_path)
     assert ended.returncode == 2 and "tools/bringup: error: " in ended.stderr.splitlines()[-1]
+
+
+def test_what_was_found_before_the_cable_was_pulled_is_in_the_report(tmp_path):
+    ended = subprocess.run(
+        [PYTHON, "-B", "-c", PULLED], capture_output=True, text=True, timeout=120, cwd=tmp_path
+    )
+    says(ended, 1, "tools/bringup: the port is gone")
+    report = (tmp_path / "bringup.txt").read_text()
+    assert report == "PASS   1  comes once\nbroken off: the port is gone\n"
