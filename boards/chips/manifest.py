@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """What a firmware file of the panel holds besides MicroPython: everything that runs, compiled
-beforehand, in flash, and the library for Python programs. The manifest of a board includes this, and adds its board.py.
+beforehand, in flash, and the library for Python programs. The manifest of a board includes this,
+and adds its board.py.
 
 Read by MicroPython's tools/makemanifest.py, which defines the functions used here; paths start at
 this folder. A file on the chip's file system goes before a frozen one of that name, except for
