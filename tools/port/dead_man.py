@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Stops the drives of a panel that has fallen silent because it hangs, was killed, or is
-suspended.
+"""Stops the drives of a panel, or a program, that has fallen silent because it hangs, was killed,
+or is suspended.
 
 It knows only what the panel has sent. If the last control word to a drive turns its motor, it owes
 the drive an OFF1, which is that telegram without its commands. A panel that hung may go on in the
@@ -13,14 +13,16 @@ it a telegram that does not turn the motor. The time is an argument.
     telegram = dead_man.due(now_s)      # to send in the panel's place, or None
     dead_man.over(now_s)                # the panel has ended, and sends nothing any more
 
-Telegrams are those of the panel, with two words of process data behind four of a parameter.
+A telegram does not tell how many words of process data stand at its end. Whoever knows says it
+with `heard`; else it is two, behind the usual parameter words.
 """
 
 STX = 0x02
 NODE_MAX = 31
-SIZE = 16
-PKW = slice(3, 11)
-STW = 11  # place of the control word, high byte first
+NET = 3  # the first of the net characters
+BCC = 1  # characters behind them
+PZD_WORDS = 2
+SIZES = (8, 14, 16)  # of telegrams with that behind 0, 3 or 4 words of a parameter
 COMMANDS_HIGH, COMMANDS_LOW = 0x03, 0x01  # JOG_LEFT, JOG_RIGHT; ON
 CHARACTER_BITS = 11
 
@@ -39,19 +41,34 @@ def telegrams(data):
     return found
 
 
-def turns(telegram):
+def stw_place(telegram, pzd_words=None):
+    """Where the control word of a telegram to a single drive stands, high byte first; None: there
+    is none, or nobody knows.
+    """
+    size = len(telegram)
+    if size <= NET + BCC or telegram[0] != STX or telegram[2] > NODE_MAX:
+        return None
+    if pzd_words is None:
+        pzd_words = PZD_WORDS if size in SIZES else 0
+    at = size - BCC - 2 * pzd_words
+    return at if pzd_words and at >= NET else None
+
+
+def turns(telegram, pzd_words=None):
     """Whether it is a telegram to a single drive that turns its motor."""
-    if len(telegram) != SIZE or telegram[0] != STX or telegram[2] > NODE_MAX:
-        return False
-    return bool(telegram[STW] & COMMANDS_HIGH or telegram[STW + 1] & COMMANDS_LOW)
+    at = stw_place(telegram, pzd_words)
+    return at is not None and bool(
+        telegram[at] & COMMANDS_HIGH or telegram[at + 1] & COMMANDS_LOW
+    )
 
 
-def off1(telegram):
+def off1(telegram, pzd_words=None):
     """The same telegram as OFF1, without a parameter task."""
+    at = stw_place(telegram, pzd_words)
     changed = bytearray(telegram)
-    changed[PKW] = bytes(PKW.stop - PKW.start)
-    changed[STW] &= ~COMMANDS_HIGH
-    changed[STW + 1] &= ~COMMANDS_LOW
+    changed[NET:at] = bytes(at - NET)
+    changed[at] &= ~COMMANDS_HIGH
+    changed[at + 1] &= ~COMMANDS_LOW
     changed[-1] = 0
     for character in changed[:-1]:
         changed[-1] ^= character
@@ -59,34 +76,43 @@ def off1(telegram):
 
 
 class DeadMan:
-    """stopped: the addresses that were sent OFF1 in the panel's place, ever."""
+    """patience_s: who is silent for so long, and for an exchange, hangs.
 
-    def __init__(self, baud):
+    stopped: the addresses that were sent OFF1 in the panel's place, ever.
+    """
+
+    def __init__(self, baud, patience_s=PATIENCE_S):
         self.stopped = set()
-        self._turning = {}  # address: the last telegram to it, one that turns it
+        self._turning = {}  # address: the OFF1 that a drive is owed whose last telegram turns it
         self._owed = []
         self._barred = set()  # addresses stopped here that the panel has not sent OFF since
-        exchange_s = 2 * SIZE * CHARACTER_BITS / baud
+        exchange_s = 2 * SIZES[-1] * CHARACTER_BITS / baud
         self._pace_s = exchange_s + REPLY_S
-        self._patience_s = exchange_s + PATIENCE_S
+        self._patience_s = exchange_s + patience_s
         self._next_s = None  # when it is to be taken for dead, or the next OFF1 is due
 
-    def heard(self, data, now_s):
+    def alive(self, now_s):
+        """The panel works, although it has nothing to send."""
+        if self._next_s is not None and not self._owed:
+            self._next_s = now_s + self._patience_s
+
+    def heard(self, data, now_s, pzd_words=None):
         """The panel is alive, and looks after the drives that it talks to. Return whether to send
         this on the line: False if it would turn a drive that was stopped here.
         """
         self._next_s = now_s + self._patience_s
         may_pass = True
         for telegram in telegrams(data):
-            address = telegram[2] if len(telegram) == SIZE else None
-            if address in self._barred and turns(telegram):
+            address = telegram[2] if stw_place(telegram, pzd_words) is not None else None
+            is_turning = turns(telegram, pzd_words)
+            if address in self._barred and is_turning:
                 may_pass = False
                 continue
             self._barred.discard(address)
             self._turning.pop(address, None)
             self._owed = [owed for owed in self._owed if owed[2] != address]
-            if turns(telegram):
-                self._turning[address] = telegram
+            if is_turning:
+                self._turning[address] = off1(telegram, pzd_words)
         return may_pass
 
     def over(self, now_s):
@@ -98,7 +124,7 @@ class DeadMan:
         if self._next_s is None or now_s < self._next_s:
             return None
         if self._turning:
-            self._owed += ROUNDS * [off1(telegram) for telegram in self._turning.values()]
+            self._owed += ROUNDS * list(self._turning.values())
             self._turning = {}
         if not self._owed:
             return None

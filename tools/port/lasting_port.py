@@ -9,7 +9,8 @@ port.look_again()                   # now and then while it is away
 
 import time
 
-from tools.port.serial_port import LineCut, PortError
+# Relative, because the package `uss_serial` has this file as well.
+from .errors import LineCut, PortError
 
 AGAIN_S = 1.0  # it is looked for so often
 

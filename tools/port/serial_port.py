@@ -16,12 +16,16 @@ import errno
 import fcntl
 import os
 import pwd
+import select
 import stat
 import struct
 import sys
 import termios
 import time
 import tty
+
+# Relative, because the package `uss_serial` has these files as well.
+from .errors import LineCut, PortError
 
 PARITY, FRAME = 1, 2  # of a character, as in boards.sim.line.wire
 PTY_MAJORS = range(136, 144)  # of the device number of a pty's slave, on Linux
@@ -43,14 +47,6 @@ LINK_TAKEN = "%s leads to %s, which is not ours: remove it, or use another name"
 IN_USE = "%s is in use by another program"
 NO_TERMINAL = "%s is no serial port"
 NO_RATE = "%s does not know %d baud"
-
-
-class PortError(Exception):
-    """The port cannot be had; the text says why."""
-
-
-class LineCut(Exception):
-    """The port has gone: its adapter was unplugged, or the other end of a pty closed."""
 
 
 class SerialPort:
@@ -92,6 +88,10 @@ class SerialPort:
                 os.close(descriptor)
             except OSError:
                 pass
+
+    def wait(self, seconds):
+        """Wait so long at the most; whether something has come."""
+        return bool(select.select([self], (), (), seconds)[0])
 
     def read(self):
         """The characters that have come, and a flag for each: 0, PARITY or FRAME. LineCut."""
