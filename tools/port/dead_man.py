@@ -57,9 +57,7 @@ def stw_place(telegram, pzd_words=None):
 def turns(telegram, pzd_words=None):
     """Whether it is a telegram to a single drive that turns its motor."""
     at = stw_place(telegram, pzd_words)
-    return at is not None and bool(
-        telegram[at] & COMMANDS_HIGH or telegram[at + 1] & COMMANDS_LOW
-    )
+    return at is not None and bool(telegram[at] & COMMANDS_HIGH or telegram[at + 1] & COMMANDS_LOW)
 
 
 def off1(telegram, pzd_words=None):

@@ -20,6 +20,7 @@ sys.path[0] = str(TOP)
 sys.path.append(str(TOP / "tools" / "pc"))
 
 import uss_serial  # noqa: E402, F401 - finds firmware/uss
+from uss_serial.port.errors import PortError  # noqa: E402
 
 from tools.uss_command import (  # noqa: E402
     commissioning,
@@ -33,10 +34,9 @@ from tools.uss_command import (  # noqa: E402
     tracing,
     watching,
 )
-from tools.uss_command.errors import INTERRUPTED, NO_PORT, Failure, Misused  # noqa: E402
+from tools.uss_command.errors import INTERRUPTED, NO_PORT, Failure  # noqa: E402
 from tools.uss_command.screen import Screen  # noqa: E402
 from tools.uss_command.settings import Settings  # noqa: E402
-from uss_serial.port.errors import PortError  # noqa: E402
 
 GROUPS = (
     finding, parameters, motor, watching, tracing, listening, sets, explaining, free,
@@ -139,8 +139,6 @@ def complain(screen, text, status):
     print("tools/uss: %s" % text, file=sys.stderr)
     return status
 
-
-__all__ = ("Misused", "main")
 
 if __name__ == "__main__":
     sys.exit(main(sys.argv[1:]))

@@ -10,14 +10,13 @@ another value takes that, s leaves the step out, q ends. It says in the end what
 import sys
 
 import catalogue
-from uss import families, pkw
-from uss.bus.pkw_errors import error_text
-
 from tools.uss_command.errors import FAILED, Failure, Misused
 from tools.uss_command.facts import ENCODING, number_of, parameter
 from tools.uss_command.line import Line, Node
 from tools.uss_command.parameters import writing
 from tools.uss_command.sets import check_stands
+from uss import families, pkw
+from uss.bus.pkw_errors import error_text
 
 PROCEDURES = {"uss": 1, "reset": 2, "motor": 3}
 OFF_TIME_MS = 2000
@@ -35,7 +34,9 @@ def add(commands):
     parser.add_argument("--set", action="append", default=[], metavar="P0304=400",
                         help="an answer; with --yes all others are as proposed")  # fmt: skip
     parser.add_argument("--yes", action="store_true", help="do not ask")
-    parser.add_argument("--eeprom", action="store_true", help="RAM and EEPROM; RAM alone otherwise")
+    parser.add_argument(
+        "--eeprom", action="store_true", help="RAM and EEPROM; RAM alone otherwise"
+    )
     parser.set_defaults(run=commission)
 
 

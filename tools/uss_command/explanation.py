@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 """A telegram, character by character, in words; and what is wrong with one that is none.
 
-    told = explained(bytes.fromhex("02 06 00 04 7F 20 00 5F"))
-    told.wrong                          # [] or what is wrong, in words
-    told.rows                           # [{"at": 0, "hex": "02", "field": "STX", "says": ...}]
-    told.summary                        # "A0 to the drive: ON, HSW 50.00 %"
+told = explained(bytes.fromhex("02 06 00 04 7F 20 00 5F"))
+told.wrong                          # [] or what is wrong, in words
+told.rows                           # [{"at": 0, "hex": "02", "field": "STX", "says": ...}]
+told.summary                        # "A0 to the drive: ON, HSW 50.00 %"
 """
 
 from uss import bits, pkw, pzd, telegram
@@ -13,7 +13,8 @@ from uss.layout import VARIABLE
 from uss.telegram import BROADCAST, MIRROR, NODE_MAX, SPECIAL, STX
 
 TO_DRIVE, FROM_DRIVE = "to the drive", "from the drive"
-MIN_SIZE, NET, BCC = 5, 3, 1
+MIN_SIZE, NET = 5, 3
+PKW_MIN = 3  # words, with variable length
 TASKS = (
     "no task", "read", "write a word", "write a double word", "read the description",
     "write the description", "read an element", "write an element, a word",
@@ -91,7 +92,9 @@ def wrongs(characters):
     if count != length + 2:
         missing = length + 2 - count
         what = "%d missing" % missing if missing > 0 else "%d too many" % -missing
-        found.append("LGE %d means %d characters, here are %d: %s" % (length, length + 2, count, what))
+        found.append(
+            "LGE %d means %d characters, here are %d: %s" % (length, length + 2, count, what)
+        )
     elif count >= MIN_SIZE and telegram.bcc(characters, count):
         right = telegram.bcc(characters, count - 1)
         text = "BCC is %02X, should be %02X" % (characters[-1], right)
@@ -109,7 +112,9 @@ def _head(told, characters):
     told.add(0, characters[:1], "STX", "start of text" if characters[0] == STX else "not STX")
     if len(characters) > 1:
         length = characters[1]
-        told.add(1, characters[1:2], "LGE", "%d characters follow, %d altogether" % (length, length + 2))
+        told.add(
+            1, characters[1:2], "LGE", "%d characters follow, %d altogether" % (length, length + 2)
+        )
     if len(characters) > 2:
         adr = characters[2]
         kinds = [name for bit, name in (
@@ -170,8 +175,8 @@ def _candidates(count):
     """Possible numbers of PKW words, the most usual first."""
     found = []
     for pkw_words, pzd_words in GUESSES:
-        left = count - pzd_words if pkw_words == VARIABLE else pkw_words
-        if pkw_words == VARIABLE and left >= 3 or left + pzd_words == count:
+        left = count - pzd_words
+        if left == pkw_words or pkw_words == VARIABLE and left >= PKW_MIN:
             found.append(left)
     return found or [min(4, count)]
 
@@ -210,7 +215,9 @@ def _parameter(told, words, direction):
     number = parameter_number(pke, ind)
     name = names[ak] or "AK %d is not defined" % ak
     toggle = ", bit 11 set: change report" if pke & 0x0800 else ""
-    told.add(NET, words_bytes(words[:1]), "PKE", "AK %d: %s; PNU %d%s" % (ak, name, pke & 0x7FF, toggle))
+    told.add(
+        NET, words_bytes(words[:1]), "PKE", "AK %d: %s; PNU %d%s" % (ak, name, pke & 0x7FF, toggle)
+    )
     label = "P%04d[%d]" % (number, ind & 0xFF) if number is not None else "no number"
     if len(words) > 1:
         told.add(NET + 2, words_bytes(words[1:2]), "IND", "index %d, page %02Xh: %s" % (

@@ -1,19 +1,18 @@
 # SPDX-License-Identifier: MIT
 """What the catalogue says of the parameters of a drive: names, units, types, texts, faults.
 
-    facts = Facts(MM440)
-    facts.name(1082)                    # "Max. frequency"
-    number, index = parameter("r0021[0]")
-    facts.value(job)                    # 50.0: by its type in the catalogue, else the family's
-    facts.shown(700, 5)                 # "5 USS COM link"
+facts = Facts(MM440)
+facts.name(1082)                    # "Max. frequency"
+number, index = parameter("r0021[0]")
+facts.value(job)                    # 50.0: by its type in the catalogue, else the family's
+facts.shown(700, 5)                 # "5 USS COM link"
 """
 
 import re
 
 import catalogue
-from uss import families, pkw
-
 from tools.uss_command.errors import Misused
+from uss import families, pkw
 
 LIKE = {"mm4": "mm420", "cu240s": "mm440", "generic": None}  # families without a table of theirs
 SPEC = re.compile(r"[PpRr]?(\d{1,6})(?:\[(\d{1,3})\])?$")
@@ -63,7 +62,7 @@ class Facts:
         return self._cell(number, catalogue.TYPE)
 
     def asks(self, number):
-        """"C": it may cut the bus off; "R": a setpoint may mean something else; or ""."""
+        """ "C": it may cut the bus off; "R": a setpoint may mean something else; or ""."""
         told = self._cell(number, catalogue.ASKS)
         return told or ("C" if number in self.family.ask_first else "")
 

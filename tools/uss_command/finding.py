@@ -3,13 +3,12 @@
 
 import time
 
-from uss.finding.scan import NET_COUNTS, RATES
-from uss.receiver import FINDINGS, SILENT
-from uss.telegram import NODE_MAX
-
 from tools.uss_command.errors import FAILED, Failure, Misused
 from tools.uss_command.line import Line, kind_text
 from tools.uss_command.settings import numbers
+from uss.finding.scan import NET_COUNTS, RATES
+from uss.receiver import FINDINGS, SILENT
+from uss.telegram import NODE_MAX
 
 COLUMNS = ("address", "baud", "kind", "family", "net", "motor", "trips_after_ms")
 NOT_ASKED = "not asked: any length, so perhaps a G120 (--standing)"

@@ -7,15 +7,15 @@ follows until the drive stands, or the small program that holds the port sends t
 
 import time
 
+from uss_serial.port.dead_man import off1
+
+from tools.uss_command.capture import characters_of
+from tools.uss_command.errors import Failure
+from tools.uss_command.explanation import CONTROL, FROM_DRIVE, TO_DRIVE, explained, wrongs
+from tools.uss_command.line import Line
 from uss import telegram
 from uss.layout import PZD_WORDS_MAX
 from uss.telegram import BROADCAST, MIRROR, NODE_MAX, SPECIAL, STX
-from uss_serial.port.dead_man import off1, turns
-
-from tools.uss_command.capture import characters_of
-from tools.uss_command.errors import FAILED, Failure, Misused
-from tools.uss_command.explanation import CONTROL, FROM_DRIVE, TO_DRIVE, explained, wrongs
-from tools.uss_command.line import Line
 
 REPEAT_S = 0.1
 REPLY_MORE_S = 0.05  # from the last character on
@@ -26,7 +26,9 @@ ON_BITS = 0x0301
 
 
 def add(commands):
-    parser = commands.add_parser("send", help="a free telegram in hex; the BCC is added if missing")
+    parser = commands.add_parser(
+        "send", help="a free telegram in hex; the BCC is added if missing"
+    )
     parser.add_argument("hex", nargs="+", metavar="HEX")
     parser.add_argument("--on", action="store_true", help="even if it turns a motor; OFF1 follows")
     parser.add_argument("--for", dest="seconds", type=float, default=0.0, metavar="S",
@@ -40,7 +42,8 @@ def send(screen, settings, chosen):
     wrong = wrongs(characters)
     if wrong and not chosen.as_it_is:
         raise Failure("no telegram: %s; --as-it-is sends it all the same" % "; ".join(wrong))
-    pzd_words = words_that_turn(characters, settings.kind(characters[2] & NODE_MAX) if len(characters) > 2 else None)
+    kind = settings.kind(characters[2] & NODE_MAX) if len(characters) > 2 else None
+    pzd_words = words_that_turn(characters, kind)
     if pzd_words is not None and wrong:
         raise Failure("it may turn a motor, and is no telegram: %s" % "; ".join(wrong))
     if pzd_words is not None and characters[2] & BROADCAST:
@@ -49,9 +52,10 @@ def send(screen, settings, chosen):
         raise Failure("it turns a motor (ON or JOG in its control word): send --on does it")
     with Line(settings, chosen.standing, chosen.watch) as line:
         line.listen()
-        talk = Talk(screen, line)
+        talk = Talk(screen, line, kind)
         try:
             answer = talk.repeat(characters, pzd_words, chosen.seconds)
+            talk.tell()
         finally:
             if pzd_words is not None:
                 talk.stop(off1(characters, pzd_words), pzd_words)
@@ -89,11 +93,12 @@ def words_that_turn(characters, kind):
 class Talk:
     """Telegrams past the engine, which is idle meanwhile."""
 
-    def __init__(self, screen, line):
+    def __init__(self, screen, line, kind):
+        self._layout = (kind[1].pkw_words, kind[1].pzd_words) if kind else None
         self._screen = screen
         self._line = line
         self._buffer = bytearray(512)
-        self._said = None
+        self._said = self._latest = self._told = None
 
     def repeat(self, characters, pzd_words, seconds):
         """Send it until the time is over; the last answer."""
@@ -136,22 +141,28 @@ class Talk:
                         continue
                     break
             link.clock.sleep_us(500)
-        self._tell(characters, answer)
+        self._note(characters, answer)
         return answer
 
-    def _tell(self, sent, answer):
-        """Say what is new."""
-        if (sent, answer) == self._said:
+    def _note(self, sent, answer):
+        """Say what is new: another telegram, or another answer but for the actual value."""
+        behind = 2 * ((self._layout or (0, 2))[1] - 1) + 1  # the first PZD word, and BCC
+        known = sent, answer[: -behind or None]
+        self._latest = sent, answer
+        if known != self._said:
+            self._said = known
+            self.tell()
+
+    def tell(self):
+        """Say what was sent and answered last, unless that was said."""
+        if self._latest == self._told:
             return
-        self._said = sent, answer
+        self._told = sent, answer = self._latest
         for way, characters in ((TO_DRIVE, sent), (FROM_DRIVE, answer)):
-            told = explained(characters, None, way)
+            told = explained(characters, self._layout, way)
             shown = characters.hex(" ").upper() or "nothing"
             mark = ">" if way == TO_DRIVE else "<"
             self._screen.event(
                 "%s %-48s %s" % (mark, shown, told.summary if characters else ""),
                 way=way, hex=shown if characters else "", summary=told.summary,
             )  # fmt: skip
-
-
-__all__ = ("FAILED", "Misused", "add", "turns")

@@ -1,12 +1,17 @@
 # SPDX-License-Identifier: MIT
 """The line, as a command has it: it listens first, and asks drives without commanding them.
 
-    with Line(settings) as line:            # PortError
-        line.listen()                       # Failure: another master is heard
-        node = line.node(1)                 # what answers there; Failure
-        job = line.ask(node, pkw.read(700)) # Failure
+with Line(settings) as line:            # PortError
+    line.listen()                       # Failure: another master is heard
+    node = line.node(1)                 # what answers there; Failure
+    job = line.ask(node, pkw.read(700)) # Failure
 """
 
+from uss_serial import Master, SerialLink
+
+from tools.uss_command.errors import Failure
+from tools.uss_command.facts import Facts
+from tools.uss_command.visit import Visit
 from uss import families, pkw, pzd
 from uss.bus.pkw_errors import error_text
 from uss.errors import UssError
@@ -16,11 +21,6 @@ from uss.layout import Layout
 from uss.outside import DONE, PENDING, Mirror
 from uss.receiver import FINDINGS, SILENT
 from uss.tasks.arrays import with_array_task
-from uss_serial import Master, SerialLink
-
-from tools.uss_command.errors import Failure
-from tools.uss_command.facts import Facts
-from tools.uss_command.visit import Visit
 
 LISTEN_S = 0.4
 TRIES = 4  # telegrams without a valid reply in a row: nobody is there
@@ -30,9 +30,7 @@ HINTS = (
     "; is its address right (try scan), its rate, its connector, "
     "and does the adapter send with even parity (8E1)?"
 )
-PARITY_HINT = (
-    "; %d characters came with a wrong parity or stop bit: another rate, or not 8E1?"
-)
+PARITY_HINT = "; %d characters came with a wrong parity or stop bit: another rate, or not 8E1?"
 ANY_LENGTH = (
     "drive %d takes telegrams of any length, as a SINAMICS G120 does; a G120 that runs trips if "
     "somebody asks it beside its master. Say --kind %d=v20 (or what it is), or --standing if its "
@@ -231,9 +229,7 @@ class Line:
         self.ask(node, job)
         if job.state == pkw.REFUSED:
             label = node.facts.label(job.number, job.index)
-            raise Failure(
-                "drive %d refuses %s: %s" % (node.address, label, error_text(job.error))
-            )
+            raise Failure("drive %d refuses %s: %s" % (node.address, label, error_text(job.error)))
         return job
 
     # --- its motor ------------------------------------------------------------------------------
@@ -257,7 +253,7 @@ def in_words(action, *arguments, **named):
 
 
 def kind_text(node):
-    """"mm440/4+4": what --kind takes."""
+    """ "mm440/4+4": what --kind takes."""
     from uss.families import kinds
 
     family = getattr(node.family, "com", None) or node.family

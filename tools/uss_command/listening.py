@@ -3,16 +3,25 @@
 
 import time
 
-from uss import bits, pzd, telegram
-from uss.bus import STATES
-from uss.telegram import NODE_MAX, STX
-
 from tools.uss_command.capture import Capture
 from tools.uss_command.errors import Failure
 from tools.uss_command.explanation import CONTROL, REQUESTED
 from tools.uss_command.line import Line
+from uss import bits, pzd, telegram
+from uss.bus import STATES
+from uss.telegram import NODE_MAX, STX
 
-COLUMNS = ("address", "asked_per_s", "answered_per_s", "silent", "stw", "zsw", "state", "bits", "net")
+COLUMNS = (
+    "address",
+    "asked_per_s",
+    "answered_per_s",
+    "silent",
+    "stw",
+    "zsw",
+    "state",
+    "bits",
+    "net",
+)
 FRESH_S = 1.0  # between two pictures
 APART_US = 50_000  # what is so far apart is not of one telegram
 UNCLEAR = CONTROL | REQUESTED
@@ -31,10 +40,12 @@ def sniff(screen, settings, chosen):
     try:
         with Line(settings, True, ear.hear) as line, screen.live() as show:
             line.bus.off()  # from now on the bus swallows all and sends nothing
-            capture = ear.capture = Capture(chosen.save)
+            ear.capture = Capture(chosen.save)
             until_s = None if chosen.seconds is None else began_s + chosen.seconds
             while until_s is None or time.monotonic() < until_s:
-                line.bus.wait(FRESH_S if until_s is None else min(FRESH_S, until_s - time.monotonic()))
+                line.bus.wait(
+                    FRESH_S if until_s is None else min(FRESH_S, until_s - time.monotonic())
+                )
                 line.bus.wait(0)
                 if screen.is_terminal:
                     show(ear.title(), COLUMNS, ear.rows())

@@ -7,11 +7,11 @@ that holds its port does that (`uss_serial.keeper`).
 
 import time
 
+from tools.uss_command.errors import Failure, Misused
+from tools.uss_command.line import Line, in_words
 from uss import pzd
 from uss.bus import STATES
-
-from tools.uss_command.errors import INTERRUPTED, Failure, Misused
-from tools.uss_command.line import Line, in_words
+from uss.errors import NotStarted, UssError
 
 SHOW_S = 0.5
 STOP_S = 60.0  # a motor may take so long to ramp down
@@ -38,7 +38,11 @@ def add(commands):
 
 
 def add_times(parser):
-    parser.add_argument("--for", dest="seconds", type=float, metavar="S", help="stop after so long")
+    parser.add_argument(
+        "--for", dest="seconds", type=float, metavar="S", help="stop after so long"
+    )
+    parser.add_argument("--supervise", type=float, metavar="S",
+                        help="write P2014 first (RAM): the drive stops if it hears nothing so long")  # fmt: skip
     parser.add_argument("--unsupervised", action="store_true",
                         help="although P2014 is 0: nothing stops it if this computer dies")  # fmt: skip
 
@@ -64,7 +68,9 @@ def turn(screen, settings, chosen, start):
         drive = line.drive(node, chosen.unsupervised)
         _check_fault(node, drive)
         try:
-            in_words(start, drive)
+            if chosen.supervise is not None:
+                in_words(drive.supervise, chosen.supervise)
+            _start(start, drive)
             _watch(screen, line, drive, chosen.seconds)
         finally:
             _stop(screen, line, drive, pzd.OFF1)
@@ -99,6 +105,22 @@ def acknowledge(screen, settings, chosen):
     )  # fmt: skip
 
 
+def _start(start, drive):
+    """Failure: it was not started, and why."""
+    try:
+        start(drive)
+    except NotStarted as reason:
+        told, is_about_p2014, _ = str(reason).partition("run on if this program died")
+        if not is_about_p2014:
+            raise Failure(str(reason)) from None
+        raise Failure(
+            "%srun on if this computer died (P2014): run --supervise 2 sets it, run --unsupervised "
+            "takes the risk" % told
+        ) from None
+    except (UssError, ValueError) as reason:
+        raise Failure(str(reason)) from None
+
+
 def _check_fault(node, drive):
     fault = in_words(lambda: drive.fault)
     if fault:
@@ -124,7 +146,10 @@ def _watch(screen, line, drive, seconds):
 
 def _why_not_on(line, drive):
     if line.link.is_cut:
-        return "%s. Drive %d is stopped by its P2014 alone" % (line.link.notices[-1], drive.address)
+        return "%s. Drive %d is stopped by its P2014 alone" % (
+            line.link.notices[-1],
+            drive.address,
+        )
     if line.link.stopped:
         return "this program stood still: its port was told to stop drive %d" % drive.address
     return "drive %d was stopped: it is %s" % (drive.address, drive.state)
@@ -137,7 +162,7 @@ def state(drive):
         if drive.contact and "speed" not in row:
             try:
                 row.update(speed=round(getattr(drive, name), 2), unit=unit)
-            except (ValueError, Exception) as reason:  # it does not tell its scale, or was lost
+            except (UssError, ValueError) as reason:  # it does not tell its scale, or was lost
                 row["why"] = str(reason)
     return row
 
@@ -150,12 +175,12 @@ def _stop(screen, line, drive, off):
     except KeyboardInterrupt:
         pass
     rests = _rests(drive)
-    text = "drive %d is %s" % (drive.address, STATES[pzd.state(drive.zsw)] if rests else drive.state)
+    text = "drive %d is %s" % (
+        drive.address,
+        STATES[pzd.state(drive.zsw)] if rests else drive.state,
+    )
     screen.event(text, address=drive.address, state=drive.state, stopped=rests)
 
 
 def _rests(drive):
     return drive.contact and drive.engine.answered_off() and not drive.is_running
-
-
-__all__ = ("INTERRUPTED", "add")

@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: MIT
 """read and write: the parameters of a drive, by number and index."""
 
-from uss import pkw
-from uss.bus.pkw_errors import error_text
-
 from tools.uss_command.errors import FAILED, Failure
 from tools.uss_command.facts import DOUBLES, TYPES, number_of, parameter
 from tools.uss_command.line import Line
+from uss import pkw
+from uss.bus.pkw_errors import error_text
 
 COLUMNS = ("parameter", "value", "unit", "name", "type")
 ASKS = {
@@ -26,7 +25,9 @@ def add(commands):
     parser = commands.add_parser("write", help="write a parameter: P1082 40.5")
     parser.add_argument("parameters", nargs=1, metavar="P1082")
     parser.add_argument("value", metavar="VALUE", help="40.5, 0x1F, or a connector 52:3")
-    parser.add_argument("--eeprom", action="store_true", help="RAM and EEPROM; RAM alone otherwise")
+    parser.add_argument(
+        "--eeprom", action="store_true", help="RAM and EEPROM; RAM alone otherwise"
+    )
     parser.add_argument("--sure", action="store_true", help="also what may cut the bus off")
     add_type(parser)
     parser.set_defaults(run=write)
@@ -71,7 +72,9 @@ def write(screen, settings, chosen):
         if number == node.family.address_number:
             line.see(node)
             if node.runs:
-                raise Failure("drive %d runs: stop it before it gets another address" % node.address)
+                raise Failure(
+                    "drive %d runs: stop it before it gets another address" % node.address
+                )
         before = node.facts.of_words(kind, job)
         job = line.do(node, writing(node, number, index, value, kind, chosen.eeprom))
     row = row_of(node, job, kind)

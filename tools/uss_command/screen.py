@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 """What is shown: tables, progress and live pictures for people (`rich`), JSON for programs.
 
-    screen.table("title", ("number", "value"), [{"number": "P0700[0]", "value": 5}])
-    with screen.progress("backup", 200) as step: step()
-    with screen.live() as show: show("title", columns, rows)
-    screen.event("running", hertz=25.0)         # one line, or one JSON object in a line
+screen.table("title", ("number", "value"), [{"number": "P0700[0]", "value": 5}])
+with screen.progress("backup", 200) as step: step()
+with screen.live() as show: show("title", columns, rows)
+screen.event("running", hertz=25.0)         # one line, or one JSON object in a line
 """
 
 import json

@@ -7,11 +7,10 @@ another one also not what belongs to its place on the bus, nor, if it has anothe
 motor's data.
 """
 
-from uss import pkw
-from uss.bus.pkw_errors import error_text
+import os
 
 from tools.uss_command.errors import FAILED, Failure, Misused
-from tools.uss_command.facts import DOUBLES, number_of, single
+from tools.uss_command.facts import DOUBLES, Facts, single
 from tools.uss_command.line import Line
 from tools.uss_command.set_file import (
     NAME_MAX,
@@ -21,6 +20,8 @@ from tools.uss_command.set_file import (
     text_of,
     write_whole,
 )
+from uss import families, pkw
+from uss.bus.pkw_errors import error_text
 
 COLUMNS = ("parameter", "here", "there", "unit", "name")
 RATINGS = {"mm3": (111, 112)}
@@ -51,7 +52,9 @@ def add(commands):
     parser = commands.add_parser("restore", help="write a file into a drive, what differs of it")
     parser.add_argument("file", metavar="FILE")
     parser.add_argument("--all", action="store_true", help="also what may cut the bus off, last")
-    parser.add_argument("--eeprom", action="store_true", help="RAM and EEPROM; RAM alone otherwise")
+    parser.add_argument(
+        "--eeprom", action="store_true", help="RAM and EEPROM; RAM alone otherwise"
+    )
     parser.add_argument("--dry-run", action="store_true", help="only say what would be written")
     parser.set_defaults(run=restore)
     parser = commands.add_parser("compare", help="a file with the drive, or two files")
@@ -65,8 +68,10 @@ def backup(screen, settings, chosen):
     if len(name) > NAME_MAX or not name.isprintable() or "#" in name or not name.isascii():
         raise Misused("--name: at most %d letters of ASCII, no #" % NAME_MAX)
     numbers = ranges(chosen.numbers)
-    write_whole(chosen.file + ".part", "")  # whether there is room for it, before a minute of reading
-    _remove(chosen.file + ".part")
+    write_whole(
+        chosen.file + ".part", ""
+    )  # whether there is room for it, before a minute of reading
+    os.unlink(chosen.file + ".part")
     with Line(settings, chosen.standing, chosen.watch) as line:
         line.listen()
         node = line.node(settings.the_address())
@@ -95,7 +100,7 @@ def compare(screen, settings, chosen):
             other = ParameterSet(one.family, node.address, "")
             with screen.progress("compare", len(one.rows)) as step:
                 for row in one.rows:
-                    job = line.ask(node, reading(node, *row.place))
+                    job = line.ask(node, pkw.read(*row.place))
                     if job.state == pkw.DONE:
                         other.rows.append(row_of(facts, job, row.kind))
                     step()
@@ -155,15 +160,7 @@ def ranges(text):
 
 
 def facts_of(family):
-    from uss import families
-
-    from tools.uss_command.facts import Facts
-
     return Facts(getattr(families, family.upper(), families.GENERIC))
-
-
-def reading(node, number, index):
-    return pkw.read(number, index)
 
 
 def read_set(screen, line, node, name, numbers):
@@ -182,7 +179,7 @@ def read_set(screen, line, node, name, numbers):
     with screen.progress("backup of drive %d" % node.address, len(asked)) as step:
         for number, indices in asked:
             for index in range(indices):
-                job = line.ask(node, reading(node, number, index))
+                job = line.ask(node, pkw.read(number, index))
                 if job.state == pkw.DONE:
                     row = row_of(facts, job)
                     row.remark = remark_of(facts, row)
@@ -279,7 +276,7 @@ class Writer:
         found = []
         with self._screen.progress("compare", len(rows)) as step:
             for row in rows:
-                job = self._line.ask(self._node, reading(self._node, *row.place))
+                job = self._line.ask(self._node, pkw.read(*row.place))
                 if job.state == pkw.DONE:
                     old = row_of(self._node.facts, job, row.kind)
                     if old.words != row.words:
@@ -337,12 +334,3 @@ class Writer:
 
 def _within(number, spans):
     return any(first <= number <= last for first, last in spans)
-
-
-def _remove(path):
-    import os
-
-    os.unlink(path)
-
-
-__all__ = ("add", "number_of")

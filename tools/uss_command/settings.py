@@ -1,22 +1,21 @@
 # SPDX-License-Identifier: MIT
 """The settings of the port: from the command line, the environment, or a small file, in this order.
 
-    port = "/dev/ttyUSB0"               # uss.toml here, or ~/.config/uss.toml, or --config FILE
-    baud = 19200
-    address = "1,2"
-    kind = "1=mm440,2=g110/0"
-    reply_timeout = 60
+port = "/dev/ttyUSB0"               # uss.toml here, or ~/.config/uss.toml, or --config FILE
+baud = 19200
+address = "1,2"
+kind = "1=mm440,2=g110/0"
+reply_timeout = 60
 """
 
 import os
 import tomllib
 from pathlib import Path
 
+from tools.uss_command.errors import Misused
 from uss.families.kinds import kind as kind_of
 from uss.telegram import NODE_MAX
 from uss.timing import BAUD_RATES
-
-from tools.uss_command.errors import Misused
 
 FILES = (Path("uss.toml"), Path.home() / ".config" / "uss.toml")
 DEFAULTS = {"port": None, "baud": 9600, "address": "1", "kind": "", "reply_timeout": 60}

@@ -9,20 +9,21 @@ import select
 import sys
 import time
 
-from uss import pkw
-
 from tools.uss_command.capture import Capture
 from tools.uss_command.errors import Failure
 from tools.uss_command.explanation import FROM_DRIVE, TO_DRIVE, explained
 from tools.uss_command.facts import parameter
 from tools.uss_command.line import Line, Node
+from uss import pkw
 
 HELD_MAX = 10_000  # lines that wait while the picture is held
 
 
 def add(commands):
     parser = commands.add_parser("trace", help="show all telegrams, in hex and in words")
-    parser.add_argument("parameters", nargs="*", metavar="P0700", help="to be read again and again")
+    parser.add_argument(
+        "parameters", nargs="*", metavar="P0700", help="to be read again and again"
+    )
     parser.add_argument("--save", metavar="FILE", help="for decode --capture")
     parser.add_argument("--every", type=float, default=0.2, metavar="S", help="(%(default)s)")
     parser.add_argument("--for", dest="seconds", type=float, metavar="S", help="until Ctrl-C else")

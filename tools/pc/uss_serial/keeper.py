@@ -40,7 +40,8 @@ PARITY = 1  # a flag of a character, as `serial_port` has it; others are a wrong
 
 
 class Keeper:
-    """source, sink: streams of bytes from and to the program. find_port(path, baud): see `any_port`."""
+    """source, sink: streams of bytes from and to the program. find_port(path, baud): as
+    `any_port.port_of`."""
 
     def __init__(self, source, sink, find_port=port_of, patience_s=PATIENCE_S):
         self._source = source
