@@ -137,7 +137,9 @@ class SerialPort:
         except OSError:
             raise PortError(IN_USE % self.path) from None
         tty.setraw(self._descriptor)
-        if not self.is_pty:
+        if self.is_pty:
+            self._note_rate()
+        else:
             self._set_up()
         termios.tcflush(self._descriptor, termios.TCIOFLUSH)
         self._opened_ns = time.time_ns()
@@ -158,6 +160,12 @@ class SerialPort:
         except OSError:
             return False
         return True
+
+    def _note_rate(self):
+        """A pty has no rate. It keeps this for whoever asks at its other end."""
+        settings = termios.tcgetattr(self._descriptor)
+        settings[4] = settings[5] = getattr(termios, f"B{self.baud}", settings[4])
+        termios.tcsetattr(self._descriptor, termios.TCSANOW, settings)
 
     def _set_up(self):
         """8E1, no handshake, and characters that are wrong are marked."""

@@ -2,8 +2,8 @@
 """decode: explains telegrams that somebody has typed, or that --trace or sniff have kept."""
 
 from tools.uss_command import explanation
-from tools.uss_command.capture import characters_of, read_capture
 from tools.uss_command.errors import FAILED, Misused
+from tools.uss_command.files.capture import characters_of, read_capture
 from tools.uss_command.settings import EVERYONE, kinds
 
 COLUMNS = ("at", "hex", "field", "says")

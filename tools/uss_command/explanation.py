@@ -30,7 +30,7 @@ REPLIES = (
 )  # fmt: skip
 WORD_TASKS, DOUBLE_TASKS = (2, 7, 12, 14), (3, 8, 11, 13)
 WORD_REPLIES, DOUBLE_REPLIES = (1, 4, 6, 9, 11), (2, 5, 10, 12)
-REFUSED, TEXT = 7, 15
+DESCRIPTION, REFUSED, TEXT = 3, 7, 15
 PAGE_BITS = ((0x8000, 1), (0x1000, 2), (0x2000, 4), (0x4000, 8), (0x0400, 16), (0x0800, 32))
 STW_WORDS = {
     pzd.ON: "ON", pzd.OFF1: "OFF1", pzd.OFF2: "OFF2", pzd.OFF3: "OFF3",
@@ -249,7 +249,7 @@ def _value(ak, words, direction):
         double = words[0] << 16 | words[1]
         real = pkw.words_to_float(words[0], words[1])
         return "%d, or as a float %.7g" % (double, real)
-    if ak in singles:
+    if ak in singles or direction == FROM_DRIVE and ak == DESCRIPTION and len(words) == 1:
         word = words[1] if len(words) == 2 else words[0]
         return "%d (%04Xh)" % (word, word)
     return ""

@@ -41,7 +41,7 @@ def mirror(screen, settings, chosen):
             raise line.no_reply(address, other)
         ms = (time.monotonic() - began_s) * 1000
     screen.event(
-        "OK: drive %d at %d baud, %d net characters, %.0f ms" % (address, line.baud, net_count, ms),
+        "OK: drive %d, %d baud, %d net characters, %.0f ms" % (address, line.baud, net_count, ms),
         ok=True, address=address, baud=line.baud, net=net_count,
     )  # fmt: skip
 

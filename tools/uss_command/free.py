@@ -9,9 +9,9 @@ import time
 
 from uss_serial.port.dead_man import off1
 
-from tools.uss_command.capture import characters_of
 from tools.uss_command.errors import Failure
 from tools.uss_command.explanation import CONTROL, FROM_DRIVE, TO_DRIVE, explained, wrongs
+from tools.uss_command.files.capture import characters_of
 from tools.uss_command.line import Line
 from uss import telegram
 from uss.layout import PZD_WORDS_MAX

@@ -3,9 +3,9 @@
 
 import time
 
-from tools.uss_command.capture import Capture
 from tools.uss_command.errors import Failure
 from tools.uss_command.explanation import CONTROL, REQUESTED
+from tools.uss_command.files.capture import Capture
 from tools.uss_command.line import Line
 from uss import bits, pzd, telegram
 from uss.bus import STATES

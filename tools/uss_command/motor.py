@@ -42,9 +42,9 @@ def add_times(parser):
         "--for", dest="seconds", type=float, metavar="S", help="stop after so long"
     )
     parser.add_argument("--supervise", type=float, metavar="S",
-                        help="write P2014 first (RAM): the drive stops if it hears nothing so long")  # fmt: skip
+                        help="write P2014 first (RAM): it stops by itself then")  # fmt: skip
     parser.add_argument("--unsupervised", action="store_true",
-                        help="although P2014 is 0: nothing stops it if this computer dies")  # fmt: skip
+                        help="although P2014 is 0, and nothing may stop it")  # fmt: skip
 
 
 def run(screen, settings, chosen):
@@ -114,8 +114,8 @@ def _start(start, drive):
         if not is_about_p2014:
             raise Failure(str(reason)) from None
         raise Failure(
-            "%srun on if this computer died (P2014): run --supervise 2 sets it, run --unsupervised "
-            "takes the risk" % told
+            "%srun on if this computer died (P2014): --supervise 2 sets it, --unsupervised takes "
+            "the risk" % told
         ) from None
     except (UssError, ValueError) as reason:
         raise Failure(str(reason)) from None
@@ -145,11 +145,9 @@ def _watch(screen, line, drive, seconds):
 
 
 def _why_not_on(line, drive):
-    if line.link.is_cut:
-        return "%s. Drive %d is stopped by its P2014 alone" % (
-            line.link.notices[-1],
-            drive.address,
-        )
+    if line.link.notices:  # it may be back by now
+        told = line.link.notices[0], drive.address
+        return "%s. Drive %d is stopped by its P2014 alone" % told
     if line.link.stopped:
         return "this program stood still: its port was told to stop drive %d" % drive.address
     return "drive %d was stopped: it is %s" % (drive.address, drive.state)

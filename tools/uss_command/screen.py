@@ -25,7 +25,8 @@ class Screen:
         if self.as_json:
             self._print({**more, "rows": rows})
         elif rows:
-            self.console.print(self._table(title, columns, rows))
+            self.console.print(title, markup=False)
+            self.console.print(self._table(None, columns, rows))
 
     def event(self, text, **facts):
         """Something that happened."""

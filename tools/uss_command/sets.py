@@ -11,8 +11,7 @@ import os
 
 from tools.uss_command.errors import FAILED, Failure, Misused
 from tools.uss_command.facts import DOUBLES, Facts, single
-from tools.uss_command.line import Line
-from tools.uss_command.set_file import (
+from tools.uss_command.files.set_file import (
     NAME_MAX,
     ParameterSet,
     Row,
@@ -20,6 +19,7 @@ from tools.uss_command.set_file import (
     text_of,
     write_whole,
 )
+from tools.uss_command.line import Line
 from uss import families, pkw
 from uss.bus.pkw_errors import error_text
 
@@ -80,7 +80,8 @@ def backup(screen, settings, chosen):
         raise Failure("drive %d has told no parameter" % node.address)
     write_whole(chosen.file, text_of(one, node.family.name, chosen.bare))
     screen.event(
-        "%d values of drive %d (%s) in %s" % (len(one.rows), node.address, one.family, chosen.file),
+        "%d values of drive %d (%s) in %s"
+        % (len(one.rows), node.address, one.family, chosen.file),
         rows=len(one.rows), address=node.address, family=one.family, file=chosen.file,
     )  # fmt: skip
 
@@ -122,9 +123,9 @@ def restore(screen, settings, chosen):
             return 0
         writer.write_all(todo)
         still = writer.differing(row for row, _ in todo)
-    outcome = "%d written, %d left out (%s)" % (
-        writer.written, len(left_out), "bus and sources; --all writes them" if left_out else "none",
-    )  # fmt: skip
+    outcome = "%d written, %d left out" % (writer.written, len(left_out))
+    if left_out and not chosen.all:
+        outcome += " (what belongs to the place on the bus, or may cut it off: --all)"
     rows = writer.refused + [difference(node.facts, old, new) for new, old in still]
     screen.table("not as in the file", COLUMNS + ("error",), rows) if rows else None
     screen.event(outcome, written=writer.written, left_out=len(left_out), differ=len(rows))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The settings of the port: from the command line, the environment, or a small file, in this order.
+"""The settings of the port: from the command line, else the environment, else a small file.
 
 port = "/dev/ttyUSB0"               # uss.toml here, or ~/.config/uss.toml, or --config FILE
 baud = 19200

@@ -9,10 +9,10 @@ import select
 import sys
 import time
 
-from tools.uss_command.capture import Capture
 from tools.uss_command.errors import Failure
 from tools.uss_command.explanation import FROM_DRIVE, TO_DRIVE, explained
 from tools.uss_command.facts import parameter
+from tools.uss_command.files.capture import Capture
 from tools.uss_command.line import Line, Node
 from uss import pkw
 
@@ -52,13 +52,13 @@ def trace(screen, settings, chosen):
             held.clear()
 
     capture = Capture(chosen.save, show)
-    until_s = None if chosen.seconds is None else time.monotonic() + chosen.seconds
     try:
         with keyboard, Line(settings, chosen.standing, capture) as line:
             line.listen()
             for address in settings.addresses:
                 nodes[address] = line.node(address)
             turn = 0
+            until_s = None if chosen.seconds is None else time.monotonic() + chosen.seconds
             while not keyboard.left and (until_s is None or time.monotonic() < until_s):
                 for node in nodes.values():
                     _ask(line, node, asked, turn)

@@ -6,8 +6,8 @@ import time
 
 from tools.uss_command.errors import Failure, Misused
 from tools.uss_command.facts import parameter
+from tools.uss_command.files.svg import chart
 from tools.uss_command.line import Line
-from tools.uss_command.svg import chart
 from uss import bits, families, pkw, pzd
 from uss.bus import STATES
 from uss.families import rows as survey_rows
@@ -27,7 +27,7 @@ def add(commands):
     parser = commands.add_parser("record", help="values over time, to CSV and SVG")
     parser.add_argument("csv", metavar="FILE.csv")
     parser.add_argument("--values", required=True, metavar="LIST",
-                        help="such as hertz,zsw,r0027,r0026[0]; words: " + " ".join(WORDS))  # fmt: skip
+                        help="such as r0027,r0026[0],hertz; also " + " ".join(WORDS))  # fmt: skip
     parser.add_argument("--svg", metavar="FILE", help="a picture of them as well")
     add_times(parser, 0.5)
     parser.set_defaults(run=record)

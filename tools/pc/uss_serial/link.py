@@ -89,7 +89,7 @@ class SerialLink:
         self.send_as(bytes(buffer[:count]), self._pzd_words(buffer[2]))
 
     def send_as(self, telegram, pzd_words):
-        """Send a telegram that is none of the bus: at its end stand so many words of process data."""
+        """Send a telegram that is none of the bus, with so many PZD words at its end."""
         now_us = self._started_us = time.monotonic_ns() // 1000
         self._duration_us = len(telegram) * CHARACTER_BITS * 1_000_000 // self.baud + 1
         self._sending = True

@@ -12,7 +12,7 @@ import time
 from tools.uss_command.errors import Failure, Misused
 from tools.uss_command.explanation import FROM_DRIVE, TO_DRIVE
 
-LINE = re.compile(r"\s*(?:([\d.]+)\s+)?(?:([<>?])\s+)?((?:[0-9A-Fa-f]{2}[ \t,]*)+)(?:\s.*)?$")
+LINE = re.compile(r"\s*(?:(?:([\d.]+)\s+)?([<>])\s+)?((?:[0-9A-Fa-f]{2}[ \t,]*)+)(?:\s.*)?$")
 WAYS = {">": TO_DRIVE, "<": FROM_DRIVE}
 MICROSECONDS = 1e-6
 
