@@ -88,7 +88,7 @@ def test_five_drives_of_several_rates_layouts_and_families_are_found_and_left_in
     assert found.status == 0, found.error
     rows = {row["address"]: (row["baud"], row.get("kind")) for row in found.rows}
     assert rows == {
-        1: (19200, "mm420"), 2: (19200, "generic/0"), 3: (38400, "mm440/4+4"),
+        1: (19200, "mm420"), 2: (19200, "generic/0"), 3: (38400, "mm420/4+4"),
         4: (19200, "v20/4"), 5: (19200, "mm3"),
     }  # fmt: skip
     for address in range(1, 6):

@@ -23,7 +23,8 @@ from uss.receiver import FINDINGS, SILENT
 from uss.tasks.arrays import with_array_task
 
 LISTEN_S = 0.4
-TRIES = 4  # telegrams without a valid reply in a row: nobody is there
+TRIES = 5  # telegrams without a valid reply in a row: nobody is there
+READS = 3  # a question that was lost three times in a row ends so; it may be asked again
 EXCHANGE_S = 10.0  # no exchange takes so long at any rate
 NO_REPLY = "drive %d does not answer at %d baud"
 HINTS = (
@@ -214,15 +215,19 @@ class Line:
             raise Failure("drive %d has no parameter channel (0 PKW words)" % node.address)
         if node.family.has_array_tasks:
             job = with_array_task(job, node.family)
-        node.visit.channel.ask(job)
-        while job.state == PENDING:
-            self.visit(node)
-            if node.visit.in_a_row >= TRIES:
-                raise self.no_reply(node.address, node.visit.finding)
-        if job.state not in (pkw.DONE, pkw.REFUSED):
-            label = node.facts.label(job.number, job.index)
-            raise Failure("drive %d does not answer about %s" % (node.address, label))
-        return job
+        for _ in range(1 if job.writes() else READS):
+            node.visit.channel.ask(job)
+            while job.state == PENDING:
+                self.visit(node)
+                if node.visit.in_a_row >= TRIES:
+                    raise self.no_reply(node.address, node.visit.finding)
+            if job.state in (pkw.DONE, pkw.REFUSED):
+                return job
+        label = node.facts.label(job.number, job.index)
+        text = "drive %d does not answer about %s" % (node.address, label)
+        if job.writes():
+            text += "; whether it was written is not known: read it"
+        raise Failure(text)
 
     def do(self, node, job):
         """As `ask`. Failure: it was refused."""
