@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: MIT
 """tools/uss against drives that ./tools/drive serves, in real time; and the copper in between.
 
-    drives = program(Drives, "--address", "1")
-    told = uss(drives.path, "read", "P0700")    # .status, .json (the last object), .error, .all
-    line = hub(drives.path)                     # a line that others may talk on, and that breaks
-    uss(line.path, "mirror"); line.say(ON); line.pull(); line.plug()
+drives = program(Drives, "--address", "1")
+told = uss(drives.path, "read", "P0700")    # .status, .json (the last object), .error, .all
+line = hub(drives.path)                     # a line that others may talk on, and that breaks
+uss(line.path, "mirror"); line.say(ON); line.pull(); line.plug()
 """
 
 import json
@@ -71,8 +71,8 @@ def telegram(text):
 class Hub:
     """A line between the pty of drives and `path`, for tools/uss. What `say` says, all hear.
 
-    drives: the path, or several, {rate: path}: each hears only what is sent at its rate. cut_after:
-    so many characters from the drives, then the cable is pulled.
+    drives: the path; or several, {rate: path}, that hear only what is sent at their rate.
+    cut_after: so many characters from the drives, then the cable is pulled.
     """
 
     def __init__(self, drives, link):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""tools/uss decode: every golden telegram is explained, and what is wrong with one that is none."""
+"""tools/uss decode explains every golden telegram, and what is wrong with one that is none."""
 
 import pytest
 
@@ -54,9 +54,7 @@ def test_every_golden_telegram_is_explained_character_by_character(one):
         assert ("ZSW" if one.kind == "reply" else "STW") in names
 
 
-@pytest.mark.parametrize(
-    "one", [one for one in TELEGRAMS if one.wrong], ids=lambda one: one.id
-)
+@pytest.mark.parametrize("one", [one for one in TELEGRAMS if one.wrong], ids=lambda one: one.id)
 def test_the_reason_of_each_invalid_one_is_said(one):
     told = explained(one.characters)
     if one.wrong == "length":

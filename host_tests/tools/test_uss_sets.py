@@ -71,8 +71,10 @@ def test_the_cable_is_pulled_in_the_middle(program, hub, tmp_path):
 
 
 def test_another_drive_keeps_its_place_on_the_bus(program, tmp_path):
-    drives = program(Drives, "--baud", "115200", "--address", "1=mm440,2=mm440", "--set", "2:P2000=60", "--set",
-                     "2:P1120=3")  # fmt: skip
+    drives = program(
+        Drives, "--baud", "115200", "--address", "1=mm440,2=mm440", "--set", "2:P2000=60",
+        "--set", "2:P1120=3",
+    )  # fmt: skip
     file = str(tmp_path / "a.set")
     assert run(drives.path, "backup", file, "--numbers", "700-2100").status == 0
     dry = run(drives.path, "--address", "2", "restore", file, "--all", "--dry-run")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Runs a program of the library on a serial port of this computer: ./tools/example FILE --port PATH
+"""Runs a program of the library on a serial port: ./tools/example FILE --port PATH
 
 The program finds a module `board`, as on a chip, with `clock`, `make_link(baud)` and `idle`; a
 computer has no keys, no display and no watchdog. Exit status: 0; 1 if an exception ended the
