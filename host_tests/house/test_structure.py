@@ -94,6 +94,8 @@ UNDERSTOOD = (
         'Import "(umodbus|minimalmodbus|pymodbus|turboctl)',
         "fetched where somebody compares",
     ),
+    ("tools/", 'Import "rich', "fetched where somebody uses tools/uss"),
+    ("tools/", 'Import "uss_serial.port', "tools/port, which the package takes in"),
 )
 
 

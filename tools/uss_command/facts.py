@@ -12,7 +12,8 @@ import re
 
 import catalogue
 from tools.uss_command.errors import Misused
-from uss import families, pkw
+from uss import pkw
+from uss.families.questions import is_float
 
 LIKE = {"mm4": "mm420", "cu240s": "mm440", "generic": None}  # families without a table of theirs
 SPEC = re.compile(r"[PpRr]?(\d{1,6})(?:\[(\d{1,3})\])?$")
@@ -81,7 +82,7 @@ class Facts:
             return "U16"
         if self.family.integer_doubles is None:
             return "?32"
-        return "Float" if families.is_float(self.family, job.number) else "U32"
+        return "Float" if is_float(self.family, job.number) else "U32"
 
     def value(self, job):
         """The value that a finished job has read."""

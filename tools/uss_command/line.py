@@ -161,7 +161,7 @@ class Line:
         told = self.settings.kind(address)
         if told:
             self._check_g120(address, told[0])
-            return Node(address, *told, self.mask)
+            return Node(address, told[0], told[1], self.mask)
         net_count, other = self.probe(address)
         if net_count is None:
             raise self.no_reply(address, other)

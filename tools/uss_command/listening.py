@@ -36,6 +36,7 @@ def add(commands):
 
 def sniff(screen, settings, chosen):
     ear = Ear(settings)
+    wrong = 0
     began_s = time.monotonic()
     try:
         with Line(settings, True, ear.hear) as line, screen.live() as show:
@@ -43,10 +44,9 @@ def sniff(screen, settings, chosen):
             ear.capture = Capture(chosen.save)
             until_s = None if chosen.seconds is None else began_s + chosen.seconds
             while until_s is None or time.monotonic() < until_s:
-                line.bus.wait(
-                    FRESH_S if until_s is None else min(FRESH_S, until_s - time.monotonic())
-                )
-                line.bus.wait(0)
+                left_s = FRESH_S if until_s is None else until_s - time.monotonic()
+                line.bus.wait(max(min(FRESH_S, left_s), 0))
+                wrong = line.link.parity_errors + line.link.frame_errors
                 if screen.is_terminal:
                     show(ear.title(), COLUMNS, ear.rows())
                 if line.link.is_cut:
@@ -56,7 +56,6 @@ def sniff(screen, settings, chosen):
     finally:
         if ear.capture:
             ear.capture.close()
-    wrong = line.link.parity_errors + line.link.frame_errors
     if not screen.is_terminal:
         screen.table(ear.title(), COLUMNS, ear.rows(), errors=ear.errors, telegrams=ear.telegrams,
                      parity_errors=wrong)  # fmt: skip

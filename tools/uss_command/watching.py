@@ -8,9 +8,10 @@ from tools.uss_command.errors import Failure, Misused
 from tools.uss_command.facts import parameter
 from tools.uss_command.files.svg import chart
 from tools.uss_command.line import Line
-from uss import bits, families, pkw, pzd
+from uss import bits, pkw, pzd
 from uss.bus import STATES
 from uss.families import rows as survey_rows
+from uss.families.questions import value as value_of_row
 from uss.families.rows import index_of
 from uss.scaling import Scale
 
@@ -149,7 +150,7 @@ def scale_of(line, node):
         if survey[row]:
             job = line.ask(node, pkw.read(survey[row][0], index_of(survey[row], values)))
             if job.state == pkw.DONE:
-                values[row] = families.value(job, survey[row][2], values[absolute] > 0)
+                values[row] = value_of_row(job, survey[row][2], values[absolute] > 0)
     is_absolute = survey[absolute] and values[absolute] == node.family.absolute_value
     if values[reference] == survey_rows.UNKNOWN:
         return Scale(absolute=bool(is_absolute))

@@ -26,7 +26,7 @@ sys.modules.setdefault("micropython", micropython_words)
 
 # Loaded when they are named for the first time: the keeper of the port needs none of them.
 _HOMES = {"Master": "master", "PortError": "port.errors", "SerialLink": "link", "ports": "ports"}
-__all__ = tuple(_HOMES)
+__all__ = ("Master", "PortError", "SerialLink", "ports")
 
 
 def __getattr__(name):
