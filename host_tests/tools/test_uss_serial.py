@@ -7,8 +7,10 @@ import subprocess
 import sys
 import threading
 import time
+import tomllib
 
 import pytest
+import uss_serial
 import uss_serial.frames as frames
 from uss_serial import Master, PortError, SerialLink
 from uss_serial.frames import framed, read_frame
@@ -218,3 +220,27 @@ def test_an_example_runs_on_a_port(program):
                                text=True, timeout=60)  # fmt: skip
         assert shown.returncode == status and why in shown.stderr, shown.stderr
         assert shown.stderr.count("\n") == 1
+
+
+# ---- the package ----------------------------------------------------------------------------
+
+
+def test_the_package_takes_in_all_of_the_protocol():
+    with open(os.path.join(TOP, "tools", "pc", "pyproject.toml"), "rb") as file:
+        told = tomllib.load(file)
+    packages = told["tool"]["setuptools"]["packages"]
+    for path, _, names in os.walk(os.path.join(TOP, "firmware", "uss")):
+        inside = os.path.relpath(path, os.path.join(TOP, "firmware")).replace(os.sep, ".")
+        if any(name.endswith(".py") for name in names):
+            assert inside in packages, inside
+    for folder in told["tool"]["setuptools"]["package-dir"].values():
+        assert os.path.isdir(os.path.join(TOP, "tools", "pc", folder)), folder
+
+
+def test_every_name_that_stays_is_there_and_told():
+    with open(os.path.join(TOP, "tools", "pc", "README.md"), encoding="utf-8") as file:
+        manual = file.read()
+    for name in uss_serial.__all__:
+        assert callable(getattr(uss_serial, name)) and "| `%s(" % name in manual.replace(
+            "`PortError`", "`PortError("
+        ), name

@@ -77,6 +77,7 @@ class Line:
     def __init__(self, settings, standing=False, watch=None):
         self.settings = settings
         self.standing = standing
+        self.word = 0  # commands nothing
         self._watch = watch
         self._heard = 0
         self._listening = False
@@ -174,10 +175,10 @@ class Line:
             raise Failure(G120_RUNS % address)
 
     def enquire(self, address, net_count, variable):
-        """Ask a node what it is, with telegrams that command nothing."""
+        """Ask a node what it is, with telegrams whose control word is `word`."""
         enquirer = Enquirer(address, net_count, variable)
         while True:
-            question = enquirer.question(off=0)
+            question = enquirer.question(self.word)
             self.exchange(question)
             if enquirer.take(question):
                 break
@@ -238,6 +239,11 @@ class Line:
         return job
 
     # --- its motor ------------------------------------------------------------------------------
+
+    def command(self):
+        """From now on this is the master: questions carry OFF1, whatever the drive is."""
+        self.standing = True
+        self.word = pzd.OFF1
 
     def drive(self, node, unsupervised=False):
         """The node as a `uss.bus.Drive`, which is commanded from now on. Failure."""

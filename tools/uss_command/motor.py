@@ -64,6 +64,7 @@ def turn(screen, settings, chosen, start):
     """Start the motor, show what it does, and stop it at the end."""
     with Line(settings, chosen.standing, chosen.watch) as line:
         line.listen()
+        line.command()
         node = line.node(settings.the_address())
         drive = line.drive(node, chosen.unsupervised)
         _check_fault(node, drive)
@@ -79,7 +80,7 @@ def turn(screen, settings, chosen, start):
 def stop(screen, settings, chosen):
     with Line(settings, chosen.standing, chosen.watch) as line:
         line.listen()
-        line.standing = True  # STOP is sent to whatever is there
+        line.command()
         drive = line.drive(line.node(settings.the_address()))
         _stop(screen, line, drive, OFFS[chosen.off])
         if drive.is_running or not drive.contact:
@@ -89,6 +90,7 @@ def stop(screen, settings, chosen):
 def acknowledge(screen, settings, chosen):
     with Line(settings, chosen.standing, chosen.watch) as line:
         line.listen()
+        line.command()
         node = line.node(settings.the_address())
         drive = line.drive(node)
         before = in_words(lambda: drive.fault)

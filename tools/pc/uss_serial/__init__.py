@@ -25,7 +25,7 @@ from uss_serial import micropython_words  # noqa: E402
 sys.modules.setdefault("micropython", micropython_words)
 
 # Loaded when they are named for the first time: the keeper of the port needs none of them.
-_HOMES = {"Master": "master", "PortError": "port.errors", "SerialLink": "link", "ports": "ports"}
+_HOMES = {"Master": "master", "PortError": "port.errors", "SerialLink": "link", "ports": "listing"}
 __all__ = ("Master", "PortError", "SerialLink", "ports")
 
 
