@@ -43,7 +43,9 @@ class Told:
 
 
 def start(path, *words, baud=115200, **more):
-    options = ["--json", "--baud", str(baud)] + (["--port", path] if path else [])
+    options = ["--json", "--reply-timeout", "120", "--baud", str(baud)] + (
+        ["--port", path] if path else []
+    )
     return subprocess.Popen(
         [*COMMAND, *options, *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
         env=ENVIRONMENT, cwd=more.pop("cwd", "/"), **more,

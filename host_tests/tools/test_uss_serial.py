@@ -8,6 +8,7 @@ import sys
 import threading
 import time
 import tomllib
+import types
 
 import pytest
 import uss_serial
@@ -20,6 +21,7 @@ from uss_serial.port.errors import LineCut
 
 from program_bench import Drives, programs
 from tiers import TOP
+from tools.uss_command.line import Line
 from uss.families import MM420
 from uss_command_bench import hubs, telegram
 
@@ -244,3 +246,12 @@ def test_every_name_that_stays_is_there_and_told():
         assert callable(getattr(uss_serial, name)) and "| `%s(" % name in manual.replace(
             "`PortError`", "`PortError("
         ), name
+
+
+def test_silence_comes_with_a_hint_and_a_wrong_parity_with_another():
+    for wrong, said in ((0, "even parity (8E1)?"), (3, "3 characters came with a wrong parity")):
+        link = types.SimpleNamespace(parity_errors=wrong, frame_errors=0)
+        line = types.SimpleNamespace(link=link, baud=9600)
+        assert said in str(Line.no_reply(line, 1)) and "drive 1 does not answer" in str(
+            Line.no_reply(line, 1)
+        )

@@ -191,6 +191,9 @@ def test_a_drive_is_commissioned_by_the_steps_of_the_catalogue(program):
     assert done.json["left"] == 0 and done.json["done"] > 8
     assert drives.asked("param 1 P2000[0]") == "P2000[0]=60.0"
     assert drives.asked("param 1 P2014[0]") == "P2014[0]=2000"
+    asked = start(drives.path, "commission", "mm420", stdin=subprocess.PIPE)
+    output, _ = asked.communicate("\ns\nq\n", timeout=60)
+    assert asked.returncode == 1 and '"done": 1' in output and "left out" in output
     other = uss(drives.path, "commission", "g110", "--yes")
     assert other.status == 1 and "is a MICROMASTER 420" in other.error
 
@@ -263,7 +266,7 @@ def test_values_that_make_no_sense_are_refused(program):
         (("P9999", "1"), "no such parameter"),
         (("r0021", "1"), "read-only"),
     ):
-        refused = uss(drives.path, "write", *words)
+        refused = uss(drives.path, "--kind", "mm420", "write", *words)
         assert refused.status in (1, 2) and said in refused.error, (words, refused.error)
 
 

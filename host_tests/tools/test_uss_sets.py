@@ -21,7 +21,7 @@ def run(path, *words):
 def test_a_drive_is_saved_changed_compared_and_restored(program, tmp_path):
     drives = program(Drives, "--baud", "115200", "--address", "1=mm440")
     file = str(tmp_path / "a.set")
-    saved = run(drives.path, "backup", file, "--name", "pump 3")
+    saved = run(drives.path, "backup", file, "--name", "pump 3", "--numbers", "0-1399,2000")
     assert saved.status == 0 and saved.json["rows"] >= 200, saved.error
     assert saved.json["family"] == "mm440"
     text = (tmp_path / "a.set").read_text()

@@ -8,6 +8,7 @@ another value takes that, s leaves the step out, q ends. It says in the end what
 """
 
 import sys
+import threading
 
 import catalogue
 from tools.uss_command.errors import FAILED, Failure, Misused
@@ -22,6 +23,7 @@ PROCEDURES = {"uss": 1, "reset": 2, "motor": 3}
 OFF_TIME_MS = 2000
 LONG_TRIES = 40  # looks at a drive that is busy for 10 s or more
 LOOK_S = 0.5
+KEEP_S = 0.1
 BUSY = (970, 3900)  # the drive says nothing for a while after these
 STAYS = "@baud", "@address"  # what the drive answers by now is right already
 
@@ -152,13 +154,28 @@ class Course:
     def _ask(self, step, label, has, value):
         note = step[catalogue.STEP_NOTE].decode(ENCODING)
         print("\n%s\n  %s\n  the drive has %s" % (label, note, has))
-        try:
-            answer = input("  [%s], another value, s or q: " % value).strip()
-        except EOFError:
-            raise Leave from None
-        if answer == "q":
+        answer = self._typed("  [%s], another value, s or q: " % value)
+        if answer in (None, "q"):
             raise Leave
         return answer
+
+    def _typed(self, prompt):
+        """What somebody types, who may take his time: the drive hears something meanwhile. None:
+        nobody types any more."""
+        typed = []
+
+        def read():
+            try:
+                typed.append(input(prompt).strip())
+            except (EOFError, OSError, ValueError):
+                typed.append(None)
+
+        threading.Thread(target=read, daemon=True).start()
+        while not typed:
+            self._line.bus.wait(KEEP_S, lambda: bool(typed))
+            if not typed:
+                self._line.visit(self._node)
+        return typed[0]
 
     def _wait(self):
         """Until the drive answers again."""

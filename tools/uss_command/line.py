@@ -24,6 +24,7 @@ from uss.tasks.arrays import with_array_task
 
 LISTEN_S = 0.4
 TRIES = 5  # telegrams without a valid reply in a row: nobody is there
+PROBES = 2  # an adapter may lose a telegram
 READS = 3  # a question that was lost three times in a row ends so; it may be asked again
 EXCHANGE_S = 10.0  # no exchange takes so long at any rate
 NO_REPLY = "drive %d does not answer at %d baud"
@@ -142,14 +143,21 @@ class Line:
     # --- who is there ---------------------------------------------------------------------------
 
     def mirror(self, address, net_count):
-        """None if the telegram came back, else the receiver's finding."""
-        telegram = Mirror(address, bytes(net_count))
-        return None if self.exchange(telegram) else telegram.finding
+        """None if the telegram came back, else the receiver's finding. Something else that came may
+        be late, or of somebody else: then it is sent once more.
+        """
+        for _ in range(READS):
+            telegram = Mirror(address, bytes(net_count))
+            if self.exchange(telegram):
+                return None
+            if telegram.finding == SILENT:
+                break
+        return telegram.finding
 
     def probe(self, address, net_counts=NET_COUNTS):
         """(net characters that a node takes, whether it takes others too), or (None, finding)."""
         worst = SILENT
-        for net_count in net_counts:
+        for net_count in net_counts * PROBES:
             finding = self.mirror(address, net_count)
             if finding is None:
                 return net_count, self.mirror(address, net_count + 2) is None

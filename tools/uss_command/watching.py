@@ -17,6 +17,10 @@ from uss.scaling import Scale
 
 COLUMNS = ("address", "state", "hertz", "percent", "zsw", "bits", "fault", "per_s", "bad")
 WORDS = {"zsw": "", "hiw": "", "hertz": "Hz", "percent": "%"}
+USUAL = (
+    "READY_TO_SWITCH_ON", "READY_TO_RUN", "RUNNING", "FAULT", "INHIBIT", "CONTROL_REQUESTED",
+    "BRAKE", "BRAKE_OPEN", "RUNS_RIGHT",
+)  # fmt: skip
 VALUES_MAX = 32
 KEEP_S = 0.2  # between two telegrams to a drive, in a third of the least P2014 that is usual
 
@@ -125,7 +129,7 @@ class Watched:
             row.update(
                 state=STATES[pzd.state(zsw)], zsw="%04X" % zsw, hertz=self.word("hertz"),
                 percent=self.word("percent"),
-                bits=" ".join(bits.names(zsw, self.node.family.zsw_bits)),
+                bits=remarkable(zsw, self.node.family),
             )  # fmt: skip
             number = self.node.family.fault_number
             if zsw & pzd.ZSW_FAULT and number is not None and self.node.layout.pkw_words:
@@ -138,6 +142,12 @@ class Watched:
         self._counted = now_s, visit.good
         row["bad"] = visit.bad
         return row
+
+
+def remarkable(zsw, family):
+    """The names of the bits that `state` does not tell."""
+    names = bits.names(zsw, family.zsw_bits)
+    return " ".join(name for name in names if name not in USUAL)
 
 
 def scale_of(line, node):
