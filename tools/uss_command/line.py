@@ -143,16 +143,18 @@ class Line:
     # --- who is there ---------------------------------------------------------------------------
 
     def mirror(self, address, net_count):
-        """None if the telegram came back, else the receiver's finding. Something else that came may
-        be late, or of somebody else: then it is sent once more.
+        """None if the telegram came back, else the receiver's finding. If something else came,
+        which may only be late, it is sent again.
         """
+        finding = SILENT
         for _ in range(READS):
             telegram = Mirror(address, bytes(net_count))
             if self.exchange(telegram):
                 return None
-            if telegram.finding == SILENT:
+            finding = telegram.finding
+            if finding == SILENT:
                 break
-        return telegram.finding
+        return finding
 
     def probe(self, address, net_counts=NET_COUNTS):
         """(net characters that a node takes, whether it takes others too), or (None, finding)."""
