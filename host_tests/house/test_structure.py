@@ -94,6 +94,7 @@ UNDERSTOOD = (
         'Import "(umodbus|minimalmodbus|pymodbus|turboctl)',
         "fetched where somebody compares",
     ),
+    ("tools/pc/", "is specified in __all__", "loaded when it is named"),
     ("tools/", 'Import "rich', "fetched where somebody uses tools/uss"),
     ("tools/", 'Import "uss_serial.port', "tools/port, which the package takes in"),
 )

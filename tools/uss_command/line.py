@@ -181,7 +181,7 @@ class Line:
         return self.enquire(address, net_count, other)
 
     def _check_g120(self, address, family):
-        if family.__name__.startswith("G120") and not self.standing:
+        if not family.takes_no_control and not self.standing:
             raise Failure(G120_RUNS % address)
 
     def enquire(self, address, net_count, variable):
