@@ -2,6 +2,7 @@
 """The library on a serial port of a PC: the link, and the small program that holds the port."""
 
 import os
+import socket
 import struct
 import subprocess
 import sys
@@ -14,6 +15,7 @@ import pytest
 import uss_serial
 import uss_serial.frames as frames
 from uss_serial import Master, PortError, SerialLink
+from uss_serial.any_port import AnyPort
 from uss_serial.frames import framed, read_frame
 from uss_serial.keeper import PATIENCE_S, Keeper
 from uss_serial.port.dead_man import DeadMan, off1, turns
@@ -255,3 +257,27 @@ def test_silence_comes_with_a_hint_and_a_wrong_parity_with_another():
         assert said in str(Line.no_reply(line, 1)) and "drive 1 does not answer" in str(
             Line.no_reply(line, 1)
         )
+
+
+def test_a_port_behind_a_network_goes_through_pyserial():
+    with socket.create_server(("127.0.0.1", 0)) as server:
+        port = AnyPort("socket://127.0.0.1:%d" % server.getsockname()[1], 19200)
+        port.open()
+        peer, _ = server.accept()
+        port.write(b"\x02\x06")
+        assert peer.recv(16) == b"\x02\x06" and not port.wait(0.01)
+        peer.sendall(b"\x02\x06\x00")
+        assert port.wait(5)
+        data = port.read()[0]
+        while len(data) < 3:
+            assert port.wait(5)
+            data += port.read()[0]
+        assert data == b"\x02\x06\x00"
+        peer.close()
+        with pytest.raises(LineCut):
+            for _ in range(100):
+                port.wait(0.05)
+                port.read()
+        port.close()
+    with pytest.raises(PortError, match="socket://"):
+        AnyPort(port.path, 19200).open()
