@@ -26,6 +26,7 @@ INTERPRETERS = "host"
 TOOLS = tiers.TOP / "tools"
 HOST_TESTS = tiers.TOP / "host_tests"
 FLASH = 0x10000000  # where a Pico has it
+LEFT_OUT = ("uss/br/", "uss/s7/", "uss/tasks/")  # of a firmware file: the panel needs none of it
 
 
 # ---- collecting and judging -----------------------------------------------------------------
@@ -721,7 +722,7 @@ def test_uf2_tells_where_the_file_is_and_how_it_gets_onto_the_pico(pico, tmp_pat
         assert (tmp_path / file).read_text() == "first\n"
 
 
-COMMANDS = "panel drive example test soak bench uf2 deploy check-board bringup".split()
+COMMANDS = "panel drive example test soak bench uf2 deploy check-board bringup uss".split()
 
 
 @pytest.mark.parametrize("command", COMMANDS)
@@ -731,6 +732,16 @@ def test_every_command_tells_the_version_and_needs_nothing_for_it(pico, command)
             (pico.programs / name).unlink(missing_ok=True)
     run = pico.run(pico.top / "tools" / command, "--version")
     assert (run.returncode, run.stdout, run.stderr) == (0, "USS panel 1.2.3\n", "")
+
+
+def test_a_firmware_that_would_run_into_the_files_is_refused(pico):
+    binary = pico.top / "firmware.bin"
+    binary.write_bytes(bytes(1025))
+    fits = f"fits_before_the_files {binary}"
+    assert pico.shell(f"{fits} 1025 && echo yes", PICO_FILES).stdout == "yes\n"
+    run = pico.shell(f"{fits} 1024 || echo no", PICO_FILES)
+    assert run.stdout == "no\n"
+    assert "1025 bytes, 1 more than the files on the flash leave" in run.stderr
 
 
 def test_these_are_all_the_commands():
@@ -801,5 +812,6 @@ def test_the_firmware_is_one_for_the_pico_and_tells_nothing_of_this_machine(name
     firmware = tiers.TOP / "firmware"
     ours = {str(path.relative_to(firmware)) for path in firmware.rglob("*.py")}
     ours |= {"board.py", "chips/rp2.py"}
-    for frozen in ours - {"main.py"}:  # a name that MicroPython knows
-        assert (b"\0" + frozen.encode() + b"\0" in image) == (name == "panel"), frozen
+    for path in ours - {"main.py"}:  # a name that MicroPython knows
+        frozen = b"\0" + path.encode() + b"\0" in image
+        assert frozen == (name == "panel" and not path.startswith(LEFT_OUT)), path

@@ -182,7 +182,7 @@ compile_pico_firmware() {
 # The linker knows nothing of the file system, which stands behind the program.
 fits_before_the_files() {
     local size
-    size=$(stat -c %s "$1")
+    size=$(stat -c %s "$1") || return
     ((size <= $2)) && return
     say "    it has $size bytes, $((size - $2)) more than the files on the flash leave"
     return 1
