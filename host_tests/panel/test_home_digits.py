@@ -104,7 +104,7 @@ def test_whatever_else_ends_it_leaves_the_setpoint_as_it_was():
     for key in LEFT_ALONE:
         world = editing(ready(addresses=(1, 2)))
         press(world, "UP", key)
-        world.run(400)
+        world.run(500)
         other = key.startswith("ADDRESS")
         assert world.lcd()[0] == "S: 10.0 F:  0.00", (key, world.lcd())
         assert row_2(world) == ("READY        A2" if other else "READY        A1"), key

@@ -737,8 +737,9 @@ def test_every_command_tells_the_version_and_needs_nothing_for_it(pico, command)
 def test_a_firmware_that_would_run_into_the_files_is_refused(pico):
     binary = pico.top / "firmware.bin"
     binary.write_bytes(bytes(1025))
-    fits = f"fits_before_the_files {binary}"
-    assert pico.shell(f"{fits} 1025 && echo yes", PICO_FILES).stdout == "yes\n"
+    fits = f"fits_before_the_files '{binary}'"
+    run = pico.shell(f"{fits} 1025 && echo yes", PICO_FILES)
+    assert run.stdout == "yes\n", run.stderr
     run = pico.shell(f"{fits} 1024 || echo no", PICO_FILES)
     assert run.stdout == "no\n"
     assert "1025 bytes, 1 more than the files on the flash leave" in run.stderr

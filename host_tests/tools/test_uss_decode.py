@@ -8,7 +8,7 @@ from golden import GOLDEN, Telegram
 from tools.uss_command import explanation
 from tools.uss_command.errors import Failure, Misused
 from tools.uss_command.explanation import FROM_DRIVE, TO_DRIVE, explained
-from tools.uss_command.files.capture import characters_of, read_capture
+from tools.uss_command.files.capture import Capture, characters_of, read_capture
 
 INTERPRETERS = "host"
 
@@ -125,3 +125,10 @@ def test_it_wants_no_port():
     assert told.status == 0 and "read P0700[0]" in told.json["summary"]
     assert uss_command_bench.uss(None, "decode").status == 2
     assert explanation.explained(b"").wrong == ["nothing"]
+
+
+def test_what_began_before_the_capture_did_is_read_again_as_well(tmp_path):
+    capture = Capture(str(tmp_path / "heard"))
+    capture(False, bytes((2, 1, 3)), at_us=0)
+    capture.close()
+    assert read_capture(str(tmp_path / "heard")) == [(0.0, FROM_DRIVE, bytes((2, 1, 3)))]

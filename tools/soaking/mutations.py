@@ -310,7 +310,7 @@ MUTATIONS = (
     Mutation(
         "faults started",
         "START is obeyed by a drive that has tripped",
-        ("REFUSED",), 39,
+        ("REFUSED",), 57,
         (
             "panel/permits.py",
             "    if state == pzd.FAULT:\n        return texts.REFUSED_FAULT\n",
@@ -606,7 +606,7 @@ MUTATIONS = (
     Mutation(
         "a silence for all",
         "one drive that may run and is silent takes the turns of those that rest",
-        ("NEGLECTED",), 98,
+        ("NEGLECTED",), 94,
         (
             "uss/silence.py",
             "        if drive.outside or not drive.was_running:\n"

@@ -73,7 +73,7 @@ class Capture:
             self._file.write("# seconds, > to the drives, < from them\n")
 
     def __call__(self, is_sent, characters, at_us):
-        seconds = (at_us - self._began_us) / 1e6
+        seconds = max(0, at_us - self._began_us) / 1e6  # it may have begun before this did
         if is_sent:
             self.flush()
             self._keep(seconds, True, characters)
