@@ -33,7 +33,8 @@ from panel.screen import GLYPHS
 # From the bottom of the house up, too.
 PAGES_AT_HAND = (
     "panel.pages.parameter_words", "panel.writer", "panel.pages.question", "panel.pages.risk",
-    "panel.pages.parameters", "panel.menu.words", "panel.menu.engine", "panel.menu.main",
+    "panel.pages.writing", "panel.pages.parameters", "panel.menu.words", "panel.menu.engine",
+    "panel.menu.main", "catalogue", "catalogue.packed",
     "uss.families.kinds", "settings_file", "uss.finding", "uss.finding.mirror",
     "panel.menu.address", "panel.menu.find", "panel.menu.turns",
 )  # fmt: skip

@@ -6,11 +6,13 @@ missing.
 """
 
 from panel import texts
+from panel.lookup import ask
+from panel.lookup import words as lookup_words
 from panel.menu import words as menu_words
 from panel.pages import parameter_words, splash
 from search import words as search_words
 
-MODULES = (texts, splash, parameter_words, menu_words, search_words)
+MODULES = (texts, splash, parameter_words, menu_words, search_words, lookup_words, ask)
 TABLE = "firmware/panel/languages/words.tsv"
 
 

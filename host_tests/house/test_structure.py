@@ -37,6 +37,7 @@ RULES = (
     ("firmware/uss/tasks", ("uss",), ("struct", "array", "micropython")),
     ("firmware/panel", ("panel", "on_demand", "uss", "version"), ("micropython",)),
     ("firmware/panel/languages", ("on_demand",), ("binascii", "micropython", "struct")),
+    ("firmware/panel/lookup", ("panel", "on_demand", "uss", "catalogue"), ("micropython",)),
     ("firmware/hal", ("hal",), ("micropython",)),
     ("firmware/hal/display/rp2_", ("hal",), ("micropython", "rp2")),  # only this chip has it
     ("firmware/hal/link/rp2_", ("hal",), ("micropython", "array", "rp2")),

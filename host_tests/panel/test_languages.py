@@ -20,6 +20,8 @@ from boards.sim.script import Script
 from hal.display.hd44780 import Hd44780
 from panel import texts
 from panel.languages import Language
+from panel.lookup import ask
+from panel.lookup import words as lookup_words
 from panel.menu import words as menu_words
 from panel.pages import parameter_words, splash
 from panel.screen import GLYPHS, Screen
@@ -38,6 +40,7 @@ BESIDE_ADDRESS = ROW - len("A31")
 COUNTED = ROW - len(" 31")
 ROW_MAX = 128  # bytes: what is read of a row of the table
 ORDINARY = {texts: ROW, splash: ROW, parameter_words: ROW, menu_words: ENTRY, search_words: ROW}
+ORDINARY.update({lookup_words: ENTRY + 1, ask: ROW})
 NARROW = {  # by module: names, place
     texts: (
         ("NO_CONTACT LINE_NOISE OTHER_LENGTH WRONG_DRIVE WRONG_CHECK DRIVER_STUCK", STATE),
@@ -72,6 +75,9 @@ NARROW = {  # by module: names, place
     search_words: (("TAKEN NOT_TAKEN", 3),),
 }  # fmt: skip
 MOST = {  # the widest values that belong into a text
+    b"WHAT IS %s": (b"F30001",),
+    b"A%d: P%04d[%d]": (31, 2019, 7),
+    b"= %s": (b"02036:000",),
     b"LIMIT: %d.%02d": (650, 0),
     b"A%d: P%04d=%d": (31, 2010, 65535),
     b"P%04d=0: IT RUNS": (2014,),
@@ -452,7 +458,7 @@ def test_drives_that_are_not_shown_are_announced_in_german():
 def test_the_menu_in_german():
     world = german(addresses=(1, 2))
     menu(world)
-    assert world.lcd() == ("MENÜ         1/7", ">ANTRIEBE       ")
+    assert world.lcd() == ("MENÜ         1/9", ">ANTRIEBE       ")
     press(world, "START")
     assert row_2(world) == ">NEIN: IM MENÜ", world.lcd()
     press(world, "DOWN", "UP")
@@ -461,7 +467,8 @@ def test_the_menu_in_german():
         seen.append(row_2(world))
         press(world, "DOWN")
     assert seen == [
-        ">ANTRIEBE", ">ADRESSEN", ">FU SUCHEN", ">EINSTELL.", ">ABFOLGE", ">HÄUFIGKEIT", ">INFO"
+        ">ANTRIEBE", ">ADRESSEN", ">FU SUCHEN", ">EINSTELL.", ">ABFOLGE", ">HÄUFIGKEIT", ">PARAMETER",
+        ">STÖRSPEICHER", ">INFO",
     ], seen  # fmt: skip
     walk_to(world, "EINSTELL.")
     press(world, "SET")

@@ -2,8 +2,8 @@
 """STOP on every page of the menu, found by walking it: no list of pages stands here.
 
 The walk begins where a held PARAM leads, and knows what a person sees: an entry behind ">", its
-place in a list (3/7), a question. DOWN and SET lead on. Each place is reached anew, with the motor
-running, or, where the panel refuses that, standing.
+place in a list (3/7), a question, a parameter. DOWN and SET lead on. Each place is reached anew,
+with the motor running, or, where the panel refuses that, standing.
 """
 
 import os
@@ -45,6 +45,14 @@ def silent():
     return world
 
 
+def warned():
+    """The drive shown has a warning: the menu tells what it means."""
+    world = running()
+    world.drives[1].warn(600)
+    world.run(1500)
+    return world
+
+
 def wait_until_it_runs(world):
     for _ in range(30):
         if world.drives[1].state == "running" and abs(world.drives[1].hz() - 10) < 0.01:
@@ -76,6 +84,10 @@ def place(world):
 
     Row 1 may be busy with an announcement: then the number is seen a little later.
     """
+    for _ in range(20):  # it may be on its way
+        if row_2(world):
+            break
+        world.run(50)
     row, count = row_2(world), None
     if row.startswith(">"):
         for _ in range(20):
@@ -85,9 +97,14 @@ def place(world):
         tail = row_1(world)[11:].strip().split("/")
         if len(tail) == 2 and tail[1].isdigit():
             count = int(tail[1])
-    elif not row.endswith("PARAM=NO"):
+    elif not row.endswith("PARAM=NO") and not is_parameter(row):
         return None
     return count, row_2(world)
+
+
+def is_parameter(row):
+    """P1120[0]  10.00s"""
+    return row[:1] in ("P", "r") and row[1:5].isdigit()
 
 
 def ways():
@@ -95,13 +112,13 @@ def ways():
 
     The world comes back with the menu as it was: so it can walk on.
     """
-    seen, open_ways = set(), [(running, ()), (silent, ())]
+    seen, open_ways = set(), [(running, ()), (silent, ()), (warned, ())]
     while open_ways:
         begin, way = open_ways.pop(0)
         world = go(begin, way)
         while True:
             here = place(world)
-            if here is None and begin is running:  # refused, perhaps since the motor runs
+            if here is None and begin in (running, warned):  # refused, perhaps since it runs
                 open_ways.append((standing, way))
             if here is None or here in seen:
                 break
@@ -137,9 +154,11 @@ def press_motion_keys(world, where):
 def press_stop(world, where):
     """OFF1 is on the wire at once, and the display goes on telling where one is."""
     pressed_us = world.clock.now_us
-    was_question = not row_2(world).startswith(">")
+    was_question = row_2(world).endswith("PARAM=NO")
+    was_parameter = is_parameter(row_2(world))
     world.down("STOP")
     world.run(500)  # said from 300 ms on, and then drawn and shown
+    settled(world)  # what is being written to the display can be read a moment later
     assert world.reads("STOP, HOLD: OFF3"), (where, world.lcd())
     world.up("STOP")
     offs = [at_us for at_us, stw in telegrams(world, pressed_us, 1) if stw == OFF1]
@@ -148,6 +167,12 @@ def press_stop(world, where):
     assert world.drives[1].hz() == 0 and world.drives[1].state != "running", where
     if was_question:  # which STOP answers with no
         assert row_2(world)[-2:] == "A1", (where, world.lcd())
+    elif was_parameter:
+        for _ in range(40):  # what the drive has refused is said for three seconds
+            if is_parameter(row_2(world)):
+                break
+            world.run(100)
+        assert is_parameter(row_2(world)), (where, world.lcd())
     else:
         assert row_2(world).startswith(">"), (where, world.lcd())
     world.check()
@@ -168,11 +193,13 @@ def test_stop_acts_in_every_place_of_the_menu_and_nothing_starts_there():
     loaded, load = set(), on_demand.load
     on_demand.load = noting(loaded)
     try:
-        places = {running: 0, standing: 0, silent: 0}
+        places = {running: 0, standing: 0, silent: 0, warned: 0}
+        parameters = 0
         for begin, way, here, world in ways():
             places[begin] += 1
-            if begin is running:
+            if begin in (running, warned):
                 run(world)
+            parameters += is_parameter(here[1])
             if here[1].startswith(">"):  # any key answers a question
                 press_motion_keys(world, (way, here))
             if begin is not silent:
@@ -181,7 +208,10 @@ def test_stop_acts_in_every_place_of_the_menu_and_nothing_starts_there():
     finally:
         on_demand.load = load
     assert places[running] > 70 and places[standing] > 2 and places[silent] > 3, places
+    assert places[warned] > 5 and parameters > 1, (places, parameters)
     for name in os.listdir("firmware/panel/menu"):
         name = name.split(".")[0]
         if name not in NO_LISTS and not name.startswith("__"):
             assert "panel.menu." + name in loaded, "nobody gets to the list %s" % name
+    for name in ("groups", "memory", "what"):
+        assert "panel.lookup." + name in loaded, "nobody gets to the list %s" % name
