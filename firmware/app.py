@@ -106,8 +106,8 @@ class App:
             self._feed(now_ms)
         if self._polled:
             self._tend()
-        if self.settings.dirty:
-            self._save_if_quiet(now_ms)
+        if self.settings.dirty or self.panel.errand:
+            self._write_if_quiet(now_ms)
         board.idle()
         return self._hand_over() if self.panel.wants else None
 
@@ -159,19 +159,24 @@ class App:
         if not missing:
             self._finder = module.Finder(self.bus, self._mask, _enquirer)
 
-    def _save_if_quiet(self, now_ms):
+    def _write_if_quiet(self, now_ms):
         """Writing flash holds everything up for a while, interrupts too: only when no drive runs,
         and between two exchanges."""
         failed_at_ms = self._save_failed_at_ms
         has_just_failed = (
             failed_at_ms is not None and elapsed(now_ms, failed_at_ms, self._mask) < _SAVE_AGAIN_MS
         )
-        if has_just_failed or self.panel.any_runs():
+        errand = self.panel.errand
+        if self.panel.any_runs() or has_just_failed and errand is None:
             self.bus.resume()
             return
         self.bus.pause()
         if self.bus.paused:
-            self._save(now_ms)
+            if errand is not None:
+                self.panel.errand = None
+                errand()
+            elif self.settings.dirty:
+                self._save(now_ms)
             self.bus.resume()
 
     def _save(self, now_ms):

@@ -52,6 +52,7 @@ NUMBERS = (  # name, default, lowest, highest, meaning
 ADDRESSES = (  # name, default, fewest, meaning; addresses 0...31, each once, 31 at the most
     ("drives", (1,), 1, "in the order of the address keys"),
     ("unsupervised", (), 0, "drives accepted without a telegram time-out, P2014 = 0"),
+    ("half_written", (), 0, "drives with a parameter set that is written in part"),
 )
 BY_ADDRESS = (  # name, default, meaning; an object: address as text -> text or number
     ("kinds", {}, "family, and layout if unusual, of drives that are no mm420"),

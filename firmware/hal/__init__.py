@@ -75,10 +75,16 @@ keypad
                         STOP, still do.
     unclear             the keys, as bits, that the last reading could not determine; mostly 0
 
-store                   keeps one small file over power cuts; any method may raise OSError
+store                   keeps files over power cuts; any method may raise OSError. One small file:
     read(most=-1) -> bytes or None   the first `most` bytes; -1: all
     replace(data)       all or nothing: after a power cut either the old or the new data are there
     set_aside()         keep what is there under another name, for a person to look at
+                        and larger ones beside it, each with a name:
+    names(ending)       of those that end like this, in order
+    open(name)          to be read: read(most), close()
+    begin() -> file     a new one: write(data). Until `finish` nobody finds it
+    finish(file, name)  all or nothing: in place of the one that had this name
+    remove(name)
 
 watchdog
     feed()              the first call starts it; 2 s without a further call restart the chip

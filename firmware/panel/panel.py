@@ -51,9 +51,9 @@ class Panel:
     For pages and view: `selected`, the control that is shown; `warning`, its `DriveWarning`;
     `message`, words that are shown for a while, or None; `stop_key`; `announcer`; `guard`, a
     `Guard` or None; `setpoint_step` in centihertz; `remembered`; `settings`; `bus`; `board`;
-    `mask`. For `App`: `wants`. Nobody else writes a field of it: pages call `say`, `cover`,
-    `uncover`, `write`, `show_page`, `turn_page`, `add`, `remove`,
-    `heed_settings`, `begin_anew` and `lock`.
+    `mask`. For `App`: `wants`, and `errand`, which a page may set and `App` clears. Nobody else
+    writes a field of it: pages call `say`, `cover`, `uncover`, `write`, `show_page`, `turn_page`,
+    `add`, `remove`, `heed_settings`, `begin_anew` and `lock`.
     """
 
     def __init__(self, roster, bus, board, settings, mask, notices=()):
@@ -89,6 +89,7 @@ class Panel:
         self._home = self._page = Home(self)
         self._place = 0  # of the page in PAGES
         self._is_new = settings.new  # nobody has set it up: it offers to find drives
+        self.errand = None  # a function to be called once the flash may be written
         self.wants = None  # another program: "search", or "app", this one anew
         self.remembered = {}  # by module: where a page was when it was left
         splash = on_demand.load("panel.pages.splash")

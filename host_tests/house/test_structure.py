@@ -38,6 +38,11 @@ RULES = (
     ("firmware/panel", ("panel", "on_demand", "uss", "version"), ("micropython",)),
     ("firmware/panel/languages", ("on_demand",), ("binascii", "micropython", "struct")),
     ("firmware/panel/lookup", ("panel", "on_demand", "uss", "catalogue"), ("micropython",)),
+    (
+        "firmware/panel/sets",
+        ("panel", "uss", "catalogue", "version"),
+        ("micropython", "binascii"),
+    ),
     ("firmware/hal", ("hal",), ("micropython",)),
     ("firmware/hal/display/rp2_", ("hal",), ("micropython", "rp2")),  # only this chip has it
     ("firmware/hal/link/rp2_", ("hal",), ("micropython", "array", "rp2")),

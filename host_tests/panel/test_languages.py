@@ -23,6 +23,7 @@ from panel.languages import Language
 from panel.lookup import ask
 from panel.lookup import words as lookup_words
 from panel.menu import words as menu_words
+from panel.menu.sets import words as set_words
 from panel.pages import parameter_words, splash
 from panel.screen import GLYPHS, Screen
 from panel_bench import panel, row_1, row_2, running, said, starts, unsupervised
@@ -39,15 +40,23 @@ ROW, STATE, ENTRY, TITLE = 16, 12, 15, 11  # places; an entry stands behind the 
 BESIDE_ADDRESS = ROW - len("A31")
 COUNTED = ROW - len(" 31")
 ROW_MAX = 128  # bytes: what is read of a row of the table
-ORDINARY = {texts: ROW, splash: ROW, parameter_words: ROW, menu_words: ENTRY, search_words: ROW}
-ORDINARY.update({lookup_words: ENTRY + 1, ask: ROW})
+ORDINARY = {
+    texts: ROW, splash: ROW, parameter_words: ROW, menu_words: ENTRY, set_words: ENTRY,
+    search_words: ROW, lookup_words: ENTRY + 1, ask: ROW,
+}  # fmt: skip
 NARROW = {  # by module: names, place
+    set_words: (
+        ("NAME SAVING CHECKING COMPARING WRITING ASK_DELETE ASK_GIVE_UP HALF_WRITTEN", ROW),
+        ("SETS SO_MANY MAY_CUT", TITLE),
+        ("DIFFERENCE NO_SET_FILE", 2 * ROW),  # which are cut
+    ),
     texts: (
         ("NO_CONTACT LINE_NOISE OTHER_LENGTH WRONG_DRIVE WRONG_CHECK DRIVER_STUCK", STATE),
         ("UART_BROKEN LINE_LOW DEFECTS CHECKING NOT_READY READY STARTING RUNNING", STATE),
         ("RUNS_FOR_EVER RUNS_LONG RUNS_FASTER STOPPING JOGS_RIGHT JOGS_LEFT INHIBITED", STATE),
         ("LOCAL RUNS_LOCALLY STATUS_UNKNOWN LINE_FAILED PANEL_HUNG ENGINE_FAILED", STATE),
         ("STOPPED_ITSELF DID_NOT_START TAKEN_AWAY DRIVE_RESET UNSUPERVISED MAY_RUN", STATE),
+        ("HALF_SET", STATE),
         ("FAULT WARNING", STATE - len(" F01910")),
         ("FAULT_LETTER WARNING_LETTER ADDRESS PERCENT MENU_MARK", 1),
         ("SETPOINT HERTZ", 2),
@@ -104,6 +113,20 @@ MOST = {  # the widest values that belong into a text
     b"PKW WORDS %d": (127,),
     b"PZD WORDS %d": (8,),
     b"VERSION %s": (VERSION.encode(),),
+    b"A%d SAVE %d%%": (31, 100),
+    b"A%d COMPARE %d%%": (31, 100),
+    b"A%d WRITE %d%%": (31, 100),
+    b"%d:%02d LEFT": (99, 59),
+    b"%d:%02d %d DIFF": (9, 59, 1100),
+    b"%d DIFFER": (1100,),
+    b"DIFFER: %d": (1100,),
+    b"SAVED: %d": (1100,),
+    b"BUT %d UNTOLD": (1100,),
+    b"HALF, DIFFER %d": (99,),
+    b"P%04d=%d FOR IT": (9, 3),
+    b"%s>%s": (b"10", b"2.5"),
+    b"? %s": (b"pump.set",),
+    b"IT IS OF %s": (b"MM440",),
     b"FIND DRIVES %3ds": (999,),
     b"%d RATES SET=GO": (15,),
     b"%d BAUD %ds": (187500, 999),
@@ -458,7 +481,7 @@ def test_drives_that_are_not_shown_are_announced_in_german():
 def test_the_menu_in_german():
     world = german(addresses=(1, 2))
     menu(world)
-    assert world.lcd() == ("MENÜ         1/9", ">ANTRIEBE       ")
+    assert world.lcd() == ("MENÜ        1/10", ">ANTRIEBE       ")
     press(world, "START")
     assert row_2(world) == ">NEIN: IM MENÜ", world.lcd()
     press(world, "DOWN", "UP")
@@ -467,8 +490,8 @@ def test_the_menu_in_german():
         seen.append(row_2(world))
         press(world, "DOWN")
     assert seen == [
-        ">ANTRIEBE", ">ADRESSEN", ">FU SUCHEN", ">EINSTELL.", ">ABFOLGE", ">HÄUFIGKEIT", ">PARAMETER",
-        ">STÖRSPEICHER", ">INFO",
+        ">ANTRIEBE", ">ADRESSEN", ">FU SUCHEN", ">EINSTELL.", ">SÄTZE", ">ABFOLGE", ">HÄUFIGKEIT",
+        ">PARAMETER", ">STÖRSPEICHER", ">INFO",
     ], seen  # fmt: skip
     walk_to(world, "EINSTELL.")
     press(world, "SET")

@@ -12,6 +12,7 @@ import main
 import on_demand
 from boards.sim.world import World
 from panel_bench import OFF1, row_1, row_2, settled, starts, telegrams, wait_until_known
+from sets_bench import made
 
 INTERPRETERS = "unix64 unix32"
 
@@ -24,6 +25,7 @@ QUICK = {1120: 0.1, 1121: 0.1, 2014: 2000}
 
 def standing():
     world = World(main.start, (1, 2), parameters=QUICK, settings={"unsupervised": [2]})
+    world.flash.files["1.set"] = made([(1120, 0, b"Float", b"3F800000")], family=b"mm420")
     world.run(500)
     wait_until_known(world)
     return world

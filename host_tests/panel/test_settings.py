@@ -260,6 +260,7 @@ def test_a_person_can_read_the_file():
         '  "lock_code": 0,\n'
         '  "drives": [2, 1],\n'
         '  "unsupervised": [2],\n'
+        '  "half_written": [],\n'
         '  "kinds": {},\n'
         '  "repeats": {},\n'
         '  "favourites": {"g110": [700], "mm440": [1120, 3]}\n'

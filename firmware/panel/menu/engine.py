@@ -14,10 +14,19 @@ from panel.pages import Page
 from uss.timing import elapsed
 
 _LOOKUP = ("catalogue", "panel.lookup", "panel.lookup.words")
+_OF_A_SET = ("panel.pages.parameter_words", "panel.sets.pump", "panel.sets.work")
 
 # What a list wants besides, a step of the loop for each: from the bottom of the house up.
 _WANTS = {
     "address": ("uss.finding", "uss.finding.mirror"),
+    "sets.overview": (
+        "panel.menu.sets",
+        "panel.menu.sets.words",
+        "panel.sets",
+        "panel.sets.set_file",
+    ),  # fmt: skip
+    "sets.save": ("catalogue", "version") + _OF_A_SET + ("panel.sets.saving",),
+    "sets.write": _OF_A_SET + ("panel.sets.writing",),
     "kind": ("uss.families.bop", "uss.families.kinds"),
     "lookup.groups": _LOOKUP,
     "lookup.memory": _LOOKUP,
@@ -200,5 +209,5 @@ class Menu(Page):
 
 
 def _module(name):
-    """Where a list stands: in this folder, or in another one of the panel."""
-    return "panel." + name if "." in name else "panel.menu." + name
+    """Where a list stands: below this folder, or beside it, with what it looks up."""
+    return ("panel." if name.startswith("lookup.") else "panel.menu.") + name

@@ -9,6 +9,7 @@ LISTS = (  # text, module
     (words.ANY_ADDRESS, "address"),
     (texts.FIND_DRIVES, "find"),
     (words.MENU_SETTINGS, "settings"),
+    (words.MENU_SETS, "sets.overview"),
     (words.MENU_ORDER, "order"),
     (words.MENU_TURNS, "turns"),
     (words.PARAMETERS, "lookup.groups"),
