@@ -35,6 +35,7 @@ CHOICES = (  # name, default, what it may be, meaning
     ("baud", 19200, BAUD_RATES, "bit/s"),
     ("second_stop", "OFF3", ("OFF3", "OFF2", "none"), "what holding STOP for 1.5 s sends"),
     ("language", "en", ("en", "de"), "of the display: columns of panel/languages/words.tsv"),
+    ("log", "none", ("none", "JSON"), "a line a second on the serial port"),
 )
 LIMITS = ("lowest_centihertz", "highest_centihertz")  # of the setpoint: never crossed
 NUMBERS = (  # name, default, lowest, highest, meaning

@@ -20,6 +20,8 @@ board
                         it hangs, only the watchdog stops the drives
     backlight(on)       optional, or None: switches the light of the display, on at first
     make_link(baud)     builds the link for that baud rate; called once
+    serial()            optional, or None: the `hal.serial.Serial` on which a PC listens, the same
+                        one each time
     must_supervise      optional; True: no drive starts whose own time-out is off, or unread: this
                         board cannot stop it when its program hangs outside Python
     idle()              at the end of each main loop step: lets the machine work, 2 ms at most

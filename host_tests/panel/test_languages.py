@@ -23,6 +23,7 @@ from panel.languages import Language
 from panel.lookup import ask
 from panel.lookup import words as lookup_words
 from panel.menu import words as menu_words
+from panel.menu.diagnosis import words as diagnosis_words
 from panel.menu.sets import words as set_words
 from panel.pages import parameter_words, splash
 from panel.screen import GLYPHS, Screen
@@ -42,7 +43,7 @@ COUNTED = ROW - len(" 31")
 ROW_MAX = 128  # bytes: what is read of a row of the table
 ORDINARY = {
     texts: ROW, splash: ROW, parameter_words: ROW, menu_words: ENTRY, set_words: ENTRY,
-    search_words: ROW, lookup_words: ENTRY + 1, ask: ROW,
+    diagnosis_words: ENTRY, search_words: ROW, lookup_words: ENTRY + 1, ask: ROW,
 }  # fmt: skip
 NARROW = {  # by module: names, place
     set_words: (
@@ -80,6 +81,11 @@ NARROW = {  # by module: names, place
         ("ASKS ANSWERS NOBODY IN_THE_LIST", ENTRY - len("A31 ")),
         ("KEY_TEST_ENDS SET_KEEPS SET_NEXT STOPS_FOUND SHORT ADDED ALL_ADDED NOT_ADDED", ROW),
         ("REMOVED NOT_REMOVED KEPT NO_LOCK WRONG_CODE UNLOCKED", ROW),
+    ),
+    diagnosis_words: (
+        ("COUNTERS OF_THE_BUS TIMES", TITLE - len("A31 ")),
+        ("BUS SENT HEARD HELD RESTART HEAP", TITLE),
+        ("MIRROR MAY_TRIP BUS_OFF BACK", ROW),
     ),
     search_words: (("TAKEN NOT_TAKEN", 3),),
 }  # fmt: skip
@@ -127,6 +133,23 @@ MOST = {  # the widest values that belong into a text
     b"%s>%s": (b"10", b"2.5"),
     b"? %s": (b"pump.set",),
     b"IT IS OF %s": (b"MM440",),
+    b"%5d %5d/min": (65535, 13620),
+    b"%5d   .../min": (65535,),
+    b"BUS %s": (b"FOREIGN",),
+    b"%d.%d-%d.%d ms": (999, 9, 999, 9),
+    b"%d-%d ms": (99999, 99999),
+    b"%d CHARACTERS": (256,),
+    b"READ P%04d[%d]": (2024, 255),
+    b"WRITE P%04d[%d]": (2024, 99),
+    b"STORE P%04d[%d]": (2024, 99),
+    b"IS P%04d[%d]": (2024, 255),
+    b"PWE %04X %04X": (0xFFFF, 0xFFFF),
+    b"STW %04X %s": (0x047E, b"OFF1"),
+    b"HSW %04X %d%%": (0xFFFF, -200),
+    b"ZSW %04X %s": (0xFFFF, b"SPERRE"),
+    b"HIW %04X %d%%": (0xFFFF, -200),
+    b"%d BYTES": (999999,),
+    b"ERROR %d": (65535,),
     b"FIND DRIVES %3ds": (999,),
     b"%d RATES SET=GO": (15,),
     b"%d BAUD %ds": (187500, 999),
@@ -134,10 +157,13 @@ MOST = {  # the widest values that belong into a text
 SAME = (  # in every language
     b"WARN", b"P2014=0", b"P2014=0 OK", b"Hz", b"RS-485", b"BOP", b"BAUD %s", b"START %s Hz",
     b"CODE %s", b"VERSION %s", b"%d BAUD %ds", b"A%d: STOP", b"A%d A%d: STOP", b"A%d  UP DOWN",
-    b"English", b"Deutsch", b"A%d: P%04d=%d", b"A%d  x%d",
+    b"%5d %5d/min", b"%5d   .../min", b"%d-%d ms", b"%d.%d-%d.%d ms", b"BUS %s", b"START",
+    b"BCC", b"LOG %s", b"WATCHDOG",
+    b"PWE %04X %04X", b"STW %04X %s", b"HSW %04X %d%%", b"ZSW %04X %s", b"HIW %04X %d%%",
+    b"English", b"Deutsch", b"JSON", b"A%d: P%04d=%d", b"A%d  x%d",
 )  # fmt: skip
 ADDRESS_OR_COUNT = 31  # where a text has one %d only and no row above
-KINDS_OF_VALUES = "sdxu%"
+KINDS_OF_VALUES = "sdxuX%"
 
 
 def directives(words):
@@ -481,7 +507,7 @@ def test_drives_that_are_not_shown_are_announced_in_german():
 def test_the_menu_in_german():
     world = german(addresses=(1, 2))
     menu(world)
-    assert world.lcd() == ("MENÜ        1/10", ">ANTRIEBE       ")
+    assert world.lcd() == ("MENÜ        1/11", ">ANTRIEBE       ")
     press(world, "START")
     assert row_2(world) == ">NEIN: IM MENÜ", world.lcd()
     press(world, "DOWN", "UP")
@@ -491,7 +517,7 @@ def test_the_menu_in_german():
         press(world, "DOWN")
     assert seen == [
         ">ANTRIEBE", ">ADRESSEN", ">FU SUCHEN", ">EINSTELL.", ">SÄTZE", ">ABFOLGE", ">HÄUFIGKEIT",
-        ">PARAMETER", ">STÖRSPEICHER", ">INFO",
+        ">DIAGNOSE", ">PARAMETER", ">STÖRSPEICHER", ">INFO",
     ], seen  # fmt: skip
     walk_to(world, "EINSTELL.")
     press(world, "SET")

@@ -248,6 +248,7 @@ def test_a_person_can_read_the_file():
         '  "baud": 19200,\n'
         '  "second_stop": "OFF3",\n'
         '  "language": "en",\n'
+        '  "log": "none",\n'
         '  "reply_timeout_ms": 20,\n'
         '  "lost_ms": 1000,\n'
         '  "setpoint_centihertz": 1000,\n'

@@ -75,3 +75,6 @@ class Entries:
 
     def leave(self, now_ms):
         """PARAM goes back to the list above this one."""
+
+    def end(self):
+        """It is not shown any more, however that came."""

@@ -15,6 +15,7 @@ from uss.timing import elapsed
 
 _LOOKUP = ("catalogue", "panel.lookup", "panel.lookup.words")
 _OF_A_SET = ("panel.pages.parameter_words", "panel.sets.pump", "panel.sets.work")
+_DIAGNOSIS = ("panel.menu.diagnosis", "panel.menu.diagnosis.words")
 
 # What a list wants besides, a step of the loop for each: from the bottom of the house up.
 _WANTS = {
@@ -27,6 +28,13 @@ _WANTS = {
     ),  # fmt: skip
     "sets.save": ("catalogue", "version") + _OF_A_SET + ("panel.sets.saving",),
     "sets.write": _OF_A_SET + ("panel.sets.writing",),
+    "diagnosis.counters": _DIAGNOSIS,
+    "diagnosis.health": _DIAGNOSIS,
+    "diagnosis.mirror": ("uss.finding", "uss.finding.mirror") + _DIAGNOSIS,
+    "diagnosis.off": _DIAGNOSIS,
+    "diagnosis.overview": _DIAGNOSIS,
+    "diagnosis.telegrams": ("uss.finding", "uss.finding.witness") + _DIAGNOSIS,
+    "diagnosis.times": ("uss.finding", "uss.finding.witness") + _DIAGNOSIS,
     "kind": ("uss.families.bop", "uss.families.kinds"),
     "lookup.groups": _LOOKUP,
     "lookup.memory": _LOOKUP,
@@ -109,7 +117,7 @@ class Menu(Page):
             self._forget(self._coming[0])
             self._coming = None
         while self._lists:
-            self._forget_last()
+            self._drop_last()
         self.panel.uncover()
 
     def draw(self, screen, now_ms):
@@ -184,8 +192,9 @@ class Menu(Page):
         if not self._lists:
             self.panel.uncover()
 
-    def _forget_last(self):
+    def _drop_last(self):
         name, shown, _ = self._lists.pop()
+        shown.end()
         for module in shown.ahead:
             on_demand.drop(module)
         self._forget(name)
@@ -203,7 +212,7 @@ class Menu(Page):
         self._lists[-1][1].leave(now_ms)
         if not self._lists:  # that has closed the menu
             return
-        self._forget_last()
+        self._drop_last()
         if not self._lists:
             self.panel.uncover()
 

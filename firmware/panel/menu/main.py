@@ -12,6 +12,7 @@ LISTS = (  # text, module
     (words.MENU_SETS, "sets.overview"),
     (words.MENU_ORDER, "order"),
     (words.MENU_TURNS, "turns"),
+    (words.MENU_DIAGNOSIS, "diagnosis.overview"),
     (words.PARAMETERS, "lookup.groups"),
     (words.FAULT_MEMORY, "lookup.memory"),
     (words.MENU_ABOUT, "about"),
