@@ -121,7 +121,7 @@ def _rows(family, kind, numbers):
 
 def _completed(row, like):
     """With what is empty from the row with the same key of the other family."""
-    key = row_key(row[KEY])
+    key = _key(row[KEY][1:], row[KEY][0])
     with _table(like) as table:
         yield None
         for other in _between(table, key, key):
@@ -133,14 +133,13 @@ def _completed(row, like):
 
 def _between(table, first, last):
     """The rows with these keys, and None after each look for the first."""
-    is_packed = hasattr(table, "bring")
-    yield from table.bring(first) if is_packed else _bring(table, first)
-    yield None
+    if hasattr(table, "bring"):
+        yield table.bring(first)
+    else:
+        yield from _bring(table, first)
     while True:
         line = _row(table)
-        if not line and is_packed and (yield from table.go_on()):
-            continue
-        key = row_key(line) if line else last + 1
+        key = _key(line[1:], line[0]) if line else last + 1
         if key > last:
             return
         yield _cells(line) if key >= first else None
@@ -154,7 +153,7 @@ def _bring(table, first):
         table.seek(middle)
         _line(table)  # what is left of it
         line = _row(table)
-        if line and row_key(line) < first:
+        if line and _key(line[1:], line[0]) < first:
             low = table.tell() - len(line)
         else:
             high = middle
@@ -173,7 +172,7 @@ def _table(family):
             _frozen.append(family)
     from catalogue.packed import Packed
 
-    return Packed(family, row_key)
+    return Packed(family)
 
 
 def _row(table):
@@ -196,11 +195,6 @@ def _line(table):
         line += piece
         if not piece:
             return line
-
-
-def row_key(line):
-    """That of the row which begins so."""
-    return _key(line[1:], line[0])
 
 
 def _key(cell, kind):
