@@ -35,7 +35,8 @@ PAGES_AT_HAND = (
     "panel.pages.parameter_words", "panel.writer", "panel.pages.question", "panel.pages.risk",
     "panel.pages.parameters", "panel.menu.words", "panel.menu.engine", "panel.menu.main",
     "uss.families.kinds", "settings_file", "uss.finding", "uss.finding.mirror",
-    "panel.menu.address", "panel.menu.find", "panel.menu.turns",
+    "panel.menu.address", "panel.menu.find", "panel.menu.turns", "panel.menu.settings",
+    "panel.menu.value",
 )  # fmt: skip
 _OF_THE_SEARCH = (
     "search.search", "search.hunt", "search.words", "uss.finding.scan", "uss.finding.enquiry",

@@ -30,6 +30,7 @@ from panel.supervision import longest_off_time_ms, off_time_ms
 
 _UNKNOWN = const(-1)  # no status word
 _PREPARED = const(-1)  # no START waits to be prepared
+_OBEYED = const(-2)  # one does, and its command is given
 _SILENT_MAX = const(3)  # telegrams without an answer after which the speed is not known any more
 _RUNS_REREAD_US = const(200_000)  # a setting of one that runs is read again so often: while shown,
 _UNSEEN_REREAD_US = const(330_000)  # and while not
@@ -93,7 +94,7 @@ class Control:
     refusal = texts.NOTHING
     notice = texts.NOTHING
     _command = None  # the last one that was obeyed
-    _start_trips = _PREPARED  # bus.dead_man_trips when START was pressed, until it is prepared
+    _start_trips = _PREPARED  # bus.dead_man_trips when START was pressed; _OBEYED, _PREPARED
     _stirred_at_us = None  # it last ran, or may have; None: it rests for sure
     _jogged = False  # what turns, or ramps down, is a jog of this panel
 
@@ -260,10 +261,6 @@ class Control:
         """Whether it may run though it should not: an alarm."""
         return self.lost_running or self.stop_watch.unconfirmed
 
-    def refused_by_source(self):
-        """Whether it obeys somebody else, or takes its setpoint from there: P0700, P1000."""
-        return permits.is_local(self.survey) or permits.is_foreign(self.survey)
-
     def own_jog_ends(self):
         """Whether it turns because a jog of this panel is still ramping down."""
         return self._jogged and self.stop_watch.active
@@ -288,9 +285,6 @@ class Control:
         Answers whether the setpoint had news to take: then it took long, and the step is for
         nothing else.
         """
-        if self._command is None and self.phase == CHECKING:
-            self._obey(self._start_trips)  # in a turn of its own: its command takes memory
-            return False
         survey = self.survey
         is_shown = reread_us == REREAD_US
         if self.drive.wanted:
@@ -301,14 +295,12 @@ class Control:
             return self.setpoint.step()  # at once: a limit may have come down
         if self.setpoint.step() and survey.complete:
             return True
-        survey.step(now_us, reread_us)
-        if is_shown:
-            survey.settle()
-        return False  # what follows from that is for the next turn
+        survey.step(now_us, reread_us)  # `ask_on` judges the answer: each takes long
+        return False
 
     def ask_on(self, now_us):
-        """In between, for somebody waits: what was just answered is not all."""
-        if self.phase == CHECKING:
+        """In between, for somebody waits: what was just answered is judged, and is not all."""
+        if self.phase == CHECKING or not self.survey.is_settled():
             self.survey.step(now_us)
 
     def watch(self, now_us):
@@ -377,8 +369,13 @@ class Control:
             self._command.give(self._now_us, dead_man_trips)
 
     def _prepare(self):
-        """Begin what `start` has left to this turn: a step with a key in it takes long already."""
-        self._obey(self._start_trips)
+        """Begin what `start` has left to later turns, one thing in each: a step with a key in it
+        takes long already, and a command takes memory.
+        """
+        if self._start_trips != _OBEYED:
+            self._obey(self._start_trips)
+            self._start_trips = _OBEYED
+            return
         self._start_trips = _PREPARED
         self.survey.count_anew()
         self.survey.recheck()
@@ -386,8 +383,7 @@ class Control:
     def _finish_check(self, now_us):
         """ON, if the drive has told its settings and there is nothing against it."""
         if self._start_trips != _PREPARED:
-            if self._command is not None:
-                self._prepare()
+            self._prepare()
             return
         if self.setpoint.has_news():
             return  # HSW may be another once `ask` has taken them

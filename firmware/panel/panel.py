@@ -14,7 +14,7 @@ on every page that obeys them; PARAM goes to the next page of `pages.table`.
 from micropython import const
 
 import on_demand
-from panel import texts, wording
+from panel import permits, texts, wording
 from panel.announcer import Announcer
 from panel.fault import DriveWarning
 from panel.keys import Acts, keys_of
@@ -433,7 +433,7 @@ class Panel:
         refusal = selected.take_refusal()
         if refusal:
             self.say(now_ms, wording.of(refusal, selected.survey.family))
-            if selected.refused_by_source():
+            if permits.is_about_source(refusal):
                 self._offer("offer")
         if self._writer:
             self._take_written(now_ms)

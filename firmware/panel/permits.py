@@ -5,6 +5,7 @@ In use:
 
     why_not_start(control)              # texts.REFUSED_..., or NOTHING
     why_not_jog(control)
+    is_about_source(refusal)            # whether one of these says that it obeys somebody else
 """
 
 from panel import risks, texts
@@ -23,6 +24,11 @@ REFUSED_SOURCES = {
     rows.PID: texts.REFUSED_PID,
     rows.STATUS_SENT: texts.REFUSED_STATUS,
 }
+
+
+def is_about_source(refusal):
+    """Whether a parameter of the drive would take away this reason, one of REFUSED_SOURCES."""
+    return refusal in REFUSED_SOURCES.values()
 
 
 def is_local(survey):

@@ -25,8 +25,8 @@ from panel.announcer import NOTHING
 _ADDRESS_COLUMN = const(13)
 
 # The fields of a picture, in the order in which they are drawn. The last one may take the place of
-# PAGE and ADDRESS; a page that is WHOLE is the only one.
-SETPOINT, ACTUAL, ROW_2, PAGE, ADDRESS, DONE, ANNOUNCEMENT, WHOLE = range(8)
+# PAGE and ADDRESS; a page that is whole has WHOLE alone, and BELOW where it draws row 2 by itself.
+SETPOINT, ACTUAL, ROW_2, PAGE, ADDRESS, DONE, ANNOUNCEMENT, WHOLE, BELOW = range(9)
 
 
 class View:
@@ -84,16 +84,28 @@ class View:
             _draw_address(screen, panel.selected)
         elif field == WHOLE:
             self._page.draw(screen, now_ms)
-            text = self._text()
-            if text is not None:
-                screen.put(1, 0, texts.ROW_WIDTH, text)
             if panel.announcer.kind != NOTHING:
                 panel.announcer.draw(screen, 0)
+            if self._page.draw_row_2 is not None:
+                return BELOW
+            self._draw_text()
+            return DONE
+        elif field == BELOW:
+            if not self._draw_text():
+                self._page.draw_row_2(screen, now_ms)
             return DONE
         else:
             panel.announcer.draw(screen, 1)
             return DONE
         return field + 1
+
+    def _draw_text(self):
+        """What takes all of row 2 of a page that is whole; False when nothing does."""
+        text = self._text()
+        if text is None:
+            return False
+        self._screen.put(1, 0, texts.ROW_WIDTH, text)
+        return True
 
     def _draw_alarm(self, control):
         """What takes all of row 1 in place of the frequencies; False when nothing does."""

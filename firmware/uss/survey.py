@@ -26,6 +26,7 @@ REREAD_US = const(100_000)
 _UNKNOWN = const(-1)
 _SPARES = const(4)  # a list of four is never resized, so taking from it takes no memory
 _NOTHING = const(-1)  # no row
+_ALL = rows.COUNT_OF_ROWS  # in place of a row: all have been forgotten
 
 # The coded exponents of the frequencies that a drive can have, as floating-point singles, from the
 # first that is not 0.00 Hz to the largest.
@@ -52,6 +53,7 @@ _UNANSWERED_MAX = const(2)  # then the row counts as missing, and is read only b
 _ABSENT = (pkw.NO_PARAMETER, pkw.NO_INDEX)  # the drive has no such parameter
 _FIRST = rows.COMMAND_SET  # a round begins with it, because it tells the indices of others
 _LATER = (rows.RESTART, rows.COUNTER)  # only START needs them, and has them read
+_BLANK = [0 if row in _LATER else _UNKNOWN for row in range(rows.COUNT_OF_ROWS)]
 _WATCHED = (rows.COUNTER, rows.LOWEST, rows.HIGHEST)  # read more often while it runs
 
 
@@ -95,9 +97,7 @@ class Survey:
     def __init__(self, drive, family, mask, spares):
         self.drive = drive
         self.family = family
-        self.values = [_UNKNOWN] * len(family.survey)
-        for row in _LATER:
-            self.values[row] = 0
+        self.values = list(_BLANK)
         self.complete = False
         self.scaling = None
         self.actual = None
@@ -108,7 +108,7 @@ class Survey:
         self._asked = None  # the job on its way that was asked first
         self._row = _FIRST  # the next row of the round
         self._turn = 0  # counts; rows of the round and of _WATCHED take turns
-        self._changed = _NOTHING  # the row whose value is new and not judged yet
+        self._changed = _NOTHING  # the row whose value is new and not judged yet, or _ALL
         self._read_at_us = 0
         self._contact = 0  # the values belong to this drive.contacts; 0 without contact
         self._asks = self._askable()  # the rows that are read
@@ -185,7 +185,7 @@ class Survey:
         return self._changed == _NOTHING
 
     def settle(self):
-        """Judge a new value now; otherwise the next step begins with that, as it takes long."""
+        """Judge a new value now; otherwise the next step does, as it takes long."""
         row, self._changed = self._changed, _NOTHING
         if row == _NOTHING:
             return
@@ -193,7 +193,7 @@ class Survey:
             self._judge_scaling()
         else:
             self._judge_meaning()
-            if self.scaling is None:
+            if self.scaling is None and self._contact:
                 self._judge_scaling()  # another data set has made it unknown
         self._judge()
 
@@ -203,26 +203,23 @@ class Survey:
 
     def _forget(self):
         self._check_no_more()
-        self._changed = _NOTHING
         self._row = _FIRST
         self._disown()
         if self.count:
             self.count.forget()
         if self._unanswered:
             self._unanswered = None
-        known = self.unreadable or self.complete
-        for row in range(len(self.values)):
-            blank = 0 if row in _LATER else _UNKNOWN
-            known = known or self.values[row] != blank
-            self.values[row] = blank
+        known = self.unreadable or self.complete or self._changed != _NOTHING
+        self._changed = _NOTHING
+        if self.values != _BLANK:
+            known = True
+            self.values[:] = _BLANK
         self._asks = self._askable()  # another layout, perhaps
         if known or self.is_percent():
             self.scaling = None
-            self._judge_meaning()
-            if self._contact:
-                self._judge_scaling()  # it may be known without a question
-            self._judge()
+            self.complete = False  # at once, as in `_make_unknown`
             self._note_readable()
+            self._changed = _ALL
 
     def _askable(self):
         """The rows that the drive can be asked for: three PKW words carry no double word."""
@@ -404,10 +401,7 @@ class Survey:
         self.version += 1
         tells = not self._is_missing(rows.ACTUAL_SENT) and self.wrong[rows.ACTUAL] == rows.RIGHT
         self.actual = self.scaling if tells else None
-        self.complete = self.scaling is not None
-        for row in range(len(values)):
-            if values[row] == _UNKNOWN and self._is_missing(row):
-                self.complete = False
+        self.complete = self.scaling is not None and not self._lacks_any()
         if self.complete:
             self._note_readable()
             has_sign = tells and self.family.hiw_is_signed
@@ -421,6 +415,13 @@ class Survey:
     def _note_readable(self):
         if self.unreadable:
             self.unreadable = False
+
+    def _lacks_any(self):
+        values, asks = self.values, self._asks  # found once: a field takes long to look up
+        for row in range(len(values)):
+            if values[row] == _UNKNOWN and asks[row] is not None:
+                return True
+        return False
 
     def _is_missing(self, row):
         """Whether a value is still to be told."""
@@ -438,6 +439,7 @@ class Survey:
                 self.unreadable = True
         if reference < pzd.REFERENCE_MIN:
             self.scaling = None
+            self.complete = False  # at once, as in `_make_unknown`
         elif self.scaling is None or not self.scaling.is_of(reference, is_absolute):
             latest = Survey.latest_scaling
             if latest is None or not latest.is_of(reference, is_absolute):

@@ -67,6 +67,19 @@ def test_any_other_key_writes_nothing():
         world.check()
 
 
+def test_a_start_that_a_fault_refuses_says_that_alone():
+    world = panel(parameters={1000: 2, 2014: 1000})
+    wait_until_known(world)
+    world.drives[1].fault(3)
+    world.run(1000)
+    press(world, "START")
+    assert row_2(world) == "NO: FAULT", world.lcd()
+    for _ in range(100):
+        world.run(100)
+        assert row_2(world) != "SET=DO  PARAM=NO", world.lcd()
+    world.check()
+
+
 def test_a_micromaster_3_is_told_by_p910():
     kinds = {1: {"family": mm3, "parameters": {910: 0, 93: 2}}}
     world = panel(kinds=kinds, settings={"kinds": {"1": "mm3"}})

@@ -101,9 +101,7 @@ class Menu(Page):
     def draw(self, screen, now_ms):
         if not self._lists:
             return  # the first one is yet to come, or all have closed in the middle of a picture
-        _, shown, position = self._lists[-1]
-        count = shown.count()
-        position = min(position, count - 1)  # what was last in it may have gone
+        shown, position, count = self._shown()
         if self._alarmed and self.panel.announcer.page_turns & 1:
             self._draw_alarm(screen, self.panel.selected)
         else:
@@ -112,8 +110,19 @@ class Menu(Page):
             if count > 1:
                 place = b"%5s" % (b"%d/%d" % (position + 1, count))
                 screen.put(0, width, texts.ROW_WIDTH - width, place)
+
+    def draw_row_2(self, screen, now_ms):
+        if not self._lists:
+            return
+        shown, position, _ = self._shown()
         screen.put(1, 0, 1, texts.of(texts.MENU_MARK))
         screen.put(1, 1, texts.ROW_WIDTH - 1, self._told or shown.words(position))
+
+    def _shown(self):
+        """The list that is shown, the place in it, and how many there are."""
+        _, shown, position = self._lists[-1]
+        count = shown.count()
+        return shown, min(position, count - 1), count  # what was last in it may have gone
 
     def _draw_alarm(self, screen, control):
         """That of the drive shown, in turn with the title: only the others are announced."""

@@ -16,6 +16,8 @@ class Page:
     obeys: START, REVERSE, JOG, address keys and PARAM act while it is shown; STOP always acts
     locks: it obeys the lock, see `panel.keys.guard`
     announces: what has to be said of other drives is said while it is shown
+    draw_row_2: likewise row 2 of a page that is whole, in a step of its own, where both rows take
+    too long; None: `draw` has drawn both
     values: draw in row 1 what stands there in place of the actual frequency; None: nothing does
     modules: nobody needs them in memory when it is gone
     """
@@ -26,6 +28,7 @@ class Page:
     obeys = True
     locks = True
     announces = True
+    draw_row_2 = None
     values = None
 
     def __init__(self, panel):
@@ -45,4 +48,5 @@ class Page:
         """A key was pressed, or repeats. acts: `panel.keys.Acts`."""
 
     def draw(self, screen, now_ms):
-        """Draw both rows, or row 2 in front of the address. Change nothing else."""
+        """Draw both rows, row 1 where there is `draw_row_2`, or row 2 in front of the address.
+        Change nothing else."""
