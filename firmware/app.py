@@ -35,8 +35,8 @@ PAGES_AT_HAND = (
     "panel.pages.parameter_words", "panel.writer", "panel.pages.question", "panel.pages.risk",
     "panel.pages.parameters", "panel.menu.words", "panel.menu.engine", "panel.menu.main",
     "uss.families.kinds", "settings_file", "uss.finding", "uss.finding.mirror",
-    "panel.menu.address", "panel.menu.find", "panel.menu.turns", "panel.menu.settings",
-    "panel.menu.value",
+    "uss.finding.finder", "panel.menu.address", "panel.menu.find", "panel.menu.turns",
+    "panel.menu.settings", "panel.menu.value", "panel.menu.order", "panel.menu.drives",
 )  # fmt: skip
 _OF_THE_SEARCH = (
     "search.search", "search.hunt", "search.words", "uss.finding.scan", "uss.finding.enquiry",
@@ -44,7 +44,7 @@ _OF_THE_SEARCH = (
 _FINDER = ("uss.finding", "uss.finding.mirror", "uss.finding.finder")
 _FAREWELL_STEPS = const(100)  # for the display to show that nothing is controlled any more
 _SAVE_AGAIN_MS = const(10_000)  # after the store failed
-_LONG_US = const(900)  # a step that has taken so long is not to do two more things
+_LONG_US = const(700)  # a step that has taken so long is not to do two more things
 _SILENCES = const(3)  # telegrams without an answer, then somebody looks for another layout
 _FEED_MS = const(100)  # of the watchdog, which bites after 2 s
 
@@ -131,8 +131,12 @@ class App:
         of these, or one where the step has taken long already, and next time the other one.
         """
         if not self._shows_next:
+            if self._finder is None and self._wants_finder():
+                self._load_finder()
+                return
             self.refresh_bus(now_us)
-            self._find(now_us)
+            if self._finder is not None:
+                self._find(now_us)
             if (self.ticks_us() - now_us) & self._mask > _LONG_US:
                 self._shows_next = True
                 return
@@ -142,15 +146,13 @@ class App:
 
     def _find(self, now_us):
         """Look for drives that are silent because their telegrams are divided differently."""
-        finder = self._finder
-        if finder is None:
-            # Most panels never need it.
-            if self.bus.deadlines.silence.count >= _SILENCES or Drive.doubts != self._doubts:
-                self._load_finder()
-            return
-        found = finder.step(now_us)
+        found = self._finder.step(now_us)
         if found is not None:
             self._roster.note_layout(found)
+
+    def _wants_finder(self):
+        """Whether a drive is silent, or in doubt, for the first time: most need none."""
+        return self.bus.deadlines.silence.count >= _SILENCES or Drive.doubts != self._doubts
 
     def _load_finder(self):
         """One of its modules; when all are there, the finder."""

@@ -19,7 +19,10 @@ _kept = []  # names that `drop` leaves alone
 
 def keep(names):
     """Load these modules for good, if there is room: to load one takes some milliseconds."""
+    before = list(_kept)
     _kept.clear()
+    for name in before:  # of the panel before this one: what they take is free again
+        drop(name)
     gc.collect()
     if not hasattr(gc, "mem_free") or gc.mem_free() >= ROOMY_BYTES:
         for name in names:
@@ -29,8 +32,11 @@ def keep(names):
 
 def load(name):
     """The module."""
-    __import__(name)
-    return sys.modules[name]
+    module = sys.modules.get(name)
+    if module is None:  # looking for its packages takes long, so this looks for them once
+        __import__(name)
+        module = sys.modules[name]
+    return module
 
 
 def missing(names):

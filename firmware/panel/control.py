@@ -30,7 +30,8 @@ from panel.supervision import longest_off_time_ms, off_time_ms
 
 _UNKNOWN = const(-1)  # no status word
 _PREPARED = const(-1)  # no START waits to be prepared
-_OBEYED = const(-2)  # one does, and its command is given
+_OBEYED = const(-2)  # one does, and its command is given,
+_COUNTED = const(-3)  # and its telegrams are counted anew
 _SILENT_MAX = const(3)  # telegrams without an answer after which the speed is not known any more
 _RUNS_REREAD_US = const(200_000)  # a setting of one that runs is read again so often: while shown,
 _UNSEEN_REREAD_US = const(330_000)  # and while not
@@ -94,7 +95,7 @@ class Control:
     refusal = texts.NOTHING
     notice = texts.NOTHING
     _command = None  # the last one that was obeyed
-    _start_trips = _PREPARED  # bus.dead_man_trips when START was pressed; _OBEYED, _PREPARED
+    _start_trips = _PREPARED  # bus.dead_man_trips when START was pressed, or how far it is
     _stirred_at_us = None  # it last ran, or may have; None: it rests for sure
     _jogged = False  # what turns, or ramps down, is a jog of this panel
 
@@ -285,6 +286,9 @@ class Control:
         Answers whether the setpoint had news to take: then it took long, and the step is for
         nothing else.
         """
+        if self.phase == CHECKING and self._start_trips != _PREPARED:
+            self._prepare()
+            return False
         survey = self.survey
         is_shown = reread_us == REREAD_US
         if self.drive.wanted:
@@ -300,7 +304,9 @@ class Control:
 
     def ask_on(self, now_us):
         """In between, for somebody waits: what was just answered is judged, and is not all."""
-        if self.phase == CHECKING or not self.survey.is_settled():
+        if self.phase == CHECKING and self._start_trips != _PREPARED:
+            self._prepare()
+        elif self.phase == CHECKING or not self.survey.is_settled():
             self.survey.step(now_us)
 
     def watch(self, now_us):
@@ -372,13 +378,16 @@ class Control:
         """Begin what `start` has left to later turns, one thing in each: a step with a key in it
         takes long already, and a command takes memory.
         """
-        if self._start_trips != _OBEYED:
-            self._obey(self._start_trips)
+        done = self._start_trips
+        if done == _OBEYED:
+            self.survey.count_anew()
+            self._start_trips = _COUNTED
+        elif done == _COUNTED:
+            self.survey.recheck()
+            self._start_trips = _PREPARED
+        else:
+            self._obey(done)
             self._start_trips = _OBEYED
-            return
-        self._start_trips = _PREPARED
-        self.survey.count_anew()
-        self.survey.recheck()
 
     def _finish_check(self, now_us):
         """ON, if the drive has told its settings and there is nothing against it."""
@@ -401,6 +410,10 @@ class Control:
                 self.notice = texts.DID_NOT_START
             command.risk += 1
             return
+        if not refusal and command.risk == len(risks.RISKS):
+            command.exposure_ms = risks.exposure_ms(self)
+            command.risk += 1
+            return
         self.phase = IDLE
         self.survey.drop_recheck()
         if command.is_stale():
@@ -410,7 +423,6 @@ class Control:
             self.notice = texts.DID_NOT_START  # the operator may look at another drive by now
         else:
             command.send(now_us)
-            command.exposure_ms = risks.exposure_ms(self)
             self.stop_watch.end()
             if self._jogged:
                 self._jogged = False

@@ -57,7 +57,9 @@ class Panel:
 
     def __init__(self, roster, bus, board, settings, mask, notices=()):
         self._turn = 0  # asked for in every step, so it is first: as in `Master`
-        self._acting = False  # keys that were pressed are still to do what they do
+        # Keys that were pressed are still to do what they do: True, or the page that is to take
+        # them after the panel.
+        self._acting = False
         self._trips = 0  # bus.dead_man_trips when they were
         self.roster = roster
         self.controls = controls = roster.controls
@@ -323,7 +325,7 @@ class Panel:
             self._jog_keys.step(keys, self.selected, allowed)
         if not (keys.pressed or keys.repeated):
             return False
-        if self._acting:  # since the last step
+        while self._acting:  # since the last step
             self._act(now_ms)
         self._acts.note()
         self._acting = True
@@ -331,23 +333,23 @@ class Panel:
         return True
 
     def _act(self, now_ms):
-        """What was pressed or repeats does what it does on this page."""
-        self._acting = False
+        """What was pressed or repeats does what it does on this page: first what it does on every
+        page that obeys. Then the page takes it in the next step, as both take long.
+        """
+        page, self._acting = self._acting, False
         if self.bus.dead_man_trips != self._trips:  # the panel has hung since
             self.say(now_ms, texts.PANEL_HUNG)
             return
         acts = self._acts
-        page = self._cover or self._page
-        guard = self.guard
-        if guard is not None and guard.locked and page.locks and self._is_locked(page, now_ms):
-            return
-        if (acts.pressed | acts.repeated) & self._command_bits and page.obeys:
-            self._take_command(acts, now_ms)
-        if page.obeys:
-            if acts.is_held(self._param_bit):
-                self._open_menu(now_ms)
-            elif acts.is_held(self._address_bits):
-                self._open_menu(now_ms, ("address", None))
+        if page is True:
+            page = self._cover or self._page
+            guard = self.guard
+            if guard is not None and guard.locked and page.locks and self._is_locked(page, now_ms):
+                return
+            if (acts.pressed | acts.repeated) & self._command_bits and page.obeys:
+                self._take_command(acts, now_ms)
+                self._acting = page
+                return
         page.take_keys(acts, now_ms)
         if acts.pressed:
             self._drawn_at_ms = None  # a new picture at once
@@ -363,6 +365,10 @@ class Panel:
             self._select(acts.direction("ADDRESS_UP", "ADDRESS_DOWN"))
         if acts.has("PARAM"):
             self._turn_page(now_ms, (self._place + 1) % len(PAGES))
+        if acts.is_held(self._param_bit):
+            self._open_menu(now_ms)
+        elif acts.is_held(self._address_bits):
+            self._open_menu(now_ms, ("address", None))
 
     def _is_locked(self, page, now_ms):
         """The lock is closed: what it refuses is not done. Answers whether nothing is left."""

@@ -146,8 +146,10 @@ class Survey:
 
     def count_anew(self):
         """Count telegrams anew: after the next count, one that lacks telegrams means a reset."""
-        self.count = self.count or TelegramCount(self.drive)
-        self.count.begin()
+        if self.count is None:
+            self.count = TelegramCount(self.drive)
+        else:
+            self.count.begin()
 
     def has_restarted(self):
         """Whether the drive was without its mains while it was wanted to run. True only once."""
@@ -397,7 +399,6 @@ class Survey:
 
     def _judge(self):
         """Judge all values together, after one of them changed."""
-        values = self.values
         self.version += 1
         tells = not self._is_missing(rows.ACTUAL_SENT) and self.wrong[rows.ACTUAL] == rows.RIGHT
         self.actual = self.scaling if tells else None
@@ -456,7 +457,7 @@ class Survey:
         return value
 
     def _count_asked(self):
-        return sum([asked is not None for asked in self._asks])
+        return len(self._asks) - self._asks.count(None)
 
 
 def centihertz(high, low):

@@ -32,7 +32,7 @@ drive 1
 
 # With P2014 = 0 the panel asks; START takes the risk, which the settings keep.
 ACCEPTED = """\
-wait 1000
+wait 1500
 param 1 P2014[0] 0
 press START
 wait 5000
@@ -205,7 +205,7 @@ def test_settings_are_kept_from_one_run_to_the_next(tmp_path):
     assert (kept["drives"], kept["baud"], kept["unsupervised"]) == ([1, 2], 9600, [1])
     second = panel(
         "--settings", "kept.json", "--script", "-",
-        script="wait 1000\nparam 1 P2014[0] 0\npress START\nwait 3000\nexpect RUNNING\n",
+        script="wait 1500\nparam 1 P2014[0] 0\npress START\nwait 3000\nexpect RUNNING\n",
         folder=tmp_path,
     )  # fmt: skip
     assert (second.returncode, second.stderr) == (0, "")

@@ -25,22 +25,27 @@ _SILENCES = const(2)  # after which a drive takes one length only: one may have 
 class List(Entries):
     title = words.ANY_ADDRESS
 
+    _address = -1  # that is looked at: the first step begins with the one shown
+    _sent = False
+    _row = 0  # of _LENGTHS; it goes round and round until somebody answers
+    _is_nobody = False  # it has been round once
+    _net_count = 0  # of what came back
+    _silences = 0
+    _is_wanted = False  # SET was pressed
+    _enquirer = None  # then it is asked what it is
+
     def __init__(self, panel, argument):
         Entries.__init__(self, panel, argument)
-        self._mirror = Mirror(0, bytes(_NET_MAX))
-        self._begin(-1)
+        self._telegram = self._mirror = Mirror(0, bytes(_NET_MAX))
 
     def _begin(self, address):
         """Look for a drive at another address."""
         self._address = address
         self._telegram = self._mirror  # the one that is under way, or was
         self._sent = False
-        self._row = 0  # of _LENGTHS; it goes round and round until somebody answers
-        self._is_nobody = False  # it has been round once
-        self._net_count = 0  # of what came back
-        self._silences = 0
-        self._is_wanted = False  # SET was pressed
-        self._enquirer = None  # then it is asked what it is
+        self._row = self._net_count = self._silences = 0
+        self._is_nobody = self._is_wanted = False
+        self._enquirer = None
 
     def first(self):
         return self.panel.selected.drive.address

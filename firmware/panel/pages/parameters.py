@@ -46,7 +46,7 @@ class Parameters(Page):
         self._edited = 0
         self._reading = Reading()
         self._read_at_ms = 0
-        self._forget()
+        self._control = None  # whose it all is: the first step looks, for this one takes long
 
     # --- keys -----------------------------------------------------------------------------------
 
@@ -140,7 +140,9 @@ class Parameters(Page):
     # --- what goes on ---------------------------------------------------------------------------
 
     def step(self, keys, now_ms):
-        self._look_at_selected()
+        if self.panel.selected is not self._control:
+            self._forget()  # nothing else in this step: this takes long enough
+            return
         contact = self._control.drive.contact and self._shown
         if not contact or not keys.down & keys.bit("SET"):
             self._set_at_ms = None
@@ -197,7 +199,7 @@ class Parameters(Page):
 
     def _forget(self):
         """Another parameter or another drive: nothing is known of it yet, nothing is edited."""
-        self._control = control = self.panel.selected  # the drive that what follows belongs to
+        self._control = control = self.panel.selected
         # (number, highest value; None: read only)
         self._shown = control.survey.family.shown if control.drive.layout.pkw_words else ()
         self._row %= max(len(self._shown), 1)
@@ -212,6 +214,8 @@ class Parameters(Page):
         self._reading.drop()
 
     def draw(self, screen, now_ms):
+        if self._control is None:
+            return
         if warning.draw(screen, self.panel):
             return
         if not self._shown:
