@@ -3,8 +3,9 @@
 
 In use:
 
-    command = Command(drive, survey, desk, now_us, bus.dead_man_trips)  # the key was obeyed
-    command.give(now_us, bus.dead_man_trips)        # likewise, another time
+    command = Command(drive, survey, desk)
+    command.give(now_us, bus.dead_man_trips)        # the key was obeyed, each time
+    command.settle_in()                     # once, before anything that follows
     command.send(now_us)                    # ON goes out from now on
     notice = command.why_in_vain(jogs, now_us)  # again and again while it is sent, or NOTHING
     notice = command.why_stopped()          # the engine has taken it back
@@ -31,19 +32,25 @@ class Command:
     looked at last. Nobody but the command writes the others.
     """
 
-    def __init__(self, drive, survey, desk, now_us, dead_man_trips):
-        self.question = 0
-        self.accepted = [risks.NONE] * len(risks.RISKS)
-        self.exposure_ms = 0
-        self.exposure_version = _NONE
+    accepted = (risks.NONE,) * len(risks.RISKS)
+
+    def __init__(self, drive, survey, desk):
         self._drive = drive
         self._survey = survey
         self._bus = desk.bus
         self._mask = desk.mask
-        self._version = _NONE  # of the survey, as judged last
-        self._is_local = False  # commands, and setpoints, come from elsewhere
-        self._is_foreign = False
-        self.give(now_us, dead_man_trips)
+
+    def settle_in(self):
+        """Make the other fields. Each takes memory, and to find it takes a chip so long that they
+        are shared out among turns; but no field is made while a motor runs."""
+        if self.accepted is Command.accepted:
+            self.accepted = list(Command.accepted)
+            self.question = 0
+            self.exposure_ms = 0
+            self.exposure_version = _NONE
+            self._version = _NONE  # of the survey, as judged last
+            self._is_local = False  # commands, and setpoints, come from elsewhere
+            self._is_foreign = False
 
     def give(self, now_us, dead_man_trips):
         self.risk = 0

@@ -31,7 +31,8 @@ from panel.supervision import longest_off_time_ms, off_time_ms
 _UNKNOWN = const(-1)  # no status word
 _PREPARED = const(-1)  # no START waits to be prepared
 _OBEYED = const(-2)  # one does, and its command is given,
-_COUNTED = const(-3)  # and its telegrams are counted anew
+_SETTLED = const(-3)  # has all its fields,
+_COUNTED = const(-4)  # and telegrams are counted anew
 _SILENT_MAX = const(3)  # telegrams without an answer after which the speed is not known any more
 _RUNS_REREAD_US = const(200_000)  # a setting of one that runs is read again so often: while shown,
 _UNSEEN_REREAD_US = const(330_000)  # and while not
@@ -160,6 +161,7 @@ class Control:
         self.refusal = permits.why_not_jog(self)
         if not self.refusal:
             self._obey(self.desk.bus.dead_man_trips)
+            self._command.settle_in()
             self.stop_watch.end()
             self.phase = JOGGING
             self._jogged = True
@@ -287,11 +289,11 @@ class Control:
         nothing else.
         """
         if self.phase == CHECKING and self._start_trips != _PREPARED:
-            self._prepare()
+            self._obey_start()
             return False
         survey = self.survey
-        is_shown = reread_us == REREAD_US
         if self.drive.wanted:
+            is_shown = reread_us == REREAD_US
             survey.step(now_us, _RUNS_REREAD_US if is_shown else _UNSEEN_REREAD_US)
             survey.settle()
             if survey.has_restarted():
@@ -368,26 +370,32 @@ class Control:
         self._forget_remark()
         self._quiet_zsw = _UNKNOWN
         if self._command is None:
-            self._command = Command(
-                self.drive, self.survey, self.desk, self._now_us, dead_man_trips
-            )
+            self._command = Command(self.drive, self.survey, self.desk)
+        self._command.give(self._now_us, dead_man_trips)
+
+    def _obey_start(self):
+        """Begin what `start` has left to later turns, one thing in each: a step with a key in it
+        takes long already. This takes longest, since a command takes memory.
+        """
+        if self._command is None:
+            self._command = Command(self.drive, self.survey, self.desk)
+        elif self._start_trips >= 0:
+            self._obey(self._start_trips)
+            self._start_trips = _OBEYED
         else:
-            self._command.give(self._now_us, dead_man_trips)
+            self._prepare()
 
     def _prepare(self):
-        """Begin what `start` has left to later turns, one thing in each: a step with a key in it
-        takes long already, and a command takes memory.
-        """
-        done = self._start_trips
-        if done == _OBEYED:
+        """The rest of it, in those turns that do more besides."""
+        if self._start_trips == _OBEYED:
+            self._command.settle_in()
+            self._start_trips = _SETTLED
+        elif self._start_trips == _SETTLED:
             self.survey.count_anew()
             self._start_trips = _COUNTED
-        elif done == _COUNTED:
+        elif self._start_trips == _COUNTED:
             self.survey.recheck()
             self._start_trips = _PREPARED
-        else:
-            self._obey(done)
-            self._start_trips = _OBEYED
 
     def _finish_check(self, now_us):
         """ON, if the drive has told its settings and there is nothing against it."""

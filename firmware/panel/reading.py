@@ -31,6 +31,13 @@ class Reading:
         self.asked = True
         return True
 
+    def prepare(self):
+        """Make the job now, if there is none. Answers whether that was to do: it takes long."""
+        if self._job is not None:
+            return False
+        self._job = pkw.read(0)
+        return True
+
     def take(self):
         """The job of a question that has come to its end, once."""
         if not self.asked or self._job.state == pkw.PENDING:

@@ -270,14 +270,15 @@ class Survey:
 
     def _next_row(self):
         """Go on with the round; while the drive runs, every other row is one of _WATCHED."""
-        self._turn = (self._turn + 1) % (2 * len(_WATCHED))
-        if self._turn & 1 and self.drive.wanted and self.complete and not self.unchecked:
-            row = _WATCHED[self._turn >> 1]
-            if row == rows.COUNTER and self.count is not None and not self.count.is_told:
-                self._turn += 2
+        if self.drive.wanted and self.complete and not self.unchecked:
+            self._turn = (self._turn + 1) % (2 * len(_WATCHED))
+            if self._turn & 1:
                 row = _WATCHED[self._turn >> 1]
-            if self._asks[row] is not None:
-                return row
+                if row == rows.COUNTER and self.count is not None and not self.count.is_told:
+                    self._turn += 2
+                    row = _WATCHED[self._turn >> 1]
+                if self._asks[row] is not None:
+                    return row
         row = self._row
         while self._asks[row] is None or not self.unchecked and self._is_left_out(row):
             row = (row + 1) % len(self.values)

@@ -412,6 +412,7 @@ def test_an_address_is_not_changed_while_another_drive_is_sent_on():
     world.press("START")
     world.press("ADDRESS_UP")
     edit(show(world, "P2011"), 4)
+    world.run(500)  # the drive that is not shown has told its settings
     assert world.app.bus.turns.drives[0].is_on()
     world.press("SET", 40)
     assert row_2(world) == "STOP ALL FIRST"

@@ -46,6 +46,8 @@ class Parameters(Page):
         self._edited = 0
         self._reading = Reading()
         self._read_at_ms = 0
+        self._value = None  # as last told by the drive
+        self._refused = False  # it does not tell it
         self._control = None  # whose it all is: the first step looks, for this one takes long
 
     # --- keys -----------------------------------------------------------------------------------
@@ -143,6 +145,8 @@ class Parameters(Page):
         if self.panel.selected is not self._control:
             self._forget()  # nothing else in this step: this takes long enough
             return
+        if self._reading.prepare():
+            return
         contact = self._control.drive.contact and self._shown
         if not contact or not keys.down & keys.bit("SET"):
             self._set_at_ms = None
@@ -203,8 +207,8 @@ class Parameters(Page):
         # (number, highest value; None: read only)
         self._shown = control.survey.family.shown if control.drive.layout.pkw_words else ()
         self._row %= max(len(self._shown), 1)
-        self._value = None  # as last told by the drive
-        self._refused = False  # it does not tell it
+        self._value = None
+        self._refused = False
         self._editing = False
         self._wish = None  # what SET was pressed for: control, number, index, value
         self._write = None  # the `Write` of it that is on its way
