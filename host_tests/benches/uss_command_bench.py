@@ -26,7 +26,8 @@ ENVIRONMENT = {key: value for key, value in os.environ.items() if not key.starts
 
 
 class Told:
-    """What a run of tools/uss has said."""
+    """What a run of tools/uss has said. trips: what it has said last of all, of drives that trip
+    because they hear no more; json: the last object before that."""
 
     def __init__(self, status, output, error):
         self.status = status
@@ -35,7 +36,9 @@ class Told:
         assert not any(line.startswith("Traceback") for line in lines), error
         self.error = error.removeprefix("tools/uss: ").strip()
         self.all = [json.loads(line) for line in output.splitlines() if line.startswith("{")]
-        self.json = self.all[-1] if self.all else None
+        self.trips = [one for one in self.all if "trips" in one]
+        others = [one for one in self.all if one not in self.trips]
+        self.json = others[-1] if others else None
 
     @property
     def rows(self):

@@ -84,10 +84,14 @@ class DeadMan:
         self._turning = {}  # address: the OFF1 that a drive is owed whose last telegram turns it
         self._owed = []
         self._barred = set()  # addresses stopped here that the panel has not sent OFF since
+        self._beyond_s = patience_s
+        self._next_s = None  # when it is to be taken for dead, or the next OFF1 is due
+        self.change_baud(baud)
+
+    def change_baud(self, baud):
         exchange_s = 2 * SIZES[-1] * CHARACTER_BITS / baud
         self._pace_s = exchange_s + REPLY_S
-        self._patience_s = exchange_s + patience_s
-        self._next_s = None  # when it is to be taken for dead, or the next OFF1 is due
+        self._patience_s = exchange_s + self._beyond_s
 
     def alive(self, now_s):
         """The panel works, although it has nothing to send."""

@@ -41,6 +41,12 @@ class LastingPort:
             except LineCut as cut:
                 self._lose(cut)
 
+    def change_baud(self, baud):
+        """PortError."""
+        if self.is_open:
+            self.port.change_baud(baud)
+        self.port.baud = baud
+
     def look_again(self):
         if time.monotonic() - self._looked_s < AGAIN_S:
             return

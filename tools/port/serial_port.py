@@ -120,6 +120,14 @@ class SerialPort:
         fcntl.ioctl(self._descriptor, termios.TIOCOUTQ, waiting)
         return waiting[0]
 
+    def change_baud(self, baud):
+        """Go on at another rate. PortError: the port does not know it."""
+        self.baud = baud
+        try:
+            self._note_rate() if self.is_pty else self._set_up()
+        except (OSError, termios.error) as error:
+            raise PortError(f"{self.path}: {error.args[-1]}") from None
+
     def _take(self):
         if not os.isatty(self._descriptor):
             raise PortError(NO_TERMINAL % self.path)

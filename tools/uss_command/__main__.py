@@ -67,7 +67,11 @@ def options(default):
     add("--kind", metavar="KIND", help="mm440, g110/0, 1=v20,2=mm440/4+4; else the drive is asked")
     add("--reply-timeout", metavar="MS", help="(60)")
     add("--config", metavar="FILE", help="a file of settings")
-    add("--standing", action="store_true", help="the motors stand: a G120 may be asked, too")
+    add("--standing", action="store_true", help="the motors stand: any drive may be asked")
+    add("--leave", dest="stay", action="store_false", default=default,
+        help="end although a drive trips because it hears no more (P2014)")  # fmt: skip
+    add("--stay", action="store_true", default=default,
+        help="go on asking such drives until another master talks, or Ctrl-C")  # fmt: skip
     add("--json", action="store_true", help="for programs")
     add("--trace", metavar="FILE", help="keep all telegrams; decode --capture FILE explains them")
     return parser
@@ -103,10 +107,15 @@ class _Again:
 
 def main(words):
     chosen = arguments(words)
+
+    def end(*_):
+        chosen.stay = False  # whoever ends this from outside wants it to end
+        raise KeyboardInterrupt
+
     for name in ("SIGTERM", "SIGHUP"):
         number = getattr(signal, name, None)
         if number and signal.getsignal(number) != signal.SIG_IGN:
-            signal.signal(number, signal.default_int_handler)
+            signal.signal(number, end)
     screen = Screen(chosen.json)
     trace = None
     try:

@@ -51,7 +51,7 @@ def commission(screen, settings, chosen):
         answers[parameter(name)] = value
     if not chosen.yes and not sys.stdin:
         raise Misused("nobody can answer here: --yes")
-    with Line(settings, chosen.standing, chosen.watch) as line:
+    with Line(screen, settings, chosen) as line:
         line.listen()
         node = _node(line, settings, chosen.family)
         check_stands(line, node)
@@ -172,7 +172,7 @@ class Course:
 
         threading.Thread(target=read, daemon=True).start()
         while not typed:
-            self._line.bus.wait(KEEP_S, lambda: bool(typed))
+            self._line.rest(KEEP_S, lambda: bool(typed))
             if not typed:
                 self._line.visit(self._node)
         return typed[0]
@@ -180,7 +180,7 @@ class Course:
     def _wait(self):
         """Until the drive answers again."""
         for _ in range(LONG_TRIES):
-            self._line.bus.wait(LOOK_S)
+            self._line.rest(LOOK_S)
             if self._line.visit(self._node):
                 return
         raise Failure("drive %d does not answer any more" % self._node.address)

@@ -50,7 +50,7 @@ def send(screen, settings, chosen):
         raise Failure("a broadcast turns no motors here")
     if pzd_words is not None and not chosen.on:
         raise Failure("it turns a motor (ON or JOG in its control word): send --on does it")
-    with Line(settings, chosen.standing, chosen.watch) as line:
+    with Line(screen, settings, chosen) as line:
         line.listen()
         talk = Talk(screen, line, kind)
         try:

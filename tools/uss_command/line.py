@@ -1,16 +1,23 @@
 # SPDX-License-Identifier: MIT
 """The line, as a command has it: it listens first, and asks drives without commanding them.
 
-with Line(settings) as line:            # PortError
+with Line(screen, settings, chosen) as line:    # PortError
     line.listen()                       # Failure: another master is heard
     node = line.node(1)                 # what answers there; Failure
     job = line.ask(node, pkw.read(700)) # Failure
+                                        # its end: `leaving`
+
+A telegram with a control word goes only to a drive that nothing can happen to by that (`permit`):
+somebody has said that it is of a family that leaves a control word with bit 10 = 0 aside, or that
+its motor stands. A SINAMICS G120 that runs trips by such a word, and no answer to a mirror
+telegram, which is all that can be sent before, tells it from others.
 """
 
 from uss_serial import Master, SerialLink
 
 from tools.uss_command.errors import Failure
 from tools.uss_command.facts import Facts
+from tools.uss_command.leaving import leave
 from tools.uss_command.visit import Visit
 from uss import families, pkw, pzd
 from uss.bus.pkw_errors import error_text
@@ -25,6 +32,7 @@ from uss.tasks.arrays import with_array_task
 LISTEN_S = 0.4
 TRIES = 5  # telegrams without a valid reply in a row: nobody is there
 PROBES = 2  # an adapter may lose a telegram
+PIECE = 4  # so many characters are no noise
 READS = 3  # a question that was lost three times in a row ends so; it may be asked again
 EXCHANGE_S = 10.0  # no exchange takes so long at any rate
 NO_REPLY = "drive %d does not answer at %d baud"
@@ -33,19 +41,32 @@ HINTS = (
     "and does the adapter send with even parity (8E1)?"
 )
 PARITY_HINT = "; %d characters came with a wrong parity or stop bit: another rate, or not 8E1?"
-ANY_LENGTH = (
-    "drive %d takes telegrams of any length, as a SINAMICS G120 does; a G120 that runs trips if "
-    "somebody asks it beside its master. Say --kind %d=v20 (or what it is), or --standing if its "
-    "motor stands"
+WHAT_IS_IT = (
+    "what is drive %d? Say --kind mm440, or what it is (also in uss.toml), or --standing if its "
+    "motor stands: a SINAMICS G120 that runs trips if somebody asks it beside its master. Nothing "
+    "was sent"
 )
 G120_RUNS = (
     "a SINAMICS G120 that runs trips if somebody asks it beside its master: say --standing if the "
-    "motor of drive %d stands"
+    "motor of drive %d stands. Nothing was sent"
 )
+DOES_IT_STAND = "Does the motor of drive %d stand? A SINAMICS G120 that runs would trip."
+DO_THEY_STAND = (
+    "Do the motors of all drives on this line stand? A SINAMICS G120 that runs would trip."
+)
+OTHERS_BEGAN = "another master has begun to talk on this line: nothing more was sent"
+OTHER_LAYOUT = "drive %d has %s words, not %s, as --kind says: try --kind %s"
+NO_SUCH_DRIVE = "drive %d has %s words, which a %s cannot have: is it one?"
 
 
 class Node:
-    """What answers at an address: family, layout, `visit`, `facts`."""
+    """What answers at an address: family, layout, `visit`, `facts`; at which rate, `baud`.
+
+    confirmed: it has told that layout itself. had_fault: it was in a fault when it was met.
+    """
+
+    confirmed = had_fault = False
+    baud = None
 
     def __init__(self, address, family, layout, mask, off_time_ms=None):
         self.address = address
@@ -70,41 +91,75 @@ class Node:
     def runs(self):
         return self.zsw is not None and self.zsw & pzd.ZSW_RUNNING != 0
 
+    @property
+    def has_fault(self):
+        return self.zsw is not None and self.zsw & pzd.ZSW_FAULT != 0
+
 
 class Line:
-    """settings: `Settings`. standing: the user says that all motors stand. watch: as of
-    `SerialLink`."""
+    """settings: `Settings`. chosen: options of the command line: `standing`, all motors stand;
+    `stay`, whether to stay with drives that trip when they hear no more (`leaving`); `watch`, as
+    of `SerialLink`. watch: instead of that.
 
-    def __init__(self, settings, standing=False, watch=None):
+    nodes: {(baud, address): node} of those that were asked. is_taken: another master was heard.
+    stays: as `stay`; None: only with motors that run.
+    """
+
+    def __init__(self, screen, settings, chosen, watch=None):
+        if not settings.port:
+            raise Failure("which port? --port /dev/ttyUSB0, or USS_PORT, or port in uss.toml")
+        self.screen = screen
         self.settings = settings
-        self.standing = standing
+        self.standing = chosen.standing
         self.word = 0  # commands nothing
-        self._watch = watch
+        self.nodes = {}
+        self.is_taken = False
+        self._chosen = chosen
+        self._stands = set()  # addresses of which somebody has said so
+        self._watch = watch or chosen.watch
         self._heard = 0
         self._listening = False
-        self._open(settings.baud)
+        self._late = 0  # characters of a reply that may come so late
+        self.baud = settings.baud
+        self.link = SerialLink(settings.port, self.baud, watch=self._see)
+        self.mask = self.link.clock.ticks_mask
+        self.bus = Master(self.link, self.baud, settings.reply_timeout_ms)
+        self._buses = {self.baud: self.bus}
 
     def __enter__(self):
         return self
 
-    def __exit__(self, *_):
-        self.close()
+    def __exit__(self, kind, *_):
+        try:
+            if kind is None or issubclass(kind, (Failure, KeyboardInterrupt)):
+                leave(self)
+        finally:
+            self.close()
 
-    def _open(self, baud):
-        if not self.settings.port:
-            raise Failure("which port? --port /dev/ttyUSB0, or USS_PORT, or port in uss.toml")
-        self.baud = baud
-        self.link = SerialLink(self.settings.port, baud, watch=self._see)
-        self.bus = Master(self.link, baud, self.settings.reply_timeout_ms)
-        self.mask = self.link.clock.ticks_mask
+    @property
+    def commands(self):
+        """Whether this is the master of its drives: `command`."""
+        return self.word != 0
+
+    @property
+    def stays(self):
+        return self._chosen.stay  # whoever ends this program from outside changes it
 
     def close(self):
         self.bus.close()
 
-    def reopen(self, baud):
-        """Go on at another rate."""
-        self.close()
-        self._open(baud)
+    def at(self, baud):
+        """Go on at another rate. PortError."""
+        if baud == self.baud:
+            return
+        self.link.change_baud(baud)
+        self.link.bus = None
+        if baud in self._buses:
+            self.bus = self.link.bus = self._buses[baud]
+        else:
+            self.bus = Master(self.link, baud, self.settings.reply_timeout_ms)
+            self._buses[baud] = self.bus
+        self.baud = baud
 
     def _see(self, is_sent, characters, at_us):
         if not is_sent and self._listening:
@@ -114,31 +169,74 @@ class Line:
 
     def listen(self, seconds=LISTEN_S):
         """Failure: somebody talks, so another master is there."""
-        self._listening, self._heard = True, 0
-        self.bus.wait(seconds)
-        self._listening = False
-        self._check_cut()
-        if self._heard:
+        heard = self._hear(seconds)
+        if heard:
+            self.is_taken = True
             raise Failure(
                 "another master talks on this line (%d characters in %.1f s): pause it, or look "
-                "with sniff; nothing was sent" % (self._heard, seconds)
+                "with sniff; nothing was sent" % (heard, seconds)
             )
 
-    def _check_cut(self):
+    def rest(self, seconds, until=None):
+        """Send nothing for so long, or until `until()`. Failure: another master has begun."""
+        if self._hear(seconds, until) >= PIECE + self._late:
+            self._give_up()
+
+    def _hear(self, seconds, until=None):
+        """How many characters come meanwhile."""
+        self._listening, self._heard = True, 0
+        try:
+            self.bus.wait(seconds, until)
+        finally:
+            self._listening = False
+        self.check_cut()
+        return self._heard
+
+    def check_cut(self):
+        """Failure: the line is cut."""
         if self.link.is_cut:
             raise Failure(self.link.notices[-1])
 
-    def exchange(self, telegram):
-        """Send it and wait for its end; whether it was answered. Failure: the line is not ours."""
-        self.bus.post(telegram)
-        self.bus.wait(EXCHANGE_S, lambda: telegram.state != PENDING or self._is_lost())
-        self._check_cut()
-        if telegram.state == PENDING or self.bus.foreign:
-            raise Failure("another master has begun to talk on this line: nothing more was sent")
-        return telegram.state == DONE
+    def exchange(self, question):
+        """Send it and wait for its end; whether it was answered. Failure: the line is not ours, or
+        the drive may not be asked."""
+        if not isinstance(question, Mirror):
+            self.permit(question.address)
+        self.bus.post(question)
+        self.bus.wait(EXCHANGE_S, lambda: question.state != PENDING or self._is_lost())
+        self.check_cut()
+        if question.state == PENDING or self.bus.foreign:
+            self._give_up()
+        self._late = 0 if question.state == DONE else len(question.request)
+        return question.state == DONE
+
+    def _give_up(self):
+        self.is_taken = True
+        raise Failure(OTHERS_BEGAN)
 
     def _is_lost(self):
         return self.link.is_cut or self.bus.foreign > 0
+
+    # --- who may be asked -----------------------------------------------------------------------
+
+    def may_ask(self, address):
+        """Whether nothing can happen to its motor if it gets a control word with bit 10 = 0."""
+        told = self.settings.kind(address)
+        return self.standing or address in self._stands or told and told[0].takes_no_control
+
+    def permit(self, address):
+        """Failure: it may not be asked, and nobody at the terminal says that its motor stands."""
+        if self.may_ask(address):
+            return
+        if not self.screen.confirms(DOES_IT_STAND % address):
+            raise Failure((G120_RUNS if self.settings.kind(address) else WHAT_IS_IT) % address)
+        self._stands.add(address)
+
+    def permit_all(self, addresses):
+        """Ask whoever is at the terminal about all of them; whether they may be asked."""
+        may_ask = all(self.may_ask(address) for address in addresses)
+        self.standing = self.standing or not may_ask and self.screen.confirms(DO_THEY_STAND)
+        return may_ask or self.standing
 
     # --- who is there ---------------------------------------------------------------------------
 
@@ -168,34 +266,54 @@ class Line:
         return None, worst
 
     def node(self, address):
-        """The `Node` there: what the user says, or what it tells. Failure."""
+        """The `Node` there: its family as the user says or as it tells, its layout as it tells.
+        Failure."""
+        self.permit(address)
         told = self.settings.kind(address)
-        if told:
-            self._check_g120(address, told[0])
-            return Node(address, told[0], told[1], self.mask)
-        net_count, other = self.probe(address)
+        if told and self.commands:
+            return Node(address, *told, self.mask)  # a STOP does not wait for questions
+        lengths = (told[1].net_count,) if told and self.settings.says_layout(address) else ()
+        net_count, other = self.probe(address, lengths or NET_COUNTS)
         if net_count is None:
             raise self.no_reply(address, other)
-        if other and not self.standing:
-            raise Failure(ANY_LENGTH % (address, address))
-        return self.enquire(address, net_count, other)
+        return self.enquire(address, net_count, other, told)
 
-    def _check_g120(self, address, family):
-        if not family.takes_no_control and not self.standing:
-            raise Failure(G120_RUNS % address)
-
-    def enquire(self, address, net_count, variable):
-        """Ask a node what it is, with telegrams whose control word is `word`."""
-        enquirer = Enquirer(address, net_count, variable)
+    def enquire(self, address, net_count, variable, told):
+        """Ask a node what it is, with telegrams whose control word is `word`. told: what the user
+        says, (family, layout), or None. Failure: it is not that."""
+        enquirer = Enquirer(address, net_count, variable, everything=told is None)
         while True:
             question = enquirer.question(self.word)
             self.exchange(question)
             if enquirer.take(question):
                 break
-        told = enquirer.node
-        node = Node(address, told.family, told.layout, self.mask, told.off_time_ms)
-        node.visit.words = (told.zsw,)
+        found = enquirer.node
+        if told:
+            self._take_the_word(found, *told)
+        node = Node(address, found.family, found.layout, self.mask, found.off_time_ms)
+        node.visit.words = (found.zsw,) if found.zsw else ()
+        node.confirmed = found.confirmed
+        node.had_fault = node.has_fault
+        node.baud = self.baud
+        self.nodes[self.baud, address] = node
         return node
+
+    def _take_the_word(self, found, family, layout):
+        """Make of a node what the user says that it is. Failure: it cannot be.
+
+        A layout that is not the drive's would have it take part of a parameter task for a control
+        word.
+        """
+        words = "%d+%d" % (found.layout.pkw_words, found.layout.pzd_words)
+        if self.settings.says_layout(found.address) and not found.layout.is_like(layout):
+            if found.confirmed or not found.layout.pkw_words:
+                said = "%d+%d" % (layout.pkw_words, layout.pzd_words)
+                name = "%s/%s" % (family.__name__.lower(), words)
+                raise Failure(OTHER_LAYOUT % (found.address, words, said, name))
+            found.layout = layout
+        if not found.layout.suits(family):
+            raise Failure(NO_SUCH_DRIVE % (found.address, words, family.name))
+        found.family = family
 
     def no_reply(self, address, finding=SILENT):
         """The Failure that says why there is no answer."""

@@ -39,7 +39,7 @@ def sniff(screen, settings, chosen):
     wrong = 0
     began_s = time.monotonic()
     try:
-        with Line(settings, True, ear.hear) as line, screen.live() as show:
+        with Line(screen, settings, chosen, ear.hear) as line, screen.live() as show:
             line.bus.off()  # from now on the bus swallows all and sends nothing
             ear.capture = Capture(chosen.save)
             until_s = None if chosen.seconds is None else began_s + chosen.seconds

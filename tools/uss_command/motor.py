@@ -45,6 +45,7 @@ def add_times(parser):
                         help="write P2014 first (RAM): it stops by itself then")  # fmt: skip
     parser.add_argument("--unsupervised", action="store_true",
                         help="although P2014 is 0, and nothing may stop it")  # fmt: skip
+    parser.add_argument("--ack", action="store_true", help="acknowledge a fault first")
 
 
 def run(screen, settings, chosen):
@@ -62,11 +63,13 @@ def jog(screen, settings, chosen):
 
 def turn(screen, settings, chosen, start):
     """Start the motor, show what it does, and stop it at the end."""
-    with Line(settings, chosen.standing, chosen.watch) as line:
+    with Line(screen, settings, chosen) as line:
         line.listen()
         line.command()
         node = line.node(settings.the_address())
         drive = line.drive(node, chosen.unsupervised)
+        if chosen.ack and in_words(lambda: drive.fault):
+            _acknowledge(line, drive)
         _check_fault(node, drive)
         try:
             if chosen.supervise is not None:
@@ -78,7 +81,7 @@ def turn(screen, settings, chosen, start):
 
 
 def stop(screen, settings, chosen):
-    with Line(settings, chosen.standing, chosen.watch) as line:
+    with Line(screen, settings, chosen) as line:
         line.listen()
         line.command()
         drive = line.drive(line.node(settings.the_address()))
@@ -88,7 +91,7 @@ def stop(screen, settings, chosen):
 
 
 def acknowledge(screen, settings, chosen):
-    with Line(settings, chosen.standing, chosen.watch) as line:
+    with Line(screen, settings, chosen) as line:
         line.listen()
         line.command()
         node = line.node(settings.the_address())
@@ -97,14 +100,18 @@ def acknowledge(screen, settings, chosen):
         if not before:
             screen.event("drive %d has no fault" % drive.address, address=drive.address, fault=0)
             return
-        drive.acknowledge()
-        line.bus.wait(TRIES_S, lambda: not drive.zsw or not drive.zsw & pzd.ZSW_FAULT)
+        _acknowledge(line, drive)
         _check_fault(node, drive)
-    name = node.facts.fault(before)["fault"] if before > 0 else "a fault"
-    screen.event(
-        "drive %d: %s is acknowledged" % (drive.address, name), address=drive.address, fault=0,
-        acknowledged=before,
-    )  # fmt: skip
+        name = node.facts.fault(before)["fault"] if before > 0 else "a fault"
+        screen.event(
+            "drive %d: %s is acknowledged" % (drive.address, name), address=drive.address,
+            fault=0, acknowledged=before,
+        )  # fmt: skip
+
+
+def _acknowledge(line, drive):
+    drive.acknowledge()
+    line.bus.wait(TRIES_S, lambda: not drive.zsw or not drive.zsw & pzd.ZSW_FAULT)
 
 
 def _start(start, drive):
@@ -129,8 +136,8 @@ def _check_fault(node, drive):
         told = node.facts.fault(fault) if fault > 0 else {"fault": "a fault"}
         words = [told[name] for name in ("name", "cause", "remedy") if told.get(name)]
         raise Failure(
-            "drive %d has tripped with %s: ack clears it when its cause is gone"
-            % (drive.address, " - ".join([told["fault"]] + words))
+            "drive %d has tripped with %s: ack clears it when its cause is gone; run --ack does "
+            "both" % (drive.address, " - ".join([told["fault"]] + words))
         )
 
 

@@ -40,7 +40,7 @@ def add_type(parser):
 def read(screen, settings, chosen):
     asked = [parameter(word) for word in chosen.parameters]
     rows, status = [], 0
-    with Line(settings, chosen.standing, chosen.watch) as line:
+    with Line(screen, settings, chosen) as line:
         line.listen()
         node = line.node(settings.the_address())
         for number, index in asked:
@@ -52,13 +52,13 @@ def read(screen, settings, chosen):
                              "name": node.facts.name(number)})  # fmt: skip
             else:
                 rows.append(row_of(node, job, checked_type(node, job, chosen.type)))
-    show(screen, "drive %d" % node.address, rows)
+        show(screen, "drive %d" % node.address, rows)
     return status
 
 
 def write(screen, settings, chosen):
     ((number, index),) = [parameter(word) for word in chosen.parameters]
-    with Line(settings, chosen.standing, chosen.watch) as line:
+    with Line(screen, settings, chosen) as line:
         line.listen()
         node = line.node(settings.the_address())
         job = line.do(node, pkw.read(number, index))
@@ -77,9 +77,8 @@ def write(screen, settings, chosen):
                 )
         before = node.facts.of_words(kind, job)
         job = line.do(node, writing(node, number, index, value, kind, chosen.eeprom))
-    row = row_of(node, job, kind)
-    row["before"] = before
-    show(screen, "drive %d, %s" % (node.address, "EEPROM" if chosen.eeprom else "RAM"), [row])
+        row = {**row_of(node, job, kind), "before": before}
+        show(screen, "drive %d, %s" % (node.address, "EEPROM" if chosen.eeprom else "RAM"), [row])
 
 
 def show(screen, title, rows):

@@ -35,6 +35,15 @@ class Screen:
         else:
             print(text, flush=True)
 
+    def confirms(self, question):
+        """Whether somebody at a terminal says yes; False where nobody can be asked."""
+        if not (self.is_terminal and sys.stdin and sys.stdin.isatty()):
+            return False
+        try:
+            return input(question + " [y/N] ").strip().lower() in ("y", "yes")
+        except EOFError:
+            return False
+
     @contextmanager
     def progress(self, title, whole):
         """Yields a function, to be called for each of `whole` steps."""

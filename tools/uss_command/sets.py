@@ -72,7 +72,7 @@ def backup(screen, settings, chosen):
         chosen.file + ".part", ""
     )  # whether there is room for it, before a minute of reading
     os.unlink(chosen.file + ".part")
-    with Line(settings, chosen.standing, chosen.watch) as line:
+    with Line(screen, settings, chosen) as line:
         line.listen()
         node = line.node(settings.the_address())
         one = read_set(screen, line, node, name, numbers)
@@ -93,7 +93,7 @@ def compare(screen, settings, chosen):
         other = read_whole(chosen.other)
         facts = facts_of(one.family)
     else:
-        with Line(settings, chosen.standing, chosen.watch) as line:
+        with Line(screen, settings, chosen) as line:
             line.listen()
             node = line.node(settings.the_address())
             facts = node.facts
@@ -110,7 +110,7 @@ def compare(screen, settings, chosen):
 
 def restore(screen, settings, chosen):
     one = read_whole(chosen.file)
-    with Line(settings, chosen.standing, chosen.watch) as line:
+    with Line(screen, settings, chosen) as line:
         line.listen()
         node = line.node(settings.the_address())
         check_family(one, node, chosen.file)

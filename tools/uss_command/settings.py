@@ -45,7 +45,7 @@ class Settings:
         least, most = REPLY_TIMEOUTS_MS
         if not least <= self.reply_timeout_ms <= most:
             raise Misused("reply_timeout: %d...%d ms" % REPLY_TIMEOUTS_MS)
-        self.kinds = kinds(str(self._given["kind"]))
+        self.kinds, self._layouts = kinds(str(self._given["kind"]))
 
     def the_address(self):
         """The only one. Misused."""
@@ -56,6 +56,10 @@ class Settings:
     def kind(self, address):
         """(family, layout) that somebody has told, or None."""
         return self.kinds.get(address) or self.kinds.get(EVERYONE)
+
+    def says_layout(self, address):
+        """Whether its kind names its layout, too: mm440/4+4."""
+        return (address if address in self.kinds else EVERYONE) in self._layouts
 
 
 def from_file(path):
@@ -95,13 +99,17 @@ def numbers(name, text, most):
 
 
 def kinds(text):
-    """{address: (family, layout)} for "1=mm440,2=g110/0", or "mm440" for all. Misused."""
-    found = {}
+    """{address: (family, layout)} for "1=mm440,2=g110/0", or "mm440" for all; and a set of those
+    that name a layout. Misused."""
+    found, with_layout = {}, set()
     for part in text.split(",") if text else ():
         address, equals, word = part.rpartition("=")
         try:
             known = kind_of(word)
         except ValueError as error:
             raise Misused("kind: %s" % error) from None
-        found[numbers("kind", address, NODE_MAX)[0] if equals else EVERYONE] = known
-    return found
+        whose = numbers("kind", address, NODE_MAX)[0] if equals else EVERYONE
+        found[whose] = known
+        if "/" in word:
+            with_layout.add(whose)
+    return found, with_layout

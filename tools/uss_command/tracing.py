@@ -53,7 +53,7 @@ def trace(screen, settings, chosen):
 
     capture = Capture(chosen.save, show)
     try:
-        with keyboard, Line(settings, chosen.standing, capture) as line:
+        with keyboard, Line(screen, settings, chosen, capture) as line:
             line.listen()
             for address in settings.addresses:
                 nodes[address] = line.node(address)
@@ -63,7 +63,7 @@ def trace(screen, settings, chosen):
                 for node in nodes.values():
                     _ask(line, node, asked, turn)
                 turn += 1
-                line.bus.wait(chosen.every, keyboard.read)
+                line.rest(chosen.every, keyboard.read)
     except KeyboardInterrupt:
         pass
     finally:

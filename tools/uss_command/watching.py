@@ -60,7 +60,7 @@ def rounds(line, chosen, keep):
             next_s = began_s + count * chosen.every
             while time.monotonic() < next_s:
                 left_s = next_s - time.monotonic()
-                line.bus.wait(min(left_s, KEEP_S))
+                line.rest(min(left_s, KEEP_S))
                 if left_s > KEEP_S:
                     keep()
     except KeyboardInterrupt:
@@ -170,8 +170,10 @@ def scale_of(line, node):
 
 
 def monitor(screen, settings, chosen):
-    with Line(settings, chosen.standing, chosen.watch) as line:
+    with Line(screen, settings, chosen) as line:
         line.listen()
+        for address in settings.addresses:
+            line.permit(address)
         watched = [Watched(line, address) for address in settings.addresses]
         with screen.live() as show:
             for now_s in rounds(line, chosen, lambda: [one.keep() for one in watched]):
@@ -186,7 +188,7 @@ def record(screen, settings, chosen):
     values = [value_of(word) for word in chosen.values.split(",")]
     if len(values) > VALUES_MAX:
         raise Misused("--values: %d at the most" % VALUES_MAX)
-    with Line(settings, chosen.standing, chosen.watch) as line:
+    with Line(screen, settings, chosen) as line:
         line.listen()
         watched = Watched(line, settings.the_address())
         if not watched.look():

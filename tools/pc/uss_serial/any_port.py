@@ -79,6 +79,14 @@ class AnyPort:
         except (OSError, AttributeError) as error:
             raise LineCut(str(error)) from None
 
+    def change_baud(self, baud):
+        """Go on at another rate. PortError: the port does not know it."""
+        self.baud = baud
+        try:
+            self._serial.baudrate = baud
+        except (OSError, ValueError, AttributeError) as error:
+            raise PortError(self._why(error)) from None
+
     def unsent(self):
         """How many characters the machine has still to send, as far as it tells."""
         try:

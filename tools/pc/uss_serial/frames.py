@@ -3,7 +3,7 @@
 
 A frame is a letter, the length of what follows (2 bytes, the high one first), and that.
 
-    OPEN        >  JSON: port, baud
+    OPEN        >  JSON: port, baud; once more: go on at this rate
     TELEGRAM    >  instant (8 bytes, microseconds), PZD words (or NOT_TOLD), characters
     ALIVE       >  instant
     OPENED      <

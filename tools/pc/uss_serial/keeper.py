@@ -105,15 +105,22 @@ class Keeper:
             self._send(_seconds(content), content[8], content[9:])
 
     def _open(self, port, baud):
-        found = self._find_port(port, baud)
         try:
-            found.open()
+            if self._port is None:
+                self._begin(self._find_port(port, baud), baud)
+            else:
+                with self._lock:
+                    self._port.change_baud(baud)
         except PortError as error:
             self._tell(frames.FAILED, str(error).encode())
             return
-        self._port = LastingPort(found, self._tell_line)
-        self._dead_man = DeadMan(baud, self._patience_s)
+        self._dead_man.change_baud(baud)
         self._tell(frames.OPENED)
+
+    def _begin(self, port, baud):
+        port.open()
+        self._port = LastingPort(port, self._tell_line)
+        self._dead_man = DeadMan(baud, self._patience_s)
         threading.Thread(target=self._receive, daemon=True).start()
 
     def _send(self, sent_s, pzd_words, telegram):

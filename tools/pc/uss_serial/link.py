@@ -127,6 +127,15 @@ class SerialLink:
             self.watch(False, data, came_us)
         return len(data)
 
+    def change_baud(self, baud):
+        """Go on at another rate, with another `Master`. PortError."""
+        self._sending = False
+        self.baud = baud
+        self._answer = None
+        self._answered.clear()
+        self._open()
+        self._came.clear()
+
     def close(self):
         """Give the port away. Drives that this program has left running are sent OFF1."""
         self._sending = False
