@@ -32,9 +32,10 @@ HAS_TRIPPED = (
 class Supervised:
     """A drive that trips after so long without a telegram."""
 
-    def __init__(self, address, runs, family, off_time_ms, node=None):
+    def __init__(self, node, runs, off_time_ms):
+        family = node.family
         fault = family.off_time_fault
-        self.address = address
+        self.address = node.address
         self.runs = runs
         self.node = node
         self.off_time_ms = off_time_ms
@@ -62,7 +63,7 @@ def leave(line):
     stays = line.stays
     if stays is None:
         stays = any(one.runs for one in found)
-    if stays:
+    if stays and not line.bus.drives:  # else STOP is still on its way to one
         for one in found:
             one.tell(line.screen, ASKED_ON)
         if _stay(line, found):
@@ -74,10 +75,10 @@ def leave(line):
 
 def _asked(line):
     """Those of the drives that were asked: each says whether its motor runs, and its time."""
-    for (baud, address), node in line.nodes.items():
+    for node in line.nodes.values():
         number = node.family.off_time_number
         off_time_ms = node.off_time_ms
-        line.at(baud)
+        line.at(node.baud)
         try:
             if number is not None and node.layout.pkw_words:
                 job = line.ask(node, pkw.read(number, node.family.link_index))
@@ -90,7 +91,7 @@ def _asked(line):
                 return
             continue  # it is lost
         if off_time_ms:
-            one = Supervised(address, node.runs, node.family, off_time_ms, node)
+            one = Supervised(node, node.runs, off_time_ms)
             if not node.has_fault:
                 yield one
             elif not node.had_fault:
@@ -98,24 +99,23 @@ def _asked(line):
 
 
 def _commanded(line):
-    """Those of the drives that this bus has commanded."""
-    for drive in line.bus.drives:
+    """Those of the drives that this bus has commanded. It commands none of them any more if all of
+    them rest."""
+    for drive in list(line.bus.drives):
         family = drive.family
         if family.off_time_number is None or not drive.layout.pkw_words or not drive.contact:
             continue
         try:
             value = drive.read(family.off_time_number, family.link_index)
             if value and not drive.fault:
-                off_time_ms = value * family.off_time_unit_ms
-                yield Supervised(drive.address, drive.is_running, family, off_time_ms)
+                node = line.left(drive)
+                yield Supervised(node, drive.is_running, value * family.off_time_unit_ms)
         except UssError:
             continue  # it is lost, or has no such parameter
 
 
 def _stay(line, found):
     """Ask them until another master talks: True; or Ctrl-C: False."""
-    if line.commands:  # the bus asks them
-        return _wait_for_another(line)
     rates = sorted({one.node.baud for one in found})
     pause_s = min(one.pause_s for one in found) / len(rates)
     try:
@@ -132,14 +132,3 @@ def _stay(line, found):
         if line.link.is_cut:
             raise
         return True
-
-
-def _wait_for_another(line):
-    """Until another master talks: True; or Ctrl-C: False. Failure."""
-    try:
-        while not line.bus.foreign:
-            line.bus.wait(ASKED_MAX_S, lambda: line.bus.foreign or line.link.is_cut)
-            line.check_cut()
-    except KeyboardInterrupt:
-        return False
-    return True

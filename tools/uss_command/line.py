@@ -382,6 +382,16 @@ class Line:
             raise self.no_reply(node.address)
         return drive
 
+    def left(self, drive):
+        """The node that a drive is when it is commanded no more. One that may run is commanded on."""
+        node = Node(drive.address, drive.family, drive.layout, self.mask)
+        node.baud = self.baud
+        try:
+            self.bus.remove(drive)
+        except ValueError:
+            pass
+        return node
+
 
 def in_words(action, *arguments, **named):
     """Call it; what the library raises becomes a Failure."""
