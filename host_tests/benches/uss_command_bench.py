@@ -17,6 +17,7 @@ import termios
 import threading
 import tty
 
+from program_bench import as_in_a_terminal
 from tiers import TOP
 from tools.port.serial_port import Pty
 
@@ -51,7 +52,7 @@ def start(path, *words, baud=115200, **more):
     )
     return subprocess.Popen(
         [*COMMAND, *options, *words], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-        env=ENVIRONMENT, cwd=more.pop("cwd", "/"), **more,
+        env=ENVIRONMENT, cwd=more.pop("cwd", "/"), preexec_fn=as_in_a_terminal, **more,
     )  # fmt: skip
 
 

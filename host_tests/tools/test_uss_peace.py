@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""Commands of ./tools/uss that only ask: no motor notices them, and no drive is left in a fault."""
+"""Commands of ./tools/uss that only ask: no motor notices, and no drive is left in a fault."""
 
 import pytest
 
@@ -131,7 +131,7 @@ def test_a_layout_that_is_not_the_drives_is_never_used():
         assert (drive.state, drive.stw, drive.starts) == ("ready", OFF, 0)
 
 
-# --- drives that trip when they hear no more --------------------------------------------------------
+# --- drives that trip when they hear no more -----------------------------------------------------
 
 FIVE = {1: "mm420", 2: "g110/4", 3: "mm440/4+4", 4: "v20", 5: "mm3"}
 AT_38400 = {2010: 8}
@@ -221,7 +221,7 @@ def test_a_rate_at_which_a_drive_would_trip_is_not_tried():
     world.ctrl_c_after(60)
     told = world.uss("--standing", "scan", "--addresses", "0-3", "--rates", "19200,300,9600")
     assert told.json["remarks"] == [
-        "300 baud is not tried: drive 1 would trip meanwhile, 1000 ms (P2014)"
+        "300 baud is not tried: drive 1 would trip, because it waits 1000 ms for a telegram"
     ]
     in_no_fault(world)
 
@@ -229,6 +229,7 @@ def test_a_rate_at_which_a_drive_would_trip_is_not_tried():
 def test_leave_ends_at_once_and_says_what_will_happen():
     world = World({1: "mm420"}, parameters=WATCHED)
     told = world.uss("--standing", "--leave", "scan", "--addresses", "0-3")
+    assert told.rows[0]["trips_after_ms"] == 1000 and told.rows[0]["motor"] == "stands"
     assert [(one["trips"], one["asked_on"]) for one in told.trips] == [("F0072", False)]
     in_no_fault(world)
     world.run(1.1)
@@ -238,10 +239,15 @@ def test_leave_ends_at_once_and_says_what_will_happen():
 
 @pytest.mark.parametrize(
     "command",
-    (("read", "P0700"), ("backup", "/dev/null"), ("monitor", "--for", "3"), ("trace", "--for", "1"),
-     ("write", "P1120", "7")),
+    (
+        ("read", "P0700"),
+        ("write", "P1120", "7"),
+        ("backup", ""),
+        ("monitor", "--for", "3"),
+        ("trace", "--for", "1"),
+    ),
     ids=lambda command: command[0],
-)  # fmt: skip
+)
 def test_every_command_says_which_drive_its_end_will_trip(command, tmp_path):
     if command[0] == "backup":
         command = ("backup", str(tmp_path / "a"), "--numbers", "700-1300")

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: MIT
-"""A technician's session with ./tools/uss on drives that ./tools/drive serves, in real time."""
+"""A technician's session with ./tools/uss: in virtual time, or on drives of ./tools/drive."""
 
 import json
 import os
+import signal
 import subprocess
 import sys
 import time
@@ -13,6 +14,7 @@ from conftest import strict
 from program_bench import Drives, programs
 from tiers import TOP
 from uss_command_bench import ENVIRONMENT, hubs, start, telegram, told, uss
+from uss_virtual_bench import World
 
 INTERPRETERS = "host"
 
@@ -33,14 +35,14 @@ def run(drives, line):
     drives.waits(state="running")
 
 
-def test_mirror_read_and_write_as_the_first_program_did(program):
+def test_mirror_read_and_write_as_the_first_program_did():
     """The MM440 of that program: address 0, P0700 = 4, P1082 = 50; 2 and 40.5 are written."""
-    drives = program(Drives, *FAST, "--address", "0=mm440", "--set", "0:P0700=4")
-    assert uss(drives.path, "--address", "0", "mirror").json["ok"]
-    wrong = uss(drives.path, "--address", "1", "mirror")
-    assert wrong.status == 1 and wrong.error.startswith("drive 1 does not answer at 115200 baud")
+    world = World({0: "mm440"}, parameters={0: {700: 4}})
+    assert world.uss("--address", "0", "mirror").json["ok"]
+    wrong = world.uss("--address", "1", "mirror")
+    assert wrong.status == 1 and wrong.error.startswith("drive 1 does not answer at 19200 baud")
     there = ("--address", "0", "--kind", "mm440")
-    both = uss(drives.path, *there, "read", "P0700", "P1082")
+    both = world.uss(*there, "read", "P0700", "P1082")
     assert [(row["value"], row["type"], row["unit"]) for row in both.rows] == [
         (4, "U16", ""), (50.0, "Float", "Hz"),
     ]  # fmt: skip
@@ -49,15 +51,15 @@ def test_mirror_read_and_write_as_the_first_program_did(program):
     )
     for words in (("P0700", "--type", "float"), ("P1082", "--type", "word"),
                   ("P0700", "--type", "dword")):  # fmt: skip
-        refused = uss(drives.path, *there, "read", *words)
+        refused = world.uss(*there, "read", *words)
         assert refused.status == 1 and "not of type" in refused.error
-    assert uss(drives.path, *there, "read", "P0700", "--type", "word").rows[0]["value"] == 4
-    asked = uss(drives.path, *there, "write", "P0700", "2")
+    assert world.uss(*there, "read", "P0700", "--type", "word").rows[0]["value"] == 4
+    asked = world.uss(*there, "write", "P0700", "2")
     assert asked.status == 1 and "--sure" in asked.error
-    assert drives.asked("param 0 P0700[0]") == "P0700[0]=4"
-    assert uss(drives.path, *there, "write", "P0700", "2", "--sure").rows[0]["before"] == 4
-    assert uss(drives.path, *there, "write", "P1082", "40.5").rows[0]["value"] == 40.5
-    both = uss(drives.path, *there, "read", "P0700", "P1082")
+    assert world.drives[0].read(700, 0) == 4
+    assert world.uss(*there, "write", "P0700", "2", "--sure").rows[0]["before"] == 4
+    assert world.uss(*there, "write", "P1082", "40.5").rows[0]["value"] == 40.5
+    both = world.uss(*there, "read", "P0700", "P1082")
     assert [row["value"] for row in both.rows] == [2, 40.5]
 
 
@@ -78,47 +80,48 @@ def test_the_free_telegram_of_the_terminal_program_and_its_answer_as_printed(pro
     assert drives.report(0)["state"] == "ready", "OFF1 has followed"
 
 
-def test_five_drives_of_several_rates_layouts_and_families_are_found_and_left_in_peace(
-    program, hub
-):
-    slow = program(
-        Drives, "--baud", "19200", "--address", "1,2=g110/0,4=v20/4,5=mm3", "--set", "4:P2014=0",
-    )  # fmt: skip
-    fast = program(Drives, "--baud", "38400", "--address", "3=mm440/4+4")
+def test_drives_of_two_rates_are_found_on_one_port_and_left_in_peace(program, hub):
+    """More of them: test_uss_peace.py."""
+    slow = program(Drives, "--baud", "19200", "--address", "1=v20/4", "--set", "P2014=2000")
+    fast = program(Drives, "--baud", "38400", "--address", "3=mm440/4+4", "--set", "P2014=2000")
     line = hub({19200: slow.path, 38400: fast.path})
-    found = uss(line.path, "scan", "--addresses", "1-5", "--rates", "19200,38400", baud=19200)
-    assert found.status == 0, found.error
-    rows = {row["address"]: (row["baud"], row.get("kind")) for row in found.rows}
-    assert rows == {
-        1: (19200, "mm420"), 2: (19200, "generic/0"), 3: (38400, "mm420/4+4"),
-        4: (19200, "v20/4"), 5: (19200, "mm3"),
+    scan = ("--standing", "scan", "--addresses", "1,3", "--rates", "19200,38400")
+    process = start(line.path, *scan, baud=19200)
+    found = json.loads(process.stdout.readline())
+    assert {row["address"]: (row["baud"], row.get("kind")) for row in found["rows"]} == {
+        1: (19200, "v20/4"), 3: (38400, "mm420/4+4"),
     }  # fmt: skip
-    for address in range(1, 6):
-        report = (fast if address == 3 else slow).report(address)
+    assert [json.loads(process.stdout.readline())["asked_on"] for _ in range(2)] == [True, True]
+    time.sleep(2.5)
+    for drives, address in ((slow, 1), (fast, 3)):
+        report = drives.report(address)
         assert report["fault"] == "-" and report["starts"] == "0", report
+    process.send_signal(signal.SIGTERM)
+    ended = told(process)
+    assert ended.status == 0 and [one["asked_on"] for one in ended.trips] == [False, False]
 
 
-def test_a_scan_says_which_drive_will_trip_and_keeps_it_from_that_meanwhile(program):
-    drives = program(Drives, *FAST, "--set", "P2014=600", "--log")
-    found = uss(drives.path, "scan", "--addresses", "1-9")
-    assert found.rows[0]["trips_after_ms"] == 600
-    assert found.rows[0]["motor"] == "stands"
-
-
-def test_a_motor_that_its_master_has_left_running_runs_on(program, hub, tmp_path):
+def test_a_motor_that_its_master_has_left_running_runs_on(tmp_path):
     """Its master is paused: reading, scanning and saving command nothing."""
-    drives = program(Drives, *FAST)
-    line = hub(drives.path)
-    run(drives, line)
-    assert uss(line.path, "read", "P0700", "r0021").status == 0
-    found = uss(line.path, "scan", "--addresses", "0-2", "--rates", "115200,9600")
-    assert found.rows[0]["motor"] == "runs" and {row["baud"] for row in found.rows} == {115200}
-    assert uss(line.path, "backup", str(tmp_path / "a"), "--numbers", "0-1099").status == 0
-    assert uss(line.path, "monitor", "--for", "0.4", "--every", "0.2").json["state"] == "running"
-    refused = uss(line.path, "restore", str(tmp_path / "a"))
+    world = World({1: "mm420"})
+    world.plc.commands({1: 0x047E})
+    world.run(0.5)
+    world.plc.commands({1: 0x047F})
+    world.run(0.5)
+    world.plc.pause()
+    world.run(0.2)
+    mm420 = ("--kind", "mm420")
+    assert world.uss(*mm420, "read", "P0700", "r0021").status == 0
+    found = world.uss(*mm420, "scan", "--addresses", "0-2", "--rates", "19200,9600")
+    assert found.rows[0]["motor"] == "runs" and {row["baud"] for row in found.rows} == {19200}
+    assert "other rates are not tried" in found.json["remarks"][0]
+    assert world.uss(*mm420, "backup", str(tmp_path / "a"), "--numbers", "0-1099").status == 0
+    shown = world.uss(*mm420, "monitor", "--for", "0.4", "--every", "0.2")
+    assert shown.json["state"] == "running"
+    refused = world.uss(*mm420, "restore", str(tmp_path / "a"))
     assert refused.status == 1 and "runs" in refused.error
-    report = drives.report()
-    assert (report["state"], report["stw"], report["starts"]) == ("running", "047F", "1")
+    drive = world.drives[1]
+    assert (drive.state, drive.stw, drive.starts) == ("running", 0x047F, 1)
 
 
 def test_beside_a_master_that_talks_nothing_is_sent_and_sniff_shows_it(program, hub, tmp_path):
@@ -152,20 +155,11 @@ def test_beside_a_master_that_talks_nothing_is_sent_and_sniff_shows_it(program, 
     assert drives.report()["stw"] == "047F"
 
 
-def test_a_g120_is_not_asked_unless_it_stands(program):
-    drives = program(Drives, *FAST, "--address", "1=v20", "--set", "P2014=0")
-    refused = uss(drives.path, "read", "P0700")
-    assert refused.status == 1 and "--standing" in refused.error
-    assert uss(drives.path, "read", "P0700", "--standing").rows[0]["value"] == 5
-    assert uss(drives.path, "read", "P0700", "--kind", "v20").rows[0]["value"] == 5
-    assert uss(drives.path, "read", "P0700", "--kind", "g120").status == 1
-
-
-def test_values_over_time_as_a_table_and_a_picture(program, tmp_path):
-    drives = program(Drives, *FAST)
+def test_values_over_time_as_a_table_and_a_picture(tmp_path):
+    world = World({1: "mm420"})
     csv, svg = tmp_path / "values.csv", tmp_path / "values.svg"
-    kept = uss(drives.path, "record", str(csv), "--values", "hertz,zsw,r0027", "--for", "0.6",
-               "--every", "0.2", "--svg", str(svg))  # fmt: skip
+    kept = world.uss("--standing", "record", str(csv), "--values", "hertz,zsw,r0027", "--for", "9",
+                     "--every", "0.2", "--svg", str(svg))  # fmt: skip
     assert kept.status == 0, kept.error
     lines = csv.read_text().splitlines()
     assert lines[0] == "time_s,hertz (Hz),zsw,r0027[0] Output current (A)"
@@ -175,7 +169,16 @@ def test_values_over_time_as_a_table_and_a_picture(program, tmp_path):
 
 def test_a_trace_is_shown_and_kept(program, tmp_path):
     drives = program(Drives, *FAST)
-    shown = uss(drives.path, "trace", "P0700", "--for", "0.6", "--save", str(tmp_path / "kept"))
+    shown = uss(
+        drives.path,
+        "--standing",
+        "trace",
+        "P0700",
+        "--for",
+        "0.6",
+        "--save",
+        str(tmp_path / "kept"),
+    )
     assert shown.status == 0, shown.error
     said = [one["summary"] for one in shown.all]
     assert any("read P0700[0], nothing commanded" in one for one in said)
@@ -186,15 +189,15 @@ def test_a_trace_is_shown_and_kept(program, tmp_path):
 
 def test_a_drive_is_commissioned_by_the_steps_of_the_catalogue(program):
     drives = program(Drives, *FAST, "--set", "P1082=60")
-    done = uss(drives.path, "commission", "mm420", "--yes", "--set", "P2000=60")
+    done = uss(drives.path, "--standing", "commission", "mm420", "--yes", "--set", "P2000=60")
     assert done.status == 0, done.error + done.output
     assert done.json["left"] == 0 and done.json["done"] > 8
     assert drives.asked("param 1 P2000[0]") == "P2000[0]=60.0"
     assert drives.asked("param 1 P2014[0]") == "P2014[0]=2000"
-    asked = start(drives.path, "commission", "mm420", stdin=subprocess.PIPE)
+    asked = start(drives.path, "--standing", "commission", "mm420", stdin=subprocess.PIPE)
     output, _ = asked.communicate("\ns\nq\n", timeout=60)
     assert asked.returncode == 1 and '"done": 1' in output and "left out" in output
-    other = uss(drives.path, "commission", "g110", "--yes")
+    other = uss(drives.path, "--standing", "commission", "g110", "--yes")
     assert other.status == 1 and "is a MICROMASTER 420" in other.error
 
 
@@ -247,15 +250,15 @@ def test_bad_input_gets_one_clear_line(status, words, said):
 
 def test_a_port_that_another_has_is_said_to_be_in_use(program):
     drives = program(Drives, *FAST)
-    holder = start(drives.path, "monitor", "--for", "3")
+    holder = start(drives.path, "--standing", "monitor", "--for", "3")
     holder.stdout.readline()
     assert uss(drives.path, "mirror").error.endswith("is in use by another program")
     holder.kill()
     told(holder)
 
 
-def test_values_that_make_no_sense_are_refused(program):
-    drives = program(Drives, *FAST)
+def test_values_that_make_no_sense_are_refused():
+    world = World({1: "mm420"})
     for words, said in (
         (("P1082", "fast"), "is not a number"),
         (("P1082", "nan"), "is not a number"),
@@ -266,7 +269,7 @@ def test_values_that_make_no_sense_are_refused(program):
         (("P9999", "1"), "no such parameter"),
         (("r0021", "1"), "read-only"),
     ):
-        refused = uss(drives.path, "--kind", "mm420", "write", *words)
+        refused = world.uss("--kind", "mm420", "write", *words)
         assert refused.status in (1, 2) and said in refused.error, (words, refused.error)
 
 

@@ -7,6 +7,7 @@ from program_bench import Drives, programs
 from tools.uss_command.errors import Failure
 from tools.uss_command.files.set_file import ParameterSet, Row, read_whole, text_of, write_whole
 from uss_command_bench import hubs, uss
+from uss_virtual_bench import World
 
 INTERPRETERS = "host"
 
@@ -18,41 +19,43 @@ def run(path, *words):
     return uss(path, "--kind", "mm440", *words, baud=115200)
 
 
-def test_a_drive_is_saved_changed_compared_and_restored(program, tmp_path):
-    drives = program(Drives, "--baud", "115200", "--address", "1=mm440")
+def test_a_drive_is_saved_changed_compared_and_restored(tmp_path):
+    world = World({1: "mm440"})
     file = str(tmp_path / "a.set")
-    saved = run(drives.path, "backup", file, "--name", "pump 3", "--numbers", "0-1399,2000")
+    saved = world.uss(
+        "--kind", "mm440", "backup", file, "--name", "pump 3", "--numbers", "0-1399,2000"
+    )
     assert saved.status == 0 and saved.json["rows"] >= 200, saved.error
     assert saved.json["family"] == "mm440"
     text = (tmp_path / "a.set").read_text()
     assert "\nfamily mm440\naddress 1\nname pump 3\n" in text
     assert "P1082 0 Float 42480000" in text and "# 50 Hz, Max. frequency" in text
-    assert run(drives.path, "compare", file).status == 0
-    drives.asked("param 1 P1120[0] 7.5")
-    drives.asked("param 1 P2000[0] 60")
-    drives.asked("param 1 P0304[0] 400")
-    differs = run(drives.path, "compare", file)
+    assert world.uss("--kind", "mm440", "compare", file).status == 0
+    world.drives[1].write(1120, 0, 7.5)
+    world.drives[1].write(2000, 0, 60)
+    world.drives[1].write(304, 0, 400)
+    differs = world.uss("--kind", "mm440", "compare", file)
     assert differs.status == 1
     shown = {row["parameter"]: (row["here"], row["there"]) for row in differs.rows}
     assert shown.keys() == {"P0304[0]", "P1120[0]", "P2000[0]"}
     assert shown["P1120[0]"] == ("10", "7.5")
-    dry = run(drives.path, "restore", file, "--dry-run")
+    dry = world.uss("--kind", "mm440", "restore", file, "--dry-run")
     assert [row["parameter"] for row in dry.rows] == ["P0304[0]", "P1120[0]"]
-    assert drives.asked("param 1 P1120[0]") == "P1120[0]=7.5"
-    written = run(drives.path, "restore", file, "--all")
+    assert world.drives[1].read(1120, 0) == 7.5
+    written = world.uss("--kind", "mm440", "restore", file, "--all")
     assert written.status == 0 and written.json["written"] == 3, written.output + written.error
-    assert drives.asked("param 1 P0010[0]") == "P0010[0]=0", "the commissioning is over"
-    assert run(drives.path, "compare", file).status == 0
+    assert world.drives[1].read(10, 0) == 0, "the commissioning is over"
+    assert world.uss("--kind", "mm440", "compare", file).status == 0
 
 
 def test_the_cable_is_pulled_in_the_middle(program, hub, tmp_path):
     drives = program(Drives, "--baud", "115200", "--address", "1=mm440")
     line = hub(drives.path)
     file = tmp_path / "a.set"
-    assert run(line.path, "backup", str(file), "--numbers", "1000-1299").status == 0
+    assert run(line.path, "backup", str(file), "--numbers", "1000-1099").status == 0
     whole = file.read_bytes()
     line.cut_after = 600
-    cut = run(line.path, "backup", str(file), "--numbers", "1000-1299")
+    cut = run(line.path, "backup", str(file), "--numbers", "1000-1099")
     assert cut.status == 1 and cut.error.endswith("the line is cut"), cut.error
     assert file.read_bytes() == whole, "the old one is still there"
     assert [path.name for path in tmp_path.iterdir() if "line" not in path.name] == ["a.set"]
@@ -70,17 +73,14 @@ def test_the_cable_is_pulled_in_the_middle(program, hub, tmp_path):
     assert run(line.path, "compare", str(file)).status == 0
 
 
-def test_another_drive_keeps_its_place_on_the_bus(program, tmp_path):
-    drives = program(
-        Drives, "--baud", "115200", "--address", "1=mm440,2=mm440", "--set", "2:P2000=60",
-        "--set", "2:P1120=3",
-    )  # fmt: skip
+def test_another_drive_keeps_its_place_on_the_bus(tmp_path):
+    world = World({1: "mm440", 2: "mm440"}, parameters={2: {2000: 60.0, 1120: 3.0}})
     file = str(tmp_path / "a.set")
-    assert run(drives.path, "backup", file, "--numbers", "700-2100").status == 0
-    dry = run(drives.path, "--address", "2", "restore", file, "--all", "--dry-run")
+    assert world.uss("--kind", "mm440", "backup", file, "--numbers", "700-2100").status == 0
+    dry = world.uss("--kind", "mm440", "--address", "2", "restore", file, "--all", "--dry-run")
     assert [row["parameter"] for row in dry.rows] == ["P1120[0]"]
     assert dry.json["left_out"] == 2  # P2000, P2011
-    other = run(drives.path, "--kind", "mm420", "restore", file)
+    other = world.uss("--kind", "mm420", "restore", file)
     assert other.status == 1 and "is of a mm440" in other.error
 
 

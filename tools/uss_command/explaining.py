@@ -24,7 +24,7 @@ def decode(screen, settings, chosen):
     """Exit status 1: one of them is no telegram."""
     if bool(chosen.hex) == bool(chosen.capture):
         raise Misused("decode wants characters in hex, or --capture FILE")
-    known = kinds(chosen.kind or "").get(EVERYONE, (None, None))
+    known = kinds(chosen.kind or "")[0].get(EVERYONE, (None, None))
     layout = layout_of(chosen.layout)
     if layout is None and known[1] is not None:
         layout = known[1].pkw_words, known[1].pzd_words

@@ -20,11 +20,11 @@ CHARACTER_BITS = 11
 LONGEST_CHARACTERS = 2 * (max(NET_COUNTS) + 4)  # of an exchange
 RUNS = "drive %d runs: other rates are not tried, because it would hear noise"
 MAY_RUN = (
-    "address %d was sent mirror telegrams only, because a SINAMICS G120 that runs trips by any "
-    "other: --standing, if all motors stand, asks what it is and tries other rates as well. It may "
-    "trip now, if it has a P2014 and hears no more"
+    "address %d was sent mirror telegrams only, because a SINAMICS G120 that runs trips by "
+    "others: --standing, if all motors stand, asks what it is, and tries other rates. If it has a "
+    "P2014, it trips now, because it hears no more"
 )
-TOO_SLOW = "%d baud is not tried: drive %d would trip meanwhile, %d ms (P2014)"
+TOO_SLOW = "%d baud is not tried: drive %d would trip, because it waits %d ms for a telegram"
 
 
 def add(commands):

@@ -11,31 +11,33 @@ from tools.uss_command.errors import Failure
 from uss import pkw
 from uss.errors import UssError
 
+USUAL_NUMBER = 2014
 ASKED_MAX_S = 1.0  # between two telegrams to a drive, at the most,
 SHARE = 4  # or this part of its time
 
 ASKED_ON = (
     "drive {0.address} {does}, and trips ({0.fault}) when it hears nothing for {0.off_time_ms} ms "
-    "(P2014): it is asked on until another master talks. Ctrl-C ends that; --leave does without"
+    "({0.number}): it is asked on until another master talks. Ctrl-C ends that; --leave omits it"
 )
 TAKEN_OVER = "another master talks, so nothing more is sent"
 LATE_TRIP = (
-    "drive {0.address} {does}, and trips ({0.fault}) {0.off_time_ms} ms from now, because it hears "
-    "no more (P2014): the next master has to acknowledge that"
+    "drive {0.address} {does}, and trips ({0.fault}) {0.off_time_ms} ms from now, because it "
+    "hears no more ({0.number}): the next master has to acknowledge that"
 )
 HAS_TRIPPED = (
     "drive {0.address} has tripped ({0.fault}), because it was not asked in time for its "
-    "{0.off_time_ms} ms (P2014): the next master has to acknowledge that"
+    "{0.off_time_ms} ms ({0.number}): the next master has to acknowledge that"
 )
 
 
 class Supervised:
-    """A drive that trips after so long without a telegram."""
+    """A drive that trips after so long without a telegram. number: of the parameter."""
 
     def __init__(self, node, runs, off_time_ms):
         family = node.family
         fault = family.off_time_fault
         self.address = node.address
+        self.number = "P%04d" % (family.off_time_number or USUAL_NUMBER)
         self.runs = runs
         self.node = node
         self.off_time_ms = off_time_ms

@@ -383,7 +383,7 @@ class Line:
         return drive
 
     def left(self, drive):
-        """The node that a drive is when it is commanded no more. One that may run is commanded on."""
+        """The node that it is, commanded no more, unless it may run."""
         node = Node(drive.address, drive.family, drive.layout, self.mask)
         node.baud = self.baud
         try:
