@@ -270,9 +270,12 @@ class Line:
         Failure."""
         self.permit(address)
         told = self.settings.kind(address)
-        if told and self.commands:
-            return Node(address, *told, self.mask)  # a STOP does not wait for questions
-        lengths = (told[1].net_count,) if told and self.settings.says_layout(address) else ()
+        lengths = ()
+        if told and self.settings.says_layout(address):
+            family, layout = told
+            if self.commands:
+                return Node(address, family, layout, self.mask)  # STOP does not wait for questions
+            lengths = (layout.net_count,)
         net_count, other = self.probe(address, lengths or NET_COUNTS)
         if net_count is None:
             raise self.no_reply(address, other)
