@@ -125,7 +125,7 @@ def test_a_layout_that_is_not_the_drives_is_never_used():
     assert "has 0+6 words, not 4+2" in refused.error
     assert "no parameter channel" in world.uss("--kind", "mm440", "read", "P1151").error
     refused = world.uss("--address", "2", "--kind", "mm440/4", "read", "P1151")
-    assert "drive 2 has 3+3 words, not 4+2, as --kind says: try --kind mm440/3+3" in refused.error
+    assert "drive 2 has 3+3 words, not 4+2, as --kind says" in refused.error
     assert world.uss("--address", "2", "--kind", "mm440", "read", "P0700").rows[0]["value"] == 5
     for drive in world.drives.values():
         assert (drive.state, drive.stw, drive.starts) == ("ready", OFF, 0)
@@ -139,6 +139,42 @@ def test_a_kind_without_a_layout_does_for_every_command():
         assert world.uss(*mm440, "run", "5", "--for", "1", "--unsupervised").json["stopped"]
         assert world.uss(*mm440, "stop").json["stopped"]
         assert world.drives[address].starts == 1
+
+
+OWN = """
+from uss import pzd
+from uss.families import MM440
+from uss.layout import Layout
+
+class Pump(MM440):
+    layout = Layout(4, 4)
+    zsw_says = ((0x0001, 0x0001, pzd.ZSW_RUNNING), (0x0008, 0x0008, pzd.ZSW_FAULT))
+
+class Touchy(Pump):
+    takes_no_control = False
+"""
+
+
+def test_a_family_of_ones_own_is_asked_as_its_class_says(tmp_path):
+    """Here bit 0 says that it runs, as it does when an MM440 stands."""
+    (tmp_path / "own.py").write_text(OWN)
+    own = str(tmp_path / "own.py")
+    world = World({1: "mm440/4+4"})
+    world.plc.commands({1: OFF})
+    world.run(0.5)
+    world.plc.pause()
+    world.run(0.2)
+    row = world.uss("--kind", own + ":Pump", "read", "P1082").rows[0]
+    assert (row["value"], row["name"]) == (50.0, "Max. frequency")
+    shown = world.uss("--kind", own + ":Pump", "monitor", "--for", "0.4")
+    assert shown.json["state"] == "running"
+    assert "--standing" in world.uss("--kind", "1=%s:Touchy" % own, "read", "P1082").error
+    for kind, said in (
+        (own + ":Pomp", "has no Pomp"), ("gone.py:A", "No such file"),
+        (own + ":pzd", "is no class of a family"),
+    ):  # fmt: skip
+        refused = world.uss("--kind", kind, "read", "P1082")
+        assert refused.status == 2 and said in refused.error, refused.error
 
 
 # --- drives that trip when they hear no more -----------------------------------------------------

@@ -49,8 +49,8 @@ USS_REPLY_TIMEOUT, else uss.toml here or ~/.config/uss.toml:  port = "/dev/ttyUS
 
 examples:
   ./tools/uss --port /dev/ttyUSB0 --baud 9600 mirror
-  ./tools/uss --port /dev/ttyUSB0 scan --rates all
-  ./tools/uss --port /dev/ttyUSB0 read P0700 P1082 r0021[0]
+  ./tools/uss --port /dev/ttyUSB0 scan --rates all --standing
+  ./tools/uss --port /dev/ttyUSB0 --kind mm440 read P0700 P1082 r0021[0]
   ./tools/uss --port /dev/ttyUSB0 run 25.0
   ./tools/uss decode 02 06 00 04 7F 20 00 5F
 Without a drive: ./tools/drive --pty --baud 9600 prints the path of a port with one behind it.
@@ -64,7 +64,7 @@ def options(default):
     add("--port", metavar="PATH", help="/dev/ttyUSB0, COM5, or socket://host:port")
     add("--baud", metavar="RATE", help="(9600)")
     add("--address", metavar="LIST", help="of the drive, or drives: 1, 1,2,5-8 (1)")
-    add("--kind", metavar="KIND", help="mm440, g110/0, 1=v20,2=mm440/4+4; else the drive is asked")
+    add("--kind", metavar="KIND", help="what a drive is: mm440, 1=v20,2=mm440/4+4, pump.py:Pump")
     add("--reply-timeout", metavar="MS", help="(60)")
     add("--config", metavar="FILE", help="a file of settings")
     add("--standing", action="store_true", help="the motors stand: any drive may be asked")

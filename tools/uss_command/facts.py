@@ -12,7 +12,7 @@ import re
 
 import catalogue
 from tools.uss_command.errors import Misused
-from uss import pkw
+from uss import families, pkw
 from uss.families.questions import is_float
 
 LIKE = {"mm4": "mm420", "cu240s": "mm440", "generic": None}  # families without a table of theirs
@@ -35,7 +35,10 @@ class Facts:
 
     def __init__(self, family):
         self.family = family
-        name = (getattr(family, "com", None) or family).__name__.lower()
+        family = getattr(family, "com", None) or family
+        while not family.__module__.startswith(families.__name__):
+            family = family.__base__  # a class of the user's own
+        name = family.__name__.lower()
         name = LIKE.get(name, name)
         self.catalogue = name if name in catalogue.FAMILIES else None
         self._rows = {}

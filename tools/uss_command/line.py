@@ -13,6 +13,9 @@ its motor stands. A SINAMICS G120 that runs trips by such a word, and no answer 
 telegram, which is all that can be sent before, tells it from others.
 """
 
+import functools
+import operator
+
 from uss_serial import Master, SerialLink
 
 from tools.uss_command.errors import Failure
@@ -55,7 +58,7 @@ DO_THEY_STAND = (
     "Do the motors of all drives on this line stand? A SINAMICS G120 that runs would trip."
 )
 OTHERS_BEGAN = "another master has begun to talk on this line: nothing more was sent"
-OTHER_LAYOUT = "drive %d has %s words, not %s, as --kind says: try --kind %s"
+OTHER_LAYOUT = "drive %d has %s words, not %s, as --kind says"
 NO_SUCH_DRIVE = "drive %d has %s words, which a %s cannot have: is it one?"
 
 
@@ -85,7 +88,15 @@ class Node:
 
     @property
     def zsw(self):
-        return self.visit.words[0] if self.visit.words else None
+        """Its last status word in the specification's bits, or None."""
+        if not self.visit.words:
+            return None
+        told, says = self.visit.words[0], self.family.zsw_says
+        if says is None:
+            return told
+        return functools.reduce(
+            operator.or_, [meant for mask, value, meant in says if told & mask == value], 0
+        )
 
     @property
     def runs(self):
@@ -311,8 +322,7 @@ class Line:
         if self.settings.says_layout(found.address) and not found.layout.is_like(layout):
             if found.confirmed or not found.layout.pkw_words:
                 said = "%d+%d" % (layout.pkw_words, layout.pzd_words)
-                name = "%s/%s" % (family.__name__.lower(), words)
-                raise Failure(OTHER_LAYOUT % (found.address, words, said, name))
+                raise Failure(OTHER_LAYOUT % (found.address, words, said))
             found.layout = layout
         if not found.layout.suits(family):
             raise Failure(NO_SUCH_DRIVE % (found.address, words, family.name))

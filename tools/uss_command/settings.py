@@ -4,15 +4,17 @@
 port = "/dev/ttyUSB0"               # uss.toml here, or ~/.config/uss.toml, or --config FILE
 baud = 19200
 address = "1,2"
-kind = "1=mm440,2=g110/0"
+kind = "1=mm440,2=g110/0"           # or a class of your own: "pump.py:Pump"
 reply_timeout = 60
 """
 
 import os
+import runpy
 import tomllib
 from pathlib import Path
 
 from tools.uss_command.errors import Misused
+from uss.families import GENERIC
 from uss.families.kinds import kind as kind_of
 from uss.telegram import NODE_MAX
 from uss.timing import BAUD_RATES
@@ -104,12 +106,27 @@ def kinds(text):
     found, with_layout = {}, set()
     for part in text.split(",") if text else ():
         address, equals, word = part.rpartition("=")
+        own = ":" in word
         try:
-            known = kind_of(word)
+            known = family_of(word) if own else kind_of(word)
         except ValueError as error:
             raise Misused("kind: %s" % error) from None
         whose = numbers("kind", address, NODE_MAX)[0] if equals else EVERYONE
         found[whose] = known
-        if "/" in word:
+        if own or "/" in word:
             with_layout.add(whose)
     return found, with_layout
+
+
+def family_of(word):
+    """The class in "pump.py:Pump", and its layout. ValueError."""
+    path, _, name = word.rpartition(":")
+    try:
+        family = runpy.run_path(path)[name]
+    except KeyError:
+        raise ValueError("%s has no %s" % (path, name)) from None
+    except Exception as error:
+        raise ValueError("%s: %s" % (path, getattr(error, "strerror", None) or error)) from None
+    if not (isinstance(family, type) and issubclass(family, GENERIC)):
+        raise ValueError("%s is no class of a family, such as class %s(GENERIC)" % (name, name))
+    return family, family.layout

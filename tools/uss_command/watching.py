@@ -103,7 +103,7 @@ class Watched:
         """zsw, hiw, hertz or percent of the last reply; None: it does not tell."""
         words = self.node.visit.words
         if name == "zsw":
-            return words[0] if words else None
+            return self.node.zsw
         if len(words) < 2:
             return None
         if name == "hiw":
