@@ -280,7 +280,8 @@ def test_leave_ends_at_once_and_says_what_will_happen():
     in_no_fault(world)
     world.run(1.1)
     assert states(world) == ["fault"]
-    assert not world.uss("--standing", "--leave", "scan", "--addresses", "1").trips
+    again = world.uss("--standing", "scan", "--addresses", "1")
+    assert again.rows[0]["motor"] == "fault" and not again.trips
 
 
 @pytest.mark.parametrize(

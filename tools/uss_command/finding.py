@@ -183,7 +183,8 @@ class Hunt:
             return Found(line, address, net_count, None)
         node = line.enquire(address, net_count, variable, None)
         row["kind"], row["family"] = kind_text(node), node.family.name
-        row["motor"] = "runs" if node.runs else "stands" if node.layout.pzd_words else ""
+        if node.layout.pzd_words:
+            row["motor"] = "runs" if node.runs else "fault" if node.has_fault else "stands"
         row["trips_after_ms"] = node.off_time_ms
         return Found(line, address, net_count, node)
 
