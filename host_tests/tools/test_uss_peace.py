@@ -135,6 +135,7 @@ def test_a_kind_without_a_layout_does_for_every_command():
     world = World({1: "mm440/127", 2: "mm440/4+4"}, parameters={1: {1121: 0.1}, 2: {1121: 0.1}})
     for address in world.drives:
         mm440 = ("--kind", "mm440", "--address", "%d" % address)
+        assert world.uss(*mm440, "mirror").json["ok"]
         assert world.uss(*mm440, "read", "P0700").rows[0]["value"] == 5
         assert world.uss(*mm440, "run", "5", "--for", "1", "--unsupervised").json["stopped"]
         assert world.uss(*mm440, "stop").json["stopped"]

@@ -44,7 +44,7 @@ def mirror(screen, settings, chosen):
     with Line(screen, settings, chosen) as line:
         line.listen()
         began_s = time.monotonic()
-        lengths = (told[1].net_count,) if told else NET_COUNTS
+        lengths = (told[1].net_count,) if settings.says_layout(address) else NET_COUNTS
         net_count, other = line.probe(address, lengths)
         if net_count is None:
             raise line.no_reply(address, other)
