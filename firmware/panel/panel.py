@@ -57,9 +57,8 @@ class Panel:
 
     def __init__(self, roster, bus, board, settings, mask, notices=()):
         self._turn = 0  # asked for in every step, so it is first: as in `Master`
-        # Keys that were pressed are still to do what they do: True, or the page that is to take
-        # them after the panel.
-        self._acting = False
+        self._acting = False  # keys that were pressed are still to do what they do
+        self._taker = None  # the page that is to take them now that the panel has
         self._trips = 0  # bus.dead_man_trips when they were
         self.roster = roster
         self.controls = controls = roster.controls
@@ -336,19 +335,21 @@ class Panel:
         """What was pressed or repeats does what it does on this page: first what it does on every
         page that obeys. Then the page takes it in the next step, as both take long.
         """
-        page, self._acting = self._acting, False
+        self._acting = False
+        page, self._taker = self._taker, None
         if self.bus.dead_man_trips != self._trips:  # the panel has hung since
             self.say(now_ms, texts.PANEL_HUNG)
             return
         acts = self._acts
-        if page is True:
+        if page is None:
             page = self._cover or self._page
             guard = self.guard
             if guard is not None and guard.locked and page.locks and self._is_locked(page, now_ms):
                 return
             if (acts.pressed | acts.repeated) & self._command_bits and page.obeys:
                 self._take_command(acts, now_ms)
-                self._acting = page
+                self._taker = page
+                self._acting = True
                 return
         page.take_keys(acts, now_ms)
         if acts.pressed:
