@@ -473,8 +473,8 @@ MUTATIONS = (
         (
             "panel/view.py",
             "            if panel.announcer.kind != NOTHING:\n"
-            "                panel.announcer.draw(screen, 0)\n            return DONE\n",
-            "            return DONE\n",
+            "                panel.announcer.draw(screen, 0)\n            if self._page",
+            "            if self._page",
         ),
     ),
     Mutation(
