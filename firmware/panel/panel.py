@@ -101,9 +101,9 @@ class Panel:
         self._neighbours = Neighbours(controls, self.announcer, self._heed)
         self._put_off = 0  # what can wait, in the turn before
         # What is not done at once takes turns, so that each step of the loop stays short.
+        draw, leave = self._draw, self._leave  # once: each time makes another object
         self._turns = (
-            self._draw, self._ask, self._leave, self._watch,
-            self._draw, self._follow, self._leave, self._look_around,
+            draw, self._ask, leave, self._watch, draw, self._follow, leave, self._look_around,
         )  # fmt: skip
 
     def step(self, raw_keys, now_ms, now_us, unclear_keys=0):
@@ -258,6 +258,10 @@ class Panel:
         return False
 
     def _follow(self, now_ms, now_us):
+        cover = self._cover
+        if cover is not None and cover.is_coming():
+            cover.step(self._keys, now_ms)
+            return False
         if self._writer:
             self._writer.step(now_us)
         self.selected.ask_on(now_us)
@@ -278,7 +282,9 @@ class Panel:
         ):
             # What it tells is settled now: drawing changes nothing but the picture.
             self._drawn_at_ms = now_ms
-            page = self._cover or self._page
+            page = self._cover
+            if page is None or not page.is_ready():
+                page = self._page
             if page.announces:
                 self.announcer.begin(self._position, page, view.tells_state(page), now_ms)
             view.begin(page)

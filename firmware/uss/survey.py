@@ -97,7 +97,7 @@ class Survey:
     def __init__(self, drive, family, mask, spares):
         self.drive = drive
         self.family = family
-        self.values = list(_BLANK)
+        self.values = _BLANK[:]  # a list that is made like this has no room to grow
         self.complete = False
         self.scaling = None
         self.actual = None

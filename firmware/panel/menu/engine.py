@@ -71,6 +71,12 @@ class Menu(Page):
         elif any([acts.has(key) for key in _REFUSED]):
             self._say(now_ms, "IN_THE_MENU")
 
+    def is_ready(self):
+        return len(self._lists) > 0
+
+    def is_coming(self):
+        return self._coming is not None
+
     def step(self, keys, now_ms):
         if self._coming:
             self._come(now_ms)
@@ -101,7 +107,9 @@ class Menu(Page):
     def draw(self, screen, now_ms):
         if not self._lists:
             return  # the first one is yet to come, or all have closed in the middle of a picture
-        shown, position, count = self._shown()
+        _, shown, position = self._lists[-1]
+        count = shown.count()
+        position = min(position, count - 1)  # what was last in it may have gone
         if self._alarmed and self.panel.announcer.page_turns & 1:
             self._draw_alarm(screen, self.panel.selected)
         else:
@@ -114,15 +122,10 @@ class Menu(Page):
     def draw_row_2(self, screen, now_ms):
         if not self._lists:
             return
-        shown, position, _ = self._shown()
+        _, shown, position = self._lists[-1]
+        position = min(position, shown.count() - 1)
         screen.put(1, 0, 1, texts.of(texts.MENU_MARK))
         screen.put(1, 1, texts.ROW_WIDTH - 1, self._told or shown.words(position))
-
-    def _shown(self):
-        """The list that is shown, the place in it, and how many there are."""
-        _, shown, position = self._lists[-1]
-        count = shown.count()
-        return shown, min(position, count - 1), count  # what was last in it may have gone
 
     def _draw_alarm(self, screen, control):
         """That of the drive shown, in turn with the title: only the others are announced."""

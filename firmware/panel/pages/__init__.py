@@ -41,6 +41,14 @@ class Page:
         """It has covered another page, and need not be shown any more."""
         self.panel.uncover()
 
+    def is_ready(self):
+        """Whether it has anything to show. Until then the page that it covers is shown."""
+        return True
+
+    def is_coming(self):
+        """Whether the next `step` loads a part of it, which takes the turn of all others."""
+        return False
+
     def step(self, keys, now_ms):
         """Again and again while it is shown, or hidden by another. keys: `panel.keys.Keys`."""
 
