@@ -90,6 +90,7 @@ class Survey:
     unreadable = False
     unchecked = 0
     count = None
+    _turn = 0  # counts while it runs: rows of the round and of _WATCHED take turns
     _asked_next = None  # the job on its way behind `_asked`
     _unanswered = None  # by row: how often the drive fell silent on it
     _odd = 0  # answers in a row that make no sense
@@ -107,7 +108,6 @@ class Survey:
         self._spares = spares
         self._asked = None  # the job on its way that was asked first
         self._row = _FIRST  # the next row of the round
-        self._turn = 0  # counts; rows of the round and of _WATCHED take turns
         self._changed = _NOTHING  # the row whose value is new and not judged yet, or _ALL
         self._read_at_us = 0
         self._contact = 0  # the values belong to this drive.contacts; 0 without contact
@@ -146,6 +146,7 @@ class Survey:
 
     def count_anew(self):
         """Count telegrams anew: after the next count, one that lacks telegrams means a reset."""
+        self._turn = self._turn  # a field that is made now takes no memory when the motor runs
         if self.count is None:
             self.count = TelegramCount(self.drive)
         else:
