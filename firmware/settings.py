@@ -92,6 +92,12 @@ class Settings:
         self.dirty = self.dirty or accepted != self.unsupervised
         self.unsupervised = accepted
 
+    def note_set(self, address, is_half):
+        """A parameter set is written in part at this address, or not any more. That holds for a
+        drive which is not in the list any more, too."""
+        others = tuple([one for one in self.half_written if one != address])
+        self.change("half_written", others + ((address,) if is_half else ()))
+
     def readdress(self, old, new):
         """The drive at address `old` answers at `new` from now on; it keeps what was accepted.
 
@@ -103,6 +109,9 @@ class Settings:
         accepted = [one for one in self.drives if one in self.unsupervised]
         self.drives = _replaced(self.drives, old, new)
         self.unsupervised = _replaced(accepted, old, new)
+        if old in self.half_written:
+            self.note_set(old, False)
+            self.note_set(new, True)
         for values in (self.kinds, self.repeats):
             moved = values.pop(str(old), None)
             values.pop(str(new), None)  # of a drive that is gone

@@ -121,7 +121,7 @@ def _rows(family, kind, numbers):
 
 def _completed(row, like):
     """With what is empty from the row with the same key of the other family."""
-    key = _key(row[KEY][1:], row[KEY][0])
+    key = row_key(row[KEY])
     with _table(like) as table:
         yield None
         for other in _between(table, key, key):
@@ -133,13 +133,14 @@ def _completed(row, like):
 
 def _between(table, first, last):
     """The rows with these keys, and None after each look for the first."""
-    if hasattr(table, "bring"):
-        yield table.bring(first)
-    else:
-        yield from _bring(table, first)
+    is_packed = hasattr(table, "bring")
+    yield from table.bring(first) if is_packed else _bring(table, first)
+    yield None
     while True:
         line = _row(table)
-        key = _key(line[1:], line[0]) if line else last + 1
+        if not line and is_packed and (yield from table.go_on()):
+            continue
+        key = row_key(line) if line else last + 1
         if key > last:
             return
         yield _cells(line) if key >= first else None
@@ -153,7 +154,7 @@ def _bring(table, first):
         table.seek(middle)
         _line(table)  # what is left of it
         line = _row(table)
-        if line and _key(line[1:], line[0]) < first:
+        if line and row_key(line) < first:
             low = table.tell() - len(line)
         else:
             high = middle
@@ -172,7 +173,7 @@ def _table(family):
             _frozen.append(family)
     from catalogue.packed import Packed
 
-    return Packed(family)
+    return Packed(family, row_key)
 
 
 def _row(table):
@@ -195,6 +196,11 @@ def _line(table):
         line += piece
         if not piece:
             return line
+
+
+def row_key(line):
+    """That of the row which begins so."""
+    return _key(line[1:], line[0])
 
 
 def _key(cell, kind):

@@ -107,6 +107,7 @@ pico_recipe() {
     pico_target "$1"
     pico_edition "$(pico_sources_of "$1")"
     pico_flags "$1"
+    pico_omitted "$1"
     declare -f pico_manifest compile_pico_firmware put_into_memory prepare_pico_make pico_do
     cat "$pico_requirements"
 }
@@ -135,6 +136,12 @@ pico_flags() {
         echo -DMICROPY_OPT_MAP_LOOKUP_CACHE_SIZE=2048 -DVM_MAX_STATE_ON_STACK=96 \
             -DMICROPY_ALLOC_GC_STACK_SIZE=192 \
             "-DPICO_PROGRAM_DESCRIPTION='\"USS panel $(panel_version)\"'"
+}
+
+# The firmware has 640 KB of the flash, and the panel fills them: modules that it does not need are
+# left out. Not with the flags above: what lists the modules must know it, too.
+pico_omitted() {
+    [[ $1 == stock* ]] || echo -DMICROPY_PY_{FRAMEBUF,UCTYPES,CMATH,RE}=0
 }
 
 # What runs most often is kept in the chip's memory: its cache holds 16 KB of the flash, and of the
@@ -214,7 +221,8 @@ prepare_pico_make() {
     say "    everything, which takes a minute"
     rm -rf "$place" && mkdir -p "$place" &&
         pico_manifest "$name" >"$place/manifest.py" &&
-        quietly "$place/log" pico_do "$name" CFLAGS="$(pico_flags "$name")" cmake -G Ninja \
+        quietly "$place/log" pico_do "$name" CFLAGS="$(pico_flags "$name")" \
+            CFLAGS_EXTRA="$(pico_omitted "$name")" cmake -G Ninja \
             -S "$build/$sources/micropython/ports/rp2" -B "$place" \
             -DMICROPY_BOARD="$board" -DPICO_NO_PICOTOOL=1 -DPICO_CLIB=newlib \
             -DMICROPY_FROZEN_MANIFEST="$place/manifest.py" \

@@ -16,11 +16,13 @@ BACK = ("", None)  # of `choose`: back to the list above this one
 class Entries:
     """What every list has. panel: the `Panel`. argument: what the list above it has handed on.
 
+    ahead: modules that it has loaded for what it leads to; they leave the memory with it.
     title: a text; 16 characters in a list that has one entry only, else 10. Answers of `choose`:
     (name of a list, argument), BACK, or None: the list stays.
     """
 
     title = b""
+    ahead = ()
     tells_stop = True  # STOP says which drive it has stopped
 
     def __init__(self, panel, argument=None):
@@ -73,3 +75,6 @@ class Entries:
 
     def leave(self, now_ms):
         """PARAM goes back to the list above this one."""
+
+    def end(self):
+        """It is not shown any more, however that came."""
