@@ -144,7 +144,7 @@ MOST = {  # the widest values that belong into a text
     b"STORE P%04d[%d]": (2024, 99),
     b"IS P%04d[%d]": (2024, 255),
     b"PWE %04X %04X": (0xFFFF, 0xFFFF),
-    b"STW %04X %s": (0x047E, b"OFF1"),
+    b"STW %04X %s": (0x047E, b"TIPPEN"),
     b"HSW %04X %d%%": (0xFFFF, -200),
     b"ZSW %04X %s": (0xFFFF, b"SPERRE"),
     b"HIW %04X %d%%": (0xFFFF, -200),

@@ -20,10 +20,7 @@ from uss.finding.witness import KEPT, Witness
 _ROW = const(7)  # characters in hexadecimal
 _PKE, _PWE, _CONTROL, _MAIN = const(0), const(1), const(2), const(3)  # of the words
 _NUMBER = const(0x7FF)
-_STWS = (
-    (pzd.OFF1, b"OFF1"), (pzd.OFF2, b"OFF2"), (pzd.OFF3, b"OFF3"), (pzd.ON, b"ON"),
-    (pzd.ON_REVERSE, b"ON"), (pzd.JOG_RIGHT, b"JOG"), (pzd.JOG_LEFT, b"JOG"),
-)  # fmt: skip
+_STWS = (pzd.OFF1, pzd.OFF2, pzd.OFF3, pzd.ON, pzd.ON_REVERSE, pzd.JOG_RIGHT, pzd.JOG_LEFT)
 _WRITES = const(1 << 2 | 1 << 3 | 1 << 7 | 1 << 8)  # tasks that write
 _REFUSED, _NO_RIGHTS = const(7), const(8)  # replies
 
@@ -104,8 +101,10 @@ class List(Entries):
             if is_reply:
                 state = texts.of(texts.FOUND_STATES[pzd.state(value)])
                 return texts.of(words.ZSW, value, state)
-            meant = [name for stw, name in _STWS if stw == value]
-            return texts.of(words.STW, value, meant[0] if meant else b"")
+            meant = b""
+            if value in _STWS:
+                meant = texts.of(words.COMMANDS[_STWS.index(value)])
+            return texts.of(words.STW, value, meant)
         value = get_word(data, at + 2)
         percent = (pzd.signed(value) * 200 // pzd.FULL_SCALE + 1) // 2
         return texts.of(words.HIW if is_reply else words.HSW, value, percent)

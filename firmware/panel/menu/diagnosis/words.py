@@ -41,6 +41,8 @@ REFUSES = b"ERROR %d"
 NO_RIGHTS = b"NO RIGHTS"
 PWE = b"PWE %04X %04X"
 STW = b"STW %04X %s"
+# What a control word commands, in the order of `telegrams`.
+COMMANDS = (b"OFF1", b"OFF2", b"OFF3", b"ON", b"ON", b"JOG", b"JOG")
 HSW = b"HSW %04X %d%%"
 ZSW = b"ZSW %04X %s"
 HIW = b"HIW %04X %d%%"
