@@ -33,7 +33,7 @@ def python_files(folder):
                 yield inside
 
 
-freeze("$(PORT_DIR)/modules", ("_boot.py", "_boot_fat.py", "rp2.py"))  # the port's own
+freeze("$(PORT_DIR)/modules", ("_boot.py", "rp2.py"))  # the port's own
 freeze("../../firmware", tuple(python_files("../../firmware")), opt=OPT)
 freeze("..", ("chips/rp2.py",), opt=OPT)
 

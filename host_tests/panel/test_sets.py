@@ -79,7 +79,7 @@ def refuses_to_move(world):
 
 def too_big():
     data = bytearray(made([])[:-15])
-    for number in range(4000):
+    for number in range(8000):
         data += b"P%04d 0 U16 0000\n" % number
     return bytes(data)
 
