@@ -21,7 +21,7 @@ from uss.telegram import NODE_MAX
 from uss.timing import BAUD_RATES
 
 SIZE_MAX = 4096  # bytes of the file: a chip has to hold it, and what is made of it
-UNKNOWN_MAX = 2048  # of that, what is kept though it is not known
+UNKNOWN_MAX = 1472
 REPEATS_MAX = 4
 FAVOURITES_MAX = 32  # of all families together
 
@@ -53,11 +53,11 @@ NUMBERS = (  # name, default, lowest, highest, meaning
 ADDRESSES = (  # name, default, fewest, meaning; addresses 0...31, each once, 31 at the most
     ("drives", (1,), 1, "in the order of the address keys"),
     ("unsupervised", (), 0, "drives accepted without a telegram time-out, P2014 = 0"),
-    ("half_written", (), 0, "drives with a parameter set that is written in part"),
 )
 BY_ADDRESS = (  # name, default, meaning; an object: address as text -> text or number
     ("kinds", {}, "family, and layout if unusual, of drives that are no mm420"),
     ("repeats", {}, "2...4: how often a drive stands in the circulating list"),
+    ("half_written", {}, "the check of a set that is on the drive in part, and makes it whole"),
 )
 BY_FAMILY = (  # name, default, meaning; an object: family -> parameter numbers
     ("favourites", {}, "in place of those that parameter mode shows"),
@@ -159,6 +159,8 @@ def _take(settings, stored):
             settings.complain(name, "%r are not up to 31 addresses 0...31" % (value,))
     settings.kinds = _by_address(settings, "kinds", stored, kind)
     settings.repeats = _by_address(settings, "repeats", stored, _check_repeats)
+    settings.half_written = _by_address(settings, "half_written", stored, _check_set)
+    settings.note_half()
     favourites = stored.get("favourites", {})
     if _are_favourites(favourites):
         settings.favourites = favourites
@@ -206,6 +208,11 @@ def _by_address(settings, name, stored, check):
 def _check_repeats(value):
     if not is_number(value, 2, REPEATS_MAX):
         raise ValueError("%r is not 2...%d" % (value, REPEATS_MAX))
+
+
+def _check_set(value):
+    if not isinstance(value, str) or not len(value) == 8:
+        raise ValueError("%r is no check of a set" % (value,))
 
 
 def _are_addresses(values, fewest):

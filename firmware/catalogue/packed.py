@@ -22,7 +22,7 @@ import on_demand
 _WINDOW_BITS = const(11)  # of packing.py
 _ENTRY = "<II"
 _ENTRY_BYTES = const(8)
-_PIECE = const(512)  # that is unpacked in a step
+_PIECE = const(256)  # that is unpacked in a step
 _NEAR = const(200)  # bytes; what is nearer is found by reading on
 
 

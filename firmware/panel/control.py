@@ -278,7 +278,7 @@ class Control:
 
     def is_half_written(self):
         """Whether a parameter set is on it in part: see `panel.sets.writing`."""
-        return self.drive.address in self.desk.settings.half_written
+        return self.drive.address in self.desk.settings.half_at
 
     def is_unsaved(self):
         """Whether its address is another one than the panel will look for after a restart."""

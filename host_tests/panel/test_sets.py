@@ -38,11 +38,13 @@ OTHER_RATING = [(206, b"41700000"), (207, b"42000000"), (208, b"000001F4")]
 
 def marks(world):
     """What the panel would find in its flash if it restarted now."""
-    return json.loads(world.flash.files["settings.json"]).get("half_written", [])
+    found = json.loads(world.flash.files["settings.json"]).get("half_written", {})
+    return sorted([int(address) for address in found])
 
 
-def put(world, *rows, name="1.set", **options):
+def put(world, *rows, name="1.set", name_inside=b"MADE", **options):
     """A file that was copied onto the panel while it was off."""
+    options["name"] = name_inside
     world.flash.files[name] = made(sorted(rows or ROWS), **options)
 
 
@@ -343,6 +345,29 @@ def test_it_starts_again_when_a_set_was_compared_with_it_and_is_equal():
     world.drives[2].write(1120, 0, 2.5)
     begin(world, "A1 MADE", "COMPARE A2")
     assert finish(world) == "ALL EQUAL"
+    home(world)
+    world.run(3000)
+    assert marks(world) == [] and runs(world)
+
+
+def test_another_set_that_is_equal_says_nothing_of_the_one_that_is_half_written():
+    world = two()
+    half_way(world)
+    put(world, (1080, 1, b"Float", b"00000000"), name="2.set", name_inside=b"OTHER")
+    world.drives[2].write(1080, 1, 0.0)
+    begin(world, "A1 OTHER", "COMPARE A2")
+    assert finish(world) == "ALL EQUAL"
+    home(world)
+    assert marks(world) == [2]
+    refuses_to_move(world)
+    world.reset()
+    world.run(3000)
+    begin(world, "A1 OTHER", "INTO A2 RAM")
+    assert finish(world) == "ALL EQUAL"
+    home(world)
+    refuses_to_move(world)
+    row = write(world, "A1 MADE")  # the panel knows after a restart, too, which one it was
+    assert row == "WRITTEN, EQUAL", row
     home(world)
     world.run(3000)
     assert marks(world) == [] and runs(world)

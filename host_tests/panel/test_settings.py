@@ -198,12 +198,12 @@ def test_what_stands_there_twice_is_named_and_has_its_default():
 
 def test_the_biggest_file_that_is_saved_is_loaded_again():
     every = list(range(31))
-    known = {"drives": every, "unsupervised": every, "new": 2_000 * "x"}
+    known = {"drives": every, "unsupervised": every, "new": (settings.UNKNOWN_MAX - 10) * "x"}
     flash = Flash(capacity_bytes=20_000)
     flash.files["s"] = json.dumps(known).encode()
     store = FileStore("s", flash.open, flash)
     settings.save(store, settings.load(store))
-    assert len(flash.files["s"]) > 2_000
+    assert len(flash.files["s"]) > settings.UNKNOWN_MAX
     assert settings.load(store).complaint is None
 
 
@@ -261,9 +261,9 @@ def test_a_person_can_read_the_file():
         '  "lock_code": 0,\n'
         '  "drives": [2, 1],\n'
         '  "unsupervised": [2],\n'
-        '  "half_written": [],\n'
         '  "kinds": {},\n'
         '  "repeats": {},\n'
+        '  "half_written": {},\n'
         '  "favourites": {"g110": [700], "mm440": [1120, 3]}\n'
         "}\n"
     )
@@ -279,6 +279,7 @@ def test_the_fullest_file_there_can_be_is_read_again():
             "unsupervised": addresses,
             "kinds": {str(address): "mm440-bop/127+8" for address in addresses},
             "repeats": {str(address): 4 for address in addresses},
+            "half_written": {str(address): "FFFFFFFF" for address in addresses},
             "favourites": favourites,
             "new": "x" * (settings.UNKNOWN_MAX - 10),
         }

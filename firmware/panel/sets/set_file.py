@@ -101,7 +101,9 @@ def _head(lines):
 
 
 def rows(store, name):
-    """The rows of a file, and None where somebody else may have his turn."""
+    """The rows of a file, and None where somebody else may have his turn. The generator's value is
+    the check of the file, which tells one set from another.
+    """
     file = store.open(name)
     try:
         lines = _lines(file)
@@ -120,6 +122,7 @@ def rows(store, name):
             line = next(lines)
         if line != end_line(place, check) or list(lines):
             raise ValueError(words.DAMAGED)
+        return check
     except StopIteration:
         raise ValueError(words.CUT_SHORT)
     finally:

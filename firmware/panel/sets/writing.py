@@ -64,6 +64,7 @@ class Write(Work):
         self._level = None  # of the access, as it was
         self._level_row = None  # what the set says of it, if it differs
         self._refusal = None
+        self._check = None  # of the file, as text
         self._todo = bytearray()  # a bit for each row: it differs
         Work.__init__(self, panel, control)
         family = catalogue_of(self.family)
@@ -77,11 +78,13 @@ class Write(Work):
 
     def work(self):
         settings, address = self.panel.settings, self.drive.address
-        yield from self._check()
+        yield from self._look_through()
         self.phase = COMPARES
         yield from self._compare()
         if not self.differs:
-            settings.note_set(address, False)
+            # Another set than the one that is on it in part says nothing of what that has changed.
+            if settings.half_written.get(str(address)) == self._check:
+                settings.note_set(address)
             self.outcome = (words.ALL_EQUAL,)
             return
         if self._eeprom is None:
@@ -91,7 +94,7 @@ class Write(Work):
         if not self.answer:
             self.outcome = (words.NOTHING_WRITTEN,)
             return
-        settings.note_set(address, True)
+        settings.note_set(address, self._check)
         while settings.dirty:
             yield
         self.done, self.total = 0, self.total + self.differs
@@ -105,18 +108,24 @@ class Write(Work):
         if self.differs:
             self.outcome = (words.STILL_DIFFER, self.differs)
         else:
-            settings.note_set(address, False)
+            settings.note_set(address)
             self.outcome = (words.WRITTEN_EQUAL,)
 
     # --- parts of it, generators ----------------------------------------------------------------
 
-    def _check(self):
+    def _look_through(self):
         store = self.panel.board.store
         head = set_file.read_head(store, self._name)
         if head.family != catalogue_of(self.family):
             raise ValueError(words.OTHER_FAMILY, head.family.upper().encode())
         count = 0
-        for row in set_file.rows(store, self._name):
+        rows = set_file.rows(store, self._name)
+        while True:
+            try:
+                row = next(rows)
+            except StopIteration as ended:
+                self._check = "%08X" % ended.value
+                break
             if row is None:
                 yield
             else:

@@ -70,7 +70,7 @@ class List(Entries):
         return "sets.save", self._control
 
     def _give_up(self, now_ms):
-        self.panel.settings.note_set(self._control.drive.address, False)
+        self.panel.settings.note_set(self._control.drive.address)
 
     def _head(self, name):
         """In words."""
