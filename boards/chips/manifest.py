@@ -20,17 +20,19 @@ LEFT_OUT = ("uss/br/", "uss/s7/", "uss/tasks/")
 # nearly full. An error of the firmware names the function.
 OPT = 3
 
-# The order in which they are frozen is part of the firmware's bytes, and that of a listing is not
-# the same everywhere.
+# The order in which they are frozen is part of the firmware's bytes. MicroPython looks through their
+# names from the beginning, so those that come while the panel works stand first.
+ON_DEMAND = ("panel/menu/", "panel/lookup/", "panel/sets/")
 
 
 def python_files(folder):
-    for path, folders, files in os.walk(folder):
-        folders.sort()
-        for file in sorted(files):
+    found = []
+    for path, _, files in os.walk(folder):
+        for file in files:
             inside = os.path.relpath(os.path.join(path, file), folder)
             if file.endswith(".py") and not inside.startswith(LEFT_OUT):
-                yield inside
+                found.append((not inside.startswith(ON_DEMAND), inside))
+    return [inside for _, inside in sorted(found)]
 
 
 freeze("$(PORT_DIR)/modules", ("_boot.py", "rp2.py"))  # the port's own

@@ -314,9 +314,10 @@ class Panel:
         return not self._works(now_ms) and self._draw(now_ms, now_us)
 
     def _works(self, now_ms):
-        is_busy = self._page.is_busy and self._cover is None
+        page = self._cover or self._page
+        is_busy = page.is_busy
         if is_busy:
-            self._page.work(now_ms)
+            page.work(now_ms)
         return is_busy
 
     def _puts_off(self):

@@ -46,6 +46,11 @@ def speak(language):
             pass  # better in English than not at all
 
 
+def language():
+    """That which is spoken."""
+    return _language
+
+
 NOTHING = b""
 
 STATE_WIDTH = 12  # row 2, in front of the address

@@ -21,6 +21,13 @@ def world_of(kind="mm440", settings=None, addresses=(1,), known=None):
     return world
 
 
+def speak(world, language):
+    """As the settings do when somebody chooses it."""
+    panel = world.app.panel
+    panel.settings.change("language", language)
+    panel.heed_settings()
+
+
 def press(world, *keys):
     for key in keys:
         world.press(key)

@@ -5,12 +5,14 @@ import json
 import sys
 
 from lookup_bench import (
+    choose,
     forget_modules,
     go_to,
     hold,
     lines,
     look_up,
     press,
+    speak,
     type_digits,
     wait,
     wait_for_value,
@@ -24,6 +26,31 @@ YES_OR_NO = "SET=DO  PARAM=NO"
 
 
 # --- looking -------------------------------------------------------------------------------------
+
+
+def test_names_and_units_are_written_as_in_the_language_of_the_panel():
+    world = world_of()
+    speak(world, "de")
+    hold(world, "PARAM", 1400)
+    world.run(500)
+    choose(world, "PARAMETER")
+    world.run(1500)
+    for _ in range(40):
+        if row_2(world) == ">NACH NUMMER":
+            break
+        press(world, "UP")
+    press(world, "SET")
+    wait(world, "P0")
+    type_digits(world, "0035")
+    press(world, "SET")
+    world.run(500)
+    assert wait_for_value(world).endswith("°C"), world.lcd()
+    said = lines(world)
+    assert "Motortemperatur" in said, said
+    speak(world, "en")
+    press(world, "UP", "DOWN")
+    assert "Motor temp." in lines(world)
+    world.check()
 
 
 def test_the_output_current_is_read_by_its_number_while_the_motor_runs():

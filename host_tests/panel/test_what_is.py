@@ -3,7 +3,7 @@
 
 import sys
 
-from lookup_bench import choose, entries, forget_modules, go_to, hold, press, wait, world_of
+from lookup_bench import choose, entries, forget_modules, go_to, hold, press, speak, wait, world_of
 from panel_bench import OFF1, row_1, row_2, telegrams
 
 INTERPRETERS = "unix64 unix32"
@@ -54,6 +54,23 @@ def test_what_a_warning_means_and_how_it_is_cured():
     assert said["A0501"] == "Current limit", said
     assert said["CAUSE"].startswith("The motor takes more than the current limit."), said
     assert said["REMEDY"], said
+    world.check()
+
+
+def test_the_catalogue_speaks_the_language_of_the_panel():
+    world = world_of()
+    speak(world, "de")
+    world.drives[1].warn(501)
+    wait(world, "WARN A0501")
+    hold(world, "PARAM", 1400)
+    world.run(500)
+    assert row_2(world) == ">WAS IST A0501", world.lcd()
+    press(world, "SET")
+    world.run(500)
+    said = text_of(world)
+    assert said["A0501"] == "Stromgrenze", said
+    assert sorted(said) == ["A0501", "ABHILFE", "URSACHE"], said
+    assert said["ABHILFE"], said
     world.check()
 
 

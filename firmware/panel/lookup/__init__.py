@@ -12,9 +12,9 @@ piece of it in each step.
 """
 
 import catalogue
+from panel import texts
 
-COLUMN = catalogue.EN  # of the language that is spoken
-_DEGREE, _DEGREE_OF_DISPLAY = b"\xb0", b"\xdf"  # ISO 8859-1, HD44780
+_COLUMNS = {"de": catalogue.DE}  # of a language that is spoken; English has its words in all rows
 
 
 def name_of(family):
@@ -26,12 +26,8 @@ def name_of(family):
 
 def text(row, column=catalogue.NAME):
     """A text of a row, in the language that is spoken."""
-    return shown(row[column + COLUMN])
-
-
-def shown(cell):
-    """A cell in the characters of the display."""
-    return cell.replace(_DEGREE, _DEGREE_OF_DISPLAY)
+    own = _COLUMNS.get(texts.language(), catalogue.EN)
+    return row[column + own] or row[column + catalogue.EN]
 
 
 class Search:

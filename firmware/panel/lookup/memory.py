@@ -37,16 +37,22 @@ class List(Entries):
     def step(self, position, now_ms):
         family, drive = self._family, self._control.drive
         if self._search.rows is not None:
-            row = self._search.step()
-            if row:
-                self._names[catalogue.number(row)] = text(row)
-        elif self._reading.asked:
+            return
+        if self._reading.asked:
             self._take(self._reading.take())
         elif len(self._numbers) < self._count and drive.contact and family.fault_number:
             index = len(self._numbers)
             is_element = index and family.has_array_tasks
             task = pkw.READ_ELEMENT if is_element else pkw.READ
             self._reading.ask(drive, family.fault_number, index, task)
+
+    def is_searching(self):
+        return self._search.rows is not None
+
+    def search(self):
+        row = self._search.step()
+        if row:
+            self._names[catalogue.number(row)] = text(row)
 
     def _take(self, job):
         if job is None:

@@ -5,7 +5,7 @@ from micropython import const
 
 import catalogue
 from panel import texts
-from panel.lookup import shown, text, words
+from panel.lookup import text, words
 from uss.timing import elapsed
 
 _BLINK_MS = const(800)  # of these the digit is away for
@@ -65,7 +65,7 @@ class Sight:
 
     def unit(self):
         """Of its value."""
-        return shown(self.form.unit) if self.form else texts.NOTHING
+        return self.form.unit if self.form else texts.NOTHING
 
     def _lines(self):
         """What row 1 says in turn."""
@@ -84,7 +84,7 @@ class Sight:
         limits = b"A%d" % self._control.drive.address
         if row and row[catalogue.HIGHEST]:
             between = row[catalogue.LOWEST] + b"..." + row[catalogue.HIGHEST]
-            for more in (b" " + between, shown(row[catalogue.UNIT])):
+            for more in (b" " + between, row[catalogue.UNIT]):
                 if len(limits) + len(more) <= texts.ROW_WIDTH:
                     limits += more
         return limits
@@ -98,7 +98,7 @@ class Sight:
         words_of_value = b"-----" if self._refused else b"?"
         width = texts.ROW_WIDTH - len(label)
         if self.form:
-            words_of_value = shown(self.form.fitting(self.high, self.low, width - 1))
+            words_of_value = self.form.fitting(self.high, self.low, width - 1)
             if len(words_of_value) > width:
                 label = self.label()
                 width = texts.ROW_WIDTH - len(label)

@@ -30,8 +30,12 @@ class List(Entries):
     def step(self, position, now_ms):
         if self._breaking is not None:
             self._lines += next(self._breaking, ())
-            return
-        row = self._search.step() if self._search.rows is not None else None
+
+    def is_searching(self):
+        return self._search.rows is not None
+
+    def search(self):
+        row = self._search.step()
         if row:
             self._search.begin(None)
             self._breaking = self._broken(row)

@@ -36,6 +36,13 @@ class Entries:
     def step(self, position, now_ms):
         """Again and again while it is shown."""
 
+    def is_searching(self):
+        """Whether `search` has something to do, which takes long."""
+        return False
+
+    def search(self):
+        """Do a piece of it."""
+
     def is_busy(self):
         """Whether it has something to do that a minute without a key does not end."""
         return False

@@ -58,6 +58,7 @@ class Menu(Page):
 
     def __init__(self, panel, begin=("main", None)):
         Page.__init__(self, panel)
+        self._coming = None  # (name, argument) of a list that is not there yet
         self._lists = []  # (name of the module, `List`, position in it), the one shown last
         self._used_at_ms = None
         self._told = None  # words in place of the entry, for a while or until a key is pressed
@@ -96,12 +97,19 @@ class Menu(Page):
     def is_ready(self):
         return len(self._lists) > 0
 
-    def is_coming(self):
-        return self._coming is not None
+    @property
+    def is_busy(self):
+        return self._coming is not None or bool(self._lists) and self._lists[-1][1].is_searching()
+
+    def work(self, now_ms):
+        """What takes long has a turn of its own: a module that comes, a piece of a search."""
+        if self._coming:
+            self._come(now_ms)
+        else:
+            self._lists[-1][1].search()
 
     def step(self, keys, now_ms):
         if self._coming:
-            self._come(now_ms)
             return
         if self._told and elapsed(now_ms, self._told_at_ms, self.panel.mask) >= _TOLD_MS:
             self._told = None

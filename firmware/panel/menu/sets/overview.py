@@ -26,7 +26,7 @@ class List(Entries):
         self.step(0, 0)
 
     def step(self, position, now_ms):
-        """Look what there is; read one head."""
+        """Look what there is."""
         marked = self._control.is_half_written()
         seen = (marked, self.panel.remembered.get(__name__))
         if seen != self._seen:  # a set more, or less, or what was half written is not any more
@@ -37,9 +37,14 @@ class List(Entries):
             except OSError:
                 self._names = []
             self._heads = [None] * len(self._names)
-        elif None in self._heads:
-            place = self._heads.index(None)
-            self._heads[place] = self._head(self._names[place])
+
+    def is_searching(self):
+        return None in self._heads
+
+    def search(self):
+        """Read one head."""
+        place = self._heads.index(None)
+        self._heads[place] = self._head(self._names[place])
 
     def count(self):
         return 1 + self._marked + len(self._names)
