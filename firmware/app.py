@@ -46,7 +46,7 @@ _FINDER = ("uss.finding", "uss.finding.mirror", "uss.finding.finder")
 _FAREWELL_STEPS = const(100)  # for the display to show that nothing is controlled any more
 _SAVE_AGAIN_MS = const(10_000)  # after the store failed
 _LONG_US = const(700)  # a step that has taken so long is not to do two more things
-_SHORT_US = const(450)  # one that has taken no longer has time for a piece of the log
+_SHORT_US = const(700)  # one that has taken no longer has time for a piece of the log
 _SILENCES = const(3)  # telegrams without an answer, then somebody looks for another layout
 _FEED_MS = const(100)  # of the watchdog, which bites after 2 s
 
@@ -242,10 +242,9 @@ class App:
             self._switch_log(now_ms)
 
     def _log_on(self, now_ms, now_us):
-        """As much of the log as a step has time for that has begun then."""
-        log = self._log
-        while (self.ticks_us() - now_us) & self._mask < _SHORT_US and log.step(now_ms):
-            pass
+        """A piece of the log, if a step has time for it that has begun then."""
+        if (self.ticks_us() - now_us) & self._mask < _SHORT_US:
+            self._log.step(now_ms)
 
     def _switch_log(self, now_ms):
         """Begin the log that the settings want, or end it."""

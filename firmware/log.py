@@ -49,29 +49,25 @@ class Log:
         self._is_torn = False  # a line was begun, and did not end
         self._exchanges = panel.bus.turns.exchanges
         # To count it takes 10 ms, which no motor that runs is to wait for.
-        self._heap = on_demand.free_bytes()
+        self._heap = 0 if panel.any_runs() else on_demand.free_bytes()
 
     def step(self, now_ms):
-        """One thing: send some characters, make a piece, or begin a line. Answers whether there is
-        more to do at once.
-        """
+        """One thing: send some characters, make a piece, or begin a line."""
         left = len(self._piece) - self._at
         if left >= self._serial.packet or left and self._pieces is None:
             self._send(now_ms)
-            return False
-        if self._pieces is None:
+        elif self._pieces is None:
             self._serial.hear()
             late_ms = elapsed(now_ms, self._began_at_ms, self._panel.mask) - _LINE_MS
             if late_ms >= 0:
                 self._begin(now_ms, late_ms)
-            return False
-        piece = next(self._pieces, None)
-        if piece is None:
-            self._pieces = None
         else:
-            self._piece = self._piece[self._at :] + piece
-            self._at = 0
-        return True
+            piece = next(self._pieces, None)
+            if piece is None:
+                self._pieces = None
+            else:
+                self._piece = self._piece[self._at :] + piece
+                self._at = 0
 
     def _send(self, now_ms):
         """Some characters, if the PC has taken those before; or drop the line."""

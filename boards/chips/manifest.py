@@ -20,8 +20,8 @@ LEFT_OUT = ("uss/br/", "uss/s7/", "uss/tasks/")
 # nearly full. An error of the firmware names the function.
 OPT = 3
 
-# The order in which they are frozen is part of the firmware's bytes. MicroPython looks through their
-# names from the beginning, so those that come while the panel works stand first.
+# The order in which they are frozen is part of the firmware's bytes. MicroPython looks through
+# their names from the beginning, so those that come while the panel works stand first.
 ON_DEMAND = ("panel/menu/", "panel/lookup/", "panel/sets/")
 
 

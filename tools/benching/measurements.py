@@ -22,6 +22,7 @@ CHARACTER_BITS = 11
 TELEGRAM_CHARACTERS = 16
 COLLECT_MS = 100
 REPLY_CHARACTERS = 2
+LOG_BEGINS_MS = 1_000
 SETTLE_MS = 3_000  # from power-on of the panel until it knows its drive, if there is only one
 SETTLE_MORE_MS = 30_000  # the longest time with 31 drives
 READY_MS = 1_200  # until it shows READY
@@ -100,13 +101,14 @@ def at_the_prompt(world, program=ON_CHIP):
             raise RuntimeError(error)
 
 
-def result(world, ms):
-    """What a function of on_chip.py has printed, once it is over."""
+def result(world, ms, begins=b"{"):
+    """What a function of on_chip.py has printed, once it is over. begins: how it does, where lines
+    of the log stand before it."""
     printed = world.repl.wait_for(b"\x04", ms, since=2)
     error = world.repl.wait_for(b"\x04>", ms, since=2 + len(printed))
     if len(error) > 2:
         raise RuntimeError(error.decode())
-    return json.loads(printed[:-1].decode())
+    return json.loads(printed[printed.find(begins) : -1].decode())
 
 
 def settle(world):
@@ -172,22 +174,29 @@ def asking(quick, baud, drives):
     return exchanges(quick, baud, drives, True)
 
 
-def exchanges(quick, baud, drives, tasks):
+def logging(quick, baud, drives):
+    """As `line`, and the panel writes its log to a PC that reads. Before it does it counts its
+    memory, which takes long.
+    """
+    return exchanges(quick, baud, drives, False, LOG_BEGINS_MS, settings={"log": "JSON"})
+
+
+def exchanges(quick, baud, drives, tasks, begins_ms=0, **more):
     baud, drives = int(baud), int(drives)
     most = 10_000 if drives == 1 else 3_000
     telegrams = (100 if quick else 400) if baud < 57600 else 500 if quick else most
-    world = world_at(baud, drives)
+    world = world_at(baud, drives, **more)
     at_the_prompt(world)
     busy_ms = telegrams * 1000 // rate_limit(baud) * 18 // 10 + 2_000
     whole_ms = busy_ms + SETTLE_MS + 3_000 + 400 * drives
-    world.repl.begin("steps(%d, 1, %d, %r)" % (whole_ms, COLLECT_MS, tasks))
+    world.repl.begin("steps(%d, 1, %d, %r, %d)" % (whole_ms, COLLECT_MS, tasks, begins_ms))
     start_the_motor(world)
     first = Line(world)
     while first.telegrams() < telegrams and world.clock.now_us < whole_ms * 1000:
         world.press(("UP", "UP", "DOWN", "UP", "DOWN", "DOWN")[world.random(0, 5)], 60)
     found = first.figures()
     found["limit"] = rate_limit(baud)
-    inside = result(world, whole_ms)
+    inside = result(world, whole_ms + begins_ms, b'{"collections_us"')
     found["steps_us"] = steps_of(inside["steps"][0])
     found["collections_us"] = spread(inside["collections_us"])
     found["tasks"] = inside["tasks"]
@@ -737,6 +746,7 @@ MEASUREMENTS = {
     for function in (
         line,
         asking,
+        logging,
         mixed,
         saving,
         cuts,

@@ -80,6 +80,7 @@ ASKING_LINES = {
     for drives in (1, 31)
     for baud in FULL_BAUDS
 }
+LOGGING = Task(("logging", "115200", "31"))
 MIXED = {baud: Task(("mixed", str(baud))) for baud in FULL_BAUDS}
 SAVING = Task(("saving",))
 CUTS = Task(("cuts",))
@@ -109,7 +110,7 @@ OTHERS = ("TurboCtl", "MinimalModbus", "PyModbus", "UModbus")
 # The long ones first, so that the last one does not run alone for long.
 TASKS = (
     LINES[115200], LINES[187500], *MEMORIES.values(), *FULL_LINES.values(),
-    *ASKING_LINES.values(), *STOPS.values(),
+    *ASKING_LINES.values(), LOGGING, *STOPS.values(),
     FULL_STEPS, STEPS, *MENUS.values(), *LOOKUPS.values(), *HANGING.values(), SAVING, CUTS,
     *MIXED.values(),
     LINES[9600], LINES[19200], LINES[38400], *PICTURES.values(), *BOOTS.values(), *HEAPS.values(),
@@ -525,6 +526,7 @@ ROWS = (
         step_row(task, None, "changing display, " + ASKING[at])
         for at, task in ASKING_LINES.items()
     ),
+    step_row(LOGGING, None, "changing display, a line of the log a second, " + FULL % 115200),
     *(
         step_row(task, name, MENU_TEXT[name] % (HOW_IT_LIES[how], of_drives(drives)), MENU_US[how])
         for (how, drives), task in MENUS.items()
