@@ -869,7 +869,7 @@ MUTATIONS = (
     Mutation(
         "low word lost",
         "the page of a parameter shows 0 for whole numbers",
-        ("SHOWN",), 1,
+        ("SHOWN",), 17,
         (
             "panel/lookup/inspection.py",
             "self.high, self.low = job.high, job.low",
@@ -882,7 +882,6 @@ MUTATIONS = (
 # well: a life of two minutes gets there too rarely. Each still has to fit the firmware's text.
 UNFOUND = (
     "another index shown",
-    "low word lost",
     "the next one's turn is lost",
     "faster without a key",
     "hertz believed",
