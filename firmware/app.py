@@ -34,10 +34,8 @@ from panel.screen import GLYPHS
 PAGES_AT_HAND = (
     "panel.pages.parameter_words", "panel.writer", "panel.pages.question", "panel.pages.risk",
     "panel.pages.writing", "panel.pages.parameters", "panel.menu.words", "panel.menu.engine",
-    "panel.menu.main", "catalogue", "catalogue.packed",
-    "uss.families.kinds", "settings_file", "uss.finding", "uss.finding.mirror",
-    "uss.finding.finder", "panel.menu.address", "panel.menu.find", "panel.menu.turns",
-    "panel.menu.settings", "panel.menu.value", "panel.menu.order", "panel.menu.drives",
+    "panel.menu.main", "uss.families.kinds", "settings_file", "uss.finding", "uss.finding.mirror",
+    "panel.menu.address",
 )  # fmt: skip
 _OF_THE_SEARCH = (
     "search.search", "search.hunt", "search.words", "uss.finding.scan", "uss.finding.enquiry",

@@ -381,7 +381,8 @@ class Panel:
                 self._taker = page
                 self._acting = True
                 return
-        page.take_keys(acts, now_ms)
+        if page:
+            page.take_keys(acts, now_ms)
         if acts.pressed:
             self._drawn_at_ms = None  # a new picture at once
 
