@@ -169,7 +169,7 @@ def press_stop(world, where):
     pressed_us = world.clock.now_us
     stop_ms = STOP_MS + LISTEN_MS if has_left(world) else STOP_MS
     was_question = row_2(world).endswith("PARAM=NO")
-    was_parameter = is_parameter(row_2(world))
+    was_parameter = is_parameter(where[1][1])  # a refusal may hide it by now
     world.down("STOP")
     world.run(500)  # said from 300 ms on, and then drawn and shown
     settled(world)  # what is being written to the display can be read a moment later
