@@ -14,27 +14,27 @@ import sys
 
 ROOMY_BYTES = 100_000  # where so much is free, what a key may ask for any time stays loaded
 
-_kept = []  # names that `drop` leaves alone
+_kept = ()  # names that `drop` leaves alone
 
 
 def keep(names):
     """Load these modules for good, if there is room: to load one takes some milliseconds."""
-    before = list(_kept)
-    _kept.clear()
+    global _kept
+    before, _kept = _kept, ()
     for name in before:  # of the panel before this one: what they take is free again
         drop(name)
     gc.collect()
     if not hasattr(gc, "mem_free") or gc.mem_free() >= ROOMY_BYTES:
         for name in names:
             load(name)
-            _kept.append(name)
+        _kept = names
 
 
 def load(name):
     """The module."""
     module = sys.modules.get(name)
-    if module is None:  # looking for its packages takes long, so this looks for them once
-        __import__(name)
+    if module is None:
+        __import__(name)  # it answers the outermost package: to walk down from there takes long
         module = sys.modules[name]
     return module
 

@@ -106,7 +106,7 @@ class Control:
         self.drive = drive
         self.survey = survey
         self.desk = desk
-        self.setpoint = Setpoint(drive, survey, desk.settings)
+        self.setpoint = Setpoint(survey, desk.settings)
         self._now_us = 0
         self._contact = False  # as last seen
         self._quiet_zsw = _UNKNOWN  # drive.zsw when there was nothing to watch

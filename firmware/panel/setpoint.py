@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The setpoint of one drive: what the operator set, kept within every limit, as a word to send.
 
-    setpoint = Setpoint(drive, survey, settings)
+    setpoint = Setpoint(survey, settings)
     setpoint.step()                     # again and again: limits may have been read
     setpoint.change(10)                 # 0.1 Hz up
     setpoint.centihertz                 # what is shown and sent, without its sign
@@ -24,23 +24,21 @@ class Setpoint:
 
     _negative = False  # most drives never need it: it takes memory when it first differs
 
-    def __init__(self, drive, survey, settings):
+    def __init__(self, survey, settings):
         self.centihertz = settings.setpoint_centihertz
         self._asked_centihertz = settings.setpoint_centihertz  # what the operator set
         self._settings = settings
-        self._drive = drive
         self._survey = survey
         self._find_limits()
-        self._version = 0  # of the survey, as last seen
+        self._seen = 0  # the survey's version that `step` saw last; of a drive to run ~version
         self._scaling = None  # by which drive.hsw was made
-        self._wanted = False  # the drive was to run, as last seen
 
     def change(self, centihertz):
         """A key moves it by so much, within the limits of the drive and of the settings."""
         self.step()
         wish = self.centihertz + centihertz
         lowest = self._lowest
-        if centihertz < 0 and self._drive.wanted:
+        if centihertz < 0 and self._survey.drive.wanted:
             lowest = min(lowest, self.centihertz)  # down is not up to the lowest
         self._send(max(min(max(wish, lowest), self._highest), 0))
         self._asked_centihertz = self.centihertz
@@ -57,7 +55,7 @@ class Setpoint:
 
     def has_news(self):
         """Whether the survey knows what `step` has not taken yet."""
-        return self._survey.version != self._version
+        return self._survey.version != (~self._seen if self._seen < 0 else self._seen)
 
     def step(self):
         """A limit that comes or goes moves it at once; what the operator set is remembered.
@@ -66,12 +64,13 @@ class Setpoint:
         whether the survey has news.
         """
         survey = self._survey
-        wanted = self._drive.wanted != 0
-        ended = self._wanted and not wanted
-        self._wanted = wanted
-        if survey.version == self._version and not ended:
+        wanted = survey.drive.wanted
+        seen, now = self._seen, ~survey.version if wanted else survey.version
+        if seen == now:
             return False
-        self._version = survey.version
+        self._seen = now
+        if seen == ~now and wanted:  # nothing is new but that it is to run
+            return False
         self._find_limits()
         if not wanted:
             self._send(max(min(self._asked_centihertz, self._highest), self._lowest))
@@ -106,8 +105,8 @@ class Setpoint:
             self._put(self._scaling.hsw(centihertz))
 
     def _put(self, magnitude):
-        self._drive.hsw = -magnitude & 0xFFFF if self._negative else magnitude
+        self._survey.drive.hsw = -magnitude & 0xFFFF if self._negative else magnitude
 
     def _magnitude(self):
         """That of drive.hsw."""
-        return abs(signed(self._drive.hsw))
+        return abs(signed(self._survey.drive.hsw))

@@ -19,7 +19,7 @@ from tools.soaking.judging.drive_settings import Values
 from tools.soaking.judging.families import FAMILIES, VARIABLE, Kind, Sight, kinds_of
 from tools.soaking.judging.reader import subject_in
 from tools.soaking.judging.rules import RULES, Broken
-from tools.soaking.judging.runs import is_standstill
+from tools.soaking.judging.runs import is_standstill, judge_rise
 from tools.soaking.judging.tape import MIRRORED, REPLY, RETURNED, Tape
 from tools.soaking.soak import Soak
 from tools.soaking.story import story
@@ -84,6 +84,23 @@ def test_set_may_raise_a_setpoint_where_the_display_has_digits_and_nowhere_else(
     assert soak.reader.rows[1].startswith("NEW"), soak.reader.rows
     assert may_raise()
     assert not may_raise(), "the digits are gone"
+
+
+def test_up_may_take_effect_in_the_first_telegram_after_a_line_that_was_blocked():
+    soak = Soak(13, drives=1)
+    address = soak.plan.addresses[0]
+    case = soak.judge.cases[address]
+    case.raised_us, case.highest_hsw = 0, 0x2000
+    case.sent_us, now = 500_000, 1_040_000  # a node has talked since
+    judge_rise(soak.judge.witness, case, 0x2100, now, "here")
+    assert case.highest_hsw == 0x2100
+    case.sent_us = 1_000_000  # that telegram had the old setpoint, long after the key
+    try:
+        judge_rise(soak.judge.witness, case, 0x2200, now, "here")
+    except Broken as broken:
+        assert broken.args[0] == "RISES", broken
+    else:
+        raise AssertionError("nobody noticed")
 
 
 def test_a_reply_that_somebody_talked_into_may_have_been_taken_or_not():

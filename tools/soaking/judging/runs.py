@@ -25,7 +25,7 @@ NEAR = FULL // 50  # 2 %: HIW has reached HSW
 STANDS = FULL // 200  # the panel sees a standstill at 1 %
 TURNS = FULL * 6 // 100  # it looks for one from 5 % on
 ROUNDING = 4  # of HSW: 0.01 Hz
-RAISED_US = 600 * MS  # until what UP has done is on the line
+RAISED_US = 600 * MS  # until what UP has done is on the line, or waits for it to be free
 COUNTED_US = 2 * S  # the telegrams received, r2024, are read as often
 
 
@@ -38,10 +38,10 @@ def begin(case, hsw):
 
 
 def judge_rise(witness, case, hsw, now, where):
-    """A setpoint that is above what UP left of it."""
+    """A setpoint that is above what UP left of it, in the telegram before this one."""
     hsw = magnitude(hsw)
     raises = "UP" in witness.down and case in witness.candidates()
-    if raises or now - case.raised_us < RAISED_US + 2 * witness.cycle_us:
+    if raises or case.sent_us - case.raised_us < RAISED_US + 2 * witness.cycle_us:
         case.highest_hsw = hsw
     elif hsw > case.highest_hsw + ROUNDING:
         told = (where, hsw, case.highest_hsw)
