@@ -172,7 +172,8 @@ class App:
             self.bus.resume()
             return
         self.bus.pause()
-        if self.bus.paused:
+        # `paused` does not know yet of a command that this very step has given: that goes first.
+        if self.bus.paused and not self.bus.turns.has_command():
             self._save(now_ms)
             self.bus.resume()
 

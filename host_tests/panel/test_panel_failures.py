@@ -337,6 +337,29 @@ def test_saving_the_settings_spoils_no_telegram():
         world.check()
 
 
+def test_a_command_that_comes_with_the_pause_goes_before_the_settings():
+    """Its telegram would be under way while the flash is written, and hold the line for too long:
+    nothing would end it in time.
+    """
+    for seed in range(1, 13):
+        print("seed", seed)
+        world = panel(addresses=(1, 2), seed=seed)
+        world.run(world.random(0, 60))
+        bus, step_panel = world.app.bus, world.app.step_panel
+        told = []
+
+        def stop_in_the_pause(*step, bus=bus, step_panel=step_panel, told=told):
+            if bus.paused and not told:
+                told.append(bus.turns.drives[1].stop())
+            return step_panel(*step)
+
+        world.app.step_panel = stop_in_the_pause
+        world.app.settings.accept_unsupervised(2)
+        world.run(2000)
+        assert told and not world.app.settings.dirty
+        world.check()
+
+
 def test_a_start_while_the_settings_are_being_saved_is_not_lost():
     world = panel()
     world.app.settings.accept_unsupervised(1)
