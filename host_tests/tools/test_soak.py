@@ -20,7 +20,7 @@ from tools.soaking.judging.families import FAMILIES, VARIABLE, Kind, Sight, kind
 from tools.soaking.judging.reader import subject_in
 from tools.soaking.judging.rules import RULES, Broken
 from tools.soaking.judging.runs import is_standstill, judge_rise
-from tools.soaking.judging.tape import MIRRORED, REPLY, RETURNED, Tape
+from tools.soaking.judging.tape import LENGTH, MIRRORED, REPLY, RETURNED, Tape
 from tools.soaking.soak import Soak
 from tools.soaking.story import story
 from tools.soaking.worlds import Plan, switched
@@ -226,6 +226,22 @@ def test_what_a_question_is_about_is_read_from_the_display():
     assert subject_in("A31: P2011=17   ") == (31, 2011, 17)
     for other in ("A1: P07 F:  0.00", "A1: P0700=      ", "PANEL MAY LOSE  ", "S:-10.0 F: -0.29"):
         assert subject_in(other) is None, other
+
+
+def test_an_answer_of_what_a_drive_is_makes_no_contact():
+    """Somebody talks into the last answer: it was heard as little as an answer of another kind."""
+    soak = Soak(13, drives=1)
+    soak.hand.run(2_000)
+    judge, (address,) = soak.judge, soak.plan.addresses
+    case, kind = judge.cases[address], judge.witness.kinds[address]
+    tape = judge.tape
+    row = [one for one in range(LENGTH) if tape.kind[one] == REPLY and tape.end_us[one]][-1]
+    for is_told, flawless, following in ((True, True, True), (False, False, True)):
+        tape.end_us[row] = case.heard_us + 1_000
+        tape.flawless[row] = flawless
+        judge._unsettled = [(row, case, kind, 0xFB31, case.requests, False, is_told)]
+        judge._settle_replies(soak.world.clock.now_us + 1_000_000)
+        assert case.is_told == following, (is_told, flawless)
 
 
 def test_a_telegram_that_a_drive_is_to_send_back_is_no_request():

@@ -17,8 +17,8 @@ class Case:
         self.sent_us = NEVER
         self.zsw = 0  # of the last whole reply
         self.answered_us = NEVER  # the end of that
-        self.told_us = ALWAYS  # the end of one that may answer a question of what it is
         self.heard_us = NEVER  # the last one that the panel is sure to have taken,
+        self.is_told = False  # it may answer a question of what the drive is
         self.contact_us = NEVER  # the first one since power-on, or the lost time before it
         self.asked_us = NEVER  # the last request, if no reply has come to it
         self.missed_us = NEVER  # a request that stayed without a reply, the last one

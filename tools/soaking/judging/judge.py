@@ -81,7 +81,7 @@ class Judge:
         self.starts = [0] * len(self.drives)  # of their motors, as counted last
         self._shares = Shares(witness)
         self._patience_us = SILENT_US + witness.exchange_us
-        self._unsettled = []  # replies that may still be spoilt: row, case, whether it has stopped
+        self._unsettled = []  # replies that may still be spoilt, and what to note of each then
         self._may_ask = False  # the last telegram may have asked a drive what it is,
         self._is_question = False  # and has
         self._begun_us = None  # the power-on whose first telegram was judged last
@@ -217,7 +217,7 @@ class Judge:
             is_doubtful = True
         misses = case.requests - case.heard_requests
         answers = case.answered_us > recently_us or not misses  # a round may take longer
-        if case.heard_us == case.told_us:  # an answer to a question is no contact yet
+        if case.is_told:  # an answer to a question is no contact yet
             is_doubtful = answers = True
         if answers and (is_doubtful or not witness.is_able(address)):
             self._shares.mirror(case, now)
@@ -248,8 +248,6 @@ class Judge:
             case.excused_us = now + 2 * S + self.witness.cycle_us
             case.heard_us = NEVER
         case.answered_us = now
-        if self._may_ask:
-            case.told_us = now
         case.unheard = 0
         case.asked_us = NEVER
         case.zsw = zsw
@@ -269,7 +267,7 @@ class Judge:
                 stops = True
             if stops:
                 case.excused_us = now + 2 * S + self.witness.cycle_us
-        self._unsettled.append((row, case, kind, zsw, case.requests, stops))
+        self._unsettled.append((row, case, kind, zsw, case.requests, stops, self._may_ask))
 
     def _tells_speed(self, address):
         """Whether HIW is the speed, in percent and with a sign, by what the drive is set to."""
@@ -282,7 +280,7 @@ class Judge:
         tape = self.tape
         waiting = []
         for one in self._unsettled:
-            row, case, kind, zsw, requests, stops = one
+            row, case, kind, zsw, requests, stops, is_told = one
             if not tape.is_settled(row, now):
                 waiting.append(one)
             elif self._is_sure(row, tape) and kind.is_sure_reply(tape.count[row]):
@@ -294,7 +292,8 @@ class Judge:
                 lost_us = max(self.witness.boot_us, heard_us - self.witness.lost_us)
                 if case.heard_us < lost_us:
                     case.contact_us = heard_us
-                case.heard_us = max(case.heard_us, heard_us)
+                if heard_us > case.heard_us:
+                    case.heard_us, case.is_told = heard_us, is_told
                 if zsw & (ZSW_FAULT | ZSW_INHIBIT):
                     case.bad_us = max(case.bad_us, tape.end_us[row])
                 if stops:
