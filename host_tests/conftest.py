@@ -13,10 +13,7 @@ module level:
     INTERPRETERS = "pico pico_hard"     # ... on both builds: with soft timers and with hard ones
     INTERPRETERS = "host"               # an ordinary pytest file, with fixtures and all
 
-On CPython the lines that run are noted, which takes twice the time. Long tests that run no line of
-their own are left out of that:
-
-    NOT_TRACED = "test_every_baud_rate test_ten_minutes"
+On CPython the lines of the firmware that run are noted (cpython/line_notes.py).
 """
 
 import ast
@@ -138,15 +135,10 @@ def absence(tier, reason):
 
 def interpreters(tree):
     """The names in the INTERPRETERS of a test file; the tiers for every file where it has none."""
-    return words(tree, "INTERPRETERS") or [name for name in TIERS if TIERS[name].everywhere]
-
-
-def words(tree, name):
-    """The words of the text that a test file assigns to `name`; None where it does not."""
     for node in tree.body:
-        if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == name:
+        if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "INTERPRETERS":
             return ast.literal_eval(node.value).split()
-    return None
+    return [name for name in TIERS if TIERS[name].everywhere]
 
 
 class MicroPythonFile(pytest.File):
@@ -160,9 +152,6 @@ class MicroPythonFile(pytest.File):
         unknown = [name for name in self.interpreters if name not in TIERS]
         if unknown:
             raise self.CollectError(f"INTERPRETERS names {unknown[0]!r}, which is not a tier")
-        for name in words(self.tree, "NOT_TRACED") or []:
-            if name not in functions:
-                raise self.CollectError(f"NOT_TRACED names {name!r}, which is no test here")
         for name in self.interpreters:
             if name in self.config.stash[SURVEY].versions:
                 yield TierOfFile.from_parent(self, name=name, functions=functions)

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Line coverage of firmware/, from the lines that the cpython tier saw run.
 
-The library `coverage` notes them in each process (runner.py); here it makes one table of them.
+Each process notes them (cpython/line_notes.py); here the library `coverage` makes one table of
+them.
 """
 
 import io

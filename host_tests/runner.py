@@ -77,19 +77,21 @@ def main(tier, path=None, *names):
     if path is None:
         print(version)
         return
-    tracer = LineTracer() if tier == "cpython" else NoTracer()
+    if tier == "cpython":
+        import line_notes
+
+        line_notes.begin()
     if hasattr(gc, "threshold"):
         gc.threshold(COLLECT_AFTER)
     folder, _, file_name = path.rpartition("/")
     if folder not in IMPORT_FOLDERS:
         sys.path.insert(0, folder)
-    with tracer:
-        module = __import__(file_name[: -len(".py")])
-    not_traced = getattr(module, "NOT_TRACED", "").split()
+    module = __import__(file_name[: -len(".py")])
     for name in names or test_functions(module):
-        with NoTracer() if name in not_traced else tracer:
-            run(name, getattr(module, name))
-    tracer.report()
+        run(name, getattr(module, name))
+    if tier == "cpython":
+        for path, numbers in line_notes.seen():
+            report("lines", path, *map(str, sorted(numbers)))
 
 
 def report(*words):
@@ -222,46 +224,6 @@ def source_line(path, number):
             return source.readline().strip()
     except OSError:
         return "(no source)"
-
-
-# ---- line coverage --------------------------------------------------------------------------
-
-
-class NoTracer:
-    """Looks away."""
-
-    def __enter__(self):
-        pass
-
-    def __exit__(self, *_):
-        pass
-
-    def report(self):
-        pass
-
-
-class LineTracer:
-    """Notes which lines of the firmware run inside of `with`, by the library `coverage`."""
-
-    def __init__(self):
-        from coverage import Coverage
-
-        self.coverage = Coverage(None, config_file=False, source=["firmware"])
-        # A test that traces on its own account ends this; that is no news to anybody.
-        self.coverage.set_option("run:disable_warnings", ["trace-changed", "no-data-collected"])
-
-    def __enter__(self):
-        self.coverage.start()
-
-    def __exit__(self, *_):
-        self.coverage.stop()
-
-    def report(self):
-        from os.path import relpath
-
-        seen = self.coverage.get_data()
-        for name in seen.measured_files():
-            report("lines", relpath(name), *map(str, seen.lines(name)))
 
 
 if __name__ == "__main__":
