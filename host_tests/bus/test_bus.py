@@ -16,11 +16,6 @@ from uss.layout import VARIABLE, Layout
 from uss.master import CLOSED, OFF
 from uss.scaling import Scale
 
-NOT_TRACED = """
-    test_a_scan_trips_nobody_and_says_who_will
-    test_a_scan_says_what_it_has_found_in_a_form_that_add_takes
-"""
-
 
 def near(value, wanted, within=0.02):
     assert abs(value - wanted) <= within, (value, wanted)

@@ -8,11 +8,6 @@ from bus_bench import Bench
 from uss import pzd
 from uss.bus import UssError
 
-NOT_TRACED = """
-test_no_motor_starts_but_by_run_when_the_loop_polls
-test_no_motor_starts_but_by_run_when_interrupts_do_it
-"""
-
 SEEDS = range(1, 9)
 STEPS = 60
 

@@ -21,11 +21,6 @@ from catalogue import (
     UNSURE,
 )
 
-NOT_TRACED = """
-    test_the_first_and_the_last_row_of_each_kind_are_found test_a_search_finds_every_parameter
-    test_the_tables_stay_in_flash
-"""
-
 MICROPYTHON = sys.implementation.name == "micropython"
 RAM_BYTES = 4096  # the bar on a chip, with everything that stays
 

@@ -12,10 +12,6 @@ from tools.examples.simulation import Stage, names
 from uss import families
 from uss.bus import Master
 
-NOT_TRACED = (
-    "test_every_block_runs_and_leaves_no_motor_on test_the_results_that_it_shows_are_those"
-)
-
 README = "firmware/uss/README.md"
 QUICK = {2014: 2_000, 1120: 1.0, 1121: 1.0, 1058: 5.0, 1060: 1.0}
 KINDS = {

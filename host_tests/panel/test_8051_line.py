@@ -21,8 +21,6 @@ from uss.receiver import WAITING
 from uss.telegram import GOOD
 from uss.timing import BAUD_RATES
 
-NOT_TRACED = "test_02h_inside_of_data_begins_no_telegram_where_the_line_is_looked_at"
-
 # ZSW and HIW. The second and the third are what a spoiled reply claims instead of the first.
 RIGHT = (0xFB34, 0x0CCD)  # 10 Hz of 50 Hz
 STANDING = (0xFB31, 0x0000)

@@ -10,12 +10,6 @@ import main
 from boards.sim.world import World
 from panel_bench import OFF1, ON, page_back, panel, row_1, row_2, running, said, starts, telegrams
 
-NOT_TRACED = """
-    test_the_setpoint_stays_between_zero_and_the_highest_frequency
-    test_a_frequency_to_the_left_is_negative_however_high_it_is
-    test_each_value_stays_within_its_own_limits
-"""
-
 ON_REVERSE = 0x0C7F
 JOG_RIGHT, JOG_LEFT = 0x057E, 0x067E
 ACKNOWLEDGE = 0x04FE

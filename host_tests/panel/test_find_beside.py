@@ -9,7 +9,6 @@ from boards.sim.world import World
 from panel_bench import row_1, row_2, settled, starts, telegrams, wait_until_known
 
 OFF1 = 0x047E
-NOT_TRACED = "test_what_is_not_taken_does_not_trip_while_the_list_is_shown"
 
 
 def line_of(text, drives, **more):

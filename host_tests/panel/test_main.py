@@ -9,8 +9,6 @@ from boards.sim.line.intruder import Intruder
 from boards.sim.world import World
 from panel_bench import panel, unsupervised
 
-NOT_TRACED = "test_closing_waits_until_every_drive_of_a_long_list_was_sent_off"
-
 
 class Switch:
     """A virtual board that main() finds as the module `board`, and how its loop ends."""

@@ -12,14 +12,6 @@ from panel.pages import splash
 from panel_bench import OFF1, ON, panel, row_1, row_2, running, starts, telegrams
 from version import VERSION
 
-NOT_TRACED = (
-    "test_a_stop_is_sent_however_soon_start_follows "
-    "test_it_works_at_every_rate_the_drive_knows "
-    "test_other_delays_and_loop_times_change_nothing "
-    "test_stop_is_in_the_next_telegram_but_one_at_the_latest"
-)
-
-
 # --- switching on --------------------------------------------------------------------------------
 
 

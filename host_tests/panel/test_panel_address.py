@@ -16,12 +16,6 @@ from parameter_bench import (
     writes,
 )
 
-NOT_TRACED = (
-    "test_a_long_list_gets_time_to_find_the_drive_as_well "
-    "test_an_address_that_did_not_reach_the_eeprom_does_not_get_into_the_settings "
-    "test_an_old_answer_to_a_reading_is_no_confirmation"
-)
-
 
 def test_a_drive_is_followed_to_its_new_address():
     world = parameter("P2011", addresses=(1, 2))

@@ -21,20 +21,6 @@ from panel_bench import (
     wait_until_known,
 )
 
-NOT_TRACED = """
-    test_a_drive_that_does_not_matter_hides_none_that_does
-    test_with_n_drives_in_trouble_each_is_said_for_a_second_in_every_2_n_seconds
-    test_the_most_dangerous_ones_come_first
-    test_a_drive_that_would_run_on_too_long_by_now_is_said_to
-    test_more_than_four_of_a_kind_share_a_text
-    test_of_many_that_share_a_text_the_one_shown_is_said_by_itself_where_its_page_does_not
-    test_one_more_of_a_kind_for_a_moment_puts_none_of_them_off
-    test_drives_that_were_never_heard_share_one_text_and_are_no_alarm_each
-    test_stop_never_ends_what_is_said_of_a_motor_that_was_heard_running_last
-    test_with_one_drive_more_they_are_said_together_at_once
-    test_a_stop_of_all_takes_no_time_from_the_dead_man
-"""
-
 ASKED = "SET=FIX START=GO"
 
 

@@ -19,13 +19,6 @@ from panel_bench import (
     unsupervised,
 )
 
-NOT_TRACED = (
-    "test_a_reset_in_the_middle_of_a_telegram_blocks_nothing "
-    "test_a_short_period_wraps_many_times_in_an_hour "
-    "test_ticks_that_wrap_in_the_middle_of_an_exchange_disturb_nothing"
-)
-
-
 # --- when the drive stops by itself --------------------------------------------------------------
 
 

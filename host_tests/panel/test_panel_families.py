@@ -10,12 +10,6 @@ from boards.sim.world import World
 from kind_bench import is_untold, panel_of, start
 from panel_bench import row_1, row_2, starts, wait_until_known
 
-NOT_TRACED = """
-    test_every_family_in_every_layout_runs_turns_round_trips_and_stops
-    test_a_drive_of_other_pzd_words_than_the_settings_say_is_found
-    test_a_drive_whose_answers_make_no_sense_is_asked_for_its_layout
-"""
-
 HERTZ = (
     "mm420", "mm440", "mm440/127", "mm420/4+4", "mm440/4+8", "g110", "g110/4", "v20", "v20/4+6",
     "mm3", "mm440-bop", "mm420-bop/127", "mm440-bop/4+4",

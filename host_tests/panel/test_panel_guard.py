@@ -7,12 +7,6 @@ import main
 from boards.sim.world import World
 from panel_bench import OFF1, row_1, row_2, starts, telegrams, wait_until_known
 
-NOT_TRACED = """
-    test_an_alarm_makes_light_whichever_drive_is_shown
-    test_the_code_opens_the_lock
-    test_the_light_goes_off_without_a_key_and_on_with_any
-"""
-
 LOCKED = "LOCK: HOLD PARAM"
 
 

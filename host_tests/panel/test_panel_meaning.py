@@ -21,11 +21,6 @@ from panel_bench import (
 from uss.families import rows
 from version import VERSION
 
-NOT_TRACED = """
-    test_a_source_that_becomes_wrong_while_it_runs_takes_on_back
-    test_a_setpoint_that_a_limit_lowered_stays_there_while_it_runs
-"""
-
 COM_LINK, STATUS, ACTUAL = 0x07F40000, 0x00340000, 0x00150000
 
 # Number, index, a value with which the panel is not obeyed, what START says.

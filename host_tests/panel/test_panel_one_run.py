@@ -18,11 +18,6 @@ from panel_bench import (
 )
 from uss.pkw import DONE
 
-NOT_TRACED = """
-    test_a_motor_whose_mains_failed_for_a_moment_does_not_start_again
-    test_a_count_that_the_loop_takes_late_lacks_no_telegram
-"""
-
 AWAY_MS = (50, 100, 200, 400, 800)
 
 

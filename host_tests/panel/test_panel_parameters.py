@@ -16,11 +16,6 @@ from parameter_bench import (
     writes,
 )
 
-NOT_TRACED = (
-    "test_an_edited_value_stays_within_its_range "
-    "test_keys_while_set_is_held_do_not_change_what_becomes_permanent"
-)
-
 KEYS = ("START", "REVERSE", "JOG_RIGHT", "JOG_LEFT", "UP", "DOWN", "ADDRESS_UP", "ADDRESS_DOWN",
         "PARAM", "NEXT", "PREVIOUS", "EDIT")  # fmt: skip
 

@@ -17,12 +17,6 @@ from panel_bench import (
     wait_until_known,
 )
 
-NOT_TRACED = """
-    test_a_long_list_is_no_reason_for_an_alarm
-    test_the_slowest_ramp_of_a_drive_is_no_alarm
-    test_a_drive_that_sends_no_status_word_confirms_no_stop
-"""
-
 
 def test_a_stop_that_nobody_confirms_is_an_alarm():
     world = running()

@@ -9,11 +9,6 @@ import main
 from boards.sim.world import World
 from panel_bench import telegrams, wait_until_known
 
-NOT_TRACED = """
-    test_a_drive_that_ramps_down_has_its_telegrams_meanwhile
-    test_a_drive_at_rest_does_not_trip_for_that_either
-"""
-
 ADDRESSES = tuple(range(1, 31))
 
 

@@ -20,11 +20,6 @@ from panel_bench import (
     wait_until_known,
 )
 
-NOT_TRACED = (
-    "test_any_other_key_does_nothing_and_start_asks_again "
-    "test_the_time_written_is_three_rounds_of_the_bus_and_a_second_at_least"
-)
-
 OFF3 = 0x047A
 ASKED = "SET=FIX START=GO"
 OTHER_KEYS = ("STOP", "REVERSE", "JOG_RIGHT", "JOG_LEFT", "UP", "DOWN", "ADDRESS_UP",

@@ -10,8 +10,6 @@ import main
 from boards.sim.board import KEYS
 from boards.sim.world import World
 
-NOT_TRACED = "test_nothing_starts_by_surprise_whatever_happens"
-
 SEEDS = range(1, 13)
 SECONDS = 20
 

@@ -22,8 +22,6 @@ from uss.s7 import (
     codes,
 )
 
-NOT_TRACED = "test_all_nodes_at_once"
-
 # --- RUN, and what a motor does on it -----------------------------------------------------------
 
 

@@ -8,8 +8,6 @@ long as its ramp takes.
 
 from plc_bench import Plc
 
-NOT_TRACED = "test_nothing_starts_by_surprise_and_everything_stops"
-
 SEEDS = (1, 2, 3, 4, 5, 6)
 STEPS = 150
 SOON_MS = 1_100  # from the edge of RUN to the start: a drive counts as lost after a second

@@ -9,12 +9,6 @@ from boards.sim.drives.kinds import listed_drives, simulated
 from boards.sim.world import World
 from panel_bench import panel, row_1, row_2, running, starts
 
-NOT_TRACED = """
-    test_all_rates_are_tried
-    test_drives_of_several_families_layouts_and_rates_are_found
-    test_no_key_of_the_search_moves_a_motor
-"""
-
 
 def line_of(text, drives=(1,), **more):
     """A panel that looks for these addresses, on a line with these drives."""

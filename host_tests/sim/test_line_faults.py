@@ -13,8 +13,6 @@ from boards.sim.line.wire import FRAME, PARITY, Burst, Transceiver, Wire
 from boards.sim.world import World
 from drive_bench import OFF1, Bench, telegram
 
-NOT_TRACED = "test_a_seed_repeats_everything test_the_panel_keeps_the_rules_in_any_weather"
-
 REQUEST = telegram(1, 0, 0, 0, 0, OFF1, 0)
 SIXTEEN = bytes(range(0x30, 0x40))
 EVERYTHING = {

@@ -13,15 +13,6 @@ from tools.examples import (
 )
 from tools.examples.simulation import DRIVES, Stage, names
 
-NOT_TRACED = """
-test_one_drive_runs_for_ten_seconds_and_stops test_three_drives_follow_each_other
-test_own_program_obeys_its_keys_until_ctrl_c test_own_program_says_why_the_pump_does_not_run
-test_a_second_time_the_drives_have_tripped_and_run_all_the_same
-test_broadcast_stops_all_three_at_once test_the_plc_of_siemens_runs_its_motor
-test_the_plc_of_b_and_r_runs_its_motor_and_turns_it_round
-test_whatever_ends_an_example_stops_its_motors
-"""
-
 EXAMPLES = (
     broadcast_stop, one_drive, own_family, own_program, parameters, plc_br, plc_s7, three_drives,
 )  # fmt: skip

@@ -25,12 +25,6 @@ from tools.soaking.soak import Soak
 from tools.soaking.story import story
 from tools.soaking.worlds import Plan, switched
 
-NOT_TRACED = """
-    test_every_rule_holds
-    test_a_seed_repeats_to_the_telegram
-    test_the_receiver_stands_anything
-"""
-
 SEEDS = (1, 2, 3, 6, 9, 11)  # clean, rough, wild; one drive and several; direct and matrix; polled
 SECONDS = 25
 

@@ -31,12 +31,6 @@ from tools.live.terminal_panel import (
     turning,
 )
 
-NOT_TRACED = """
-    test_a_paste_is_no_keys
-    test_stop_in_a_paste_is_stop
-    test_stop_ends_every_command_at_once_and_stops
-"""
-
 FRAME_MS = 20
 
 

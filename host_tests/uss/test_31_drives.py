@@ -7,18 +7,6 @@ from round_bench import framed
 from uss import pkw
 from uss.finding.scan import EVERY_NET_COUNT, Scan
 
-NOT_TRACED = """
-    test_all_run_and_all_are_read_at_once
-    test_a_round_takes_what_the_times_predict
-    test_a_round_takes_what_the_times_predict_at_other_rates
-    test_an_idle_drive_unplugged_costs_the_others_less_than_5_percent
-    test_a_running_drive_unplugged_is_asked_in_every_round
-    test_plugged_back_in_it_is_asked_within_2_seconds
-    test_all_of_it_on_a_line_with_an_echo
-    test_a_scan_finds_them_all
-    test_another_master_is_heard_and_starts_nothing
-"""
-
 # A parameter that can be read in three words, by family; and one that needs four.
 NUMBERS = {"MICROMASTER 3": (2, None), "SINAMICS G120": (2021, 1120)}
 

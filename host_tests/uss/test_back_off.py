@@ -7,8 +7,6 @@ And the gap between two telegrams to a drive stays under a third of its telegram
 from round_bench import READY, Bench, Node
 from uss import pkw
 
-NOT_TRACED = "test_an_idle_drive_unplugged_costs_the_others_less_than_5_percent"
-
 BACK_US = 2_000_000  # a drive that is plugged back in is asked within this time
 
 

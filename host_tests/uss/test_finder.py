@@ -18,19 +18,6 @@ from uss.layout import STANDARD, VARIABLE, Layout
 from uss.outside import Mirror
 from uss.receiver import OTHER_LENGTH
 
-NOT_TRACED = """
-    test_a_drive_that_is_changed_or_removed_meanwhile
-    test_how_long_it_takes
-    test_other_pzd_words_than_the_list_says_are_found
-    test_whatever_the_list_says_and_the_drive_is_set_to
-    test_while_another_runs_nobody_is_late
-    test_a_stop_is_on_the_line_as_soon_as_beside_silent_drives_anyway
-    test_a_drive_that_is_switched_on_beside_thirty_others_is_found_by_the_list
-    test_no_motor_starts_by_it
-    test_a_step_takes_memory_only_when_something_is_found
-"""
-
-
 # --- simulated drives ---------------------------------------------------------------------------
 
 

@@ -18,12 +18,6 @@ from uss.receiver import WAITING, Receiver
 from uss.telegram import GOOD, NET
 from uss.timing import BAUD_RATES, Timing
 
-NOT_TRACED = (
-    "test_any_flipped_bit_is_found"
-    " test_two_flipped_bits_are_found_unless_they_are_in_one_column"
-    " test_a_telegram_of_another_layout_is_not_received"
-)
-
 SEED = 1994
 SENT_AT = 1000
 TOO_LATE = SENT_AT + 1_000_000  # no telegram of this line takes so long

@@ -9,8 +9,6 @@ from uss.master import AWAITING, CLOSED, DEAD_MAN_US, LISTENING, LOST_US, RESTIN
 from uss.receiver import COMING
 from uss.timing import BAUD_RATES, Timing
 
-NOT_TRACED = "test_while_characters_come_in_nothing_is_sent_into_them"
-
 # --- who talks when -----------------------------------------------------------------------------
 
 

@@ -12,19 +12,6 @@ from uss import pkw, pzd
 from uss.master import AWAITING, DEAD_MAN_US, LISTENING, RESTING, SENDING
 from uss.outside import Broadcast, Mirror, Special
 
-# Each runs some thousand buses: traced they would take minutes.
-NOT_TRACED = """
-    test_between_two_entries_of_the_list test_when_a_drive_is_silent test_before_a_retry
-    test_while_a_dead_drive_is_tried test_while_a_mirror_telegram_is_under_way
-    test_after_a_broadcast test_while_a_special_telegram_is_under_way
-    test_before_an_off_is_repeated test_before_parameters test_before_a_turn_for_the_off_time
-    test_while_it_waits_for_the_cycle test_in_a_pause test_while_it_listens_at_first
-    test_while_it_listens_again test_after_a_failure test_on_a_line_with_an_echo
-    test_on_a_link_that_is_looked_at test_when_the_list_was_just_changed
-    test_with_a_queue_of_other_telegrams test_when_the_master_of_the_loop_is_dead
-    test_on_a_link_that_knows_the_end_of_sending_beforehand
-"""
-
 WINDOW_US = 50_000  # at 19200 longer than any exchange
 SENT = {SENDING, AWAITING}  # phases that every check is to meet
 ALL_PHASES = {RESTING, SENDING, AWAITING}

@@ -11,8 +11,6 @@ from uss import pkw, pzd
 from uss.master import DEAD_MAN_US, LISTENING, LOST_US, OFF
 from uss.outside import Broadcast, Mirror, Special
 
-NOT_TRACED = "test_a_random_hand_breaks_no_rule"
-
 SEEDS = range(1, 9)
 STEPS = 150
 LAYOUTS = ((4, 2), (4, 2), (3, 2), (0, 2), (127, 2), (4, 6), (127, 4))

@@ -16,8 +16,6 @@ from uss.tasks.change_reports import Reports
 from uss.timing import Timing
 from uss.turns import Turns
 
-NOT_TRACED = "test_at_every_instant_of_an_exchange"
-
 OLD = STANDARD
 LAYOUTS = (Layout(3, 2), Layout(0, 2), Layout(VARIABLE, 2), Layout(4, 8), Layout(3, 0))
 LOST = 2

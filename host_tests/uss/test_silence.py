@@ -14,13 +14,6 @@ PRESENT = 2
 LISTED = 31
 MINUTE_US = 60_000_000
 
-NOT_TRACED = """
-    test_together_they_take_a_fifth_of_the_lines_time
-    test_a_drive_that_runs_has_its_telegrams_beside_29_silent_ones
-    test_each_of_them_is_found_within_five_seconds_or_what_the_share_allows
-    test_no_gap_is_longer_than_the_bus_has_promised
-"""
-
 
 class SlowTiming(Timing):
     """That of a line on which replies are waited for longer."""

@@ -13,11 +13,6 @@ from boards.sim.drives.drive import Drive
 from boards.sim.drives.families import mm440
 from boards.sim.line.wire import FRAME, OVERRUN, PARITY, Wire
 
-NOT_TRACED = """
-    test_no_partial_state_survives_whatever_was_said
-    test_counters_have_16_bits
-"""
-
 # What the specification asks of a node that listens, and the tests that try it.
 RULES = (
     # start

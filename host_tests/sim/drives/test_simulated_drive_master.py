@@ -12,8 +12,6 @@ from uss.tasks import arrays, texts
 from uss.tasks.change_reports import Reports
 from uss.tasks.descriptions import DEFAULT, FLOAT, NAME, UPPER_LIMIT, read_description
 
-NOT_TRACED = "test_each_family_is_run_both_ways_as_its_data_say"
-
 FAMILIES = (generic, mm3, mm420, mm440, g110, v20, g120)
 
 

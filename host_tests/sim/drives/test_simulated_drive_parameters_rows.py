@@ -22,8 +22,6 @@ from boards.sim.drives.parameters import (
 )
 from drive_bench import OFF1, Bench
 
-NOT_TRACED = "test_every_row_of_every_family"
-
 FAMILIES = tuple(named(name) for name in NAMES)
 SEED = 6
 LAYOUTS = (3, 4, 127)

@@ -11,11 +11,6 @@ import math
 from boards.sim.dice import Dice
 from drive_bench import ACKNOWLEDGE, JOG_LEFT, JOG_RIGHT, OFF1, RUN, Bench, telegram
 
-NOT_TRACED = """
-    test_random_commands_end_where_a_slow_integration_ends
-    test_words_that_stand_lead_as_far_as_words_that_change
-"""
-
 SEEDS = 8
 COMMANDS = 60
 STEP_S = 0.001
