@@ -19,14 +19,18 @@ On CPython the lines of the firmware that run are noted (cpython/line_notes.py).
 import ast
 import os
 import signal
+import time
 from collections import defaultdict
 from concurrent.futures import Future, ThreadPoolExecutor
+from pathlib import Path
 from types import SimpleNamespace
+from typing import NamedTuple
 
 import pytest
 
 from line_coverage import LineCoverage
-from tiers import TIERS, TOP, FileRun, survey
+from ordinary import OrdinaryRun, Teller
+from tiers import TIERS, TOP, FileRun, Survey, survey
 
 SURVEY = pytest.StashKey()
 POOL = pytest.StashKey()
@@ -37,11 +41,16 @@ POOL = pytest.StashKey()
 
 def pytest_addoption(parser):
     parser.addini("function_timeout_s", "a test function without a verdict for so long is hung")
+    only = "runs this test and tells of it: so the pool runs ordinary files (ordinary.py)"
+    parser.addoption("--only", action="append", metavar="NODEID", help=only)
 
 
 def pytest_configure(config):
-    config.stash[SURVEY] = survey()
-    config.stash[POOL] = Pool(float(config.getini("function_timeout_s") or 120))
+    only = config.option.only
+    if only:
+        config.pluginmanager.register(Teller(config, only))
+    config.stash[SURVEY] = Survey({}, {}) if only else survey()
+    config.stash[POOL] = Pool(config)
 
 
 def pytest_report_header(config):
@@ -62,8 +71,7 @@ def pytest_pycollect_makemodule(module_path, parent):
 
 @pytest.hookimpl(trylast=True)  # after -k and the like have taken their pick
 def pytest_collection_modifyitems(session, items):
-    # pytest runs the ordinary files itself: first, while the pool runs the others.
-    items.sort(key=lambda item: isinstance(item, Function))
+    session.config.stash[POOL].sort(items)
     if strict():
         for tier, reason in session.config.stash[SURVEY].missing.items():
             if TIERS[tier].required:
@@ -76,11 +84,24 @@ def pytest_runtestloop(session):
     # Whoever ends pytest (a time limit, say) ends the interpreters with it, as Ctrl-C does.
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     if not session.config.option.collectonly and not session.testsfailed:
-        pool.start([item for item in session.items if isinstance(item, Function)])
+        pool.start(session.items)
     try:
         return (yield)
     finally:
         pool.stop()
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_protocol(item):
+    """What another pytest has run is only reported here."""
+    pool = item.config.stash[POOL]
+    if isinstance(item, Function) or item not in pool.verdicts:
+        return None  # pytest runs it
+    item.ihook.pytest_runtest_logstart(nodeid=item.nodeid, location=item.location)
+    for report in pool.reports(item):
+        item.ihook.pytest_runtest_logreport(report=report)
+    item.ihook.pytest_runtest_logfinish(nodeid=item.nodeid, location=item.location)
+    return True
 
 
 @pytest.hookimpl(wrapper=True)
@@ -246,48 +267,123 @@ class Failure:
 
 # ---- running them ---------------------------------------------------------------------------
 
+ORDINARY = "host"  # what an ordinary file has in place of a tier
+LASTED = "uss/seconds_a_test"  # in pytest's cache: a job -> how long it took for each of its tests
+USUAL_S, USUAL_BESIDE_A_CHIP_S = 0.1, 5  # of one that never ran
+
+
+class Job(NamedTuple):
+    """What one process runs."""
+
+    path: Path
+    tier: str
+
+    def __str__(self):
+        return f"{self.path}::{self.tier}"
+
+
+def jobs_of(items):
+    """Job -> its items."""
+    jobs = defaultdict(list)
+    for item in items:
+        if not isinstance(item, MissingTier):
+            tier = item.parent.name if isinstance(item, Function) else ORDINARY
+            jobs[Job(item.path, tier)].append(item)
+    return jobs
+
 
 class Pool:
-    """Runs the files ahead of pytest, as many at a time as there are processors.
+    """Runs the files ahead of pytest, which asks for verdict after verdict in the same order.
 
-    pytest runs the ordinary files meanwhile. Then it asks for verdict after verdict, in the order
-    in which the files are run.
+    It runs one job more at a time than there are processors, for ordinary files often wait. They
+    come first. Of either kind the longest come first, as far as the last run can tell, so that all
+    processors are busy to the end.
     """
 
-    def __init__(self, timeout_s):
-        self.timeout_s = timeout_s
+    def __init__(self, config):
+        self.config = config
+        self.timeout_s = float(config.getini("function_timeout_s") or 120)
         self.coverage = LineCoverage(TOP)
-        self.executor = ThreadPoolExecutor(max_workers=os.cpu_count() or 1)
-        self.verdicts = {}  # item -> future of its verdict
+        self.executor = ThreadPoolExecutor(max_workers=(os.cpu_count() or 1) + 1)
+        self.verdicts = {}  # item -> future of its Verdict, of an ordinary test: of what was Told
         self.runs = []
+        self.lasted_s = {}
+
+    def sort(self, items):
+        """Job after job, in the order in which they are to run."""
+        jobs = jobs_of(items)
+        self.lasted_s = self._cached()
+
+        def rank(job):
+            is_ordinary = job.tier == ORDINARY
+            usual_s = (
+                USUAL_S if is_ordinary or TIERS[job.tier].everywhere else USUAL_BESIDE_A_CHIP_S
+            )
+            return not is_ordinary, -len(jobs[job]) * self.lasted_s.get(str(job), usual_s)
+
+        items[:] = [item for job in sorted(jobs, key=rank) for item in jobs[job]]
 
     def start(self, items):
-        files = defaultdict(dict)
-        for item in items:
-            files[item.path, item.parent.name][item.name] = self.verdicts[item] = Future()
-        for (path, tier), futures in files.items():
-            self._submit(path, tier, futures)
+        for job, chosen in jobs_of(items).items():
+            if job.tier != ORDINARY:
+                self._start(job, {item.name: item for item in chosen}, self._on_tier)
+            elif self._runs_ordinary_files():
+                self._start(job, {item.nodeid: item for item in chosen}, self._in_a_pytest)
 
     def verdict(self, item):
         return self.verdicts[item].result()
+
+    def reports(self, item):
+        """What pytest reports of an ordinary test."""
+        told = self.verdicts[item].result()
+        hook = self.config.hook
+        for data in told.reports:
+            report = hook.pytest_report_from_serializable(config=self.config, data=data)
+            if report.failed or not told.death:
+                yield report
+        if told.death:
+            failure = Failure(told.death)
+            yield pytest.TestReport(item.nodeid, item.location, {}, "failed", failure, "call")
 
     def stop(self):
         self.executor.shutdown(wait=False, cancel_futures=True)
         for run in self.runs:
             run.stop()
+        for run in self.runs:
+            run.wait()
+        if hasattr(self.config, "cache"):
+            self.config.cache.set(LASTED, self.lasted_s)
 
-    def _submit(self, path, tier, futures):
-        def publish(name, verdict):
-            futures[name].set_result(verdict)
+    def _cached(self):
+        return self.config.cache.get(LASTED, {}) if hasattr(self.config, "cache") else {}
+
+    def _runs_ordinary_files(self):
+        """Not where it was started to run them, or where somebody wants to have a hand in it."""
+        option = self.config.option
+        by_hand = option.usepdb or option.trace or option.setupshow or option.capture == "no"
+        return not option.only and not by_hand
+
+    def _start(self, job, by_name, make_run):
+        futures = {name: Future() for name in by_name}
+        self.verdicts.update((item, futures[name]) for name, item in by_name.items())
+        run = make_run(job, by_name, lambda name, verdict: futures[name].set_result(verdict))
 
         def work():
+            began = time.monotonic()
             try:
                 run.run()
+                self.lasted_s[str(job)] = (time.monotonic() - began) / len(futures)
             except BaseException as error:  # pytest would wait for ever
                 for future in futures.values():
                     if not future.done():
                         future.set_exception(error)
 
-        run = FileRun(TIERS[tier], path, futures, self.timeout_s, publish, self.coverage.note)
         self.runs.append(run)
         self.executor.submit(work)
+
+    def _on_tier(self, job, names, publish):
+        note = self.coverage.note
+        return FileRun(TIERS[job.tier], job.path, names, self.timeout_s, publish, note)
+
+    def _in_a_pytest(self, job, names, publish):
+        return OrdinaryRun(self.config, job.path, names, self.timeout_s, publish)

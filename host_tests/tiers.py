@@ -20,6 +20,7 @@ import signal
 import subprocess
 import sys
 import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import NamedTuple
 
@@ -97,14 +98,11 @@ class Survey(NamedTuple):
 def survey() -> Survey:
     """Asks every tier what it is, and so learns which are here and are what they promise."""
     found = Survey({}, {})
-    for tier in TIERS.values():
-        for heard in found:
-            if tier.twin in heard:
-                heard[tier.name] = heard[tier.twin]
-                break
-        else:
-            is_here, line = _ask(tier)
-            (found.versions if is_here else found.missing)[tier.name] = line
+    with ThreadPoolExecutor() as pool:
+        asked = {name: pool.submit(_ask, tier) for name, tier in TIERS.items() if not tier.twin}
+    for name, tier in TIERS.items():
+        is_here, line = asked[tier.twin or name].result()
+        (found.versions if is_here else found.missing)[name] = line
     return found
 
 
@@ -157,6 +155,11 @@ class FileRun:
         if self.process:
             self.process.kill()
 
+    def wait(self):
+        """Until it has ended after `stop`."""
+        if self.process:
+            self.process.wait()
+
     def _run_process(self):
         """Runs what is left until the process ends; at least one verdict comes of it.
 
@@ -165,10 +168,10 @@ class FileRun:
         """
         name = verdict = None
         output, began = "", 0.0
-        self.process = _start([*self.command, *self.left])
+        self.process = start([*self.command, *self.left])
         if self.stopped:  # while it was being started
             self.process.kill()
-        for text, word, argument in _reports(self.process, self.timeout_s):
+        for text, word, argument in reports(self.process, self.timeout_s):
             if word == "began":
                 if verdict:
                     self._conclude(name, verdict)
@@ -209,22 +212,24 @@ def _from_top(path: Path) -> str:
     return str(path.relative_to(TOP) if path.is_relative_to(TOP) else path)
 
 
-def _start(command):
+def start(command, cwd=TOP, **options):
+    """A process that `reports` listens to."""
     return subprocess.Popen(
         command,
-        cwd=TOP,
+        cwd=cwd,
         env=ENVIRONMENT,
+        **options,
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
     )
 
 
-def _reports(process, timeout_s):
+def reports(process, timeout_s, good=(0,)):
     """Yields (text before the report, word, argument); the last word is always "ended".
 
-    The argument of "ended" says what the process died of and is empty after a good end. A process
-    that reports nothing for `timeout_s`, or prints without end, is killed.
+    The argument of "ended" says what the process died of and is empty after an end with a `good`
+    status. A process that reports nothing for `timeout_s`, or prints without end, is killed.
     """
     pending = death = ""
     deadline = time.monotonic() + timeout_s
@@ -246,10 +251,10 @@ def _reports(process, timeout_s):
                     deadline = time.monotonic() + timeout_s
         if death:
             process.kill()
-    yield pending, "ended", death or _cause_of_death(process.returncode)
+    yield pending, "ended", death or _cause_of_death(process.returncode, good)
 
 
-def _cause_of_death(status):
+def _cause_of_death(status, good):
     if status < 0:
         return f"the interpreter died of {signal.Signals(-status).name}"
-    return f"the interpreter ended with status {status}" if status else ""
+    return "" if status in good else f"the interpreter ended with status {status}"

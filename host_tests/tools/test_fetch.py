@@ -14,6 +14,8 @@ import struct
 import subprocess
 import sys
 import tarfile
+from functools import cache
+from pathlib import Path
 
 import pytest
 
@@ -24,6 +26,7 @@ from version import VERSION
 INTERPRETERS = "host"
 
 TOOLS = tiers.TOP / "tools"
+PICOS = [name for name in tiers.TIERS if name.startswith("pico")]
 HOST_TESTS = tiers.TOP / "host_tests"
 FLASH = 0x10000000  # where a Pico has it
 LEFT_OUT = ("uss/br/", "uss/s7/", "uss/tasks/")  # of a firmware file: the panel needs none of it
@@ -36,8 +39,12 @@ LEFT_OUT = ("uss/br/", "uss/s7/", "uss/tasks/")  # of a firmware file: the panel
 def run_pytest(tmp_path):
     """Writes a test file and runs pytest on it, in a process of its own, as tools/test does."""
 
+    (tmp_path / "without_pico.py").write_text(without(*PICOS))
+
     def run(source, *arguments, **environment):
         (tmp_path / "test_it.py").write_text(source)
+        if not any("pico" in text for text in (source, *arguments)):
+            arguments += ("-p", "without_pico")  # to ask them takes seconds
         inherited = {k: v for k, v in os.environ.items() if k not in ("CI", "USS_STRICT")}
         return subprocess.run(
             [sys.executable, "-B", "-m", "pytest", "-c", HOST_TESTS / "pytest.ini"]
@@ -52,10 +59,15 @@ def run_pytest(tmp_path):
     return run
 
 
+@cache
+def versions():
+    """Of the tiers that this machine has."""
+    return tiers.survey().versions
+
+
 def here(*names):
     """The INTERPRETERS line for those of the tiers that this machine has."""
-    versions = tiers.survey().versions
-    return f'INTERPRETERS = "{" ".join(name for name in names if name in versions)}"\n'
+    return f'INTERPRETERS = "{" ".join(name for name in names if name in versions())}"\n'
 
 
 def test_each_function_is_an_item_under_each_interpreter(run_pytest):
@@ -63,7 +75,7 @@ def test_each_function_is_an_item_under_each_interpreter(run_pytest):
     expected = [
         f"test_it.py::{tier}::{function}"
         for tier in tiers.TIERS
-        if tier in tiers.survey().versions and tiers.TIERS[tier].everywhere
+        if tier in versions() and tiers.TIERS[tier].everywhere
         for function in ("test_one", "test_two")
     ]
     assert run.stdout.splitlines()[: len(expected)] == expected
@@ -110,7 +122,7 @@ def test_a_hang_is_ended_and_the_others_still_run(run_pytest):
         "def test_after(): pass\n",
         *("-o", "function_timeout_s=1"),
     )
-    if "unix64" in tiers.survey().versions:
+    if "unix64" in versions():
         assert "In this function the interpreter hung and was killed after 1 s." in run.stdout
         assert "1 failed, 2 passed" in run.stdout.splitlines()[-1]
 
@@ -140,6 +152,68 @@ def test_an_ordinary_pytest_test_that_hangs_is_given_up(run_pytest):
     )
     assert "The test hung and was given up after 1 s." in run.stdout
     assert "1 failed, 1 passed" in run.stdout.splitlines()[-1]
+
+
+def test_a_crash_of_an_ordinary_pytest_test_is_its_own_and_the_others_still_run(run_pytest):
+    run = run_pytest(
+        'INTERPRETERS = "host"\n'
+        "import os, pytest\n"
+        "def test_before(): pass\n"
+        "def test_crash():\n"
+        "    os.write(2, b'last words')\n"
+        "    os.kill(os.getpid(), 11)\n"
+        "@pytest.mark.parametrize('text', ['a::b', '[c]', '\\n', ' '])\n"
+        "def test_after(text): pass\n"
+        "def test_skipped(): pytest.skip('none here')\n"
+        "def test_bad(capfd):\n"
+        "    os.system('echo seen')\n"
+        "    assert 3 == 4\n",
+        "-rfs",
+    )
+    assert "In or after this test the interpreter died of SIGSEGV." in run.stdout
+    assert "FAILED test_it.py::test_bad - assert 3 == 4" in run.stdout
+    assert "seen\n" in run.stdout and "SKIPPED [1] test_it.py:9: none here" in run.stdout
+    assert "2 failed, 5 passed, 1 skipped" in run.stdout.splitlines()[-1]
+
+
+def test_an_ordinary_pytest_file_that_ends_badly_is_noticed(run_pytest):
+    leave_badly = "import atexit, os\natexit.register(os._exit, 5)\n"
+    run = run_pytest('INTERPRETERS = "host"\n' + leave_badly + "def test_a(): pass\n")
+    assert "In or after this test the interpreter ended with status 5." in run.stdout
+    assert "1 failed" in run.stdout.splitlines()[-1]
+
+
+def test_what_ends_pytest_lets_ordinary_tests_put_away_what_they_have_started(
+    run_pytest, tmp_path
+):
+    run = run_pytest(
+        'INTERPRETERS = "host"\n'
+        "import os, pytest, subprocess, time\n"
+        "@pytest.fixture\n"
+        "def started():\n"
+        "    yield subprocess.Popen(['sleep', '60'])\n"
+        f"    open({str(tmp_path / 'put away')!r}, 'w').close()\n"
+        "def test_hang(started):\n"
+        f"    open({str(tmp_path / 'number')!r}, 'w').write(str(started.pid))\n"
+        "    os.kill(os.getppid(), 15)\n"
+        "    time.sleep(60)\n"
+    )
+    assert run.returncode == 2 and "KeyboardInterrupt" in run.stdout
+    assert (tmp_path / "put away").exists()
+    assert not is_running(int((tmp_path / "number").read_text()))
+
+
+def is_running(number):
+    """Whether there is that process, and it is not dead and only waits to be looked at."""
+    try:
+        return "\nState:\tZ" not in Path(f"/proc/{number}/status").read_text()
+    except FileNotFoundError:
+        return False
+
+
+def test_by_hand_an_ordinary_pytest_test_runs_in_the_pytest_that_was_started(run_pytest):
+    run = run_pytest('INTERPRETERS = "host"\ndef test_a(): print("seen", 3)\n', "-s")
+    assert "seen 3\n" in run.stdout and "1 passed" in run.stdout
 
 
 def test_a_test_that_swallows_the_first_time_limit_is_given_up_at_the_next(run_pytest):
