@@ -90,12 +90,9 @@ class _Noting(ast.NodeTransformer):
     def _noting(self, text, number):
         """A statement on that line, with a note of its own."""
         (statement,) = ast.parse(text.format(NOTES, len(_ran))).body
-        for node in ast.walk(statement):
-            if "lineno" in node._attributes:
-                node.lineno = node.end_lineno = number
         _ran.append(False)
         _places.append((self._path, number))
-        return statement
+        return ast.increment_lineno(statement, number - statement.lineno)
 
 
 def _is_text(statement):

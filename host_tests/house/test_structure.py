@@ -60,6 +60,7 @@ WING_ROOMS = ("firmware/uss/br", "firmware/uss/bus", "firmware/uss/s7", "firmwar
 
 # Private names that tests reach: place, and why there is no other way.
 PRIVATE = {
+    ("ordinary.py", "_tmp_path_factory"): "pytest gives it to fixtures alone",
     ("test_bus.py", "_may_start"): "what a terminal of the drive does to its status word",
     ("test_bus.py", "_idle"): "a board's `idle` fails while the program runs, not at the start",
     ("test_bus.py", "_choose"): "the engine fails",
