@@ -16,6 +16,7 @@ from tools.soaking.fuzz import fuzz
 from tools.soaking.judging.announced import ANY, MAY_RUN, OFF, RUNS, TRIPPED, number_in, said_in
 from tools.soaking.judging.case import Case
 from tools.soaking.judging.drive_settings import Values
+from tools.soaking.judging.facts import NEVER
 from tools.soaking.judging.families import FAMILIES, VARIABLE, Kind, Sight, kinds_of
 from tools.soaking.judging.reader import subject_in
 from tools.soaking.judging.rules import RULES, Broken
@@ -236,6 +237,36 @@ def test_an_answer_of_what_a_drive_is_makes_no_contact():
         judge._unsettled = [(row, case, kind, 0xFB31, case.requests, False, is_told)]
         judge._settle_replies(soak.world.clock.now_us + 1_000_000)
         assert case.is_told == following, (is_told, flawless)
+
+
+def test_a_doubted_drive_answers_though_its_last_answer_was_spoilt_and_a_round_takes_long():
+    """It may be asked what it is. One that has fallen silent in contact may not yet."""
+    soak = Soak(13, drives=1)
+    soak.hand.run(2_000)
+    judge, (address,) = soak.judge, soak.plan.addresses
+    witness, tape, case = judge.witness, judge.tape, judge.cases[address]
+    now = tape.at_us[0] = soak.world.clock.now_us
+    tape.address[0], tape.is_blank = address, lambda row: True
+    case.answered_us = case.heard_us = now - 2 * witness.lost_us
+    case.contact_us, case.is_told = NEVER, False
+    for late_us, misses, is_allowed in ((now, 1, True), (now, 2, True), (NEVER, 1, False)):
+        witness.late_us = late_us
+        case.heard_requests = case.requests - misses
+        try:
+            judge._judge_mirror(0, tape)
+        except Broken as broken:
+            assert broken.args[0] == "MIRROR" and not is_allowed, broken
+        else:
+            assert is_allowed, (late_us, misses)
+
+
+def test_a_refused_start_is_pressed_again_when_the_panel_must_know_the_drive():
+    soak = Soak(13, drives=1)
+    hand, clock, (address,) = soak.hand, soak.world.clock, soak.plan.addresses
+    begun_us = clock.now_us
+    soak.judge.witness.knows = lambda case, address, now: now > begun_us + 60_000_000
+    hand.run_until_known(address)
+    assert 60_000_000 <= clock.now_us - begun_us < 61_000_000
 
 
 def test_a_telegram_that_a_drive_is_to_send_back_is_no_request():

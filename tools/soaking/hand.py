@@ -29,6 +29,7 @@ TRIES = 12  # the hand selects at most so many addresses to find one that answer
 SHORT_US = 1 * S  # a telegram off time that a person, too, finds too short
 FOUND_S = 20  # in which a drive that answers in another layout is found, and rounds of the line
 FOUND_ROUNDS = 200
+KNOWN_S = 120  # the longest time until the panel knows what a drive is set to
 
 
 class Hand(Mischief):
@@ -120,7 +121,7 @@ class Hand(Mischief):
         self.press("START")
         self.run(200)
         if self.reader.reads("NO:"):  # a drive that was not shown may not be surveyed yet
-            self.run(3_000 + 20 * self.witness.cycle_us // MS)
+            self.run_until_known(address)
             self.press("START")
         for _ in range(RISKS_MAX):
             self.wait_for("a START to be answered", lambda: self._is_answered(drive), 8)
@@ -185,6 +186,18 @@ class Hand(Mischief):
         self.wait_for(text, lambda: self.reader.reads(text), 8, "ANNOUNCED")
         self.press("STOP", 4_300)
         self.wait_for("drive %d to stand" % drive.address, lambda: drive.state == "ready", 12)
+
+    def run_until_known(self, address):
+        """Until the panel must know what the drive that is shown is set to, which takes long where
+        many are asked and this one answers late.
+        """
+        witness, clock = self.witness, self.world.clock
+        self.run(3_000 + 20 * witness.cycle_us // MS)
+        until_us = clock.now_us + KNOWN_S * S
+        while clock.now_us < until_us:
+            if witness.knows(witness.cases[address], address, clock.now_us):
+                return
+            self.run(SLICE_MS)
 
     def wait_for(self, what, condition, seconds, rule="RECOVERS"):
         until_us = self.world.clock.now_us + seconds * S + 20 * self.witness.cycle_us

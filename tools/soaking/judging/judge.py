@@ -216,7 +216,8 @@ class Judge:
         if witness.kinds[address].may_be_taken_for_variable() and not may_run:
             is_doubtful = True
         misses = case.requests - case.heard_requests
-        answers = case.answered_us > recently_us or not misses  # a round may take longer
+        # A round may take longer, the one in which an answer is spoilt as well.
+        answers = case.answered_us > recently_us or misses < SILENT_MIN
         if case.is_told:  # an answer to a question is no contact yet
             is_doubtful = answers = True
         if answers and (is_doubtful or not witness.is_able(address)):
