@@ -234,8 +234,8 @@ def test_an_answer_of_what_a_drive_is_makes_no_contact():
     for is_told, flawless, following in ((True, True, True), (False, False, True)):
         tape.end_us[row] = case.heard_us + 1_000
         tape.flawless[row] = flawless
-        judge._unsettled = [(row, case, kind, 0xFB31, case.requests, False, is_told)]
-        judge._settle_replies(soak.world.clock.now_us + 1_000_000)
+        judge.unsettled = [(row, case, kind, 0xFB31, case.requests, False, is_told)]
+        judge.settle_replies(soak.world.clock.now_us + 1_000_000)
         assert case.is_told == following, (is_told, flawless)
 
 
@@ -253,7 +253,7 @@ def test_a_doubted_drive_answers_though_its_last_answer_was_spoilt_and_a_round_t
         witness.late_us = late_us
         case.heard_requests = case.requests - misses
         try:
-            judge._judge_mirror(0, tape)
+            judge.judge_mirror(0, tape)
         except Broken as broken:
             assert broken.args[0] == "MIRROR" and not is_allowed, broken
         else:

@@ -81,7 +81,7 @@ class Judge:
         self.starts = [0] * len(self.drives)  # of their motors, as counted last
         self._shares = Shares(witness)
         self._patience_us = SILENT_US + witness.exchange_us
-        self._unsettled = []  # replies that may still be spoilt, and what to note of each then
+        self.unsettled = []  # replies that may still be spoilt, and what to note of each then
         self._may_ask = False  # the last telegram may have asked a drive what it is,
         self._is_question = False  # and has
         self._begun_us = None  # the power-on whose first telegram was judged last
@@ -93,8 +93,8 @@ class Judge:
         now = self.clock.now_us
         if witness.weather.is_bad():
             witness.late_us = witness.stirred_us = now
-        if self._unsettled:
-            self._settle_replies(now)
+        if self.unsettled:
+            self.settle_replies(now)
         self.play()
         world = self.world
         chip = world.chip
@@ -158,7 +158,7 @@ class Judge:
                 self._take_reply(row, tape)
             elif kind == MIRRORED:
                 self._is_question = False
-                self._judge_mirror(row, tape)
+                self.judge_mirror(row, tape)
             else:
                 self._shares.answered()
                 kind = self.witness.kinds[tape.address[row]]
@@ -190,7 +190,7 @@ class Judge:
             if task not in READS:
                 raise Broken("WRITE", "drive %d at %d, task %d" % (where + (task,)))
 
-    def _judge_mirror(self, row, tape):
+    def judge_mirror(self, row, tape):
         """It looks for the layout of a drive that is silent; no drive acts on it."""
         now, address = tape.at_us[row], tape.address[row]
         witness, case = self.witness, self.cases[address]
@@ -268,7 +268,7 @@ class Judge:
                 stops = True
             if stops:
                 case.excused_us = now + 2 * S + self.witness.cycle_us
-        self._unsettled.append((row, case, kind, zsw, case.requests, stops, self._may_ask))
+        self.unsettled.append((row, case, kind, zsw, case.requests, stops, self._may_ask))
 
     def _tells_speed(self, address):
         """Whether HIW is the speed, in percent and with a sign, by what the drive is set to."""
@@ -276,11 +276,11 @@ class Judge:
         told = [values.tells_speed and not values.absolute for values in meant]
         return self.witness.kinds[address].family.signed and bool(told) and all(told)
 
-    def _settle_replies(self, now):
+    def settle_replies(self, now):
         """The replies that the panel must have taken by now."""
         tape = self.tape
         waiting = []
-        for one in self._unsettled:
+        for one in self.unsettled:
             row, case, kind, zsw, requests, stops, is_told = one
             if not tape.is_settled(row, now):
                 waiting.append(one)
@@ -299,7 +299,7 @@ class Judge:
                     case.bad_us = max(case.bad_us, tape.end_us[row])
                 if stops:
                     case.void_us = case.off_us = max(case.void_us, tape.end_us[row])
-        self._unsettled = waiting
+        self.unsettled = waiting
 
     def _is_sure(self, row, tape):
         """Whether the panel must have taken this reply."""
