@@ -121,7 +121,7 @@ def _rows(family, kind, numbers):
 
 def _completed(row, like):
     """With what is empty from the row with the same key of the other family."""
-    key = _key(row[KEY][1:], row[KEY][0])
+    key = row_key(row[KEY])
     with _table(like) as table:
         yield None
         for other in _between(table, key, key):
@@ -133,13 +133,14 @@ def _completed(row, like):
 
 def _between(table, first, last):
     """The rows with these keys, and None after each look for the first."""
-    if hasattr(table, "bring"):
-        yield table.bring(first)
-    else:
-        yield from _bring(table, first)
+    is_packed = hasattr(table, "bring")
+    yield from table.bring(first) if is_packed else _bring(table, first)
+    yield None
     while True:
         line = _row(table)
-        key = _key(line[1:], line[0]) if line else last + 1
+        if not line and is_packed and (yield from table.go_on()):
+            continue
+        key = row_key(line) if line else last + 1
         if key > last:
             return
         yield _cells(line) if key >= first else None
@@ -153,7 +154,7 @@ def _bring(table, first):
         table.seek(middle)
         _line(table)  # what is left of it
         line = _row(table)
-        if line and _key(line[1:], line[0]) < first:
+        if line and row_key(line) < first:
             low = table.tell() - len(line)
         else:
             high = middle
@@ -172,7 +173,7 @@ def _table(family):
             _frozen.append(family)
     from catalogue.packed import Packed
 
-    return Packed(family)
+    return Packed(family, row_key)
 
 
 def _row(table):
@@ -197,6 +198,11 @@ def _line(table):
             return line
 
 
+def row_key(line):
+    """That of the row which begins so."""
+    return _key(line[1:], line[0])
+
+
 def _key(cell, kind):
     """What the rows are in the order of, an integer that needs no heap."""
     kind &= 0x1F
@@ -205,13 +211,10 @@ def _key(cell, kind):
 
 
 def _cells(line):
-    """Cells in ISO 8859-1; the file is UTF-8, and has nothing that does not fit."""
-    if b"\xc2" in line or b"\xc3" in line:
-        characters, lead = bytearray(), 0
-        for code in line:
-            if code >= 0xC0:
-                lead = code << 6 & 0xC0
-            else:
-                characters.append(lead | code & 0x3F if code & 0x80 else code)
-        line = bytes(characters)
+    """Cells in ISO 8859-1. A file is UTF-8, and has nothing that does not fit; of a long line the
+    letters with an accent are few, so what stands between them is moved as a whole.
+    """
+    if b"\xc2" in line or b"\xc3" in line:  # what is frozen has neither
+        first, *others = line.replace(b"\xc2", b"").split(b"\xc3")
+        line = first + b"".join([bytes((part[0] | 0x40,)) + part[1:] for part in others])
     return line.rstrip(b"\n").split(b"\t")

@@ -276,6 +276,10 @@ class Control:
         """Whether P2014 = 0 has been accepted for it."""
         return self.drive.address in self.desk.settings.unsupervised
 
+    def is_half_written(self):
+        """Whether a parameter set is on it in part: see `panel.sets.writing`."""
+        return self.drive.address in self.desk.settings.half_at
+
     def is_unsaved(self):
         """Whether its address is another one than the panel will look for after a restart."""
         return self.moved and self.desk.settings.dirty

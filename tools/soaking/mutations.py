@@ -194,7 +194,7 @@ MUTATIONS = (
         "no question",
         "a parameter that cuts the panel off is written at once",
         ("WRITE",), 1,
-        ("panel/pages/parameters.py", "if number in ask_first and not", "if number < 0 and not"),
+        ("panel/pages/writing.py", "if risk is not None and not", "if risk == -1 and not"),
     ),
     Mutation(
         "setpoint limit dropped",
@@ -393,8 +393,8 @@ MUTATIONS = (
         ("WRITE",), 1,
         (
             "panel/writer.py",
-            "write.number, write.index, 0, write.value)",
-            "write.number, write.index, 0, write.value ^ 1)",
+            "write.number, write.index, high, low)",
+            "write.number, write.index, high, low ^ 1)",
         ),
     ),
     Mutation(
@@ -860,11 +860,28 @@ MUTATIONS = (
             "        self._search(now_ms)\n",
         ),
     ),
+    Mutation(
+        "another index shown",
+        "the page of a parameter reads the first value of an array, whatever index it names",
+        ("SHOWN",), 1,
+        ("panel/lookup/inspection.py", " index = self.index\n", " index = 0\n"),
+    ),
+    Mutation(
+        "low word lost",
+        "the page of a parameter shows 0 for whole numbers",
+        ("SHOWN",), 17,
+        (
+            "panel/lookup/inspection.py",
+            "self.high, self.low = job.high, job.low",
+            "self.high, self.low = job.high, 0",
+        ),
+    ),
 )  # fmt: skip
 
 # No seed that was tried finds these, since the operator walks the menu and looks for drives as
 # well: a life of two minutes gets there too rarely. Each still has to fit the firmware's text.
 UNFOUND = (
+    "another index shown",
     "the next one's turn is lost",
     "faster without a key",
     "hertz believed",
