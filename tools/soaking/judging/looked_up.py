@@ -40,8 +40,8 @@ def is_wrong(rows, drive):
     number, index = int(label[0][1:]), label[1]
     text = rows[1].partition(" ")[2].strip()
     digits = "".join([one for one in text[:-1] if one in NUMERIC] + [text[-1:]])
-    if not digits or text[-1:] == "h" or text[:1] not in NUMERIC:
-        return False  # not read, or in hexadecimal
+    if text[-1:] == "h" or text[:1] not in NUMERIC or not digits.strip(NUMERIC[10:]):
+        return False  # not read, not told, or in hexadecimal
     digits = digits if digits[-1] in NUMERIC else digits[:-1]
     if not text.startswith(digits):
         return False  # half drawn
