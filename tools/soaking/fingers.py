@@ -60,6 +60,7 @@ class Fingers:
         self.dice = plan.dice
         self.deeds = []
         self._chooses_group = False  # of parameters; an announcement may hide the list's name
+        self._means = ()  # what he means to choose, however it reads to the end
         self.drives = [world.drives[address] for address in plan.addresses]
         self._seen_ms = SEEN_US // MS + DRAWN_STEPS * plan.loop_us // MS
         self.common = weights((
@@ -376,6 +377,8 @@ class Fingers:
         if self.plan.looks_up and (
             entry.startswith((PARAMETERS, FAULT_MEMORY, WHAT_IS, BY_NUMBER)) or self._chooses_group
         ):
+            is_known = True
+        if self._means and entry.startswith(self._means):
             is_known = True
         if row_1.startswith(SETTINGS):
             is_known = entry not in CHANGING

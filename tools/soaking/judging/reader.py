@@ -105,6 +105,11 @@ class Reader:
             witness.refused_us = now
         self._note_menu(now)
         self._note_page(now)
+        is_drawn = now - self._rows_us > self._drawn_us
+        witness.line.read(self.rows, is_drawn, now)
+        witness.diagnosed.read(self.rows, is_drawn, now)
+        if is_drawn:
+            witness.sets.read(self.rows, now)
         self._note_digits(now)
         if self.rows[1] in QUESTIONS and self.rows[0].strip() in LEAVES:
             witness.leaves_us = now
