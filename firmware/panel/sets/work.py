@@ -17,6 +17,8 @@ from uss.timing import elapsed
 
 _STALLED_MS = const(15_000)  # nothing has come of it for so long
 _TRIES = const(3)
+_WORK_US = const(500)  # then it is enough for a step of the loop: one of these takes up to 2 ms
+_STEPS_MAX = const(6)
 
 # Readings that tell a drive's rating: power, current, voltage. What differs in them, or tells
 # none, is another motor's.
@@ -50,6 +52,7 @@ class Work:
         self.total = 1
         self.left_s = None
         self._tries = 0
+        self._now_ms = None  # the last step
         self._steps = self.work()
         self._seen = 0  # `done` when the time was looked at last
         self._begun_ms = self._moved_ms = None
@@ -60,6 +63,7 @@ class Work:
     def step(self, now_ms):
         if self.outcome is not None:
             return
+        self._now_ms = now_ms
         try:
             self._look(now_ms)
             next(self._steps)
@@ -70,6 +74,17 @@ class Work:
         except (ValueError, MemoryError) as error:
             told = error.args and isinstance(error.args[0], bytes)
             self.end(*(error.args if told else (texts.NO_MEMORY,)))
+
+    def search(self):
+        """As many steps as fit one of the loop, at the time of the last one. It is over then, or
+        has something to wait for.
+        """
+        ticks_us, mask = self.panel.board.clock.ticks_us, self.panel.mask
+        began_us = ticks_us()
+        for _ in range(_STEPS_MAX if self._now_ms is not None else 0):
+            self.step(self._now_ms)
+            if self.outcome is not None or elapsed(ticks_us(), began_us, mask) >= _WORK_US:
+                return
 
     def end(self, *outcome):
         self.outcome = outcome

@@ -46,11 +46,15 @@ class List(Entries):
         work = self._work
         if work is not None and work.outcome is None:
             work.step(now_ms)
-            if work.outcome is not None:
-                self.panel.remembered["panel.menu.sets.overview"] = now_ms
 
     def is_busy(self):
         return self._work is not None and self._work.outcome is None
+
+    def is_searching(self):
+        return self.is_busy()
+
+    def search(self):
+        self._work.search()
 
     def take_keys(self, acts):
         if self._work is not None:
@@ -80,3 +84,6 @@ class List(Entries):
     def leave(self, now_ms):
         if self.is_busy():
             self._work.end(words.NOTHING_WRITTEN)
+
+    def end(self):
+        self.panel.remembered["panel.menu.sets.overview"] = object()  # it is to look anew

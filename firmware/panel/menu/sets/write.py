@@ -94,6 +94,12 @@ class List(Entries):
     def is_busy(self):
         return self._work.outcome is None and not self._work.asks
 
+    def is_searching(self):
+        return self.is_busy()
+
+    def search(self):
+        self._work.search()
+
     def take_keys(self, acts):
         work = self._work
         if work.asks and work.phase == self._writing.ASKS_CUT and acts.has("PARAM"):
