@@ -32,7 +32,7 @@ class Technician(Mischief):
     def __init__(self, world, plan, judge, reader, weather):
         Mischief.__init__(self, world, plan, judge, reader, weather)
         if plan.diagnoses:
-            self.common += 24 * [self.diagnose] + 8 * [self.leave_the_line]
+            self.common += 24 * [self.diagnose] + 16 * [self.leave_the_line]
         if plan.keeps_sets:
             self.common += 20 * [self.keep_sets]
 
@@ -115,6 +115,10 @@ class Technician(Mischief):
                 self.press("PARAM")
             else:
                 self._agree()
+                if not self.dice.below(3):  # he changes his mind
+                    self.run(self.dice.between(50, 1_500))
+                    self.press("PARAM")
+                    return
 
     def give_sets_up(self):
         """Say of every drive that has one in part that it may be started."""
