@@ -35,7 +35,7 @@ PAGES_AT_HAND = (
     "panel.pages.parameter_words", "panel.writer", "panel.pages.question", "panel.pages.risk",
     "panel.pages.writing", "panel.pages.parameters", "panel.menu.words", "panel.menu.engine",
     "panel.menu.main", "uss.families.kinds", "settings_file", "uss.finding", "uss.finding.mirror",
-    "panel.menu.address",
+    "panel.menu.address", "catalogue",
 )  # fmt: skip
 _OF_THE_SEARCH = (
     "search.search", "search.hunt", "search.words", "uss.finding.scan", "uss.finding.enquiry",

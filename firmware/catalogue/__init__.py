@@ -34,6 +34,7 @@ _READING, _PARAMETER = const(18), const(16)  # r and P, of which a table has one
 _LIKE, _COMMAND_SETS, _DRIVE_SETS = const(2), const(3), const(4)  # of the head
 
 _frozen = []  # families without a file
+_packed = []  # `Packed`, once it was needed
 
 
 def find(family, number, kind="P"):
@@ -98,16 +99,20 @@ def _rows(family, kind, numbers):
     """Rows, complete, and None after each look for one."""
     as_a_whole = kind not in b"\x01\x06\x10"  # neither A nor F nor P: what stands together
     missing = True
+    yield from _prepare(family)
     with _table(family) as table:
         yield None
         head = _cells(_line(table))
         like = head[_LIKE].decode()
+        yield None
         for part in numbers.split():
             first, _, last = part.partition(b"-")
             first, last = _key(first, kind), _key(last or first, kind) | 0x1FF
             for row in _between(table, first, last):
                 if row:
                     missing = False
+                    yield None
+                    row = _cells(row)
                     if like and not as_a_whole and b"" in row:
                         row = yield from _completed(row, like)
                     row = [b"" if cell == b"-" else cell for cell in row]
@@ -127,12 +132,12 @@ def _completed(row, like):
         for other in _between(table, key, key):
             yield None
             if other:
-                return [cell or from_other for cell, from_other in zip(row, other)]
+                return [cell or from_other for cell, from_other in zip(row, _cells(other))]
     return row
 
 
 def _between(table, first, last):
-    """The rows with these keys, and None after each look for the first."""
+    """The rows with these keys, as lines, and None after each look for the first."""
     is_packed = hasattr(table, "bring")
     yield from table.bring(first) if is_packed else _bring(table, first)
     yield None
@@ -143,7 +148,7 @@ def _between(table, first, last):
         key = row_key(line) if line else last + 1
         if key > last:
             return
-        yield _cells(line) if key >= first else None
+        yield line if key >= first else None
 
 
 def _bring(table, first):
@@ -162,18 +167,30 @@ def _bring(table, first):
     table.seek(low)
 
 
-def _table(family):
-    """A table as a stream of bytes: a file, or what is frozen into the firmware."""
+def _prepare(family):
+    """Find out how a table is kept, and load what that needs. None after each piece of it."""
     if family not in FAMILIES:
         raise ValueError("no catalogue of %s" % family)
     if family not in _frozen:
         try:
-            return open(__file__.rpartition("/")[0] + "/" + family + ".tsv", "rb")
+            _file(family).close()
         except OSError:
             _frozen.append(family)
-    from catalogue.packed import Packed
+            yield None
+    if family in _frozen and not _packed:
+        from catalogue.packed import Packed
 
-    return Packed(family, row_key)
+        _packed.append(Packed)
+        yield None
+
+
+def _table(family):
+    """A table as a stream of bytes: a file, or what is frozen into the firmware."""
+    return _packed[0](family, row_key) if family in _frozen else _file(family)
+
+
+def _file(family):
+    return open(__file__.rpartition("/")[0] + "/" + family + ".tsv", "rb")
 
 
 def _row(table):
@@ -186,6 +203,8 @@ def _row(table):
 
 def _line(table):
     """What is left of a line. `readline` would ask the file system for byte after byte."""
+    if hasattr(table, "line"):
+        return table.line()
     line = b""
     while True:
         piece = table.read(_PIECE)

@@ -7,8 +7,8 @@ A module such as `catalogue.table_mm440` holds it, made by tools/deploying/packi
     BLOCKS      the blocks one after the other, raw deflate
     INDEX       8 bytes for each: the key of its first row, and where it begins
 
-It is read as a file is, but that `bring` finds the row of a key: it unpacks one block, of 2 KB, in
-which it searches. That block is in memory for as long as somebody reads.
+`bring` finds the row of a key: it unpacks one block, of 2 KB, in which it searches. That block is
+in memory for as long as somebody reads.
 """
 
 import struct
@@ -22,7 +22,7 @@ import on_demand
 _WINDOW_BITS = const(11)  # of packing.py
 _ENTRY = "<II"
 _ENTRY_BYTES = const(8)
-_PIECE = const(256)  # that is unpacked in a step
+_PIECE = const(128)  # that is unpacked in a step
 _NEAR = const(200)  # bytes; what is nearer is found by reading on
 
 
@@ -35,8 +35,8 @@ class Packed:
         self._index = module.INDEX
         self._blocks = BytesIO(module.BLOCKS)  # which reads it where it is
         self._place = 0  # of the block, in the index
-        self._stream = BytesIO(module.HEAD)
-        self._last = self._left = b""
+        self._block = module.HEAD
+        self._at = 0  # so much of it has been read
 
     def __enter__(self):
         return self
@@ -44,16 +44,11 @@ class Packed:
     def __exit__(self, *_):
         pass
 
-    def read(self, count):
-        """Not beyond the end of a block, which is the end of a row: see `go_on`."""
-        piece, self._left = self._left, b""
-        self._last = piece = piece or self._stream.read(count)
-        return piece
-
-    def seek(self, offset, _):
-        """Back within what was read last."""
-        if offset:
-            self._left = self._last[offset:]
+    def line(self):
+        """The next line; empty at the end of the block, which is the end of a row: see `go_on`."""
+        block, at = self._block, self._at
+        self._at = end = block.find(b"\n", at) + 1 or len(block)
+        return block[at:end]
 
     def bring(self, key):
         """The next row is that with this key, or one before it that is near. None after each piece
@@ -66,7 +61,9 @@ class Packed:
                 low = middle
             else:
                 high = middle
-        block = yield from self._unpack(low * _ENTRY_BYTES)
+        yield None
+        self._block = block = yield from self._unpack(low * _ENTRY_BYTES)
+        yield None
         low, high = 0, len(block)
         while high - low > _NEAR:
             middle = block.rfind(b"\n", low, (low + high) // 2) + 1
@@ -76,20 +73,19 @@ class Packed:
                 low = middle
             else:
                 high = middle
-        self._stream = BytesIO(block)
-        self._stream.seek(low)
+        self._at = low
 
     def go_on(self):
         """At the end of a block, go to the next one, and tell whether there is one."""
         place = self._place + _ENTRY_BYTES
         if place < len(self._index):
-            self._stream = BytesIO((yield from self._unpack(place)))
+            self._block = yield from self._unpack(place)
+            self._at = 0
         return place < len(self._index)
 
     def _unpack(self, place):
         """A block as bytes. None after each piece."""
         self._place = place
-        self._left = b""
         self._blocks.seek(struct.unpack_from(_ENTRY, self._index, place)[1])
         packed = DeflateIO(self._blocks, RAW, _WINDOW_BITS)
         yield None

@@ -31,6 +31,8 @@ from uss.timing import elapsed
 _DRAW_MS = const(50)
 _MESSAGE_MS = const(3_000)
 _LAST_TURN = const(7)
+_UNSEEN_MS = const(300)  # so long a page that is coming may go before the picture
+_WAITS_MAX = const(4)  # turns until what takes long does not wait for an exchange any more
 
 # They act on every page that obeys. STOP acts on every page.
 COMMAND_KEYS = (
@@ -61,6 +63,8 @@ class Panel:
         self._acting = False  # keys that were pressed are still to do what they do
         self._taker = None  # the page that is to take them now that the panel has
         self._rests = False  # the step is not for making a page
+        self._progress = 0  # of the bus, and so many turns have waited for another one
+        self._waits = 0
         self._trips = 0  # bus.dead_man_trips when they were
         self.roster = roster
         self.controls = controls = roster.controls
@@ -127,8 +131,7 @@ class Panel:
             return False
         if self._place and self._page is self._home:
             self._rests = not self._rests
-            if not self._rests:
-                self._make_page(now_ms)
+            if not self._rests and self._make_page(now_ms):
                 return False
         if self.stop_key.left:
             self.stop_key.stop_next()
@@ -163,6 +166,17 @@ class Panel:
             return write
         self.say(now_ms, *write.outcome)
         return None
+
+    def has_time(self):
+        """Whether to begin what takes long, such as to load a module: an exchange has just ended,
+        so the next one does not interrupt that. Asked again in each turn.
+        """
+        progress, self._progress = self._progress, self.bus.progress
+        self._waits += 1
+        if progress == self._progress and self._waits < _WAITS_MAX:
+            return False
+        self._waits = 0
+        return True
 
     def close_menu(self):
         """Close the menu that covers the page."""
@@ -287,6 +301,10 @@ class Panel:
     def _draw(self, now_ms, now_us):
         # In a slow loop a picture takes longer than _DRAW_MS: it is drawn to its end all the same.
         view, drawn_at_ms = self._view, self._drawn_at_ms
+        if self._page.is_coming() and self._cover is None and drawn_at_ms is not None:
+            if elapsed(now_ms, drawn_at_ms, self.mask) < _UNSEEN_MS:
+                self._page.work(now_ms)
+                return False
         if drawn_at_ms is None or (
             view.is_done() and elapsed(now_ms, drawn_at_ms, self.mask) >= _DRAW_MS
         ):
@@ -437,9 +455,11 @@ class Panel:
         self._page.open()
 
     def _make_page(self, now_ms):
-        """One of its modules; when all are there, the page."""
+        """One of its modules; when all are there, the page. Answers whether that took long."""
         page, _, modules = PAGES[self._place]
         missing = on_demand.missing(modules)
+        if missing and not self.has_time():
+            return False
         try:
             module = on_demand.load(missing[0] if missing else modules[-1])
             if not missing:
@@ -447,6 +467,7 @@ class Panel:
         except MemoryError:
             self._place = 0
             self.say(now_ms, texts.NO_MEMORY)
+        return True
 
     def _select(self, direction):
         """Show the next drive, or the one before."""

@@ -864,14 +864,14 @@ MUTATIONS = (
         "another index shown",
         "the page of a parameter reads the first value of an array, whatever index it names",
         ("SHOWN",), 1,
-        ("panel/lookup/inspection.py", " index = self.index\n", " index = 0\n"),
+        ("panel/lookup/answers.py", " index = self.index\n", " index = 0\n"),
     ),
     Mutation(
         "low word lost",
         "the page of a parameter shows 0 for whole numbers",
         ("SHOWN",), 17,
         (
-            "panel/lookup/inspection.py",
+            "panel/lookup/answers.py",
             "self.high, self.low = job.high, job.low",
             "self.high, self.low = job.high, 0",
         ),

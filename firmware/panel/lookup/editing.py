@@ -95,28 +95,35 @@ class Editing:
         elif self.way == BITS and self.search.rows is None and self._name is _MISSING:
             self._name = texts.NOTHING
 
-    def rows(self, is_away):
-        """Both rows. is_away: the place that UP and DOWN change is not shown now."""
+    def name(self):
+        """Of the text or the bit that is shown, for row 1; None: it has none."""
+        if self.way == BITS:
+            return self._name
+        if self.way != CHOICES:
+            return None
+        for number, name in self._choices:
+            if number == self._number:
+                return name
+        return _MISSING if self.search.rows is not None else texts.NOTHING
+
+    def row(self, is_away):
+        """Row 2. is_away: the place that UP and DOWN change is not shown now."""
         shown = self._shown
         if self.way == CHOICES:
-            name = _MISSING if self.search.rows is not None else texts.NOTHING
-            for number, its_name in self._choices:
-                if number == self._number:
-                    name = its_name
-            return name, b"%s%13d" % (texts.of(words.NEW_VALUE), self._number)
+            return b"%s%13d" % (texts.of(words.NEW_VALUE), self._number)
         if self.way == BITS:
             if not self._is_changed:
                 self._bits = shown.high << 16 | shown.low
             label = shown.label() + b".%02d" % self._bit
             mark = b"-" if is_away and self._is_changed else b" "
             bit = self._bits >> self._bit & 1
-            return self._name, label + mark * (15 - len(label)) + b"%d" % bit
+            return label + mark * (15 - len(label)) + b"%d" % bit
         typed = bytes(self._typed)
         if is_away:
             typed = typed[: self._place] + b"_" + typed[self._place + 1 :]
         row = texts.of(words.NEW_VALUE) + (b" " if len(typed) < value.TYPED_MAX else b"") + typed
         unit = shown.unit()
-        return None, row + unit if len(row) + len(unit) <= texts.ROW_WIDTH else row
+        return row + unit if len(row) + len(unit) <= texts.ROW_WIDTH else row
 
     def _choose(self, direction):
         if not direction or self.search.rows is not None or not self._choices:

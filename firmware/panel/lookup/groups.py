@@ -29,7 +29,7 @@ class List(Entries):
             (texts.of(words.FAVOURITES), _FAVOURITES, _FIRST),
         ]
         self._search = Search()
-        self._is_missing = True  # modules that the page wants
+        self._loaded = 0  # of the modules that the page wants
         if table:
             self._rows.append((texts.of(words.ALL_OF_THEM), catalogue.ALL, _FIRST))
             self._search.begin(catalogue.rows(table, catalogue.ALL, "G", paced=True))
@@ -38,11 +38,12 @@ class List(Entries):
         return self.panel.remembered.get(_PLACE, 0)
 
     def is_searching(self):
-        return self._search.rows is not None or self._is_missing
+        return self._search.rows is not None or self._loaded < len(self.ahead)
 
     def search(self):
         if self._search.rows is None:
-            self._load_ahead()
+            if self.panel.has_time():
+                self._load_ahead()
             return
         row = self._search.step()
         if row:
@@ -50,14 +51,11 @@ class List(Entries):
 
     def _load_ahead(self):
         """What the page wants comes while somebody chooses, a module in a step."""
-        missing = on_demand.missing(self.ahead)
-        self._is_missing = len(missing) > 1
         try:
-            if missing:
-                on_demand.load(missing[0])
+            on_demand.load(self.ahead[self._loaded])
+            self._loaded += 1
         except MemoryError:
             self.ahead = ()  # the page says so, if somebody goes there
-            self._is_missing = False
 
     def count(self):
         return len(self._rows)

@@ -4,7 +4,7 @@
     Ramp-up time            its name, in turn with its limits and what its value is called
     P1120[0]  10.00s        number, index, value and unit
 
-`inspection` does the work, and comes with the first step.
+`inspection` does the work, and comes with the first turn.
 """
 
 from panel import texts
@@ -38,29 +38,33 @@ class Parameter(Page):
     def is_busy(self):
         return self._inspection is None or self._inspection.is_searching()
 
+    def is_coming(self):
+        return self._inspection is None or self._inspection.is_coming()
+
     def step(self, keys, now_ms):
-        if self._inspection is None:
-            self._inspection = Inspection(self.panel)
-        elif self._inspection.is_coming():
+        if self.is_coming():
             self.work(now_ms)
         else:
             self._inspection.step(keys, now_ms)
 
     def work(self, now_ms):
         """Look on in the catalogue."""
-        if self._inspection is not None:
+        if self._inspection is None:
+            self._inspection = Inspection(self.panel)
+        else:
             self._inspection.look_on()
 
     def take_keys(self, acts, now_ms):
-        if self._inspection is not None:
+        if self._inspection is not None and self._inspection.has_begun():
             self._inspection.take_keys(acts, now_ms)
 
     def draw(self, screen, now_ms):
-        rows = texts.NOTHING, texts.NOTHING
         if not self._was_whole:  # the alarm has ended since the picture was begun
             screen.put(1, 0, texts.STATE_WIDTH, texts.NOTHING)
             return
-        if self._inspection is not None:
-            rows = self._inspection.rows(now_ms)
-        for place in range(2):
-            screen.put(place, 0, texts.ROW_WIDTH, rows[place])
+        row = texts.NOTHING if self._inspection is None else self._inspection.row_1()
+        screen.put(0, 0, texts.ROW_WIDTH, row)
+
+    def draw_row_2(self, screen, now_ms):
+        row = texts.NOTHING if self._inspection is None else self._inspection.row_2(now_ms)
+        screen.put(1, 0, texts.ROW_WIDTH, row)

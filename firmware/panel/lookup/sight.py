@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""What is known of the parameter that is shown, and how it reads: both rows. See `inspection`."""
+"""What is known of the parameter that is shown, and how it reads: both rows, each in a step of its
+own. See `inspection`.
+"""
 
 from micropython import const
 
@@ -38,23 +40,27 @@ class Sight:
         """Whether the catalogue says that it can only be read."""
         return self.row is not None and self.row[catalogue.KEY][:1] == b"r"
 
-    def rows(self, now_ms):
-        """Both rows."""
+    def row_1(self):
+        if self._typed is not None:
+            return texts.of(words.TYPE_NUMBER)
+        if self._is_coming:
+            return _MISSING
+        if self._editing is None:
+            return self._in_turn(self._lines())
+        name = self._editing.name()
+        return self._in_turn([self._value_row()] + self._lines()[1:]) if name is None else name
+
+    def row_2(self, now_ms):
+        if self._is_coming:
+            return texts.NOTHING
+        if self._typed is None and self._editing is None:
+            return self._value_row()
         away_ms = elapsed(now_ms, self._used_at_ms or now_ms, self.panel.mask) % _BLINK_MS
         is_away = away_ms >= _BLINK_MS - _AWAY_MS
-        if self._typed is not None:
-            number = bytes(self._typed)
-            if is_away:
-                number = number[: self._place] + b"_" + number[self._place + 1 :]
-            return texts.of(words.TYPE_NUMBER), number
-        if self._is_coming:
-            return _MISSING, texts.NOTHING
-        if self._editing is not None:
-            row_1, row_2 = self._editing.rows(is_away)
-            if row_1 is None:
-                row_1 = self._in_turn([self._value_row()] + self._lines()[1:])
-            return row_1, row_2
-        return self._in_turn(self._lines()), self._value_row()
+        if self._typed is None:
+            return self._editing.row(is_away)
+        number = bytes(self._typed)
+        return number[: self._place] + b"_" + number[self._place + 1 :] if is_away else number
 
     def _in_turn(self, lines):
         return lines[(self.panel.announcer.page_turns - self._first_turn) % len(lines)]

@@ -103,10 +103,10 @@ class Menu(Page):
 
     def work(self, now_ms):
         """What takes long has a turn of its own: a module that comes, a piece of a search."""
-        if self._coming:
-            self._come(now_ms)
-        else:
+        if not self._coming:
             self._lists[-1][1].search()
+        elif self.panel.has_time():
+            self._come(now_ms)
 
     def step(self, keys, now_ms):
         if self._coming:

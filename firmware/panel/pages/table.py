@@ -17,7 +17,7 @@ PAGES = (
             "catalogue", "catalogue.beside", "panel.lookup", "panel.lookup.words",
             "panel.pages.parameter_words", "panel.pages.writing", "panel.lookup.favourites",
             "panel.lookup.value", "panel.lookup.editing", "panel.lookup.sight",
-            "panel.lookup.inspection", "panel.lookup.parameter",
+            "panel.lookup.answers", "panel.lookup.inspection", "panel.lookup.parameter",
         ),
     ),
 )  # fmt: skip
