@@ -63,7 +63,7 @@ class Panel:
         self._acting = False  # keys that were pressed are still to do what they do
         self._taker = None  # the page that is to take them now that the panel has
         self._rests = False  # the step is not for making a page
-        self._progress = 0  # of the bus, and so many turns have waited for another one
+        self._exchanges = 0  # of the bus, and so many turns have waited for another one
         self._waits = 0
         self._trips = 0  # bus.dead_man_trips when they were
         self.roster = roster
@@ -168,12 +168,12 @@ class Panel:
         return None
 
     def has_time(self):
-        """Whether to begin what takes long, such as to load a module: an exchange has just ended,
-        so the next one does not interrupt that. Asked again in each turn.
+        """Whether to begin what takes long, such as to load a module: a telegram has just gone out,
+        so nothing interrupts that until the reply is there. Asked again in each turn.
         """
-        progress, self._progress = self._progress, self.bus.progress
+        exchanges, self._exchanges = self._exchanges, self.bus.turns.exchanges
         self._waits += 1
-        if progress == self._progress and self._waits < _WAITS_MAX:
+        if exchanges == self._exchanges and self._waits < _WAITS_MAX:
             return False
         self._waits = 0
         return True
