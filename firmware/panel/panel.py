@@ -168,7 +168,7 @@ class Panel:
         return None
 
     def has_time(self):
-        """Whether to begin what takes long, such as to load a module: a telegram has just gone out,
+        """Whether to begin what takes long, such as to load a module: a telegram has just begun,
         so nothing interrupts that until the reply is there. Asked again in each turn.
         """
         exchanges, self._exchanges = self._exchanges, self.bus.turns.exchanges

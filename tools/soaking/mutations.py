@@ -899,7 +899,7 @@ MUTATIONS = (
     Mutation(
         "saved wrong",
         "a set has not what the drive has",
-        ("SET",), 138,
+        ("SET",), 257,
         (
             "panel/sets/saving.py",
             "set_file.row_line(number, index, kind, job.high, job.low)",
@@ -929,7 +929,7 @@ MUTATIONS = (
     Mutation(
         "bus off talks on",
         "the display says that the line is free, and the panel talks",
-        ("BUS OFF",), 19,
+        ("BUS OFF",), 28,
         (
             "panel/menu/diagnosis/off.py",
             "        if self.panel.bus.phase == OFF:\n            return texts.of(words.LINE",
@@ -940,7 +940,7 @@ MUTATIONS = (
     Mutation(
         "bus off stops nobody",
         "the panel leaves the line, and has told nobody to stop",
-        ("BUS OFF",), 19,
+        ("BUS OFF",), 28,
         (
             "uss/master.py",
             "        self.stop_all()\n        self._held |= _HELD_BY_OFF\n",
@@ -950,7 +950,7 @@ MUTATIONS = (
     Mutation(
         "back without listening",
         "the panel takes the line back while others talk",
-        ("LISTEN",), 19,
+        ("LISTEN",), 28,
         (
             "uss/master.py",
             "            self.foreign = 0\n            self.phase = LISTENING\n",
@@ -960,7 +960,7 @@ MUTATIONS = (
     Mutation(
         "a mirror test that commands",
         "a drive that takes it for one of its own telegrams obeys what it says",
-        ("MIRROR",), 36,
+        ("MIRROR",), 54,
         ("panel/menu/diagnosis/mirror.py", "] &= 0xFB", "] |= 0x04"),
     ),
     Mutation(
@@ -979,6 +979,8 @@ MUTATIONS = (
 # well: a life of two minutes gets there too rarely. Each still has to fit the firmware's text.
 UNFOUND = (
     "another index shown",
+    "half a set starts",
+    "good replies miscounted",
     "the next one's turn is lost",
     "faster without a key",
     "hertz believed",

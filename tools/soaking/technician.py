@@ -21,6 +21,7 @@ ENDS = (  # how the work with a set may end, or what it asks
     "DAMAGED", "TOO", "IT IS OF", "FLASH", "20 SETS", "STOP FIRST", WRITE, YES, "REFUSED", "P0003",
     "THE BUS", "CHANGE THE",
 )  # fmt: skip
+MESSAGE_MS = 3_300  # by then none hides what is shown
 SETS_MAX = 3  # he keeps
 SAVED_S = (3, 50, 50, 50)  # he waits so long
 CHANGED = ((1120, 5.0), (1120, 2.0), (1121, 3.0), (1121, 2.0))  # at the drive, before he writes
@@ -82,6 +83,7 @@ class Technician(Mischief):
                 self.note("drive %d: P%d=%s at the drive itself" % (drive.address, number, value))
                 self.set_at_drive(drive, number, value)
             self._use()
+        self.run(MESSAGE_MS)
         self.go_home()
         if self.dice.below(2):  # what is half written must not start
             self.press("START")
@@ -122,6 +124,8 @@ class Technician(Mischief):
 
     def give_sets_up(self):
         """Say of every drive that has one in part that it may be started."""
+        self.run(MESSAGE_MS)
+        self.go_home()
         for address in self.plan.listed:
             half = json.loads(self.world.flash.files[SETTINGS_FILE]).get(HALF, {})
             if str(address) in half and self._show(address):

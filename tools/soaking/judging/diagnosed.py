@@ -45,7 +45,7 @@ class Diagnosed:
         address = int(name[1:]) if name[:1] == "A" and name[1:].isdigit() else None
         if text == MENU + MIRROR_TEST:
             self._offered_us = now
-        elif OK_OF in text:
+        elif OK_OF in text or what == MIRROR_TEST:  # something else may hide either row
             self._read_mirror(address if what == MIRROR_TEST else None, text, steady, now)
         elif not steady or self.witness.hung_us is not None:
             pass

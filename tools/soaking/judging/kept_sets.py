@@ -178,7 +178,9 @@ class KeptSets:
             for rows in files
         ]
         if all(left):
-            raise Broken("SET", "drive %d reads as equal, and differs in %s" % (address, left[0][:5]))
+            raise Broken(
+                "SET", "drive %d reads as equal, and differs in %s" % (address, left[0][:5])
+            )
 
     def _is_changed(self, address):
         return self._changed_us.get(address, NEVER) >= self._begun_us
@@ -195,7 +197,9 @@ class KeptSets:
 
 
 def set_in(data):
-    """Address and {(number, index): (value, bits)} of a set's file; None for the latter: it is not whole."""
+    """Address and {(number, index): (value, bits)} of a set's file; None for the latter: it is
+    not whole.
+    """
     lines = bytes(data).decode().split("\n")
     rows, owner = {}, None
     if lines[0] != FIRST:

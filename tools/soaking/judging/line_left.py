@@ -63,11 +63,13 @@ class LineLeft:
             raise Broken("BUS OFF", "%s at %d, and the display says LINE IS FREE" % (where, now))
 
     def _judge_told(self, now):
-        """Every drive of the list was told to stop before the panel left, unless it never spoke."""
+        """Every drive of the list was told to stop before the panel left, unless it was mute."""
         witness = self.witness
         if witness.tape.sent_us < max(witness.boot_us, self.back_us):
             return
         for address in witness.plan.listed:
             sent_us = witness.cases[address].sent_us
             if sent_us < self._chosen_us and address not in witness.moved:
-                raise Broken("BUS OFF", "at %d, and drive %d was not told to stop" % (now, address))
+                raise Broken(
+                    "BUS OFF", "at %d, and drive %d was not told to stop" % (now, address)
+                )

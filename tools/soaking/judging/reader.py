@@ -35,6 +35,7 @@ from tools.soaking.judging.looked_up import address_above, is_wrong, label_in
 from tools.soaking.judging.rules import Broken
 
 SCREENS = 12
+QUIET_US = 60 * MS
 COVERED_US = 3_500 * MS  # what a STOP does covers a row of the menu, and so long after
 EXPOSED_US = 6 * S
 PRESENT = 2  # of r2110: so many of its warnings are present, the others are gone
@@ -107,7 +108,9 @@ class Reader:
         self._note_page(now)
         is_drawn = now - self._rows_us > self._drawn_us
         witness.line.read(self.rows, is_drawn, now)
-        witness.diagnosed.read(self.rows, is_drawn, now)
+        # What counts is drawn again and again: nothing was written for two slices.
+        is_quiet = now - self._written_us > QUIET_US
+        witness.diagnosed.read(self.rows, is_drawn or is_quiet, now)
         if is_drawn:
             witness.sets.read(self.rows, now)
         self._note_digits(now)

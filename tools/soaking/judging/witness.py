@@ -8,6 +8,7 @@ address keys move), both ways are allowed.
 
 from boards.sim.board import KEYS
 from tools.soaking.judging.case import Case, drive_at
+from tools.soaking.judging.diagnosed import Diagnosed
 from tools.soaking.judging.drive_settings import Settings
 from tools.soaking.judging.facts import (
     ALL_STOP_US,
@@ -45,7 +46,6 @@ from tools.soaking.judging.facts import (
     exchange_us,
     lost_us,
 )
-from tools.soaking.judging.diagnosed import Diagnosed
 from tools.soaking.judging.families import kinds_of
 from tools.soaking.judging.kept_sets import KeptSets
 from tools.soaking.judging.line_left import LineLeft
