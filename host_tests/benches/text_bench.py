@@ -6,6 +6,7 @@ missing.
 """
 
 from panel import texts
+from panel.commission import words as commission_words
 from panel.lookup import ask
 from panel.lookup import words as lookup_words
 from panel.menu import words as menu_words
@@ -16,7 +17,7 @@ from search import words as search_words
 
 MODULES = (
     texts, splash, parameter_words, menu_words, set_words, diagnosis_words, search_words,
-    lookup_words, ask,
+    lookup_words, ask, commission_words,
 )  # fmt: skip
 TABLE = "firmware/panel/languages/words.tsv"
 

@@ -37,6 +37,7 @@ RULES = (
     ("firmware/uss/s7", ("uss",), ("struct", "array", "micropython")),
     ("firmware/uss/tasks", ("uss",), ("struct", "array", "micropython")),
     ("firmware/panel", ("panel", "on_demand", "uss", "version"), ("micropython",)),
+    ("firmware/panel/commission", ("panel", "uss", "catalogue"), ("micropython",)),
     ("firmware/panel/languages", ("on_demand",), ("binascii", "micropython", "struct")),
     ("firmware/panel/lookup", ("panel", "on_demand", "uss", "catalogue"), ("micropython",)),
     (

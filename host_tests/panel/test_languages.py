@@ -19,6 +19,7 @@ from boards.sim.chip.lcd import ROM
 from boards.sim.script import Script
 from hal.display.hd44780 import Hd44780
 from panel import texts
+from panel.commission import words as commission_words
 from panel.languages import Language
 from panel.lookup import ask
 from panel.lookup import words as lookup_words
@@ -43,7 +44,8 @@ COUNTED = ROW - len(" 31")
 ROW_MAX = 128  # bytes: what is read of a row of the table
 ORDINARY = {
     texts: ROW, splash: ROW, parameter_words: ROW, menu_words: ENTRY, set_words: ENTRY,
-    diagnosis_words: ENTRY, search_words: ROW, lookup_words: ENTRY + 1, ask: ROW,
+    commission_words: ENTRY, diagnosis_words: ENTRY, search_words: ROW, lookup_words: ENTRY + 1,
+    ask: ROW,
 }  # fmt: skip
 NARROW = {  # by module: names, place
     set_words: (
@@ -82,6 +84,7 @@ NARROW = {  # by module: names, place
         ("KEY_TEST_ENDS SET_KEEPS SET_NEXT STOPS_FOUND SHORT ADDED ALL_ADDED NOT_ADDED", ROW),
         ("REMOVED NOT_REMOVED KEPT NO_LOCK WRONG_CODE UNLOCKED", ROW),
     ),
+    commission_words: (("LEAVES_DONE LEAVES_LEFT STOP_IT", ROW),),
     diagnosis_words: (
         ("COUNTERS OF_THE_BUS TIMES", TITLE - len("A31 ")),
         ("BUS SENT HEARD HELD RESTART HEAP", TITLE),
@@ -117,6 +120,14 @@ MOST = {  # the widest values that belong into a text
     b"P%04d=%d %d": (2010, 12, 115200),
     b"RATE %d": (187500,),
     b"PKW WORDS %d": (127,),
+    b"IS %s": (b"-00000.000",),
+    b"%s NEEDS %s": (b"187500", b"21"),
+    b"%d LEFT": (23,),
+    b"FIRST P%04d": (3900,),
+    b"A%d: ALL DONE": (31,),
+    b"A%d: %d LEFT": (31, 23),
+    b"%s SET=YES": (b"650.00",),
+    b"STOP A%d FIRST": (31,),
     b"PZD WORDS %d": (8,),
     b"VERSION %s": (VERSION.encode(),),
     b"A%d SAVE %d%%": (31, 100),
@@ -507,7 +518,7 @@ def test_drives_that_are_not_shown_are_announced_in_german():
 def test_the_menu_in_german():
     world = german(addresses=(1, 2))
     menu(world)
-    assert world.lcd() == ("MENÜ        1/11", ">ANTRIEBE       ")
+    assert world.lcd() == ("MENÜ        1/12", ">ANTRIEBE       ")
     press(world, "START")
     assert row_2(world) == ">NEIN: IM MENÜ", world.lcd()
     press(world, "DOWN", "UP")
@@ -517,7 +528,7 @@ def test_the_menu_in_german():
         press(world, "DOWN")
     assert seen == [
         ">ANTRIEBE", ">ADRESSEN", ">FU SUCHEN", ">EINSTELL.", ">SÄTZE", ">ABFOLGE", ">HÄUFIGKEIT",
-        ">DIAGNOSE", ">PARAMETER", ">STÖRSPEICHER", ">INFO",
+        ">DIAGNOSE", ">PARAMETER", ">INBETRIEBN.", ">STÖRSPEICHER", ">INFO",
     ], seen  # fmt: skip
     walk_to(world, "EINSTELL.")
     press(world, "SET")

@@ -30,6 +30,18 @@ def text(row, column=catalogue.NAME):
     return row[column + own] or row[column + catalogue.EN]
 
 
+def broken(left, width):
+    """The lines of a text of the catalogue, one by one, between words as far as they fit."""
+    left = left.replace(catalogue.LINE, b" ")
+    while left:
+        end = len(left)
+        if end > width:
+            end = left.rfind(b" ", 0, width + 1)
+            end = end if end > 0 else width
+        yield left[:end]
+        left = left[end:].lstrip()
+
+
 class Search:
     """Rows that are looked for, a piece in each step."""
 

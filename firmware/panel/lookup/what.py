@@ -7,7 +7,7 @@ A0501        1/9    CAUSE        2/9    REMEDY       6/9
 
 import catalogue
 from panel import texts
-from panel.lookup import Search, name_of, text, words
+from panel.lookup import Search, broken, name_of, text, words
 from panel.menu import Entries
 
 _WIDTH = 15  # of an entry
@@ -58,11 +58,5 @@ class List(Entries):
             (texts.of(words.CAUSE), catalogue.CAUSE),
             (texts.of(words.REMEDY), catalogue.REMEDY),
         ):
-            left = text(row, column).replace(catalogue.LINE, b" ")
-            while left:
-                end = len(left)
-                if end > _WIDTH:
-                    end = left.rfind(b" ", 0, _WIDTH + 1)
-                    end = end if end > 0 else _WIDTH
-                yield ((heading, left[:end]),)
-                left = left[end:].lstrip()
+            for line in broken(text(row, column), _WIDTH):
+                yield ((heading, line),)

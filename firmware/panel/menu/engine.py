@@ -15,11 +15,15 @@ from uss.timing import elapsed
 
 _LOOKUP = ("catalogue", "panel.lookup", "panel.lookup.words")
 _OF_A_SET = ("panel.pages.parameter_words", "panel.sets.pump", "panel.sets.work")
+_COMMISSION = _LOOKUP + ("panel.commission", "panel.commission.words")
 _DIAGNOSIS = ("panel.menu.diagnosis", "panel.menu.diagnosis.words")
 
 # What a list wants besides, a step of the loop for each: from the bottom of the house up.
 _WANTS = {
     "address": ("uss.finding", "uss.finding.mirror"),
+    "commission.course": _COMMISSION
+    + ("panel.lookup.value", "panel.pages.parameter_words", "panel.writer"),
+    "commission.overview": _COMMISSION,
     "sets.overview": (
         "panel.menu.sets",
         "panel.menu.sets.words",
@@ -42,6 +46,7 @@ _WANTS = {
     "turns": ("uss.families.kinds", "settings_file"),
     "value": ("uss.families.kinds", "settings_file"),
 }
+_BESIDE = ("lookup.", "commission.")  # lists that look into the catalogue
 _REFUSED = ("START", "REVERSE", "JOG_RIGHT", "JOG_LEFT")  # they move a motor
 _STALE_MS = const(60_000)
 _TOLD_MS = const(3_000)
@@ -239,4 +244,4 @@ class Menu(Page):
 
 def _module(name):
     """Where a list stands: below this folder, or beside it, with what it looks up."""
-    return ("panel." if name.startswith("lookup.") else "panel.menu.") + name
+    return ("panel." if name.startswith(_BESIDE) else "panel.menu.") + name

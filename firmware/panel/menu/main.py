@@ -14,11 +14,12 @@ LISTS = (  # text, module
     (words.MENU_TURNS, "turns"),
     (words.MENU_DIAGNOSIS, "diagnosis.overview"),
     (words.PARAMETERS, "lookup.groups"),
+    (words.COMMISSION, "commission.overview"),
     (words.FAULT_MEMORY, "lookup.memory"),
     (words.MENU_ABOUT, "about"),
 )
 OF_SEVERAL = ("order", "turns")  # drives
-OF_PARAMETERS = ("lookup.groups", "lookup.memory")
+OF_PARAMETERS = ("lookup.groups", "lookup.memory", "commission.overview")
 
 
 class List(Entries):
