@@ -100,6 +100,10 @@ class Panel:
         splash = on_demand.load("panel.pages.splash")
         self._cover = splash.Splash(self)  # a page that hides it: the splash, a question, or None
         self._notices = splash.notices(settings, key_names, notices)
+        self.journal = controls[0].desk.journal
+        for notice in notices:
+            if notice:
+                self.journal.note(notice)
         self._message_at_ms = 0
         self._view = View(self, screen, keys)
         self._view.begin(self._cover)
@@ -290,6 +294,7 @@ class Panel:
             self._writer.step(now_us)
         self.selected.ask_on(now_us)
         self._collect(now_ms)
+        self.journal.tick(now_ms)
         guard = self.guard
         if guard is not None and guard.step(now_ms, self._has_alarm()):
             self.lock(now_ms)

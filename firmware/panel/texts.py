@@ -92,6 +92,7 @@ LINE_FAILED = b"LINE FAILED"
 PANEL_HUNG = b"PANEL HUNG"
 ENGINE_FAILED = b"BUS ERROR"
 STOPPED_ITSELF = b"STOPPED SELF"
+STOP_KEY = b"STOP KEY"  # what stopped it: in the list of events alone
 DID_NOT_START = b"NOT STARTED"
 TAKEN_AWAY = b"TAKEN AWAY"  # P0700, P1000 or the like hands it to somebody else
 DRIVE_RESET = b"DRIVE RESET"  # its mains were away for a moment, r2024

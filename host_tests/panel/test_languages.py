@@ -518,7 +518,7 @@ def test_drives_that_are_not_shown_are_announced_in_german():
 def test_the_menu_in_german():
     world = german(addresses=(1, 2))
     menu(world)
-    assert world.lcd() == ("MENÜ        1/12", ">ANTRIEBE       ")
+    assert world.lcd() == ("MENÜ        1/13", ">ANTRIEBE       ")
     press(world, "START")
     assert row_2(world) == ">NEIN: IM MENÜ", world.lcd()
     press(world, "DOWN", "UP")
@@ -528,7 +528,7 @@ def test_the_menu_in_german():
         press(world, "DOWN")
     assert seen == [
         ">ANTRIEBE", ">ADRESSEN", ">FU SUCHEN", ">EINSTELL.", ">SÄTZE", ">ABFOLGE", ">HÄUFIGKEIT",
-        ">DIAGNOSE", ">PARAMETER", ">INBETRIEBN.", ">STÖRSPEICHER", ">INFO",
+        ">DIAGNOSE", ">PARAMETER", ">INBETRIEBN.", ">STÖRSPEICHER", ">EREIGNISSE", ">INFO",
     ], seen  # fmt: skip
     walk_to(world, "EINSTELL.")
     press(world, "SET")

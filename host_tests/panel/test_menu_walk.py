@@ -61,9 +61,12 @@ def warned():
 
 
 def wait_until_it_runs(world):
+    before = None
     for _ in range(30):
-        if world.drives[1].state == "running" and abs(world.drives[1].hz() - 10) < 0.01:
+        hz = world.drives[1].hz()
+        if world.drives[1].state == "running" and abs(hz - 10) < 0.01 and hz == before:
             return
+        before = hz
         world.run(50)
     raise AssertionError(world.lcd())
 
@@ -164,7 +167,8 @@ def press_motion_keys(world, where):
     for key in MOTION_KEYS:
         world.press(key, 60)
         world.run(60)
-    assert (starts(world), world.drives[1].hz()) == before, (where, world.lcd())
+    after = starts(world), world.drives[1].hz()
+    assert after == before, (where, before, after, world.lcd())
 
 
 def press_stop(world, where):

@@ -39,6 +39,7 @@ _WANTS = {
     "diagnosis.overview": _DIAGNOSIS,
     "diagnosis.telegrams": ("uss.finding", "uss.finding.witness") + _DIAGNOSIS,
     "diagnosis.times": ("uss.finding", "uss.finding.witness") + _DIAGNOSIS,
+    "events": _LOOKUP,
     "kind": ("uss.families.bop", "uss.families.kinds"),
     "lookup.groups": _LOOKUP,
     "lookup.memory": _LOOKUP,

@@ -16,6 +16,7 @@ LISTS = (  # text, module
     (words.PARAMETERS, "lookup.groups"),
     (words.COMMISSION, "commission.overview"),
     (words.FAULT_MEMORY, "lookup.memory"),
+    (words.MENU_EVENTS, "events"),
     (words.MENU_ABOUT, "about"),
 )
 OF_SEVERAL = ("order", "turns")  # drives
