@@ -22,8 +22,8 @@ from uss.families import rows
 from uss.survey import REREAD_US
 from panel import permits, risks, texts
 from panel.command import Command
-from panel.fault import NO_FAULT, Fault
-from panel.journal import Journal
+from panel.reports.fault import NO_FAULT, Fault
+from panel.reports.journal import Journal
 from panel.phases import ASKING, CHECKING, IDLE, JOGGING, RUNNING
 from panel.setpoint import Setpoint
 from panel.stop_watch import NO_WATCH, StopWatch

@@ -16,7 +16,7 @@ from micropython import const
 import on_demand
 from panel import permits, texts, wording
 from panel.announcer import Announcer
-from panel.fault import DriveWarning
+from panel.reports.fault import DriveWarning
 from panel.keys import Acts, keys_of
 from panel.keys.jog_keys import JogKeys
 from panel.keys.stop_key import StopKey

@@ -2,8 +2,8 @@
 """The operator's manual, events: what has happened since power-on, and how long ago."""
 
 from lookup_bench import entries, go_to, press, settled_heading, wait, world_of
-from panel.journal import EVENTS, NOBODY, Journal
 from panel.menu.events import age
+from panel.reports.journal import EVENTS, NOBODY, Journal
 from panel_bench import row_2
 
 INTERPRETERS = "unix64 unix32"

@@ -282,7 +282,7 @@ MUTATIONS = (
         "a tripped drive is reset though nobody has seen it",
         ("ACKNOWLEDGE",), 5,
         (
-            "panel/fault.py",
+            "panel/reports/fault.py",
             "            self._shown_ms += passed_ms\n",
             "            self._shown_ms += passed_ms\n"
             "            if self.was_shown():\n"

@@ -8,7 +8,7 @@ A3 5:12       1/7       the drive, and how long ago: 5 min 12 s; 3h05; 12d04h
 from micropython import const
 
 from panel import texts, wording
-from panel.journal import NOBODY
+from panel.reports.journal import NOBODY
 from panel.menu import Entries, words
 
 _WIDTH = const(15)  # of an entry
