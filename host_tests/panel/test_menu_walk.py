@@ -2,8 +2,8 @@
 """STOP on every page of the menu, found by walking it: no list of pages stands here.
 
 The walk begins where a held PARAM leads, and knows what a person sees: an entry behind ">", its
-place in a list (3/7), a question. DOWN and SET lead on. Each place is reached anew, with the motor
-running, or, where the panel refuses that, standing.
+place in a list (3/7), a question, a parameter. DOWN and SET lead on. Each place is reached anew,
+with the motor running, or, where the panel refuses that, standing.
 """
 
 import os
@@ -12,18 +12,25 @@ import main
 import on_demand
 from boards.sim.world import World
 from panel_bench import OFF1, row_1, row_2, settled, starts, telegrams, wait_until_known
+from sets_bench import made
+from uss.master import OFF
 
 INTERPRETERS = "unix64 unix32"
 
 MOTION_KEYS = ("START", "REVERSE", "JOG_RIGHT", "JOG_LEFT")
-NO_LISTS = ("__init__", "engine", "words")  # modules of the menu
+NO_LISTS = ("__init__", "engine", "words", "diagnosis")  # modules of the menu
+LISTS_BESIDE = (
+    "lookup.groups", "lookup.memory", "lookup.what", "commission.overview", "commission.course",
+)  # fmt: skip
 STOP_MS = 100
+LISTEN_MS = 200  # longer, where the line was left: the panel listens first
 DEEP = 40  # keys: no way is longer
 QUICK = {1120: 0.1, 1121: 0.1, 2014: 2000}
 
 
 def standing():
     world = World(main.start, (1, 2), parameters=QUICK, settings={"unsupervised": [2]})
+    world.flash.files["1.set"] = made([(1120, 0, b"Float", b"3F800000")], family=b"mm420")
     world.run(500)
     wait_until_known(world)
     return world
@@ -45,10 +52,21 @@ def silent():
     return world
 
 
+def warned():
+    """The drive shown has a warning: the menu tells what it means."""
+    world = running()
+    world.drives[1].warn(600)
+    world.run(1500)
+    return world
+
+
 def wait_until_it_runs(world):
+    before = None
     for _ in range(30):
-        if world.drives[1].state == "running" and abs(world.drives[1].hz() - 10) < 0.01:
+        hz = world.drives[1].hz()
+        if world.drives[1].state == "running" and abs(hz - 10) < 0.01 and hz == before:
             return
+        before = hz
         world.run(50)
     raise AssertionError(world.lcd())
 
@@ -76,6 +94,10 @@ def place(world):
 
     Row 1 may be busy with an announcement: then the number is seen a little later.
     """
+    for _ in range(20):  # it may be on its way
+        if row_2(world):
+            break
+        world.run(50)
     row, count = row_2(world), None
     if row.startswith(">"):
         for _ in range(20):
@@ -85,9 +107,17 @@ def place(world):
         tail = row_1(world)[11:].strip().split("/")
         if len(tail) == 2 and tail[1].isdigit():
             count = int(tail[1])
-    elif not row.endswith("PARAM=NO"):
+    elif not row.endswith("PARAM=NO") and not is_parameter(row):
         return None
-    return count, row_2(world)
+    # What is counted or measured is another row each time: there the title tells.
+    title = row_1(world)
+    moves = count and title[:3] in ("A1 ", "A2 ", "BUS", "HEA") and title[3:11].strip()
+    return count, ">" + title if moves else row_2(world)
+
+
+def is_parameter(row):
+    """P1120[0]  10.00s"""
+    return row[:1] in ("P", "r") and row[1:5].isdigit()
 
 
 def ways():
@@ -95,13 +125,13 @@ def ways():
 
     The world comes back with the menu as it was: so it can walk on.
     """
-    seen, open_ways = set(), [(running, ()), (silent, ())]
+    seen, open_ways = set(), [(running, ()), (silent, ()), (warned, ())]
     while open_ways:
         begin, way = open_ways.pop(0)
         world = go(begin, way)
         while True:
             here = place(world)
-            if here is None and begin is running:  # refused, perhaps since the motor runs
+            if here is None and begin in (running, warned):  # refused, perhaps since it runs
                 open_ways.append((standing, way))
             if here is None or here in seen:
                 break
@@ -111,11 +141,17 @@ def ways():
             count, row = here
             if not row.startswith(">"):
                 break
-            open_ways.append((begin, way + ("SET",)))
+            if "/" not in row or way[-1:] == ("SET",):  # of many that only tell, the first one
+                open_ways.append((begin, way + ("SET",)))
             if not count and way[-1:] != ("SET",):  # a value is changed once
                 break
             way += ("DOWN",)
             walk(world, "DOWN")
+
+
+def has_left(world):
+    """Whether the line is left to others: no motor of this panel can run there."""
+    return world.app.bus.phase == OFF
 
 
 def run(world):
@@ -131,23 +167,33 @@ def press_motion_keys(world, where):
     for key in MOTION_KEYS:
         world.press(key, 60)
         world.run(60)
-    assert (starts(world), world.drives[1].hz()) == before, (where, world.lcd())
+    after = starts(world), world.drives[1].hz()
+    assert after == before, (where, before, after, world.lcd())
 
 
 def press_stop(world, where):
     """OFF1 is on the wire at once, and the display goes on telling where one is."""
     pressed_us = world.clock.now_us
-    was_question = not row_2(world).startswith(">")
+    stop_ms = STOP_MS + LISTEN_MS if has_left(world) else STOP_MS
+    was_question = row_2(world).endswith("PARAM=NO")
+    was_parameter = is_parameter(where[1][1])  # a refusal may hide it by now
     world.down("STOP")
     world.run(500)  # said from 300 ms on, and then drawn and shown
+    settled(world)  # what is being written to the display can be read a moment later
     assert world.reads("STOP, HOLD: OFF3"), (where, world.lcd())
     world.up("STOP")
     offs = [at_us for at_us, stw in telegrams(world, pressed_us, 1) if stw == OFF1]
-    assert offs and offs[0] - pressed_us < STOP_MS * 1000, where
+    assert offs and offs[0] - pressed_us < stop_ms * 1000, where
     world.run(400)
     assert world.drives[1].hz() == 0 and world.drives[1].state != "running", where
     if was_question:  # which STOP answers with no
         assert row_2(world)[-2:] == "A1", (where, world.lcd())
+    elif was_parameter:
+        for _ in range(40):  # what the drive has refused is said for three seconds
+            if is_parameter(row_2(world)):
+                break
+            world.run(100)
+        assert is_parameter(row_2(world)), (where, world.lcd())
     else:
         assert row_2(world).startswith(">"), (where, world.lcd())
     world.check()
@@ -168,20 +214,28 @@ def test_stop_acts_in_every_place_of_the_menu_and_nothing_starts_there():
     loaded, load = set(), on_demand.load
     on_demand.load = noting(loaded)
     try:
-        places = {running: 0, standing: 0, silent: 0}
+        places = {running: 0, standing: 0, silent: 0, warned: 0}
+        parameters = 0
         for begin, way, here, world in ways():
             places[begin] += 1
-            if begin is running:
+            is_line_left = has_left(world)
+            if begin in (running, warned):
                 run(world)
+            parameters += is_parameter(here[1])
             if here[1].startswith(">"):  # any key answers a question
                 press_motion_keys(world, (way, here))
-            if begin is not silent:
+            if begin is not silent and not is_line_left:
                 run(world)
             press_stop(world, (way, here))
     finally:
         on_demand.load = load
     assert places[running] > 70 and places[standing] > 2 and places[silent] > 3, places
-    for name in os.listdir("firmware/panel/menu"):
-        name = name.split(".")[0]
-        if name not in NO_LISTS and not name.startswith("__"):
-            assert "panel.menu." + name in loaded, "nobody gets to the list %s" % name
+    assert places[warned] > 5 and parameters > 1, (places, parameters)
+    for folder in ("", "/diagnosis"):
+        for name in os.listdir("firmware/panel/menu" + folder):
+            name = name.split(".")[0]
+            if name not in NO_LISTS and not name.startswith("__"):
+                module = "panel.menu" + folder.replace("/", ".") + "." + name
+                assert module in loaded, "nobody gets to the list %s" % name
+    for name in LISTS_BESIDE:
+        assert "panel." + name in loaded, "nobody gets to the list %s" % name

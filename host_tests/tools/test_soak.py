@@ -18,6 +18,7 @@ from tools.soaking.judging.case import Case
 from tools.soaking.judging.drive_settings import Values
 from tools.soaking.judging.facts import NEVER
 from tools.soaking.judging.families import FAMILIES, VARIABLE, Kind, Sight, kinds_of
+from tools.soaking.judging.looked_up import is_wrong
 from tools.soaking.judging.reader import subject_in
 from tools.soaking.judging.rules import RULES, Broken
 from tools.soaking.judging.runs import is_standstill, judge_rise
@@ -221,6 +222,15 @@ def test_what_a_question_is_about_is_read_from_the_display():
     assert subject_in("A31: P2011=17   ") == (31, 2011, 17)
     for other in ("A1: P07 F:  0.00", "A1: P0700=      ", "PANEL MAY LOSE  ", "S:-10.0 F: -0.29"):
         assert subject_in(other) is None, other
+
+
+def test_the_page_of_a_parameter_is_compared_with_the_drive():
+    drive = Drive(Clock(), Wire(Clock(), 19200), 1)
+    name = "Ramp-up time    "
+    assert not is_wrong((name, "P1120     10.00s"), drive)
+    assert is_wrong((name, "P1120     10.10s"), drive)
+    for other in ("P1120          ?", "P1120      -----", "P1120 TOO LON---"):
+        assert not is_wrong((name, other), drive), other
 
 
 def test_an_answer_of_what_a_drive_is_makes_no_contact():

@@ -107,7 +107,8 @@ pico_recipe() {
     pico_target "$1"
     pico_edition "$(pico_sources_of "$1")"
     pico_flags "$1"
-    declare -f pico_manifest compile_pico_firmware put_into_memory prepare_pico_make pico_do
+    pico_omitted "$1"
+    declare -f pico_manifest pico_configuration compile_pico_firmware put_into_memory prepare_pico_make pico_do
     cat "$pico_requirements"
 }
 
@@ -135,6 +136,28 @@ pico_flags() {
         echo -DMICROPY_OPT_MAP_LOOKUP_CACHE_SIZE=2048 -DVM_MAX_STATE_ON_STACK=96 \
             -DMICROPY_ALLOC_GC_STACK_SIZE=192 \
             "-DPICO_PROGRAM_DESCRIPTION='\"USS panel $(panel_version)\"'"
+}
+
+# The firmware has 640 KB of the flash, and the panel fills them: of MicroPython it leaves out what
+# neither the panel nor `tools/deploy` needs. The port decides most of that itself, so a header goes
+# behind the port's own, and what lists the modules reads it, too.
+pico_omitted() {
+    [[ $1 == stock* ]] || echo MICROPY_VFS_FAT MICROPY_PY_{FRAMEBUF,UCTYPES,CMATH,RE} \
+        MICROPY_PY_{CRYPTOLIB,HASHLIB_SHA1,ONEWIRE}
+}
+
+# pico_configuration NAME FOLDER: writes that header, and the options with which it is found.
+pico_configuration() {
+    local option
+    [[ $1 != stock* ]] || return 0
+    {
+        echo '#include <mpconfigport.h>'
+        for option in $(pico_omitted "$1"); do
+            printf '#undef %s\n#define %s (0)\n' "$option" "$option"
+        done
+    } >"$2/omitted.h"
+    echo "#define MP_CONFIGFILE \"$2/omitted.h\"" >"$2/configuration.h"
+    echo "-include $2/configuration.h"
 }
 
 # What runs most often is kept in the chip's memory: its cache holds 16 KB of the flash, and of the
@@ -214,7 +237,8 @@ prepare_pico_make() {
     say "    everything, which takes a minute"
     rm -rf "$place" && mkdir -p "$place" &&
         pico_manifest "$name" >"$place/manifest.py" &&
-        quietly "$place/log" pico_do "$name" CFLAGS="$(pico_flags "$name")" cmake -G Ninja \
+        quietly "$place/log" pico_do "$name" CFLAGS="$(pico_flags "$name")" \
+            CFLAGS_EXTRA="$(pico_configuration "$name" "$place")" cmake -G Ninja \
             -S "$build/$sources/micropython/ports/rp2" -B "$place" \
             -DMICROPY_BOARD="$board" -DPICO_NO_PICOTOOL=1 -DPICO_CLIB=newlib \
             -DMICROPY_FROZEN_MANIFEST="$place/manifest.py" \

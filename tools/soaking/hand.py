@@ -19,7 +19,8 @@ from tools.soaking.judging.announced import is_parameter
 from tools.soaking.judging.facts import GOES, MS, S
 from tools.soaking.judging.reader import address_in
 from tools.soaking.judging.rules import Broken
-from tools.soaking.mischief import WARNINGS, Mischief
+from tools.soaking.mischief import WARNINGS
+from tools.soaking.technician import Technician
 from tools.soaking.worlds import CLEAN
 
 TURN_S = (8, 25)
@@ -32,7 +33,7 @@ FOUND_ROUNDS = 200
 KNOWN_S = 120  # the longest time until the panel knows what a drive is set to
 
 
-class Hand(Mischief):
+class Hand(Technician):
     """See `Fingers` for what it takes, and for `deeds`; `Mischief` for `faults`."""
 
     def live(self, until_s):
@@ -76,6 +77,8 @@ class Hand(Mischief):
                 drive.warn(number, False)
         self.follow_addresses()
         self.run(1_500 + 4 * self.witness.cycle_us // MS)
+        if self.plan.keeps_sets:
+            self.give_sets_up()
         self.press("STOP", 4_300)
         self.run(3_000)
 

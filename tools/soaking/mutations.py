@@ -194,7 +194,7 @@ MUTATIONS = (
         "no question",
         "a parameter that cuts the panel off is written at once",
         ("WRITE",), 1,
-        ("panel/pages/parameters.py", "if number in ask_first and not", "if number < 0 and not"),
+        ("panel/pages/writing.py", "if risk is not None and not", "if risk == -1 and not"),
     ),
     Mutation(
         "setpoint limit dropped",
@@ -282,7 +282,7 @@ MUTATIONS = (
         "a tripped drive is reset though nobody has seen it",
         ("ACKNOWLEDGE",), 5,
         (
-            "panel/fault.py",
+            "panel/reports/fault.py",
             "            self._shown_ms += passed_ms\n",
             "            self._shown_ms += passed_ms\n"
             "            if self.was_shown():\n"
@@ -393,8 +393,8 @@ MUTATIONS = (
         ("WRITE",), 1,
         (
             "panel/writer.py",
-            "write.number, write.index, 0, write.value)",
-            "write.number, write.index, 0, write.value ^ 1)",
+            "write.number, write.index, high, low)",
+            "write.number, write.index, high, low ^ 1)",
         ),
     ),
     Mutation(
@@ -860,11 +860,127 @@ MUTATIONS = (
             "        self._search(now_ms)\n",
         ),
     ),
+    Mutation(
+        "another index shown",
+        "the page of a parameter reads the first value of an array, whatever index it names",
+        ("SHOWN",), 1,
+        ("panel/lookup/answers.py", " index = self.index\n", " index = 0\n"),
+    ),
+    Mutation(
+        "low word lost",
+        "the page of a parameter shows 0 for whole numbers",
+        ("SHOWN",), 17,
+        (
+            "panel/lookup/answers.py",
+            "self.high, self.low = job.high, job.low",
+            "self.high, self.low = job.high, 0",
+        ),
+    ),
+    Mutation(
+        "a set unmarked",
+        "a set is written, and no settings in the flash say that the drive has one in part",
+        ("WRITE", "REFUSED"), 138,
+        (
+            "panel/sets/writing.py",
+            "        settings.note_set(address, self._check)\n        while settings.dirty:\n",
+            "        while settings.dirty:\n",
+        ),
+    ),
+    Mutation(
+        "half a set starts",
+        "a drive that has a set in part is started",
+        ("REFUSED",), 138,
+        (
+            "panel/permits.py",
+            "    if control.is_half_written():\n",
+            "    if control.is_half_written() and control.moving:\n",
+        ),
+    ),
+    Mutation(
+        "saved wrong",
+        "a set has not what the drive has",
+        ("SET",), 257,
+        (
+            "panel/sets/saving.py",
+            "set_file.row_line(number, index, kind, job.high, job.low)",
+            "set_file.row_line(number, index, kind, job.high, job.low | 1)",
+        ),
+    ),
+    Mutation(
+        "a set for the RAM alone",
+        "each write of a set wears the EEPROM",
+        ("EEPROM",), 138,
+        (
+            "panel/sets/pump.py",
+            "    eeprom = family.has_eeprom_tasks and (eeprom or number in family.permanent)\n",
+            "    eeprom = family.has_eeprom_tasks\n",
+        ),
+    ),
+    Mutation(
+        "equal for all that",
+        "a drive reads as equal to a set, and is not",
+        ("SET",), 138,
+        (
+            "panel/sets/writing.py",
+            "is_equal = job.state == pkw.DONE and job.width == width and told == (high, low)",
+            "is_equal = job.state == pkw.DONE and job.width == width and told[1] == low",
+        ),
+    ),
+    Mutation(
+        "bus off talks on",
+        "the display says that the line is free, and the panel talks",
+        ("BUS OFF",), 28,
+        (
+            "panel/menu/diagnosis/off.py",
+            "        if self.panel.bus.phase == OFF:\n            return texts.of(words.LINE",
+            "        if self._is_left:\n            return texts.of(words.LINE",
+        ),
+        ("panel/menu/diagnosis/off.py", "self.panel.bus.off()", "self.panel.bus.stop_all()"),
+    ),
+    Mutation(
+        "bus off stops nobody",
+        "the panel leaves the line, and has told nobody to stop",
+        ("BUS OFF",), 28,
+        (
+            "uss/master.py",
+            "        self.stop_all()\n        self._held |= _HELD_BY_OFF\n",
+            "        self._held |= _HELD_BY_OFF | _GIVEN_UP\n",
+        ),
+    ),
+    Mutation(
+        "back without listening",
+        "the panel takes the line back while others talk",
+        ("LISTEN",), 28,
+        (
+            "uss/master.py",
+            "            self.foreign = 0\n            self.phase = LISTENING\n",
+            "            self.foreign = 0\n            self.phase = RESTING\n",
+        ),
+    ),
+    Mutation(
+        "a mirror test that commands",
+        "a drive that takes it for one of its own telegrams obeys what it says",
+        ("MIRROR",), 54,
+        ("panel/menu/diagnosis/mirror.py", "] &= 0xFB", "] |= 0x04"),
+    ),
+    Mutation(
+        "good replies miscounted",
+        "the diagnosis shows other counters than those of the drive",
+        ("SHOWN",), 19,
+        (
+            "panel/menu/diagnosis/counters.py",
+            "            counted += control.drive.counters[row]\n",
+            "            counted += control.drive.counters[0] + control.drive.counters[row]\n",
+        ),
+    ),
 )  # fmt: skip
 
 # No seed that was tried finds these, since the operator walks the menu and looks for drives as
 # well: a life of two minutes gets there too rarely. Each still has to fit the firmware's text.
 UNFOUND = (
+    "another index shown",
+    "half a set starts",
+    "good replies miscounted",
     "the next one's turn is lost",
     "faster without a key",
     "hertz believed",

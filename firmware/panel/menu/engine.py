@@ -13,13 +13,41 @@ from panel.menu import BACK
 from panel.pages import Page
 from uss.timing import elapsed
 
+_LOOKUP = ("catalogue", "panel.lookup", "panel.lookup.words")
+_OF_A_SET = ("panel.pages.parameter_words", "panel.sets.pump", "panel.sets.work")
+_COMMISSION = _LOOKUP + ("panel.commission", "panel.commission.words")
+_DIAGNOSIS = ("panel.menu.diagnosis", "panel.menu.diagnosis.words")
+
 # What a list wants besides, a step of the loop for each: from the bottom of the house up.
 _WANTS = {
     "address": ("uss.finding", "uss.finding.mirror"),
+    "commission.course": _COMMISSION
+    + ("panel.lookup.value", "panel.pages.parameter_words", "panel.writer"),
+    "commission.overview": _COMMISSION,
+    "sets.overview": (
+        "panel.menu.sets",
+        "panel.menu.sets.words",
+        "panel.sets",
+        "panel.sets.set_file",
+    ),  # fmt: skip
+    "sets.save": ("catalogue", "version") + _OF_A_SET + ("panel.sets.saving",),
+    "sets.write": _OF_A_SET + ("panel.sets.writing",),
+    "diagnosis.counters": _DIAGNOSIS,
+    "diagnosis.health": _DIAGNOSIS,
+    "diagnosis.mirror": ("uss.finding", "uss.finding.mirror") + _DIAGNOSIS,
+    "diagnosis.off": _DIAGNOSIS,
+    "diagnosis.overview": _DIAGNOSIS,
+    "diagnosis.telegrams": ("uss.finding", "uss.finding.witness") + _DIAGNOSIS,
+    "diagnosis.times": ("uss.finding", "uss.finding.witness") + _DIAGNOSIS,
+    "events": _LOOKUP,
     "kind": ("uss.families.bop", "uss.families.kinds"),
+    "lookup.groups": _LOOKUP,
+    "lookup.memory": _LOOKUP,
+    "lookup.what": _LOOKUP,
     "turns": ("uss.families.kinds", "settings_file"),
     "value": ("uss.families.kinds", "settings_file"),
 }
+_BESIDE = ("lookup.", "commission.")  # lists that look into the catalogue
 _REFUSED = ("START", "REVERSE", "JOG_RIGHT", "JOG_LEFT")  # they move a motor
 _STALE_MS = const(60_000)
 _TOLD_MS = const(3_000)
@@ -36,6 +64,7 @@ class Menu(Page):
 
     def __init__(self, panel, begin=("main", None)):
         Page.__init__(self, panel)
+        self._coming = None  # (name, argument) of a list that is not there yet
         self._lists = []  # (name of the module, `List`, position in it), the one shown last
         self._used_at_ms = None
         self._told = None  # words in place of the entry, for a while or until a key is pressed
@@ -74,12 +103,19 @@ class Menu(Page):
     def is_ready(self):
         return len(self._lists) > 0
 
-    def is_coming(self):
-        return self._coming is not None
+    @property
+    def is_busy(self):
+        return self._coming is not None or bool(self._lists) and self._lists[-1][1].is_searching()
+
+    def work(self, now_ms):
+        """What takes long has a turn of its own: a module that comes, a piece of a search."""
+        if not self._coming:
+            self._lists[-1][1].search()
+        elif self.panel.has_time():
+            self._come(now_ms)
 
     def step(self, keys, now_ms):
         if self._coming:
-            self._come(now_ms)
             return
         if self._told and elapsed(now_ms, self._told_at_ms, self.panel.mask) >= _TOLD_MS:
             self._told = None
@@ -101,7 +137,7 @@ class Menu(Page):
             self._forget(self._coming[0])
             self._coming = None
         while self._lists:
-            self._forget(self._lists.pop()[0])
+            self._drop_last()
         self.panel.uncover()
 
     def draw(self, screen, now_ms):
@@ -165,7 +201,7 @@ class Menu(Page):
     def _enter(self, name, argument):
         """That list comes with the steps that follow: each loads one module."""
         self._coming = (name, argument)
-        self._wanted = list(_WANTS.get(name, ())) + ["panel.menu." + name]
+        self._wanted = list(_WANTS.get(name, ())) + [_module(name)]
 
     def _come(self, now_ms):
         name, argument = self._coming
@@ -173,7 +209,7 @@ class Menu(Page):
             if self._wanted:
                 on_demand.load(self._wanted.pop(0))
                 return
-            shown = on_demand.load("panel.menu." + name).List(self.panel, argument)
+            shown = on_demand.load(_module(name)).List(self.panel, argument)
             self._lists.append((name, shown, shown.first()))
         except MemoryError:
             self.panel.say(now_ms, texts.NO_MEMORY)
@@ -182,17 +218,31 @@ class Menu(Page):
         if not self._lists:
             self.panel.uncover()
 
+    def _drop_last(self):
+        name, shown, _ = self._lists.pop()
+        shown.end()
+        for module in shown.ahead:
+            on_demand.drop(module)
+        self._forget(name)
+
     def _forget(self, name):
         """What a list has needed leaves the memory."""
-        on_demand.drop("panel.menu." + name)
+        on_demand.drop(_module(name))
+        needed = [module for one in self._lists for module in _WANTS.get(one[0], ())]
         for module in _WANTS.get(name, ()):
-            on_demand.drop(module)
+            if module not in needed:
+                on_demand.drop(module)
 
     def _leave(self, now_ms):
         """Back to the list above this one."""
         self._lists[-1][1].leave(now_ms)
         if not self._lists:  # that has closed the menu
             return
-        self._forget(self._lists.pop()[0])
+        self._drop_last()
         if not self._lists:
             self.panel.uncover()
+
+
+def _module(name):
+    """Where a list stands: below this folder, or beside it, with what it looks up."""
+    return ("panel." if name.startswith(_BESIDE) else "panel.menu.") + name

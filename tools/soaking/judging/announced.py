@@ -188,12 +188,25 @@ class Announced:
     def _hides_state(self):
         """Whether the page is one that does not tell what the drive shown does."""
         row_2 = self.reader.rows[1]
-        return row_2 in CHOICES or row_2.startswith(MENU) or is_parameter(row_2)
+        return (
+            self.reader.looks_up
+            or row_2 in CHOICES
+            or row_2.startswith(MENU)
+            or is_parameter(row_2)
+        )
 
 
 def is_parameter(row_2):
     """Whether the page is that of parameter mode."""
     return row_2[5:6] == ":" or row_2.startswith(NO_PARAMETERS)
+
+
+def is_looked_up(rows):
+    """Whether the page is that of any parameter, `P1120[0]  10.00s`, also while it is changed."""
+    for row in rows:
+        if row[:1] in ("P", "r") and row[1:5].isdigit() and row[5:6] in (" ", "[", "."):
+            return True
+    return False
 
 
 def said_in(row):
@@ -204,8 +217,8 @@ def said_in(row):
     if row[:1] != "A" or not row[1:2].isdigit():
         return None
     end = 3 if row[2:3].isdigit() else 2
-    if row[end : end + 1] != " ":
-        return None
+    if row[end : end + 1] != " " or "..." in row or not row[end:].strip():
+        return None  # address and limits of a parameter
     for text, troubles in ONE:
         if row[end:].strip().startswith(text):
             return int(row[1:end]), troubles
