@@ -142,6 +142,8 @@ def test_a_name_is_given_letter_by_letter():
     home(world)
     sets(world)
     walk_to(world, "A1 PFT 1")
+    press(world, "SET")
+    assert world.lcd() == ("PFT 1        1/4", ">COMPARE A1     "), world.lcd()
     world.check()
 
 

@@ -11,12 +11,13 @@ TITLE_MAX = 10
 
 
 class List(Entries):
-    """argument: the name of its file."""
+    """argument: the name of its file, and that of the set."""
 
     def __init__(self, panel, argument):
         Entries.__init__(self, panel, argument)
         self._control = control = panel.selected
-        self.title = argument.rpartition(".")[0].encode()[:TITLE_MAX]
+        self._file, name = argument
+        self.title = name[:TITLE_MAX]
         self._entries = [(words.COMPARE, None)]  # and whether the EEPROM is written
         if control.survey.family.has_eeprom_tasks:
             self._entries += [(words.INTO_RAM, False), (words.INTO_EEPROM, True)]
@@ -37,7 +38,7 @@ class List(Entries):
             return None
         if position == len(self._entries):
             return "sets.ask", (words.ASK_DELETE, (), self._delete)
-        return "sets.write", (self._control, self.argument, self._entries[position][1])
+        return "sets.write", (self._control, self._file, self._entries[position][1])
 
     def _delete(self, now_ms):
         self.panel.errand = self._remove
@@ -45,7 +46,7 @@ class List(Entries):
     def _remove(self):
         panel = self.panel
         try:
-            panel.board.store.remove(self.argument)
+            panel.board.store.remove(self._file)
         except OSError:
             pass  # it has gone already
-        panel.remembered["panel.menu.sets.overview"] = self.argument
+        panel.remembered["panel.menu.sets.overview"] = self._file

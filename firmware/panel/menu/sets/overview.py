@@ -61,7 +61,8 @@ class List(Entries):
     def choose(self, position, now_ms):
         place = position - 1 - self._marked
         if place >= 0:
-            return "sets.one", self._names[place]
+            row = self._heads[place] or UNREAD
+            return "sets.one", (self._names[place], row.split(b" ", 1)[-1])
         if position or not self._marked:
             return self._save(now_ms)
         values = (self._control.drive.address,)
