@@ -24,6 +24,7 @@ LISTS_BESIDE = (
 )  # fmt: skip
 STOP_MS = 100
 LISTEN_MS = 200  # longer, where the line was left: the panel listens first
+ON_ITS_WAY = ("", ">...")
 DEEP = 40  # keys: no way is longer
 QUICK = {1120: 0.1, 1121: 0.1, 2014: 2000}
 
@@ -94,8 +95,8 @@ def place(world):
 
     Row 1 may be busy with an announcement: then the number is seen a little later.
     """
-    for _ in range(20):  # it may be on its way
-        if row_2(world):
+    for _ in range(40):  # it may be on its way
+        if row_2(world) not in ON_ITS_WAY:
             break
         world.run(50)
     row, count = row_2(world), None
