@@ -71,6 +71,16 @@ def test_the_output_current_is_read_by_its_number_while_the_motor_runs():
     world.check()
 
 
+def test_a_unit_that_begins_with_a_digit_keeps_off_the_number():
+    world = world_of("g120")
+    look_up(world, 311)
+    assert world.lcd()[1] == "P0311     1395.0", world.lcd()  # it has no room
+    world = world_of("mm420")
+    look_up(world, 22)
+    assert world.lcd()[1] == "r0022    0 1/min", world.lcd()
+    world.check()
+
+
 def test_a_group_is_walked_both_ways_and_round():
     world = world_of()
     go_to(world, "PARAMETERS", "Ramps")

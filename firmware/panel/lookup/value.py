@@ -38,6 +38,8 @@ class Form:
         if row:
             kind, self.unit, form = row[catalogue.TYPE], row[catalogue.UNIT], row[catalogue.FORM]
             self.lowest, self.highest = row[catalogue.LOWEST], row[catalogue.HIGHEST]
+        if self.unit[:1].isdigit():
+            self.unit = b" " + self.unit  # 1395 1/min
         kind = _KINDS.get(kind.decode(), UNSIGNED) if kind else UNSIGNED if is_integer else FLOAT
         if width == pkw.WORD and kind != SIGNED:
             kind = UNSIGNED
