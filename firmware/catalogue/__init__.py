@@ -127,6 +127,7 @@ def _rows(family, kind, numbers):
 def _completed(row, like):
     """With what is empty from the row with the same key of the other family."""
     key = row_key(row[KEY])
+    yield from _prepare(like)
     with _table(like) as table:
         yield None
         for other in _between(table, key, key):
