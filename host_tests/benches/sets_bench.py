@@ -3,11 +3,17 @@
 
 from binascii import crc32
 
+import catalogue
+from boards.sim.drives import parameters
 from boards.sim.drives.families import mm440
+from panel.sets import work
 from panel_bench import panel, row_2, settled, wait_until_known
 
 BAUD = 57600  # for the tests' sake: a set takes a minute at 19200
 ENDING = ".set"
+
+TYPES = {b"U16": "U16", b"I16": "I16", b"Float": "F"}  # of the catalogue; the others are U32
+LIMITS = {"U16": (0, 65535), "I16": (-32768, 32767), "F": (-1e9, 1e9), "U32": (0, 0xFFFFFFFF)}
 
 
 def two(**options):
@@ -150,3 +156,55 @@ def rows_of(file):
             key, index, _, value = line.split()
             found[int(key[1:]), int(index)] = value
     return found
+
+
+def catalogued():
+    """{(number, index): type} of all that a set of an MM440 may have, as the catalogue tells."""
+    found = {}
+    for row in catalogue.rows("mm440"):
+        number = catalogue.number(row)
+        if row[catalogue.KEY][:1] == b"P" and number not in work.NEVER:
+            for index in range(catalogue.indices(row)):
+                found[number, index] = TYPES.get(row[catalogue.TYPE], "U32")
+    return found
+
+
+def complete_mm440():
+    """A family for the simulation: the MM440 with all parameters and indices of the catalogue."""
+
+    class Complete:
+        pass
+
+    for name in dir(mm440):
+        if name[:2] != "__":
+            setattr(Complete, name, getattr(mm440, name))
+    rows = {row[parameters.NUMBER]: list(row) for row in mm440.ROWS}
+    for (number, index), kind in catalogued().items():
+        low, high = LIMITS[kind]
+        added = [number, "added", kind, "", 1, low, high, 0, "CUT", 1, ""]
+        row = rows.setdefault(number, added)
+        more = index + 1 - row[parameters.INDICES]
+        if more > 0:
+            row[parameters.INDICES] += more
+            default = row[parameters.DEFAULT]
+            if isinstance(default, tuple):
+                row[parameters.DEFAULT] = default + default[-1:] * more
+    Complete.ROWS = tuple([tuple(rows[number]) for number in sorted(rows)])
+    return Complete
+
+
+def make_each_value_another(drive):
+    """What was added to the drive has values that are its own: none is mistaken for another."""
+    usual = {row[parameters.NUMBER] for row in mm440.ROWS}
+    for number, values in drive.parameters.ram.items():
+        if number not in usual:
+            for index in range(len(values)):
+                drive.parameters.set(number, index, number + 7 * index)
+
+
+def has(drive, row, value):
+    """Whether a drive has the value of a row: ((number, index), value in hex)."""
+    number, index = row
+    kind = drive.parameters.rows[number][parameters.TYPE]
+    words = parameters.words_of(kind, drive.parameters.get(number, index))
+    return value == "".join(["%04X" % word for word in words])

@@ -5,13 +5,18 @@ import json
 import random
 
 from boards.sim.drives.families import mm3
+from panel.sets.writing import BUS_AND_SOURCES
 from panel_bench import panel, row_1, row_2, said, settled, starts, wait_until_known
 from sets_bench import (
     begin,
+    catalogued,
+    complete_mm440,
     files,
     finish,
+    has,
     home,
     made,
+    make_each_value_another,
     open_set,
     press,
     rows_of,
@@ -79,6 +84,10 @@ def refuses_to_move(world):
     assert starts(world, 2) == before and world.drives[2].hz() == 0
 
 
+def is_of_the_bus(number):
+    return any([first <= number <= last for first, last in BUS_AND_SOURCES])
+
+
 def too_big():
     data = bytearray(made([])[:-15])
     for number in range(8000):
@@ -123,6 +132,22 @@ def test_a_set_of_one_drive_is_saved_and_written_into_another():
     world.run(2000)
     assert marks(world) == []
     assert runs(world)
+    world.check()
+
+
+def test_a_set_has_all_parameters_of_an_mm440_and_all_their_indices():
+    family = complete_mm440()
+    world = two(kinds={1: {"family": family}, 2: {"family": family}})
+    one, other = world.drives[1], world.drives[2]
+    make_each_value_another(one)
+    name = save(world)
+    rows = rows_of(world.flash.files[name])
+    wanted = catalogued()
+    assert len(wanted) == 1100 and sorted(rows) == sorted(wanted)
+    assert all([has(one, row, rows[row]) for row in rows])
+    assert write(world, "A1 SET 1", where="EEPROM") == "WRITTEN, EQUAL", world.lcd()
+    kept = [row for row in rows if not has(other, row, rows[row])]
+    assert (2011, 0) in kept and all([is_of_the_bus(number) for number, _ in kept]), kept
     world.check()
 
 
