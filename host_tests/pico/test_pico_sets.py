@@ -3,7 +3,7 @@
 largest.
 """
 
-from boards.sim.drives.families import g110
+from boards.sim.drives.families import g110, mm3
 from panel_bench import row_2
 from pico_bench import panel
 from sets_bench import (
@@ -19,6 +19,7 @@ INTERPRETERS = "pico"
 
 SET_MS = 180_000
 LOOK_MS = 100
+CUTS = 5  # instants at which power goes, spread over the flash operations of one saving
 ROOM_BYTES = 900 * 1024  # that is left beside ten sets
 
 
@@ -122,3 +123,34 @@ def test_ten_sets_of_an_mm440_with_all_that_it_has_are_on_the_flash():
     printed, _ = world.repl.execute("import os\ns = os.statvfs('/')\nprint(s[0] * s[3])")
     print("left: %d KiB" % (int(printed) // 1024))
     assert int(printed) > ROOM_BYTES, printed
+
+
+def saving_mm3():
+    """A panel that has just been told to save the set of a MICROMASTER 3."""
+    world = panel(kinds={1: {"family": mm3}}, settings={"kinds": {"1": "mm3"}}, parameters={})
+    open_sets(world)
+    walk_to(world, "SAVE A1")
+    press(world, "SET")
+    before = len(world.flash_log)
+    world.press("SET")
+    return world, before
+
+
+def test_power_that_goes_while_a_set_is_saved_leaves_none_or_a_whole_one():
+    world, before = saving_mm3()
+    wait(world, "SAVED")
+    whole = world.read_file("1.set")
+    assert whole.split(b"\n")[-2].startswith(b"end 25 "), whole[-80:]
+    operations = world.flash_log[before:]
+    assert len(operations) >= CUTS
+    kept = []
+    for cut in range(CUTS):
+        at_us, _, lasts_us = operations[cut * (len(operations) - 1) // (CUTS - 1)]
+        world, _ = saving_mm3()
+        world.cut_power(at_us + lasts_us * (1 + cut % 3) // 4)
+        assert world.run_until(lambda: bool(world.restarts), 60_000)
+        assert world.run_until(lambda: row_2(world).startswith("READY"), 5_000), world.lcd()
+        kept.append(world.read_file("1.set"))
+        assert kept[-1] in (None, whole), cut
+        world.check()
+    assert kept[0] is None, kept
