@@ -1,19 +1,15 @@
 # SPDX-License-Identifier: MIT
-"""STOP on every page of the menu, found by walking it: no list of pages stands here.
+"""STOP on every page of the menu, found by walking it: see `walk_bench`.
 
-The walk begins where a held PARAM leads, and knows what a person sees: an entry behind ">", its
-place in a list (3/7), a question, a parameter. DOWN and SET lead on. Each place is reached anew,
-with the motor running, or, where the panel refuses that, standing.
+The other keys: test_menu_keys.py.
 """
 
 import os
 
-import main
 import on_demand
-from boards.sim.world import World
-from panel_bench import OFF1, row_1, row_2, settled, starts, telegrams, wait_until_known
-from sets_bench import made
+from panel_bench import OFF1, row_2, settled, starts, telegrams
 from uss.master import OFF
+from walk_bench import is_parameter, running, silent, standing, wait_until_it_runs, warned, ways
 
 INTERPRETERS = "unix64 unix32"
 
@@ -24,130 +20,6 @@ LISTS_BESIDE = (
 )  # fmt: skip
 STOP_MS = 100
 LISTEN_MS = 200  # longer, where the line was left: the panel listens first
-ON_ITS_WAY = ("", ">...")
-DEEP = 40  # keys: no way is longer
-QUICK = {1120: 0.1, 1121: 0.1, 2014: 2000}
-
-
-def standing():
-    world = World(main.start, (1, 2), parameters=QUICK, settings={"unsupervised": [2]})
-    world.flash.files["1.set"] = made([(1120, 0, b"Float", b"3F800000")], family=b"mm420")
-    world.run(500)
-    wait_until_known(world)
-    return world
-
-
-def running():
-    world = standing()
-    world.press("START")
-    wait_until_it_runs(world)
-    return world
-
-
-def silent():
-    """The drive shown has been away since it stood: the menu tells what to check."""
-    world = standing()
-    world.drives[1].unplug()
-    world.run(1500)
-    assert row_2(world) == "NO CONTACT   A1", world.lcd()
-    return world
-
-
-def warned():
-    """The drive shown has a warning: the menu tells what it means."""
-    world = running()
-    world.drives[1].warn(600)
-    world.run(1500)
-    return world
-
-
-def wait_until_it_runs(world):
-    before = None
-    for _ in range(30):
-        hz = world.drives[1].hz()
-        if world.drives[1].state == "running" and abs(hz - 10) < 0.01 and hz == before:
-            return
-        before = hz
-        world.run(50)
-    raise AssertionError(world.lcd())
-
-
-def go(begin, way):
-    """A world whose menu was walked this way."""
-    world = begin()
-    world.down("PARAM")
-    world.run(1100)
-    world.up("PARAM")
-    world.run(100)
-    for key in way:
-        walk(world, key)
-    world.run(100)
-    return world
-
-
-def walk(world, key):
-    world.press(key, 40)
-    world.run(20)
-
-
-def place(world):
-    """(number of entries or None, row 2) of a place of the menu; None if it is none.
-
-    Row 1 may be busy with an announcement: then the number is seen a little later.
-    """
-    for _ in range(40):  # it may be on its way
-        if row_2(world) not in ON_ITS_WAY:
-            break
-        world.run(50)
-    row, count = row_2(world), None
-    if row.startswith(">"):
-        for _ in range(20):
-            if "HOLD=ALL" not in settled(world)[0]:
-                break
-            world.run(100)
-        tail = row_1(world)[11:].strip().split("/")
-        if len(tail) == 2 and tail[1].isdigit():
-            count = int(tail[1])
-    elif not row.endswith("PARAM=NO") and not is_parameter(row):
-        return None
-    # What is counted or measured is another row each time: there the title tells.
-    title = row_1(world)
-    moves = count and title[:3] in ("A1 ", "A2 ", "BUS", "HEA") and title[3:11].strip()
-    return count, ">" + title if moves else row_2(world)
-
-
-def is_parameter(row):
-    """P1120[0]  10.00s"""
-    return row[:1] in ("P", "r") and row[1:5].isdigit()
-
-
-def ways():
-    """Each place once, as (begin, way, place, world that is there).
-
-    The world comes back with the menu as it was: so it can walk on.
-    """
-    seen, open_ways = set(), [(running, ()), (silent, ()), (warned, ())]
-    while open_ways:
-        begin, way = open_ways.pop(0)
-        world = go(begin, way)
-        while True:
-            here = place(world)
-            if here is None and begin in (running, warned):  # refused, perhaps since it runs
-                open_ways.append((standing, way))
-            if here is None or here in seen:
-                break
-            seen.add(here)
-            yield begin, way, here, world
-            assert len(way) < DEEP, way
-            count, row = here
-            if not row.startswith(">"):
-                break
-            if "/" not in row or way[-1:] == ("SET",):  # of many that only tell, the first one
-                open_ways.append((begin, way + ("SET",)))
-            if not count and way[-1:] != ("SET",):  # a value is changed once
-                break
-            way += ("DOWN",)
-            walk(world, "DOWN")
 
 
 def has_left(world):
