@@ -12,17 +12,21 @@ A block of the manual that has keys in its first line, and below them one displa
 It begins at the home page of a panel with two drives that stand. Each part between the colons is
 pressed, and what the display says then is its picture, from left to right. A part is keys with
 commas between them, `KEY held`, `KEY x3`, or `5 s`; or it is a row of SITUATIONS.
+
+A block that begins with MENU is the tree of the menu, as such a panel has it.
 """
 
 import main
 from boards.sim.drives.kinds import listed_drives, simulated
 from boards.sim.world import World
-from lookup_bench import hold, press
+from lookup_bench import entries, go_to, hold, press
 from panel_bench import wait_until_known
 
 EDGE = "+------------------+"
 GAP = "   "
 HELD_MS = 1_400
+TREE = "MENU"
+LONG_MAX, LONG = 20, 4  # of a list with more than 20 entries the first 4
 KEYS = (
     "START", "STOP", "REVERSE", "JOG_RIGHT", "JOG_LEFT", "UP", "DOWN", "ADDRESS_UP",
     "ADDRESS_DOWN", "PARAM", "EDIT", "NEXT", "PREVIOUS", "SET",
@@ -106,9 +110,42 @@ def picture(displays):
     return lines + lines[:1]
 
 
+def tree():
+    """The lines of the menu: its lists and what is in them, and what is in a drive's."""
+    world = two_drives()
+    hold(world, "PARAM", HELD_MS)
+    lines = [TREE]
+    for _, entry in entries(world):
+        lines.append("  " + entry)
+        inside = _inside(entry)
+        for place, below in enumerate(inside):
+            if place == LONG and len(inside) > LONG_MAX:
+                lines.append("    and so on, %d in all" % len(inside))
+                break
+            lines.append("    " + below)
+            if below.startswith("A1  R"):
+                lines += ["      " + one for one in _inside(entry, below)]
+    return lines
+
+
+def _inside(*way):
+    """The entries of a list, to which these entries lead."""
+    world = two_drives()
+    go_to(world, *way)
+    world.run(1500)
+    found = []
+    for _, entry in entries(world):
+        if entry not in found:  # eight times NO FAULT
+            found.append(entry)
+    return found
+
+
 def made(text):
     """The manual with the screens that the panel shows now, and how many there are."""
     lines = text.split("\n")
+    begin = lines.index("    " + TREE)
+    lines[begin : lines.index("", begin)] = ["    " + line for line in tree()]
+    text = "\n".join(lines)
     count = 0
     for place, parts in blocks(text):
         world, displays = two_drives(), []

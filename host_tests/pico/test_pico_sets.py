@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
-"""A parameter set on the chip: from a drive into the flash, and back into it from there; ten of the
-largest.
+"""A parameter set on the chip: from a drive into the flash, and back into it from there.
+
+And ten of the largest.
 """
 
 from boards.sim.drives.families import g110, mm3

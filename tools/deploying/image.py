@@ -22,8 +22,8 @@ from tools.deploying.targets import TARGETS, USUAL, chip_of
 MAIN = "main.py"
 BOARD = "board.py"
 STAY_SOURCE = (MAIN, BOARD)
-# Wings of the library that no panel imports; panel.uf2 leaves them out, too. A Pico's file system is
-# full enough: every file takes 4 KiB of it, every folder 8.
+# Wings of the library that no panel imports; panel.uf2 leaves them out, too. A Pico's file system
+# is full enough: every file takes 4 KiB of it, every folder 8.
 LEFT_OUT = ("uss/br/", "uss/s7/", "uss/tasks/")
 TABLE = ".tsv"  # of the catalogue, of the languages: read row by row
 CHIPS = re.compile(rb"^(?:from|import) chips(?:\.| import )(\w+)", re.MULTILINE)
