@@ -503,9 +503,15 @@ def test_a_link_that_is_cut_leaves_no_half_set_that_counts_as_whole():
     assert len(rows) > 40
     random.seed(SEED)
     print("seed %d" % SEED)
+    world.flash.files["1.set"] = made(rows)
+    begin(world, "A1 MADE", "INTO A2 RAM")
+    wait(world, "SET=WRITE A2")
+    began_us = world.clock.now_us
+    assert finish(world) == "WRITTEN, EQUAL"
+    lasts_ms = (world.clock.now_us - began_us) // 1000
+    home(world)
     half = 0
-    for _ in range(CUTS):
-        world.flash.files["1.set"] = made(rows)
+    for cut in range(CUTS):  # one in each twentieth of the time that it takes
         for number, index, _, _ in rows:
             drive.write(number, index, 1.0)
         begin(world, "A1 MADE", "INTO A2 RAM")
@@ -513,7 +519,7 @@ def test_a_link_that_is_cut_leaves_no_half_set_that_counts_as_whole():
         world.down("SET")
         world.run(100)
         world.up("SET")
-        world.run(random.randrange(4000))
+        world.run((cut * lasts_ms + random.randrange(lasts_ms)) // CUTS)
         drive.unplug()
         world.run(random.choice((60, 300, 1500, 3000)))
         drive.plug()
@@ -532,23 +538,31 @@ def test_a_link_that_is_cut_leaves_no_half_set_that_counts_as_whole():
 
 def test_a_link_that_is_cut_while_a_set_is_saved_leaves_no_file_or_a_whole_one():
     world = two()
-    save(world)
+    sets(world)
+    press(world, "SET", "SET")
+    began_us = world.clock.now_us
+    wait(world, "SAVED:")
+    lasts_ms = (world.clock.now_us - began_us) // 1000
+    home(world)
     whole = rows_of(world.flash.files["1.set"])
     random.seed(SEED)
     print("seed %d" % SEED)
-    for _ in range(CUTS):
+    unsaved = 0
+    for cut in range(CUTS):  # one in each twentieth of the time that it takes
         sets(world)
         press(world, "SET", "SET")
-        world.run(random.randrange(20_000))
+        world.run((cut * lasts_ms + random.randrange(lasts_ms)) // CUTS)
         world.drives[1].unplug()
         world.run(random.choice((60, 300, 1500, 3000)))
         world.drives[1].plug()
         wait(world, "SAVED:", "NO CONTACT", "NO ANSWER")
         home(world)
+        unsaved += len(files(world)) == 1
         for name in files(world)[1:]:
             assert rows_of(world.flash.files[name]) == whole
             del world.flash.files[name]
         world.run(2000)
+    assert 5 <= unsaved < CUTS, unsaved
 
 
 def test_power_cut_at_any_step_of_saving_leaves_no_set_or_a_whole_one():
