@@ -92,6 +92,10 @@ def press_every_key(begin, way, here):
     world.check()
 
 
+def test_a_walk_finds_the_pages():
+    assert len(tried()) > 60
+
+
 def press_every_key_everywhere(begin, really):
     """In the places where a panel came to that began so; really: how this one begins."""
     places = [(way, here) for one, way, here in tried() if one is begin]

@@ -59,32 +59,45 @@ def wait(world, *texts):
     return row_2(world)
 
 
-def test_a_set_is_saved_and_written_back():
-    world = panel(
+def panel_of_a_g110(**options):
+    return panel(
         baud=57600,
         kinds={1: {"family": g110, "parameters": {2014: 2_000}}},
         settings={"kinds": {"1": "g110"}},
+        **options,
     )
-    drive = world.drives[1]
+
+
+def test_a_set_is_saved_and_lies_in_the_flash():
+    world = panel_of_a_g110()
     open_sets(world)
     walk_to(world, "SAVE A1")
     press(world, "SET", "SET")
     wait(world, "SAVED")
-    press(world, "SET", "PARAM", "PARAM")
-    ramp_s = drive.read(1120)
-    drive.write(1120, 0, ramp_s + 7)
-    world.cut_power(world.clock.now_us + 1_000)  # it lies in the flash
+    saved = rows_of(world.read_file("1.set"))
+    assert all([has(world.drives[1], row, saved[row]) for row in saved]) and len(saved) > 80
+    world.cut_power(world.clock.now_us + 1_000)
     assert world.run_until(lambda: bool(world.restarts), 3_000)
     assert world.run_until(lambda: row_2(world).startswith("READY"), 5_000), world.lcd()
     open_sets(world)
     walk_to(world, "A1 SET 1")
+    assert rows_of(world.read_file("1.set")) == saved
+    world.check()
+
+
+def test_a_set_is_written_into_the_drive():
+    rows = [(1080, 0, b"Float", b"40A00000"), (1120, 0, b"Float", b"40200000")]
+    world = panel_of_a_g110(files={"1.set": made(rows, family=b"g110")})
+    drive = world.drives[1]
+    open_sets(world)
+    walk_to(world, "A1 MADE")
     press(world, "SET")
     walk_to(world, "INTO A1 RAM")
     press(world, "SET")
     wait(world, "SET=WRITE A1", "P0003=3 FOR IT")
     press(world, "SET")
     assert wait(world, "WRITTEN", "HALF", "DIFFER", "NO") == ">WRITTEN, EQUAL", world.lcd()
-    assert drive.read(1120) == ramp_s
+    assert (drive.read(1080), drive.read(1120)) == (5.0, 2.5)
     assert "half_written" in world.settings() and not world.settings()["half_written"]
     world.check()
 
