@@ -19,6 +19,9 @@ from uss.timing import elapsed
 
 _NONE = const(-1)  # no version
 _START_US = const(5_000_000)  # a drive that does not run by then is told to stop again
+# START is given up if the drive has not told its settings by then. At 1200 baud every drive needs
+# nearly as long: 17 questions, in every other telegram if there are several drives.
+_CHECK_US = const(12_000_000)
 
 
 class Command:
@@ -68,10 +71,11 @@ class Command:
         return self._bus.dead_man_trips != self._dead_man_trips
 
     def is_overdue(self, now_us):
-        """Whether the drive has had more time to tell all its settings than it may need."""
-        patience_us = 2 * len(self._survey.values) * self._bus.patience_us()
+        """Whether whoever pressed START expects no motor to turn any more, though the drive has
+        not told all its settings: because it lags, or many others are asked.
+        """
         # A clock of a short period cannot tell more than half of it.
-        return elapsed(now_us, self._since_us, self._mask) >= min(patience_us, self._mask >> 2)
+        return elapsed(now_us, self._since_us, self._mask) >= min(_CHECK_US, self._mask >> 2)
 
     def why_stopped(self):
         """What made the engine take it back, as a notice."""
