@@ -16,12 +16,12 @@ from tools.soaking.fuzz import fuzz
 from tools.soaking.judging.announced import ANY, MAY_RUN, OFF, RUNS, TRIPPED, number_in, said_in
 from tools.soaking.judging.case import Case
 from tools.soaking.judging.drive_settings import Values
-from tools.soaking.judging.facts import NEVER
+from tools.soaking.judging.facts import NEVER, start_us
 from tools.soaking.judging.families import FAMILIES, VARIABLE, Kind, Sight, kinds_of
 from tools.soaking.judging.looked_up import is_wrong
 from tools.soaking.judging.reader import subject_in
 from tools.soaking.judging.rules import RULES, Broken
-from tools.soaking.judging.runs import is_standstill, judge_rise
+from tools.soaking.judging.runs import begin_again, is_standstill, judge_rise
 from tools.soaking.judging.tape import LENGTH, MIRRORED, REPLY, RETURNED, Tape
 from tools.soaking.soak import Soak
 from tools.soaking.story import story
@@ -382,3 +382,36 @@ def test_the_receiver_stands_anything():
         fed = fuzz(8_000, seed)
         assert fed["broken"] is None, fed
         assert fed["good"] > 20, fed
+
+
+def test_a_drive_that_lags_on_a_slow_line_is_given_the_time_to_tell_its_settings():
+    """Seed 44: 31 drives at 4800 baud. P0719 was put right, and read again after two minutes."""
+    hand = Soak(44).hand
+    drive = hand.drives[0]
+    drive.stale_replies = 2
+    assert hand.known_s(drive) > 17 * 3 * 31 * 0.09
+    hand = Soak(1, drives=1).hand
+    hand.drives[0].stale_replies = 0
+    assert hand.known_s(hand.drives[0]) <= 8, "no longer than for all else"
+
+
+def test_a_motor_that_started_twice_may_be_stopped_whenever_that_is_noticed():
+    """r2024 of a drive that is not shown is read every 12 s, if there are 30 of them."""
+    soak = Soak(13, drives=1)
+    soak.hand.run(2_000)
+    judge, address = soak.judge, soak.plan.addresses[0]
+    case, now = judge.cases[address], soak.world.clock.now_us
+    case.stw, case.ran, case.on_us = 0x047F, True, now - 30_000_000
+    case.heard_us = case.answered_us = now
+    assert not judge.has_reason(case, now, False)
+    begin_again(case, now - 29_000_000)
+    assert not judge.has_reason(case, now, False), "it was started once"
+    begin_again(case, now - 14_000_000)
+    assert judge.has_reason(case, now, False)
+
+
+def test_a_start_of_long_ago_is_no_reason_for_a_motor_to_turn():
+    for drives, baud, seconds in ((1, 19200, 14), (10, 19200, 15)):
+        plan = Plan(1, drives)
+        plan.baud, plan.listed = baud, plan.addresses
+        assert 12 < start_us(plan) / 1_000_000 < seconds

@@ -37,7 +37,6 @@ from tools.soaking.judging.facts import (
     SECOND_STOP_US,
     SHORT_CHORD_US,
     SILENT_MIN,
-    START_S,
     STOPPED_MIN,
     STUCK_US,
     TOLD_MIN,
@@ -45,6 +44,7 @@ from tools.soaking.judging.facts import (
     ZSW_INHIBIT,
     ZSW_RUNNING,
     S,
+    start_us,
 )
 from tools.soaking.judging.families import VARIABLE
 from tools.soaking.judging.refusals import reason_against, runs_on_unasked
@@ -81,6 +81,7 @@ class Judge:
         self.drives = list(world.drives.values())
         self.starts = [0] * len(self.drives)  # of their motors, as counted last
         self._shares = Shares(witness)
+        self._start_us = start_us(plan)
         self._patience_us = SILENT_US + witness.exchange_us
         self.unsettled = []  # replies that may still be spoilt, and what to note of each then
         self._may_ask = False  # the last telegram may have asked a drive what it is,
@@ -508,7 +509,7 @@ class Judge:
                 start_us = case.start_us
         else:
             start_us = case.start_us
-            if now - start_us > START_S * S + 28 * self.witness.cycle_us:
+            if now - start_us > self._start_us:
                 raise Broken("START", "%s, pressed at %d" % (where, start_us))
         if start_us <= case.void_us and now > self._grace(case.void_us):
             told = (where, start_us, case.void_us)
@@ -568,7 +569,7 @@ class Judge:
             case.jog_void_us = max(case.jog_void_us, case.jog_us)
         if case.used_us <= case.void_us or case.start_us <= case.used_us:
             case.void_us = max(case.void_us, case.used_us)
-        if now > case.excused_us and not self._has_reason(case, now, jogged):
+        if now > case.excused_us and not self.has_reason(case, now, jogged):
             raise Broken("WITHOUT REASON", "%04X to drive %d at %d" % (stw, address, now))
 
     def _judge_back(self, case, address, now):
@@ -581,7 +582,7 @@ class Judge:
         ):
             raise Broken("SECOND STOP", "drive %d never heard it, at %d" % (address, now))
 
-    def _has_reason(self, case, now, jogged):
+    def has_reason(self, case, now, jogged):
         witness = self.witness
         let_go = len(witness.down) != 1 or now - max(witness.up.values()) < 2 * S
         return (
@@ -589,6 +590,7 @@ class Judge:
             or self._is_stopping(case, now)
             or now - case.heard_us > witness.lost_us * 9 // 10
             or (not case.ran and now - case.on_us > 4 * S)
+            or case.again_us > case.on_us  # r2024 tells it, of many drives that run after a while
             or now - self.tape.chance_us < 2 * S + witness.cycle_us
             or witness.hung_us is not None
         )
