@@ -50,6 +50,7 @@ MANY = (  # text before their number, if there are more than FEW of them
     ("DRIVES OFF:", (OFF,)),
 )
 UNCONFIRMED, LOST = "STOP UNCONFIRMED", "NO CONTACT, "  # an alarm of the drive shown, a row
+PLACE = 11  # the column of row 1 where a list has its place
 ANY, SHOWN = -1, -2  # in place of an address: all of a kind; the drive shown, whichever it is
 
 LONG_US = 900 * MS  # 1 s, less the time lost by drawing and by looking
@@ -205,8 +206,14 @@ def is_looked_up(rows):
     """Whether the page is that of any parameter, `P1120[0]  10.00s`, also while it is changed."""
     for row in rows:
         if row[:1] in ("P", "r") and row[1:5].isdigit() and row[5:6] in (" ", "[", "."):
-            return True
+            return not is_place(row[PLACE:])  # a step of commissioning
     return False
+
+
+def is_place(text):
+    """Whether this is the place in a list, 15/23."""
+    place, _, count = text.strip().partition("/")
+    return place.isdigit() and count.isdigit()
 
 
 def said_in(row):

@@ -269,6 +269,7 @@ class Judge:
         case.unheard = 0
         case.asked_us = NEVER
         case.zsw = zsw
+        self.witness.happened.reply(address, zsw, now)
         if zsw & ZSW_RUNNING:
             case.ran_us = now
         elif not case.stw & RUN:
@@ -657,16 +658,23 @@ class Judge:
             witness.sets.judge_write(address, what, task, family, where)
             return
         is_dangerous = number in family.dangerous
-        if is_dangerous and now > witness.wishes.get("write", NEVER):
+        commissioned, bits = witness.commissioned, high << 16 | value
+        is_step = commissioned.has_asked(address, number, bits, is_dangerous, now)
+        if is_step:
+            pass
+        elif commissioned.is_open(now):
+            raise Broken("WRITE", "%s: %08X, and no step asked for that" % (where, bits))
+        elif is_dangerous and now > witness.wishes.get("write", NEVER):
             raise Broken("WRITE", where)
-        if is_dangerous and not self._is_confirmed((address, number, value), family, now):
+        elif is_dangerous and not self._is_confirmed((address, number, value), family, now):
             raise Broken("WRITE", "%s: %d, and that was not asked" % (where, value))
-        if not is_dangerous and now - witness.set_us > witness.wish_us:
+        elif not is_dangerous and now - witness.set_us > witness.wish_us:
             raise Broken("WRITE", where)
         if task in EEPROM_WRITES and family.save is not None:
             raise Broken("EEPROM", "%s, which no task can write" % where)
         if number == family.save or task in EEPROM_WRITES and number not in family.permanent:
             is_offered = number in OFFERED and now <= witness.wishes.get("offer", NEVER)
+            is_offered = is_offered or is_step and number == family.save
             if now > witness.wishes.get("eeprom", NEVER) and not is_offered:
                 raise Broken("EEPROM", where)
 

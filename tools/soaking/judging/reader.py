@@ -113,6 +113,8 @@ class Reader:
         witness.diagnosed.read(self.rows, is_drawn or is_quiet, now)
         if is_drawn:
             witness.sets.read(self.rows, now)
+            witness.commissioned.read(self.rows, now)
+            witness.happened.read(self.rows, now)
         self._note_digits(now)
         if self.rows[1] in QUESTIONS and self.rows[0].strip() in LEAVES:
             witness.leaves_us = now

@@ -8,6 +8,7 @@ address keys move), both ways are allowed.
 
 from boards.sim.board import KEYS
 from tools.soaking.judging.case import Case, drive_at
+from tools.soaking.judging.commissioned import Commissioned
 from tools.soaking.judging.diagnosed import Diagnosed
 from tools.soaking.judging.drive_settings import Settings
 from tools.soaking.judging.facts import (
@@ -47,6 +48,7 @@ from tools.soaking.judging.facts import (
     lost_us,
 )
 from tools.soaking.judging.families import kinds_of
+from tools.soaking.judging.happened import Happened
 from tools.soaking.judging.kept_sets import KeptSets
 from tools.soaking.judging.line_left import LineLeft
 from tools.soaking.judging.rules import Broken
@@ -128,6 +130,8 @@ class Witness:
         self.line = LineLeft(self)
         self.sets = KeptSets(world, self)
         self.diagnosed = Diagnosed(self)
+        self.commissioned = Commissioned(self)
+        self.happened = Happened(self)
         world.witness = self
 
     # --- what the hand tells --------------------------------------------------------------------
@@ -153,6 +157,8 @@ class Witness:
         self.line.key(key, now)
         self.sets.key(key, now)
         self.diagnosed.key(key, now)
+        self.commissioned.key(key, now)
+        self.happened.key(key, now)
         if key == "STOP":
             if now - self.up[key] > self.debounce_us:  # else the panel may not have seen it go up
                 self.stop_from_us = now
