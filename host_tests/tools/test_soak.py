@@ -13,7 +13,16 @@ from boards.sim.drives.switches import SWITCHES
 from boards.sim.line.wire import Wire
 from tools.soaking.dice import Dice
 from tools.soaking.fuzz import fuzz
-from tools.soaking.judging.announced import ANY, MAY_RUN, OFF, RUNS, TRIPPED, number_in, said_in
+from tools.soaking.judging.announced import (
+    ANY,
+    MAY_RUN,
+    OFF,
+    RUNS,
+    TRIPPED,
+    is_looked_up,
+    number_in,
+    said_in,
+)
 from tools.soaking.judging.case import Case
 from tools.soaking.judging.drive_settings import Values
 from tools.soaking.judging.facts import NEVER, start_us
@@ -415,3 +424,95 @@ def test_a_start_of_long_ago_is_no_reason_for_a_motor_to_turn():
         plan = Plan(1, drives)
         plan.baud, plan.listed = baud, plan.addresses
         assert 12 < start_us(plan) / 1_000_000 < seconds
+
+
+def commissioning():
+    """A witness of a drive that stands, and the address of that."""
+    soak = Soak(13, drives=1)
+    soak.hand.run(2_000)
+    return soak.judge.witness, soak.plan.addresses[0]
+
+
+def in_step(witness, number, row_2):
+    witness.sees_menu()
+    rows = ("P%04d       7/23" % number, ">%-15s" % row_2)
+    witness.commissioned.read(rows, witness.clock.now_us)
+
+
+def asked(witness, address, number, value, is_dangerous=False):
+    now = witness.clock.now_us
+    return witness.commissioned.has_asked(address, number, value, is_dangerous, now)
+
+
+def test_a_step_is_asked_for_when_set_says_yes_to_its_value_and_not_before():
+    witness, address = commissioning()
+    in_step(witness, 700, "2 NEEDS 5")
+    assert witness.commissioned.is_open(witness.clock.now_us)
+    witness.commissioned.key("SET", witness.clock.now_us)
+    assert not asked(witness, address, 700, 5, True)
+    in_step(witness, 700, "5 SET=YES")
+    assert not asked(witness, address, 700, 5, True)
+    witness.commissioned.key("SET", witness.clock.now_us)
+    assert asked(witness, address, 700, 5, True)
+    assert not asked(witness, address, 700, 6, True), "another value"
+    assert not asked(witness, address, 1000, 5, True), "another step"
+
+
+def test_what_means_another_speed_is_asked_for_twice():
+    witness, address = commissioning()
+    sixty, ramp = 0x42700000, 0x41280000  # 60.0 and 10.5
+    in_step(witness, 2000, "06[0].00")
+    witness.commissioned.key("SET", witness.clock.now_us)
+    assert not asked(witness, address, 2000, sixty, True)
+    in_step(witness, 2000, "RESCALES SPEED")
+    witness.commissioned.key("SET", witness.clock.now_us)
+    assert asked(witness, address, 2000, sixty, True)
+    in_step(witness, 1120, "01[0].50")
+    witness.commissioned.key("SET", witness.clock.now_us)
+    assert asked(witness, address, 1120, ramp), "and anything else once"
+
+
+def test_set_asks_for_no_step_while_the_motor_runs():
+    witness, address = commissioning()
+    case = witness.cases[address]
+    case.stw, case.zsw, case.on_us = 0x047F, 0xFB34, witness.clock.now_us - 2_000_000
+    assert witness.shown == address
+    in_step(witness, 700, "5 SET=YES")
+    witness.commissioned.key("SET", witness.clock.now_us)
+    assert not asked(witness, address, 700, 5, True)
+
+
+def test_a_step_of_commissioning_is_not_the_page_of_a_parameter():
+    assert is_looked_up(("Ramp-up time", "P1120[0]  10.00s"))
+    assert not is_looked_up(("P1120      17/23", ">IS 10.00s"))
+    assert not is_looked_up(("P1120*     17/23", "IT IS RIGHT"))
+
+
+def told(witness, rows):
+    """What the judge says of an event in the list, or None."""
+    try:
+        witness.happened.read(rows, witness.clock.now_us)
+    except Broken as broken:
+        return broken.args[0]
+
+
+def test_an_event_has_the_instant_at_which_it_was():
+    witness, address = commissioning()
+    world, happened = witness.world, witness.happened
+    fault = ("A%d 0:%02d     1/7", ">FAULT F0001    ")
+
+    def rows(seconds):
+        return (fault[0] % (address, seconds), fault[1])
+
+    world.run(8_000)
+    happened.reply(address, 0xFB78, world.clock.now_us)
+    world.run(2_000)
+    happened.reply(address, 0xFB31, world.clock.now_us)
+    world.run(20_000)
+    assert told(witness, rows(21)) is None
+    assert told(witness, rows(7)) == told(witness, rows(29)) == "SHOWN"
+    assert told(witness, ("A%d 0:21     1/7" % (address + 1), fault[1])) == "SHOWN"
+    stop = "A%d 0:05     1/7" % address, ">STOP KEY       "
+    assert told(witness, stop) == "SHOWN"
+    happened.key("STOP", world.clock.now_us - 5_000_000)
+    assert told(witness, stop) is None

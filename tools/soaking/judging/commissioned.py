@@ -31,6 +31,7 @@ class Commissioned:
         self._witness = witness
         self._open_us = NEVER  # a step was read last
         self._offer = None  # (number, what is shown of the value, whether that is a question)
+        self._last = None  # likewise; SET does not end it
         self._offered_us = NEVER
         self._said = []  # (until when, address or None) + offer
         self._other_us = NEVER  # SET was pressed last outside the menu: that may write as well
@@ -45,14 +46,16 @@ class Commissioned:
         elif "[" in row_2 and "]" in row_2:
             typed = row_2[len(MENU) :].replace("[", "").replace("]", "")
             self._offer_value(number, typed, False, now)
-        elif row_2 == RESCALES and self._offer is not None and self._offer[0] == number:
-            if now - self._offered_us < SEEN_US:
-                self._offered_us = now
+        elif row_2 == RESCALES:  # of what was just typed, or in turn with the value
+            if self._last is not None and self._last[0] == number:
+                if now - self._offered_us < SEEN_US:
+                    self._offer_value(number, self._last[1], True, now)
         else:
             self._offer = None
 
     def _offer_value(self, number, text, is_question, now):
-        self._offer, self._offered_us = (number, text, is_question), now
+        self._offer = self._last = (number, text, is_question)
+        self._offered_us = now
 
     def key(self, key, now):
         if key != "SET":
