@@ -6,6 +6,9 @@ a judge who sees keys, line and display, and asks the firmware nothing. The rule
 tools/soaking/judging/rules.py.
 """
 
+import sys
+
+import on_demand
 from boards.sim.clock import Clock
 from boards.sim.drives.drive import Drive
 from boards.sim.drives.families import g120, mm3, mm440
@@ -31,6 +34,7 @@ from tools.soaking.judging.looked_up import is_wrong
 from tools.soaking.judging.reader import subject_in
 from tools.soaking.judging.rules import RULES, Broken
 from tools.soaking.judging.runs import begin_again, is_standstill, judge_rise
+from tools.soaking.judging.shares import Shares
 from tools.soaking.judging.tape import LENGTH, MIRRORED, REPLY, RETURNED, Tape
 from tools.soaking.soak import Soak
 from tools.soaking.story import story
@@ -516,3 +520,27 @@ def test_an_event_has_the_instant_at_which_it_was():
     assert told(witness, stop) == "SHOWN"
     happened.key("STOP", world.clock.now_us - 5_000_000)
     assert told(witness, stop) is None
+
+
+def test_a_seed_begins_without_what_the_one_before_it_has_loaded():
+    """Else it would be another life behind another seed: to load a module takes a step."""
+    on_demand.load("panel.menu.about")
+    Soak(7)
+    assert "panel.menu.about" not in sys.modules
+
+
+def test_a_silent_drive_that_is_asked_what_it_is_is_not_neglected():
+    """It answers such questions, in another layout than that of its list, and nothing else."""
+    soak = Soak(13, drives=1)
+    soak.hand.run(2_000)
+    witness, shares = soak.judge.witness, Shares(soak.judge.witness)
+    case, now = witness.cases[soak.plan.addresses[0]], soak.world.clock.now_us + 60_000_000
+    case.question_us = now - 500_000
+    shares.look(now)
+    case.question_us = NEVER
+    try:
+        shares.look(now)
+    except Broken as broken:
+        assert broken.args[0] == "NEGLECTED"
+    else:
+        raise AssertionError("nobody noticed")

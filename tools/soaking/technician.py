@@ -88,7 +88,7 @@ class Technician(Mischief):
 
     def commission(self):
         """Do some steps of a procedure, while the motor stands or not; change one's mind."""
-        if self.dice.below(3):
+        if self.dice.below(2):
             self.press("STOP")
             self.run(self.dice.between(2_000, 6_000))
         else:

@@ -340,6 +340,7 @@ class Judge:
         case.questions += self._may_ask
         self._is_question = self._may_ask and self._asks(row, tape, kind)
         if self._is_question:
+            case.question_us = now
             self._shares.mirror(case, now)
             return
         pkw_words = tape.count[row] - kind.pzd_words
