@@ -973,6 +973,89 @@ MUTATIONS = (
             "            counted += control.drive.counters[0] + control.drive.counters[row]\n",
         ),
     ),
+    Mutation(
+        "a step unasked",
+        "SET writes a step of commissioning at once, and nobody has seen what",
+        ("WRITE",), 24,
+        (
+            "panel/commission/course.py",
+            "            self._bits = self._needed()\n            self._phase = ASKS\n",
+            "            self._bits = self._needed()\n            self._begin_write(now_ms)\n",
+        ),
+    ),
+    Mutation(
+        "looked at and written",
+        "a step of commissioning is written when it is shown",
+        ("WRITE",), 24,
+        (
+            "panel/commission/course.py",
+            "        elif self._phase == LOOKS and not self.is_searching():\n",
+            "        elif self._form is not None and step.needs.isdigit() and not step.is_done:\n"
+            "            self._bits = self._needed()\n"
+            "            self._begin_write(now_ms)\n"
+            "        elif self._phase == LOOKS and not self.is_searching():\n",
+        ),
+    ),
+    Mutation(
+        "rescales unasked",
+        "P2000 is written without a word, and the setpoint means another speed",
+        ("WRITE",), 24,
+        (
+            "panel/commission/course.py",
+            "            if self._rescales():\n                self._phase = ASKS\n",
+            "            if self._rescales() and not self._bits:\n"
+            "                self._phase = ASKS\n",
+        ),
+    ),
+    Mutation(
+        "typed and not taken",
+        "a step of commissioning is written as it was, not as it was typed",
+        ("WRITE",), 24,
+        (
+            "panel/commission/course.py",
+            "                self._bits = form.bits(self._typed)\n",
+            "                self._bits = form.bits(self._typed) ^ 1 << 12\n",
+        ),
+    ),
+    Mutation(
+        "commissioned while it runs",
+        "a step is written while the motor turns",
+        ("WRITE",), 24,
+        (
+            "panel/commission/course.py",
+            "        if self._control.is_active():\n",
+            "        if self._control.is_active() and not self._form:\n",
+        ),
+    ),
+    Mutation(
+        "STOP dead in commissioning",
+        "whoever commissions a drive cannot stop it",
+        ("STOP",), 24,
+        (
+            "panel/panel.py",
+            "        if down & self._stop_bit:\n",
+            "        lists = getattr(self._cover, \"_lists\", None)\n"
+            "        if down & self._stop_bit and not (lists and hasattr(lists[-1][1], \"_bits\")):\n",
+        ),
+    ),
+    Mutation(
+        "events too young",
+        "an event reads as half as old as it is",
+        ("SHOWN",), 24,
+        ("panel/reports/journal.py", "self._counted_at_ms, self._mask) >= 1_000", "self._counted_at_ms, self._mask) >= 2_000"),
+        ("panel/reports/journal.py", "self._counted_at_ms + 1_000 &", "self._counted_at_ms + 2_000 &"),
+    ),
+    Mutation(
+        "another drive's event",
+        "an event reads as that of the drive that is shown",
+        ("SHOWN",), 24,
+        (
+            "panel/menu/events.py",
+            "        who = _THE_PANEL if address == NOBODY else b\"A%d\" % address\n",
+            "        address = self.panel.selected.drive.address\n"
+            "        who = _THE_PANEL if address == NOBODY else b\"A%d\" % address\n",
+        ),
+    ),
 )  # fmt: skip
 
 # No seed that was tried finds these, since the operator walks the menu and looks for drives as

@@ -136,8 +136,11 @@ class Technician(Mischief):
             return
         self.run(self.dice.one_of((self._seen_ms, 3_000)))  # until it is read
         for _ in range(3):
-            if self._step() == step:
-                self._agree()
+            for _ in range(HOME_TRIES):  # an announcement takes turns with it
+                if self._step() == step:
+                    self._agree()
+                    break
+                self.run(4 * SLICE_MS)
             self.run(self._seen_ms)
             entry = self._entry()
             if TYPING in entry:

@@ -32,14 +32,18 @@ class Commissioned:
         self._open_us = NEVER  # a step was read last
         self._offer = None  # (number, what is shown of the value, whether that is a question)
         self._last = None  # likewise; SET does not end it
+        self._row_2 = ""  # as read last with a step above it
         self._offered_us = NEVER
         self._said = []  # (until when, address or None) + offer
         self._other_us = NEVER  # SET was pressed last outside the menu: that may write as well
 
     def read(self, rows, now):
         number, row_2 = step_in(rows), rows[1].rstrip()
-        if number is None:
+        if number is None:  # row 1 may announce something meanwhile
+            if self._offer is not None and row_2 == self._row_2:
+                self._offered_us = now
             return
+        self._row_2 = row_2
         self._open_us = now
         if row_2.endswith(YES):
             self._offer_value(number, row_2[len(MENU) : -len(YES)], True, now)
