@@ -25,7 +25,8 @@ from tools.soaking.weather import Weather
 from tools.soaking.worlds import Plan, SoakWorld
 
 LOADED_FIRST = tuple(sys.modules)
-ON_DEMAND = ("catalogue", "panel", "search", "settings_file", "uss")  # packages that are, or have such
+# Packages that are loaded on demand, or have such modules.
+ON_DEMAND = ("catalogue", "panel", "search", "settings_file", "uss")
 
 TOLD_S = 30  # of virtual time between two calls of `progress`
 

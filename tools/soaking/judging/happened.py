@@ -13,14 +13,13 @@ In use:
     happened.reply(address, zsw, now)   # each reply
 """
 
-from tools.soaking.judging.facts import MENU, S, ZSW_FAULT
+from tools.soaking.judging.facts import MENU, ZSW_FAULT, S
 from tools.soaking.judging.rules import Broken
 
 FAULT, STOPPED = MENU + "FAULT ", MENU + "STOP KEY"
 EARLY_US = 2 * S  # ages are in whole seconds, and a picture is behind
 LATE_US = 3 * S  # and what has happened is known when the drive has told its number
 STALLED_US = 2 * S  # after a standstill of the loop the picture is old
-STOPS = ("STOP", "SET", "PARAM")  # the menu stops drives as well
 HELD_US = 6 * S  # the longest press
 KEPT = 100
 
@@ -29,7 +28,7 @@ class Happened:
     def __init__(self, witness):
         self._witness = witness
         self._faults = {}  # address -> [since, until, whether it goes on] of each time it had one
-        self._stops = []  # when one of STOPS went down
+        self._stops = []  # when that key went down
 
     def reply(self, address, zsw, now):
         times = self._faults.setdefault(address, [])
@@ -42,7 +41,7 @@ class Happened:
             times[-1][1], times[-1][2] = now, False
 
     def key(self, key, now):
-        if key in STOPS:
+        if key == "STOP":
             self._stops.append(now)
             del self._stops[:-KEPT]
 
@@ -63,15 +62,13 @@ class Happened:
         raise Broken("SHOWN", "%s: %s, and nothing of the kind" % rows)
 
     def _is_stop(self, at_us):
-        """Whether STOP was down then, or a key that stops drives in the menu."""
-        down_us = [self._witness.down[key] for key in STOPS if key in self._witness.down]
-        if down_us and min(down_us) - EARLY_US < at_us:
+        """Whether STOP was down then."""
+        if self._witness.down.get("STOP", at_us + EARLY_US) - EARLY_US < at_us:
             return True
         for since_us in self._stops:
             if since_us - EARLY_US < at_us < since_us + LATE_US + HELD_US:
                 return True
         return False
-
 
 
 def event_in(rows):
