@@ -62,8 +62,11 @@ def drop(name):
         return
     sys.modules.pop(name, None)
     package, _, module = name.rpartition(".")
-    if package in sys.modules and hasattr(sys.modules[package], module):
-        delattr(sys.modules[package], module)
+    if package in sys.modules:
+        try:
+            delattr(sys.modules[package], module)
+        except (AttributeError, KeyError):  # it is not there: to ask first takes as long once more
+            pass
 
 
 def call(name, function, *arguments):

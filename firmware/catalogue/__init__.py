@@ -33,7 +33,7 @@ _PIECE = const(128)  # bytes that are read at once
 _READING, _PARAMETER = const(18), const(16)  # r and P, of which a table has one order
 _LIKE, _COMMAND_SETS, _DRIVE_SETS = const(2), const(3), const(4)  # of the head
 
-_frozen = []  # families without a file
+_IS_FROZEN = ".frozen" in __path__  # then no table is a file, and nobody looks for one
 _packed = []  # `Packed`, once it was needed
 
 
@@ -169,16 +169,10 @@ def _bring(table, first):
 
 
 def _prepare(family):
-    """Find out how a table is kept, and load what that needs. None after each piece of it."""
+    """Load what reads a table that is frozen in. None after it."""
     if family not in FAMILIES:
         raise ValueError("no catalogue of %s" % family)
-    if family not in _frozen:
-        try:
-            _file(family).close()
-        except OSError:
-            _frozen.append(family)
-            yield None
-    if family in _frozen and not _packed:
+    if _IS_FROZEN and not _packed:
         from catalogue.packed import Packed
 
         _packed.append(Packed)
@@ -187,10 +181,8 @@ def _prepare(family):
 
 def _table(family):
     """A table as a stream of bytes: a file, or what is frozen into the firmware."""
-    return _packed[0](family, row_key) if family in _frozen else _file(family)
-
-
-def _file(family):
+    if _IS_FROZEN:
+        return _packed[0](family, row_key)
     return open(__file__.rpartition("/")[0] + "/" + family + ".tsv", "rb")
 
 

@@ -10,12 +10,13 @@ looked for in stretches that grow.
 
 from catalogue import rows
 
+_PARTS = 8  # of a group that one look takes
 _STRETCH = 4  # each stretch before a number is so much longer than the one before it
 
 
 def following(family, numbers, number):
     """None for each look, then the row; no row where the group has none."""
-    before, part, behind = _split(numbers, number)
+    before, part, behind = yield from _split(numbers, number)
     for first, last in [(number + 1, part[1])] + behind + before + [(part[0], number)]:
         if first <= last:
             for row in rows(family, b"%d-%d" % (first, last), paced=True):
@@ -26,7 +27,7 @@ def following(family, numbers, number):
 
 def preceding(family, numbers, number):
     """The same in the other direction."""
-    before, part, behind = _split(numbers, number)
+    before, part, behind = yield from _split(numbers, number)
     parts = [(number, part[1])] + behind + before + [(part[0], number - 1)]
     for first, last in reversed(parts):
         count = 1
@@ -43,11 +44,16 @@ def preceding(family, numbers, number):
 
 
 def _split(numbers, number):
-    """The parts of a group before that with the number, this one, and those behind it."""
+    """The parts of a group before that with the number, this one, and those behind it. None for
+    each look.
+    """
     parts = []
     for part in numbers.split():
+        if len(parts) % _PARTS == 0:
+            yield None
         first, _, last = part.partition(b"-")
         parts.append((int(first), int(last or first)))
+    yield None
     for place, (first, last) in enumerate(parts):
         if first <= number <= last:
             return parts[:place], parts[place], parts[place + 1 :]

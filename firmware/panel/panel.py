@@ -108,6 +108,7 @@ class Panel:
         self._view = View(self, screen, keys)
         self._view.begin(self._cover)
         self._drawn_at_ms = None  # when the picture was begun; None: a new one at once
+        self._is_unseen = False  # the page shown was coming, and was not drawn
         self._position = 0  # of the selected one in the controls
         self._neighbours = Neighbours(controls, self.announcer, self._heed)
         self._put_off = 0  # what can wait, in the turn before
@@ -188,7 +189,7 @@ class Panel:
 
     def show_page(self, now_ms, place):
         """Close the menu, and show this page of the table."""
-        self.close_menu()
+        self._cover.close(PAGES[place][2])
         self.turn_page(now_ms, place)
 
     def heed_settings(self, locked=False):
@@ -308,8 +309,12 @@ class Panel:
         view, drawn_at_ms = self._view, self._drawn_at_ms
         if self._page.is_coming() and self._cover is None and drawn_at_ms is not None:
             if elapsed(now_ms, drawn_at_ms, self.mask) < _UNSEEN_MS:
+                self._is_unseen = True
                 self._page.work(now_ms)
                 return False
+        if self._is_unseen:  # it has come: what was drawn before is of another page
+            self._is_unseen = False
+            drawn_at_ms = None
         if drawn_at_ms is None or (
             view.is_done() and elapsed(now_ms, drawn_at_ms, self.mask) >= _DRAW_MS
         ):
@@ -322,6 +327,8 @@ class Panel:
                 self.announcer.begin(self._position, page, view.tells_state(page), now_ms)
             view.begin(page)
             self.warning.step(now_us)
+        elif view.is_done():
+            return not self._puts_off()
         else:
             view.step(now_ms)
         return False

@@ -438,7 +438,7 @@ MENU, BACK = "menu", "back"
 HOME = "S:"  # row 1 of the home page begins with it
 HOLD_MS, READ_MS = 1_300, 300
 SCENE_MS = 10_000
-ENTRIES = 11
+ENTRIES = 13
 FIND = 2  # the entry in whose list SET would begin a search, which is another program
 OPENS = 2 * (MENU, BACK)
 WALKS = (MENU,) + ENTRIES * ("DOWN",) + (BACK,)
@@ -491,7 +491,7 @@ def do_at_the_menu(world, key):
 
 # What a person does with parameters: opens the list of groups, goes to the first one of a group,
 # walks, changes a value, and looks at faults. The entry in the main menu is reached from its end.
-PARAMETERS_UP, MEMORY_UP = 3 * ("UP",), 2 * ("UP",)  # the menu without ORDER and TURNS has these
+PARAMETERS_UP, MEMORY_UP = 5 * ("UP",), 3 * ("UP",)
 GROUP_SCENES = (
     (MENU,) + PARAMETERS_UP + ("SET", "DOWN", "DOWN", "DOWN", BACK),
     (MENU,) + MEMORY_UP + ("SET", "DOWN", "DOWN", BACK),

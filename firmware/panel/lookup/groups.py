@@ -66,7 +66,6 @@ class List(Entries):
     def choose(self, position, now_ms):
         panel = self.panel
         _, numbers, number = self._rows[position]
-        self.ahead = ()  # they stay
         panel.remembered[_PLACE] = position
         panel.remembered["panel.lookup.parameter"] = numbers, number
         panel.show_page(now_ms, PARAMETER)

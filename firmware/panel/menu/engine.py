@@ -70,6 +70,7 @@ class Menu(Page):
         self._told = None  # words in place of the entry, for a while or until a key is pressed
         self._told_at_ms = 0
         self._alarmed = panel.selected.needs_attention()
+        self._keep = ()  # modules that stay when it closes
         self._enter(*begin)
         self._wanted.insert(0, "panel.menu.words")
 
@@ -131,8 +132,9 @@ class Menu(Page):
         if stale or self._alarmed and not alarmed:
             self.close()
 
-    def close(self):
-        """Close the whole menu."""
+    def close(self, keep=()):
+        """Close the whole menu. keep: modules of it that stay, for the page that comes."""
+        self._keep = keep
         if self._coming:
             self._forget(self._coming[0])
             self._coming = None
@@ -221,16 +223,19 @@ class Menu(Page):
     def _drop_last(self):
         name, shown, _ = self._lists.pop()
         shown.end()
-        for module in shown.ahead:
-            on_demand.drop(module)
+        self._drop(shown.ahead)
         self._forget(name)
 
     def _forget(self, name):
         """What a list has needed leaves the memory."""
-        on_demand.drop(_module(name))
         needed = [module for one in self._lists for module in _WANTS.get(one[0], ())]
-        for module in _WANTS.get(name, ()):
-            if module not in needed:
+        self._drop((_module(name),) + _WANTS.get(name, ()), needed)
+
+    def _drop(self, modules, needed=()):
+        if modules is self._keep:
+            return
+        for module in modules:
+            if module not in needed and module not in self._keep:
                 on_demand.drop(module)
 
     def _leave(self, now_ms):
