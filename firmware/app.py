@@ -284,8 +284,10 @@ class Handover:
         if self._wanted == "app":
             for module in _OF_THE_SEARCH:
                 on_demand.drop(module)
+            on_demand.flush()
             self._following = App(self._board)
         else:
+            on_demand.flush()
             search = on_demand.load("search.search").Search
             self._following = search(self._board, self._settings)
         self._following.start()

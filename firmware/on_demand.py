@@ -15,6 +15,7 @@ import sys
 ROOMY_BYTES = 100_000  # where so much is free, what a key may ask for any time stays loaded
 
 _kept = ()  # names that `drop` leaves alone
+_idle = []  # those that were dropped, where there is room: they leave one by one
 
 # Of MicroPython itself. Whoever imports one makes it look into the file system first, which takes
 # 3 ms, each time again unless it stands among the modules that are loaded.
@@ -30,6 +31,7 @@ def keep(names):
     before, _kept = _kept, ()
     for name in before:  # of the panel before this one: what they take is free again
         drop(name)
+    flush()
     gc.collect()
     if not hasattr(gc, "mem_free") or gc.mem_free() >= ROOMY_BYTES:
         for name in names:
@@ -48,18 +50,44 @@ def load(name):
     if module is None:
         __import__(name)  # it answers the outermost package: to walk down from there takes long
         module = sys.modules[name]
+    elif name in _idle:
+        _idle.remove(name)
     return module
 
 
 def missing(names):
     """Those of them that are not in memory."""
+    for name in _idle[:]:
+        if name in names:
+            _idle.remove(name)
     return [name for name in names if name not in sys.modules]
 
 
 def drop(name):
-    """Forget it. Its memory is free as soon as nobody uses what was in it."""
-    if name in _kept:
+    """Forget it. Its memory is free as soon as nobody uses what was in it; where there is room,
+    `tidy` does it, since to forget a page with all its modules would take some milliseconds.
+    """
+    if name in _kept or name in _idle or name not in sys.modules:
         return
+    if _kept:
+        _idle.append(name)
+    else:
+        _forget(name)
+
+
+def tidy():
+    """One of those that were dropped leaves the memory."""
+    if _idle:
+        _forget(_idle.pop())
+
+
+def flush():
+    """All of them leave it."""
+    while _idle:
+        tidy()
+
+
+def _forget(name):
     sys.modules.pop(name, None)
     package, _, module = name.rpartition(".")
     if package in sys.modules:

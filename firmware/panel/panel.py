@@ -26,13 +26,14 @@ from panel.pages.table import PAGES
 from panel.phases import ASKING, CHECKING
 from panel.screen import Screen
 from panel.view import View
+from uss.master import SENDING
 from uss.timing import elapsed
 
 _DRAW_MS = const(50)
 _MESSAGE_MS = const(3_000)
 _LAST_TURN = const(7)
 _UNSEEN_MS = const(300)  # so long a page that is coming may go before the picture
-_WAITS_MAX = const(4)  # turns until what takes long does not wait for an exchange any more
+_WAITS_MAX = const(8)  # turns until what takes long does not wait for a telegram any more
 
 # They act on every page that obeys. STOP acts on every page.
 COMMAND_KEYS = (
@@ -63,8 +64,7 @@ class Panel:
         self._acting = False  # keys that were pressed are still to do what they do
         self._taker = None  # the page that is to take them now that the panel has
         self._rests = False  # the step is not for making a page
-        self._exchanges = 0  # of the bus, and so many turns have waited for another one
-        self._waits = 0
+        self._waits = 0  # so many turns what takes long has waited
         self._trips = 0  # bus.dead_man_trips when they were
         self.roster = roster
         self.controls = controls = roster.controls
@@ -173,12 +173,11 @@ class Panel:
         return None
 
     def has_time(self):
-        """Whether to begin what takes long, such as to load a module: a telegram has just begun,
+        """Whether to begin what takes long, such as to load a module: a telegram is being sent,
         so nothing interrupts that until the reply is there. Asked again in each turn.
         """
-        exchanges, self._exchanges = self._exchanges, self.bus.turns.exchanges
         self._waits += 1
-        if exchanges == self._exchanges and self._waits < _WAITS_MAX:
+        if self.bus.phase != SENDING and self._waits < _WAITS_MAX:
             return False
         self._waits = 0
         return True
@@ -280,6 +279,7 @@ class Panel:
             self.bus.deadlines.supervise(control.drive, survey.off_time_ms())
 
     def _watch(self, _now_ms, now_us):
+        on_demand.tidy()
         selected = self.selected
         if selected.phase != CHECKING:
             self.announcer.look(self._position)
