@@ -113,6 +113,7 @@ def _rows(family, kind, numbers):
                     missing = False
                     yield None
                     row = _cells(row)
+                    yield None
                     if like and not as_a_whole and b"" in row:
                         row = yield from _completed(row, like)
                     row = [b"" if cell == b"-" else cell for cell in row]

@@ -50,7 +50,7 @@ SHORT_CHORD_US = 120 * MS  # within this it is not known which of two keys came 
 DEAD_MAN_US = 300 * MS
 SECOND_STOP_US = 1_500 * MS
 ALL_STOP_US = 4_000 * MS
-START_S = 12  # a START is given up by then
+START_S, START_ROUNDS = 12, 10  # a START is given up by then
 HELD_SET_US = 1_400 * MS
 HELD_OPENS_US = 900 * MS  # PARAM opens the menu, an address key ANY ADDRESS
 WISH_US = 40 * S  # a write that SET has asked for is over by then, and 20 rounds of the line
@@ -91,7 +91,8 @@ def lost_us(plan):
 
 def start_us(plan):
     """By then a START has led to ON, or never will: a step and a round of the list later."""
-    return START_S * S + S + 2 * exchange_us(plan) * len(plan.listed)
+    round_us = exchange_us(plan) * len(plan.listed)
+    return max(START_S * S, START_ROUNDS * round_us) + S + 2 * round_us
 
 
 def exchange_us(plan):
