@@ -173,14 +173,16 @@ class Panel:
         return None
 
     def has_time(self):
-        """Whether to begin what takes long, such as to load a module: a telegram is being sent,
-        so nothing interrupts that until the reply is there. Asked again in each turn.
-        """
+        """Whether to begin what takes long, such as to load a module. Asked again in each turn."""
         self._waits += 1
-        if self.bus.phase != SENDING and self._waits < _WAITS_MAX:
+        if not self.is_undisturbed() and self._waits < _WAITS_MAX:
             return False
         self._waits = 0
         return True
+
+    def is_undisturbed(self):
+        """Whether a telegram is being sent: nothing interrupts the loop until the reply is there."""
+        return self.bus.phase == SENDING
 
     def close_menu(self):
         """Close the menu that covers the page."""

@@ -21,7 +21,7 @@ from uss.timing import elapsed
 FAVOURITES = None
 FIRST, TYPED = const(-1), const(-2)
 
-_WORK_US = const(800)  # then it is enough for a step: a piece takes up to 1.2 ms
+_WORK_US = const(1_000)  # then it is enough for a step: a piece takes up to 1.2 ms
 _PIECES_MAX = const(6)
 _READ_MS = const(500)  # between an answer and the next question
 _STALE_MS = const(60_000)  # what nobody goes on typing is dropped
