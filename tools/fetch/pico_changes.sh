@@ -69,10 +69,11 @@ C
 ask_for_files_first() {
     insert_behind "$1" 'static mp_import_stat_t stat_module(vstr_t *path) {' <<'C'
     #if USS_PANEL
-    if (strncmp(vstr_null_terminated_str(path), MP_FROZEN_PATH_PREFIX, strlen(MP_FROZEN_PATH_PREFIX)) == 0) {
+    size_t prefix = strlen(MP_FROZEN_PATH_PREFIX);
+    if (strncmp(vstr_null_terminated_str(path), MP_FROZEN_PATH_PREFIX, prefix) == 0) {
         size_t length = path->len;
         vstr_add_str(path, ".py");
-        if (stat_file_py_or_mpy(path) == MP_IMPORT_STAT_FILE) {
+        if (mp_find_frozen_module(vstr_null_terminated_str(path) + prefix, NULL, NULL) == MP_IMPORT_STAT_FILE) {
             return MP_IMPORT_STAT_FILE;
         }
         path->len = length;
