@@ -437,7 +437,7 @@ def steps(quick, baud, drives):
 MENU, BACK = "menu", "back"
 HOME = "S:"  # row 1 of the home page begins with it
 HOLD_MS, READ_MS = 1_300, 300
-SCENE_MS = 10_000
+SCENE_MS = 12_000
 ENTRIES = 13
 FIND = 2  # the entry in whose list SET would begin a search, which is another program
 OPENS = 2 * (MENU, BACK)
