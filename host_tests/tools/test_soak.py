@@ -31,7 +31,7 @@ from tools.soaking.judging.drive_settings import Values
 from tools.soaking.judging.facts import NEVER, start_us
 from tools.soaking.judging.families import FAMILIES, VARIABLE, Kind, Sight, kinds_of
 from tools.soaking.judging.looked_up import is_wrong
-from tools.soaking.judging.reader import subject_in
+from tools.soaking.judging.reader import subject_in, tells_unconfirmed
 from tools.soaking.judging.rules import RULES, Broken
 from tools.soaking.judging.runs import begin_again, is_standstill, judge_rise
 from tools.soaking.judging.shares import Shares
@@ -228,6 +228,13 @@ def test_two_drives_that_run_unseen_are_both_to_be_announced():
             break
     assert told is not None and told.args[0] == "ANNOUNCED", told
     assert told.args[1].startswith("drive %d, it runs" % addresses[2]), told
+
+
+def test_a_stop_without_an_answer_is_an_alarm_on_the_page_and_in_the_menu():
+    assert tells_unconfirmed(("S: 10.0 F: -----", "STOP UNCONFIRMED"), 0)
+    assert tells_unconfirmed(("A0 NOT STOPPED  ", ">BUS TIMES      "), 0)
+    assert not tells_unconfirmed(("A10 NOT STOPPED ", ">BUS TIMES      "), 0)
+    assert not tells_unconfirmed(("DIAGNOSIS   2/35", ">BUS TIMES      "), 0)
 
 
 def test_what_a_question_is_about_is_read_from_the_display():

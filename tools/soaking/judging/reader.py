@@ -282,7 +282,7 @@ class Reader:
         witness = self.witness
         address = witness.shown
         stop_us = case.stop_us
-        if self.reads("STOP UNCONFIRMED"):
+        if tells_unconfirmed(self.rows, address):
             self._unconfirmed_us = now
             return
         if case.answered_us >= stop_us - 100 * MS or stop_us < witness.boot_us:
@@ -297,7 +297,8 @@ class Reader:
         if max(witness.up.values()) > stop_us + 400 * MS and witness.up["STOP"] != max(
             witness.up.values()
         ):
-            return  # another key was pressed since
+            self._unconfirmed_us = now  # another key was pressed since
+            return
         if witness.down and list(witness.down) != ["STOP"]:
             return
         if case.start_us > stop_us:
@@ -367,6 +368,11 @@ class Reader:
     def is_able(self, address):
         """Whether the drive there is one that this panel can control."""
         return self.witness.is_able(address)
+
+
+def tells_unconfirmed(rows, address):
+    """Whether the display has the alarm of the drive shown; the menu has it in row 1, in turn."""
+    return "STOP UNCONFIRMED" in rows or rows[0].startswith("A%d NOT STOPPED" % address)
 
 
 def subject_in(row_1):
