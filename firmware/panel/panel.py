@@ -181,7 +181,7 @@ class Panel:
         return True
 
     def is_undisturbed(self):
-        """Whether a telegram is being sent: nothing interrupts the loop until the reply is there."""
+        """Whether a telegram is being sent: nothing interrupts the loop until the reply comes."""
         return self.bus.phase == SENDING
 
     def close_menu(self):

@@ -419,8 +419,8 @@ MUTATIONS = (
         ("FLASH",), 2,
         (
             "app.py",
-            "if has_just_failed or self.panel.any_runs():",
-            "if has_just_failed:",
+            "if self.panel.any_runs() or has_just_failed and errand is None:",
+            "if has_just_failed and errand is None:",
         ),
     ),
     Mutation(

@@ -8,7 +8,7 @@ import catalogue
 import on_demand
 from panel import texts
 from panel.lookup import Search, name_of, text, words
-from panel.menu import Entries
+from panel.menu import PAGE, Entries
 from panel.menu.words import PARAMETERS
 from panel.pages.table import PAGES, PARAMETER
 
@@ -68,4 +68,4 @@ class List(Entries):
         _, numbers, number = self._rows[position]
         panel.remembered[_PLACE] = position
         panel.remembered["panel.lookup.parameter"] = numbers, number
-        panel.show_page(now_ms, PARAMETER)
+        return PAGE, PARAMETER

@@ -11,6 +11,7 @@ memory only while it is shown. To add one, write its file and put its name into 
 from panel import texts
 
 BACK = ("", None)  # of `choose`: back to the list above this one
+PAGE = "page"  # of `choose`: (PAGE, place) closes the menu and shows this page of `pages.table`
 
 
 class Entries:
@@ -18,7 +19,7 @@ class Entries:
 
     ahead: modules that it has loaded for what it leads to; they leave the memory with it.
     title: a text; 16 characters in a list that has one entry only, else 10. Answers of `choose`:
-    (name of a list, argument), BACK, or None: the list stays.
+    (name of a list, argument), (PAGE, place), BACK, or None: the list stays.
     """
 
     title = b""

@@ -9,7 +9,7 @@ from micropython import const
 
 import on_demand
 from panel import texts
-from panel.menu import BACK
+from panel.menu import BACK, PAGE
 from panel.pages import Page
 from uss.timing import elapsed
 
@@ -65,6 +65,7 @@ class Menu(Page):
     def __init__(self, panel, begin=("main", None)):
         Page.__init__(self, panel)
         self._coming = None  # (name, argument) of a list that is not there yet
+        self._page = None  # the place of the page that is to come when the menu closes
         self._lists = []  # (name of the module, `List`, position in it), the one shown last
         self._used_at_ms = None
         self._told = None  # words in place of the entry, for a while or until a key is pressed
@@ -79,7 +80,7 @@ class Menu(Page):
             self._told = None
         if acts.has("STOP") and self._lists:
             self._stop(now_ms)
-        if self._coming or not (acts.pressed or acts.repeated):
+        if self._coming or self._page is not None or not (acts.pressed or acts.repeated):
             return
         self._used_at_ms = now_ms
         name, shown, position = self._lists[-1]
@@ -106,11 +107,14 @@ class Menu(Page):
 
     @property
     def is_busy(self):
-        return self._coming is not None or bool(self._lists) and self._lists[-1][1].is_searching()
+        is_searching = bool(self._lists) and self._lists[-1][1].is_searching()
+        return is_searching or self._coming is not None or self._page is not None
 
     def work(self, now_ms):
         """What takes long has a turn of its own: a module that comes, a piece of a search."""
-        if not self._coming:
+        if self._page is not None:
+            self.panel.show_page(now_ms, self._page)
+        elif not self._coming:
             self._lists[-1][1].search()
         elif self.panel.has_time():
             self._come(now_ms)
@@ -197,8 +201,10 @@ class Menu(Page):
             return
         if following is BACK:
             self._leave(now_ms)
-            return
-        self._enter(*following)
+        elif following[0] is PAGE:
+            self._page = following[1]
+        else:
+            self._enter(*following)
 
     def _enter(self, name, argument):
         """That list comes with the steps that follow: each loads one module."""
