@@ -416,7 +416,7 @@ MUTATIONS = (
     Mutation(
         "saved at any time",
         "settings are written while a motor turns, and the bus stands still",
-        ("FLASH",), 2,
+        ("FLASH",), 8,
         (
             "app.py",
             "if self.panel.any_runs() or has_just_failed and errand is None:",
