@@ -26,7 +26,6 @@ from panel.pages.table import PAGES
 from panel.phases import ASKING, CHECKING
 from panel.screen import Screen
 from panel.view import View
-from uss.master import SENDING
 from uss.timing import elapsed
 
 _DRAW_MS = const(50)
@@ -134,6 +133,8 @@ class Panel:
         if self._acting:
             self._act(now_ms)
             return False
+        if self._waits and self.is_undisturbed() and self._go_on(now_ms):
+            return False
         if self._place and self._page is self._home:
             self._rests = not self._rests
             if not self._rests and self._make_page(now_ms):
@@ -182,7 +183,7 @@ class Panel:
 
     def is_undisturbed(self):
         """Whether a telegram is being sent: nothing interrupts the loop until the reply comes."""
-        return self.bus.phase == SENDING
+        return self.bus.is_sending(self.board.clock.ticks_us())
 
     def close_menu(self):
         """Close the menu that covers the page."""
@@ -467,6 +468,13 @@ class Panel:
         for module in before.modules:
             on_demand.drop(module)
         self._page.open()
+
+    def _go_on(self, now_ms):
+        """What waited for a telegram goes on. Answers whether there was anything."""
+        self._waits = 0
+        if self._place and self._page is self._home:
+            return self._make_page(now_ms)
+        return self._works(now_ms)
 
     def _make_page(self, now_ms):
         """One of its modules; when all are there, the page. Answers whether that took long."""

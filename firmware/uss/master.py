@@ -141,6 +141,12 @@ class Master:
                 exchanges = self.turns.exchanges - self._foreign_at
                 self._shared = exchanges & 0xFFFF < _SHARED_EXCHANGES
 
+    def is_sending(self, now):
+        """Whether a telegram is on its way: nothing is to be done until the reply to it comes."""
+        if self.phase == AWAITING:  # of a link that foresees its end
+            return 0 < (self._quiet_since - now) & self._mask <= self._mask >> 1
+        return self.phase == SENDING
+
     def is_under_way(self, drive):
         """Whether an exchange with this drive has begun and not ended."""
         return self._drive is drive and self.phase in (SENDING, AWAITING)
