@@ -216,8 +216,4 @@ export class Pico {
   send(bytes) {
     this.usb?.send(bytes);
   }
-
-  readUsb(on) {
-    this.usb?.read(on);
-  }
 }
