@@ -33,10 +33,9 @@ from panel.screen import GLYPHS
 # From the bottom of the house up, too.
 PAGES_AT_HAND = (
     "panel.pages.parameter_words", "panel.writer", "panel.pages.question", "panel.pages.risk",
-    "panel.pages.parameters", "panel.menu.words", "panel.menu.engine", "panel.menu.main",
-    "uss.families.kinds", "settings_file", "uss.finding", "uss.finding.mirror",
-    "uss.finding.finder", "panel.menu.address", "panel.menu.find", "panel.menu.turns",
-    "panel.menu.settings", "panel.menu.value", "panel.menu.order", "panel.menu.drives",
+    "panel.pages.writing", "panel.pages.parameters", "panel.menu.words", "panel.menu.engine",
+    "panel.menu.main", "uss.families.kinds", "settings_file", "uss.finding", "uss.finding.mirror",
+    "panel.menu.address", "catalogue",
 )  # fmt: skip
 _OF_THE_SEARCH = (
     "search.search", "search.hunt", "search.words", "uss.finding.scan", "uss.finding.enquiry",
@@ -45,6 +44,7 @@ _FINDER = ("uss.finding", "uss.finding.mirror", "uss.finding.finder")
 _FAREWELL_STEPS = const(100)  # for the display to show that nothing is controlled any more
 _SAVE_AGAIN_MS = const(10_000)  # after the store failed
 _LONG_US = const(700)  # a step that has taken so long is not to do two more things
+_SHORT_US = const(700)  # one that has taken no longer has time for a piece of the log
 _SILENCES = const(3)  # telegrams without an answer, then somebody looks for another layout
 _FEED_MS = const(100)  # of the watchdog, which bites after 2 s
 
@@ -72,6 +72,7 @@ class App:
         restart = texts.WATCHDOG_RESTART if board.reset_cause else texts.NOTHING
         self.panel = Panel(roster, self.bus, board, settings, mask, (defect, restart))
         on_demand.keep(PAGES_AT_HAND)
+        self._log = None  # the `Log`, while the settings want one
         self._mask = mask
         self.ticks_us = board.clock.ticks_us
         self._ticks_ms = board.clock.ticks_ms
@@ -104,10 +105,12 @@ class App:
             self._look_or_show(now_us)
         elif (now_ms - self._fed_at_ms) & self._mask >= _FEED_MS:
             self._feed(now_ms)
+        elif self._log is not None:
+            self._log_on(now_ms, now_us)
         if self._polled:
             self._tend()
-        if self.settings.dirty:
-            self._save_if_quiet(now_ms)
+        if self.settings.dirty or self.panel.errand:
+            self._write_if_quiet(now_ms)
         board.idle()
         return self._hand_over() if self.panel.wants else None
 
@@ -122,7 +125,9 @@ class App:
         if wanted == "app":
             self._say(texts.BEGINS_ANEW)
         # A chip has no room for two panels of 31 drives: whoever still finds this finds no more.
-        self.link = self.bus = self.pacer = self.panel = self._roster = self._finder = None
+        self.link = self.bus = self.pacer = self.panel = self._roster = self._finder = (
+            self._log
+        ) = None
         self.step_panel = self.refresh_bus = self._tend = None
         return Handover(self.board, self.settings, wanted)
 
@@ -161,20 +166,25 @@ class App:
         if not missing:
             self._finder = module.Finder(self.bus, self._mask, _enquirer)
 
-    def _save_if_quiet(self, now_ms):
+    def _write_if_quiet(self, now_ms):
         """Writing flash holds everything up for a while, interrupts too: only when no drive runs,
         and between two exchanges."""
         failed_at_ms = self._save_failed_at_ms
         has_just_failed = (
             failed_at_ms is not None and elapsed(now_ms, failed_at_ms, self._mask) < _SAVE_AGAIN_MS
         )
-        if has_just_failed or self.panel.any_runs():
+        errand = self.panel.errand
+        if self.panel.any_runs() or has_just_failed and errand is None:
             self.bus.resume()
             return
         self.bus.pause()
         # `paused` does not know yet of a command that this very step has given: that goes first.
         if self.bus.paused and not self.bus.turns.has_command():
-            self._save(now_ms)
+            if errand is not None:
+                self.panel.errand = None
+                errand()
+            elif self.settings.dirty:
+                self._save(now_ms)
             self.bus.resume()
 
     def _save(self, now_ms):
@@ -227,6 +237,31 @@ class App:
         stands_ms = elapsed(now_ms, self._progress_at_ms, self._mask)
         if stands_ms * 1000 < self.bus.patience_us():
             self.board.watchdog.feed()
+        if (self._log is not None) != (self.settings.log != "none"):
+            self._switch_log(now_ms)
+
+    def _log_on(self, now_ms, now_us):
+        """A piece of the log, if a step has time for it that has begun then."""
+        if (self.ticks_us() - now_us) & self._mask < _SHORT_US:
+            self._log.step(now_ms)
+
+    def _switch_log(self, now_ms):
+        """Begin the log that the settings want, or end it."""
+        make_serial = getattr(self.board, "serial", None)
+        if make_serial is None:  # the settings of another board
+            self.settings.log = "none"
+            return
+        try:
+            serial = make_serial()
+            serial.listen(self._log is None)
+            if self._log is not None:
+                self._log = None
+                on_demand.drop("log")
+            else:
+                self._log = on_demand.load("log").Log(self.panel, serial, now_ms)
+        except MemoryError:
+            self.settings.log = "none"
+            self.panel.say(now_ms, texts.NO_MEMORY)
 
 
 def _enquirer(*node):
@@ -249,8 +284,10 @@ class Handover:
         if self._wanted == "app":
             for module in _OF_THE_SEARCH:
                 on_demand.drop(module)
+            on_demand.flush()
             self._following = App(self._board)
         else:
+            on_demand.flush()
             search = on_demand.load("search.search").Search
             self._following = search(self._board, self._settings)
         self._following.start()

@@ -15,19 +15,33 @@ import sys
 ROOMY_BYTES = 100_000  # where so much is free, what a key may ask for any time stays loaded
 
 _kept = ()  # names that `drop` leaves alone
+_idle = []  # those that were dropped, where there is room: they leave one by one
+
+# Of MicroPython itself. Whoever imports one makes it look into the file system first, which takes
+# 3 ms, each time again unless it stands among the modules that are loaded.
+BUILT_IN = ("array", "binascii", "deflate", "io", "json", "struct")
 
 
 def keep(names):
     """Load these modules for good, if there is room: to load one takes some milliseconds."""
     global _kept
+    for name in BUILT_IN:
+        if name not in sys.modules:
+            sys.modules[name] = __import__(name)
     before, _kept = _kept, ()
     for name in before:  # of the panel before this one: what they take is free again
         drop(name)
+    flush()
     gc.collect()
     if not hasattr(gc, "mem_free") or gc.mem_free() >= ROOMY_BYTES:
         for name in names:
             load(name)
         _kept = names
+
+
+def free_bytes():
+    """The memory that is free, 0 if nobody knows. To count it takes a chip 10 ms."""
+    return gc.mem_free() if hasattr(gc, "mem_free") else 0
 
 
 def load(name):
@@ -36,22 +50,51 @@ def load(name):
     if module is None:
         __import__(name)  # it answers the outermost package: to walk down from there takes long
         module = sys.modules[name]
+    elif name in _idle:
+        _idle.remove(name)
     return module
 
 
 def missing(names):
     """Those of them that are not in memory."""
+    for name in _idle[:]:
+        if name in names:
+            _idle.remove(name)
     return [name for name in names if name not in sys.modules]
 
 
 def drop(name):
-    """Forget it. Its memory is free as soon as nobody uses what was in it."""
-    if name in _kept:
+    """Forget it. Its memory is free as soon as nobody uses what was in it; where there is room,
+    `tidy` does it, since to forget a page with all its modules would take some milliseconds.
+    """
+    if name in _kept or name in _idle or name not in sys.modules:
         return
+    if _kept:
+        _idle.append(name)
+    else:
+        _forget(name)
+
+
+def tidy():
+    """One of those that were dropped leaves the memory."""
+    if _idle:
+        _forget(_idle.pop())
+
+
+def flush():
+    """All of them leave it."""
+    while _idle:
+        tidy()
+
+
+def _forget(name):
     sys.modules.pop(name, None)
     package, _, module = name.rpartition(".")
-    if package in sys.modules and hasattr(sys.modules[package], module):
-        delattr(sys.modules[package], module)
+    if package in sys.modules:
+        try:
+            delattr(sys.modules[package], module)
+        except (AttributeError, KeyError):  # it is not there: to ask first takes as long once more
+            pass
 
 
 def call(name, function, *arguments):

@@ -23,6 +23,7 @@ class Settings:
     dirty       True: something was changed and is not saved yet
     new         True: there is no file yet
     unknown     what the file holds besides: name -> the line as it stands there
+    half_at     addresses of the drives in `half_written`
 
     Nobody else writes any of these, but `settings_file`.
     """
@@ -34,6 +35,7 @@ class Settings:
         self.dirty = False
         self.new = False
         self.unknown = {}
+        self.half_at = ()
         for name in defaults:
             setattr(self, name, defaults[name])
 
@@ -92,6 +94,20 @@ class Settings:
         self.dirty = self.dirty or accepted != self.unsupervised
         self.unsupervised = accepted
 
+    def note_set(self, address, check=None):
+        """A parameter set is written in part at this address: that with this check, as text; None:
+        not any more. That holds for a drive which is not in the list any more, too."""
+        checks = dict(self.half_written)
+        checks.pop(str(address), None)
+        if check is not None:
+            checks[str(address)] = check
+        self.change("half_written", checks)
+        self.note_half()
+
+    def note_half(self):
+        """Whether a drive is among them is asked for each picture, which takes no memory."""
+        self.half_at = tuple([int(address) for address in self.half_written])
+
     def readdress(self, old, new):
         """The drive at address `old` answers at `new` from now on; it keeps what was accepted.
 
@@ -103,11 +119,12 @@ class Settings:
         accepted = [one for one in self.drives if one in self.unsupervised]
         self.drives = _replaced(self.drives, old, new)
         self.unsupervised = _replaced(accepted, old, new)
-        for values in (self.kinds, self.repeats):
+        for values in (self.kinds, self.repeats, self.half_written):
             moved = values.pop(str(old), None)
             values.pop(str(new), None)  # of a drive that is gone
             if moved is not None:
                 values[str(new)] = moved
+        self.note_half()
         self.dirty = True
 
     def complain(self, suspect, text):

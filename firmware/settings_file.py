@@ -15,13 +15,18 @@ import json
 
 import on_demand
 from settings import Settings, is_number
+from uss.families import NAMES
 from uss.families.kinds import kind
 from uss.telegram import NODE_MAX
 from uss.timing import BAUD_RATES
 
 SIZE_MAX = 4096  # bytes of the file: a chip has to hold it, and what is made of it
-UNKNOWN_MAX = 2048  # of that, what is kept though it is not known
+UNKNOWN_MAX = 1472
 REPEATS_MAX = 4
+FAVOURITES_MAX = 32  # of all families together
+
+_NUMBER_MAX = 99_999  # of a favourite: five digits can be typed
+_FAMILIES = [name.lower() for name in NAMES]
 
 # What may be wrong with the file as a whole, in place of the name of a setting.
 UNREADABLE, TOO_BIG, NO_JSON = "unreadable", "too big", "no JSON"
@@ -30,6 +35,7 @@ CHOICES = (  # name, default, what it may be, meaning
     ("baud", 19200, BAUD_RATES, "bit/s"),
     ("second_stop", "OFF3", ("OFF3", "OFF2", "none"), "what holding STOP for 1.5 s sends"),
     ("language", "en", ("en", "de"), "of the display: columns of panel/languages/words.tsv"),
+    ("log", "none", ("none", "JSON"), "a line a second on the serial port"),
 )
 LIMITS = ("lowest_centihertz", "highest_centihertz")  # of the setpoint: never crossed
 NUMBERS = (  # name, default, lowest, highest, meaning
@@ -51,8 +57,12 @@ ADDRESSES = (  # name, default, fewest, meaning; addresses 0...31, each once, 31
 BY_ADDRESS = (  # name, default, meaning; an object: address as text -> text or number
     ("kinds", {}, "family, and layout if unusual, of drives that are no mm420"),
     ("repeats", {}, "2...4: how often a drive stands in the circulating list"),
+    ("half_written", {}, "the check of a set that is on the drive in part, and makes it whole"),
 )
-DEFAULTS = {row[0]: row[1] for row in CHOICES + NUMBERS + ADDRESSES + BY_ADDRESS}
+BY_FAMILY = (  # name, default, meaning; an object: family -> parameter numbers
+    ("favourites", {}, "in place of those that parameter mode shows"),
+)
+DEFAULTS = {row[0]: row[1] for row in CHOICES + NUMBERS + ADDRESSES + BY_ADDRESS + BY_FAMILY}
 
 
 def load(store):
@@ -106,7 +116,7 @@ def as_dictionary(settings):
 def _as_file(settings):
     """What is stored, as bytes: JSON in the order of the tables, the unknown at the end."""
     lines = []
-    for name, *_ in CHOICES + NUMBERS + ADDRESSES + BY_ADDRESS:
+    for name, *_ in CHOICES + NUMBERS + ADDRESSES + BY_ADDRESS + BY_FAMILY:
         line = "%s: %s" % (json.dumps(name), _as_json(getattr(settings, name)))
         lines.append(line.encode())
     lines += [settings.unknown[name] for name in sorted(settings.unknown)]
@@ -149,6 +159,14 @@ def _take(settings, stored):
             settings.complain(name, "%r are not up to 31 addresses 0...31" % (value,))
     settings.kinds = _by_address(settings, "kinds", stored, kind)
     settings.repeats = _by_address(settings, "repeats", stored, _check_repeats)
+    settings.half_written = _by_address(settings, "half_written", stored, _check_set)
+    settings.note_half()
+    favourites = stored.get("favourites", {})
+    if _are_favourites(favourites):
+        settings.favourites = favourites
+    else:
+        text = "%r is not up to %d numbers, by family"
+        settings.complain("favourites", text % (favourites, FAVOURITES_MAX))
     if settings.lowest_centihertz > settings.highest_centihertz:
         limits = (settings.lowest_centihertz, settings.highest_centihertz)
         settings.complain("lowest_centihertz", "%d is above highest_centihertz: %d" % limits)
@@ -192,6 +210,11 @@ def _check_repeats(value):
         raise ValueError("%r is not 2...%d" % (value, REPEATS_MAX))
 
 
+def _check_set(value):
+    if not isinstance(value, str) or not len(value) == 8:
+        raise ValueError("%r is no check of a set" % (value,))
+
+
 def _are_addresses(values, fewest):
     if not isinstance(values, (list, tuple)) or not fewest <= len(values) <= NODE_MAX:
         return False
@@ -201,9 +224,24 @@ def _are_addresses(values, fewest):
     return len(set(values)) == len(values)
 
 
+def _are_favourites(value):
+    if not isinstance(value, dict):
+        return False
+    count = 0
+    for family in value:
+        numbers = value[family]
+        if family not in _FAMILIES or not isinstance(numbers, list):
+            return False
+        count += len(numbers)
+        for number in numbers:
+            if not is_number(number, 0, _NUMBER_MAX):
+                return False
+    return count <= FAVOURITES_MAX
+
+
 def _as_json(value):
     """As json.dumps, and addresses in their order."""
     if not isinstance(value, dict):
         return json.dumps(value)
-    addresses = sorted(value, key=int)
-    return "{%s}" % ", ".join(['"%s": %s' % (one, json.dumps(value[one])) for one in addresses])
+    names = sorted(value, key=lambda name: "%9s" % name)
+    return "{%s}" % ", ".join(['"%s": %s' % (one, json.dumps(value[one])) for one in names])

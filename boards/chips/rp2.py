@@ -57,6 +57,11 @@ WATCHDOG_SCRATCH_4 = WATCHDOG + 0x1C
 STARTED = 0x6AB7_3121
 
 
+# The buffer of endpoint 2 IN, by which MicroPython sends to the PC (RP2040 4.1.2.5).
+USB_IN_BUFFER = 0x5010_0090
+USB_AVAILABLE = 1 << 10  # it waits for the PC
+
+
 def expect(chip):
     """Raises ValueError on another chip: there the pins of this board may be something else."""
     if chip != CHIP:
@@ -84,6 +89,32 @@ def low(number):
 
 def make_store():
     return FileStore(SETTINGS_FILE, open, os)
+
+
+_serial = []  # the one that was made
+
+
+def serial():
+    """The USB serial port, on which the prompt is, too. Most panels never need it."""
+    if not _serial:
+        _serial.append(make_serial())
+    return _serial[0]
+
+
+def make_serial():
+    import select
+
+    from hal.serial import Serial
+
+    stream = sys.stdout.buffer  # takes what comes as well
+    poll = select.poll()
+    poll.register(stream, select.POLLIN | select.POLLOUT)
+    return Serial(stream, poll, micropython.kbd_intr, usb_is_idle)
+
+
+def usb_is_idle():
+    """Whether the PC has taken the last packet."""
+    return not machine.mem16[USB_IN_BUFFER] & USB_AVAILABLE
 
 
 def idle():

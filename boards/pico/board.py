@@ -47,6 +47,7 @@ display = rp2.make_display(
 backlight = getattr(display, "backlight", None)  # a backpack switches it
 keypad = rp2.make_keypad(KEYS, NORMALLY_CLOSED)
 store = rp2.make_store()
+serial = rp2.serial  # USB
 watchdog = rp2.Watchdog()
 timer = rp2.make_timer()
 idle = rp2.idle

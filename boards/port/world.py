@@ -64,7 +64,7 @@ class PortWorld(World):
     def make_board(self, loop_us, cause):
         return PortBoard(
             self.port, self.wire, self.chip, self.lcd_chip, self.keypad, self.store, False, None,
-            cause,
+            cause, self.usb,
         )  # fmt: skip
 
     def run(self, ms):

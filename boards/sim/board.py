@@ -85,13 +85,16 @@ class Board:
     chip: a `chip.Chip` that is running. lcd: the controller of the panel's display. switches: of
     the panel's keys. polled: its UART offers no receive interrupt.
     loop_us: a function that answers how long this step of the main loop takes, in microseconds.
-    reset_cause: why the chip booted, see `hal`.
+    reset_cause: why the chip booted, see `hal`. usb: a `Usb`, the port of a PC that logs.
     """
 
     name = "SIMULATED"
 
-    def __init__(self, chip, lcd, switches, store, polled=False, loop_us=None, reset_cause=""):
+    def __init__(self, chip, lcd, switches, store, polled=False, loop_us=None, reset_cause="",
+                 usb=None):  # fmt: skip
         self.reset_cause = reset_cause
+        self._usb = usb
+        self._serial = None
         self.clock = chip.clock
         self.display = make_display(chip, lcd)
         self.backlight = lcd.light
@@ -115,6 +118,11 @@ class Board:
         return Rs485Link(
             uart, driver_enable, timer, chip.clock, baud, interrupts=interrupts, fifo=fifo
         )
+
+    def serial(self):
+        if self._serial is None:
+            self._serial = self._usb.serial()
+        return self._serial
 
     def idle(self):
         clock = self.clock

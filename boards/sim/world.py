@@ -20,6 +20,7 @@ from boards.sim.clock import Clock
 from boards.sim.dice import Dice
 from boards.sim.chip.flash import Flash, PowerCut
 from boards.sim.chip.lcd import Lcd
+from boards.sim.chip.usb import Usb
 from boards.sim.chip.switches import Switches
 from boards.sim.line.wire import Wire
 from boards.sim.drives.families import mm420, setting_of
@@ -191,6 +192,7 @@ class World(Surroundings):
             self.flash.files[SETTINGS_FILE] = stored
         elif store.read(0) is None:
             store.replace(stored)
+        self.usb = Usb()
         self.app = None
         self.start = start
         self._polled = polled
@@ -282,7 +284,14 @@ class World(Surroundings):
     def make_board(self, loop_us, cause):
         """The board around the chip that has just booted. As `Board`."""
         return Board(
-            self.chip, self.lcd_chip, self.keypad, self.store, self._polled, loop_us, cause
+            self.chip,
+            self.lcd_chip,
+            self.keypad,
+            self.store,
+            self._polled,
+            loop_us,
+            cause,
+            self.usb,
         )
 
     def _hand_over(self, following):

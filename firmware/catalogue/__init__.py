@@ -33,7 +33,8 @@ _PIECE = const(128)  # bytes that are read at once
 _READING, _PARAMETER = const(18), const(16)  # r and P, of which a table has one order
 _LIKE, _COMMAND_SETS, _DRIVE_SETS = const(2), const(3), const(4)  # of the head
 
-_frozen = []  # families without a file
+_IS_FROZEN = ".frozen" in __path__  # then no table is a file, and nobody looks for one
+_packed = []  # `Packed`, once it was needed
 
 
 def find(family, number, kind="P"):
@@ -98,16 +99,21 @@ def _rows(family, kind, numbers):
     """Rows, complete, and None after each look for one."""
     as_a_whole = kind not in b"\x01\x06\x10"  # neither A nor F nor P: what stands together
     missing = True
+    yield from _prepare(family)
     with _table(family) as table:
         yield None
         head = _cells(_line(table))
         like = head[_LIKE].decode()
+        yield None
         for part in numbers.split():
             first, _, last = part.partition(b"-")
             first, last = _key(first, kind), _key(last or first, kind) | 0x1FF
             for row in _between(table, first, last):
                 if row:
                     missing = False
+                    yield None
+                    row = _cells(row)
+                    yield None
                     if like and not as_a_whole and b"" in row:
                         row = yield from _completed(row, like)
                     row = [b"" if cell == b"-" else cell for cell in row]
@@ -121,28 +127,30 @@ def _rows(family, kind, numbers):
 
 def _completed(row, like):
     """With what is empty from the row with the same key of the other family."""
-    key = _key(row[KEY][1:], row[KEY][0])
+    key = row_key(row[KEY])
+    yield from _prepare(like)
     with _table(like) as table:
         yield None
         for other in _between(table, key, key):
             yield None
             if other:
-                return [cell or from_other for cell, from_other in zip(row, other)]
+                return [cell or from_other for cell, from_other in zip(row, _cells(other))]
     return row
 
 
 def _between(table, first, last):
-    """The rows with these keys, and None after each look for the first."""
-    if hasattr(table, "bring"):
-        yield table.bring(first)
-    else:
-        yield from _bring(table, first)
+    """The rows with these keys, as lines, and None after each look for the first."""
+    is_packed = hasattr(table, "bring")
+    yield from table.bring(first) if is_packed else _bring(table, first)
+    yield None
     while True:
         line = _row(table)
-        key = _key(line[1:], line[0]) if line else last + 1
+        if not line and is_packed and (yield from table.go_on()):
+            continue
+        key = row_key(line) if line else last + 1
         if key > last:
             return
-        yield _cells(line) if key >= first else None
+        yield line if key >= first else None
 
 
 def _bring(table, first):
@@ -153,7 +161,7 @@ def _bring(table, first):
         table.seek(middle)
         _line(table)  # what is left of it
         line = _row(table)
-        if line and _key(line[1:], line[0]) < first:
+        if line and row_key(line) < first:
             low = table.tell() - len(line)
         else:
             high = middle
@@ -161,18 +169,22 @@ def _bring(table, first):
     table.seek(low)
 
 
-def _table(family):
-    """A table as a stream of bytes: a file, or what is frozen into the firmware."""
+def _prepare(family):
+    """Load what reads a table that is frozen in. None after it."""
     if family not in FAMILIES:
         raise ValueError("no catalogue of %s" % family)
-    if family not in _frozen:
-        try:
-            return open(__file__.rpartition("/")[0] + "/" + family + ".tsv", "rb")
-        except OSError:
-            _frozen.append(family)
-    from catalogue.packed import Packed
+    if _IS_FROZEN and not _packed:
+        from catalogue.packed import Packed
 
-    return Packed(family)
+        _packed.append(Packed)
+        yield None
+
+
+def _table(family):
+    """A table as a stream of bytes: a file, or what is frozen into the firmware."""
+    if _IS_FROZEN:
+        return _packed[0](family, row_key)
+    return open(__file__.rpartition("/")[0] + "/" + family + ".tsv", "rb")
 
 
 def _row(table):
@@ -185,6 +197,8 @@ def _row(table):
 
 def _line(table):
     """What is left of a line. `readline` would ask the file system for byte after byte."""
+    if hasattr(table, "line"):
+        return table.line()
     line = b""
     while True:
         piece = table.read(_PIECE)
@@ -197,6 +211,11 @@ def _line(table):
             return line
 
 
+def row_key(line):
+    """That of the row which begins so."""
+    return _key(line[1:], line[0])
+
+
 def _key(cell, kind):
     """What the rows are in the order of, an integer that needs no heap."""
     kind &= 0x1F
@@ -205,13 +224,10 @@ def _key(cell, kind):
 
 
 def _cells(line):
-    """Cells in ISO 8859-1; the file is UTF-8, and has nothing that does not fit."""
-    if b"\xc2" in line or b"\xc3" in line:
-        characters, lead = bytearray(), 0
-        for code in line:
-            if code >= 0xC0:
-                lead = code << 6 & 0xC0
-            else:
-                characters.append(lead | code & 0x3F if code & 0x80 else code)
-        line = bytes(characters)
+    """Cells in ISO 8859-1. A file is UTF-8, and has nothing that does not fit; of a long line the
+    letters with an accent are few, so what stands between them is moved as a whole.
+    """
+    if b"\xc2" in line or b"\xc3" in line:  # what is frozen has neither
+        first, *others = line.replace(b"\xc2", b"").split(b"\xc3")
+        line = first + b"".join([bytes((part[0] | 0x40,)) + part[1:] for part in others])
     return line.rstrip(b"\n").split(b"\t")

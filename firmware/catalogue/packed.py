@@ -7,8 +7,8 @@ A module such as `catalogue.table_mm440` holds it, made by tools/deploying/packi
     BLOCKS      the blocks one after the other, raw deflate
     INDEX       8 bytes for each: the key of its first row, and where it begins
 
-It is read as a file is, but that `bring` finds the block of a key. What is unpacked on the way is
-in memory, 128 bytes at a time, and the window of 2 KB, for as long as somebody reads.
+`bring` finds the row of a key: it unpacks one block, of 2 KB, in which it searches. That block is
+in memory for as long as somebody reads.
 """
 
 import struct
@@ -22,18 +22,21 @@ import on_demand
 _WINDOW_BITS = const(11)  # of packing.py
 _ENTRY = "<II"
 _ENTRY_BYTES = const(8)
+_PIECE = const(128)  # that is unpacked in a step
+_NEAR = const(200)  # bytes; what is nearer is found by reading on
 
 
 class Packed:
-    def __init__(self, family):
-        name = "catalogue.table_" + family
-        module = on_demand.load(name)
-        on_demand.drop(name)
+    """row_key: what tells the key of a row by its beginning."""
+
+    def __init__(self, family, row_key):
+        module = on_demand.load("catalogue.table_" + family)
+        self._row_key = row_key
         self._index = module.INDEX
         self._blocks = BytesIO(module.BLOCKS)  # which reads it where it is
         self._place = 0  # of the block, in the index
-        self._stream = BytesIO(module.HEAD)
-        self._last = self._left = b""
+        self._block = module.HEAD
+        self._at = 0  # so much of it has been read
 
     def __enter__(self):
         return self
@@ -41,24 +44,16 @@ class Packed:
     def __exit__(self, *_):
         pass
 
-    def read(self, count):
-        """Not beyond the end of a block, which is the end of a row."""
-        piece, self._left = self._left, b""
-        if not piece:
-            piece = self._stream.read(count)
-        if not piece and self._place + _ENTRY_BYTES < len(self._index):
-            self._begin(self._place + _ENTRY_BYTES)
-            piece = self._stream.read(count)
-        self._last = piece
-        return piece
-
-    def seek(self, offset, _):
-        """Back within what was read last."""
-        if offset:
-            self._left = self._last[offset:]
+    def line(self):
+        """The next line; empty at the end of the block, which is the end of a row: see `go_on`."""
+        block, at = self._block, self._at
+        self._at = end = block.find(b"\n", at) + 1 or len(block)
+        return block[at:end]
 
     def bring(self, key):
-        """The next row is the first of the last block that may have this key."""
+        """The next row is that with this key, or one before it that is near. None after each piece
+        of the search.
+        """
         low, high = 0, len(self._index) // _ENTRY_BYTES
         while high - low > 1:
             middle = (low + high) // 2
@@ -66,10 +61,37 @@ class Packed:
                 low = middle
             else:
                 high = middle
-        self._begin(low * _ENTRY_BYTES)
+        yield None
+        self._block = block = yield from self._unpack(low * _ENTRY_BYTES)
+        yield None
+        low, high = 0, len(block)
+        while high - low > _NEAR:
+            middle = block.rfind(b"\n", low, (low + high) // 2) + 1
+            if not middle:  # a long row
+                break
+            if self._row_key(block[middle : middle + 16]) < key:
+                low = middle
+            else:
+                high = middle
+        self._at = low
 
-    def _begin(self, place):
+    def go_on(self):
+        """At the end of a block, go to the next one, and tell whether there is one."""
+        place = self._place + _ENTRY_BYTES
+        if place < len(self._index):
+            self._block = yield from self._unpack(place)
+            self._at = 0
+        return place < len(self._index)
+
+    def _unpack(self, place):
+        """A block as bytes. None after each piece."""
         self._place = place
-        self._left = b""
         self._blocks.seek(struct.unpack_from(_ENTRY, self._index, place)[1])
-        self._stream = DeflateIO(self._blocks, RAW, _WINDOW_BITS)
+        packed = DeflateIO(self._blocks, RAW, _WINDOW_BITS)
+        yield None
+        block, piece = b"", packed.read(_PIECE)
+        while piece:
+            yield None
+            block += piece
+            piece = packed.read(_PIECE)
+        return block

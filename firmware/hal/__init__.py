@@ -20,6 +20,8 @@ board
                         it hangs, only the watchdog stops the drives
     backlight(on)       optional, or None: switches the light of the display, on at first
     make_link(baud)     builds the link for that baud rate; called once
+    serial()            optional, or None: the `hal.serial.Serial` on which a PC listens, the same
+                        one each time
     must_supervise      optional; True: no drive starts whose own time-out is off, or unread: this
                         board cannot stop it when its program hangs outside Python
     idle()              at the end of each main loop step: lets the machine work, 2 ms at most
@@ -75,10 +77,16 @@ keypad
                         STOP, still do.
     unclear             the keys, as bits, that the last reading could not determine; mostly 0
 
-store                   keeps one small file over power cuts; any method may raise OSError
+store                   keeps files over power cuts; any method may raise OSError. One small file:
     read(most=-1) -> bytes or None   the first `most` bytes; -1: all
     replace(data)       all or nothing: after a power cut either the old or the new data are there
     set_aside()         keep what is there under another name, for a person to look at
+                        and larger ones beside it, each with a name:
+    names(ending)       of those that end like this, in order
+    open(name)          to be read: read(most), close()
+    begin() -> file     a new one: write(data). Until `finish` nobody finds it
+    finish(file, name)  all or nothing: in place of the one that had this name
+    remove(name)
 
 watchdog
     feed()              the first call starts it; 2 s without a further call restart the chip

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""A small file that survives power cuts, on a file system whose rename overwrites at once.
+"""Files that survive power cuts, on a file system whose rename overwrites at once.
 
 Fulfils the contract `store` of `hal`. It writes new data to a file beside the old one, and a
 rename puts that in its place: littlefs, which the ports for the RP2040 and the ESP32 use, promises
@@ -8,7 +8,11 @@ nothing of the kind. If a power cut leaves a file beside the old one, it is neve
 next write replaces it.
 
     store = FileStore("settings.json", open, os)
-    store.replace(b"{}")
+    store.replace(b"{}")                    # the small file that it is about
+
+    file = store.begin()                    # a larger one beside it, written piece by piece
+    file.write(b"...")
+    store.finish(file, "1.set")
 """
 
 from micropython import const
@@ -16,6 +20,7 @@ from micropython import const
 _PIECE = const(256)
 _ENOENT = const(2)
 _COPY_MAX = const(4096)  # bytes: a chip has to hold it
+_UNFINISHED = "unfinished.new"
 
 
 class FileStore:
@@ -51,6 +56,29 @@ class FileStore:
             self._os.rename(self._path, self._path + ".bad")
         elif data is not None:
             self._put(self._path + ".bad", data)
+
+    # --- larger files beside it -----------------------------------------------------------------
+
+    def names(self, ending):
+        names = self._os.listdir(self._beside("") or ".")
+        return sorted([name for name in names if name.endswith(ending)])
+
+    def open(self, name):
+        return self._open(self._beside(name), "rb")
+
+    def begin(self):
+        return self._open(self._beside(_UNFINISHED), "wb")
+
+    def finish(self, file, name):
+        file.close()
+        self._os.rename(self._beside(_UNFINISHED), self._beside(name))
+
+    def remove(self, name):
+        self._os.remove(self._beside(name))
+
+    def _beside(self, name):
+        folder, slash, _ = self._path.rpartition("/")
+        return folder + slash + name
 
     def _read(self, path, most):
         try:

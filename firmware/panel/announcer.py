@@ -15,7 +15,7 @@ the order of the list. Between two announcements the page has its turn.
 from micropython import const
 
 from panel import texts, wording
-from panel.fault import draw_number
+from panel.reports.fault import draw_number
 from panel.phases import ASKING
 from uss import pzd
 from uss.timing import elapsed

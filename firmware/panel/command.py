@@ -19,6 +19,10 @@ from uss.timing import elapsed
 
 _NONE = const(-1)  # no version
 _START_US = const(5_000_000)  # a drive that does not run by then is told to stop again
+# START is given up if the drive has not told its settings by then, and in so many of the longest
+# rounds of the list: 17 questions take a drive 10 s at 1200 baud, and 23 s where eight are asked.
+_CHECK_US = const(12_000_000)
+_CHECK_ROUNDS = const(10)
 
 
 class Command:
@@ -68,10 +72,14 @@ class Command:
         return self._bus.dead_man_trips != self._dead_man_trips
 
     def is_overdue(self, now_us):
-        """Whether the drive has had more time to tell all its settings than it may need."""
-        patience_us = 2 * len(self._survey.values) * self._bus.patience_us()
-        # A clock of a short period cannot tell more than half of it.
-        return elapsed(now_us, self._since_us, self._mask) >= min(patience_us, self._mask >> 2)
+        """Whether whoever pressed START expects no motor to turn any more, though the drive has
+        not told all its settings: because it lags, or many others are asked.
+        """
+        most_us = self._mask >> 2  # a clock of a short period cannot tell more than half of it
+        waited_us = elapsed(now_us, self._since_us, self._mask)
+        if waited_us < min(_CHECK_US, most_us):
+            return False
+        return waited_us >= min(_CHECK_ROUNDS * self._bus.turns.longest_cycle_us(), most_us)
 
     def why_stopped(self):
         """What made the engine take it back, as a notice."""

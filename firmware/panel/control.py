@@ -22,7 +22,8 @@ from uss.families import rows
 from uss.survey import REREAD_US
 from panel import permits, risks, texts
 from panel.command import Command
-from panel.fault import NO_FAULT, Fault
+from panel.reports.fault import NO_FAULT, Fault
+from panel.reports.journal import Journal
 from panel.phases import ASKING, CHECKING, IDLE, JOGGING, RUNNING
 from panel.setpoint import Setpoint
 from panel.stop_watch import NO_WATCH, StopWatch
@@ -47,7 +48,7 @@ class Desk:
     `Settings`. mask: the clock's period - 1.
 
     defect: what is wrong with the line's hardware, of texts, or NOTHING. longest_off_time_ms: a
-    longer P2014 is a risk. off_time_ms: one that fits this bus.
+    longer P2014 is a risk. off_time_ms: one that fits this bus. journal: of what happens.
     """
 
     def __init__(self, bus, settings, mask, defect=texts.NOTHING):
@@ -55,6 +56,7 @@ class Desk:
         self.settings = settings
         self.mask = mask
         self.defect = defect
+        self.journal = Journal(mask)
         self.follow_list()
 
     def note_answer(self):
@@ -276,6 +278,10 @@ class Control:
         """Whether P2014 = 0 has been accepted for it."""
         return self.drive.address in self.desk.settings.unsupervised
 
+    def is_half_written(self):
+        """Whether a parameter set is on it in part: see `panel.sets.writing`."""
+        return self.drive.address in self.desk.settings.half_at
+
     def is_unsaved(self):
         """Whether its address is another one than the panel will look for after a restart."""
         return self.moved and self.desk.settings.dirty
@@ -322,7 +328,8 @@ class Control:
                 drive.tells_status = not permits.tells_no_status(survey)
         if drive.zsw & pzd.ZSW_FAULT and self.fault is NO_FAULT:
             self.fault = Fault(drive, self.desk.mask, survey.family)
-        self.fault.step(now_us)
+        if self.fault is not NO_FAULT:
+            self._watch_fault(now_us)
         if drive.contact != self._contact:
             self._contact = drive.contact
             if drive.contact:
@@ -330,6 +337,8 @@ class Control:
             is_lost_running = drive.was_running and not drive.contact
             if is_lost_running != self.lost_running:
                 self.lost_running = is_lost_running
+                if is_lost_running:
+                    self._note(texts.OTHER_LOST)
             if self.absence_known:
                 self.absence_known = False
         if self.phase == CHECKING:
@@ -353,8 +362,16 @@ class Control:
         )
         self._quiet_zsw = _UNKNOWN if is_busy else zsw
 
+    def _watch_fault(self, now_us):
+        number = self.fault.number
+        self.fault.step(now_us)
+        if self.fault.number not in (0, number):
+            self._note(texts.FAULT, self.fault.number)
+
     def _stop(self, off):
         self.drive.stop(off)
+        if self.phase == RUNNING:
+            self._note(texts.STOP_KEY)
         self.phase = IDLE
         self._quiet_zsw = _UNKNOWN
         self.survey.drop_recheck()
@@ -415,7 +432,7 @@ class Control:
                 self.phase = ASKING
                 self.survey.drop_recheck()
                 command.question = command.risk
-                self.notice = texts.DID_NOT_START
+                self._say(texts.DID_NOT_START)
             command.risk += 1
             return
         if not refusal and command.risk == len(risks.RISKS):
@@ -425,10 +442,10 @@ class Control:
         self.phase = IDLE
         self.survey.drop_recheck()
         if command.is_stale():
-            self.notice = texts.PANEL_HUNG
+            self._say(texts.PANEL_HUNG)
         elif refusal:
             self.refusal = refusal
-            self.notice = texts.DID_NOT_START  # the operator may look at another drive by now
+            self._say(texts.DID_NOT_START)  # the operator may look at another drive by now
         else:
             command.send(now_us)
             self.stop_watch.end()
@@ -471,7 +488,10 @@ class Control:
         that runs against OFF from when that is seen."""
         watch = self.stop_watch
         if watch.active:
+            unconfirmed = watch.unconfirmed
             watch.step(now_us)
+            if watch.unconfirmed and not unconfirmed:
+                self._note(texts.OTHER_UNCONFIRMED)
         elif not self.drive.wanted and (self._runs_against_off() or self._is_in_doubt()):
             watch = self._begin_stop_watch()
         if watch.active or self.drive.wanted:
@@ -500,7 +520,14 @@ class Control:
     def _take_back(self, notice):
         self.drive.stop(self.drive.off)
         self.phase = IDLE
+        self._say(notice)
+
+    def _say(self, notice):
         self.notice = notice
+        self._note(notice)
+
+    def _note(self, text, number=0):
+        self.desk.journal.note(text, self.drive.address, number)
 
     def _watch_second_stop(self):
         """Back to OFF1, which ends the inhibit, once OFF2 or OFF3 was heard and it stands."""

@@ -16,7 +16,7 @@ from micropython import const
 import on_demand
 from panel import permits, texts, wording
 from panel.announcer import Announcer
-from panel.fault import DriveWarning
+from panel.reports.fault import DriveWarning
 from panel.keys import Acts, keys_of
 from panel.keys.jog_keys import JogKeys
 from panel.keys.stop_key import StopKey
@@ -31,6 +31,8 @@ from uss.timing import elapsed
 _DRAW_MS = const(50)
 _MESSAGE_MS = const(3_000)
 _LAST_TURN = const(7)
+_UNSEEN_MS = const(300)  # so long a page that is coming may go before the picture
+_WAITS_MAX = const(8)  # turns until what takes long does not wait for a telegram any more
 
 # They act on every page that obeys. STOP acts on every page.
 COMMAND_KEYS = (
@@ -51,14 +53,17 @@ class Panel:
     For pages and view: `selected`, the control that is shown; `warning`, its `DriveWarning`;
     `message`, words that are shown for a while, or None; `stop_key`; `announcer`; `guard`, a
     `Guard` or None; `setpoint_step` in centihertz; `remembered`; `settings`; `bus`; `board`;
-    `mask`. For `App`: `wants`. Nobody else writes a field of it: pages call `say`, `cover`,
-    `uncover`, `write`, `add`, `remove`, `heed_settings`, `begin_anew` and `lock`.
+    `mask`. For `App`: `wants`, and `errand`, which a page may set and `App` clears. Nobody else
+    writes a field of it: pages call `say`, `cover`, `uncover`, `write`, `show_page`, `turn_page`,
+    `add`, `remove`, `heed_settings`, `begin_anew` and `lock`.
     """
 
     def __init__(self, roster, bus, board, settings, mask, notices=()):
         self._turn = 0  # asked for in every step, so it is first: as in `Master`
         self._acting = False  # keys that were pressed are still to do what they do
         self._taker = None  # the page that is to take them now that the panel has
+        self._rests = False  # the step is not for making a page
+        self._waits = 0  # so many turns what takes long has waited
         self._trips = 0  # bus.dead_man_trips when they were
         self.roster = roster
         self.controls = controls = roster.controls
@@ -88,22 +93,28 @@ class Panel:
         self._home = self._page = Home(self)
         self._place = 0  # of the page in PAGES
         self._is_new = settings.new  # nobody has set it up: it offers to find drives
+        self.errand = None  # a function to be called once the flash may be written
         self.wants = None  # another program: "search", or "app", this one anew
         self.remembered = {}  # by module: where a page was when it was left
         splash = on_demand.load("panel.pages.splash")
         self._cover = splash.Splash(self)  # a page that hides it: the splash, a question, or None
         self._notices = splash.notices(settings, key_names, notices)
+        self.journal = controls[0].desk.journal
+        for notice in notices:
+            if notice:
+                self.journal.note(notice)
         self._message_at_ms = 0
         self._view = View(self, screen, keys)
         self._view.begin(self._cover)
         self._drawn_at_ms = None  # when the picture was begun; None: a new one at once
+        self._is_unseen = False  # the page shown was coming, and was not drawn
         self._position = 0  # of the selected one in the controls
         self._neighbours = Neighbours(controls, self.announcer, self._heed)
         self._put_off = 0  # what can wait, in the turn before
         # What is not done at once takes turns, so that each step of the loop stays short.
-        draw, leave = self._draw, self._leave  # once: each time makes another object
         self._turns = (
-            draw, self._ask, leave, self._watch, draw, self._follow, leave, self._look_around,
+            self._draw, self._ask, self._leave, self._watch,
+            self._work_or_draw, self._follow, self._work, self._look_around,
         )  # fmt: skip
 
     def step(self, raw_keys, now_ms, now_us, unclear_keys=0):
@@ -122,9 +133,12 @@ class Panel:
         if self._acting:
             self._act(now_ms)
             return False
-        if self._place and self._page is self._home:
-            self._make_page(now_ms)
+        if self._waits and self.is_undisturbed() and self._go_on(now_ms):
             return False
+        if self._place and self._page is self._home:
+            self._rests = not self._rests
+            if not self._rests and self._make_page(now_ms):
+                return False
         if self.stop_key.left:
             self.stop_key.stop_next()
             return False
@@ -146,22 +160,39 @@ class Panel:
             on_demand.drop(module)
         self._cover = None
 
-    def write(self, now_ms, control, number, index, value, eeprom=False):
-        """The `Write` of a parameter, whose outcome the panel will say; None where it has said
+    def write(self, now_ms, *what):
+        """The `Write` made with `what`, whose outcome the panel will say; None where it has said
         already why it cannot be tried.
         """
         if self._writer is None:
             writer = on_demand.load("panel.writer").Writer
             self._writer = writer(self.bus, self.settings, self.mask)
-        write = self._writer.write(control, number, index, value, eeprom)
+        write = self._writer.write(*what)
         if write.outcome is None:
             return write
         self.say(now_ms, *write.outcome)
         return None
 
+    def has_time(self):
+        """Whether to begin what takes long, such as to load a module. Asked again in each turn."""
+        self._waits += 1
+        if not self.is_undisturbed() and self._waits < _WAITS_MAX:
+            return False
+        self._waits = 0
+        return True
+
+    def is_undisturbed(self):
+        """Whether a telegram is being sent: nothing interrupts the loop until the reply comes."""
+        return self.bus.is_sending(self.board.clock.ticks_us())
+
     def close_menu(self):
         """Close the menu that covers the page."""
         self._cover.close()
+
+    def show_page(self, now_ms, place):
+        """Close the menu, and show this page of the table."""
+        self._cover.close(PAGES[place][2])
+        self.turn_page(now_ms, place)
 
     def heed_settings(self, locked=False):
         """Settings that act at once have changed. locked: where they have a lock, it is closed."""
@@ -182,7 +213,7 @@ class Panel:
         self.guard.lock()
         if self._cover is not None and not self._cover.locks:
             self.close_menu()
-        self._turn_page(now_ms, 0)
+        self.turn_page(now_ms, 0)
         self.say(now_ms, texts.LOCKED)
 
     def begin_anew(self):
@@ -251,6 +282,7 @@ class Panel:
             self.bus.deadlines.supervise(control.drive, survey.off_time_ms())
 
     def _watch(self, _now_ms, now_us):
+        on_demand.tidy()
         selected = self.selected
         if selected.phase != CHECKING:
             self.announcer.look(self._position)
@@ -266,6 +298,7 @@ class Panel:
             self._writer.step(now_us)
         self.selected.ask_on(now_us)
         self._collect(now_ms)
+        self.journal.tick(now_ms)
         guard = self.guard
         if guard is not None and guard.step(now_ms, self._has_alarm()):
             self.lock(now_ms)
@@ -277,6 +310,14 @@ class Panel:
     def _draw(self, now_ms, now_us):
         # In a slow loop a picture takes longer than _DRAW_MS: it is drawn to its end all the same.
         view, drawn_at_ms = self._view, self._drawn_at_ms
+        if self._page.is_coming() and self._cover is None and drawn_at_ms is not None:
+            if elapsed(now_ms, drawn_at_ms, self.mask) < _UNSEEN_MS:
+                self._is_unseen = True
+                self._page.work(now_ms)
+                return False
+        if self._is_unseen:  # it has come: what was drawn before is of another page
+            self._is_unseen = False
+            drawn_at_ms = None
         if drawn_at_ms is None or (
             view.is_done() and elapsed(now_ms, drawn_at_ms, self.mask) >= _DRAW_MS
         ):
@@ -289,12 +330,28 @@ class Panel:
                 self.announcer.begin(self._position, page, view.tells_state(page), now_ms)
             view.begin(page)
             self.warning.step(now_us)
+        elif view.is_done():
+            return not self._puts_off()
         else:
             view.step(now_ms)
         return False
 
     def _leave(self, _now_ms, _now_us):
         return not self._puts_off()
+
+    def _work(self, now_ms, now_us):
+        """A page that has something to look for does it faster; others leave the step."""
+        return not self._works(now_ms) and self._leave(now_ms, now_us)
+
+    def _work_or_draw(self, now_ms, now_us):
+        return not self._works(now_ms) and self._draw(now_ms, now_us)
+
+    def _works(self, now_ms):
+        page = self._cover or self._page
+        is_busy = page.is_busy
+        if is_busy:
+            page.work(now_ms)
+        return is_busy
 
     def _puts_off(self):
         """Keys that are unsettled take long already: what can wait does, once."""
@@ -357,7 +414,8 @@ class Panel:
                 self._taker = page
                 self._acting = True
                 return
-        page.take_keys(acts, now_ms)
+        if page:
+            page.take_keys(acts, now_ms)
         if acts.pressed:
             self._drawn_at_ms = None  # a new picture at once
 
@@ -371,7 +429,7 @@ class Panel:
         if acts.pressed & self._address_bits:
             self._select(acts.direction("ADDRESS_UP", "ADDRESS_DOWN"))
         if acts.has("PARAM"):
-            self._turn_page(now_ms, (self._place + 1) % len(PAGES))
+            self.turn_page(now_ms, PAGES[self._place][1])
         if acts.is_held(self._param_bit):
             self._open_menu(now_ms)
         elif acts.is_held(self._address_bits):
@@ -389,7 +447,7 @@ class Panel:
         return held or not (acts.pressed or acts.repeated)
 
     def _open_menu(self, now_ms, begin=("main", None)):
-        self._turn_page(now_ms, 0)  # PARAM has gone to another one when it went down
+        self.turn_page(now_ms, 0)  # PARAM has gone to another one when it went down
         try:
             self.cover(on_demand.load("panel.menu.engine").Menu(self, begin))
         except MemoryError:
@@ -401,30 +459,37 @@ class Panel:
         else:
             self.wants = "search"
 
-    def _turn_page(self, now_ms, place):
-        """Another page of the table: the next step makes it. The one before leaves the memory."""
+    def turn_page(self, now_ms, place):
+        """Another page of the table: the steps that follow make it. The one before leaves the
+        memory."""
         before = self._page
         self._place = place
         self._page = self._home
-        try:
-            if place:
-                on_demand.load("panel.pages." + PAGES[place][0])
-        except MemoryError:
-            self._refuse_page(now_ms)
         for module in before.modules:
             on_demand.drop(module)
         self._page.open()
 
-    def _make_page(self, now_ms):
-        module, page = PAGES[self._place]
-        try:
-            self._page = getattr(on_demand.load("panel.pages." + module), page)(self)
-        except MemoryError:
-            self._refuse_page(now_ms)
+    def _go_on(self, now_ms):
+        """What waited for a telegram goes on. Answers whether there was anything."""
+        self._waits = 0
+        if self._place and self._page is self._home:
+            return self._make_page(now_ms)
+        return self._works(now_ms)
 
-    def _refuse_page(self, now_ms):
-        self._place = 0
-        self.say(now_ms, texts.NO_MEMORY)
+    def _make_page(self, now_ms):
+        """One of its modules; when all are there, the page. Answers whether that took long."""
+        page, _, modules = PAGES[self._place]
+        missing = on_demand.missing(modules)
+        if missing and not self.has_time():
+            return False
+        try:
+            module = on_demand.load(missing[0] if missing else modules[-1])
+            if not missing:
+                self._page = getattr(module, page)(self)
+        except MemoryError:
+            self._place = 0
+            self.say(now_ms, texts.NO_MEMORY)
+        return True
 
     def _select(self, direction):
         """Show the next drive, or the one before."""

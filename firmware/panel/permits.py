@@ -76,6 +76,8 @@ def _why_not(control, why_not_this):
         return texts.REFUSED_SILENT
     if control.moving:
         return texts.WRITER_BUSY
+    if control.is_half_written():
+        return texts.REFUSED_HALF_SET
     if control.is_unsaved():
         return texts.REFUSED_UNSAVED
     if state == pzd.FAULT:

@@ -19,14 +19,14 @@ class Reading:
         self.asked = False
         self._job = None  # made with the first question: most drives never have one
 
-    def ask(self, drive, number, index=0):
+    def ask(self, drive, number, index=0, task=pkw.READ):
         """Queue the question. Answers whether there was room for it."""
         if drive.channel.is_full():
             return False
         if self._job is None:
-            self._job = pkw.read(number, index)
+            self._job = pkw.Job(task, number, index)
         else:
-            self._job.aim(pkw.READ, number, index)
+            self._job.aim(task, number, index)
         drive.ask(self._job)
         self.asked = True
         return True

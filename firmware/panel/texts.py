@@ -46,6 +46,11 @@ def speak(language):
             pass  # better in English than not at all
 
 
+def language():
+    """That which is spoken."""
+    return _language
+
+
 NOTHING = b""
 
 STATE_WIDTH = 12  # row 2, in front of the address
@@ -77,6 +82,7 @@ FAULT_LETTER = b"F"
 WARNING = b"WARN"  # in turn with the state; with WARNING_LETTER and four digits behind it
 WARNING_LETTER = b"A"
 INHIBITED = b"INHIBITED"
+HALF_SET = b"HALF A SET"  # of parameters is on it: see `sets`
 LOCAL = b"LOCAL"  # commands do not come from this bus
 RUNS_LOCALLY = b"RUNS LOCALLY"
 STATUS_UNKNOWN = b"P2019[0] ???"  # what the drive sends as its status word is none
@@ -86,6 +92,7 @@ LINE_FAILED = b"LINE FAILED"
 PANEL_HUNG = b"PANEL HUNG"
 ENGINE_FAILED = b"BUS ERROR"
 STOPPED_ITSELF = b"STOPPED SELF"
+STOP_KEY = b"STOP KEY"  # what stopped it: in the list of events alone
 DID_NOT_START = b"NOT STARTED"
 TAKEN_AWAY = b"TAKEN AWAY"  # P0700, P1000 or the like hands it to somebody else
 DRIVE_RESET = b"DRIVE RESET"  # its mains were away for a moment, r2024
@@ -140,6 +147,7 @@ REFUSED_STOPPING = b"NO: QUICK STOP"  # OFF2 or OFF3 is still in force
 REFUSED_JOG = b"NO: JOG IS DOWN"
 REFUSED_RUNS = b"NO JOG: IT RUNS"
 REFUSED_UNSAVED = b"NO: UNSAVED"  # its new address is not in the settings yet
+REFUSED_HALF_SET = b"NO: HALF A SET"  # complete it, or give it up
 REFUSED_NO_JOG = b"NO: HAS NO JOG"
 REFUSED_UNSUPERVISED = b"NO JOG: P2014=0"
 REFUSED_LONG = b"NO: P2014 LONG"

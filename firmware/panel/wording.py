@@ -56,6 +56,8 @@ def text(control):
         return texts.CHECKING
     if is_local(survey):
         return texts.LOCAL
+    if control.is_half_written():
+        return texts.HALF_SET
     return texts.READY if state == pzd.READY else texts.NOT_READY
 
 

@@ -38,20 +38,30 @@ _TRIES_MAX = const(3)
 
 IDLE, PROBING, WAITING, WRITING, LOOKING = range(5)
 
+# Task for a single value -> task for an element, in a family that takes an index by those.
+_ELEMENT_TASKS = {
+    pkw.WRITE_WORD: pkw.WRITE_ELEMENT_WORD,
+    pkw.WRITE_DOUBLE: pkw.WRITE_ELEMENT_DOUBLE,
+    pkw.WRITE_DOUBLE_EEPROM: pkw.WRITE_ELEMENT_DOUBLE_EEPROM,
+    pkw.WRITE_WORD_EEPROM: pkw.WRITE_ELEMENT_WORD_EEPROM,
+}
+
 
 class Write:
-    """A parameter that is to be written. value: 16 bits. moves: it is the drive's address.
+    """A parameter that is to be written. value: the bits of 16 or 32, not negative; width: WORD or
+    DOUBLE of `pkw`. moves: it is the drive's address.
 
     outcome: how it ended, a text and the values in it; None while it is on its way. done:
     the drive has confirmed it. The writer writes both; nobody writes any other field.
     """
 
-    def __init__(self, control, number, index, value, eeprom):
+    def __init__(self, control, number, index, value, eeprom=False, width=pkw.WORD):
         self.control = control
         self.number = number
         self.index = index
         self.value = value
         self.eeprom = eeprom
+        self.width = width
         self.old_address = control.drive.address
         family = control.survey.family
         is_address = number == family.address_number and index == family.link_index
@@ -90,10 +100,10 @@ class Writer:
         self._tries = 0
         self._silent = 0  # drive.silent when it was last spoken to at the other address
 
-    def write(self, control, number, index, value, eeprom):
-        """Write 0...65535. One that cannot even be tried has its outcome already."""
+    def write(self, control, *what):
+        """what: as of `Write`. One that cannot even be tried has its outcome already."""
         drive = control.drive
-        write = Write(control, number, index, value, eeprom)
+        write = Write(control, *what)
         if self._phase != IDLE or drive.channel.is_full():
             write.outcome = (texts.WRITER_BUSY,)
         elif not drive.contact:
@@ -104,7 +114,7 @@ class Writer:
             if write.moves:
                 self._phase = PROBING
                 control.moving = True
-                self._go_to(value)
+                self._go_to(write.value)
             else:
                 self._ask()
         return write
@@ -145,7 +155,12 @@ class Writer:
         self._phase = WRITING
         self._silent = drive.silent
         task = pkw.WRITE_WORD_EEPROM if write.eeprom else pkw.WRITE_WORD
-        self._job.aim(task, write.number, write.index, 0, write.value)
+        if write.width == pkw.DOUBLE:
+            task = pkw.WRITE_DOUBLE_EEPROM if write.eeprom else pkw.WRITE_DOUBLE
+        if write.index and write.control.survey.family.has_array_tasks:
+            task = _ELEMENT_TASKS[task]
+        high, low = write.value >> 16, write.value & 0xFFFF
+        self._job.aim(task, write.number, write.index, high, low)
         drive.ask(self._job)
 
     def _finish(self, now_us):
@@ -153,7 +168,7 @@ class Writer:
         drive = write.control.drive
         may_have_moved = write.moves and job.state != pkw.REFUSED
         if job.state == pkw.DONE:
-            if job.low == write.value:
+            if job.integer_value() == write.value:
                 self._confirm()
             elif self._tries < _TRIES_MAX:  # that was an old answer to a reading
                 self._tries += 1

@@ -72,6 +72,8 @@ class Search:
             self._drawn_at_ms = now_ms
             self._draw()
         board.display.show(self.screen.picture)
+        if self.settings.log != "none":
+            board.serial().hear()
         board.idle()
         return self._following
 

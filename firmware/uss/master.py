@@ -77,11 +77,12 @@ class Master:
     apart the telegrams to a drive may be; `progress`, which moves as long as the engine gets
     anything done; `dead_man_trips`; `failures` (exceptions in `poll`); `foreign` (heard from
     another master: bursts before the first telegram, telegrams after it); `paused` (because of
-    `pause` the master sends and awaits nothing). A setting, at any time: `retries`, how often the
-    master repeats an exchange at once that brought no valid reply.
+    `pause` the master sends and awaits nothing). Settings, at any time: `retries`, how often the
+    master repeats an exchange at once that brought no valid reply; `witness`, a `Witness` that is
+    told of every exchange, or None.
 
-    The loop writes _refreshed_at, retries, _held. The engine writes all else. Both write: `phase`
-    (the loop when it is OFF and the engine does nothing), what follows from that (_first,
+    The loop writes _refreshed_at, retries, witness, _held. The engine writes all else. Both write:
+    `phase` (the loop when it is OFF and the engine does nothing), what follows from that (_first,
     foreign), `paused` and _shared (the loop to False), _dead_man (the loop to False, in `refresh`;
     the engine to True), _abandoned (the engine to None).
     """
@@ -121,6 +122,7 @@ class Master:
         self._start_interval_us = timing.start_interval_us
         self._rest_us = timing.start_interval_us
         self._sending_since = 0
+        self.witness = None
 
     # --- for the loop ---------------------------------------------------------------------------
 
@@ -138,6 +140,12 @@ class Master:
             if self._shared:
                 exchanges = self.turns.exchanges - self._foreign_at
                 self._shared = exchanges & 0xFFFF < _SHARED_EXCHANGES
+
+    def is_sending(self, now):
+        """Whether a telegram is on its way: nothing is to be done until the reply to it comes."""
+        if self.phase == AWAITING:  # of a link that foresees its end
+            return 0 < (self._quiet_since - now) & self._mask <= self._mask >> 1
+        return self.phase == SENDING
 
     def is_under_way(self, drive):
         """Whether an exchange with this drive has begun and not ended."""
@@ -462,6 +470,8 @@ class Master:
             return receiver.due_us(self._link, now)
         else:
             self._miss(finding, now)
+        if self.witness is not None:
+            self.witness.note(self._drive, finding, receiver)
         self._failures_in_row = 0
         self.progress = (self.progress + 1) & 0xFFFF
         self._quiet_since = quiet_since = receiver.heard_at

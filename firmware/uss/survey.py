@@ -364,6 +364,8 @@ class Survey:
             self._unanswered = self._unanswered or bytearray(len(self.values))
             self._unanswered[row] = min(self._unanswered[row] + 1, _UNANSWERED_MAX)
             is_absent = self._is_unanswered(row)
+            if not is_absent and self.drive.asking:  # ask again while it has more than its turn:
+                self.unchecked = self._count_asked()  # in turns of a long list it would be lost
         if is_absent or row in _LATER and job.state != pkw.TIMED_OUT:
             value = self._asks[row][3]
         if value is None or value == _UNKNOWN:

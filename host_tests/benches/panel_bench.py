@@ -7,7 +7,7 @@ The same firmware as on the chip, in virtual time.
 import main
 import panel.panel
 from boards.sim.world import World
-from panel.pages.table import PAGES
+from panel.pages.table import HOME, PAGES
 from strict_screen import StrictScreen
 
 panel.panel.Screen = StrictScreen
@@ -148,5 +148,7 @@ ERROR = ValueError("on purpose")  # made beforehand: the heap is locked in an in
 
 def page_back(world):
     """PARAM leads through all pages; this is how to come back to the one before."""
-    for _ in PAGES[1:]:
+    place = PAGES[HOME][1]
+    while place != HOME:
         world.press("PARAM")
+        place = PAGES[place][1]

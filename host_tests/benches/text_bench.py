@@ -6,11 +6,19 @@ missing.
 """
 
 from panel import texts
+from panel.commission import words as commission_words
+from panel.lookup import ask
+from panel.lookup import words as lookup_words
 from panel.menu import words as menu_words
+from panel.menu.diagnosis import words as diagnosis_words
+from panel.menu.sets import words as set_words
 from panel.pages import parameter_words, splash
 from search import words as search_words
 
-MODULES = (texts, splash, parameter_words, menu_words, search_words)
+MODULES = (
+    texts, splash, parameter_words, menu_words, set_words, diagnosis_words, search_words,
+    lookup_words, ask, commission_words,
+)  # fmt: skip
 TABLE = "firmware/panel/languages/words.tsv"
 
 

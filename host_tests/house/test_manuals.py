@@ -133,6 +133,7 @@ def test_every_file_and_folder_that_a_table_names_is_there():
 def pattern(text):
     """A text of the display as a pattern: a number may be any, blanks count once."""
     words = [re.escape(word) for word in text.decode("latin-1").split()]
+    words = [word.replace("%04X", "[0-9A-F]{4}") for word in words]
     return re.sub("%0?[0-9]?d", r"\\d+", r"\s*".join(words)).replace("%s", ".+").replace("%%", "%")
 
 

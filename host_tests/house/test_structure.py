@@ -23,6 +23,7 @@ INTERPRETERS = "host"
 RULES = (
     ("firmware/main.py", ("app",), ("board",)),
     ("firmware/app.py", ("panel", "on_demand", "uss", "hal"), ("micropython",)),
+    ("firmware/log.py", ("panel", "on_demand", "uss", "version"), ("micropython",)),
     ("firmware/on_demand.py", (), ("gc", "sys")),
     ("firmware/settings.py", ("uss",), ()),
     ("firmware/settings_file.py", ("on_demand", "settings", "uss"), ("json",)),
@@ -36,7 +37,14 @@ RULES = (
     ("firmware/uss/s7", ("uss",), ("struct", "array", "micropython")),
     ("firmware/uss/tasks", ("uss",), ("struct", "array", "micropython")),
     ("firmware/panel", ("panel", "on_demand", "uss", "version"), ("micropython",)),
+    ("firmware/panel/commission", ("panel", "uss", "catalogue"), ("micropython",)),
     ("firmware/panel/languages", ("on_demand",), ("binascii", "micropython", "struct")),
+    ("firmware/panel/lookup", ("panel", "on_demand", "uss", "catalogue"), ("micropython",)),
+    (
+        "firmware/panel/sets",
+        ("panel", "uss", "catalogue", "version"),
+        ("micropython", "binascii"),
+    ),
     ("firmware/hal", ("hal",), ("micropython",)),
     ("firmware/hal/display/rp2_", ("hal",), ("micropython", "rp2")),  # only this chip has it
     ("firmware/hal/link/rp2_", ("hal",), ("micropython", "array", "rp2")),
@@ -46,12 +54,16 @@ RULES = (
     ("boards/port", ("boards.port", "boards.sim"), None),
     # Not of the chip: makemanifest.py runs it on a PC.
     ("boards/chips/manifest.py", (), ("atexit", "os", "shutil", "sys", "tempfile", "tools")),
-    ("boards/chips", ("hal",), ("machine", "micropython", "os", "sys", "time", "rp2", "esp32")),
+    (
+        "boards/chips",
+        ("hal",),
+        ("machine", "micropython", "os", "select", "sys", "time", "rp2", "esp32"),
+    ),
     ("boards", ("chips",), ()),
 )
 PROJECT = (
-    "app", "catalogue", "panel", "settings", "settings_file", "on_demand", "search", "strict_json",
-    "version", "uss", "hal", "boards", "chips", "main",
+    "app", "catalogue", "log", "panel", "settings", "settings_file", "on_demand", "search",
+    "strict_json", "version", "uss", "hal", "boards", "chips", "main",
 )  # fmt: skip
 
 # What the engine and the panel do without: only programs beside the panel import these.

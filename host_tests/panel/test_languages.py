@@ -19,8 +19,13 @@ from boards.sim.chip.lcd import ROM
 from boards.sim.script import Script
 from hal.display.hd44780 import Hd44780
 from panel import texts
+from panel.commission import words as commission_words
 from panel.languages import Language
+from panel.lookup import ask
+from panel.lookup import words as lookup_words
 from panel.menu import words as menu_words
+from panel.menu.diagnosis import words as diagnosis_words
+from panel.menu.sets import words as set_words
 from panel.pages import parameter_words, splash
 from panel.screen import GLYPHS, Screen
 from panel_bench import panel, row_1, row_2, running, said, starts, unsupervised
@@ -37,14 +42,24 @@ ROW, STATE, ENTRY, TITLE = 16, 12, 15, 11  # places; an entry stands behind the 
 BESIDE_ADDRESS = ROW - len("A31")
 COUNTED = ROW - len(" 31")
 ROW_MAX = 128  # bytes: what is read of a row of the table
-ORDINARY = {texts: ROW, splash: ROW, parameter_words: ROW, menu_words: ENTRY, search_words: ROW}
+ORDINARY = {
+    texts: ROW, splash: ROW, parameter_words: ROW, menu_words: ENTRY, set_words: ENTRY,
+    commission_words: ENTRY, diagnosis_words: ENTRY, search_words: ROW, lookup_words: ENTRY + 1,
+    ask: ROW,
+}  # fmt: skip
 NARROW = {  # by module: names, place
+    set_words: (
+        ("NAME SAVING CHECKING COMPARING WRITING ASK_DELETE ASK_GIVE_UP HALF_WRITTEN", ROW),
+        ("SETS SO_MANY MAY_CUT", TITLE),
+        ("DIFFERENCE NO_SET_FILE", 2 * ROW),  # which are cut
+    ),
     texts: (
         ("NO_CONTACT LINE_NOISE OTHER_LENGTH WRONG_DRIVE WRONG_CHECK DRIVER_STUCK", STATE),
         ("UART_BROKEN LINE_LOW DEFECTS CHECKING NOT_READY READY STARTING RUNNING", STATE),
         ("RUNS_FOR_EVER RUNS_LONG RUNS_FASTER STOPPING JOGS_RIGHT JOGS_LEFT INHIBITED", STATE),
         ("LOCAL RUNS_LOCALLY STATUS_UNKNOWN LINE_FAILED PANEL_HUNG ENGINE_FAILED", STATE),
         ("STOPPED_ITSELF DID_NOT_START TAKEN_AWAY DRIVE_RESET UNSUPERVISED MAY_RUN", STATE),
+        ("HALF_SET", STATE),
         ("FAULT WARNING", STATE - len(" F01910")),
         ("FAULT_LETTER WARNING_LETTER ADDRESS PERCENT MENU_MARK", 1),
         ("SETPOINT HERTZ", 2),
@@ -69,9 +84,18 @@ NARROW = {  # by module: names, place
         ("KEY_TEST_ENDS SET_KEEPS SET_NEXT STOPS_FOUND SHORT ADDED ALL_ADDED NOT_ADDED", ROW),
         ("REMOVED NOT_REMOVED KEPT NO_LOCK WRONG_CODE UNLOCKED", ROW),
     ),
+    commission_words: (("LEAVES_DONE LEAVES_LEFT STOP_IT", ROW),),
+    diagnosis_words: (
+        ("COUNTERS OF_THE_BUS TIMES", TITLE - len("A31 ")),
+        ("BUS SENT HEARD HELD RESTART HEAP", TITLE),
+        ("MIRROR MAY_TRIP BUS_OFF BACK", ROW),
+    ),
     search_words: (("TAKEN NOT_TAKEN", 3),),
 }  # fmt: skip
 MOST = {  # the widest values that belong into a text
+    b"WHAT IS %s": (b"F30001",),
+    b"A%d: P%04d[%d]": (31, 2019, 7),
+    b"= %s": (b"02036:000",),
     b"LIMIT: %d.%02d": (650, 0),
     b"A%d: P%04d=%d": (31, 2010, 65535),
     b"P%04d=0: IT RUNS": (2014,),
@@ -96,8 +120,47 @@ MOST = {  # the widest values that belong into a text
     b"P%04d=%d %d": (2010, 12, 115200),
     b"RATE %d": (187500,),
     b"PKW WORDS %d": (127,),
+    b"IS %s": (b"-00000.000",),
+    b"%s NEEDS %s": (b"187500", b"21"),
+    b"%d LEFT": (23,),
+    b"FIRST P%04d": (3900,),
+    b"A%d: ALL DONE": (31,),
+    b"A%d: %d LEFT": (31, 23),
+    b"%s SET=YES": (b"650.00",),
+    b"STOP A%d FIRST": (31,),
     b"PZD WORDS %d": (8,),
     b"VERSION %s": (VERSION.encode(),),
+    b"A%d SAVE %d%%": (31, 100),
+    b"A%d COMPARE %d%%": (31, 100),
+    b"A%d WRITE %d%%": (31, 100),
+    b"%d:%02d LEFT": (99, 59),
+    b"%d:%02d %d DIFF": (9, 59, 1100),
+    b"%d DIFFER": (1100,),
+    b"DIFFER: %d": (1100,),
+    b"SAVED: %d": (1100,),
+    b"BUT %d UNTOLD": (1100,),
+    b"HALF, DIFFER %d": (99,),
+    b"P%04d=%d FOR IT": (9, 3),
+    b"%s>%s": (b"10", b"2.5"),
+    b"? %s": (b"pump.set",),
+    b"IT IS OF %s": (b"MM440",),
+    b"%5d %5d/min": (65535, 13620),
+    b"%5d   .../min": (65535,),
+    b"BUS %s": (b"FOREIGN",),
+    b"%d.%d-%d.%d ms": (999, 9, 999, 9),
+    b"%d-%d ms": (99999, 99999),
+    b"%d CHARACTERS": (256,),
+    b"READ P%04d[%d]": (2024, 255),
+    b"WRITE P%04d[%d]": (2024, 99),
+    b"STORE P%04d[%d]": (2024, 99),
+    b"IS P%04d[%d]": (2024, 255),
+    b"PWE %04X %04X": (0xFFFF, 0xFFFF),
+    b"STW %04X %s": (0x047E, b"TIPPEN"),
+    b"HSW %04X %d%%": (0xFFFF, -200),
+    b"ZSW %04X %s": (0xFFFF, b"SPERRE"),
+    b"HIW %04X %d%%": (0xFFFF, -200),
+    b"%d BYTES": (999999,),
+    b"ERROR %d": (65535,),
     b"FIND DRIVES %3ds": (999,),
     b"%d RATES SET=GO": (15,),
     b"%d BAUD %ds": (187500, 999),
@@ -105,10 +168,13 @@ MOST = {  # the widest values that belong into a text
 SAME = (  # in every language
     b"WARN", b"P2014=0", b"P2014=0 OK", b"Hz", b"RS-485", b"BOP", b"BAUD %s", b"START %s Hz",
     b"CODE %s", b"VERSION %s", b"%d BAUD %ds", b"A%d: STOP", b"A%d A%d: STOP", b"A%d  UP DOWN",
-    b"English", b"Deutsch", b"A%d: P%04d=%d", b"A%d  x%d",
+    b"%5d %5d/min", b"%5d   .../min", b"%d-%d ms", b"%d.%d-%d.%d ms", b"BUS %s", b"START",
+    b"BCC", b"LOG %s", b"WATCHDOG",
+    b"PWE %04X %04X", b"STW %04X %s", b"HSW %04X %d%%", b"ZSW %04X %s", b"HIW %04X %d%%",
+    b"English", b"Deutsch", b"JSON", b"A%d: P%04d=%d", b"A%d  x%d",
 )  # fmt: skip
 ADDRESS_OR_COUNT = 31  # where a text has one %d only and no row above
-KINDS_OF_VALUES = "sdxu%"
+KINDS_OF_VALUES = "sdxuX%"
 
 
 def directives(words):
@@ -452,7 +518,7 @@ def test_drives_that_are_not_shown_are_announced_in_german():
 def test_the_menu_in_german():
     world = german(addresses=(1, 2))
     menu(world)
-    assert world.lcd() == ("MENÜ         1/7", ">ANTRIEBE       ")
+    assert world.lcd() == ("MENÜ        1/13", ">ANTRIEBE       ")
     press(world, "START")
     assert row_2(world) == ">NEIN: IM MENÜ", world.lcd()
     press(world, "DOWN", "UP")
@@ -461,7 +527,8 @@ def test_the_menu_in_german():
         seen.append(row_2(world))
         press(world, "DOWN")
     assert seen == [
-        ">ANTRIEBE", ">ADRESSEN", ">FU SUCHEN", ">EINSTELL.", ">ABFOLGE", ">HÄUFIGKEIT", ">INFO"
+        ">ANTRIEBE", ">ADRESSEN", ">FU SUCHEN", ">EINSTELL.", ">SÄTZE", ">ABFOLGE", ">HÄUFIGKEIT",
+        ">DIAGNOSE", ">PARAMETER", ">INBETRIEBN.", ">STÖRSPEICHER", ">EREIGNISSE", ">INFO",
     ], seen  # fmt: skip
     walk_to(world, "EINSTELL.")
     press(world, "SET")

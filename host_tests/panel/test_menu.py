@@ -43,9 +43,10 @@ def entries(world):
 def test_it_opens_and_closes():
     world = panel(addresses=(1, 2))
     menu(world)
-    assert row_1(world) == "MENU         1/7", world.lcd()
+    assert row_1(world) == "MENU        1/13", world.lcd()
     assert entries(world) == [
-        "DRIVES", "ANY ADDRESS", "FIND DRIVES", "SETTINGS", "ORDER", "TURNS", "ABOUT"
+        "DRIVES", "ANY ADDRESS", "FIND DRIVES", "SETTINGS", "SETS", "ORDER", "TURNS", "DIAGNOSIS",
+        "PARAMETERS", "COMMISSION", "FAULT MEMORY", "EVENTS", "ABOUT",
     ]  # fmt: skip
     press(world, "PARAM")
     assert row_2(world) == "READY        A1", world.lcd()

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The operator's manual, JOG, REVERSE, a held STOP: a motor turns only as long as it should."""
 
-from panel.fault import Fault
+from panel.reports.fault import Fault
 from panel_bench import (
     all_running,
     panel,

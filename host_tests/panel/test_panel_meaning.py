@@ -274,6 +274,18 @@ def test_a_drive_that_falls_silent_on_what_it_lacks_is_known_all_the_same():
     world.check()
 
 
+def test_a_drive_that_is_silent_about_a_parameter_is_known_on_a_slow_line_as_well():
+    """A round of 31 drives takes three seconds at 4800 baud: one silence loses a drive there. So
+    it is asked again as long as it has more than its turn.
+    """
+    addresses = tuple(range(1, 32))
+    kinds = {1: {"switches": {"silent_refusals": True}}}
+    world = panel(baud=4800, addresses=addresses, kinds=kinds, parameters={2014: 20_000})
+    world.run(10_000)
+    wait_until_known(world, 60_000)
+    world.check()
+
+
 def test_a_drive_that_falls_silent_about_its_data_set_is_not_known_from_that_step_on():
     world = panel(addresses=(1, 2))
     wait_until_known(world)

@@ -15,6 +15,7 @@ from panel_bench import (
     starts,
     telegrams,
     unsupervised,
+    wait_until_known,
 )
 from uss import pkw
 
@@ -114,6 +115,36 @@ def test_a_start_that_waited_through_a_hang_is_void():
     world.drives[1].stale_replies = 0
     world.run(3000)
     assert row_2(world) == "PANEL HUNG   A1" and starts(world) == 0
+    world.check()
+
+
+def test_a_start_that_has_waited_for_twelve_seconds_is_given_up():
+    """The drive tells its settings too slowly: by then nobody expects the motor to turn."""
+    world = panel()
+    wait_until_known(world)
+    world.drives[1].stale_replies = 40
+    world.press("START")
+    world.run(11_500)
+    assert row_2(world) == "STARTING     A1" and starts(world) == 0
+    world.run(700)
+    assert row_2(world) == "NO: STILL CHECKS"
+    world.run(30_000)
+    assert starts(world) == 0
+    world.drives[1].stale_replies = 0
+    world.run(3000)
+    world.press("START")
+    world.run(3000)
+    assert starts(world) == 1
+    world.check()
+
+
+def test_at_the_lowest_rate_a_drive_tells_its_settings_in_time():
+    world = World(main.start, baud=1200, **unsupervised(1, 2, 3))
+    world.run(3000)
+    wait_until_known(world, 120_000)
+    world.press("START")
+    world.run(12_000)
+    assert starts(world) == 1
     world.check()
 
 

@@ -6,6 +6,7 @@ import json
 import settings_file as settings
 from boards.sim.chip.flash import Flash
 from hal.store import FileStore
+from uss.families import NAMES
 
 
 def stored(data=None):
@@ -102,6 +103,13 @@ def test_a_value_that_cannot_be_gives_its_default_and_keeps_the_others():
         ("repeats", {"32": 2}),
         ("repeats", {"1": "2"}),
         ("repeats", [2]),
+        ("favourites", [700]),
+        ("favourites", {"mm450": [700]}),
+        ("favourites", {"mm440": 700}),
+        ("favourites", {"mm440": [True]}),
+        ("favourites", {"mm440": [-1]}),
+        ("favourites", {"mm440": [100_000]}),
+        ("favourites", {"mm440": list(range(16)), "v20": list(range(17))}),
         ("drives", []),
         ("drives", [32]),
         ("drives", [1, 1]),
@@ -190,12 +198,12 @@ def test_what_stands_there_twice_is_named_and_has_its_default():
 
 def test_the_biggest_file_that_is_saved_is_loaded_again():
     every = list(range(31))
-    known = {"drives": every, "unsupervised": every, "new": 2_000 * "x"}
+    known = {"drives": every, "unsupervised": every, "new": (settings.UNKNOWN_MAX - 10) * "x"}
     flash = Flash(capacity_bytes=20_000)
     flash.files["s"] = json.dumps(known).encode()
     store = FileStore("s", flash.open, flash)
     settings.save(store, settings.load(store))
-    assert len(flash.files["s"]) > 2_000
+    assert len(flash.files["s"]) > settings.UNKNOWN_MAX
     assert settings.load(store).complaint is None
 
 
@@ -232,13 +240,15 @@ def test_what_is_saved_is_loaded_again():
 
 
 def test_a_person_can_read_the_file():
-    store = stored({"drives": [2, 1], "unsupervised": [2]})
+    favourites = {"mm440": [1120, 3], "g110": [700]}
+    store = stored({"drives": [2, 1], "unsupervised": [2], "favourites": favourites})
     settings.save(store, settings.load(store))
     assert store.read().decode() == (
         "{\n"
         '  "baud": 19200,\n'
         '  "second_stop": "OFF3",\n'
         '  "language": "en",\n'
+        '  "log": "none",\n'
         '  "reply_timeout_ms": 20,\n'
         '  "lost_ms": 1000,\n'
         '  "setpoint_centihertz": 1000,\n'
@@ -252,9 +262,32 @@ def test_a_person_can_read_the_file():
         '  "drives": [2, 1],\n'
         '  "unsupervised": [2],\n'
         '  "kinds": {},\n'
-        '  "repeats": {}\n'
+        '  "repeats": {},\n'
+        '  "half_written": {},\n'
+        '  "favourites": {"g110": [700], "mm440": [1120, 3]}\n'
         "}\n"
     )
+
+
+def test_the_fullest_file_there_can_be_is_read_again():
+    addresses = list(range(31))
+    favourites = {name.lower(): [99_999] for name in NAMES}
+    favourites["mm440"] += [99_999] * (settings.FAVOURITES_MAX - len(NAMES))
+    chosen = loaded(
+        {
+            "drives": addresses,
+            "unsupervised": addresses,
+            "kinds": {str(address): "mm440-bop/127+8" for address in addresses},
+            "repeats": {str(address): 4 for address in addresses},
+            "half_written": {str(address): "FFFFFFFF" for address in addresses},
+            "favourites": favourites,
+            "new": "x" * (settings.UNKNOWN_MAX - 10),
+        }
+    )
+    assert chosen.complaint is None, chosen.complaint
+    store = stored()
+    settings.save(store, chosen)
+    assert settings.load(store).complaint is None, len(store.read())
 
 
 def test_what_a_newer_firmware_stored_is_kept():

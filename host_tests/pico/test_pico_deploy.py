@@ -106,6 +106,16 @@ def test_the_mpremote_that_the_readme_names_is_there():
     os.remove(output)
 
 
+def test_a_panel_that_logs_is_stopped_too():
+    world = PicoWorld("panel", settings={"log": "JSON"})
+    start(world)
+    status, said = deploy(world, "--dry-run")
+    assert status == 0 and "It has stopped them." in said, said
+    ready(world)
+    assert world.drives[1].hz() == 0
+    world.check()
+
+
 made = []  # the world of a stock Pico that has become a panel, and what was said: it takes a while
 
 

@@ -212,6 +212,22 @@ def test_settings_are_kept_from_one_run_to_the_next(tmp_path):
     assert os.listdir(tmp_path) == ["kept.json"]
 
 
+def test_the_log_goes_into_a_file_a_line_of_json_a_second(tmp_path):
+    words = ("--json", "log.json", "--drives", "1,2", "--script", "-")
+    for _ in range(2):  # the second one goes on at its end
+        assert panel(*words, script="wait 5000\n", folder=tmp_path).returncode == 0
+    lines = [json.loads(line) for line in (tmp_path / "log.json").read_text().splitlines()]
+    assert 6 <= len(lines) <= 10
+    assert [drive["state"] for drive in lines[-1]["drives"]] == ["READY", "READY"]
+
+
+def test_a_log_that_cannot_be_written_holds_nobody_up(tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    for path in ("pipe", ".", "nowhere/log.json", "/dev/full"):
+        ended = panel("--json", path, "--script", "-", script="wait 1\n", folder=tmp_path)
+        assert ended.returncode == 2 and "panel: --json" in ended.stderr, path
+
+
 def test_without_settings_nothing_is_written(tmp_path):
     assert panel("--script", "-", script=ACCEPTED, folder=tmp_path).returncode == 0
     assert os.listdir(tmp_path) == []

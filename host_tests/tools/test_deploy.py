@@ -208,6 +208,7 @@ def test_the_whole_firmware_of_the_tree_is_taken():
     made = image.Firmware.read(TOP, "pico")
     wanted = {"main.py", "app.py", "board.py", "chips/rp2.py", "uss/master.py"}
     assert wanted | {"panel/pages/home.py"} <= set(made.sources)
+    assert not [path for path in made.sources if path.startswith(image.LEFT_OUT)]
     own = TOP / "boards" / "sim" / "board.py"
     other = image.Firmware.read(TOP, "pico", own)
     assert other.sources["board.py"] == own.read_bytes() != made.sources["board.py"]

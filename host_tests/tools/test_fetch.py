@@ -773,6 +773,27 @@ def test_the_part_that_the_sdk_has_more_is_named_once(pico, tmp_path, there):
     assert pico.shell(f'name_common_part "{file}"', PICO_FILES).returncode == 1
 
 
+def test_what_is_inserted_stands_behind_the_line_that_is_there_once(pico, tmp_path):
+    file = tmp_path / "gc.c"
+    file.write_text("first\n  [second] {\nthird\n")
+    insert = f'insert_behind "{file}" "  [second] {{" <<<new'
+    assert pico.shell(insert, PICO_FILES).returncode == 0
+    assert file.read_text() == "first\n  [second] {\nnew\nthird\n"
+    for text in ("first\n", "  [second] {\n  [second] {\n"):
+        file.write_text(text)
+        assert pico.shell(insert, PICO_FILES).returncode == 1
+        assert file.read_text() == text
+
+
+def test_sources_that_were_changed_otherwise_are_fetched_again(pico, tmp_path):
+    (tmp_path / "versions").write_text("micropython 1.25.0\n")
+    has = f'has_pico_sources "{tmp_path}"'
+    assert pico.shell(has, PICO_FILES).returncode == 1
+    assert pico.shell(f'micropython_changes >"{tmp_path}/changes"', PICO_FILES).returncode == 0
+    assert pico.shell(has, PICO_FILES).returncode == 0
+    assert pico.shell(f"name_common_part() {{ :; }}; {has}", PICO_FILES).returncode == 1
+
+
 def have_firmware(machine):
     """Puts one there that was made of what is in the tree, as the real compilers would have."""
     run = machine.shell(

@@ -6,6 +6,9 @@ a judge who sees keys, line and display, and asks the firmware nothing. The rule
 tools/soaking/judging/rules.py.
 """
 
+import sys
+
+import on_demand
 from boards.sim.clock import Clock
 from boards.sim.drives.drive import Drive
 from boards.sim.drives.families import g120, mm3, mm440
@@ -13,14 +16,25 @@ from boards.sim.drives.switches import SWITCHES
 from boards.sim.line.wire import Wire
 from tools.soaking.dice import Dice
 from tools.soaking.fuzz import fuzz
-from tools.soaking.judging.announced import ANY, MAY_RUN, OFF, RUNS, TRIPPED, number_in, said_in
+from tools.soaking.judging.announced import (
+    ANY,
+    MAY_RUN,
+    OFF,
+    RUNS,
+    TRIPPED,
+    is_looked_up,
+    number_in,
+    said_in,
+)
 from tools.soaking.judging.case import Case
 from tools.soaking.judging.drive_settings import Values
-from tools.soaking.judging.facts import NEVER
+from tools.soaking.judging.facts import NEVER, start_us
 from tools.soaking.judging.families import FAMILIES, VARIABLE, Kind, Sight, kinds_of
-from tools.soaking.judging.reader import subject_in
+from tools.soaking.judging.looked_up import is_wrong
+from tools.soaking.judging.reader import subject_in, tells_unconfirmed
 from tools.soaking.judging.rules import RULES, Broken
-from tools.soaking.judging.runs import is_standstill, judge_rise
+from tools.soaking.judging.runs import begin_again, is_standstill, judge_rise
+from tools.soaking.judging.shares import Shares
 from tools.soaking.judging.tape import LENGTH, MIRRORED, REPLY, RETURNED, Tape
 from tools.soaking.soak import Soak
 from tools.soaking.story import story
@@ -216,11 +230,27 @@ def test_two_drives_that_run_unseen_are_both_to_be_announced():
     assert told.args[1].startswith("drive %d, it runs" % addresses[2]), told
 
 
+def test_a_stop_without_an_answer_is_an_alarm_on_the_page_and_in_the_menu():
+    assert tells_unconfirmed(("S: 10.0 F: -----", "STOP UNCONFIRMED"), 0)
+    assert tells_unconfirmed(("A0 NOT STOPPED  ", ">BUS TIMES      "), 0)
+    assert not tells_unconfirmed(("A10 NOT STOPPED ", ">BUS TIMES      "), 0)
+    assert not tells_unconfirmed(("DIAGNOSIS   2/35", ">BUS TIMES      "), 0)
+
+
 def test_what_a_question_is_about_is_read_from_the_display():
     assert subject_in("A1: P0700=6     ") == (1, 700, 6)
     assert subject_in("A31: P2011=17   ") == (31, 2011, 17)
     for other in ("A1: P07 F:  0.00", "A1: P0700=      ", "PANEL MAY LOSE  ", "S:-10.0 F: -0.29"):
         assert subject_in(other) is None, other
+
+
+def test_the_page_of_a_parameter_is_compared_with_the_drive():
+    drive = Drive(Clock(), Wire(Clock(), 19200), 1)
+    name = "Ramp-up time    "
+    assert not is_wrong((name, "P1120     10.00s"), drive)
+    assert is_wrong((name, "P1120     10.10s"), drive)
+    for other in ("P1120          ?", "P1120      -----", "P1120 TOO LON---"):
+        assert not is_wrong((name, other), drive), other
 
 
 def test_an_answer_of_what_a_drive_is_makes_no_contact():
@@ -372,3 +402,152 @@ def test_the_receiver_stands_anything():
         fed = fuzz(8_000, seed)
         assert fed["broken"] is None, fed
         assert fed["good"] > 20, fed
+
+
+def test_a_drive_that_lags_on_a_slow_line_is_given_the_time_to_tell_its_settings():
+    """Seed 44: 31 drives at 4800 baud. P0719 was put right, and read again after two minutes."""
+    hand = Soak(44).hand
+    drive = hand.drives[0]
+    drive.stale_replies = 2
+    assert hand.known_s(drive) > 17 * 3 * 31 * 0.09
+    hand = Soak(1, drives=1).hand
+    hand.drives[0].stale_replies = 0
+    assert hand.known_s(hand.drives[0]) <= 8, "no longer than for all else"
+
+
+def test_a_motor_that_started_twice_may_be_stopped_whenever_that_is_noticed():
+    """r2024 of a drive that is not shown is read every 12 s, if there are 30 of them."""
+    soak = Soak(13, drives=1)
+    soak.hand.run(2_000)
+    judge, address = soak.judge, soak.plan.addresses[0]
+    case, now = judge.cases[address], soak.world.clock.now_us
+    case.stw, case.ran, case.on_us = 0x047F, True, now - 30_000_000
+    case.heard_us = case.answered_us = now
+    assert not judge.has_reason(case, now, False)
+    begin_again(case, now - 29_000_000)
+    assert not judge.has_reason(case, now, False), "it was started once"
+    begin_again(case, now - 14_000_000)
+    assert judge.has_reason(case, now, False)
+
+
+def test_a_start_of_long_ago_is_no_reason_for_a_motor_to_turn():
+    for drives, baud, seconds in ((1, 19200, 14), (10, 19200, 15)):
+        plan = Plan(1, drives)
+        plan.baud, plan.listed = baud, plan.addresses
+        assert 12 < start_us(plan) / 1_000_000 < seconds
+
+
+def commissioning():
+    """A witness of a drive that stands, and the address of that."""
+    soak = Soak(13, drives=1)
+    soak.hand.run(2_000)
+    return soak.judge.witness, soak.plan.addresses[0]
+
+
+def in_step(witness, number, row_2):
+    witness.sees_menu()
+    rows = ("P%04d       7/23" % number, ">%-15s" % row_2)
+    witness.commissioned.read(rows, witness.clock.now_us)
+
+
+def asked(witness, address, number, value, is_dangerous=False):
+    now = witness.clock.now_us
+    return witness.commissioned.has_asked(address, number, value, is_dangerous, now)
+
+
+def test_a_step_is_asked_for_when_set_says_yes_to_its_value_and_not_before():
+    witness, address = commissioning()
+    in_step(witness, 700, "2 NEEDS 5")
+    assert witness.commissioned.is_open(witness.clock.now_us)
+    witness.commissioned.key("SET", witness.clock.now_us)
+    assert not asked(witness, address, 700, 5, True)
+    in_step(witness, 700, "5 SET=YES")
+    assert not asked(witness, address, 700, 5, True)
+    witness.commissioned.key("SET", witness.clock.now_us)
+    assert asked(witness, address, 700, 5, True)
+    assert not asked(witness, address, 700, 6, True), "another value"
+    assert not asked(witness, address, 1000, 5, True), "another step"
+
+
+def test_what_means_another_speed_is_asked_for_twice():
+    witness, address = commissioning()
+    sixty, ramp = 0x42700000, 0x41280000  # 60.0 and 10.5
+    in_step(witness, 2000, "06[0].00")
+    witness.commissioned.key("SET", witness.clock.now_us)
+    assert not asked(witness, address, 2000, sixty, True)
+    in_step(witness, 2000, "RESCALES SPEED")
+    witness.commissioned.key("SET", witness.clock.now_us)
+    assert asked(witness, address, 2000, sixty, True)
+    in_step(witness, 1120, "01[0].50")
+    witness.commissioned.key("SET", witness.clock.now_us)
+    assert asked(witness, address, 1120, ramp), "and anything else once"
+
+
+def test_set_asks_for_no_step_while_the_motor_runs():
+    witness, address = commissioning()
+    case = witness.cases[address]
+    case.stw, case.zsw, case.on_us = 0x047F, 0xFB34, witness.clock.now_us - 2_000_000
+    assert witness.shown == address
+    in_step(witness, 700, "5 SET=YES")
+    witness.commissioned.key("SET", witness.clock.now_us)
+    assert not asked(witness, address, 700, 5, True)
+
+
+def test_a_step_of_commissioning_is_not_the_page_of_a_parameter():
+    assert is_looked_up(("Ramp-up time", "P1120[0]  10.00s"))
+    assert not is_looked_up(("P1120      17/23", ">IS 10.00s"))
+    assert not is_looked_up(("P1120*     17/23", "IT IS RIGHT"))
+
+
+def told(witness, rows):
+    """What the judge says of an event in the list, or None."""
+    try:
+        witness.happened.read(rows, witness.clock.now_us)
+    except Broken as broken:
+        return broken.args[0]
+
+
+def test_an_event_has_the_instant_at_which_it_was():
+    witness, address = commissioning()
+    world, happened = witness.world, witness.happened
+    fault = ("A%d 0:%02d     1/7", ">FAULT F0001    ")
+
+    def rows(seconds):
+        return (fault[0] % (address, seconds), fault[1])
+
+    world.run(8_000)
+    happened.reply(address, 0xFB78, world.clock.now_us)
+    world.run(2_000)
+    happened.reply(address, 0xFB31, world.clock.now_us)
+    world.run(20_000)
+    assert told(witness, rows(21)) is None
+    assert told(witness, rows(7)) == told(witness, rows(29)) == "SHOWN"
+    assert told(witness, ("A%d 0:21     1/7" % (address + 1), fault[1])) == "SHOWN"
+    stop = "A%d 0:05     1/7" % address, ">STOP KEY       "
+    assert told(witness, stop) == "SHOWN"
+    happened.key("STOP", world.clock.now_us - 5_000_000)
+    assert told(witness, stop) is None
+
+
+def test_a_seed_begins_without_what_the_one_before_it_has_loaded():
+    """Else it would be another life behind another seed: to load a module takes a step."""
+    on_demand.load("panel.menu.about")
+    Soak(7)
+    assert "panel.menu.about" not in sys.modules
+
+
+def test_a_silent_drive_that_is_asked_what_it_is_is_not_neglected():
+    """It answers such questions, in another layout than that of its list, and nothing else."""
+    soak = Soak(13, drives=1)
+    soak.hand.run(2_000)
+    witness, shares = soak.judge.witness, Shares(soak.judge.witness)
+    case, now = witness.cases[soak.plan.addresses[0]], soak.world.clock.now_us + 60_000_000
+    case.question_us = now - 500_000
+    shares.look(now)
+    case.question_us = NEVER
+    try:
+        shares.look(now)
+    except Broken as broken:
+        assert broken.args[0] == "NEGLECTED"
+    else:
+        raise AssertionError("nobody noticed")

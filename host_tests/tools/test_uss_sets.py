@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: MIT
 """tools/uss backup, restore, compare: a drive in a file, and never half a file for a whole one."""
 
+import io
+
 import pytest
 
+from panel.sets import set_file
 from program_bench import Drives, programs
 from tools.uss_command.errors import Failure
 from tools.uss_command.files.set_file import ParameterSet, Row, read_whole, text_of, write_whole
@@ -108,6 +111,29 @@ def test_the_file_is_what_the_panel_has_but_for_the_remarks(tmp_path):
             "mm420", 5, "pump", {206: (0x4040, 0)},
         )  # fmt: skip
         assert [row.line() for row in one.rows] == [row.line() for row in sample().rows]
+
+
+def test_the_panel_reads_the_file_with_and_without_remarks():
+    texts = text_of(sample(), "MICROMASTER 420"), text_of(sample(), bare=True)
+    for text in texts + (texts[0].replace("\n", "\r\n"),):
+        store = Store(text)
+        head = set_file.read_head(store, "a.set")
+        assert (head.family, head.address, head.name) == ("mm420", 5, b"pump")
+        assert head.ratings == {206: (0x4040, 0)}
+        read = [row for row in set_file.rows(store, "a.set") if row]
+        assert [row[1:] for row in read] == [
+            (one.number, one.index, one.kind.encode(), one.high, one.low) for one in sample().rows
+        ]
+
+
+class Store:
+    """The panel's flash with one file on it."""
+
+    def __init__(self, text):
+        self.text = text.encode()
+
+    def open(self, name):
+        return io.BytesIO(self.text)
 
 
 def test_no_piece_of_a_file_is_taken_for_whole_nor_one_that_was_changed(tmp_path):

@@ -22,6 +22,7 @@ CHARACTER_BITS = 11
 TELEGRAM_CHARACTERS = 16
 COLLECT_MS = 100
 REPLY_CHARACTERS = 2
+LOG_BEGINS_MS = 1_000
 SETTLE_MS = 3_000  # from power-on of the panel until it knows its drive, if there is only one
 SETTLE_MORE_MS = 30_000  # the longest time with 31 drives
 READY_MS = 1_200  # until it shows READY
@@ -100,13 +101,14 @@ def at_the_prompt(world, program=ON_CHIP):
             raise RuntimeError(error)
 
 
-def result(world, ms):
-    """What a function of on_chip.py has printed, once it is over."""
+def result(world, ms, begins=b"{"):
+    """What a function of on_chip.py has printed, once it is over. begins: how it does, where lines
+    of the log stand before it."""
     printed = world.repl.wait_for(b"\x04", ms, since=2)
     error = world.repl.wait_for(b"\x04>", ms, since=2 + len(printed))
     if len(error) > 2:
         raise RuntimeError(error.decode())
-    return json.loads(printed[:-1].decode())
+    return json.loads(printed[printed.find(begins) : -1].decode())
 
 
 def settle(world):
@@ -172,22 +174,29 @@ def asking(quick, baud, drives):
     return exchanges(quick, baud, drives, True)
 
 
-def exchanges(quick, baud, drives, tasks):
+def logging(quick, baud, drives):
+    """As `line`, and the panel writes its log to a PC that reads. Before it does it counts its
+    memory, which takes long.
+    """
+    return exchanges(quick, baud, drives, False, LOG_BEGINS_MS, settings={"log": "JSON"})
+
+
+def exchanges(quick, baud, drives, tasks, begins_ms=0, **more):
     baud, drives = int(baud), int(drives)
     most = 10_000 if drives == 1 else 3_000
     telegrams = (100 if quick else 400) if baud < 57600 else 500 if quick else most
-    world = world_at(baud, drives)
+    world = world_at(baud, drives, **more)
     at_the_prompt(world)
     busy_ms = telegrams * 1000 // rate_limit(baud) * 18 // 10 + 2_000
     whole_ms = busy_ms + SETTLE_MS + 3_000 + 400 * drives
-    world.repl.begin("steps(%d, 1, %d, %r)" % (whole_ms, COLLECT_MS, tasks))
+    world.repl.begin("steps(%d, 1, %d, %r, %d)" % (whole_ms, COLLECT_MS, tasks, begins_ms))
     start_the_motor(world)
     first = Line(world)
     while first.telegrams() < telegrams and world.clock.now_us < whole_ms * 1000:
         world.press(("UP", "UP", "DOWN", "UP", "DOWN", "DOWN")[world.random(0, 5)], 60)
     found = first.figures()
     found["limit"] = rate_limit(baud)
-    inside = result(world, whole_ms)
+    inside = result(world, whole_ms + begins_ms, b'{"collections_us"')
     found["steps_us"] = steps_of(inside["steps"][0])
     found["collections_us"] = spread(inside["collections_us"])
     found["tasks"] = inside["tasks"]
@@ -428,8 +437,8 @@ def steps(quick, baud, drives):
 MENU, BACK = "menu", "back"
 HOME = "S:"  # row 1 of the home page begins with it
 HOLD_MS, READ_MS = 1_300, 300
-SCENE_MS = 10_000
-ENTRIES = 7
+SCENE_MS = 12_000
+ENTRIES = 13
 FIND = 2  # the entry in whose list SET would begin a search, which is another program
 OPENS = 2 * (MENU, BACK)
 WALKS = (MENU,) + ENTRIES * ("DOWN",) + (BACK,)
@@ -478,6 +487,89 @@ def do_at_the_menu(world, key):
     world.run(READ_MS)
     if key == MENU and world.lcd()[0].startswith(HOME):
         raise RuntimeError("the menu does not open: %r" % (world.lcd(),))
+
+
+# What a person does with parameters: opens the list of groups, goes to the first one of a group,
+# walks, changes a value, and looks at faults. The entry in the main menu is reached from its end.
+PARAMETERS_UP, MEMORY_UP = 5 * ("UP",), 3 * ("UP",)
+GROUP_SCENES = (
+    (MENU,) + PARAMETERS_UP + ("SET", "DOWN", "DOWN", "DOWN", BACK),
+    (MENU,) + MEMORY_UP + ("SET", "DOWN", "DOWN", BACK),
+    (MENU, "SET", "DOWN", "DOWN", "DOWN", BACK),  # what the warning means
+)
+GROUP_KEYS = (
+    ("NEXT", "NEXT", "PREVIOUS", "UP", "DOWN"),
+    ("EDIT", "UP", "NEXT", "DOWN", "EDIT", "EDIT", "EDIT"),
+    ("EDIT", "UP", "SET"),
+)
+GROUPS = {True: 4, False: 23}  # of an MM440, as quick or not
+WARNING = 501
+
+
+def lookup(quick, how, drives):
+    """A step of the main loop while a person looks up parameters and faults, and how long it takes
+    from SET on a group until its first parameter is on the display.
+    """
+    from boards.sim.drives.families import named
+
+    drives = int(drives)
+    groups = GROUPS[quick]
+    scenes = len(GROUP_SCENES) + groups
+    settled_ms = SETTLE_MS + LEARN_MS_A_DRIVE * drives
+    settings = {"kinds": {str(address): "mm440" for address in range(1, drives + 1)}}
+    kind = {"family": named("mm440"), "parameters": {2014: 2_000}}
+    kinds = {address: dict(kind) for address in range(1, drives + 1)}
+    world = world_of(kinds, 19200, settings=settings, **firmware_as(how))
+    at_the_prompt(world)
+    call = (LOOKUP_MS, scenes, COLLECT_MS, False, settled_ms)
+    begun_ms = world.clock.now_us // 1000
+    world.repl.begin("steps(%d, %d, %d, %r, %d)" % call)
+    settle(world)
+    world.drives[1].warn(WARNING)
+    firsts_us = []
+    for place in range(scenes):
+        begins_ms = begun_ms + settled_ms + place * LOOKUP_MS + BEGINS_MS[how]
+        world.run(max(0, begins_ms - world.clock.now_us // 1000))
+        if place < len(GROUP_SCENES):
+            keys = GROUP_SCENES[place]
+        else:
+            entry = place - len(GROUP_SCENES)
+            for key in (MENU,) + PARAMETERS_UP + ("SET",):
+                do_at_the_menu(world, key)
+            world.run(LISTED_MS)  # the groups are listed
+            for _ in range(1 if entry else 3):
+                do_at_the_menu(world, "DOWN")  # it begins where it was left
+            firsts_us.append(first_row_us(world))
+            keys = GROUP_KEYS[entry % len(GROUP_KEYS)] + (BACK,)
+        for key in keys:
+            do_at_the_menu(world, key)
+        if world.clock.now_us // 1000 > begins_ms + LOOKUP_MS - BEGINS_MS[how]:
+            raise RuntimeError("%r takes more than %d ms" % (keys, LOOKUP_MS))
+    lists, memory, what, *pages = result(world, 2 * LOOKUP_MS)["steps"]
+    found = {"lists": sorted(lists + memory + what), "pages": sorted(sum(pages, []))}
+    found = {name: steps_of(table) for name, table in found.items()}
+    found["firsts_us"] = spread(firsts_us)
+    return checked(world, found)
+
+
+LOOKUP_MS, LISTED_MS, FIRST_ROW_MS = 12_000, 1_500, 3_000
+
+
+def first_row_us(world):
+    """SET is pressed on a group: until row 2 is `P1120[0]      ?`, with or without its value."""
+    since_us = world.clock.now_us
+    world.down("SET")
+    if not world.run_until(lambda: is_parameter(world.lcd()[1]), FIRST_ROW_MS):
+        raise RuntimeError("no parameter comes: %r" % (world.lcd(),))
+    took_us = world.clock.now_us - since_us
+    world.run(TAP_MS)
+    world.up("SET")
+    world.run(READ_MS)
+    return took_us
+
+
+def is_parameter(row):
+    return row[:1] in ("P", "r") and row[1:5].isdigit() and row[5:6] in (" ", "[")
 
 
 def boot(quick, display):
@@ -654,6 +746,7 @@ MEASUREMENTS = {
     for function in (
         line,
         asking,
+        logging,
         mixed,
         saving,
         cuts,
@@ -662,6 +755,7 @@ MEASUREMENTS = {
         hang,
         steps,
         menu,
+        lookup,
         picture,
         boot,
         heap,

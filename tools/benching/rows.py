@@ -61,6 +61,7 @@ STEP_US = 4_000
 READ_US = 100_000  # a step that reads a module from a file: a third of the dead man's 300 ms
 FIRST_TELEGRAM_US = 500_000
 PICTURE_US = 100_000
+FIRST_ROW_US = 300_000
 FREE_BYTES = {"frozen": 135 * 1024, "files": 38 * 1024}
 ESP32_FREE_BYTES = 40 * 1024
 TOO_SMALL = ("ESP32 without PSRAM",)  # boards/esp32/README.md says so
@@ -79,6 +80,7 @@ ASKING_LINES = {
     for drives in (1, 31)
     for baud in FULL_BAUDS
 }
+LOGGING = Task(("logging", "115200", "31"))
 MIXED = {baud: Task(("mixed", str(baud))) for baud in FULL_BAUDS}
 SAVING = Task(("saving",))
 CUTS = Task(("cuts",))
@@ -94,6 +96,7 @@ FULL_STEPS = Task(("steps", "115200", "31"))
 # As files and with 31 drives, there is no room for what measures beside what is measured.
 MENUS = {(how, drives): Task(("menu", how, str(drives)))
          for how, drives in (("frozen", 31), ("files", 1))}  # fmt: skip
+LOOKUPS = {("frozen", 31): Task(("lookup", "frozen", "31"))}
 BOOTS = {display: Task(("boot", display)) for display in ("wires", "backpack")}
 PICTURES = {drives: Task(("picture", "19200", str(drives))) for drives in (1, 31)}
 HEAPS = {
@@ -107,8 +110,9 @@ OTHERS = ("TurboCtl", "MinimalModbus", "PyModbus", "UModbus")
 # The long ones first, so that the last one does not run alone for long.
 TASKS = (
     LINES[115200], LINES[187500], *MEMORIES.values(), *FULL_LINES.values(),
-    *ASKING_LINES.values(), *STOPS.values(),
-    FULL_STEPS, STEPS, *MENUS.values(), *HANGING.values(), SAVING, CUTS, *MIXED.values(),
+    *ASKING_LINES.values(), LOGGING, *STOPS.values(),
+    FULL_STEPS, STEPS, *MENUS.values(), *LOOKUPS.values(), *HANGING.values(), SAVING, CUTS,
+    *MIXED.values(),
     LINES[9600], LINES[19200], LINES[38400], *PICTURES.values(), *BOOTS.values(), *HEAPS.values(),
     CODEC, SIMULATION, LIBRARIES,
 )  # fmt: skip
@@ -391,6 +395,23 @@ def picture_row(drives):
     )
 
 
+def first_row(task, drives):
+    """The first parameter of a group."""
+
+    def show(figures):
+        least, median, _, most, count = figures["firsts_us"]
+        return "%.0f / %.0f / %.0f ms of %d" % (least / 1000, median / 1000, most / 1000, count)
+
+    return Row(
+        task,
+        "SET on a group of parameters, its first one is on the display, %s: min / median / max"
+        % of_drives(drives),
+        "max <= %d ms" % (FIRST_ROW_US // 1000),
+        show,
+        lambda figures: figures["firsts_us"][3] <= FIRST_ROW_US,
+    )
+
+
 def heap_row(how, drives):
     bar = FREE_BYTES[how]
     return Row(
@@ -466,6 +487,10 @@ MENU_TEXT = {
     "walking": "the menu is walked, %s, %s",
     "lists": "each list of the menu is opened, a module in a step, %s, %s",
 }
+LOOKUP_TEXT = {
+    "lists": "groups, fault memory and the text of a warning, %s, %s",
+    "pages": "parameters of groups are walked and changed, %s, %s",
+}
 MENU_US = {"frozen": STEP_US, "files": READ_US}
 MIXED_TEXT = "31 drives of mixed layouts, %d baud, master alone"
 
@@ -501,11 +526,18 @@ ROWS = (
         step_row(task, None, "changing display, " + ASKING[at])
         for at, task in ASKING_LINES.items()
     ),
+    step_row(LOGGING, None, "changing display, a line of the log a second, " + FULL % 115200),
     *(
         step_row(task, name, MENU_TEXT[name] % (HOW_IT_LIES[how], of_drives(drives)), MENU_US[how])
         for (how, drives), task in MENUS.items()
         for name in MENU_TEXT
     ),
+    *(
+        step_row(task, name, LOOKUP_TEXT[name] % (HOW_IT_LIES[how], of_drives(drives)))
+        for (how, drives), task in LOOKUPS.items()
+        for name in LOOKUP_TEXT
+    ),
+    *(first_row(task, drives) for (_, drives), task in LOOKUPS.items()),
     collection_row(),
     *(picture_row(drives) for drives in PICTURES),
     *(row for display in BOOTS for row in boot_rows(display)),

@@ -37,6 +37,8 @@ PIECE = 512  # bytes that are written at a time
 # Ctrl-C ends a program or a half-typed line, Ctrl-B leaves the raw prompt; after either one
 # MicroPython shows its prompt.
 TO_THE_PROMPT = b"\r\x03\x02"
+# To a panel that logs, Ctrl-C is a character like any other, see hal/serial.py.
+END_LOG = b"\r# end panel\r"
 PROMPT = b">>> "
 RESTART = b"import machine; machine.reset()\r"
 
@@ -60,12 +62,14 @@ class Chip:
     def interrupt(self):
         """End whatever runs, by Ctrl-C; what was heard until the prompt."""
         self.hear()  # what was said before does not count
-        heard = b""
+        heard = ends_log = b""
         deadline = time.monotonic() + STOP_S
         while not heard.endswith(PROMPT):
             if time.monotonic() > deadline:
                 raise DeployError(f"{self.port} comes to no prompt by Ctrl-C: {_shown(heard)}")
             self.send(TO_THE_PROMPT)
+            self.send(ends_log)
+            ends_log = END_LOG
             heard += self._hear_until(PROMPT, INTERRUPT_S)
         return heard.decode("utf-8", "replace")
 

@@ -22,6 +22,9 @@ from tools.deploying.targets import TARGETS, USUAL, chip_of
 MAIN = "main.py"
 BOARD = "board.py"
 STAY_SOURCE = (MAIN, BOARD)
+# Wings of the library that no panel imports; panel.uf2 leaves them out, too. A Pico's file system
+# is full enough: every file takes 4 KiB of it, every folder 8.
+LEFT_OUT = ("uss/br/", "uss/s7/", "uss/tasks/")
 TABLE = ".tsv"  # of the catalogue, of the languages: read row by row
 CHIPS = re.compile(rb"^(?:from|import) chips(?:\.| import )(\w+)", re.MULTILINE)
 
@@ -48,6 +51,7 @@ class Firmware:
             path.relative_to(folder).as_posix(): path.read_bytes()
             for ending in ("*.py", "*" + TABLE)
             for path in sorted(folder.rglob(ending))
+            if not path.relative_to(folder).as_posix().startswith(LEFT_OUT)
         }
         boards = Path(top) / "boards"
         own = (boards / board / BOARD).read_bytes()

@@ -5,8 +5,9 @@ firmware/panel/languages/__init__.py read.
     modules(top / "firmware")               # {"catalogue/table_mm440.py": text}
 
 A frozen constant stays in the flash, of which the file system leaves little. So the rows of
-the catalogue are compressed, in blocks, so that a search need not unpack what stands before a row;
-the words of the languages, which are looked for while a motor runs, only lack the English texts.
+the catalogue are in ISO 8859-1, and compressed in blocks, so that a search need not unpack what
+stands before a row; the words of the languages, which are looked for while a motor runs, only lack
+the English texts.
 """
 
 import struct
@@ -54,7 +55,10 @@ def module(table):
     """The source of the module for the bytes of a table."""
     packed = b""
     index = b""
-    head, *rows = [line for line in table.splitlines(keepends=True) if not line.startswith(b"#")]
+    table = table.decode().encode("latin-1")
+    assert not {0xC2, 0xC3}.intersection(table)  # by these the reader knows UTF-8
+    head, *rows = [line for line in table.split(b"\n") if line and not line.startswith(b"#")]
+    head, rows = head + b"\n", [row + b"\n" for row in rows]
     for first, block in blocks(rows):
         index += struct.pack("<II", first, len(packed))
         packer = zlib.compressobj(9, zlib.DEFLATED, -WINDOW_BITS)

@@ -170,7 +170,7 @@ class Server {
     const { pico } = this;
     switch (kind) {
       case 'N': this.newChip(JSON.parse(payload.toString())); break;
-      case 'S': this.terminal.on = a === 1; break;
+      case 'S': this.terminal.on = a === 1; pico?.readUsb(a !== 2); break;
       case 'C': pico?.receive(a, !!(b & 1), !!(b & 2), (b >> 2) * UNIT_BAUD); break;
       case 'P': pico?.drive(a, b); break;
       case 'U': pico?.send(payload); break;

@@ -14,6 +14,9 @@
 #   build/pico_sources_hard   the same in later versions, which Debian testing has
 #   build/pico_make           what the last compilations left behind, so that the next ones are quick
 
+# shellcheck source=SCRIPTDIR/pico_changes.sh
+. "$top/tools/fetch/pico_changes.sh"
+
 pico_requirements=$top/tools/fetch/pico_requirements.txt
 pico_make=$build/pico_make
 
@@ -107,7 +110,9 @@ pico_recipe() {
     pico_target "$1"
     pico_edition "$(pico_sources_of "$1")"
     pico_flags "$1"
-    declare -f pico_manifest compile_pico_firmware put_into_memory prepare_pico_make pico_do
+    pico_omitted "$1"
+    micropython_changes
+    declare -f pico_manifest pico_configuration compile_pico_firmware put_into_memory prepare_pico_make pico_do
     cat "$pico_requirements"
 }
 
@@ -129,12 +134,35 @@ pico_manifest() {
 # of 8 KB has room for 24.
 # A collection that has more than 64 objects in hand looks through the whole heap once more, and
 # again: with room for 192 it takes half as long.
+# What pico_changes.sh changes acts by the last of them.
 # The description is what `picotool info` tells of a file; its version is MicroPython's.
 pico_flags() {
     [[ $1 == stock* ]] ||
         echo -DMICROPY_OPT_MAP_LOOKUP_CACHE_SIZE=2048 -DVM_MAX_STATE_ON_STACK=96 \
-            -DMICROPY_ALLOC_GC_STACK_SIZE=192 \
+            -DMICROPY_ALLOC_GC_STACK_SIZE=192 -DUSS_PANEL=1 \
             "-DPICO_PROGRAM_DESCRIPTION='\"USS panel $(panel_version)\"'"
+}
+
+# The firmware has 640 KB of the flash, and the panel fills them: of MicroPython it leaves out what
+# neither the panel nor `tools/deploy` needs. The port decides most of that itself, so a header goes
+# behind the port's own, and what lists the modules reads it, too.
+pico_omitted() {
+    [[ $1 == stock* ]] || echo MICROPY_VFS_FAT MICROPY_PY_{FRAMEBUF,UCTYPES,CMATH,RE} \
+        MICROPY_PY_{CRYPTOLIB,HASHLIB_SHA1,ONEWIRE}
+}
+
+# pico_configuration NAME FOLDER: writes that header, and the options with which it is found.
+pico_configuration() {
+    local option
+    [[ $1 != stock* ]] || return 0
+    {
+        echo '#include <mpconfigport.h>'
+        for option in $(pico_omitted "$1"); do
+            printf '#undef %s\n#define %s (0)\n' "$option" "$option"
+        done
+    } >"$2/omitted.h"
+    echo "#define MP_CONFIGFILE \"$2/omitted.h\"" >"$2/configuration.h"
+    echo "-include $2/configuration.h"
 }
 
 # What runs most often is kept in the chip's memory: its cache holds 16 KB of the flash, and of the
@@ -214,7 +242,8 @@ prepare_pico_make() {
     say "    everything, which takes a minute"
     rm -rf "$place" && mkdir -p "$place" &&
         pico_manifest "$name" >"$place/manifest.py" &&
-        quietly "$place/log" pico_do "$name" CFLAGS="$(pico_flags "$name")" cmake -G Ninja \
+        quietly "$place/log" pico_do "$name" CFLAGS="$(pico_flags "$name")" \
+            CFLAGS_EXTRA="$(pico_configuration "$name" "$place")" cmake -G Ninja \
             -S "$build/$sources/micropython/ports/rp2" -B "$place" \
             -DMICROPY_BOARD="$board" -DPICO_NO_PICOTOOL=1 -DPICO_CLIB=newlib \
             -DMICROPY_FROZEN_MANIFEST="$place/manifest.py" \
@@ -335,8 +364,8 @@ link_pico_tools() (
 # ---- the sources ------------------------------------------------------------------------------
 
 has_pico_sources() {
-    [[ -s $1/versions ]]
-}
+    [[ -s $1/versions && $(<"$1/changes") == "$(micropython_changes)" ]]
+} 2>/dev/null
 
 make_pico_sources() {
     local sources=$1 folder=$2 release
@@ -344,7 +373,8 @@ make_pico_sources() {
     for release in $(pico_releases "$sources"); do
         say "Pico: fetching the sources from $release, about 20 MB"
         if unpack_pico_sources "$sources" "$folder" "$release" && build_mpy_cross "$folder/micropython"; then
-            pico_source_versions "$folder/view" >"$folder/versions" &&
+            micropython_changes >"$folder/changes" &&
+                pico_source_versions "$folder/view" >"$folder/versions" &&
                 rm -rf "$folder/view" "$pico_make"
             return
         fi
@@ -378,27 +408,11 @@ unpack_pico_sources() {
         unpack_tar "$view"/tar/downloads/mbedtls_*.orig.tar.* "$micropython/lib/mbedtls" &&
         rm -rf "$micropython/lib/mbedtls/tests" && # a fifth of it all
         : >"$micropython/lib/micropython-lib/README.md" && # that is all that is asked for
-        open_frame_limit "$micropython/py/objfun.c" || return
-    [[ ! -d $folder/sdk/usr/src/pico-sdk/src/rp2_common/pico_platform_common ]] ||
-        name_common_part "$micropython/ports/rp2/CMakeLists.txt" || return
+        change_micropython "$micropython" "$folder/sdk/usr/src/pico-sdk" || return
     for name in pico-sdk tinyusb; do
         rm -rf "${micropython:?}/lib/$name" &&
             ln -s "../../sdk/usr/src/$name" "$micropython/lib/$name" || return
     done
-}
-
-# Lets a compiler flag say what MicroPython fixes; without the flag nothing changes.
-open_frame_limit() {
-    local limit=VM_MAX_STATE_ON_STACK
-    grep -q "^#define $limit " "$1" &&
-        sed -i "s/^#define $limit .*/#ifndef $limit\n&\n#endif/" "$1"
-}
-
-# SDK 2.2 has a part more, which everything needs; a MicroPython that is older does not name it.
-name_common_part() {
-    grep -qx ' *pico_platform_common' "$1" ||
-        { grep -qx ' *pico_platform_compiler' "$1" &&
-            sed -i 's/^\( *\)pico_platform_compiler$/\1pico_platform_common\n&/' "$1"; }
 }
 
 pico_source_versions() {

@@ -77,12 +77,15 @@ usage: ./tools/panel [--speed N] [--drives 1,2=g110] [--baud 19200] [--settings 
                   looks for the drives in FILE, whichever --drives simulates
   --unset         the panel has no settings yet, as at its first power-on; with --settings, FILE
                   must be a new one
+  --json FILE     the panel's log, a line of JSON a second, goes on at the end of FILE. It is on,
+                  unless a FILE of --settings is there already and says otherwise
   --keys WIRING   direct: each key has a pin of its own; matrix: all but START and STOP;
                   compact: eight keys in place of fourteen (direct)
   --seed N        other reply delays and loop times; 0 is the plain world (0)
   --polled        no receive interrupt: the link is polled
   --board BOARD   sim: the simulated board; pico: the firmware file for the Raspberry Pi Pico on an
-                  emulated one (sim). Not with --settings, --unset, --polled and --keys
+                  emulated one (sim). Not with --settings, --unset, --json, --polled,
+                  --keys
   --flash FILE    pico: keep the chip's flash in FILE, and with it the settings of the panel
   --display KIND  pico: wires, four data lines, or backpack, on I2C (wires)
   --port PATH     talk to real drives on this serial port, which is set to 8E1 at --baud, or on a
@@ -179,6 +182,7 @@ OPTIONS = {
     "--baud": ("baud", None, one_of(BAUD_RATES, RATES)),
     "--settings": ("settings", None, str),
     "--unset": ("unset", False, None),
+    "--json": ("json", None, str),
     "--keys": ("keys", "direct", one_of(KEYPADS, WIRED)),
     "--seed": ("seed", 0, number),
     "--polled": ("polled", False, None),
@@ -198,7 +202,7 @@ OPTIONS = {
 
 
 # Options that one board alone knows.
-ONLY_SIM = ("--settings", "--unset", "--polled", "--keys")
+ONLY_SIM = ("--settings", "--unset", "--json", "--polled", "--keys")
 ONLY_PICO = ("--flash", "--display")
 # Options that mean nothing on a real line, and the one that means something only there.
 NOT_PORT = ("--speed", "--seed", "--unset", "--polled", "--board") + ONLY_PICO
@@ -268,7 +272,7 @@ def world_of(chosen):
         main.start,
         [one.address for one in drives],
         baud,
-        settings=setting_of(drives),
+        settings=dict(setting_of(drives), **log_of(chosen)),
         seed=chosen["seed"],
         polled=chosen["polled"],
         keys=chosen["keys"],
@@ -287,6 +291,37 @@ def setting_of(drives):
     """What the panel's settings say of the kinds of these drives."""
     expected = kinds.expected(drives)
     return {"kinds": expected} if expected else {}
+
+
+def log_of(chosen):
+    """What the panel's settings say of its log."""
+    return {"log": "JSON"} if chosen["json"] is not None else {}
+
+
+def keep_log(world, path):
+    """What the panel logs goes to the end of this file. UsageError: it cannot.
+
+    A file takes what is written at once, and a pipe or a terminal may hold the panel up.
+    """
+    try:
+        if os.stat(path)[0] & KIND != ORDINARY:
+            raise UsageError("--json %s: is no ordinary file" % path)
+    except OSError:
+        pass  # a new one
+    try:
+        file = open(path, "ab")
+    except OSError as error:
+        raise UsageError("--json %s: cannot be kept (%s)" % (path, error))
+
+    def write(characters):
+        try:
+            file.write(characters)
+            file.flush()
+        except OSError as error:  # as if nobody read: the panel counts what it drops
+            complain("--json %s: is not written any more (%s)" % (path, error))
+            world.usb.is_read = False
+
+    world.usb.to = write
 
 
 def kept_settings(chosen):
@@ -324,7 +359,7 @@ def port_world(chosen, store, kept):
         port.open(chosen["port"], baud)
     except PortError as error:
         raise PortFailed(error)
-    settings = setting_of(drives)
+    settings = dict(setting_of(drives), **log_of(chosen))
     settings["reply_timeout_ms"] = timeout_ms
     world = PortWorld(
         main.start, port, [one.address for one in drives], baud, RealClock(Stopwatch().read_us),
@@ -502,7 +537,7 @@ def store_of(path, chosen):
 def new_settings(chosen):
     """What a new settings file says, besides what is usual."""
     drives = chosen["drives"] or usual_drives()
-    new = setting_of(drives)
+    new = dict(setting_of(drives), **log_of(chosen))
     if told(drives):
         new["drives"] = [one.address for one in told(drives)]
     if chosen["baud"]:
@@ -618,6 +653,8 @@ def panel(words):
         if chosen["check"]:
             return 0
         world, said = world_of(chosen)
+        if chosen["json"] is not None:
+            keep_log(world, chosen["json"])
         for line in said:
             complain(line)
         try:

@@ -27,9 +27,19 @@ OPENS_MS = 1_500
 FIND, LEAVING, HUNTS, TAKES = "FIND DRIVES", "AT ALL RATES", "FOUND STOP=NO", "TAKE "
 SETTINGS, KEY_TEST = "SETTINGS", "HOLD PARAM: ENDS"  # row 1
 CHOSEN = (  # they change nothing
-    "DRIVES", "ANY ADDRESS", FIND, "AT THIS RATE", "SET=BEGIN", LEAVING, SETTINGS, "ABOUT",
+    "DRIVES", "ANY ADDRESS", FIND, "AT THIS RATE", "SET=BEGIN", LEAVING, SETTINGS, "SETS", "ABOUT",
     "SHOW IT",
+    "DIAGNOSIS", "BUS COUNTERS", "BUS TIMES", "BUS OFF", "THE PANEL", "COUNTERS", "TIMES",
+    "TELEGRAMS", "MIRROR TEST", "SET=COUNT",
 )  # fmt: skip
+PARAMETERS, FAULT_MEMORY, BY_NUMBER = "PARAMETERS", "FAULT MEMORY", "BY NUMBER"
+WHAT_IS, TYPES_NUMBER = "WHAT IS", "NUMBER"
+MEANT = ("CAUSE", "REMEDY", "F")  # row 1 of the lists that follow
+LOOKED = (  # on the page of a parameter
+    "NEXT", "NEXT", "NEXT", "PREVIOUS", "UP", "UP", "DOWN", "EDIT", "EDIT", "SET", "ADDRESS_UP",
+    "STOP", "START", "REVERSE",
+) + JOGS  # fmt: skip
+HARMLESS, HARMLESS_DIGITS = "P2155", (2, 1, 5, 5)  # a threshold that a status word tells
 LEFT_ALONE = ("...", "ANSWERS", "NOBODY", "IN THE LIST", "SET=ASK")  # of an address
 CHANGING = ("LOCK CODE", "P2014=0 OK")  # of the settings
 HOME_TRIES = 16
@@ -49,6 +59,8 @@ class Fingers:
         self.weather = weather
         self.dice = plan.dice
         self.deeds = []
+        self._chooses_group = False  # of parameters; an announcement may hide the list's name
+        self._means = ()  # what he means to choose, however it reads to the end
         self.drives = [world.drives[address] for address in plan.addresses]
         self._seen_ms = SEEN_US // MS + DRAWN_STEPS * plan.loop_us // MS
         self.common = weights((
@@ -230,6 +242,73 @@ class Fingers:
         if self.dice.below(3):
             self.go_home()
 
+    def look_up(self):
+        """Look up parameters, faults and warnings, mostly while a motor runs; change a value that
+        does no harm, or change one's mind.
+        """
+        if self.dice.below(4):
+            self.run_long()
+        self.press("PARAM", OPENS_MS)
+        self.run(2 * self._seen_ms)
+        wanted = self.dice.one_of((PARAMETERS, PARAMETERS, PARAMETERS, FAULT_MEMORY))
+        if self.reader.rows[1].startswith(MENU + WHAT_IS):
+            wanted = WHAT_IS
+        if not self._walk_to(wanted):
+            self.go_home()
+            return
+        self.press("SET")
+        if wanted != PARAMETERS:
+            for _ in range(self.dice.between(1, 8)):
+                self.run(self._seen_ms)
+                self.press(self.dice.one_of(("DOWN", "DOWN", "UP", "SET", "STOP", "PARAM")))
+        elif self.dice.below(3):
+            for _ in range(self.dice.below(20)):
+                self.press("DOWN")
+            self.run(2 * self._seen_ms)
+            self._chooses_group = self.reader.rows[1].startswith(MENU)
+            self.press("SET")
+            self._chooses_group = False
+            self._look_round()
+        elif self._walk_to(BY_NUMBER):
+            self.press("SET")
+            self._change_harmless()
+        self.run(self.dice.between(50, 3_000))
+        if self.dice.below(3):
+            self.go_home()
+
+    def _walk_to(self, entry):
+        """Go up to an entry of the menu; whether it is there."""
+        for _ in range(HOME_TRIES):
+            self.run(self._seen_ms)
+            if self.reader.rows[1].startswith(MENU + entry):
+                return True
+            if not self.is_away():
+                return False
+            self.press("UP")
+        return False
+
+    def _look_round(self):
+        """Walk a group of parameters."""
+        for _ in range(self.dice.between(1, 10)):
+            self.run(self.dice.one_of((20, 2 * self._seen_ms, 6_000, 8_000)))
+            self.press(self.dice.one_of(LOOKED), self.dice.one_of((60, 100, 100, 900)))
+
+    def _change_harmless(self):
+        self.run(2 * self._seen_ms)
+        for digit in HARMLESS_DIGITS:
+            for _ in range(digit):
+                self.press("UP", 60)
+            self.press("NEXT", 60)
+        self.run(2 * self._seen_ms)
+        self.press("SET")
+        self.run(self.dice.one_of((500, 6_000)))
+        self.press(self.dice.one_of(("EDIT", "EDIT", "EDIT", "UP", "NEXT")))
+        for _ in range(self.dice.below(5)):
+            self.press(self.dice.one_of(TYPES))
+        self.run(2 * self._seen_ms)
+        self.press(self.dice.one_of(TYPED_BY), self.dice.one_of((100, 100, 2_500)))
+        self.run(self.dice.one_of((500, 6_000)))
+
     def look_for_drives(self):
         """Leave the line for a search, up to the point where somebody changes his mind."""
         if self.dice.below(4):
@@ -268,8 +347,9 @@ class Fingers:
             self.press("STOP" if HUNTS in row_2 else "PARAM", OPENS_MS if held else 100)
 
     def is_away(self):
-        """Whether the menu is on the display, or the search."""
-        return self.witness.searches or self.reader.rows[1].startswith(MENU)
+        """Whether the menu is on the display, the page of any parameter, or the search."""
+        reader = self.reader
+        return self.witness.searches or reader.looks_up or reader.rows[1].startswith(MENU)
 
     def _may_choose(self):
         """Whether SET changes nothing that the panel is told of drives and line. In the menu he
@@ -278,13 +358,28 @@ class Fingers:
         if self.witness.searches:
             return not row_1.startswith(TAKES)
         witness = self.witness
-        if not witness.is_in_menu() and not row_2.startswith(MENU):
+        is_on_page = self.reader.looks_up
+        if not witness.is_in_menu() and not row_2.startswith(MENU) and not is_on_page:
             return True
         moved_us = max(max(witness.up.values()), max(witness.pressed_us.values()))
         is_read = self.world.clock.now_us - moved_us >= (self._seen_ms - SLICE_MS) * MS
+        if is_on_page:
+            label = self.reader.label
+            is_known = (
+                row_1.startswith(TYPES_NUMBER)
+                or label is not None
+                and (label[0] == HARMLESS or row_2.startswith(label[0]) and row_2[5] != ".")
+            )
+            return is_read and not witness.down and self.reader.steady and is_known
         entry = row_2[1:].rstrip()
         is_drive = entry[:1] == "A" and entry[1:2].isdigit() and not entry.endswith(LEFT_ALONE)
         is_known = entry in CHOSEN or is_drive
+        if self.plan.looks_up and (
+            entry.startswith((PARAMETERS, FAULT_MEMORY, WHAT_IS, BY_NUMBER)) or self._chooses_group
+        ):
+            is_known = True
+        if self._means and entry.startswith(self._means):
+            is_known = True
         if row_1.startswith(SETTINGS):
             is_known = entry not in CHANGING
         return is_read and not witness.down and self.reader.steady and is_known

@@ -16,10 +16,11 @@ from boards.sim.world import supervision, supervision_ms
 from tools.soaking.at_the_drive import people_at
 from tools.soaking.fingers import SLICE_MS
 from tools.soaking.judging.announced import is_parameter
-from tools.soaking.judging.facts import GOES, MS, S
+from tools.soaking.judging.facts import GOES, MEANT_READS, MS, READ_REPLIES, S
 from tools.soaking.judging.reader import address_in
 from tools.soaking.judging.rules import Broken
-from tools.soaking.mischief import WARNINGS, Mischief
+from tools.soaking.mischief import WARNINGS
+from tools.soaking.technician import Technician
 from tools.soaking.worlds import CLEAN
 
 TURN_S = (8, 25)
@@ -29,10 +30,11 @@ TRIES = 12  # the hand selects at most so many addresses to find one that answer
 SHORT_US = 1 * S  # a telegram off time that a person, too, finds too short
 FOUND_S = 20  # in which a drive that answers in another layout is found, and rounds of the line
 FOUND_ROUNDS = 200
+READY_S = 8
 KNOWN_S = 120  # the longest time until the panel knows what a drive is set to
 
 
-class Hand(Mischief):
+class Hand(Technician):
     """See `Fingers` for what it takes, and for `deeds`; `Mischief` for `faults`."""
 
     def live(self, until_s):
@@ -76,6 +78,8 @@ class Hand(Mischief):
                 drive.warn(number, False)
         self.follow_addresses()
         self.run(1_500 + 4 * self.witness.cycle_us // MS)
+        if self.plan.keeps_sets:
+            self.give_sets_up()
         self.press("STOP", 4_300)
         self.run(3_000)
 
@@ -117,7 +121,8 @@ class Hand(Mischief):
         self.press("STOP")  # this also dismisses a message
         self.acknowledge(drive)
         self.wait_for("drive %d to be ready" % address, lambda: drive.state == "ready", 20)
-        self.wait_for("READY on the display", lambda: reader.rows[1].startswith("READY"), 8)
+        seconds = max(READY_S, self.known_s(drive))
+        self.wait_for("READY on the display", lambda: reader.rows[1].startswith("READY"), seconds)
         self.press("START")
         self.run(200)
         if self.reader.reads("NO:"):  # a drive that was not shown may not be surveyed yet
@@ -186,6 +191,13 @@ class Hand(Mischief):
         self.wait_for(text, lambda: self.reader.reads(text), 8, "ANNOUNCED")
         self.press("STOP", 4_300)
         self.wait_for("drive %d to stand" % drive.address, lambda: drive.state == "ready", 12)
+
+    def known_s(self, drive):
+        """The seconds in which the panel has read all settings of a drive that is shown: one in a
+        round, or in several where it lags. Until then it may read LOCAL, though it is in order.
+        """
+        replies = MEANT_READS * (READ_REPLIES + drive.stale_replies)
+        return replies * self.witness.cycle_us // S
 
     def run_until_known(self, address):
         """Until the panel must know what the drive that is shown is set to, which takes long where

@@ -37,6 +37,8 @@ class Mischief(Fingers):
             self.common += 6 * [self.turn_round]
         if plan.types:
             self.common += 8 * [self.type_digits]
+        if plan.looks_up:
+            self.common += 40 * [self.look_up]
         if plan.troubles > 1:
             self.common += len(self.common) * [self.two_troubles]
         for drive in self.drives:

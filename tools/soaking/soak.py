@@ -8,12 +8,15 @@ In use:
     soak.broken                     # None, or what ended it
 """
 
+import sys
+
 # Lower layers first, or the 32-bit build runs out of stack.
 import boards.sim.drives.families.mm420
 import boards.sim.drives.parameter_channel
 import boards.sim.drives.parameters
 import boards.sim.world  # noqa: F401
 import main
+import on_demand
 from tools.soaking.hand import Hand
 from tools.soaking.judging.judge import Judge
 from tools.soaking.judging.reader import Reader
@@ -21,7 +24,21 @@ from tools.soaking.judging.rules import Broken
 from tools.soaking.weather import Weather
 from tools.soaking.worlds import Plan, SoakWorld
 
+LOADED_FIRST = tuple(sys.modules)
+# Packages that are loaded on demand, or have such modules.
+ON_DEMAND = ("catalogue", "panel", "search", "settings_file", "uss")
+
 TOLD_S = 30  # of virtual time between two calls of `progress`
+
+
+def unload():
+    """Forget what the seed before this one has loaded on demand: to find a module there takes a
+    panel other steps than to load it, and a seed is the same life behind whichever other one.
+    """
+    on_demand.keep(())
+    for name in tuple(sys.modules):
+        if name not in LOADED_FIRST and name.partition(".")[0] in ON_DEMAND:
+            on_demand.drop(name)
 
 
 class Soak:
@@ -34,6 +51,7 @@ class Soak:
     def __init__(self, seed, drives=None, troubles=1, roams=True):
         self.seed = seed
         self.broken = None
+        unload()
         self.plan = plan = Plan(seed, drives, troubles, roams)
         self.world = world = SoakWorld(main.start, plan)
         self.judge = judge = Judge(world, plan)

@@ -27,7 +27,7 @@ BLOCK_BYTES = 64  # are written in one step; small, so that there are many steps
 # littlefs does not erase for each of its commits; this assumes the worst case.
 PROGRAM_US = 400
 ERASE_US = 45_000
-CAPACITY_BYTES = 64 * BLOCK_BYTES
+CAPACITY_BYTES = 1408 * 1024  # of the file system of a Pico
 
 
 class PowerCut(BaseException):
@@ -43,6 +43,7 @@ class Flash:
 
     files        path -> bytes, as a reader finds them; a test may put something there
     unreadable   paths that cannot be read: OSError
+    blocks_max   so many fit; a test may change it
     steps        how many were taken: a file created, a block written, a file committed
                  (close), renamed, removed
     cut_at       power is cut instead of the step with this number, counted from 0; None: never
@@ -53,7 +54,7 @@ class Flash:
         self.unreadable = ()
         self.steps = 0
         self.cut_at = None
-        self._blocks_max = capacity_bytes // BLOCK_BYTES
+        self.blocks_max = capacity_bytes // BLOCK_BYTES
         self._torn = torn
         self._busy = busy
         self._has_power = True
@@ -82,6 +83,10 @@ class Flash:
         self._step()
         self.files[new] = self.files.pop(old)
 
+    def listdir(self, _folder):
+        self._need_power()
+        return list(self.files)
+
     def remove(self, path):
         self._need(path)
         self._step()
@@ -89,7 +94,8 @@ class Flash:
 
     def write_block(self, path, block):
         """For the writer of a file. OSError: ENOSPC; what was written so far is given up."""
-        if self._blocks_used() == self._blocks_max:
+        self._need_power()
+        if self._blocks_used() == self.blocks_max:
             del self._writing[path]
             raise OSError(ENOSPC)
         half = len(block) // 2
@@ -129,23 +135,34 @@ class Flash:
 
 
 class _Writer:
-    """A file that is being written. Until it is closed its data wait in memory."""
+    """A file that is being written. What does not fill a block waits in memory."""
 
     def __init__(self, flash, path):
         self._flash = flash
         self._path = path
         self._waiting = b""
+        self._given_up = False  # the flash was full
 
     def write(self, data):
         self._waiting += data
+        while len(self._waiting) > BLOCK_BYTES:
+            self._put()
         return len(data)
 
     def close(self):
-        waiting = self._waiting
-        self._waiting = b""
-        for at in range(0, len(waiting), BLOCK_BYTES):
-            self._flash.write_block(self._path, waiting[at : at + BLOCK_BYTES])
-        self._flash.commit(self._path)
+        if self._waiting:
+            self._put()
+        if not self._given_up:
+            self._flash.commit(self._path)
+
+    def _put(self):
+        block, self._waiting = self._waiting[:BLOCK_BYTES], self._waiting[BLOCK_BYTES:]
+        try:
+            self._flash.write_block(self._path, block)
+        except OSError:
+            self._waiting = b""
+            self._given_up = True
+            raise
 
     def __enter__(self):
         return self

@@ -309,6 +309,7 @@ class Drive:
         self._clock.cancel(self._failure)
         self._clock.cancel(self._end_of_silence)
         self._silent = False
+        self._heard_us = None  # or a new P2014 would trip what is off
         self.process.power_off()
         self.parameters.load()
         self._connect()

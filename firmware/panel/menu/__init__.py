@@ -11,16 +11,19 @@ memory only while it is shown. To add one, write its file and put its name into 
 from panel import texts
 
 BACK = ("", None)  # of `choose`: back to the list above this one
+PAGE = "page"  # of `choose`: (PAGE, place) closes the menu and shows this page of `pages.table`
 
 
 class Entries:
     """What every list has. panel: the `Panel`. argument: what the list above it has handed on.
 
+    ahead: modules that it has loaded for what it leads to; they leave the memory with it.
     title: a text; 16 characters in a list that has one entry only, else 10. Answers of `choose`:
-    (name of a list, argument), BACK, or None: the list stays.
+    (name of a list, argument), (PAGE, place), BACK, or None: the list stays.
     """
 
     title = b""
+    ahead = ()
     tells_stop = True  # STOP says which drive it has stopped
 
     def __init__(self, panel, argument=None):
@@ -33,6 +36,13 @@ class Entries:
 
     def step(self, position, now_ms):
         """Again and again while it is shown."""
+
+    def is_searching(self):
+        """Whether `search` has something to do, which takes long."""
+        return False
+
+    def search(self):
+        """Do a piece of it."""
 
     def is_busy(self):
         """Whether it has something to do that a minute without a key does not end."""
@@ -73,3 +83,6 @@ class Entries:
 
     def leave(self, now_ms):
         """PARAM goes back to the list above this one."""
+
+    def end(self):
+        """It is not shown any more, however that came."""

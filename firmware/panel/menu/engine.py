@@ -9,17 +9,45 @@ from micropython import const
 
 import on_demand
 from panel import texts
-from panel.menu import BACK
+from panel.menu import BACK, PAGE
 from panel.pages import Page
 from uss.timing import elapsed
+
+_LOOKUP = ("catalogue", "panel.lookup", "panel.lookup.words")
+_OF_A_SET = ("panel.pages.parameter_words", "panel.sets.pump", "panel.sets.work")
+_COMMISSION = _LOOKUP + ("panel.commission", "panel.commission.words")
+_DIAGNOSIS = ("panel.menu.diagnosis", "panel.menu.diagnosis.words")
 
 # What a list wants besides, a step of the loop for each: from the bottom of the house up.
 _WANTS = {
     "address": ("uss.finding", "uss.finding.mirror"),
+    "commission.course": _COMMISSION
+    + ("panel.lookup.value", "panel.pages.parameter_words", "panel.writer"),
+    "commission.overview": _COMMISSION,
+    "sets.overview": (
+        "panel.menu.sets",
+        "panel.menu.sets.words",
+        "panel.sets",
+        "panel.sets.set_file",
+    ),  # fmt: skip
+    "sets.save": ("catalogue", "version") + _OF_A_SET + ("panel.sets.saving",),
+    "sets.write": _OF_A_SET + ("panel.sets.writing",),
+    "diagnosis.counters": _DIAGNOSIS,
+    "diagnosis.health": _DIAGNOSIS,
+    "diagnosis.mirror": ("uss.finding", "uss.finding.mirror") + _DIAGNOSIS,
+    "diagnosis.off": _DIAGNOSIS,
+    "diagnosis.overview": _DIAGNOSIS,
+    "diagnosis.telegrams": ("uss.finding", "uss.finding.witness") + _DIAGNOSIS,
+    "diagnosis.times": ("uss.finding", "uss.finding.witness") + _DIAGNOSIS,
+    "events": _LOOKUP,
     "kind": ("uss.families.bop", "uss.families.kinds"),
+    "lookup.groups": _LOOKUP,
+    "lookup.memory": _LOOKUP,
+    "lookup.what": _LOOKUP,
     "turns": ("uss.families.kinds", "settings_file"),
     "value": ("uss.families.kinds", "settings_file"),
 }
+_BESIDE = ("lookup.", "commission.")  # lists that look into the catalogue
 _REFUSED = ("START", "REVERSE", "JOG_RIGHT", "JOG_LEFT")  # they move a motor
 _STALE_MS = const(60_000)
 _TOLD_MS = const(3_000)
@@ -36,11 +64,14 @@ class Menu(Page):
 
     def __init__(self, panel, begin=("main", None)):
         Page.__init__(self, panel)
+        self._coming = None  # (name, argument) of a list that is not there yet
+        self._page = None  # the place of the page that is to come when the menu closes
         self._lists = []  # (name of the module, `List`, position in it), the one shown last
         self._used_at_ms = None
         self._told = None  # words in place of the entry, for a while or until a key is pressed
         self._told_at_ms = 0
         self._alarmed = panel.selected.needs_attention()
+        self._keep = ()  # modules that stay when it closes
         self._enter(*begin)
         self._wanted.insert(0, "panel.menu.words")
 
@@ -49,7 +80,7 @@ class Menu(Page):
             self._told = None
         if acts.has("STOP") and self._lists:
             self._stop(now_ms)
-        if self._coming or not (acts.pressed or acts.repeated):
+        if self._coming or self._page is not None or not (acts.pressed or acts.repeated):
             return
         self._used_at_ms = now_ms
         name, shown, position = self._lists[-1]
@@ -74,12 +105,22 @@ class Menu(Page):
     def is_ready(self):
         return len(self._lists) > 0
 
-    def is_coming(self):
-        return self._coming is not None
+    @property
+    def is_busy(self):
+        is_searching = bool(self._lists) and self._lists[-1][1].is_searching()
+        return is_searching or self._coming is not None or self._page is not None
+
+    def work(self, now_ms):
+        """What takes long has a turn of its own: a module that comes, a piece of a search."""
+        if self._page is not None:
+            self.panel.show_page(now_ms, self._page)
+        elif not self._coming:
+            self._lists[-1][1].search()
+        elif self.panel.has_time():
+            self._come(now_ms)
 
     def step(self, keys, now_ms):
         if self._coming:
-            self._come(now_ms)
             return
         if self._told and elapsed(now_ms, self._told_at_ms, self.panel.mask) >= _TOLD_MS:
             self._told = None
@@ -95,13 +136,14 @@ class Menu(Page):
         if stale or self._alarmed and not alarmed:
             self.close()
 
-    def close(self):
-        """Close the whole menu."""
+    def close(self, keep=()):
+        """Close the whole menu. keep: modules of it that stay, for the page that comes."""
+        self._keep = keep
         if self._coming:
             self._forget(self._coming[0])
             self._coming = None
         while self._lists:
-            self._forget(self._lists.pop()[0])
+            self._drop_last()
         self.panel.uncover()
 
     def draw(self, screen, now_ms):
@@ -159,13 +201,15 @@ class Menu(Page):
             return
         if following is BACK:
             self._leave(now_ms)
-            return
-        self._enter(*following)
+        elif following[0] is PAGE:
+            self._page = following[1]
+        else:
+            self._enter(*following)
 
     def _enter(self, name, argument):
         """That list comes with the steps that follow: each loads one module."""
         self._coming = (name, argument)
-        self._wanted = list(_WANTS.get(name, ())) + ["panel.menu." + name]
+        self._wanted = list(_WANTS.get(name, ())) + [_module(name)]
 
     def _come(self, now_ms):
         name, argument = self._coming
@@ -173,7 +217,7 @@ class Menu(Page):
             if self._wanted:
                 on_demand.load(self._wanted.pop(0))
                 return
-            shown = on_demand.load("panel.menu." + name).List(self.panel, argument)
+            shown = on_demand.load(_module(name)).List(self.panel, argument)
             self._lists.append((name, shown, shown.first()))
         except MemoryError:
             self.panel.say(now_ms, texts.NO_MEMORY)
@@ -182,17 +226,34 @@ class Menu(Page):
         if not self._lists:
             self.panel.uncover()
 
+    def _drop_last(self):
+        name, shown, _ = self._lists.pop()
+        shown.end()
+        self._drop(shown.ahead)
+        self._forget(name)
+
     def _forget(self, name):
         """What a list has needed leaves the memory."""
-        on_demand.drop("panel.menu." + name)
-        for module in _WANTS.get(name, ()):
-            on_demand.drop(module)
+        needed = [module for one in self._lists for module in _WANTS.get(one[0], ())]
+        self._drop((_module(name),) + _WANTS.get(name, ()), needed)
+
+    def _drop(self, modules, needed=()):
+        if modules is self._keep:
+            return
+        for module in modules:
+            if module not in needed and module not in self._keep:
+                on_demand.drop(module)
 
     def _leave(self, now_ms):
         """Back to the list above this one."""
         self._lists[-1][1].leave(now_ms)
         if not self._lists:  # that has closed the menu
             return
-        self._forget(self._lists.pop()[0])
+        self._drop_last()
         if not self._lists:
             self.panel.uncover()
+
+
+def _module(name):
+    """Where a list stands: below this folder, or beside it, with what it looks up."""
+    return ("panel." if name.startswith(_BESIDE) else "panel.menu.") + name

@@ -10,15 +10,18 @@ LISTS = (  # text, module, argument: what is more than a value
     (words.KEY_TEST, "keys", None),
 )
 
+NEEDED = {"light_minutes": "backlight", "log": "serial"}  # of the board
+
 
 class List(Entries):
     title = words.MENU_SETTINGS
 
     def __init__(self, panel, argument):
         Entries.__init__(self, panel, argument)
-        self._rows = words.SETTINGS
-        if not getattr(panel.board, "backlight", None):
-            self._rows = [row for row in self._rows if row[0] != "light_minutes"]
+        board = panel.board
+        self._rows = [
+            row for row in words.SETTINGS if getattr(board, NEEDED.get(row[0], "name"), None)
+        ]
 
     def count(self):
         return len(self._rows) + len(LISTS)

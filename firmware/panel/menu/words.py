@@ -26,7 +26,15 @@ WHY_NO_CONTACT = b"WHY NO CONTACT"
 MENU_SETTINGS = b"SETTINGS"
 MENU_ORDER = b"ORDER"
 MENU_TURNS = b"TURNS"
+MENU_SETS = b"SETS"
 MENU_ABOUT = b"ABOUT"
+MENU_DIAGNOSIS = b"DIAGNOSIS"
+PARAMETERS = b"PARAMETERS"
+FAULT_MEMORY = b"FAULT MEMORY"
+COMMISSION = b"COMMISSION"
+MENU_EVENTS = b"EVENTS"
+NO_EVENTS = b"NONE YET"
+WHAT_IS = b"WHAT IS %s"  # a fault or a warning that the display shows
 SHOW_DRIVE = b"SHOW IT"
 REMOVE_DRIVE = b"REMOVE IT"
 
@@ -45,6 +53,7 @@ SETTINGS = (  # the rate comes first: `contact`
     ("key_repeat_ms", b"KEY RATE %s ms", 0, True),
     ("light_minutes", b"LIGHT %s min", 0, True),
     ("language", b"LANG. %s", 0, True),
+    ("log", b"LOG %s", 0, True),
 )
 CHOICES = {  # values that are no numbers: how each reads. A language reads as it calls itself
     "OFF3": b"OFF3",
@@ -52,6 +61,7 @@ CHOICES = {  # values that are no numbers: how each reads. A language reads as i
     "none": b"none",
     "en": b"English",
     "de": b"Deutsch",
+    "JSON": b"JSON",
 }
 LIGHT_STAYS = b"LIGHT STAYS ON"  # light_minutes is 0
 SET_KEEPS = b"UP DOWN SET=KEEP"

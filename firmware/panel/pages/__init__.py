@@ -20,9 +20,11 @@ class Page:
     too long; None: `draw` has drawn both
     values: draw in row 1 what stands there in place of the actual frequency; None: nothing does
     modules: nobody needs them in memory when it is gone
+    is_busy: it has more to do than `step` can, so that `work` is called as well
     """
 
     modules = ()
+    is_busy = False
     whole = False
     tells_state = False
     obeys = True
@@ -51,6 +53,9 @@ class Page:
 
     def step(self, keys, now_ms):
         """Again and again while it is shown, or hidden by another. keys: `panel.keys.Keys`."""
+
+    def work(self, now_ms):
+        """Go on with what is looked for."""
 
     def take_keys(self, acts, now_ms):
         """A key was pressed, or repeats. acts: `panel.keys.Acts`."""

@@ -9,7 +9,7 @@ Row 1 and the address are drawn by `panel.view`, because parameter mode shows th
 
 import on_demand
 from panel import texts, wording
-from panel.fault import draw_number
+from panel.reports.fault import draw_number
 from panel.pages import Page, warning
 
 

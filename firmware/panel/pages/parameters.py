@@ -13,38 +13,36 @@ with all that.
 
 from micropython import const
 
-import on_demand
 from panel import texts
 from panel.pages import parameter_words as words
 from panel.pages import Page, warning
 from panel.pages.parameter_words import failure
+from panel.pages.table import PAGES, PARAMETERS
+from panel.pages.writing import Writing
 from panel.reading import Reading
 from panel.screen import BUSY, EDITS
 from uss import pkw
-from uss.families.generic import CUTS_OFF, RESCALES
 from uss.timing import elapsed
 
 _READ_MS = const(500)  # between an answer and the next question
-_EEPROM_MS = const(1_500)  # SET is held so long
 _FAST_SPAN = const(100)  # values of a smaller range move by ones, however long the key is held
 
 _MARK_COLUMN = const(12)
 _ADDRESS_COLUMN = const(13)
 GLYPHS = (bytes((BUSY,)), bytes((EDITS,)))
 
-ASK = {CUTS_OFF: texts.ASK_CUTS_OFF, RESCALES: texts.ASK_RESCALES}
-
 
 class Parameters(Page):
     """Which parameter is shown, of which drive, and what is done with it."""
 
-    modules = ("panel.pages.parameters", "panel.pages.parameter_words")
+    modules = PAGES[PARAMETERS][2]
 
     def __init__(self, panel):
         Page.__init__(self, panel)
         self._row = panel.remembered.get(__name__, 0)
         self._edited = 0
         self._reading = Reading()
+        self._writing = Writing(panel)
         self._read_at_ms = 0
         self._value = None  # as last told by the drive
         self._refused = False  # it does not tell it
@@ -58,7 +56,7 @@ class Parameters(Page):
             return
         set_key = acts.bit("SET")
         if acts.pressed & ~set_key:
-            self._set_at_ms = None
+            self._writing.let_go()
         step = acts.direction("NEXT", "PREVIOUS")
         if step:
             self._row += step
@@ -105,39 +103,10 @@ class Parameters(Page):
         if not self._editing:
             self.panel.say(now_ms, words.EDIT_FIRST)
             return
-        number = self._shown[self._row][0]
-        self._wish = (self._control, number, self._edited)
-        ask_first = self._control.survey.family.ask_first
-        if number in ask_first and not self._why_not():
-            values = (self._control.drive.address, number, self._edited)
-            text = ASK[ask_first[number]]
-            question = on_demand.load("panel.pages.question").Question
-            self.panel.cover(question(self.panel, text, values, {"SET": self._grant}))
-        else:
-            self._grant(now_ms)
-
-    def _why_not(self):
-        """Why the wish is not even tried. Asked again when a question was answered."""
-        control, number, value = self._wish
-        if number != control.survey.family.address_number:
-            return texts.NOTHING
-        if self.panel.any_runs() or control.is_starting():
-            return texts.STOP_FIRST
-        return words.ADDRESS_TAKEN if self.panel.is_taken(value) else texts.NOTHING
-
-    def _grant(self, now_ms, eeprom=False):
-        """Write what was wished for."""
-        reason = self._why_not()
-        if reason:
-            self.panel.say(now_ms, reason)
-            return
-        control, number, value = self._wish
-        family = control.survey.family
-        eeprom = family.has_eeprom_tasks and (eeprom or number in family.permanent)
-        index = self._index(number)
-        self._write = self.panel.write(now_ms, control, number, index, value, eeprom)
-        holds = self._write and family.has_eeprom_tasks and not eeprom
-        self._set_at_ms = now_ms if holds else None
+        control, number, value = self._control, self._shown[self._row][0], self._edited
+        risk = control.survey.family.ask_first.get(number)
+        what = (control, number, self._index(number), value)
+        self._writing.set(now_ms, what, risk, (control.drive.address, number, value))
 
     # --- what goes on ---------------------------------------------------------------------------
 
@@ -148,16 +117,13 @@ class Parameters(Page):
         if self._reading.prepare():
             return
         contact = self._control.drive.contact and self._shown
-        if not contact or not keys.down & keys.bit("SET"):
-            self._set_at_ms = None
         if not contact:
             self._value = None
             self._due = True
-        if self._write:
-            self._follow_write()
-        elif self._set_at_ms is not None:
-            if elapsed(now_ms, self._set_at_ms, self.panel.mask) >= _EEPROM_MS:
-                self._grant(now_ms, True)
+        write = self._writing.step(keys.down & keys.bit("SET") if contact else 0, now_ms)
+        if write:
+            self._due = True
+            self._editing = self._editing and not write.done
         if self._reading.asked:
             self._take_answer(now_ms)
         elif contact:
@@ -171,17 +137,6 @@ class Parameters(Page):
     def _look_at_selected(self):
         if self.panel.selected is not self._control:
             self._forget()
-
-    def _follow_write(self):
-        write = self._write
-        if write.outcome is None:
-            return
-        self._write = None
-        self._due = True
-        if write.done:
-            self._editing = False
-        else:
-            self._set_at_ms = None
 
     def _ask(self, now_ms):
         waited_ms = elapsed(now_ms, self._read_at_ms, self.panel.mask)
@@ -210,10 +165,7 @@ class Parameters(Page):
         self._value = None
         self._refused = False
         self._editing = False
-        self._wish = None  # what SET was pressed for: control, number, index, value
-        self._write = None  # the `Write` of it that is on its way
-        # A SET that is held makes a write permanent once it is confirmed.
-        self._set_at_ms = None  # when it went down, None when it is up or was used up
+        self._writing.forget()
         self._due = True  # ask at once
         self._reading.drop()
 
@@ -235,5 +187,5 @@ class Parameters(Page):
         else:
             unknown = words.REFUSED_VALUE if self._refused else texts.UNREAD_VALUE
             screen.put(1, words.PARAMETER_WIDTH, texts.VALUE_WIDTH, texts.of(unknown))
-        mark = GLYPHS[BUSY] if self._write else GLYPHS[EDITS] if self._editing else b""
+        mark = GLYPHS[BUSY] if self._writing.write else GLYPHS[EDITS] if self._editing else b""
         screen.put(1, _MARK_COLUMN, 1, mark)

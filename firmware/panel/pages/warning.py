@@ -7,7 +7,7 @@ What it draws:
 """
 
 from panel import texts
-from panel.fault import draw_number
+from panel.reports.fault import draw_number
 
 
 def draw(screen, panel):

@@ -271,6 +271,17 @@ def test_a_power_failure_coasts_and_ends_inhibited():
     assert bench.counters()[0] == 10  # counted since power-up
 
 
+def test_a_drive_without_mains_does_not_trip_when_its_p2014_is_changed():
+    bench = Bench({2014: 2000})
+    bench.run()
+    bench.drive.power_off()
+    bench.drive.write(2014, 0, 1000)
+    bench.wait(5)
+    assert bench.drive.state == "off"
+    bench.drive.power_on()
+    assert bench.drive.read(52) & 0xFF == 0xC1  # inhibited, and no fault
+
+
 def test_the_report():
     bench = Bench({1120: 0.0})
     assert bench.drive.report() == (

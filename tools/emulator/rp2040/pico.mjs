@@ -216,4 +216,8 @@ export class Pico {
   send(bytes) {
     this.usb?.send(bytes);
   }
+
+  readUsb(on) {
+    this.usb?.read(on);
+  }
 }

@@ -9,6 +9,7 @@ import { USBCDC } from './library.mjs';
 
 const WAITING_BYTES = 65536; // that a chip which does not read may leave in the queue
 const FRAME_NANOS = 1e6;
+const EP0_IN_BUFFER_CONTROL = 0x80; // those of the endpoints follow, 8 bytes each
 const SOF_RD = 0x48, INTE = 0x90; // registers
 const DEV_SOF = 1 << 17; // bit of INTR and INTE; reading SOF_RD takes the first one back
 
@@ -26,6 +27,26 @@ export class UsbSerial {
       this.pass();
     };
     this.countFrames(mcu.clock);
+    this.reads = true;
+    this.held = null; // what the chip has ready while the host does not read
+    const { DPRAMUpdated } = this.controller;
+    this.controller.DPRAMUpdated = (offset, value) => {
+      if (!this.reads && offset === EP0_IN_BUFFER_CONTROL + 8 * this.cdc.inEndpoint) {
+        this.held = value;
+      } else {
+        DPRAMUpdated.call(this.controller, offset, value);
+      }
+    };
+  }
+
+  // Whether the host, which has the port open, reads what the chip sends.
+  read(on) {
+    this.reads = on;
+    if (!on || this.held === null) return;
+    const offset = EP0_IN_BUFFER_CONTROL + 8 * this.cdc.inEndpoint;
+    const value = this.held;
+    this.held = null;
+    this.controller.DPRAMUpdated(offset, value);
   }
 
   countFrames(clock) {

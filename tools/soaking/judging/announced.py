@@ -50,6 +50,7 @@ MANY = (  # text before their number, if there are more than FEW of them
     ("DRIVES OFF:", (OFF,)),
 )
 UNCONFIRMED, LOST = "STOP UNCONFIRMED", "NO CONTACT, "  # an alarm of the drive shown, a row
+PLACE = 11  # the column of row 1 where a list has its place
 ANY, SHOWN = -1, -2  # in place of an address: all of a kind; the drive shown, whichever it is
 
 LONG_US = 900 * MS  # 1 s, less the time lost by drawing and by looking
@@ -188,12 +189,31 @@ class Announced:
     def _hides_state(self):
         """Whether the page is one that does not tell what the drive shown does."""
         row_2 = self.reader.rows[1]
-        return row_2 in CHOICES or row_2.startswith(MENU) or is_parameter(row_2)
+        return (
+            self.reader.looks_up
+            or row_2 in CHOICES
+            or row_2.startswith(MENU)
+            or is_parameter(row_2)
+        )
 
 
 def is_parameter(row_2):
     """Whether the page is that of parameter mode."""
     return row_2[5:6] == ":" or row_2.startswith(NO_PARAMETERS)
+
+
+def is_looked_up(rows):
+    """Whether the page is that of any parameter, `P1120[0]  10.00s`, also while it is changed."""
+    for row in rows:
+        if row[:1] in ("P", "r") and row[1:5].isdigit() and row[5:6] in (" ", "[", "."):
+            return not is_place(row[PLACE:])  # a step of commissioning
+    return False
+
+
+def is_place(text):
+    """Whether this is the place in a list, 15/23."""
+    place, _, count = text.strip().partition("/")
+    return place.isdigit() and count.isdigit()
 
 
 def said_in(row):
@@ -204,8 +224,8 @@ def said_in(row):
     if row[:1] != "A" or not row[1:2].isdigit():
         return None
     end = 3 if row[2:3].isdigit() else 2
-    if row[end : end + 1] != " ":
-        return None
+    if row[end : end + 1] != " " or "..." in row or not row[end:].strip():
+        return None  # address and limits of a parameter
     for text, troubles in ONE:
         if row[end:].strip().startswith(text):
             return int(row[1:end]), troubles

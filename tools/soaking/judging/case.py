@@ -26,6 +26,9 @@ class Case:
         self.task = None  # of the first request that stayed without a reply, and how often
         self.tasks = 0
         self.replies = 0  # ever
+        self.heard = self.taken = 0  # replies since power-on: for sure, and perhaps
+        self.questions = 0  # since then, of what the drive is,
+        self.question_us = NEVER  # and the last one
         self.unheard = 0  # requests since power-on, while no reply has come
         self.requests = 0  # ever, and so many of them up to the last reply that the panel is sure
         self.heard_requests = 0  # to have taken, or up to power-on

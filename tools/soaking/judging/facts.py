@@ -24,6 +24,7 @@ ZSW_RUNNING, ZSW_FAULT, ZSW_INHIBIT, ZSW_WARNING = 0x0004, 0x0008, 0x0040, 0x008
 READS = (0, 1, 4, 6, 9)
 RAM_WRITES = (2, 3, 7, 8)
 EEPROM_WRITES = (11, 12, 13, 14)
+DOUBLES = (3, 8, 11, 13)  # of those, such that write a double word
 
 # Row 2 of a question: to which SET says yes; START may; about a risk that nothing takes away.
 WRITES, RUNS_ON, RISKS = "SET=DO  PARAM=NO", "SET=FIX START=GO", "START=GO STOP=NO"
@@ -31,7 +32,7 @@ QUESTIONS = (WRITES, RUNS_ON)
 GOES = (RUNS_ON, RISKS)
 CHOICES = (WRITES, RUNS_ON, RISKS)
 MENU = ">"  # row 2 of every list of the menu begins so
-TYPED = "NEW"  # row 2 begins so while the setpoint is set digit by digit
+TYPED = "NEW"  # row 2 begins so while the setpoint is set digit by digit, or a parameter
 LEAVES = ("LEAVE THE LINE &", "FIND DRIVES?")  # row 1 of WRITES, before the search
 NO_PARAMETERS = "NO PARAMETERS"  # parameter mode, of a drive that can tell none
 NOT_USS = "NOT USS"  # a START is refused: what the drive obeys is another one
@@ -44,11 +45,12 @@ SETTLED_US = 25 * MS
 STEPS = 5
 DRAWN_STEPS = 25  # a row that is the same for so long is drawn to its end
 SEEN_US = 300 * MS  # and a page that has come or gone is to be seen by then
+CHOSEN_US = 500 * MS  # what SET chooses has been on the display by then
 SHORT_CHORD_US = 120 * MS  # within this it is not known which of two keys came first
 DEAD_MAN_US = 300 * MS
 SECOND_STOP_US = 1_500 * MS
 ALL_STOP_US = 4_000 * MS
-START_S = 10  # a START that has not led to ON by then is forgotten, and 14 exchanges each
+START_S, START_ROUNDS = 12, 10  # a START is given up by then
 HELD_SET_US = 1_400 * MS
 HELD_OPENS_US = 900 * MS  # PARAM opens the menu, an address key ANY ADDRESS
 WISH_US = 40 * S  # a write that SET has asked for is over by then, and 20 rounds of the line
@@ -85,6 +87,12 @@ def debounce_us(plan):
 
 def lost_us(plan):
     return plan.settings.get("lost_ms", 1000) * MS
+
+
+def start_us(plan):
+    """By then a START has led to ON, or never will: a step and a round of the list later."""
+    round_us = exchange_us(plan) * len(plan.listed)
+    return max(START_S * S, START_ROUNDS * round_us) + S + 2 * round_us
 
 
 def exchange_us(plan):

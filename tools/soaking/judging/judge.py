@@ -19,6 +19,7 @@ from tools.soaking.judging.facts import (
     ALWAYS,
     CONTROLS,
     DEAD_MAN_US,
+    DOUBLES,
     DOUBTED_US,
     EEPROM_WRITES,
     HELD_SET_US,
@@ -36,7 +37,6 @@ from tools.soaking.judging.facts import (
     SECOND_STOP_US,
     SHORT_CHORD_US,
     SILENT_MIN,
-    START_S,
     STOPPED_MIN,
     STUCK_US,
     TOLD_MIN,
@@ -44,6 +44,7 @@ from tools.soaking.judging.facts import (
     ZSW_INHIBIT,
     ZSW_RUNNING,
     S,
+    start_us,
 )
 from tools.soaking.judging.families import VARIABLE
 from tools.soaking.judging.refusals import reason_against, runs_on_unasked
@@ -80,11 +81,12 @@ class Judge:
         self.drives = list(world.drives.values())
         self.starts = [0] * len(self.drives)  # of their motors, as counted last
         self._shares = Shares(witness)
+        self._start_us = start_us(plan)
         self._patience_us = SILENT_US + witness.exchange_us
         self.unsettled = []  # replies that may still be spoilt, and what to note of each then
         self._may_ask = False  # the last telegram may have asked a drive what it is,
         self._is_question = False  # and has
-        self._begun_us = None  # the power-on whose first telegram was judged last
+        self._begun_us = None  # of the witness, when the first telegram since then was judged
         self._counted_us = 0
 
     def look(self):
@@ -104,12 +106,12 @@ class Judge:
             self._judge_line()
         if world.lcd_chip.complaints():
             raise Broken("DISPLAY", world.lcd_chip.complaints()[0])
-        spoken_us = max(self.tape.sent_us, witness.boot_us)
+        spoken_us = max(self.tape.sent_us, witness.boot_us, witness.line.back_us)
         if witness.stuck_us is not None:
             is_late = now - witness.stuck_us > STUCK_US + witness.exchange_us
             if is_late and not witness.searches:  # no motor runs beside a search
                 raise Broken("WATCHDOG", "the bus stands since %d" % witness.stuck_us)
-        elif witness.searches:
+        elif witness.searches or witness.line.is_free:
             pass  # it talks when it is told to
         elif witness.hung_us is None and now - max(spoken_us, witness.late_us) > self._patience_us:
             raise Broken("SILENT PANEL", "no telegram for %d ms" % ((now - spoken_us) // MS))
@@ -158,9 +160,11 @@ class Judge:
                 self._take_reply(row, tape)
             elif kind == MIRRORED:
                 self._is_question = False
+                self.witness.line.judge("a mirror telegram", tape.at_us[row])
                 self.judge_mirror(row, tape)
             else:
                 self._shares.answered()
+                self.witness.diagnosed.returned(tape.address[row])
                 kind = self.witness.kinds[tape.address[row]]
                 kind.returned(tape.count[row], self._is_sure(row, tape))
 
@@ -172,7 +176,7 @@ class Judge:
         if tape.kind[row] not in (REQUEST, MIRRORED):
             return
         self.exchanges += 1
-        if self._begun_us != self.witness.boot_us:
+        if self._begun_us != self.witness.begun_us:
             self._judge_first(row, tape)
         if tape.kind[row] == MIRRORED:
             if not tape.is_blank(row):
@@ -197,10 +201,12 @@ class Judge:
         where = "drive %d at %d" % (address, now)
         self.exchanges += 1
         witness.kinds[address].mirror(tape.count[row])
-        if self._begun_us != witness.boot_us:
+        if self._begun_us != witness.begun_us:
             self._judge_first(row, tape)
         if not tape.is_blank(row):
-            raise Broken("MIRROR", "%s, its net data are not nothing" % where)
+            self._judge_mirror_test(row, tape, address, where)
+            self._shares.mirror(case, now)
+            return
         is_listed = address in witness.plan.listed
         if witness.may_look(now) and (not is_listed or address in witness.moved):
             self._shares.mirror(case, now)
@@ -234,6 +240,16 @@ class Judge:
             raise Broken("MIRROR", "%s, told to stop in %d telegrams" % (where, told))
         self._shares.mirror(case, now)
 
+    def _judge_mirror_test(self, row, tape, address, where):
+        """Somebody counts the telegrams that come back. They are as long as the drive's own, and
+        it obeys none that it takes for one of those: bit 10 is 0."""
+        pzd_words = self.witness.kinds[address].pzd_words
+        if not self.witness.diagnosed.tests(address, tape.at_us[row]):
+            raise Broken("MIRROR", "%s, its net data are not nothing" % where)
+        if tape.count[row] >= pzd_words and tape.word(row, -pzd_words) & CONTROLS:
+            raise Broken("MIRROR", "%s, a drive may obey it" % where)
+        self.witness.diagnosed.sent()
+
     def _take_reply(self, row, tape):
         address = tape.address[row]
         case = self.cases[address]
@@ -249,9 +265,11 @@ class Judge:
             case.excused_us = now + 2 * S + self.witness.cycle_us
             case.heard_us = NEVER
         case.answered_us = now
+        case.taken += 1
         case.unheard = 0
         case.asked_us = NEVER
         case.zsw = zsw
+        self.witness.happened.reply(address, zsw, now)
         if zsw & ZSW_RUNNING:
             case.ran_us = now
         elif not case.stw & RUN:
@@ -288,6 +306,7 @@ class Judge:
                 if self.witness.is_able(tape.address[row]):
                     kind.answered()
                 case.replies += 1
+                case.heard += 1
                 case.heard_requests = max(case.heard_requests, requests)
                 heard_us = tape.end_us[row]
                 lost_us = max(self.witness.boot_us, heard_us - self.witness.lost_us)
@@ -316,9 +335,12 @@ class Judge:
         case = self.cases[address]
         kind = self.witness.kinds[address]
         self.exchanges += 1
+        self.witness.line.judge("a telegram to drive %d" % address, now)
         self._may_ask = kind.may_ask(tape.count[row])
+        case.questions += self._may_ask
         self._is_question = self._may_ask and self._asks(row, tape, kind)
         if self._is_question:
+            case.question_us = now
             self._shares.mirror(case, now)
             return
         pkw_words = tape.count[row] - kind.pzd_words
@@ -329,7 +351,7 @@ class Judge:
         index = tape.word(row, 1) if task else 0
         stw, hsw = tape.word(row, -kind.pzd_words), tape.word(row, 1 - kind.pzd_words)
         self._shares.ask(case, address, (pke, index) if task else None, now)
-        if self._begun_us != self.witness.boot_us:
+        if self._begun_us != self.witness.begun_us:
             self._judge_first(row, tape)
         if case.asked_us > 0:
             case.missed_us = case.asked_us
@@ -342,8 +364,9 @@ class Judge:
         if self.witness.owed:
             self._judge_owed(case, now)
         if task and task != 1:
+            high = tape.word(row, 2) if task in DOUBLES else 0
             value = tape.word(row, 2 if pkw_words == 3 else 3)
-            self._judge_task(task, pke & 0x7FF, index, value, now, address)
+            self._judge_task(task, pke & 0x7FF, index, (high, value), now, address)
         if not stw & RUN:
             if hsw:
                 raise Broken("SETPOINT", "%04X with OFF" % hsw)
@@ -411,10 +434,10 @@ class Judge:
         return False
 
     def _judge_first(self, row, tape):
-        self._begun_us = boot_us = self.witness.boot_us
+        self._begun_us = begun_us = self.witness.begun_us
         if tape.at_us[row] - self.witness.late_us < S:
             return
-        if tape.silence_us[row] < LISTEN_US or tape.at_us[row] - boot_us < LISTEN_US:
+        if tape.silence_us[row] < LISTEN_US or tape.at_us[row] - begun_us < LISTEN_US:
             raise Broken("LISTEN", "the line was silent for %d us" % tape.silence_us[row])
 
     def _judge_word(self, case, address, stw, now):
@@ -476,6 +499,8 @@ class Judge:
         reason = reason_against(self.witness, case, address, pressed_us, jogs)
         if reason is not None:
             raise Broken("REFUSED", "%s: %s" % (where, reason))
+        if self.witness.sets.is_half(address):
+            raise Broken("REFUSED", "%s, and it has half of a set" % where)
         if runs_on_unasked(self.witness, case, address, pressed_us, jogs):
             raise Broken("UNSUPERVISED", where)
 
@@ -486,7 +511,7 @@ class Judge:
                 start_us = case.start_us
         else:
             start_us = case.start_us
-            if now - start_us > START_S * S + 28 * self.witness.cycle_us:
+            if now - start_us > self._start_us:
                 raise Broken("START", "%s, pressed at %d" % (where, start_us))
         if start_us <= case.void_us and now > self._grace(case.void_us):
             told = (where, start_us, case.void_us)
@@ -546,7 +571,7 @@ class Judge:
             case.jog_void_us = max(case.jog_void_us, case.jog_us)
         if case.used_us <= case.void_us or case.start_us <= case.used_us:
             case.void_us = max(case.void_us, case.used_us)
-        if now > case.excused_us and not self._has_reason(case, now, jogged):
+        if now > case.excused_us and not self.has_reason(case, now, jogged):
             raise Broken("WITHOUT REASON", "%04X to drive %d at %d" % (stw, address, now))
 
     def _judge_back(self, case, address, now):
@@ -559,7 +584,7 @@ class Judge:
         ):
             raise Broken("SECOND STOP", "drive %d never heard it, at %d" % (address, now))
 
-    def _has_reason(self, case, now, jogged):
+    def has_reason(self, case, now, jogged):
         witness = self.witness
         let_go = len(witness.down) != 1 or now - max(witness.up.values()) < 2 * S
         return (
@@ -567,6 +592,7 @@ class Judge:
             or self._is_stopping(case, now)
             or now - case.heard_us > witness.lost_us * 9 // 10
             or (not case.ran and now - case.on_us > 4 * S)
+            or case.again_us > case.on_us  # r2024 tells it, of many drives that run after a while
             or now - self.tape.chance_us < 2 * S + witness.cycle_us
             or witness.hung_us is not None
         )
@@ -615,10 +641,11 @@ class Judge:
     def _running(self):
         return sum(1 for case in self.cases if case.stw & RUN or case.turned_us > case.owed_us > 0)
 
-    def _judge_task(self, task, number, index, value, now, address):
+    def _judge_task(self, task, number, index, words, now, address):
         witness = self.witness
         if task in READS:
             return
+        high, value = words
         number += 2000 if index & 0x8000 else 0
         family = witness.kinds[address].family
         self.cases[address].changes(now)
@@ -627,17 +654,28 @@ class Judge:
         where = "parameter %d of drive %d, task %d at %d" % (number, address, task, now)
         if task not in RAM_WRITES and task not in EEPROM_WRITES:
             raise Broken("TELEGRAM", where)
+        if witness.sets.writes(address, now):
+            what = number, index & 0xFF, high << 16 | value
+            witness.sets.judge_write(address, what, task, family, where)
+            return
         is_dangerous = number in family.dangerous
-        if is_dangerous and now > witness.wishes.get("write", NEVER):
+        commissioned, bits = witness.commissioned, high << 16 | value
+        is_step = commissioned.has_asked(address, number, bits, is_dangerous, now)
+        if is_step:
+            pass
+        elif commissioned.is_open(now):
+            raise Broken("WRITE", "%s: %08X, and no step asked for that" % (where, bits))
+        elif is_dangerous and now > witness.wishes.get("write", NEVER):
             raise Broken("WRITE", where)
-        if is_dangerous and not self._is_confirmed((address, number, value), family, now):
+        elif is_dangerous and not self._is_confirmed((address, number, value), family, now):
             raise Broken("WRITE", "%s: %d, and that was not asked" % (where, value))
-        if not is_dangerous and now - witness.set_us > witness.wish_us:
+        elif not is_dangerous and now - witness.set_us > witness.wish_us:
             raise Broken("WRITE", where)
         if task in EEPROM_WRITES and family.save is not None:
             raise Broken("EEPROM", "%s, which no task can write" % where)
         if number == family.save or task in EEPROM_WRITES and number not in family.permanent:
             is_offered = number in OFFERED and now <= witness.wishes.get("offer", NEVER)
+            is_offered = is_offered or is_step and number == family.save
             if now > witness.wishes.get("eeprom", NEVER) and not is_offered:
                 raise Broken("EEPROM", where)
 

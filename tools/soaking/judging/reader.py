@@ -8,7 +8,7 @@ In use:
     reader.screens                  # the last pictures, (instant, row 1, row 2)
 """
 
-from tools.soaking.judging.announced import Announced, is_parameter, said_in
+from tools.soaking.judging.announced import Announced, is_looked_up, is_parameter, said_in
 from tools.soaking.judging.case import drive_at
 from tools.soaking.judging.drive_settings import magnitude, scalings
 from tools.soaking.judging.facts import (
@@ -31,9 +31,11 @@ from tools.soaking.judging.facts import (
     ZSW_WARNING,
     S,
 )
+from tools.soaking.judging.looked_up import address_above, is_wrong, label_in
 from tools.soaking.judging.rules import Broken
 
 SCREENS = 12
+QUIET_US = 60 * MS
 COVERED_US = 3_500 * MS  # what a STOP does covers a row of the menu, and so long after
 EXPOSED_US = 6 * S
 PRESENT = 2  # of r2110: so many of its warnings are present, the others are gone
@@ -52,7 +54,8 @@ MAY_RUN = ("NO CONTACT,", "UNCONFIRMED", "PANEL STOPPED", "USS PANEL")
 
 class Reader:
     """screens: the last pictures, oldest first. rows: the present one. address: that row 2 shows,
-    or None."""
+    or None. looks_up: the page of any parameter is shown, or a message hides it; label: of
+    the last one that was seen there, ("P2155", index or None)."""
 
     def __init__(self, world, plan, witness):
         self.world = world
@@ -72,6 +75,9 @@ class Reader:
         self._exposed_us = 0  # that its P2014 is longer by now was said, or could not be
         self._warned_us = NEVER  # a warning of the drive shown was read last
         self._unwarned_us = 0  # it had none, or something else was to be seen
+        self.looks_up = False
+        self.label = None
+        self._rows_us = 0  # the picture was another one until then
         self._types = False  # row 2 has digits that are typed in, or a message hides them
         self._subject = None  # of a question, as read last
         self._is_untold = False  # the question on the display is about a P2014 that nobody reads
@@ -99,6 +105,16 @@ class Reader:
         if self.reads(NOT_USS):
             witness.refused_us = now
         self._note_menu(now)
+        self._note_page(now)
+        is_drawn = now - self._rows_us > self._drawn_us
+        witness.line.read(self.rows, is_drawn, now)
+        # What counts is drawn again and again: nothing was written for two slices.
+        is_quiet = now - self._written_us > QUIET_US
+        witness.diagnosed.read(self.rows, is_drawn or is_quiet, now)
+        if is_drawn:
+            witness.sets.read(self.rows, now)
+            witness.commissioned.read(self.rows, now)
+            witness.happened.read(self.rows, now)
         self._note_digits(now)
         if self.rows[1] in QUESTIONS and self.rows[0].strip() in LEAVES:
             witness.leaves_us = now
@@ -139,6 +155,7 @@ class Reader:
             self.address = address_in(rows[1])
         if rows != self.rows:
             self.rows = rows
+            self._rows_us = now
             if len(self.screens) >= SCREENS:
                 del self.screens[0]
             self.screens.append((now, rows[0], rows[1]))
@@ -152,9 +169,24 @@ class Reader:
             if now - witness.up["STOP"] > COVERED_US or self.address is not None:
                 witness.menu_since_us = ALWAYS
 
+    def _note_page(self, now):
+        """The page of any parameter, whose row 1 has the address now and then."""
+        witness, row_2 = self.witness, self.rows[1]
+        if is_looked_up(self.rows):
+            self.looks_up = True
+            self.label = label_in(self.rows) or self.label
+            address = address_above(self.rows)
+            if address is not None and now > witness.unsure_us + self._drawn_us:
+                if now - self._rows_us > self._drawn_us:
+                    witness.shows(address)
+        elif row_2.startswith(MENU) or self.steady and self.address is not None:
+            self.looks_up = False
+        elif now - witness.boot_us < S:
+            self.looks_up = False
+
     def _note_digits(self, now):
         row_2 = self.rows[1]
-        if row_2.startswith(TYPED):
+        if row_2.startswith(TYPED) and not self.looks_up:
             self._types = True
         elif self.steady and self.address is not None or row_2.startswith(MENU):
             self._types = False
@@ -250,7 +282,7 @@ class Reader:
         witness = self.witness
         address = witness.shown
         stop_us = case.stop_us
-        if self.reads("STOP UNCONFIRMED"):
+        if tells_unconfirmed(self.rows, address):
             self._unconfirmed_us = now
             return
         if case.answered_us >= stop_us - 100 * MS or stop_us < witness.boot_us:
@@ -265,7 +297,8 @@ class Reader:
         if max(witness.up.values()) > stop_us + 400 * MS and witness.up["STOP"] != max(
             witness.up.values()
         ):
-            return  # another key was pressed since
+            self._unconfirmed_us = now  # another key was pressed since
+            return
         if witness.down and list(witness.down) != ["STOP"]:
             return
         if case.start_us > stop_us:
@@ -286,6 +319,8 @@ class Reader:
             answered_us = witness.cases[address].answered_us
             if self.world.clock.now_us - answered_us < S + witness.cycle_us:
                 raise Broken("UNCONFIRMED", "drive %d stands, and says so" % address)
+        if self.looks_up and is_wrong(self.rows, drive):
+            raise Broken("SHOWN", "%s, of drive %d" % (row_2, address))
         hz, before_hz = drive.hz(), self._hz
         self._hz = hz
         if address_in(row_2) != address:
@@ -333,6 +368,11 @@ class Reader:
     def is_able(self, address):
         """Whether the drive there is one that this panel can control."""
         return self.witness.is_able(address)
+
+
+def tells_unconfirmed(rows, address):
+    """Whether the display has the alarm of the drive shown; the menu has it in row 1, in turn."""
+    return "STOP UNCONFIRMED" in rows or rows[0].startswith("A%d NOT STOPPED" % address)
 
 
 def subject_in(row_1):

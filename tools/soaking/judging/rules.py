@@ -31,8 +31,11 @@ RULES = {
     "SEARCH": "the panel leaves the line for a search when SET confirmed that, and not otherwise",
     "SETPOINT": "the setpoint sent is within the limits of the drive and of the settings",
     "WRITE": "a parameter is written only when SET confirmed the question about this very value",
+    "SET": "a set that is saved has what the drive has; one that is written and equal is in it",
     "EEPROM": "the EEPROM is written only when SET was held or an offer says so, but for what"
     " must be permanent",
+    "BUS OFF": "the panel leaves the line when SET says so and every drive was told to stop, and"
+    " sends nothing until PARAM or STOP",
     "LISTEN": "nothing is sent before the line was silent for 100 ms after power-on",
     # the line
     "LINE": "start interval, no collision, driver enable within a character of the telegram",

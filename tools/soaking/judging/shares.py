@@ -72,7 +72,7 @@ class Shares:
                 case = witness.cases[address]
                 asked_us = witness.asked_for_us(case, now)
                 if case in silent:
-                    asked_us = min(asked_us, now - self._full_us)
+                    asked_us = min(asked_us, now - max(self._full_us, case.question_us))
                 if asked_us > patience_us + 2 * witness.cycle_us:
                     told = (address, asked_us // MS, now)
                     raise Broken("NEGLECTED", "drive %d not asked for %d ms at %d" % told)

@@ -8,6 +8,8 @@ address keys move), both ways are allowed.
 
 from boards.sim.board import KEYS
 from tools.soaking.judging.case import Case, drive_at
+from tools.soaking.judging.commissioned import Commissioned
+from tools.soaking.judging.diagnosed import Diagnosed
 from tools.soaking.judging.drive_settings import Settings
 from tools.soaking.judging.facts import (
     ALL_STOP_US,
@@ -46,6 +48,9 @@ from tools.soaking.judging.facts import (
     lost_us,
 )
 from tools.soaking.judging.families import kinds_of
+from tools.soaking.judging.happened import Happened
+from tools.soaking.judging.kept_sets import KeptSets
+from tools.soaking.judging.line_left import LineLeft
 from tools.soaking.judging.rules import Broken
 from tools.soaking.judging.tape import Tape
 
@@ -79,6 +84,8 @@ class Witness:
         self.pressed_us = dict(self.up)  # key -> when it last went down
         self.spoilt = {}  # keys that must go up before they count -> True
         self.boot_us = 0
+        self.begun_us = 0  # it must listen before it sends, since then
+        self.bitten = False  # the watchdog has restarted it
         self.hung_us = None  # since when the loop stands still
         self.stalled_us = NEVER  # the end of the last standstill of any kind
         self.weather = None  # a `Weather`: what befalls the line
@@ -120,6 +127,11 @@ class Witness:
         self.pulled_us = NEVER  # something was last done that may cut what a drive sends
         self.stuck_us = None  # since when the chip's timers are dead
         self._noted_us = NEVER  # settings of the drives
+        self.line = LineLeft(self)
+        self.sets = KeptSets(world, self)
+        self.diagnosed = Diagnosed(self)
+        self.commissioned = Commissioned(self)
+        self.happened = Happened(self)
         world.witness = self
 
     # --- what the hand tells --------------------------------------------------------------------
@@ -142,6 +154,11 @@ class Witness:
                 self.unsure_us = ALWAYS if moving else now + 250 * MS
             return
         self.down[key] = self.pressed_us[key] = now
+        self.line.key(key, now)
+        self.sets.key(key, now)
+        self.diagnosed.key(key, now)
+        self.commissioned.key(key, now)
+        self.happened.key(key, now)
         if key == "STOP":
             if now - self.up[key] > self.debounce_us:  # else the panel may not have seen it go up
                 self.stop_from_us = now
@@ -281,6 +298,7 @@ class Witness:
         """The chip is about to restart."""
         now = self.clock.now_us
         self.judge.play()
+        self.bitten = bool(bitten)
         if bitten:
             stood_us = 0 if self.hung_us is None else now - self.hung_us
             if stood_us < WATCHDOG_US - 200 * MS and self.stuck_us is None:
@@ -303,6 +321,7 @@ class Witness:
         stuck_us = self.stuck_us
         self.booted()
         self.boot_us -= self.plan.loop_us  # when it began, the loop had a step to end
+        self.begun_us = self.boot_us
         self.searches = searches
         if stuck_us is not None:
             self.stuck_us = now
@@ -312,7 +331,9 @@ class Witness:
         now = self.clock.now_us
         self.searches = False
         self.menu_us, self.menu_since_us = NEVER, ALWAYS
-        self.boot_us = now
+        self.line.end(now)
+        self.sets.booted()
+        self.boot_us = self.begun_us = now
         self.stirred_us = now
         self.stalled_us = now
         self.stuck_us = None
@@ -322,6 +343,7 @@ class Witness:
         for case in self.cases:
             case.unheard = 0
             case.heard_requests = case.requests
+            case.heard = case.taken = case.questions = 0
             case.void_us = now
             case.owed_us = NEVER
             case.excused_us = now + 3 * S
@@ -369,6 +391,7 @@ class Witness:
     def meddled(self, drive):
         """Parameters were changed at the drive itself."""
         self.stirred_us = now = self.clock.now_us
+        self.sets.changed(drive.address, now)
         self.cases[drive.address].changes(now)
         self.judge.look()
         self.note_settings(now)
@@ -400,7 +423,7 @@ class Witness:
 
     def asked_for_us(self, case, now):
         """How long a drive was not asked that could have been."""
-        if self.hung_us is not None or self.stuck_us is not None:
+        if self.hung_us is not None or self.stuck_us is not None or self.line.is_free:
             return 0
         return now - max(case.sent_us, self.stalled_us, self.late_us, self.boot_us)
 

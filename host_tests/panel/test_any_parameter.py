@@ -1,0 +1,496 @@
+# SPDX-License-Identifier: MIT
+"""The operator's manual, any parameter: by number, group or as a favourite, read and changed."""
+
+import json
+import sys
+
+from lookup_bench import (
+    choose,
+    forget_modules,
+    go_to,
+    hold,
+    lines,
+    look_up,
+    press,
+    speak,
+    type_digits,
+    wait,
+    wait_for_value,
+    world_of,
+)
+from panel_bench import row_1, row_2, starts
+
+INTERPRETERS = "unix64 unix32"
+
+YES_OR_NO = "SET=DO  PARAM=NO"
+
+
+# --- looking -------------------------------------------------------------------------------------
+
+
+def test_names_and_units_are_written_as_in_the_language_of_the_panel():
+    world = world_of()
+    speak(world, "de")
+    hold(world, "PARAM", 1400)
+    world.run(500)
+    choose(world, "PARAMETER")
+    world.run(1500)
+    for _ in range(40):
+        if row_2(world) == ">NACH NUMMER":
+            break
+        press(world, "UP")
+    press(world, "SET")
+    wait(world, "P0")
+    type_digits(world, "0035")
+    press(world, "SET")
+    world.run(500)
+    assert wait_for_value(world).endswith("°C"), world.lcd()
+    said = lines(world)
+    assert "Motortemperatur" in said, said
+    speak(world, "en")
+    press(world, "UP", "DOWN")
+    assert "Motor temp." in lines(world)
+    world.check()
+
+
+def test_the_output_current_is_read_by_its_number_while_the_motor_runs():
+    world = world_of()
+    look_up(world, 27)
+    assert world.lcd()[1] == "r0027      0.00A", world.lcd()
+    assert lines(world) == {"Output current", "A1"}
+    press(world, "START")
+    world.run(4000)
+    assert world.drives[1].state == "running"
+    assert float(row_2(world)[5:-1]) > 0.5, world.lcd()
+    press(world, "STOP")
+    world.run(3000)
+    assert world.drives[1].state != "running"
+    press(world, "PARAM")
+    world.run(200)
+    assert row_2(world) == "READY        A1"
+    world.check()
+
+
+def test_a_unit_that_begins_with_a_digit_keeps_off_the_number():
+    world = world_of("g120")
+    look_up(world, 311)
+    assert world.lcd()[1] == "P0311     1395.0", world.lcd()  # it has no room
+    world = world_of("mm420")
+    look_up(world, 22)
+    assert world.lcd()[1] == "r0022    0 1/min", world.lcd()
+    world.check()
+
+
+def test_a_group_is_walked_both_ways_and_round():
+    world = world_of()
+    go_to(world, "PARAMETERS", "Ramps")
+    wait(world, "P1120")
+    assert wait_for_value(world) == "P1120[0]  10.00s"
+    there = [row_2(world)[:5]]
+    while True:
+        press(world, "NEXT")
+        world.run(800)
+        if row_2(world)[:5] == there[0]:
+            break
+        there.append(row_2(world)[:5])
+    assert there[:2] == ["P1120", "P1121"] and len(there) > 5, there
+    back = []
+    for _ in there:
+        press(world, "PREVIOUS")
+        world.run(1500)
+        back.append(row_2(world)[:5])
+    assert back == there[::-1], (there, back)
+    world.check()
+
+
+def test_what_a_value_is_called_and_its_limits_take_turns_with_the_name():
+    world = world_of()
+    look_up(world, 700)
+    assert row_2(world) == "P0700[0]       5"
+    assert lines(world) == {"Command source", "USS on COM link", "A1 0...6"}
+    look_up(world, 1120)
+    assert lines(world) == {"Ramp-up time", "A1 0...650s"}
+    world.check()
+
+
+def test_up_and_down_go_to_another_index():
+    world = world_of()
+    look_up(world, 2019)
+    assert row_2(world) == "P2019[0]    52:0"
+    press(world, "UP")
+    wait(world, "P2019[1]    21:0")
+    press(world, "DOWN", "DOWN")
+    wait(world, "P2019[7]     0:0")
+    press(world, "UP")
+    wait(world, "P2019[0]    52:0")
+    look_up(world, 1910)
+    press(world, "UP")
+    assert row_2(world) == "NOT AN ARRAY", world.lcd()
+    world.check()
+
+
+def test_a_number_that_the_drive_lacks():
+    world = world_of()
+    look_up(world, 9999)
+    assert row_2(world) == "NO SUCH PARAM."
+    wait(world, "P9999[0]   -----")
+    assert lines(world) == {"NOT IN THE LIST", "A1"}
+    press(world, "EDIT")
+    assert row_2(world) == "NOT READ YET"
+    world.check()
+
+
+def test_param_leaves_a_number_that_is_typed_and_stop_stops():
+    world = world_of()
+    press(world, "START")
+    world.run(4000)
+    go_to(world, "PARAMETERS", "BY NUMBER")
+    wait(world, "P0")
+    assert "NUMBER  SET=SHOW" in lines(world)
+    press(world, "UP", "START")
+    assert row_2(world) == "NO: SET OR PARAM"
+    press(world, "STOP")
+    world.run(2000)
+    assert world.drives[1].state != "running" and starts(world) == 1
+    assert row_2(world).startswith("r0000"), world.lcd()  # what was typed is gone
+    press(world, "PARAM")
+    world.run(200)
+    assert row_2(world) == "READY        A1"
+    world.check()
+
+
+# --- changing ------------------------------------------------------------------------------------
+
+
+def test_the_ramp_is_set_to_2_5_seconds_in_the_eeprom():
+    world = world_of()
+    drive = world.drives[1]
+    look_up(world, 1120)
+    press(world, "EDIT")
+    wait(world, "NEW 010.00s")
+    assert "P1120[0]  10.00s" in lines(world)
+    press(world, "PREVIOUS", "DOWN", "NEXT", "UP", "UP", "NEXT")
+    type_digits(world, "5")
+    wait(world, "NEW 002.50s")
+    assert drive.read(1120) == 10 and drive.eeprom_writes == 0
+    hold(world, "SET", 2200)
+    assert row_2(world) == "WRITTEN (EEPROM)", world.lcd()
+    assert drive.read(1120) == 2.5 and drive.eeprom_writes == 1
+    wait(world, "P1120[0]   2.50s")
+    drive.power_off()
+    world.run(200)
+    drive.power_on()
+    world.run(3000)
+    assert drive.read(1120) == 2.5
+    world.check()
+
+
+def test_set_pressed_shortly_writes_into_the_ram_alone():
+    world = world_of()
+    look_up(world, 1121)
+    press(world, "UP", "EDIT")
+    wait(world, "NEW 010.00s")
+    press(world, "UP", "SET")
+    assert row_2(world) == "WRITTEN (RAM)"
+    wait(world, "P1121[1]  11.00s")
+    drive = world.drives[1]
+    assert (drive.read(1121, 0), drive.read(1121, 1)) == (10, 11) and drive.eeprom_writes == 0
+    world.check()
+
+
+def test_the_drive_decides_about_limits():
+    world = world_of()
+    look_up(world, 1120)
+    press(world, "EDIT", "PREVIOUS", "PREVIOUS")
+    type_digits(world, "9")
+    wait(world, "NEW 910.00s")
+    press(world, "SET")
+    wait(world, "BEYOND LIMITS")
+    wait(world, "NEW 910.00s")  # what was typed is still there
+    press(world, "PARAM")
+    wait(world, "P1120[0]  10.00s")
+    assert world.drives[1].read(1120) == 10
+    world.check()
+
+
+def test_no_telegram_off_time_is_written_with_which_the_drive_would_trip():
+    world = world_of()
+    look_up(world, 2014)
+    before = world.drives[1].read(2014)
+    press(world, "EDIT")
+    for place, digit in zip((8, 7, 6, 5, 4), "10000"):  # from the ones on
+        for _ in range(10):
+            if row_2(world)[place] == digit:
+                break
+            press(world, "UP")
+        press(world, "PREVIOUS")
+    wait(world, "NEW 00001")
+    press(world, "SET")
+    assert row_2(world) == "BELOW LIMIT NOW", world.lcd()
+    assert world.drives[1].read(2014) == before
+    world.check()
+
+
+def test_a_choice_by_its_text_asks_first_where_it_is_risky():
+    world = world_of()
+    drive = world.drives[1]
+    look_up(world, 700)
+    press(world, "EDIT")
+    world.run(1000)
+    assert world.lcd() == ("USS on COM link ", "NEW            5")
+    press(world, "DOWN", "DOWN")
+    assert world.lcd() == ("Terminals       ", "NEW            2")
+    press(world, "SET")
+    assert row_2(world) == YES_OR_NO
+    asked = {"A1: P0700[0]", "= 2", "PANEL MAY LOSE", "THE DRIVE BY IT"}
+    assert lines(world) == asked
+    press(world, "PARAM")
+    assert drive.read(700) == 5 and row_2(world) == "NEW            2"
+    press(world, "SET", "SET")
+    wait(world, "WRITTEN (RAM)")
+    assert drive.read(700) == 2
+    world.check()
+
+
+def test_edit_again_types_a_choice_that_has_no_text():
+    world = world_of()
+    look_up(world, 700)
+    press(world, "EDIT", "EDIT")
+    wait(world, "NEW 5")
+    press(world, "EDIT")
+    wait(world, "NEW 0005")
+    press(world, "EDIT")
+    wait(world, "P0700[0]       5")
+    world.check()
+
+
+def test_edit_pressed_twice_does_not_wait_for_the_texts():
+    world = world_of()
+    look_up(world, 700)
+    world.press("EDIT", 40)
+    world.press("EDIT", 40)
+    wait(world, "NEW 5")
+    world.run(500)
+    world.check()
+
+
+def test_bits_are_read_and_changed_one_by_one():
+    world = world_of()
+    look_up(world, 52)
+    bits = int(row_2(world)[5:].strip("h "), 16)
+    press(world, "EDIT")
+    world.run(500)
+    names = []
+    for bit in range(16):
+        world.run(300)
+        assert row_2(world) == "r0052.%02d       %d" % (bit, bits >> bit & 1), world.lcd()
+        names.append(row_1(world).rstrip())
+        press(world, "NEXT")
+    assert names[:3] == ["Ready to start", "Ready", "Running"] and names[14] == "Runs right"
+    press(world, "UP")
+    assert row_2(world) == "READ ONLY"
+    press(world, "PARAM")
+    look_up(world, 927)
+    before = world.drives[1].read(927)
+    press(world, "EDIT", "NEXT", "DOWN" if before & 2 else "UP", "SET")
+    assert row_2(world) == YES_OR_NO
+    press(world, "SET")
+    wait(world, "WRITTEN (RAM)")
+    assert world.drives[1].read(927) == before ^ 2
+    world.check()
+
+
+def test_a_connector_is_typed_as_number_and_index():
+    world = world_of()
+    look_up(world, 731)
+    assert row_2(world) == "P0731[0]    52:3"
+    press(world, "EDIT")
+    wait(world, "NEW 00052:003")
+    press(world, "UP", "NEXT", "NEXT", "NEXT")
+    type_digits(world, "1")
+    wait(world, "NEW 00053:004")
+    press(world, "SET")
+    wait(world, "P0731[0]    53:4")
+    assert world.drives[1].read(731) == 53 << 16 | 4
+    world.check()
+
+
+def test_a_sign_is_a_place_as_well():
+    world = world_of()
+    look_up(world, 1001)
+    assert row_2(world) == "P1001[0]  0.00Hz"
+    press(world, "EDIT")
+    wait(world, "NEW +000.00Hz")
+    type_digits(world, "7")
+    press(world, "PREVIOUS", "PREVIOUS", "PREVIOUS", "UP")
+    wait(world, "NEW -007.00Hz")
+    press(world, "SET")
+    wait(world, "P1001[0] -7.00Hz")
+    assert world.drives[1].read(1001) == -7
+    world.check()
+
+
+def test_a_reading_is_not_edited_and_set_alone_changes_nothing():
+    world = world_of()
+    look_up(world, 27)
+    press(world, "EDIT")
+    assert row_2(world) == "READ ONLY"
+    press(world, "SET")
+    assert row_2(world) == "PRESS EDIT FIRST"
+    world.check()
+
+
+def test_stop_while_a_value_is_typed_stops_at_once_and_writes_nothing():
+    world = world_of()
+    press(world, "START")
+    world.run(4000)
+    look_up(world, 1120)
+    press(world, "EDIT", "UP")
+    wait(world, "NEW 011.00s")
+    world.down("STOP")
+    world.run(400)
+    assert world.reads("STOP, HOLD: OFF3"), world.lcd()
+    world.up("STOP")
+    world.run(11_000)
+    assert world.drives[1].state != "running" and world.drives[1].read(1120) == 10
+    assert row_2(world) == "P1120[0]  10.00s"
+    press(world, "SET")  # nothing is edited any more
+    assert row_2(world) == "PRESS EDIT FIRST" and world.drives[1].read(1120) == 10
+    world.check()
+
+
+def test_no_motor_starts_while_a_value_is_typed():
+    world = world_of()
+    look_up(world, 1120)
+    press(world, "EDIT")
+    for key in ("START", "REVERSE", "JOG_RIGHT", "JOG_LEFT"):
+        press(world, key)
+        assert row_2(world) == "NO: SET OR PARAM", key
+    assert starts(world) == 0
+    world.run(61_000)
+    assert row_2(world) == "P1120[0]  10.00s"  # nobody has gone on for a minute
+    world.check()
+
+
+# --- other families ------------------------------------------------------------------------------
+
+
+def test_of_an_unknown_family_every_number_is_read_and_written():
+    world = world_of(known="generic")
+    look_up(world, 1120)
+    assert row_2(world) == "P1120[0]  10.000", world.lcd()
+    press(world, "EDIT")
+    wait(world, "NEW +000010.000")
+    press(world, "UP", "SET")
+    wait(world, "P1120[0]  11.000")
+    press(world, "EDIT", "EDIT")
+    wait(world, "NEW 41300000")
+    press(world, "PARAM", "PREVIOUS")
+    wait(world, "P1119")
+    look_up(world, 304)
+    press(world, "EDIT", "UP")
+    wait(world, "NEW 00231")
+    press(world, "SET")
+    world.run(1000)
+    assert world.drives[1].read(1120) == 11
+    world.check()
+
+
+def test_a_micromaster_3_has_no_indices():
+    world = world_of("mm3")
+    look_up(world, 12)
+    assert row_2(world).startswith("P0012  "), world.lcd()
+    press(world, "UP")
+    assert row_2(world) == "NOT AN ARRAY"
+    world.check()
+
+
+def test_the_elements_of_a_g120_go_with_the_tasks_for_arrays():
+    world = world_of("g120")
+    look_up(world, 945)
+    press(world, "UP")
+    wait_for_value(world)
+    assert row_2(world).startswith("r0945[1] "), world.lcd()
+    tasks = {
+        characters[3] >> 4
+        for _, from_panel, characters in world.wire.log.last(40)
+        if from_panel and characters[6] == 1
+    }
+    assert tasks == {6}, tasks
+    world.check()
+
+
+def test_another_drive_has_another_value():
+    world = world_of(addresses=(1, 2))
+    world.drives[2].write(1120, 0, 7)
+    look_up(world, 1120)
+    assert row_2(world) == "P1120[0]  10.00s"
+    press(world, "ADDRESS_UP")
+    wait(world, "P1120[0]   7.00s")
+    assert "A2 0...650s" in lines(world)
+    world.check()
+
+
+def test_a_drive_that_is_lost_tells_nothing_and_ends_the_typing():
+    world = world_of()
+    look_up(world, 1120)
+    press(world, "EDIT")
+    world.drives[1].unplug()
+    world.run(2500)
+    assert row_2(world) == "P1120[0]       ?", world.lcd()
+    world.drives[1].plug()
+    wait(world, "P1120[0]  10.00s")
+    world.check()
+
+
+# --- favourites ----------------------------------------------------------------------------------
+
+
+def test_favourites_begin_as_parameter_mode_and_set_held_adds_and_removes():
+    world = world_of()
+    go_to(world, "PARAMETERS", "FAVOURITES")
+    there = []
+    for _ in range(5):
+        there.append(wait_for_value(world)[:5])
+        press(world, "NEXT")
+    assert there == ["P0700", "P1000", "P2011", "r2024", "r2025"], there
+    look_up(world, 1120)
+    hold(world, "SET", 1800)
+    assert row_2(world) == "FAVOURITE", world.lcd()
+    world.run(2000)
+    stored = json.loads(world.flash.files["settings.json"])
+    assert stored["favourites"] == {"mm440": [700, 1000, 2011, 2024, 2025, 1120]}
+    go_to(world, "PARAMETERS", "FAVOURITES")
+    press(world, "PREVIOUS")
+    wait(world, "P1120")
+    hold(world, "SET", 1800)
+    assert row_2(world) == "NO FAVOURITE NOW"
+    world.run(2000)
+    stored = json.loads(world.flash.files["settings.json"])
+    assert stored["favourites"] == {"mm440": [700, 1000, 2011, 2024, 2025]}
+    press(world, "PARAM", "PARAM")
+    wait(world, "P0700:     5 A1")  # parameter mode is what it was
+    world.check()
+
+
+def test_there_is_room_for_thirty_two_favourites():
+    world = world_of(settings={"favourites": {"mm440": list(range(32))}})
+    look_up(world, 1120)
+    hold(world, "SET", 1800)
+    assert row_2(world) == "FAVOURITES FULL", world.lcd()
+    world.check()
+
+
+# --- memory --------------------------------------------------------------------------------------
+
+
+def test_the_page_leaves_the_memory():
+    world = world_of()
+    forget_modules()
+    look_up(world, 1120)
+    assert "panel.lookup.inspection" in sys.modules and "catalogue" in sys.modules
+    press(world, "PARAM")
+    world.run(3000)
+    left = {name for name in sys.modules if name.startswith(("panel.lookup", "catalogue"))}
+    assert left == set(), left
+    world.check()

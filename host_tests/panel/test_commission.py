@@ -1,0 +1,251 @@
+# SPDX-License-Identifier: MIT
+"""The operator's manual, commissioning: a drive that is new is set up at the buttons, step by
+step, until its motor turns.
+"""
+
+from lookup_bench import choose, go_to, press, settled_heading, speak, world_of
+from panel_bench import row_1, settled_row_2, wait_until_known
+
+INTERPRETERS = "unix64 unix32"
+
+PLATE = (  # of the motor: number, what is typed over what is there, what is read then
+    (304, "400", 400),
+    (305, "200", 2.0),
+    (307, "055", 0.55),
+    (310, "5000", 50.0),
+    (311, "1380", 1380),
+)
+
+
+def begin(world, procedure):
+    go_to(world, "COMMISSION")
+    world.run(1000)
+    choose(world, procedure)
+    world.run(3000)
+    assert "/" in settled_heading(world)[1], world.lcd()
+
+
+def go_to_step(world, number):
+    for _ in range(40):
+        if settled_heading(world)[0][:5] == "P%04d" % number:
+            world.run(700)
+            return
+        press(world, "DOWN")
+    raise AssertionError("there is no step P%04d: %r" % (number, world.lcd()))
+
+
+def is_done(world):
+    return settled_heading(world)[0].endswith("*")
+
+
+def do(world, number):
+    """A step whose value stands in the catalogue."""
+    go_to_step(world, number)
+    press(world, "SET")
+    assert "SET=YES" in settled_row_2(world), world.lcd()
+    press(world, "SET")
+    world.run(1000)
+    assert settled_heading(world)[0] == "P%04d*" % number, world.lcd()
+
+
+def tell(world, number, digits):
+    """A step whose value stands on the motor's plate: each digit is set."""
+    go_to_step(world, number)
+    press(world, "SET")
+    world.run(300)
+    type_over(world, digits)
+    press(world, "SET")
+    world.run(1000)
+    assert settled_heading(world)[0] == "P%04d*" % number, world.lcd()
+
+
+def type_over(world, digits):
+    """Each place, from the first one on, goes up until it is right."""
+    places = sum([character.isdigit() for character in settled_row_2(world)])
+    digits = "0" * (places - len(digits)) + digits
+    for place in range(len(digits)):
+        for _ in range(20):
+            row = settled_row_2(world)
+            if sum([character.isdigit() for character in row.split("[")[0]]) == place:
+                break
+            press(world, "NEXT")
+        for _ in range(10):
+            if settled_row_2(world).split("[")[1][0] == digits[place]:
+                break
+            press(world, "UP")
+        else:
+            raise AssertionError((digits, world.lcd()))
+
+
+def leave(world):
+    """Back to the home page; what is said when the list is left."""
+    press(world, "PARAM")
+    said = settled_row_2(world).rstrip()
+    press(world, "PARAM", "PARAM")
+    world.run(4000)
+    return said
+
+
+def test_a_motor_is_commissioned_and_turns():
+    world = world_of("mm420")
+    drive = world.drives[1]
+    begin(world, "THE MOTOR")
+    do(world, 10)
+    for number, digits, value in PLATE:
+        tell(world, number, digits)
+        assert abs(drive.parameters.get(number) - value) < 0.001, (number, world.lcd())
+    do(world, 3900)
+    world.run(12_000)
+    assert drive.parameters.get(10) == 0
+    assert leave(world) == "A1: 12 LEFT"
+    wait_until_known(world)
+    press(world, "START")
+    world.run(4000)
+    assert drive.state == "running", world.lcd()
+    world.check()
+
+
+def test_whoever_stops_in_the_middle_reads_what_is_left_and_goes_on():
+    world = world_of("mm420")
+    begin(world, "THE MOTOR")
+    do(world, 10)
+    tell(world, 304, "400")
+    assert leave(world).endswith("LEFT"), world.lcd()
+    begin(world, "THE MOTOR")
+    go_to_step(world, 304)
+    assert is_done(world)
+    go_to_step(world, 305)
+    assert not is_done(world)
+    for _ in range(40):
+        if row_1(world).startswith("A1"):
+            break
+        press(world, "DOWN")
+    assert lines(world) >= {"17 LEFT", "FIRST P0100"}, lines(world)
+    world.check()
+
+
+def lines(world):
+    """What row 2 says in turn, without the mark of the menu."""
+    found = set()
+    for _ in range(90):
+        world.run(100)
+        found.add(settled_row_2(world)[1:].rstrip())
+    return found
+
+
+def test_a_drive_that_obeys_its_terminals_is_made_ready_for_uss():
+    world = world_of("mm420")
+    drive = world.drives[1]
+    for number, value in ((700, 2), (1000, 2), (2014, 0)):
+        drive.parameters.set(number, 0, value)
+    begin(world, "FOR USS")
+    for number in (700, 1000, 2014):
+        do(world, number)
+    assert drive.parameters.get(700) == drive.parameters.get(1000) == 5
+    assert drive.parameters.get(2014) == 2000
+    do(world, 971)
+    world.run(1000)
+    assert leave(world) == "A1: 1 LEFT", "P2000 is for a person to tell"
+    wait_until_known(world)
+    press(world, "START")
+    world.run(3000)
+    assert drive.state == "running", world.lcd()
+    world.check()
+
+
+def test_what_a_setpoint_means_is_asked_before_it_changes():
+    world = world_of("mm420")
+    begin(world, "FOR USS")
+    go_to_step(world, 2000)
+    press(world, "SET")
+    world.run(300)
+    type_over(world, "6000")
+    press(world, "SET")
+    world.run(300)
+    assert any(["60.00" in line and "SET=YES" in line for line in lines(world)]), world.lcd()
+    assert world.drives[1].parameters.get(2000) == 50
+    press(world, "SET")
+    world.run(1000)
+    assert world.drives[1].parameters.get(2000) == 60
+    world.check()
+
+
+def test_param_and_stop_write_nothing():
+    for key in ("PARAM", "STOP"):
+        world = world_of("mm420")
+        begin(world, "THE MOTOR")
+        do(world, 10)
+        go_to_step(world, 304)
+        press(world, "SET")
+        world.run(300)
+        type_over(world, "999")
+        press(world, key)
+        world.run(3500)
+        assert row_1(world).startswith("P0304 "), world.lcd()
+        assert world.drives[1].parameters.get(304) == 230
+        go_to_step(world, 3900)
+        press(world, "SET", key)
+        world.run(3500)
+        assert row_1(world).startswith("P3900 "), world.lcd()
+        assert world.drives[1].parameters.get(10) == 1
+        world.check()
+
+
+def test_nothing_is_written_while_the_motor_runs():
+    world = world_of("mm420")
+    press(world, "START")
+    world.run(2000)
+    begin(world, "THE MOTOR")
+    go_to_step(world, 10)
+    press(world, "SET")
+    world.run(300)
+    assert settled_row_2(world).startswith("STOP A1 FIRST"), world.lcd()
+    assert world.drives[1].parameters.get(10) == 0 and world.drives[1].state == "running"
+    world.check()
+
+
+def test_what_is_beyond_a_drives_limits_is_refused_and_stays_undone():
+    world = world_of("mm420")
+    begin(world, "THE MOTOR")
+    go_to_step(world, 304)
+    press(world, "SET")
+    world.run(300)
+    type_over(world, "400")
+    press(world, "SET")
+    world.run(1000)
+    assert not is_done(world), "P0010 is not 1 yet"
+    world.check()
+
+
+def test_a_drive_that_falls_silent_in_between():
+    world = world_of("mm420")
+    begin(world, "THE MOTOR")
+    world.drives[1].unplug()
+    world.run(3000)
+    press(world, "DOWN", "SET", "SET", "DOWN", "SET")
+    world.run(3000)
+    assert row_1(world).startswith("P0"), world.lcd()
+    world.drives[1].plug()
+    world.run(3000)
+    do(world, 10)
+    world.check()
+
+
+def test_each_family_has_its_steps():
+    for kind in ("mm3", "g110", "v20", "mm440", "g120"):
+        world = world_of(kind)
+        begin(world, "FOR USS")
+        go_to_step(world, {"mm3": 910, "g120": 2020}.get(kind, 2010))
+        assert is_done(world), (kind, world.lcd())
+        assert leave(world).endswith("LEFT"), kind
+        world.check()
+
+
+def test_in_german():
+    world = world_of("mm420")
+    speak(world, "de")
+    go_to(world, "INBETRIEBN.", "F\u00dcR USS")
+    world.run(3000)
+    go_to_step(world, 2011)
+    assert "Adresse" in lines(world), world.lcd()
+    world.check()

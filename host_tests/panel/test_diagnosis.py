@@ -1,0 +1,343 @@
+# SPDX-License-Identifier: MIT
+"""Diagnosis by keys: the pages of the menu, and why drive 4 does not answer."""
+
+import main
+from boards.sim.drives.kinds import listed_drives, simulated
+from boards.sim.world import World
+from panel_bench import OFF1, panel, row_2, running, said, settled, starts, telegrams
+from uss.master import LISTENING, OFF
+
+INTERPRETERS = "unix64 unix32"
+
+FOUR = (1, 2, 3, 4)
+
+
+def open_menu(world, *entries):
+    """Hold PARAM, and choose one entry after the other."""
+    world.press("PARAM", 1200)
+    world.run(300)
+    for entry in entries:
+        walk_to(world, entry)
+        world.press("SET")
+        world.run(300)
+
+
+def walk_to(world, entry):
+    """DOWN until row 2 begins so, behind the mark of the menu."""
+    walk(world, lambda: settled(world)[1].startswith(">" + entry), entry)
+
+
+def title(world):
+    """Row 1 without the place, once nothing is announced there."""
+    for _ in range(40):
+        row = settled(world)[0]
+        if "HOLD=ALL" not in row:
+            break
+        world.run(100)
+    return row[:11].rstrip()
+
+
+def read(world, wanted):
+    """Row 2 of the entry that has this title."""
+    walk(world, lambda: title(world) == wanted, wanted)
+    return settled(world)[1][1:].rstrip()
+
+
+def walk(world, arrived, what):
+    for _ in range(40):
+        if arrived():
+            return
+        world.press("DOWN", 40)
+    raise AssertionError("no %s: %r" % (what, world.lcd()))
+
+
+# --- the pages ----------------------------------------------------------------------------------
+
+
+def test_the_counters_of_a_drive_are_those_of_the_specification_with_their_rates():
+    world = running(addresses=(1, 2))
+    open_menu(world, "DIAGNOSIS", "A2", "COUNTERS")
+    assert title(world) == "A2 GOOD", world.lcd()
+    world.run(10_000)
+    counted, rate = row_2(world)[1:].split()
+    drive = world.app.bus.turns.at(2)
+    assert abs(int(counted) - drive.counters[0]) <= 2, world.lcd()
+    assert 1300 <= int(rate[: -len("/min")]) <= 1450, world.lcd()  # every second of 46 a second
+    names = []
+    for _ in range(7):
+        names.append(title(world).split()[1])
+        world.press("DOWN", 40)
+    assert names == ["GOOD", "START", "LENGTH", "BCC", "ADDRESS", "NOREPLY", "RESIDUE"], names
+    read(world, "A2 NOREPLY")
+    assert row_2(world).endswith("   .../min"), world.lcd()  # too early for a rate
+    world.drives[2].unplug()
+    world.run(5_000)
+    counted, rate = row_2(world)[1:].split()
+    assert int(counted) >= 3 and int(rate[: -len("/min")]) > 0, world.lcd()
+    world.check()
+
+
+def test_the_counters_of_the_bus_are_those_of_all_drives_and_what_the_bus_itself_counts():
+    world = panel(addresses=(1, 2))
+    open_menu(world, "DIAGNOSIS", "BUS COUNTERS")
+    world.run(4_000)
+    assert title(world) == "BUS GOOD"
+    counted, rate = row_2(world)[1:].split()
+    assert int(rate[:-4]) > 2_600, world.lcd()
+    good = sum(drive.counters[0] for drive in world.app.bus.turns.drives)
+    assert abs(int(counted) - good) <= 3
+    for wanted in ("BUS SENT", "BUS FOREIGN", "BUS FAILED", "BUS HUNG"):
+        read(world, wanted)
+    assert row_2(world).split()[0] == ">" and row_2(world).split()[1] == "0", world.lcd()
+    world.check()
+
+
+def test_the_times_are_those_of_the_line():
+    world = panel(addresses=(1, 2))
+    open_menu(world, "DIAGNOSIS", "A1", "TIMES")
+    world.run(3_000)
+    least, most = [float(ms) for ms in read(world, "A1 CYCLE")[:-3].split("-")]
+    assert 40 <= least <= most <= 50, world.lcd()  # two exchanges of 22 ms
+    least, most = [float(ms) for ms in read(world, "A1 START")[:-3].split("-")]
+    assert 1.1 <= least <= most < 5, world.lcd()
+    least, most = [float(ms) for ms in read(world, "A1 REPLY")[:-3].split("-")]
+    assert 1.6 <= least <= most < 2.0, world.lcd()  # after three characters
+    world.drives[1].reply_delay_us = 12_000
+    world.run(2_000)
+    least, most = [float(ms) for ms in read(world, "A1 REPLY")[:-3].split("-")]
+    assert least < 2 and 11.8 <= most <= 12.3, world.lcd()
+    world.press("PARAM")
+    world.run(300)
+    assert world.app.bus.witness is None
+    world.press("PARAM")
+    world.run(300)
+    walk_to(world, "BUS TIMES")
+    world.press("SET")
+    world.run(2_000)
+    assert read(world, "BUS CYCLE").endswith(" ms")
+    world.check()
+
+
+def test_the_last_telegrams_are_shown_in_words_and_in_hexadecimal():
+    world = running()
+    open_menu(world, "DIAGNOSIS", "A1", "TELEGRAMS")
+    world.run(500)
+    world.press("SET")  # they stay as they are
+    world.run(200)
+    shown = []
+    for _ in range(4 + 3 + 5 + 3):
+        shown.append(settled(world)[1][1:].rstrip())
+        world.press("DOWN", 40)
+        world.run(100)
+    assert "STW 047F ON" in shown and "HSW 0CCD 20%" in shown, shown
+    assert "GOOD" in shown and [row for row in shown if row.startswith("ZSW FB34 RUNS")], shown
+    assert [row for row in shown if row.startswith("HIW 0CC")], shown
+    assert [row for row in shown if row.startswith("PWE ")], shown
+    at = [row[:6] == "020E01" for row in shown].index(True)
+    sent = bytes.fromhex("".join(shown[at : at + 3]))
+    wire = [characters for _, from_panel, characters in world.wire.log.last(400) if from_panel]
+    assert sent in [bytes(one) for one in wire], shown
+    world.press("SET")
+    world.run(200)
+    assert title(world) in ("A1 SENT", "A1 HEARD")
+    world.check()
+
+
+def test_what_a_parameter_task_says_is_there_in_words():
+    world = panel()
+    open_menu(world, "DIAGNOSIS", "A1", "TELEGRAMS")
+    seen = set()
+    for _ in range(300):
+        world.run(30)
+        seen.add(row_2(world)[1:])
+    assert [row for row in seen if row[:6] in ("READ P", "READ r")], seen
+    world.check()
+
+
+def test_the_mirror_test_counts_what_comes_back():
+    world = running(addresses=(1, 2))
+    open_menu(world, "DIAGNOSIS", "A2", "MIRROR TEST")
+    assert title(world)[:9] == "A2 MIRROR"
+    world.run(5_000)
+    good, _, _, sent = row_2(world)[1:].split()
+    assert good == sent and 10 <= int(sent) <= 25, world.lcd()
+    world.drives[2].unplug()
+    world.press("SET")
+    world.run(5_000)
+    good, _, _, sent = row_2(world)[1:].split()
+    assert good == "0" and int(sent) >= 3, world.lcd()
+    assert world.drives[1].state == "running" and starts(world, 2) == 0
+    world.check()
+
+
+def test_the_panel_tells_why_it_started_and_what_memory_is_free():
+    world = panel()
+    open_menu(world, "DIAGNOSIS", "THE PANEL")
+    assert read(world, "RESTART") == "POWER OR RESET"
+    assert read(world, "HEAP FREE") == "SET=COUNT"
+    world.press("SET")
+    world.run(200)
+    count, unit = row_2(world)[1:].split()
+    assert int(count) > 0 and unit == "BYTES"
+    world.press("PARAM")
+    world.press("PARAM")
+    world.press("PARAM")
+    world.run(200)
+    world.hang(3_000)
+    world.run(3_000)
+    open_menu(world, "DIAGNOSIS", "THE PANEL")
+    assert read(world, "RESTART") == "WATCHDOG"
+
+
+def test_to_count_the_memory_waits_for_no_motor():
+    world = running()
+    open_menu(world, "DIAGNOSIS", "THE PANEL")
+    read(world, "HEAP FREE")
+    world.press("SET")
+    world.run(100)
+    assert world.reads("STOP ALL FIRST"), world.lcd()
+
+
+# --- bus off ------------------------------------------------------------------------------------
+
+
+def off_world(**options):
+    world = panel(**options)
+    world.run(3_000)
+    open_menu(world, "DIAGNOSIS", "BUS OFF")
+    world.press("SET")
+    world.run(1_000)
+    return world
+
+
+def test_bus_off_leaves_the_line_and_param_takes_it_back_listening_first():
+    world = off_world(addresses=(1, 2))
+    assert settled(world) == ("PARAM=BACK      ", ">LINE IS FREE   "), world.lcd()
+    left_us = world.clock.now_us
+    world.run(90_000)  # longer than a menu stays open
+    assert not telegrams(world, left_us) and world.reads("LINE IS FREE"), world.lcd()
+    world.press("PARAM", 40)
+    assert world.app.bus.phase == LISTENING
+    world.run(1_000)
+    assert {stw for _, stw in telegrams(world, left_us)} == {OFF1}
+    for _ in range(2):
+        world.press("PARAM")
+    world.run(10_000)
+    assert not world.resets and world.reads("FAULT F0072"), world.lcd()  # by its P2014
+    world.check()
+
+
+def test_bus_off_is_refused_while_a_motor_runs():
+    world = running(addresses=(1, 2))
+    open_menu(world, "DIAGNOSIS", "BUS OFF")
+    world.press("SET")
+    world.run(300)
+    assert world.reads("STOP ALL FIRST") and world.drives[1].state == "running", world.lcd()
+    assert world.app.bus.phase != OFF
+
+
+def test_while_the_line_is_left_no_key_starts_anything():
+    world = off_world()
+    for key in ("START", "REVERSE", "JOG_RIGHT", "JOG_LEFT"):
+        world.press(key)
+        world.run(500)
+        assert world.reads("NO: IN THE MENU"), world.lcd()
+    world.run(4_000)
+    assert world.reads("LINE IS FREE") and starts(world) == 0, world.lcd()
+    world.press("PARAM")
+    world.run(3_000)
+    assert starts(world) == 0
+    world.check()
+
+
+def test_stop_takes_the_line_back_and_is_sent():
+    world = off_world()
+    pressed_us = world.clock.now_us
+    world.press("STOP")
+    world.run(300)
+    sent = telegrams(world, pressed_us, 1)
+    assert sent and sent[0][1] == OFF1 and sent[0][0] - pressed_us < 250_000, sent
+    assert world.reads("MAY TRIP") and not world.reads("LINE IS FREE"), world.lcd()
+    world.check()
+
+
+def test_a_menu_that_closes_takes_the_line_back():
+    world = off_world()
+    world.app.panel.close_menu()
+    world.run(3_000)
+    assert world.app.bus.turns.at(1).contact
+    world.check()
+
+
+# --- why does drive 4 not answer? ---------------------------------------------------------------
+
+
+def unplugged():
+    world = World(main.start, FOUR)
+    world.drives[4].unplug()
+    return world
+
+
+def shown_4(world):
+    """The panel shows drive 4, which has been asked for a while."""
+    world.run(4_000)
+    world.press("ADDRESS_DOWN")
+    world.run(500)
+    return world
+
+
+def heard_of_4(world):
+    """What the last telegrams say was heard of drive 4."""
+    open_menu(world, "DIAGNOSIS", "A4", "TELEGRAMS")
+    world.run(1_000)
+    return read(world, "A4 HEARD")
+
+
+def test_a_wire_is_broken():
+    """Nothing is heard of it, there or anywhere else; the others answer."""
+    world = shown_4(unplugged())
+    assert [row for row in said(world, 4_000) if row == "NO CONTACT   A4"], world.lcd()
+    assert heard_of_4(world) == "NO REPLY", world.lcd()
+    world.press("PARAM")
+    world.run(300)
+    walk_to(world, "MIRROR TEST")
+    world.press("SET")
+    world.run(8_000)
+    assert row_2(world).startswith(">0 OK OF "), world.lcd()
+    for _ in range(4):
+        world.press("PARAM")
+    open_menu(world, "WHY NO CONTACT")
+    assert title(world) == "A4 HEARD" and world.reads("NOTHING"), world.lcd()
+    walk_to(world, "PLUG AND WIRES")
+    world.drives[4].plug()
+    world.run(8_000)
+    walk_to(world, "IT ANSWERS NOW")
+    world.check()
+
+
+def test_its_address_is_another_one():
+    """P2011 = 5: address 5 answers, which is not in the list."""
+    world = shown_4(World(main.start, (1, 2, 3, 5), settings={"drives": [1, 2, 3, 4]}))
+    assert heard_of_4(world) == "NO REPLY", world.lcd()
+    for _ in range(4):
+        world.press("PARAM")
+    open_menu(world, "WHY NO CONTACT", "P2011 = 4")  # SET goes to ANY ADDRESS
+    for answer in ("A4  IN THE LIST", "A5  ANSWERS"):
+        for _ in range(60):
+            world.run(100)
+            if row_2(world) == ">" + answer:
+                break
+        assert row_2(world) == ">" + answer, world.lcd()
+        world.press("DOWN", 40)
+    world.check()
+
+
+def test_its_pkw_words_are_others():
+    """P2013 = 127: it answers, in telegrams of another length, and the panel takes that over."""
+    world = shown_4(World(main.start, FOUR, kinds=simulated(listed_drives("4=mm420/127"))))
+    found = heard_of_4(world)
+    assert found in ("14 CHARACTERS", "GOOD"), world.lcd()
+    world.run(15_000)
+    assert read(world, "A4 HEARD") == "GOOD", world.lcd()
+    assert world.app.settings.kinds == {"4": "mm420/127"}
+    world.check()

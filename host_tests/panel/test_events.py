@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: MIT
+"""The operator's manual, events: what has happened since power-on, and how long ago."""
+
+from lookup_bench import entries, go_to, press, settled_heading, wait, world_of
+from panel.menu.events import age
+from panel.reports.journal import EVENTS, NOBODY, Journal
+from panel_bench import row_2
+
+INTERPRETERS = "unix64 unix32"
+
+
+def run_motor(world):
+    press(world, "START")
+    world.run(3000)
+    assert world.drives[1].state == "running", world.lcd()
+
+
+def events(world):
+    """What the list tells, as (drive, event)."""
+    go_to(world, "EVENTS")
+    world.run(500)
+    told = [(heading.split()[0], entry.rstrip()) for heading, entry in entries(world)]
+    press(world, "PARAM", "PARAM")
+    return told
+
+
+def test_what_stopped_a_motor_stands_in_the_list_the_last_first():
+    world = world_of("mm420", addresses=(1, 2))
+    run_motor(world)
+    press(world, "STOP")
+    world.run(3000)
+    run_motor(world)
+    world.drives[1].fault(1)
+    wait(world, "FAULT F0001")
+    world.run(1500)
+    press(world, "STOP")
+    world.run(1500)
+    told = events(world)
+    assert told[-1] == ("A1", "STOP KEY"), told
+    assert ("A1", "FAULT F0001") in told, told
+    assert told.index(("A1", "FAULT F0001")) < len(told) - 1, told
+    world.check()
+
+
+def test_nothing_has_happened_yet():
+    world = world_of("mm420")
+    go_to(world, "EVENTS")
+    world.run(500)
+    assert row_2(world).rstrip() == ">NONE YET", world.lcd()
+    press(world, "SET")
+    assert row_2(world).rstrip() == ">NONE YET", world.lcd()
+    world.check()
+
+
+def test_a_drive_that_was_lost_while_it_ran():
+    world = world_of("mm420")
+    run_motor(world)
+    world.drives[1].unplug()
+    world.run(4000)
+    world.drives[1].plug()
+    world.run(4000)
+    assert ("A1", "LOST,MAY RUN") in events(world)
+    world.check()
+
+
+def test_a_panel_that_the_watchdog_has_restarted_says_so():
+    world = world_of("mm420")
+    world.hang(2600)
+    world.run(6000)
+    assert events(world) == [("P", "WATCHDOG RESTART"[:15])]
+    world.check()
+
+
+def test_set_tells_what_a_fault_means():
+    world = world_of("mm420")
+    run_motor(world)
+    world.drives[1].fault(1)
+    wait(world, "FAULT F0001")
+    world.run(1500)
+    go_to(world, "EVENTS", "FAULT F0001")
+    world.run(800)
+    assert "Overcurrent" in row_2(world), world.lcd()
+    world.check()
+
+
+def test_how_long_ago_it_was():
+    world = world_of("mm420")
+    run_motor(world)
+    press(world, "STOP")
+    world.run(65_000)
+    go_to(world, "EVENTS")
+    world.run(500)
+    drive, ago = settled_heading(world)[0].split()
+    assert drive == "A1" and "1:05" <= ago <= "1:15", world.lcd()
+    assert [age(each) for each in (0, 59, 3_599, 3_600, 86_399, 86_400, 1_000_000)] == [
+        b"0:00", b"0:59", b"59:59", b"1h00", b"23h59", b"1d00h", b"11d13h",
+    ]  # fmt: skip
+
+
+def test_the_journal_keeps_the_last_events_and_counts_on_when_the_clock_wraps():
+    journal = Journal(0xFFFF)
+    now_ms = 0xFF00
+    journal.tick(now_ms)
+    for number in range(1, EVENTS + 4):
+        journal.note(b"FAULT", 3, number)
+        for _ in range(10):
+            now_ms += 1_000
+            journal.tick(now_ms & 0xFFFF)
+    assert journal.count == EVENTS
+    assert journal.event(0)[:3] == (b"FAULT", 3, EVENTS + 3)
+    assert journal.event(EVENTS - 1)[:3] == (b"FAULT", 3, 4)
+    ages = [journal.event(place)[3] for place in range(EVENTS)]
+    assert ages == list(range(10, 10 * EVENTS + 1, 10)), ages
+    journal.note(b"PANEL HUNG")
+    assert journal.event(0)[1] == NOBODY

@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: MIT
+"""The file of a parameter set, and what ten of them take."""
+
+import catalogue
+from boards.sim.chip.flash import BLOCK_BYTES, CAPACITY_BYTES, Flash
+from hal.store import FileStore
+from panel.menu.sets import words
+from panel.sets import saving, set_file, work, writing
+from sets_bench import made
+from uss import families
+
+INTERPRETERS = "unix64 unix32"
+NOT_TRACED = "test_ten_sets_of_an_mm440_with_all_that_it_has_fit test_the_values_are_counted"
+
+FILE_SYSTEM_BYTES = 1408 * 1024  # of a Pico with the firmware file: nothing else is in it
+SECTOR_BYTES = 4096
+WORDS = (b"U16", b"I16")
+
+
+def store_with(**files):
+    flash = Flash()
+    for name in files:
+        flash.files[name + set_file.ENDING] = files[name]
+    return FileStore("settings.json", flash.open, flash)
+
+
+def all_of(family):
+    """A row for each value that the catalogue has of a family."""
+    for row in catalogue.rows(family):
+        number = catalogue.number(row)
+        if row[catalogue.KEY][:1] == b"P" and number not in work.NEVER:
+            kind = row[catalogue.TYPE]
+            for index in range(catalogue.indices(row)):
+                yield number, index, kind, b"1A2B" if kind in WORDS else b"1A2B3C4D"
+
+
+def error_of(data):
+    try:
+        store = store_with(one=data)
+        set_file.read_head(store, "one.set")
+        return [row for row in set_file.rows(store, "one.set") if row]
+    except ValueError as error:
+        return error.args[0]
+
+
+def test_what_was_written_is_read():
+    rows = [
+        (3, 0, b"U16", b"0003"),
+        (1120, 0, b"Float", b"41200000"),
+        (1120, 1, b"I32", b"FFFFFFFF"),
+    ]
+    data = made(rows, ratings=[(206, b"3F400000")])
+    assert error_of(data) == [
+        (0, 3, 0, b"U16", 0, 3), (1, 1120, 0, b"Float", 0x4120, 0),
+        (2, 1120, 1, b"I32", 0xFFFF, 0xFFFF),
+    ]  # fmt: skip
+    head = set_file.read_head(store_with(one=data), "one.set")
+    assert (head.family, head.address, head.name) == ("mm440", 1, b"MADE")
+    assert head.ratings == {206: (0x3F40, 0)}
+
+
+def test_what_the_manual_prints_is_a_set():
+    with open("firmware/panel/sets/README.md", "rb") as manual:
+        text = manual.read()
+    block = text[text.index(b"    USS SET") : text.index(b"\n\n", text.index(b"    end "))]
+    found = error_of(block.replace(b"    ", b""))
+    assert len(found) == 4, (block, found)
+
+
+def test_remarks_count_as_nothing():
+    """As a program on a PC has them behind most lines, however long; their characters too."""
+    rows = [(3, 0, b"U16", b"0003"), (1120, 0, b"Float", b"41200000")]
+    bare = made(rows, ratings=[(206, b"3F400000")])
+    first, *others = bare.split(b"\n")
+    aligned = b"%-34s  # 2026-11-24 15:40, MICROMASTER 440\n" % first + b"\n".join(others)
+    all_lines = b"".join(
+        [line + b"\t # 20 \xc2\xb0C, " + 500 * b"x#" + b"\n" for line in others[:-1]]
+    )
+    all_lines = first + b"#\n# of the pump in the cellar\n" + all_lines + b"  # whole\n"
+    for text in (aligned, all_lines, all_lines.replace(b"\n", b"\r\n"), all_lines[:-1]):
+        assert error_of(text) == error_of(bare), text
+        head = set_file.read_head(store_with(one=text), "one.set")
+        assert (head.family, head.name, head.ratings) == ("mm440", b"MADE", {206: (0x3F40, 0)})
+    for wrong in (b"P0003 0 #", b"P0003 0 U16 00#03", b"# P0003 0 U16 0003"):
+        spoilt = bare.replace(b"P0003 0 U16 0003", wrong)
+        assert spoilt != bare and error_of(spoilt) == words.DAMAGED, wrong
+    assert error_of(aligned[: aligned.rindex(b"end")]) == words.CUT_SHORT
+    assert error_of(first + b"\n" + 300 * b"x" + b"# no line is as long") == words.NO_SET
+
+
+def test_a_file_that_is_cut_anywhere_is_none():
+    whole = made([(3, 0, b"U16", b"0003"), (1120, 0, b"Float", b"41200000")])
+    for length in range(len(whole) - 1):  # the last line feed is no matter
+        assert isinstance(error_of(whole[:length]), bytes), whole[:length]
+    assert len(error_of(whole[:-1])) == 2
+
+
+def test_a_file_with_any_character_changed_is_none():
+    whole = made([(3, 0, b"U16", b"0003"), (1120, 0, b"Float", b"41200000")])
+    for place in range(len(whole)):
+        for bit in (1, 4, 0x20):
+            spoilt = bytearray(whole)
+            spoilt[place] ^= bit
+            assert isinstance(error_of(bytes(spoilt)), bytes), bytes(spoilt)
+
+
+def test_ten_sets_of_an_mm440_with_all_that_it_has_fit():
+    ratings = [(number, b"00000000") for number in work.USUAL_RATINGS]
+    data = made(all_of("mm440"), name=b"0123456789", ratings=ratings)
+    store = store_with(one=data)
+    count = sum([row is not None for row in set_file.rows(store, "one.set")])
+    assert count == saving.COUNTS["mm440"] > 1090
+    print("a set of %d values: %d bytes" % (count, len(data)))
+    assert len(data) < set_file.SIZE_MAX // 2
+    sectors = -(-len(data) // SECTOR_BYTES) + 1
+    assert 10 * sectors * SECTOR_BYTES < FILE_SYSTEM_BYTES // 4
+    store = store_with(**{"set%d" % number: data for number in range(10)})
+    assert len(store.names(set_file.ENDING)) == 10 <= saving.SETS_MAX
+    assert 10 * -(-len(data) // BLOCK_BYTES) * BLOCK_BYTES < CAPACITY_BYTES
+
+
+def test_the_values_are_counted():
+    found = {name: sum([1 for _ in all_of(name)]) for name in catalogue.FAMILIES}
+    assert found == saving.COUNTS, found
+
+
+def test_what_is_left_out_has_a_reason_for_every_family():
+    """Whatever asks first because it may cut the bus off is none that another drive is given."""
+    for name in catalogue.FAMILIES:
+        family = getattr(families, name.upper())
+        bus, motor = writing.OF_FAMILY.get(name, (writing.BUS_AND_SOURCES, writing.MOTOR))
+        numbers = {catalogue.number(row) for row in catalogue.rows(name)}
+        for first, last in bus + motor:
+            assert [one for one in numbers if first <= one <= last] or name != "mm440", first
+        wanted = (family.address_number, family.baud_number, family.off_time_number)
+        for number in wanted + (family.pzd_words_number, family.pkw_words_number):
+            if number is not None and name != "g120":
+                assert [1 for first, last in bus if first <= number <= last], (name, number)

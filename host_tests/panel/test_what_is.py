@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: MIT
+"""The operator's manual, faults and warnings: what one means, what to do; the fault memory."""
+
+import sys
+
+from lookup_bench import choose, entries, forget_modules, go_to, hold, press, speak, wait, world_of
+from panel_bench import OFF1, row_1, row_2, telegrams
+
+INTERPRETERS = "unix64 unix32"
+
+
+def text_of(world):
+    """What the list says, heading by heading, each in one line."""
+    said = {}
+    for heading, line in entries(world):
+        said[heading] = (said.get(heading, "") + " " + line.strip()).strip()
+    return said
+
+
+def test_a_fault_is_read_understood_and_cleared():
+    world = world_of()
+    drive = world.drives[1]
+    press(world, "START")
+    world.run(3000)
+    drive.fault(1)
+    wait(world, "FAULT F0001  A1")
+    world.run(500)
+    hold(world, "PARAM", 1400)
+    world.run(500)
+    assert row_2(world) == ">WHAT IS F0001", world.lcd()
+    press(world, "SET")
+    world.run(500)
+    said = text_of(world)
+    assert sorted(said) == ["CAUSE", "F0001", "REMEDY"], said
+    assert said["F0001"] == "Overcurrent"
+    assert said["CAUSE"].startswith("Short circuit") and said["REMEDY"].endswith("."), said
+    drive.clear_cause()
+    press(world, "PARAM", "PARAM")
+    wait(world, "FAULT F0001  A1")
+    world.run(1200)
+    press(world, "STOP")
+    world.run(1000)
+    assert row_2(world) == "READY        A1", world.lcd()
+    world.check()
+
+
+def test_what_a_warning_means_and_how_it_is_cured():
+    world = world_of()
+    world.drives[1].warn(501)
+    wait(world, "WARN A0501")
+    go_to(world, "WHAT IS A0501")
+    world.run(500)
+    said = text_of(world)
+    assert said["A0501"] == "Current limit", said
+    assert said["CAUSE"].startswith("The motor takes more than the current limit."), said
+    assert said["REMEDY"], said
+    world.check()
+
+
+def test_the_catalogue_speaks_the_language_of_the_panel():
+    world = world_of()
+    speak(world, "de")
+    world.drives[1].warn(501)
+    wait(world, "WARN A0501")
+    hold(world, "PARAM", 1400)
+    world.run(500)
+    assert row_2(world) == ">WAS IST A0501", world.lcd()
+    press(world, "SET")
+    world.run(500)
+    said = text_of(world)
+    assert said["A0501"] == "Stromgrenze", said
+    assert sorted(said) == ["A0501", "ABHILFE", "URSACHE"], said
+    assert said["ABHILFE"], said
+    world.check()
+
+
+def test_a_family_with_other_numbers():
+    world = world_of("v20")
+    world.drives[1].fault(72)
+    wait(world, "FAULT F72")
+    world.run(1000)
+    go_to(world, "WHAT IS F72")
+    world.run(500)
+    assert set(text_of(world)) == {"F72", "CAUSE", "REMEDY"}
+    world.check()
+
+
+def test_what_the_catalogue_does_not_know_it_says():
+    world = world_of()
+    world.drives[1].fault(999)
+    wait(world, "FAULT F0999")
+    world.run(1000)
+    go_to(world, "WHAT IS F0999")
+    world.run(500)
+    assert entries(world) == [("F0999", "NO TEXT FOR IT")]
+    world.check()
+
+
+def test_without_a_fault_there_is_nothing_to_ask():
+    world = world_of()
+    hold(world, "PARAM", 1400)
+    assert row_2(world) == ">DRIVES"
+    world.check()
+
+
+def test_the_fault_memory_has_the_last_faults_with_their_texts():
+    world = world_of()
+    drive = world.drives[1]
+    for number in (1, 11):
+        drive.fault(number)
+        world.run(3000)
+        drive.clear_cause()
+        press(world, "STOP")
+        world.run(1000)
+    go_to(world, "FAULT MEMORY")
+    world.run(1500)
+    there = entries(world)
+    told = [drive.read(947, index) for index in range(8)]
+    assert told[0] == told[1] == 0 and {1, 11} < set(told), told
+    there = [row for _, row in there]
+    assert len(there) <= 8 and "F0001 Overcurre" in there and "NO FAULT" in there, there
+    choose(world, "F0011")
+    world.run(500)
+    said = text_of(world)
+    assert said["F0011"] == "Motor too hot" and said["REMEDY"], said
+    press(world, "PARAM")
+    world.run(300)
+    assert row_1(world).startswith("A1 FAULTS"), world.lcd()
+    press(world, "DOWN")  # the catalogue is still there for the list below
+    world.run(300)
+    world.check()
+
+
+def test_the_fault_memory_of_a_drive_without_indices_has_one_entry():
+    world = world_of("mm3")
+    go_to(world, "FAULT MEMORY")
+    world.run(1000)
+    assert world.lcd()[0] == "A1 FAULTS       " and row_2(world) == ">NO FAULT", world.lcd()
+    world.check()
+
+
+def test_the_elements_of_a_g120_are_asked_for_by_their_tasks():
+    world = world_of("g120")
+    go_to(world, "FAULT MEMORY")
+    world.run(2000)
+    assert {row for _, row in entries(world)} == {"NO FAULT"}
+    world.check()
+
+
+def test_stop_acts_while_the_text_is_read():
+    world = world_of()
+    world.drives[1].warn(600)
+    press(world, "START")
+    world.run(3000)
+    wait(world, "WARN A0600")
+    go_to(world, "WHAT IS A0600")
+    world.run(500)
+    assert world.drives[1].state == "running"
+    pressed_us = world.clock.now_us
+    press(world, "STOP")
+    assert telegrams(world, pressed_us, 1)[1][1] == OFF1
+    world.run(11_000)
+    assert world.drives[1].state != "running" and row_2(world).startswith(">")
+    world.check()
+
+
+def test_all_of_it_leaves_the_memory():
+    world = world_of()
+    forget_modules()
+    world.drives[1].warn(501)
+    wait(world, "WARN A0501")
+    go_to(world, "WHAT IS A0501")
+    world.run(500)
+    assert "panel.lookup.what" in sys.modules
+    press(world, "PARAM", "PARAM")
+    world.run(300)
+    left = [name for name in sys.modules if name.startswith(("panel.lookup", "catalogue"))]
+    assert left == [], left
+    world.check()

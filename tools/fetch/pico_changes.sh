@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: MIT
+# What the firmware of our own changes in the sources of MicroPython. To be sourced before pico.sh.
+#
+# A change that makes a firmware other than plain MicroPython takes a flag to act (pico_flags): the
+# firmware files for the tests that hold plain MicroPython are made of the same sources.
+
+# change_micropython MICROPYTHON SDK: the folders.
+change_micropython() {
+    open_frame_limit "$1/py/objfun.c" &&
+        pass_what_is_full "$1/py/gc.c" &&
+        know_what_is_loaded "$1/py/builtinimport.c" &&
+        ask_for_files_first "$1/py/builtinimport.c" || return
+    [[ ! -d $2/src/rp2_common/pico_platform_common ]] ||
+        name_common_part "$1/ports/rp2/CMakeLists.txt"
+}
+
+# One line for all of it: sources that were changed otherwise are fetched again.
+micropython_changes() {
+    declare -f change_micropython open_frame_limit pass_what_is_full know_what_is_loaded \
+        ask_for_files_first name_common_part insert_behind | cksum
+}
+
+# Lets a compiler flag say what MicroPython fixes; without the flag nothing changes.
+open_frame_limit() {
+    local limit=VM_MAX_STATE_ON_STACK
+    grep -q "^#define $limit " "$1" &&
+        sed -i "s/^#define $limit .*/#ifndef $limit\n&\n#endif/" "$1"
+}
+
+# Memory for an object of several blocks is looked for from the first hole of the heap on, four
+# blocks at a time. Here sixteen are passed at once where they have no two free ones in a row: with
+# 31 drives in memory a module is loaded in two thirds of the time.
+pass_what_is_full() {
+    insert_behind "$1" '            for (i = area->gc_last_free_atb_index; i < area->gc_alloc_table_byte_len; i++) {' <<'C'
+                #if USS_PANEL
+                const byte *table = area->gc_alloc_table_start;
+                for (size_t whole = area->gc_alloc_table_byte_len & ~3; i % 4 == 0 && i < whole; i += 4) {
+                    uint32_t blocks = *(const uint32_t *)(table + i);
+                    uint32_t free = ~(blocks | blocks >> 1) & 0x55555555;
+                    if (n_blocks == 1 ? free : (free & free >> 2) || (n_free && (free & 1))) {
+                        break;
+                    }
+                    n_free = free >> 30;
+                }
+                if (i >= area->gc_alloc_table_byte_len) {
+                    break;
+                }
+                #endif
+C
+}
+
+# `from a.b.c import d` looks for a, a.b and a.b.c, one after the other, each by its letters. Here a
+# module that is loaded is found by its whole name, which the bytecode has as a number.
+know_what_is_loaded() {
+    insert_behind "$1" '    DEBUG_printf("Starting module search for '"'%s'"'\n", module_name);' <<'C'
+    #if USS_PANEL
+    if (level == 0 && fromtuple != mp_const_none && mp_obj_is_qstr(module_name_obj)) {
+        mp_map_elem_t *loaded = mp_map_lookup(&MP_STATE_VM(mp_loaded_modules_dict).map, module_name_obj, MP_MAP_LOOKUP);
+        if (loaded) {
+            return loaded->value;
+        }
+    }
+    #endif
+C
+}
+
+# Whether a name is a folder is known once all that is frozen has been looked through; a file is
+# found on the way. Most modules are files.
+ask_for_files_first() {
+    insert_behind "$1" 'static mp_import_stat_t stat_module(vstr_t *path) {' <<'C'
+    #if USS_PANEL
+    size_t prefix = strlen(MP_FROZEN_PATH_PREFIX);
+    if (strncmp(vstr_null_terminated_str(path), MP_FROZEN_PATH_PREFIX, prefix) == 0) {
+        size_t length = path->len;
+        vstr_add_str(path, ".py");
+        if (mp_find_frozen_module(vstr_null_terminated_str(path) + prefix, NULL, NULL) == MP_IMPORT_STAT_FILE) {
+            return MP_IMPORT_STAT_FILE;
+        }
+        path->len = length;
+    }
+    #endif
+C
+}
+
+# SDK 2.2 has a part more, which everything needs; a MicroPython that is older does not name it.
+name_common_part() {
+    grep -qx ' *pico_platform_common' "$1" ||
+        { grep -qx ' *pico_platform_compiler' "$1" &&
+            sed -i 's/^\( *\)pico_platform_compiler$/\1pico_platform_common\n&/' "$1"; }
+}
+
+# insert_behind FILE LINE: what stands on the standard input, behind that line, which is there once.
+insert_behind() {
+    local found
+    found=$(grep -nFx -- "$2" "$1") && [[ $found != *$'\n'* ]] || return
+    sed -i "${found%%:*}r /dev/stdin" "$1"
+}
