@@ -2,7 +2,8 @@
 """The soak finds planted bugs: a copy of the firmware with one thing wrong breaks the right rule.
 
 Each row of tools/soaking/mutations.py is soaked with the seed that is known to find it, then with
-others: a change of firmware or simulation may have made another life of that one. A seed is the
+others whose operator is given to the same: a change of firmware or simulation may have made
+another life of that one. A seed is the
 same life on every interpreter (test_soak_interpreters.py); these are lived on CPython, for its
 speed, or on PyPy where there are many. Where a change takes the text of a row away this fails:
 give the row its new text. Better seeds are looked for by
@@ -28,8 +29,8 @@ from tools.soaking.mutations import MUTATIONS, UNFOUND
 INTERPRETERS = "host"
 
 MINUTES = 2
-SEEDS = range(1, 61)
-OTHERS = range(1, 25)  # that a test tries
+SEEDS = 200  # that are looked through for better ones
+OTHERS = 24  # that a test tries
 ANY_DRIVES, ONE_TROUBLE = 0, 1
 
 
@@ -68,7 +69,7 @@ def hunted(mutation):
     """None if the bug was found; or what the soak said instead, lines."""
     told = []
     with tempfile.TemporaryDirectory() as folder:
-        seeds = [mutation.seed, *OTHERS]
+        seeds = [mutation.seed, *mutation.seeds(OTHERS)]
         planted = mutated(mutation, Path(folder))
         for said in soaked(planted, seeds, mutation.roams, interpreters.CPYTHON):
             if said["rule"] in mutation.rules:
@@ -128,19 +129,22 @@ def test_a_text_that_is_gone_is_told(tmp_path):
 
 
 def find_seeds(names):
-    """Print for each mutation the first seeds that find it, and after how many seconds."""
+    """Print for each mutation the first seed that finds it, and after how many seconds."""
+    wanted = [one for one in MUTATIONS if one.name in names or not names]
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        pool.map(find_seed, wanted)
+
+
+def find_seed(mutation):
     fast = interpreters.PYPY if interpreters.is_here(interpreters.PYPY) else interpreters.CPYTHON
-    for mutation in MUTATIONS:
-        if names and mutation.name not in names:
-            continue
-        with tempfile.TemporaryDirectory() as folder:
-            found = []
-            for said in soaked(mutated(mutation, Path(folder)), SEEDS, mutation.roams, fast):
-                if said["rule"]:
-                    found.append((said["seed"], said["rule"], said["seconds"]))
-                if len([1 for _, rule, _ in found if rule in mutation.rules]) == 2:
-                    break
-            print(mutation.name, found, flush=True)
+    with tempfile.TemporaryDirectory() as folder:
+        planted = mutated(mutation, Path(folder))
+        for said in soaked(planted, mutation.seeds(SEEDS), mutation.roams, fast):
+            if said["rule"]:
+                print(mutation.name, said["seed"], said["rule"], said["seconds"], flush=True)
+            if said["rule"] in mutation.rules:
+                return
+    print(mutation.name, "was not found", flush=True)
 
 
 if __name__ == "__main__":

@@ -6,9 +6,20 @@ In use:
     dice = Dice(7)
     other = Dice(7, 1)      # others of the same seed
     dice.below(6)           # 0...5
+    may("commissions", 7)   # whether the operator of this seed does that
 """
 
 MASK = 0x3FFFFFFF  # a small integer on 32-bit builds
+
+# What an operator may be given to: which dice of his seed tell it, and in one life of how many.
+# There he does little else.
+GIVEN_TO = {
+    "types": (13, 4),  # sets setpoints digit by digit
+    "looks_up": (19, 4),  # looks parameters and faults up
+    "diagnoses": (21, 8),  # looks into the line, and leaves it to others
+    "keeps_sets": (29, 8),  # saves and writes parameter sets, if there are few drives
+    "commissions": (31, 8),  # commissions drives, reads the events, and tours the menu
+}
 
 
 class Dice:
@@ -31,3 +42,9 @@ class Dice:
 
     def one_of(self, choices):
         return choices[self.below(len(choices))]
+
+
+def may(what, seed):
+    """Whether the operator of this seed is given to what GIVEN_TO names, if its world lets him."""
+    which, one_in = GIVEN_TO[what]
+    return Dice(seed, which).below(one_in) == 0

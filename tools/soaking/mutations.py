@@ -5,14 +5,19 @@ Each row of MUTATIONS plants one bug. host_tests/tools/test_soak_mutations.py ap
 copy of firmware/, and soaks that with the row's seed.
 """
 
+import itertools
+
+from tools.soaking.dice import may
+
 
 class Mutation:
     """name; why it matters; rules, one of which the soak must name; the seed that finds it;
     changes, each (file below firmware/, old text, new text). roams: the operator opens menu and
-    search.
+    search. given_to: what he has to be given to (`dice.GIVEN_TO`), if it is anything.
     """
 
     roams = True
+    given_to = None
 
     def __init__(self, name, why, rules, seed, *changes):
         self.name = name
@@ -20,6 +25,12 @@ class Mutation:
         self.rules = rules
         self.seed = seed
         self.changes = changes
+
+    def seeds(self, count):
+        """The first ones whose operator is given to what finds it."""
+        given_to = self.given_to
+        seeds = (seed for seed in itertools.count(1) if not given_to or may(given_to, seed))
+        return list(itertools.islice(seeds, count))
 
     def apply(self, folder):
         """Change the copy of firmware/ in `folder`, a Path. LookupError if an old text is gone."""
@@ -37,6 +48,18 @@ class AtHome(Mutation):
     """Found by an operator who opens neither menu nor search, because he needs all of his time."""
 
     roams = False
+
+
+class Typing(AtHome):
+    given_to = "types"
+
+
+class Diagnosing(Mutation):
+    given_to = "diagnoses"
+
+
+class Commissioning(Mutation):
+    given_to = "commissions"
 
 
 MUTATIONS = (
@@ -60,10 +83,10 @@ MUTATIONS = (
             "if not down & self._key or control is not",
         ),
     ),
-    Mutation(
+    AtHome(
         "BCC unchecked",
         "a spoilt reply counts",
-        ("WITHOUT REASON", "SHOWN", "LOST", "START"), 18,
+        ("WITHOUT REASON", "SHOWN", "LOST", "START"), 65,
         (
             "uss/telegram.py",
             "    if exclusive_or(buffer, count):\n        return BAD_BCC\n",
@@ -117,10 +140,10 @@ MUTATIONS = (
             "        self._arm(self._duration_us + self._durations_us[2])\n",
         ),
     ),
-    Mutation(
+    AtHome(
         "dead man removed",
         "ON goes on while the panel hangs",
-        ("DEAD MAN",), 6,
+        ("DEAD MAN",), 5,
         ("uss/master.py", "DEAD_MAN_US = const(300_000)", "DEAD_MAN_US = const(3_000_000)"),
     ),
     Mutation(
@@ -143,10 +166,10 @@ MUTATIONS = (
             "        self.stops = (self.stops + 1) & _TICKET_MASK\n        self.steady = False\n",
         ),
     ),
-    Mutation(
+    AtHome(
         "STOP beaten by START",
         "START is obeyed while STOP is down",
-        ("STOP", "START"), 15,
+        ("STOP", "START"), 1,
         (
             "panel/panel.py",
             "if self.stop_key.is_down and acts.pressed & self._motion_bits:",
@@ -165,10 +188,10 @@ MUTATIONS = (
             "                self.drive.start(self.drive.hsw, self._on())\n",
         ),
     ),
-    Mutation(
+    AtHome(
         "START without release",
         "a START that was down at power-on counts, sooner or later",
-        ("START",), 15,
+        ("START",), 57,
         (
             "panel/keys/__init__.py",
             "self._released = 0  #",
@@ -403,10 +426,10 @@ MUTATIONS = (
         ("NEGLECTED",), 8,
         ("uss/silence.py", "            asked.ask_soon()\n", "            pass\n"),
     ),
-    Mutation(
+    AtHome(
         "a running drive backs off",
         "a drive that runs, and is lost, is asked as seldom as one that stands",
-        ("NEGLECTED",), 14,
+        ("NEGLECTED",), 16,
         (
             "uss/drive.py",
             "return not self.contact and not self.was_running",
@@ -522,10 +545,10 @@ MUTATIONS = (
         ("LOST",), 21,
         ("app.py", "settings.lost_ms * 1000", "settings.lost_ms * 1100"),
     ),
-    Mutation(
+    Typing(
         "digits take effect without SET",
         "a motor goes faster while somebody still types what it shall turn with",
-        ("RISES",), 18,
+        ("RISES",), 26,
         (
             "panel/pages/digits.py",
             "        self._centihertz += ((digit + direction) % 10 - digit) * worth\n",
@@ -663,7 +686,7 @@ MUTATIONS = (
         ("UNSUPERVISED",), 294,
         ("uss/families/mm3.py", "off_time_unit_ms = 1000", "off_time_unit_ms = 1"),
     ),
-    Mutation(
+    AtHome(
         "reversed without a bit",
         "the display says left, and a drive without a reverse bit is sent the same setpoint",
         ("SHOWN",), 18,
@@ -898,23 +921,23 @@ MUTATIONS = (
             "            self.foreign = 0\n            self.phase = RESTING\n",
         ),
     ),
-    Mutation(
+    Diagnosing(
         "a mirror test that commands",
         "a drive that takes it for one of its own telegrams obeys what it says",
-        ("MIRROR",), 54,
+        ("MIRROR",), 61,
         ("panel/menu/diagnosis/mirror.py", "] &= 0xFB", "] |= 0x04"),
     ),
-    Mutation(
+    Diagnosing(
         "good replies miscounted",
         "the diagnosis shows other counters than those of the drive",
-        ("SHOWN",), 144,
+        ("SHOWN",), 665,
         (
             "panel/menu/diagnosis/counters.py",
             "            counted += control.drive.counters[row]\n",
             "            counted += control.drive.counters[0] + control.drive.counters[row]\n",
         ),
     ),
-    Mutation(
+    Commissioning(
         "a step unasked",
         "SET writes a step of commissioning at once, and nobody has seen what",
         ("WRITE",), 24,
@@ -937,10 +960,10 @@ MUTATIONS = (
             "        elif self._phase == LOOKS and not self.is_searching():\n",
         ),
     ),
-    Mutation(
+    Commissioning(
         "rescales unasked",
         "P2000 is written without a word, and the setpoint means another speed",
-        ("WRITE",), 11,
+        ("WRITE",), 99,
         (
             "panel/commission/course.py",
             "            if self._rescales():\n                self._phase = ASKS\n",
@@ -948,17 +971,17 @@ MUTATIONS = (
             "                self._phase = ASKS\n",
         ),
     ),
-    Mutation(
+    Commissioning(
         "typed and not taken",
         "a step of commissioning is written as it was, not as it was typed",
-        ("WRITE",), 11,
+        ("WRITE",), 54,
         (
             "panel/commission/course.py",
             "                self._bits = form.bits(self._typed)\n",
             "                self._bits = form.bits(self._typed) ^ 1 << 12\n",
         ),
     ),
-    Mutation(
+    Commissioning(
         "commissioned while it runs",
         "a step is written while the motor turns",
         ("WRITE",), 316,
@@ -968,7 +991,7 @@ MUTATIONS = (
             "        if self._control.is_active() and not self._form:\n",
         ),
     ),
-    Mutation(
+    Commissioning(
         "STOP dead in commissioning",
         "whoever commissions a drive cannot stop it",
         ("STOP", "STOP ALL"), 235,
@@ -980,7 +1003,7 @@ MUTATIONS = (
             "        if down & self._stop_bit and not course:\n",
         ),
     ),
-    Mutation(
+    Commissioning(
         "events too young",
         "an event reads as half as old as it is",
         ("SHOWN",), 101,
@@ -995,10 +1018,10 @@ MUTATIONS = (
             "self._counted_at_ms + 2_000 &",
         ),
     ),
-    Mutation(
+    Commissioning(
         "another drive's event",
         "an event reads as that of the drive that is shown",
-        ("SHOWN",), 39,
+        ("SHOWN",), 296,
         (
             "panel/menu/events.py",
             "        who = _THE_PANEL if address == NOBODY else b\"A%d\" % address\n",

@@ -11,7 +11,7 @@ from boards.sim.board import LOOP_US
 from boards.sim.drives.families import BOP, WITH_BOP, g110, mm420, mm440, named, v20
 from boards.sim.drives.switches import SWITCHES
 from boards.sim.world import World, supervision, supervision_ms
-from tools.soaking.dice import Dice
+from tools.soaking.dice import Dice, may
 from tools.soaking.digest import Digest
 from tools.soaking.judging.facts import S, exchange_us, lost_us
 
@@ -20,12 +20,7 @@ from tools.soaking.judging.facts import S, exchange_us, lost_us
 ABLE = ((mm420, {}), (mm420, {}), (mm440, {}))
 OTHERS = ((g110, {}), (mm420, {2013: 3}), (mm440, {2012: 4}), (v20, {2013: 4, 2014: 0}))
 
-TYPES_IN = 4  # in one world of so many somebody types digits
-LOOKS_UP_IN = 4  # and in one, parameters and faults are looked up
-DIAGNOSES_IN = 8  # in one of so many he looks into the line, and leaves it to others
-COMMISSIONS_IN = 8  # in one he commissions drives, reads the events, and tours the menu
-KEEPS_SETS_IN = 8  # in one he saves and writes parameter sets, if there are few drives
-SETS_DRIVES, SETS_BAUD = 2, 19200
+SETS_DRIVES, SETS_BAUD = 2, 19200  # parameter sets take long
 
 # One world in so many has drives of all families and layouts. Of these the panel is told the
 # truth, or another layout, now and then that it is a drive of which nothing is known.
@@ -90,12 +85,12 @@ class Plan:
         self.echo = not dice.below(10)
         self.settings = _settings(dice, self.addresses)
         self.settings["drives"] = list(self.listed)
-        self.types = Dice(seed, 13).below(TYPES_IN) == 0
-        self.looks_up = roams and Dice(seed, 19).below(LOOKS_UP_IN) == 0
-        self.diagnoses = roams and Dice(seed, 21).below(DIAGNOSES_IN) == 0
-        self.commissions = roams and Dice(seed, 31).below(COMMISSIONS_IN) == 0
-        keeps_sets = Dice(seed, 29).below(KEEPS_SETS_IN) == 0 and len(self.listed) <= SETS_DRIVES
-        self.keeps_sets = roams and keeps_sets and self.baud >= SETS_BAUD
+        self.types = may("types", seed)
+        self.looks_up = roams and may("looks_up", seed)
+        self.diagnoses = roams and may("diagnoses", seed)
+        self.commissions = roams and may("commissions", seed)
+        few = len(self.listed) <= SETS_DRIVES and self.baud >= SETS_BAUD
+        self.keeps_sets = roams and may("keeps_sets", seed) and few
         # Drives of all families.
         self.families = families = Dice(seed, 11)
         self.has_families = families.below(FAMILIES_IN) == 0
