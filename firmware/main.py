@@ -37,14 +37,6 @@ def loop(app):
         app.close()
 
 
-def run(board):
-    """The panel until Ctrl-C, or until the exception that ends it. Then maintenance mode."""
-    try:
-        loop(App(board))
-    except KeyboardInterrupt:
-        print(STOPPED if board.watchdog.stop() else KEPT_ON)
-
-
 def escape_wanted(keypad):
     """Whether the key that leaves the chip at the prompt is down."""
     if ESCAPE_KEY not in keypad.names:
@@ -53,12 +45,16 @@ def escape_wanted(keypad):
 
 
 def main():
+    """The panel until Ctrl-C, or until the exception that ends it. Then maintenance mode."""
     import board  # the file that boards/<name>/ puts beside this one
 
     if escape_wanted(board.keypad):
         print(ESCAPED)
-    else:
-        run(board)
+        return
+    try:
+        loop(App(board))
+    except KeyboardInterrupt:
+        print(STOPPED if board.watchdog.stop() else KEPT_ON)
 
 
 if __name__ == "__main__":

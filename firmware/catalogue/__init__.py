@@ -105,36 +105,43 @@ def _rows(family, kind, numbers):
         head = _cells(_line(table))
         like = head[_LIKE].decode()
         yield None
-        for part in numbers.split():
-            first, _, last = part.partition(b"-")
-            first, last = _key(first, kind), _key(last or first, kind) | 0x1FF
-            for row in _between(table, first, last):
-                if row:
-                    missing = False
-                    yield None
-                    row = _cells(row)
-                    yield None
-                    if like and not as_a_whole and b"" in row:
-                        row = yield from _completed(row, like)
-                    row = [b"" if cell == b"-" else cell for cell in row]
-                    if row[INDICES:] and row[INDICES] in (b"CDS", b"DDS"):
-                        sets = _COMMAND_SETS if row[INDICES] == b"CDS" else _DRIVE_SETS
-                        row[INDICES] = head[sets] + b" " + row[INDICES]
-                yield row
+        is_completed = like and not as_a_whole
+        if is_completed:
+            yield from _prepare(like)
+        with _table(like) if is_completed else table as other:
+            for part in numbers.split():
+                first, _, last = part.partition(b"-")
+                first, last = _key(first, kind), _key(last or first, kind) | 0x1FF
+                for row in _between(table, first, last):
+                    if row:
+                        missing = False
+                        yield None
+                        row = _cells(row)
+                        yield None
+                        if is_completed and b"" in row:
+                            row = yield from _completed(row, other)
+                        row = _plain(row, head)
+                    yield row
     if like and missing and as_a_whole:
         yield from _rows(like, kind, numbers)
 
 
-def _completed(row, like):
-    """With what is empty from the row with the same key of the other family."""
+def _completed(row, table):
+    """With what is empty from the row with the same key of the other family's table."""
     key = row_key(row[KEY])
-    yield from _prepare(like)
-    with _table(like) as table:
+    for other in _between(table, key, key):
         yield None
-        for other in _between(table, key, key):
-            yield None
-            if other:
-                return [cell or from_other for cell, from_other in zip(row, _cells(other))]
+        if other:
+            return [cell or from_other for cell, from_other in zip(row, _cells(other))]
+    return row
+
+
+def _plain(row, head):
+    """With nothing for -, and with the number of data sets before their name."""
+    row = [b"" if cell == b"-" else cell for cell in row]
+    if row[INDICES:] and row[INDICES] in (b"CDS", b"DDS"):
+        sets = _COMMAND_SETS if row[INDICES] == b"CDS" else _DRIVE_SETS
+        row[INDICES] = head[sets] + b" " + row[INDICES]
     return row
 
 

@@ -34,7 +34,7 @@ class Packed:
         self._row_key = row_key
         self._index = module.INDEX
         self._blocks = BytesIO(module.BLOCKS)  # which reads it where it is
-        self._place = 0  # of the block, in the index
+        self._place = None  # of the block, in the index
         self._block = module.HEAD
         self._at = 0  # so much of it has been read
 
@@ -62,8 +62,10 @@ class Packed:
             else:
                 high = middle
         yield None
-        self._block = block = yield from self._unpack(low * _ENTRY_BYTES)
-        yield None
+        if low * _ENTRY_BYTES != self._place:  # else it is that which the row before came from
+            self._block = yield from self._unpack(low * _ENTRY_BYTES)
+            yield None
+        block = self._block
         low, high = 0, len(block)
         while high - low > _NEAR:
             middle = block.rfind(b"\n", low, (low + high) // 2) + 1

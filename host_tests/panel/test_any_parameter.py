@@ -446,6 +446,29 @@ def test_a_drive_that_is_lost_tells_nothing_and_ends_the_typing():
 # --- favourites ----------------------------------------------------------------------------------
 
 
+def test_what_is_typed_stays_when_the_drive_falls_silent_on_the_number():
+    world = world_of()
+    look_up(world, 1120)
+    wait_for_value(world)
+    hear = world.drives[1].slave.hear
+
+    def hear_selectively(burst):
+        is_asked = burst.data[3] & 0xF0 and burst.data[4] == 1120 & 0xFF
+        return None if is_asked else hear(burst)
+
+    press(world, "EDIT", "NEXT", "UP")
+    typed = row_2(world)
+    world.drives[1].slave.hear = hear_selectively
+    wait(world, "NO REPLY TO THIS")
+    world.run(5_000)
+    assert row_2(world)[:4] == typed[:4], world.lcd()
+    world.drives[1].slave.hear = hear
+    press(world, "SET")
+    world.run(500)
+    assert abs(world.drives[1].read(1120) - 10.1) < 0.001, world.lcd()
+    world.check()
+
+
 def test_favourites_begin_as_parameter_mode_and_set_held_adds_and_removes():
     world = world_of()
     go_to(world, "PARAMETERS", "FAVOURITES")

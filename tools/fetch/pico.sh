@@ -131,7 +131,8 @@ pico_manifest() {
 # MicroPython remembers where it found a name, in 128 places of which this port reaches half: the
 # panel has more names than that in use. 2 KB of memory make its bus engine a fifth faster. And a
 # call with more than 11 words of variables takes them from the heap, which costs 0.2 ms: the stack
-# of 8 KB has room for 24.
+# has room for 24. It is longer than 8 KB, as the receive interrupt takes 3 KB of it and may come
+# in the midst of anything, such as a parameter that is searched in a table.
 # A collection that has more than 64 objects in hand looks through the whole heap once more, and
 # again: with room for 192 it takes half as long.
 # What pico_changes.sh changes acts by the last of them.
@@ -139,7 +140,7 @@ pico_manifest() {
 pico_flags() {
     [[ $1 == stock* ]] ||
         echo -DMICROPY_OPT_MAP_LOOKUP_CACHE_SIZE=2048 -DVM_MAX_STATE_ON_STACK=96 \
-            -DMICROPY_ALLOC_GC_STACK_SIZE=192 -DUSS_PANEL=1 \
+            -DSTACK_MORE=768 -DMICROPY_ALLOC_GC_STACK_SIZE=192 -DUSS_PANEL=1 \
             "-DPICO_PROGRAM_DESCRIPTION='\"USS panel $(panel_version)\"'"
 }
 

@@ -7,6 +7,7 @@
 # change_micropython MICROPYTHON SDK: the folders.
 change_micropython() {
     open_frame_limit "$1/py/objfun.c" &&
+        open_stack_limit "$1/ports/rp2/main.c" &&
         pass_what_is_full "$1/py/gc.c" &&
         know_what_is_loaded "$1/py/builtinimport.c" &&
         ask_for_files_first "$1/py/builtinimport.c" || return
@@ -16,8 +17,8 @@ change_micropython() {
 
 # One line for all of it: sources that were changed otherwise are fetched again.
 micropython_changes() {
-    declare -f change_micropython open_frame_limit pass_what_is_full know_what_is_loaded \
-        ask_for_files_first name_common_part insert_behind | cksum
+    declare -f change_micropython open_frame_limit open_stack_limit pass_what_is_full \
+        know_what_is_loaded ask_for_files_first name_common_part insert_behind | cksum
 }
 
 # Lets a compiler flag say what MicroPython fixes; without the flag nothing changes.
@@ -25,6 +26,15 @@ open_frame_limit() {
     local limit=VM_MAX_STATE_ON_STACK
     grep -q "^#define $limit " "$1" &&
         sed -i "s/^#define $limit .*/#ifndef $limit\n&\n#endif/" "$1"
+}
+
+# Lets a compiler flag make the stack longer than the 8 KB of the two small banks behind the RAM: it
+# goes on downwards, where the heap ends.
+open_stack_limit() {
+    grep -q '&__StackTop - &__StackBottom' "$1" && grep -q '&__GcHeapEnd)' "$1" &&
+        sed -i -e 's/&__StackTop - &__StackBottom/& + STACK_MORE/' \
+            -e 's/&__GcHeapEnd)/(void *)((uintptr_t)\&__GcHeapEnd - STACK_MORE))/' \
+            -e '0,/^#include/s//#ifndef STACK_MORE\n#define STACK_MORE 0\n#endif\n&/' "$1"
 }
 
 # Memory for an object of several blocks is looked for from the first hole of the heap on, four

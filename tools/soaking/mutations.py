@@ -54,6 +54,10 @@ class Typing(AtHome):
     given_to = "types"
 
 
+class LookingUp(Mutation):
+    given_to = "looks_up"
+
+
 class Diagnosing(Mutation):
     given_to = "diagnoses"
 
@@ -626,7 +630,7 @@ MUTATIONS = (
         ("SHOWN",), 25,
         ("uss/families/mm3.py", "on_reverse = 0x147F", "on_reverse = 0x0C7F"),
     ),
-    Mutation(
+    AtHome(
         "MM3 started as an MM4",
         "a MICROMASTER 3 is sent a word without a direction",
         ("CONTROL",), 3,
@@ -783,7 +787,7 @@ MUTATIONS = (
             "        if down & self._stop_bit and not hasattr(self._cover, \"_lists\"):\n",
         ),
     ),
-    Mutation(
+    Diagnosing(
         "START acts in the menu",
         "a motor starts that nobody has on the display",
         ("START",), 8,
@@ -840,7 +844,7 @@ MUTATIONS = (
             "        self._search(now_ms)\n",
         ),
     ),
-    Mutation(
+    LookingUp(
         "low word lost",
         "the page of a parameter shows 0 for whole numbers",
         ("SHOWN",), 17,

@@ -193,13 +193,15 @@ class Answers(Sight):
             self.panel.say(now_ms, *parameter_words.failure(job))
         self._refused = refused
         if job.state != pkw.DONE:
-            self.form = None
+            if self._editing is None:  # else what is typed still has a form
+                self.form = None
             return
         self.high, self.low = job.high, job.low
         if self.form is None or self.form.width != job.width:
             integers = self._control.survey.family.integer_doubles
             is_integer = job.width == pkw.WORD or integers and self.number in integers
             self.form = value.Form(self.row, job.width, is_integer)
+            self._editing = None  # digits of another form would mean something else
         self._name_value()
 
     def _name_value(self):

@@ -69,7 +69,7 @@ class Inspection(Answers):
             self.panel.say(now_ms, parameter_words.READ_ONLY)
 
     def _edit(self, now_ms):
-        if self.form is None or self._is_moving:
+        if self.form is None or self._is_moving or not self._is_known:
             self.panel.say(now_ms, parameter_words.NOT_READ_YET)
             return
         self._editing = Editing(self)

@@ -52,6 +52,8 @@ class Save(Work):
         self.untold = 0
         Work.__init__(self, panel, control)
         self.total = COUNTS[catalogue_of(self.family)]
+        self._table = catalogue.rows(catalogue_of(self.family), paced=True)
+        self._row = None  # the next one, once it is found
 
     def work(self):
         store = self.panel.board.store
@@ -61,7 +63,7 @@ class Save(Work):
         for line in set_file.head_lines(*head):
             self._add(line)
         yield from self.write_flash(self._begin, store)
-        for _ in pump.run(self.drive, self._tasks(family), self._take):
+        for _ in pump.run(self.drive, self._tasks(), self._take):
             yield
             if len(self._text) >= _PIECE:
                 yield from self.write_flash(self._write)
@@ -71,9 +73,20 @@ class Save(Work):
         if self.untold:
             self.outcome = (words.SAVED_UNTOLD, self.untold)
 
-    def _tasks(self, family):
-        for row in catalogue.rows(family, paced=True):
+    def look_ahead(self):
+        if self._row is not None or self._table is None:
+            return False
+        for row in self._table:
             if row and row[catalogue.KEY][:1] == b"P":
+                self._row = row
+            return True
+        self._table = None
+        return True
+
+    def _tasks(self):
+        while self._row is not None or self._table is not None:
+            row, self._row = self._row, None
+            if row is not None:
                 number = catalogue.number(row)
                 kind = row[catalogue.TYPE]
                 for index in range(0 if number in NEVER else catalogue.indices(row)):

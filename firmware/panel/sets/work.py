@@ -69,11 +69,8 @@ class Work:
             next(self._steps)
         except StopIteration:
             pass
-        except OSError:
-            self.end(words.FLASH_FULL)
-        except (ValueError, MemoryError) as error:
-            told = error.args and isinstance(error.args[0], bytes)
-            self.end(*(error.args if told else (texts.NO_MEMORY,)))
+        except (OSError, ValueError, MemoryError) as error:
+            self._fail(error)
 
     def search(self):
         """As many steps as fit one of the loop, at the time of the last one. It is over then, or
@@ -82,15 +79,37 @@ class Work:
         ticks_us, mask = self.panel.board.clock.ticks_us, self.panel.mask
         began_us = ticks_us()
         for _ in range(_STEPS_MAX if self._now_ms is not None else 0):
-            self.step(self._now_ms)
+            try:
+                has_looked = self.look_ahead()
+            except (OSError, ValueError, MemoryError) as error:
+                self._fail(error)
+                return
+            if not has_looked:
+                self.step(self._now_ms)
             if self.outcome is not None or elapsed(ticks_us(), began_us, mask) >= _WORK_US:
                 return
+
+    def look_ahead(self):
+        """Do a piece of what a step waits for, if there is any. Answers whether there was.
+
+        It is not done within the step: what searches a table is a generator within another one
+        within another one, and with those of the step a chip's stack would be too short for the
+        interrupt that comes meanwhile.
+        """
+        return False
 
     def end(self, *outcome):
         self.outcome = outcome
         if self.panel.errand is not None:
             self.panel.errand = None
             self.panel.bus.resume()
+
+    def _fail(self, error):
+        if isinstance(error, OSError):
+            self.end(words.FLASH_FULL)
+        else:
+            told = error.args and isinstance(error.args[0], bytes)
+            self.end(*(error.args if told else (texts.NO_MEMORY,)))
 
     def percent(self):
         return min(100 * self.done // self.total, 100)
