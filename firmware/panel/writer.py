@@ -87,9 +87,7 @@ class Writer:
         self._bus = bus
         self._settings = settings
         self._mask = mask
-        # A clock of a short period cannot tell more than half of it.
-        patience_us = max(_LOOK_US, _LOOK_CYCLES * bus.turns.longest_cycle_us())
-        self._patience_us = min(patience_us, mask >> 2)
+        self._patience_us = 0  # how long a drive that may have moved is looked for
         self._phase = IDLE
         self._job = pkw.read(0)
         self._write = None  # the last one
@@ -178,6 +176,9 @@ class Writer:
         elif may_have_moved and drive.silent:
             self._phase = LOOKING
             self._since_us = now_us
+            # A clock of a short period cannot tell more than half of it.
+            patience_us = max(_LOOK_US, _LOOK_CYCLES * self._bus.turns.longest_cycle_us())
+            self._patience_us = min(patience_us, self._mask >> 2)
             self._go_to(write.value)
         elif may_have_moved and drive.answered_address == write.value:
             self._confirm()

@@ -633,7 +633,7 @@ MUTATIONS = (
     AtHome(
         "MM3 started as an MM4",
         "a MICROMASTER 3 is sent a word without a direction",
-        ("CONTROL",), 3,
+        ("CONTROL",), 11,
         ("uss/families/mm3.py", "    on = 0x0C7F", "    on = 0x047F"),
     ),
     Mutation(
@@ -790,7 +790,7 @@ MUTATIONS = (
     Diagnosing(
         "START acts in the menu",
         "a motor starts that nobody has on the display",
-        ("START",), 8,
+        ("START",), 53,
         (
             "panel/menu/engine.py",
             "        if acts.has(\"PARAM\"):\n"
@@ -847,7 +847,7 @@ MUTATIONS = (
     LookingUp(
         "low word lost",
         "the page of a parameter shows 0 for whole numbers",
-        ("SHOWN",), 17,
+        ("SHOWN",), 86,
         (
             "panel/lookup/answers.py",
             "self.high, self.low = job.high, job.low",
@@ -988,7 +988,7 @@ MUTATIONS = (
     Commissioning(
         "commissioned while it runs",
         "a step is written while the motor turns",
-        ("WRITE",), 316,
+        ("WRITE",), 217,
         (
             "panel/commission/course.py",
             "        if self._control.is_active():\n",
