@@ -14,7 +14,7 @@ the new address for a while, and then takes it to be at the old one.
     phase       what goes on                                ends when
     PROBING     three telegrams to the new address          nobody answers: WAITING
                                                             somebody does, or STOP: IDLE
-    WAITING     the channel of the drive is full            it has room: WRITING
+    WAITING     the channel of the drive is full, perhaps   it has room: WRITING
     WRITING     the task is on its way; to a drive that     it is done or refused: IDLE
                 moves and is silent, at either address      such a drive stays silent: LOOKING
     LOOKING     telegrams to the new address                it answers there, or time is up: IDLE
@@ -114,7 +114,7 @@ class Writer:
                 control.moving = True
                 self._go_to(write.value)
             else:
-                self._ask()
+                self._phase = WAITING  # for a step: whoever calls this is deep in the stack
         return write
 
     def is_idle(self):

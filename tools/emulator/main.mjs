@@ -175,6 +175,7 @@ class Server {
       case 'P': pico?.drive(a, b); break;
       case 'U': pico?.send(payload); break;
       case 'X': if (a === 1) pico?.cutPower(); else pico?.pulseRunPin(); break;
+      case 'K': this.tellDepths(); break;
       case 'F': this.saveFlash(payload.toString()); break;
       default: this.report.failed(`there is no record of the kind "${kind}"`);
     }
@@ -190,6 +191,12 @@ class Server {
     } catch (error) {
       this.report.failed(`no chip: ${error.message}`);
     }
+  }
+
+  tellDepths() {
+    const { program, handlers } = this.pico?.core.takeDepths() ?? { program: 0, handlers: 0 };
+    this.report.add('K', 0, program);
+    this.report.add('K', 1, handlers);
   }
 
   saveFlash(path) {

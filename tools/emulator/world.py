@@ -146,6 +146,7 @@ class PicoWorld(Surroundings):
         self._records = []  # (at_ns, kind, a, b) that are not due in the world yet
         self._due = Event(self._take_due)
         self._outputs = {}
+        self._depths = [0, 0]
         if new:
             self.stored = None
         self._begin_chip(program_path(program), baud, display, files or {}, flash, model, jumpers)
@@ -241,6 +242,14 @@ class PicoWorld(Surroundings):
         stored = self.read_file(SETTINGS_FILE)
         return None if stored is None else json.loads(stored)
 
+    def stack_depths(self):
+        """The greatest depths of the stack since the last call, bytes: of the program, and of the
+        interrupts' handlers, which may come at any depth of the program.
+        """
+        self.tell("K")
+        self._settle()
+        return tuple(self._depths)
+
     # --- the referee ----------------------------------------------------------------------------
 
     def complaints(self):
@@ -314,6 +323,8 @@ class PicoWorld(Surroundings):
             self.usb.extend(content)
             if len(self.usb) > USB_KEPT_BYTES:
                 self.usb = self.usb[-USB_KEPT_BYTES:]
+        elif kind == "K":
+            self._depths[a] = b
         elif kind == "V":
             self._note(self.flash_log, (self._world_us(at_ns), a, b * 100))
         elif kind == "E" and a == LED:

@@ -88,6 +88,9 @@ export class Core extends CortexM0Core {
     this.rare = false; // ... the next instruction is one for rp2040js
     this.start = 0; // of the stretch: its instant, and how many cycles it may take
     this.budget = 0;
+    this.lowest = Infinity; // where SP has been in this mode, counted at PUSH
+    this.depths = { program: 0, handlers: 0 }; // of the stack, bytes
+    this.entered = 0; // SP when the handler interrupted the program
     this.signed = new Int32Array(this.registers.buffer);
     this.ram8 = mcu.sram;
     this.ram16 = new Uint16Array(mcu.sram.buffer);
@@ -106,6 +109,34 @@ export class Core extends CortexM0Core {
       return !!pending || this.pendingPendSV || this.pendingSystick || this.pendingNMI;
     }
     return super.checkForInterrupts();
+  }
+
+  // The greatest depths of the stack since the last call: of the program, below the end of the RAM,
+  // and of the handlers, below where they interrupted it. An interrupt may come anywhere.
+  takeDepths() {
+    this.noteDepth();
+    const { depths } = this;
+    this.depths = { program: 0, handlers: 0 };
+    return depths;
+  }
+
+  noteDepth() {
+    const { depths, lowest } = this;
+    if (lowest === Infinity) return;
+    if (this.IPSR) depths.handlers = Math.max(depths.handlers, this.entered - lowest);
+    else depths.program = Math.max(depths.program, RAM + RAM_BYTES - lowest);
+    this.lowest = Infinity;
+  }
+
+  exceptionEntry(number) {
+    this.noteDepth();
+    if (!this.IPSR) this.entered = this.SP;
+    super.exceptionEntry(number);
+  }
+
+  exceptionReturn(how) {
+    this.noteDepth();
+    super.exceptionReturn(how);
   }
 
   get anyPending() {
@@ -750,6 +781,7 @@ export class Core extends CortexM0Core {
           for (let i = 0; i < 8; i++) if (op & (1 << i)) ram32[at++] = r[i];
           if (op & 0x100) ram32[at] = r[14];
           r[13] = bottom;
+          if (bottom < this.lowest) this.lowest = bottom;
           pc += 2; left -= 1 + count - ((op >> 8) & 1); continue;
         }
         case 59: { // POP without PC
