@@ -18,7 +18,7 @@ change_micropython() {
 # One line for all of it: sources that were changed otherwise are fetched again.
 micropython_changes() {
     declare -f change_micropython open_frame_limit open_stack_limit pass_what_is_full \
-        know_what_is_loaded ask_for_files_first name_common_part insert_behind | cksum
+        know_what_is_loaded ask_for_files_first name_common_part insert_behind | sha256sum
 }
 
 # Lets a compiler flag say what MicroPython fixes; without the flag nothing changes.
