@@ -104,7 +104,6 @@ def _rows(family, kind, numbers):
         yield None
         head = _cells(_line(table))
         like = head[_LIKE].decode()
-        yield None
         is_completed = like and not as_a_whole
         if is_completed:
             yield from _prepare(like)
