@@ -30,16 +30,6 @@ import panel.pages.home  # noqa: F401
 from panel.panel import Panel
 from panel.screen import GLYPHS
 
-# From the bottom of the house up, too.
-PAGES_AT_HAND = (
-    "panel.pages.parameter_words", "panel.writer", "panel.pages.question", "panel.pages.risk",
-    "panel.pages.writing", "panel.pages.parameters", "panel.menu.words", "panel.menu.engine",
-    "panel.menu.main", "uss.families.kinds", "settings_file", "uss.finding", "uss.finding.mirror",
-    "panel.menu.address", "catalogue",
-)  # fmt: skip
-_OF_THE_SEARCH = (
-    "search.search", "search.hunt", "search.words", "uss.finding.scan", "uss.finding.enquiry",
-)  # fmt: skip
 _FINDER = ("uss.finding", "uss.finding.mirror", "uss.finding.finder")
 _FAREWELL_STEPS = const(100)  # for the display to show that nothing is controlled any more
 _SAVE_AGAIN_MS = const(10_000)  # after the store failed
@@ -71,7 +61,7 @@ class App:
         board.display.define(GLYPHS)
         restart = texts.WATCHDOG_RESTART if board.reset_cause else texts.NOTHING
         self.panel = Panel(roster, self.bus, board, settings, mask, (defect, restart))
-        on_demand.keep(PAGES_AT_HAND)
+        on_demand.keep("panel.at_hand")
         self._log = None  # the `Log`, while the settings want one
         self._mask = mask
         self.ticks_us = board.clock.ticks_us
@@ -282,7 +272,7 @@ class Handover:
     def step(self):
         """Answers the program that comes next, which is at work."""
         if self._wanted == "app":
-            for module in _OF_THE_SEARCH:
+            for module in on_demand.load("search").MODULES:
                 on_demand.drop(module)
             on_demand.flush()
             self._following = App(self._board)

@@ -22,8 +22,10 @@ _idle = []  # those that were dropped, where there is room: they leave one by on
 BUILT_IN = ("array", "binascii", "deflate", "io", "json", "struct")
 
 
-def keep(names):
-    """Load these modules for good, if there is room: to load one takes some milliseconds."""
+def keep(listed=None):
+    """Load for good, if there is room, what the module `listed` names in NAMES: to load a module
+    takes some milliseconds. What was kept before is not any more.
+    """
     global _kept
     for name in BUILT_IN:
         if name not in sys.modules:
@@ -33,7 +35,9 @@ def keep(names):
         drop(name)
     flush()
     gc.collect()
-    if not hasattr(gc, "mem_free") or gc.mem_free() >= ROOMY_BYTES:
+    if listed and (not hasattr(gc, "mem_free") or gc.mem_free() >= ROOMY_BYTES):
+        names = load(listed).NAMES
+        drop(listed)
         for name in names:
             load(name)
         _kept = names

@@ -1,11 +1,13 @@
 # SPDX-License-Identifier: MIT
-"""Every text an operator can see. Nothing is wider than the place it is shown in.
+"""The texts of the home page and of what may come over any page. Pages and lists have their own.
+
+Nothing is wider than the place it is shown in.
 
 In use:
 
     notice = texts.LINE_FAILED          # whoever keeps a text keeps it in English
     screen.put(1, 0, 12, texts.of(notice))          # and asks for its words when it shows them
-    texts.of(texts.SET_TO_LIMIT, 50, 0)             # with what belongs into it
+    texts.of(digits.SET_TO_LIMIT, 50, 0)            # with what belongs into it
 
 So the language may change at any time. `languages/words.tsv` has a column for each; who adds a
 text adds its row there. What has none is said in English. Words are bytes, one for each character,
@@ -153,14 +155,8 @@ REFUSED_UNSUPERVISED = b"NO JOG: P2014=0"
 REFUSED_LONG = b"NO: P2014 LONG"
 REFUSED_FN = b"NO: FN IS ON"  # this key of a compact keypad does nothing behind FN
 REFUSED_UNWATCHED = b"NO: SET P2014"  # on a board that cannot do without
-REFUSED_DIGITS = b"NO: SET OR PARAM"  # first: the setpoint is being edited
 
-# --- the setpoint digit by digit, and the units of what row 1 shows ------------------------------
-
-NEW_SETPOINT = b"NEW"
-SET_TO_LIMIT = b"LIMIT: %d.%02d"  # in place of what was beyond it
-HERTZ = b"Hz"
-PERCENT = b"%"
+PERCENT = b"%"  # a unit in row 1 or 2
 
 # --- parameters; `pages.parameter_words` has more ------------------------------------------------
 
@@ -176,10 +172,7 @@ _DO_OR_NOT = b"SET=DO  PARAM=NO"
 _START_OR_STOP = b"START=GO STOP=NO"
 _FIX_OR_START = b"SET=FIX START=GO"  # SET writes P2014, START takes the risk
 FIX_OR_STOP, CANNOT_START = b"SET=FIX STOP=NO", b"IT CANNOT START"  # no START=GO there
-_TO_BE_WRITTEN = b"A%d: P%04d=%d"
 
-ASK_CUTS_OFF = ((_TO_BE_WRITTEN, b"PANEL MAY LOSE", b"THE DRIVE BY IT"), _DO_OR_NOT)
-ASK_RESCALES = ((_TO_BE_WRITTEN, b"SETPOINTS MAY", b"CHANGE THEIR HZ"), _DO_OR_NOT)
 ASK_UNSUPERVISED = ((b"P%04d=0: IT RUNS", b"ON IF PANEL DIES"), _FIX_OR_START)
 ASK_UNTOLD = ((b"IT MAY RUN ON", b"IF PANEL DIES"), _START_OR_STOP)  # nobody can read its P2014
 ASK_LONG = (  # number, value, s
@@ -193,14 +186,6 @@ ASK_LATE = (
 ASK_RESTART = (
     (b"P1210=%d: DRIVE", b"STARTS BY ITSELF") + (b"THE PANEL WILL", b"STOP IT THEN"),
     _START_OR_STOP,
-)
-
-# So that a drive obeys this panel, or lets it write: number, value.
-ASK_UNLOCK = ((_TO_BE_WRITTEN, b"PANEL MAY WRITE", b"MORE THEN"), _DO_OR_NOT)
-ASK_SET_UP = ((_TO_BE_WRITTEN, b"PANEL COMMANDS", b"THE DRIVE THEN"), _DO_OR_NOT)
-ASK_SET_UP_EEPROM = (
-    (_TO_BE_WRITTEN, b"INTO ITS EEPROM:", b"PANEL COMMANDS", b"THE DRIVE THEN"),
-    _DO_OR_NOT,
 )
 
 ASK_SEARCH = (

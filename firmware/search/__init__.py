@@ -4,3 +4,8 @@
 The panel leaves the line before, so no motor runs and all the memory is free. What the operator
 takes stands in the settings afterwards, and the panel begins anew with it.
 """
+
+# That stay in memory while it goes on.
+MODULES = (
+    "search.search", "search.hunt", "search.words", "uss.finding.scan", "uss.finding.enquiry",
+)  # fmt: skip

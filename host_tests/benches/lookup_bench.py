@@ -139,7 +139,7 @@ def settled_heading(world):
 
 def forget_modules():
     """What a test before this one may have left in memory is not there."""
-    on_demand.keep(())
+    on_demand.keep()
     for name in list(sys.modules):
         if name.startswith(("panel.lookup", "panel.menu", "catalogue")):
             on_demand.drop(name)

@@ -12,12 +12,13 @@ from panel.lookup import words as lookup_words
 from panel.menu import words as menu_words
 from panel.menu.diagnosis import words as diagnosis_words
 from panel.menu.sets import words as set_words
-from panel.pages import parameter_words, splash
+from panel.pages import digits, parameter_words, set_up, splash, writing
 from search import words as search_words
 
 MODULES = (
     texts, splash, parameter_words, menu_words, set_words, diagnosis_words, search_words,
-    lookup_words, ask, commission_words,
+    lookup_words, ask, commission_words, set_up, writing,
+    digits,
 )  # fmt: skip
 TABLE = "firmware/panel/languages/words.tsv"
 

@@ -26,7 +26,7 @@ from panel.lookup import words as lookup_words
 from panel.menu import words as menu_words
 from panel.menu.diagnosis import words as diagnosis_words
 from panel.menu.sets import words as set_words
-from panel.pages import parameter_words, splash
+from panel.pages import digits, parameter_words, set_up, splash, writing
 from panel.screen import GLYPHS, Screen
 from panel_bench import panel, row_1, row_2, running, said, starts, unsupervised
 from search import words as search_words
@@ -45,7 +45,7 @@ ROW_MAX = 128  # bytes: what is read of a row of the table
 ORDINARY = {
     texts: ROW, splash: ROW, parameter_words: ROW, menu_words: ENTRY, set_words: ENTRY,
     commission_words: ENTRY, diagnosis_words: ENTRY, search_words: ROW, lookup_words: ENTRY + 1,
-    ask: ROW,
+    ask: ROW, set_up: ROW, writing: ROW, digits: ROW,
 }  # fmt: skip
 NARROW = {  # by module: names, place
     set_words: (
@@ -62,8 +62,8 @@ NARROW = {  # by module: names, place
         ("HALF_SET", STATE),
         ("FAULT WARNING", STATE - len(" F01910")),
         ("FAULT_LETTER WARNING_LETTER ADDRESS PERCENT MENU_MARK", 1),
-        ("SETPOINT HERTZ", 2),
-        ("ACTUAL ACTUAL_PERCENT NEW_SETPOINT", 3),
+        ("SETPOINT", 2),
+        ("ACTUAL ACTUAL_PERCENT", 3),
         ("UNKNOWN_VALUE BEYOND_VALUE UNREAD_VALUE", texts.VALUE_WIDTH),
         ("OTHER_UNCONFIRMED OTHER_LOST OTHER_RUNS OTHER_UNHEARD", BESIDE_ADDRESS),
         ("OTHER_TRIPPED", BESIDE_ADDRESS - len(" F01910")),
@@ -84,6 +84,7 @@ NARROW = {  # by module: names, place
         ("KEY_TEST_ENDS SET_KEEPS SET_NEXT STOPS_FOUND SHORT ADDED ALL_ADDED NOT_ADDED", ROW),
         ("REMOVED NOT_REMOVED KEPT NO_LOCK WRONG_CODE UNLOCKED", ROW),
     ),
+    digits: (("HERTZ", 2), ("NEW_SETPOINT", 3)),
     commission_words: (("LEAVES_DONE LEAVES_LEFT STOP_IT", ROW),),
     diagnosis_words: (
         ("COUNTERS OF_THE_BUS TIMES", TITLE - len("A31 ")),

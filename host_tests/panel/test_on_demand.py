@@ -12,7 +12,7 @@ PAGE, WRITER, QUESTION = "panel.pages.parameters", "panel.writer", "panel.pages.
 def cramped():
     """A panel with no room to keep what it does not need."""
     world = panel()
-    on_demand.keep(())
+    on_demand.keep()
     for name in (PAGE, WRITER, QUESTION, "panel.pages.risk"):
         on_demand.drop(name)
     wait_until_known(world)

@@ -132,10 +132,12 @@ def mpy_cross(chip=USUAL):
         with tempfile.TemporaryDirectory() as folder:
             there, output = Path(folder, "source.py"), Path(folder, "output.mpy")
             there.write_bytes(source)
-            # -s: the name that tracebacks show, and the function; -O3: no lines, which would take
-            # 5 KB of the chip's heap. The firmware has no assert that it would leave out.
+            # -s: the name that tracebacks show, and the function: that of the module, which is in
+            # the chip's memory anyway; a path would take 1.5 KB. -O3: no lines, which would take
+            # 5 KB. The firmware has no assert that it would leave out.
+            name = path.removesuffix(".py").removesuffix("/__init__").replace("/", ".")
             process = run(
-                *(f"-march={machine_code}", "-O3", "-s", path, "-o", str(output), str(there)),
+                *(f"-march={machine_code}", "-O3", "-s", name, "-o", str(output), str(there)),
                 stdout=subprocess.PIPE,
                 stderr=subprocess.STDOUT,
             )

@@ -35,7 +35,7 @@ def unload():
     """Forget what the seed before this one has loaded on demand: to find a module there takes a
     panel other steps than to load it, and a seed is the same life behind whichever other one.
     """
-    on_demand.keep(())
+    on_demand.keep()
     for name in tuple(sys.modules):
         if name not in LOADED_FIRST and name.partition(".")[0] in ON_DEMAND:
             on_demand.drop(name)

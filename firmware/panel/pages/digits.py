@@ -16,6 +16,11 @@ from panel.pages import Page
 from panel.phases import ASKING
 from uss.timing import elapsed
 
+NEW_SETPOINT = b"NEW"
+SET_TO_LIMIT = b"LIMIT: %d.%02d"  # in place of what was beyond it
+REFUSED_DIGITS = b"NO: SET OR PARAM"  # first: the setpoint is being edited
+HERTZ = b"Hz"
+
 _STALE_MS = const(30_000)
 _BLINK_MS = const(800)  # of these the digit is away for
 _AWAY_MS = const(250)
@@ -59,7 +64,7 @@ class Digits(Page):
             controls = panel.controls
             panel.show(controls[(controls.index(self._control) + turned) % len(controls)])
         elif acts.pressed & sum([acts.bit(key) for key in _REFUSED_KEYS]):
-            self.panel.say(now_ms, texts.REFUSED_DIGITS)
+            self.panel.say(now_ms, REFUSED_DIGITS)
         elif acts.has("SET"):
             if acts.pressed == acts.bit("SET"):  # with another key it is no clear wish
                 self._set(acts, now_ms)
@@ -84,7 +89,7 @@ class Digits(Page):
         self._leave(acts)
         reached = control.setpoint.centihertz
         if reached != wish:
-            self.panel.say(now_ms, texts.SET_TO_LIMIT, reached // 100, reached % 100)
+            self.panel.say(now_ms, SET_TO_LIMIT, reached // 100, reached % 100)
 
     def _leave(self, acts):
         acts.forget()  # a key that is held does nothing else
@@ -106,7 +111,7 @@ class Digits(Page):
             self.close()
 
     def draw(self, screen, now_ms):
-        screen.put(1, 0, _SIGN_COLUMN, texts.of(texts.NEW_SETPOINT))
+        screen.put(1, 0, _SIGN_COLUMN, texts.of(NEW_SETPOINT))
         screen.put(1, _SIGN_COLUMN, 1, b"-" if self._control.reversed else b" ")
         since_ms = elapsed(now_ms, self._used_at_ms or now_ms, self.panel.mask)
         away = self._place if since_ms % _BLINK_MS >= _BLINK_MS - _AWAY_MS else -1
@@ -116,5 +121,5 @@ class Digits(Page):
             else:
                 screen.digits(1, _COLUMNS[place], 1, self._centihertz // _PLACES[place])
         screen.put(1, _POINT_COLUMN, 1, b".")
-        unit = texts.PERCENT if self._percent else texts.HERTZ
+        unit = texts.PERCENT if self._percent else HERTZ
         screen.put(1, _UNIT_COLUMN, _ADDRESS_COLUMN - _UNIT_COLUMN, texts.of(unit))

@@ -3,7 +3,7 @@
 
 In use:
 
-    panel.cover(Question(panel, texts.ASK_CUTS_OFF, (1, 700, 2), {"SET": self._write}))
+    panel.cover(Question(panel, ASK[CUTS_OFF], (1, 700, 2), {"SET": self._write}))
 
 Row 1 says in turn what is at stake, row 2 which keys answer. STOP does its work besides.
 """

@@ -7,10 +7,19 @@
 What a drive needs stands in the tables `meaning` and `access` of its family.
 """
 
-from panel import texts
 from panel.pages.question import Question
 from uss.families import rows
 from uss.pzd import ZSW_RUNNING
+
+# The questions: number, value.
+_TO_BE_WRITTEN = b"A%d: P%04d=%d"
+_DO_OR_NOT = b"SET=DO  PARAM=NO"
+ASK_UNLOCK = ((_TO_BE_WRITTEN, b"PANEL MAY WRITE", b"MORE THEN"), _DO_OR_NOT)
+ASK_SET_UP = ((_TO_BE_WRITTEN, b"PANEL COMMANDS", b"THE DRIVE THEN"), _DO_OR_NOT)
+ASK_SET_UP_EEPROM = (
+    (_TO_BE_WRITTEN, b"INTO ITS EEPROM:", b"PANEL COMMANDS", b"THE DRIVE THEN"),
+    _DO_OR_NOT,
+)
 
 # Of those that may be wrong: what sets the others, or overrides them.
 _SET = (rows.SELECTION, rows.COMMAND_SOURCE, rows.SETPOINT_SOURCE)
@@ -22,14 +31,14 @@ def offer(panel):
     wanted = _wanted(control.survey)
     if wanted is not None:
         eeprom = control.survey.family.has_eeprom_tasks
-        _ask(panel, texts.ASK_SET_UP_EEPROM if eeprom else texts.ASK_SET_UP, wanted, eeprom)
+        _ask(panel, ASK_SET_UP_EEPROM if eeprom else ASK_SET_UP, wanted, eeprom)
 
 
 def unlock(panel):
     """The drive shown has refused a value because its access level is too low: ask about that."""
     access = panel.selected.survey.family.access
     if access is not None:
-        _ask(panel, texts.ASK_UNLOCK, (access[0], 0, access[1]), False)
+        _ask(panel, ASK_UNLOCK, (access[0], 0, access[1]), False)
 
 
 def _ask(panel, text, wanted, eeprom):

@@ -18,7 +18,12 @@ from uss.timing import elapsed
 
 EEPROM_MS = const(1_500)  # SET is held so long
 
-ASK = {CUTS_OFF: texts.ASK_CUTS_OFF, RESCALES: texts.ASK_RESCALES}
+_TO_BE_WRITTEN = b"A%d: P%04d=%d"
+_DO_OR_NOT = b"SET=DO  PARAM=NO"
+ASK = {  # by risk: what row 1 says in turn, and the choice in row 2
+    CUTS_OFF: ((_TO_BE_WRITTEN, b"PANEL MAY LOSE", b"THE DRIVE BY IT"), _DO_OR_NOT),
+    RESCALES: ((_TO_BE_WRITTEN, b"SETPOINTS MAY", b"CHANGE THEIR HZ"), _DO_OR_NOT),
+}
 
 
 class Writing:
