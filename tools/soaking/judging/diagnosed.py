@@ -19,7 +19,8 @@ from tools.soaking.judging.rules import Broken
 MIRROR_TEST, OK_OF = "MIRROR TEST", "OK OF"
 RESTART, BY_WATCHDOG, BY_OTHERS = "RESTART", MENU + "WATCHDOG", MENU + "POWER OR RESET"
 SENT, GOOD = "SENT", "GOOD"
-TESTS_US = 2_000 * MS  # after the page was read last
+# After the page was read last: announcements may hide row 1 meanwhile, and what STOP says row 2.
+TESTS_US = 6_000 * MS
 SLACK = 3  # telegrams: one is on its way, and another picture is not drawn yet
 COUNTS = 0x10000
 HEXADECIMAL = 14  # digits of a row that is full
