@@ -172,7 +172,8 @@ class Announced:
         if is_shown and not self._hides_state():
             return None  # its own page says it
         taken_us = min(case.answered_us, case.heard_us)  # a reply that the panel has surely taken
-        if now - taken_us > witness.lost_us * 9 // 10:
+        # A panel that has left the line knows nothing of a drive any more.
+        if witness.line.is_free or now - taken_us > witness.lost_us * 9 // 10:
             if not witness.is_lost(case, now):
                 return None  # it may be, or about to be
             may_run = case.zsw & ZSW_RUNNING and case.ran_us == case.answered_us
