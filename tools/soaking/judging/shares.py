@@ -23,6 +23,7 @@ SHARE = 5  # the part of the line that all silent drives together have
 OWED = 2  # times that, because they may have had less than their share before
 RARE_US = 1 * S  # between two silences that make a running drive's telegram late
 LOOKS = 10  # steps of the loop until one that runs has the turn that it needs
+PRESS_US = 16 * MS  # until the panel notices that one that runs needs its turn
 SLACK = 5  # in percent of the line
 COUNTED_US = 10 * S  # over which the share is judged
 STOPS = 8  # turns that a STOP takes which a silent drive does not confirm: every other one is its
@@ -88,10 +89,18 @@ class Shares:
 
     def _is_full(self):
         """Whether a third of the time after which a drive that runs trips, or is lost, is shorter
-        than an exchange: then silent drives are asked only while it stands (manual, settings)."""
+        than an exchange, or than what all need that run, and a silence; of the time after which it
+        is lost, two thirds. Then silent drives are asked only while it stands (manual, settings).
+        """
         witness = self.witness
         running = [address for address in witness.plan.listed if witness.cases[address].stw & RUN]
-        return any(self._limit_us(address) < witness.exchange_us for address in running)
+        needed_us = 2 * witness.plan.loop_us + PRESS_US + witness.exchange_us
+        needed_us += (3 * len(running) // 2 + 1) * self._answer_us
+        return any(
+            self._limit_us(address) < witness.exchange_us
+            or (self._off_time_us(address) or 2 * witness.lost_us) // 3 < needed_us
+            for address in running
+        )
 
     def _listed(self):
         witness = self.witness
@@ -124,14 +133,17 @@ class Shares:
 
     def _limit_us(self, address):
         """A third of P2014, of the lost time where there is none."""
+        return (self._off_time_us(address) or self.witness.lost_us) // 3
+
+    def _off_time_us(self, address):
+        """P2014; 0: it never trips, or nobody can read it."""
         witness = self.witness
         drive, sight = drive_at(witness.world, address), witness.sight_of(address)
-        off_time_us = 0
         if drive is not None and sight is not None and sight.reads_words:
             if sight.family.is_right_for(drive):
                 number, unit_us = sight.family.off_time
-                off_time_us = sight.family.read(drive, number) * unit_us
-        return (off_time_us or witness.lost_us) // 3
+                return sight.family.read(drive, number) * unit_us
+        return 0
 
     def _judge_task(self, case, address, task, now):
         """The same one, from the first that was not answered on."""
