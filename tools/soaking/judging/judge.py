@@ -30,6 +30,7 @@ from tools.soaking.judging.facts import (
     NEVER,
     OFF1,
     OFFERED,
+    OFFS,
     ON_BIT,
     RAM_WRITES,
     READS,
@@ -398,7 +399,8 @@ class Judge:
                 return False
         if count >= kind.pzd_words and tape.word(row, -kind.pzd_words) & CONTROLS:
             return False
-        if kind.may_be_reply(count) and OFF1 not in [tape.word(row, at) for at in range(count)]:
+        says_off = any([tape.word(row, at) in OFFS for at in range(count)])  # that which is owed
+        if kind.may_be_reply(count) and not says_off:
             return False  # no question, but a word of its own that is wrong
         if tape.word(row, 0) >> 12 not in READS:
             raise Broken("WRITE", "drive %d at %d, which is asked what it is" % (address, now))
