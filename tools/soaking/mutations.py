@@ -988,7 +988,7 @@ MUTATIONS = (
     Commissioning(
         "commissioned while it runs",
         "a step is written while the motor turns",
-        ("WRITE",), 217,
+        ("WRITE",), 395,
         (
             "panel/commission/course.py",
             "        if self._control.is_active():\n",
