@@ -55,6 +55,36 @@ def start(world):
     assert world.run_until(lambda: abs(drive.hz()) >= 9.9, START_MS), drive.report()
 
 
+def press(world, *keys):
+    for key in keys:
+        world.press(key)
+        world.run(300)
+
+
+def choose(world, *entries):
+    """Walk to an entry of the list that is shown and press SET, one after the other."""
+    for entry in entries:
+        for _ in range(20):
+            if row_2(world).startswith(">" + entry):
+                break
+            press(world, "DOWN")
+        else:
+            raise AssertionError("no %s: %r" % (entry, world.lcd()))
+        press(world, "SET")
+        world.run(700)
+
+
+def go_to(world, *entries):
+    """Open the menu, from wherever one is, and choose these."""
+    for _ in range(6):
+        if not row_2(world).startswith(">"):
+            break
+        press(world, "PARAM")
+    world.press("PARAM", 1_300)
+    world.run(500)
+    choose(world, *entries)
+
+
 def scripted(then, motor_on=True, **options):
     """A panel that runs until SET is pressed; then it does the lines of `then`.
 
@@ -89,6 +119,6 @@ def stands(world, address=1, ms=5_000):
 
 
 __all__ = (
-    "OFF1", "ON", "panel", "row_2", "running", "says", "scripted", "set_off", "stands", "start",
-    "starts", "stops", "telegrams",
+    "OFF1", "ON", "choose", "go_to", "panel", "press", "row_2", "running", "says", "scripted",
+    "set_off", "stands", "start", "starts", "stops", "telegrams",
 )  # fmt: skip

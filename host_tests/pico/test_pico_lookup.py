@@ -4,33 +4,9 @@ of the 440 what is the same.
 """
 
 from panel_bench import row_2
-from pico_bench import panel, says
+from pico_bench import go_to, panel, press, says
 
 INTERPRETERS = "pico"
-
-
-def press(world, *keys):
-    for key in keys:
-        world.press(key)
-        world.run(300)
-
-
-def choose(world, entry):
-    for _ in range(20):
-        if row_2(world).startswith(">" + entry):
-            break
-        press(world, "DOWN")
-    else:
-        raise AssertionError("no %s: %r" % (entry, world.lcd()))
-    press(world, "SET")
-    world.run(700)
-
-
-def go_to(world, *entries):
-    world.press("PARAM", 1_300)
-    world.run(500)
-    for entry in entries:
-        choose(world, entry)
 
 
 def test_a_parameter_is_looked_up_by_its_number():

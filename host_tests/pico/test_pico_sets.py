@@ -6,7 +6,7 @@ And ten of the largest.
 
 from boards.sim.drives.families import g110, mm3
 from panel_bench import row_2
-from pico_bench import panel
+from pico_bench import panel, press
 from sets_bench import (
     catalogued,
     complete_mm440,
@@ -22,12 +22,6 @@ SET_MS = 180_000
 LOOK_MS = 100
 CUTS = 5  # instants at which power goes, spread over the flash operations of one saving
 ROOM_BYTES = 900 * 1024  # that is left beside ten sets
-
-
-def press(world, *keys):
-    for key in keys:
-        world.press(key)
-        world.run(300)
 
 
 def walk_to(world, entry):

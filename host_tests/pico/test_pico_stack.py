@@ -7,40 +7,12 @@ an exchange and takes ON back from every drive; so there has to be room for both
 
 from boards.sim.drives.families import g110, mm420
 from panel_bench import row_2
-from pico_bench import panel
+from pico_bench import choose, go_to, panel, press
 
 INTERPRETERS = "pico_hard"  # there all of the engine runs in handlers; else a part of it does
 
 STACK_BYTES = 8192 + 704  # of the RP2040's two small banks, and STACK_MORE of tools/fetch/pico.sh
 MARGIN_BYTES = 256  # that MicroPython keeps for functions in C
-
-
-def press(world, *keys):
-    for key in keys:
-        world.press(key)
-        world.run(300)
-
-
-def choose(world, *entries):
-    for entry in entries:
-        for _ in range(20):
-            if row_2(world).startswith(">" + entry):
-                break
-            press(world, "DOWN")
-        else:
-            raise AssertionError("no %s: %r" % (entry, world.lcd()))
-        press(world, "SET")
-        world.run(700)
-
-
-def open_menu(world, *entries):
-    for _ in range(6):
-        if not row_2(world).startswith(">"):
-            break
-        press(world, "PARAM")
-    world.press("PARAM", 1_300)
-    world.run(500)
-    choose(world, *entries)
 
 
 def panel_of(family, name):
@@ -72,7 +44,7 @@ def test_a_motor_that_runs():
 
 def test_a_parameter_is_looked_up_and_written():
     world = panel_of(g110, "g110")
-    open_menu(world, "PARAMETERS", "BY NUMBER")
+    go_to(world, "PARAMETERS", "BY NUMBER")
     press(world, "UP", "NEXT", "UP", "NEXT", "UP", "UP", "SET")
     world.run(4_000)
     assert row_2(world).startswith("P1120"), world.lcd()
@@ -89,7 +61,7 @@ def test_a_fault_is_explained():
     world = panel_of(g110, "g110")
     world.drives[1].fault(1)
     world.run(2_000)
-    open_menu(world, "WHAT IS F0001")
+    go_to(world, "WHAT IS F0001")
     press(world, "DOWN", "PARAM")
     choose(world, "FAULT MEMORY")
     press(world, "DOWN")
@@ -99,7 +71,7 @@ def test_a_fault_is_explained():
 
 def test_a_set_is_saved_and_written():
     world = panel_of(g110, "g110")
-    open_menu(world, "SETS", "SAVE A1")
+    go_to(world, "SETS", "SAVE A1")
     press(world, "SET")
     world.run(20_000)
     check(world, "a set saved")
@@ -107,7 +79,7 @@ def test_a_set_is_saved_and_written():
 
 def test_commissioning():
     world = panel_of(g110, "g110")
-    open_menu(world, "COMMISSION", "FOR USS")
+    go_to(world, "COMMISSION", "FOR USS")
     world.run(3_000)
     press(world, "DOWN", "SET")
     world.run(3_000)
@@ -116,10 +88,10 @@ def test_commissioning():
 
 def test_settings_and_diagnosis():
     world = panel_of(mm420, "mm420")
-    open_menu(world, "SETTINGS")
+    go_to(world, "SETTINGS")
     press(world, "SET", "UP", "SET")
     world.run(2_000)
     check(world, "settings")
-    open_menu(world, "DIAGNOSIS", "BUS COUNTERS")
+    go_to(world, "DIAGNOSIS", "BUS COUNTERS")
     world.run(2_000)
     check(world, "diagnosis")
