@@ -67,16 +67,17 @@ def missing(names):
     return [name for name in names if name not in sys.modules]
 
 
-def drop(name):
-    """Forget it. Its memory is free as soon as nobody uses what was in it; where there is room,
-    `tidy` does it, since to forget a page with all its modules would take some milliseconds.
+def drop(*names):
+    """Forget them. Their memory is free as soon as nobody uses what was in them; where there is
+    room, `tidy` does it, since to forget a page with all its modules would take some milliseconds.
     """
-    if name in _kept or name in _idle or name not in sys.modules:
-        return
-    if _kept:
-        _idle.append(name)
-    else:
-        _forget(name)
+    for name in names:
+        if name in _kept or name in _idle or name not in sys.modules:
+            continue
+        if _kept:
+            _idle.append(name)
+        else:
+            _forget(name)
 
 
 def tidy():

@@ -240,9 +240,8 @@ class Menu(Page):
     def _drop(self, modules, needed=()):
         if modules is self._keep:
             return
-        for module in modules:
-            if module not in needed and module not in self._keep:
-                on_demand.drop(module)
+        keep = self._keep
+        on_demand.drop(*[name for name in modules if name not in needed and name not in keep])
 
     def _leave(self, now_ms):
         """Back to the list above this one."""
