@@ -19,6 +19,9 @@ GIVEN_TO = {
     "diagnoses": (21, 8),  # looks into the line, and leaves it to others
     "keeps_sets": (29, 8),  # saves and writes parameter sets, if there are few drives
     "commissions": (31, 8),  # commissions drives, reads the events, and tours the menu
+    "locks": (55, 12),  # locks the keys, opens the lock, and tries it
+    "arranges": (137, 8),  # keeps another order of several drives, and other turns of theirs
+    "resets": (151, 12),  # gives drives their factory settings, and has motors identified
 }
 
 

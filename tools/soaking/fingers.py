@@ -41,7 +41,8 @@ LOOKED = (  # on the page of a parameter
 ) + JOGS  # fmt: skip
 HARMLESS, HARMLESS_DIGITS = "P2155", (2, 1, 5, 5)  # a threshold that a status word tells
 LEFT_ALONE = ("...", "ANSWERS", "NOBODY", "IN THE LIST", "SET=ASK")  # of an address
-CHANGING = ("LOCK CODE", "P2014=0 OK")  # of the settings
+LOCK_CODE = "LOCK CODE"
+CHANGING = (LOCK_CODE, "P2014=0 OK")  # of the settings
 HOME_TRIES = 16
 
 
@@ -380,7 +381,7 @@ class Fingers:
             is_known = True
         if self._means and entry.startswith(self._means):
             is_known = True
-        if row_1.startswith(SETTINGS):
+        if row_1.startswith(SETTINGS) and not (self.plan.locks and entry == LOCK_CODE):
             is_known = entry not in CHANGING
         return is_read and not witness.down and self.reader.steady and is_known
 

@@ -15,12 +15,12 @@ from boards.sim.drives.families import setting_of
 from boards.sim.world import supervision, supervision_ms
 from tools.soaking.at_the_drive import people_at
 from tools.soaking.fingers import SLICE_MS
+from tools.soaking.foreman import Foreman
 from tools.soaking.judging.announced import is_parameter
 from tools.soaking.judging.facts import GOES, MEANT_READS, MS, READ_REPLIES, S
 from tools.soaking.judging.reader import address_in
 from tools.soaking.judging.rules import Broken
 from tools.soaking.mischief import WARNINGS
-from tools.soaking.technician import Technician
 from tools.soaking.worlds import CLEAN
 
 TURN_S = (8, 25)
@@ -34,7 +34,7 @@ READY_S = 8
 KNOWN_S = 120  # the longest time until the panel knows what a drive is set to
 
 
-class Hand(Technician):
+class Hand(Foreman):
     """See `Fingers` for what it takes, and for `deeds`; `Mischief` for `faults`."""
 
     def live(self, until_s):
@@ -65,12 +65,14 @@ class Hand(Technician):
         self.go_home()
         self.world.flash.cut_at = None
         self.run(2_500 + 8 * self.witness.cycle_us // MS)  # by then every requested write is done
+        self.wait_for_the_busy()
         for drive in self.drives:
             self.witness.excuse(drive.address, 3)
             if not drive.plugged:
                 drive.plug()
             if not drive.mains:
                 self.power_on(drive)
+            self.put_back(drive)
             for number, value in people_at(drive).order:
                 self.set_at_drive(drive, number, value)
             self.supervise_again(drive)

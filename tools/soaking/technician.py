@@ -48,6 +48,7 @@ class Technician(Mischief):
 
     def __init__(self, world, plan, judge, reader, weather):
         Mischief.__init__(self, world, plan, judge, reader, weather)
+        self.may_do = STEPS
         if plan.diagnoses:
             self.common += 24 * [self.diagnose] + 16 * [self.leave_the_line]
         if plan.keeps_sets:
@@ -124,7 +125,7 @@ class Technician(Mischief):
     def _step(self):
         """The step on the display, "P0700", if it is one of those that he does; or ""."""
         label = self.reader.rows[0][:5]
-        return label if label[1:].isdigit() and int(label[1:]) in STEPS else ""
+        return label if label[1:].isdigit() and int(label[1:]) in self.may_do else ""
 
     def _do_step(self):
         for _ in range(HOME_TRIES):  # an announcement may hide it

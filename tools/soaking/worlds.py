@@ -44,6 +44,7 @@ VALUES = {
     "boot_ms": (200, 700, 2_500),
     "silence_s": ({970: 2.0, 971: 1.0},),
 }
+LOCK_CODES = (0, 1, 4711, 9999)  # 0: none yet
 LONG_MS = (8_000, 20_000, 65_535)  # such a P2014 hardly protects
 SLOW_LOOP_US = 10_000  # the longest step of a busy main loop
 
@@ -89,6 +90,9 @@ class Plan:
         self.looks_up = roams and may("looks_up", seed)
         self.diagnoses = roams and may("diagnoses", seed)
         self.commissions = roams and may("commissions", seed)
+        self.locks = roams and may("locks", seed)
+        self.arranges = roams and may("arranges", seed) and len(self.listed) > 1
+        self.resets = roams and may("resets", seed)
         few = len(self.listed) <= SETS_DRIVES and self.baud >= SETS_BAUD
         self.keeps_sets = roams and may("keeps_sets", seed) and few
         # Drives of all families.
@@ -100,6 +104,16 @@ class Plan:
         if self.has_families:
             told = {str(address): _put_family(self, address) for address in self.addresses}
             self.settings["kinds"] = {address: told[address] for address in told if told[address]}
+        if self.locks:
+            self.settings["lock_code"] = LOCK_CODES[Dice(seed, 57).below(len(LOCK_CODES))]
+        if self.resets:
+            self._keep_apart()
+
+    def _keep_apart(self):
+        """A drive that a reset gives another address must not meet another drive there."""
+        for kind in self.kinds.values():
+            if len(self.listed) > 1:
+                kind["switches"].pop("keeps_link", None)
 
     def __str__(self):
         return "%d drives of %d at %d baud%s, keys %s, loop %d ms, %s, settings %s" % (

@@ -89,9 +89,10 @@ def lost_us(plan):
     return plan.settings.get("lost_ms", 1000) * MS
 
 
-def start_us(plan):
-    """By then a START has led to ON, or never will: a step and a round of the list later."""
-    round_us = exchange_us(plan) * len(plan.listed)
+def start_us(plan, turns=None):
+    """By then a START has led to ON, or never will: a step and a round of the list later. turns:
+    telegrams of a round, if some drives stand in it several times."""
+    round_us = exchange_us(plan) * (turns or len(plan.listed))
     return max(START_S * S, START_ROUNDS * round_us) + S + 2 * round_us
 
 

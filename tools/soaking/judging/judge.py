@@ -82,7 +82,6 @@ class Judge:
         self.drives = list(world.drives.values())
         self.starts = [0] * len(self.drives)  # of their motors, as counted last
         self._shares = Shares(witness)
-        self._start_us = start_us(plan)
         self._patience_us = SILENT_US + witness.exchange_us
         self.unsettled = []  # replies that may still be spoilt, and what to note of each then
         self._may_ask = False  # the last telegram may have asked a drive what it is,
@@ -474,6 +473,7 @@ class Judge:
         begins = is_on and not case.stw & ON_BIT
         if is_on:
             self._judge_on(case, where, now)
+            self._judge_direction(address, stw, hsw, where, now)
             self._judge_setpoint(address, hsw, now, where, begins)
         else:
             key = "JOG_RIGHT" if stw & JOG_BITS == JOG_RIGHT_BIT else "JOG_LEFT"
@@ -513,13 +513,22 @@ class Judge:
                 start_us = case.start_us
         else:
             start_us = case.start_us
-            if now - start_us > self._start_us:
+            if now - start_us > self._start_within_us():
                 raise Broken("START", "%s, pressed at %d" % (where, start_us))
         if start_us <= case.void_us and now > self._grace(case.void_us):
             told = (where, start_us, case.void_us)
             raise Broken("START", "%s, pressed at %d, void from %d on" % told)
         if not case.stw & ON_BIT:
             case.used_us = start_us
+
+    def _start_within_us(self):
+        return start_us(self.plan, self.witness.turns)
+
+    def _judge_direction(self, address, stw, hsw, where, now):
+        reverse = self.witness.kinds[address].family.reverse
+        if hsw:
+            is_left = stw == reverse if reverse else hsw & 0x8000 != 0
+            self.witness.locked.judge_direction(address, is_left, where, now)
 
     def _judge_jog(self, case, key, where, now):
         witness = self.witness
@@ -528,6 +537,7 @@ class Judge:
         if pressed_us <= case.jog_void_us and now > self._grace(case.jog_void_us):
             raise Broken("JOG", "%s, by a key that had done its work" % where)
         case.jog_us = pressed_us
+        witness.locked.judge_jog(pressed_us, where)
         if witness.is_sure() and self.cases[witness.shown] is not case:
             raise Broken("JOG", "%s, drive %d is shown" % (where, witness.shown))
         if witness.hung_us is not None:
@@ -654,6 +664,7 @@ class Judge:
         if number == family.address:
             witness.moves(address, value)
         where = "parameter %d of drive %d, task %d at %d" % (number, address, task, now)
+        witness.locked.judge_write(where, now)
         if task not in RAM_WRITES and task not in EEPROM_WRITES:
             raise Broken("TELEGRAM", where)
         if witness.sets.writes(address, now):

@@ -70,7 +70,6 @@ class Reader:
         self._changed_us = 0  # row 2 was another one until then
         self._written_us = 0  # when the controller was last seen to have been written to
         self._written = -1
-        self._calm_us = 3 * S + 12 * witness.cycle_us
         self._judged_us = 0
         self._exposed_us = 0  # that its P2014 is longer by now was said, or could not be
         self._warned_us = NEVER  # a warning of the drive shown was read last
@@ -115,6 +114,10 @@ class Reader:
             witness.sets.read(self.rows, now)
             witness.commissioned.read(self.rows, now)
             witness.happened.read(self.rows, now)
+            witness.locked.read(self.rows, now)
+            witness.arranged.read(self.rows, now)
+        witness.locked.look(now)
+        witness.arranged.look(now)
         self._note_digits(now)
         if self.rows[1] in QUESTIONS and self.rows[0].strip() in LEAVES:
             witness.leaves_us = now
@@ -142,8 +145,9 @@ class Reader:
         self._judge_unconfirmed(case, now)
         self._judge_warning(case, now)
         self._judge_exposed(case, now)
-        if now - witness.stirred_us > self._calm_us and now - self._judged_us > S:
-            if not witness.down and now - witness.late_us > self._calm_us:
+        calm_us = 3 * S + 12 * witness.cycle_us
+        if now - witness.stirred_us > calm_us and now - self._judged_us > S:
+            if not witness.down and now - witness.late_us > calm_us:
                 if now - self._judged_us > 2 * S:
                     self._hz = None
                 self._judged_us = now

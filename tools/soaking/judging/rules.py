@@ -32,11 +32,14 @@ RULES = {
     "SETPOINT": "the setpoint sent is within the limits of the drive and of the settings",
     "WRITE": "a parameter is written only when SET confirmed the question about this very value",
     "SET": "a set that is saved has what the drive has; one that is written and equal is in it",
+    "LOCK": "while the lock is closed START, STOP, the setpoint and the choice of a drive act, and"
+    " nothing else does; its code opens it, and nothing else",
     "EEPROM": "the EEPROM is written only when SET was held or an offer says so, but for what"
     " must be permanent",
     "BUS OFF": "the panel leaves the line when SET says so and every drive was told to stop, and"
     " sends nothing until PARAM or STOP",
     "LISTEN": "nothing is sent before the line was silent for 100 ms after power-on",
+    "LIST": "drives stand in the list in the order, and as often, as SET and PARAM kept them",
     # the line
     "LINE": "start interval, no collision, driver enable within a character of the telegram",
     "SILENT PANEL": "as long as it lives the panel keeps talking",

@@ -118,7 +118,7 @@ class Shares:
         """A drive that runs, or may run, has its turn in time, whatever else there is to say."""
         witness = self.witness
         gap_us = witness.asked_for_us(case, now)
-        others = len(witness.plan.listed)
+        others = witness.turns
         silent = sum(1 for one in self._listed() if self._is_silent(one, now))
         round_us = (others - silent) * self._answer_us + witness.exchange_us
         longest_us = (

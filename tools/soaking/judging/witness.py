@@ -7,6 +7,7 @@ address keys move), both ways are allowed.
 """
 
 from boards.sim.board import KEYS
+from tools.soaking.judging.arranged import Arranged
 from tools.soaking.judging.case import Case, drive_at
 from tools.soaking.judging.commissioned import Commissioned
 from tools.soaking.judging.diagnosed import Diagnosed
@@ -51,6 +52,7 @@ from tools.soaking.judging.families import kinds_of
 from tools.soaking.judging.happened import Happened
 from tools.soaking.judging.kept_sets import KeptSets
 from tools.soaking.judging.line_left import LineLeft
+from tools.soaking.judging.locked import Locked
 from tools.soaking.judging.rules import Broken
 from tools.soaking.judging.tape import Tape
 
@@ -74,7 +76,8 @@ class Witness:
         self.clock = world.clock
         self.exchange_us = exchange_us(plan)
         self.debounce_us = debounce_us(plan)
-        self.cycle_us = self.exchange_us * len(plan.listed)
+        self.turns = len(plan.listed)  # telegrams of a round
+        self.cycle_us = self.exchange_us * self.turns
         self.wish_us = WISH_US + 20 * self.cycle_us
         self.timeout_us = plan.settings.get("reply_timeout_ms", 20) * MS
         self.lost_us = lost_us(plan)
@@ -103,6 +106,7 @@ class Witness:
         self.menu_since_us = ALWAYS  # and first, without anything else in between
         self.named = ()  # addresses in there, which a STOP is for, too
         self.seen_us = SEEN_US + DRAWN_STEPS * plan.loop_us
+        self._is_handed_over = False  # the panel has ended to begin anew
         self._menu_shown = None  # the drive that is shown behind the menu
         self._menu_starts = ()  # cases, and which START of each counted when it was pressed there
         self.question = None  # address, number and value that it asks about, as far as it is known
@@ -132,6 +136,9 @@ class Witness:
         self.diagnosed = Diagnosed(self)
         self.commissioned = Commissioned(self)
         self.happened = Happened(self)
+        self.locked = Locked(self)
+        self.arranged = Arranged(self)
+        self._take_round()
         world.witness = self
 
     # --- what the hand tells --------------------------------------------------------------------
@@ -159,6 +166,8 @@ class Witness:
         self.diagnosed.key(key, now)
         self.commissioned.key(key, now)
         self.happened.key(key, now)
+        self.locked.key(key, now)
+        self.arranged.key(key, now)
         if key == "STOP":
             if now - self.up[key] > self.debounce_us:  # else the panel may not have seen it go up
                 self.stop_from_us = now
@@ -319,7 +328,9 @@ class Witness:
             raise Broken("SEARCH", "it begins at %d, and nobody asked for it" % now)
         self.left_us = NEVER
         stuck_us = self.stuck_us
+        self._is_handed_over = not searches and not self.searches
         self.booted()
+        self._is_handed_over = False
         self.boot_us -= self.plan.loop_us  # when it began, the loop had a step to end
         self.begun_us = self.boot_us
         self.searches = searches
@@ -333,6 +344,9 @@ class Witness:
         self.menu_us, self.menu_since_us = NEVER, ALWAYS
         self.line.end(now)
         self.sets.booted()
+        self.locked.booted(now)
+        self.arranged.booted(self._is_handed_over)
+        self._take_round()
         self.boot_us = self.begun_us = now
         self.stirred_us = now
         self.stalled_us = now
@@ -356,6 +370,12 @@ class Witness:
         del self.owed[:]
         self.shown = None
         self.unsure_us = now + 1_500 * MS
+
+    def _take_round(self):
+        """Some drives may stand in the list several times."""
+        self.turns = max(len(self.plan.listed), self.arranged.turns())
+        self.cycle_us = self.exchange_us * self.turns
+        self.wish_us = WISH_US + 20 * self.cycle_us
 
     def flash_written(self):
         """The chip stands still: a step of writing its flash."""
