@@ -27,11 +27,11 @@ class Foreman(Technician):
         Technician.__init__(self, world, plan, judge, reader, weather)
         self._links = {id(drive): _link(drive) for drive in self.drives}
         if plan.locks:
-            self.common += 30 * [self.lock_or_open] + 30 * [self.try_the_lock]
+            self.common += 60 * [self.lock_or_open] + 30 * [self.try_the_lock]
         if plan.arranges:
-            self.common += 30 * [self.reorder] + 30 * [self.take_turns]
+            self.common += 50 * [self.reorder] + 50 * [self.take_turns]
         if plan.resets:
-            self.common += 40 * [self.reset_a_drive] + 20 * [self.identify_a_motor]
+            self.common += 60 * [self.reset_a_drive] + 30 * [self.identify_a_motor]
 
     # --- the lock -------------------------------------------------------------------------------
 
@@ -55,7 +55,7 @@ class Foreman(Technician):
         self.press("PARAM", OPENS_MS)
         self.run(2 * self._seen_ms)
         code = locked.code or 0
-        if not self.dice.below(3):
+        if not self.dice.below(4):
             code = (code + self.dice.one_of(DIGITS)) % (CODE_MAX + 1)
         self._give(CODE, code)
         self.run(self.dice.between(500, 3_000))
@@ -70,7 +70,7 @@ class Foreman(Technician):
             key, times = ("UP", digit) if digit <= 5 else ("DOWN", 10 - digit)
             for _ in range(times):
                 self.press(key, 60)
-            if not self.dice.below(12):
+            if not self.dice.below(24):
                 self.press(self.dice.one_of(("STOP", "START", "PARAM", "REVERSE")))
             self._agree()
 

@@ -93,6 +93,8 @@ class Arranged:
     def key(self, key, now):
         if key not in ENDS or now - self._near_us > NEAR_US:
             return
+        if key == "SET" and self._carried is not None:
+            return  # it takes one up, or puts it down
         if not self._is_sure or not self._is_read(key, now):
             self._want(None, None, now)
         elif key == "PARAM" and self._carried is not None:
@@ -126,7 +128,7 @@ class Arranged:
     def _is_quiet(self, now):
         """Whether nothing speaks against it: every drive is heard, and none runs."""
         witness = self._witness
-        befell_us = max(witness.late_us, witness.stalled_us, witness.boot_us, witness.pulled_us)
+        befell_us = max(witness.stalled_us, witness.boot_us, witness.pulled_us)
         for address in witness.plan.listed:
             case = witness.cases[address]
             since_us = max(case.turned_us, case.ran_us, befell_us)
@@ -143,7 +145,7 @@ class Arranged:
         if now - self._wanted_us < ANEW_US + 4 * witness.cycle_us:
             return
         since_us, self._wanted_us = self._wanted_us, ALWAYS
-        befell_us = max(witness.late_us, witness.stalled_us, witness.boot_us, witness.pulled_us)
+        befell_us = max(witness.stalled_us, witness.boot_us, witness.pulled_us)
         if befell_us < since_us and witness.hung_us is None:
             raise Broken("LIST", "%s, %s kept at %d, and nothing" % (self._wanted + (since_us,)))
 

@@ -279,6 +279,8 @@ class Kind:
         if count < least + pzd_words or pkw_words != VARIABLE and count > least + pzd_words:
             return False
         if pzd_words == self.pzd_words and self.words & _fitting(count - pzd_words, 0):
+            if pkw_words not in self.words:
+                self._other = self.words, self.pzd_words
             self.words = self.words | {pkw_words}  # this one looks the same in both
         elif self.words != {pkw_words} or self.pzd_words != pzd_words:
             self._other = self.words, self.pzd_words

@@ -49,7 +49,8 @@ class Locked:
         self._offer = None  # what SET says yes to, and when that was read last
         self._offered_us = NEVER
         self._digits = []  # that SET has taken; None among them: nobody has read which
-        self._asked = None  # CODE or NEW_CODE: the last digit of it was given,
+        self._asks = None  # CODE or NEW_CODE, as read last
+        self._asked = None  # likewise: the last digit of it was given,
         self._asked_us = NEVER
         self._chosen_us = ALWAYS  # SET was pressed on LOCK, and nothing has come of it yet
         self._lefts = {}  # address -> the direction of an ON since it is closed
@@ -147,31 +148,39 @@ class Locked:
         if self._chosen_us != ALWAYS:
             self._chosen_us = ALWAYS  # that key takes the message away
             self.is_closed = None
+        if key == "PARAM":
+            self._digits = []  # it leaves the page
         if key != "SET":
             return
         offer, self._offer = self._offer, None
         if offer is not None and now - self._offered_us < CHOSEN_US:
             if offer != CLOSES:
-                self._take_digit(CODE if offer.startswith(CODE) else NEW_CODE, offer, now)
+                self._asks = CODE if offer.startswith(CODE) else NEW_CODE
+                self._read_digit(offer[len(self._asks) :].rstrip(MISSING))
+                self._take_last(now)
             elif not self.is_closed:
                 self._chosen_us = now
         elif self._digits:
-            self._digits[-1] = None  # it may have taken one that nobody has read
+            self._digits.append(None)  # it may have taken one that nobody has read
+            self._take_last(now)
 
-    def _take_digit(self, asked, offer, now):
-        digits = offer[len(asked) :].rstrip(MISSING)
+    def _read_digit(self, digits):
+        """digits: those that are there, the last of which SET takes."""
         place = len(digits) - 1
         if place == 0:
             self._digits = []
         if not digits[-1:].isdigit() or place != len(self._digits):
             self._digits = [None] * max(place, 0)
         self._digits.append(int(digits[-1]) if digits[-1:].isdigit() else None)
-        if len(self._digits) == DIGITS:
-            self._asked, self._asked_us = asked, now
-            if asked == CODE and self._given() in (None, self.code):
-                self.is_closed = None  # until the display tells
-            elif asked == NEW_CODE:
-                self.code = None
+
+    def _take_last(self, now):
+        if len(self._digits) < DIGITS:
+            return
+        self._asked, self._asked_us = self._asks, now
+        if self._asks == CODE and self._given() in (None, self.code):
+            self.is_closed = None  # until the display tells
+        elif self._asks == NEW_CODE:
+            self.code = None
 
     def look(self, now):
         """LOCK in the menu closes it, unless something else befell the panel meanwhile."""
