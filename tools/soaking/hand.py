@@ -31,6 +31,7 @@ SHORT_US = 1 * S  # a telegram off time that a person, too, finds too short
 FOUND_S = 20  # in which a drive that answers in another layout is found, and rounds of the line
 FOUND_ROUNDS = 200
 READY_S = 8
+COUNTED_MS, COUNTED_ROUNDS, COUNTED_SLACK = 2_000, 4, 3  # the turns of a drive, telegrams
 KNOWN_S = 120  # the longest time until the panel knows what a drive is set to
 
 
@@ -109,6 +110,7 @@ class Hand(Foreman):
         """Check that drives in another layout were found, that START runs the drive shown, and
         that STOP stops it."""
         self.prove_found()
+        self.prove_list()
         if not self.find_one_that_answers():
             return
         reader = self.reader
@@ -158,6 +160,39 @@ class Hand(Foreman):
                 lambda drive=drive: kinds[drive.address].answers(drive),
                 seconds,
             )
+
+    def prove_list(self):
+        """Check that each drive has as many turns as it was given, and that the address keys go
+        through the drives in the order that was kept."""
+        able = [address for address in self.plan.listed if self.reader.is_able(address)]
+        if not self.plan.arranges or len(able) < len(self.plan.listed):
+            return
+        self.prove_turns()
+        witness, order = self.witness, self.witness.arranged.order
+        self.wait_for("an address on the display", self._is_home, 8)
+        before = witness.shown
+        if before not in order:
+            return
+        following = order[(order.index(before) + 1) % len(order)]
+        self.press("ADDRESS_UP")
+        self.wait_for(
+            "drive %d behind drive %d" % (following, before),
+            lambda: self._is_home() and witness.shown == following,
+            8,
+            "LIST",
+        )
+
+    def prove_turns(self):
+        witness, listed = self.witness, self.plan.listed
+        asked = {address: witness.cases[address].requests for address in listed}
+        self.run(COUNTED_MS + COUNTED_ROUNDS * witness.cycle_us // MS)
+        asked = {address: witness.cases[address].requests - asked[address] for address in listed}
+        for address, count in asked.items():
+            times = witness.arranged.repeats.get(str(address), 1)
+            due = times * sum(asked.values()) // witness.turns
+            if abs(count - due) > COUNTED_SLACK + due // 8:
+                told = (address, times, count, sum(asked.values()))
+                raise Broken("LIST", "drive %d, x%d, had %d of %d telegrams" % told)
 
     def acknowledge(self, drive):
         """Press STOP again if a fault took turns with others and was not shown for a second."""

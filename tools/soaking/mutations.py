@@ -66,6 +66,18 @@ class Commissioning(Mutation):
     given_to = "commissions"
 
 
+class Locking(Mutation):
+    given_to = "locks"
+
+
+class Arranging(Mutation):
+    given_to = "arranges"
+
+
+class Resetting(Mutation):
+    given_to = "resets"
+
+
 MUTATIONS = (
     Mutation(
         "jog bit kept",
@@ -1031,6 +1043,150 @@ MUTATIONS = (
             "        who = _THE_PANEL if address == NOBODY else b\"A%d\" % address\n",
             "        address = self.panel.selected.drive.address\n"
             "        who = _THE_PANEL if address == NOBODY else b\"A%d\" % address\n",
+        ),
+    ),
+    Locking(
+        "jog while locked",
+        "the lock is closed, and the jog keys turn a motor",
+        ("LOCK",), 40,
+        (
+            "panel/panel.py",
+            "                allowed = False\n            self._jog_keys",
+            "                pass\n            self._jog_keys",
+        ),
+    ),
+    Locking(
+        "reversed while locked",
+        "the lock is closed, and REVERSE turns a motor round",
+        ("LOCK",), 234,
+        (
+            "panel/keys/guard.py",
+            "LOCKED_KEYS = (\"REVERSE\", ",
+            "LOCKED_KEYS = (",
+        ),
+    ),
+    Locking(
+        "STOP dead while locked",
+        "the lock is closed, and nobody can stop a motor",
+        ("STOP", "STOP ALL", "SECOND STOP"), 32,
+        (
+            "panel/panel.py",
+            "        if down & self._stop_bit:\n",
+            "        if down & self._stop_bit and not (self.guard and self.guard.locked):\n",
+        ),
+    ),
+    Locking(
+        "any code opens",
+        "the lock opens by whatever code",
+        ("LOCK",), 32,
+        (
+            "panel/menu/code.py",
+            "        if code != panel.settings.lock_code:\n",
+            "        if not code:\n",
+        ),
+    ),
+    Locking(
+        "the menu behind the lock",
+        "PARAM that is held opens the menu, though the lock is closed",
+        ("LOCK",), 32,
+        (
+            "panel/panel.py",
+            "            self._open_menu(now_ms, (\"code\", False))\n",
+            "            self._open_menu(now_ms)\n",
+        ),
+    ),
+    Locking(
+        "open after power-on",
+        "the lock is open when the panel starts",
+        ("LOCK",), 32,
+        (
+            "panel/panel.py",
+            "        self.heed_settings(locked=True)\n",
+            "        self.heed_settings()\n",
+        ),
+    ),
+    Locking(
+        "a code that can be read",
+        "who looks on learns the code of the lock",
+        ("LOCK",), 32,
+        (
+            "panel/menu/code.py",
+            "text, before = words.CODE, b\"*\" * len(before)",
+            "text = words.CODE",
+        ),
+    ),
+    Locking(
+        "LOCK that closes nothing",
+        "the display says that the lock is closed, and it is open",
+        ("LOCK",), 406,
+        (
+            "panel/keys/guard.py",
+            "        self.locked = self._settings.lock_code != 0\n",
+            "        self.locked = False\n",
+        ),
+    ),
+    Arranging(
+        "an order not kept",
+        "the panel begins anew, and the drives stand in the list as before",
+        ("LIST",), 92,
+        (
+            "panel/menu/order.py",
+            "            panel.settings.change(\"drives\", drives)\n",
+            "",
+        ),
+    ),
+    Arranging(
+        "carried elsewhere",
+        "a drive is put down at another place than the display says",
+        ("LIST",), 179,
+        (
+            "panel/menu/order.py",
+            "            drives.insert(self._carried, address)\n",
+            "            drives.insert(0, address)\n",
+        ),
+    ),
+    Arranging(
+        "turns of another drive",
+        "SET gives other turns to a drive than to that which the display names",
+        ("LIST",), 74,
+        (
+            "panel/menu/turns.py",
+            "        address = panel.controls[position].drive.address\n"
+            "        repeats = dict",
+            "        address = panel.controls[position - 1].drive.address\n"
+            "        repeats = dict",
+        ),
+    ),
+    Arranging(
+        "turns for nobody",
+        "a drive has as many turns as ever, whatever the settings say",
+        ("LIST",), 109,
+        ("panel/roster.py", "        if repeats:\n", "        if repeats and not controls:\n"),
+    ),
+    Resetting(
+        "reset unasked",
+        "one SET gives a drive its factory settings",
+        ("WRITE",), 26,
+        (
+            "panel/commission/course.py",
+            "            self._bits = self._needed()\n            self._phase = ASKS\n",
+            "            self._bits = self._needed()\n"
+            "            self._phase = ASKS\n"
+            "            if step.number == 970:\n"
+            "                self._begin_write(now_ms)\n",
+        ),
+    ),
+    Resetting(
+        "identified unasked",
+        "one SET makes the next ON one that gives the motor current",
+        ("WRITE",), 34,
+        (
+            "panel/commission/course.py",
+            "            self._bits = self._needed()\n            self._phase = ASKS\n",
+            "            self._bits = self._needed()\n"
+            "            self._phase = ASKS\n"
+            "            if step.number == 1910:\n"
+            "                self._begin_write(now_ms)\n",
         ),
     ),
 )  # fmt: skip

@@ -62,6 +62,7 @@ from tools.soaking.judging.shares import Shares
 from tools.soaking.judging.tape import MALFORMED, MIRRORED, REPLY, REQUEST
 from tools.soaking.judging.witness import Witness
 
+IDENTIFIES = 1910  # with the next ON the motor has current: a step that has to ask
 LISTEN_US = 95 * MS  # 100 ms, less the error of the panel's clocks
 SILENT_US = 3_500 * MS  # a panel that listens, and then one exchange
 
@@ -673,7 +674,8 @@ class Judge:
             return
         is_dangerous = number in family.dangerous
         commissioned, bits = witness.commissioned, high << 16 | value
-        is_step = commissioned.has_asked(address, number, bits, is_dangerous, now)
+        is_asked = is_dangerous or number == IDENTIFIES
+        is_step = commissioned.has_asked(address, number, bits, is_asked, now)
         if is_step:
             pass
         elif commissioned.is_open(now):
