@@ -41,7 +41,8 @@ class Arranged:
         self._witness = witness
         self.order, self.repeats = self._stored()
         self._carried = None  # the order on the display; None: nobody has read it
-        self._is_sure = False  # that is the whole of it
+        self._is_sure = False  # that is the whole of it,
+        self._is_missed = False  # unless one was put down where nobody has read that
         self._taken = None  # address and turns on the display, while SET would keep them
         self._read_us = self._near_us = NEVER
         self._wanted = None  # (order, repeats) that SET or PARAM has kept,
@@ -62,6 +63,7 @@ class Arranged:
             self._wanted_us = ALWAYS
         if words in LISTS:
             self._carried = self._taken = None
+            self._is_missed = False
             self._near_us = now
         address = address_of(words)
         if address is None:
@@ -93,9 +95,10 @@ class Arranged:
     def key(self, key, now):
         if key not in ENDS or now - self._near_us > NEAR_US:
             return
-        if key == "SET" and self._carried is not None:
-            return  # it takes one up, or puts it down
-        if not self._is_sure or not self._is_read(key, now):
+        is_unread = not self._is_sure or not self._is_read(key, now)
+        if key == "SET" and self._carried is not None:  # it takes one up, or puts it down
+            self._is_missed = self._is_missed or is_unread
+        elif is_unread or self._is_missed:
             self._want(None, None, now)
         elif key == "PARAM" and self._carried is not None:
             self._want(self._carried, self.repeats, now)
