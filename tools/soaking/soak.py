@@ -17,6 +17,8 @@ import boards.sim.drives.parameters
 import boards.sim.world  # noqa: F401
 import main
 import on_demand
+import tools.soaking.technician  # noqa: F401
+import tools.soaking.worlds  # noqa: F401
 from tools.soaking.hand import Hand
 from tools.soaking.judging.judge import Judge
 from tools.soaking.judging.reader import Reader

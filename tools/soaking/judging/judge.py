@@ -48,7 +48,6 @@ from tools.soaking.judging.facts import (
     start_us,
 )
 from tools.soaking.judging.families import VARIABLE
-from tools.soaking.judging.refusals import reason_against, runs_on_unasked
 from tools.soaking.judging.rules import Broken
 from tools.soaking.judging.runs import (
     begin,
@@ -57,6 +56,8 @@ from tools.soaking.judging.runs import (
     is_standstill,
     judge_restart,
     judge_rise,
+    reason_against,
+    runs_on_unasked,
 )
 from tools.soaking.judging.shares import Shares
 from tools.soaking.judging.tape import MALFORMED, MIRRORED, REPLY, REQUEST
