@@ -100,6 +100,8 @@ class Plan:
         self.has_families = families.below(FAMILIES_IN) == 0
         self.links = Dice(seed, 17)
         self.pzd_words = families.one_of(PZD_WORDS) if self.has_families else PZD_WORDS[0]
+        # The judge cannot tell which PZD words a drive has that a reset gives others.
+        self.resets = self.resets and self.pzd_words == PZD_WORDS[0]
         self.kinds = {address: _kind(self, address) for address in self.addresses}
         if self.has_families:
             told = {str(address): _put_family(self, address) for address in self.addresses}
