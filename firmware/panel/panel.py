@@ -98,6 +98,7 @@ class Panel:
         self.errand = None  # a function to be called once the flash may be written
         self.wants = None  # another program: "search", or "app", this one anew
         self.remembered = {}  # by module: where a page was when it was left
+        on_demand.load("panel.menu")  # with the engine it would be too much for one step
         splash = on_demand.load("panel.pages.splash")
         self._cover = splash.Splash(self)  # a page that hides it: the splash, a question, or None
         self._notices = splash.notices(settings, key_names, notices)

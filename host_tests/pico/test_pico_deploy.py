@@ -188,3 +188,11 @@ def test_over_a_frozen_panel_the_files_go_first_a_half_of_them_starts_nothing_an
         assert world.read_file(path) is None, path
     start(world)
     world.check()
+
+
+def test_what_a_short_name_in_a_traceback_stands_for_is_told():
+    file = temporary()
+    assert os.system("./tools/deploy --names >" + file) == 0
+    told = [line.split() for line in read(file).split("\n")]
+    os.remove(file)
+    assert ["panel.panel", "_act"] in [line[:1] + line[2:] for line in told]

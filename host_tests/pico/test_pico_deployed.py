@@ -5,6 +5,7 @@ system and runs from its memory. How it gets there: test_pico_deploy.py."""
 import os
 
 from boards.sim.ports.chips import HEAP_BYTES
+from panel.menu.main import LISTS
 from pico_bench import QUICK, says, stands, start, starts
 from tools.emulator.flash_image import files_in
 from tools.emulator.world import PicoWorld, temporary
@@ -13,6 +14,8 @@ INTERPRETERS = "pico pico_hard"
 
 BOOT_MS = 15_000
 ALL = tuple(range(1, 32))
+TAP_MS, READ_MS, HOLD_MS, LIST_MS = 140, 250, 1_300, 400
+DEPTH_MAX = 6  # lists, one in the other
 LEARN_MS = 31_000  # for 31 drives to tell what they are
 TELL_MS = 2_000
 TELLS = b"""
@@ -50,6 +53,45 @@ def test_a_panel_that_was_deployed_runs_its_drive_and_stops_it():
     assert stands(world) and says(world, "READY") and starts(world) == 1
     assert not world.restarts
     world.check()
+
+
+def test_all_of_the_menu_is_read_and_it_still_opens():
+    """MicroPython keeps every name that a module brings: all of them have to fit."""
+    world = deployed(addresses=(1, 2))
+    assert says(world, "READY", BOOT_MS)
+    for place in range(len(LISTS)):
+        open_menu(world)
+        for _ in range(min(place, len(LISTS) - place)):
+            tap(world, "DOWN" if 2 * place < len(LISTS) else "UP")
+        heading = "MENU %8d/%d" % (place + 1, len(LISTS))
+        assert says(world, " ".join(heading.split())), world.lcd()
+        for _ in range(2):
+            tap(world, "SET")
+            assert not says(world, "NO MEMORY", LIST_MS), world.lcd()
+        assert not world.reads("MENU"), world.lcd()
+        leave(world)
+    open_menu(world)
+    assert not world.restarts
+    world.check()
+
+
+def tap(world, key):
+    """As a person does who sees what comes of it."""
+    world.press(key, TAP_MS)
+    world.run(READ_MS)
+
+
+def open_menu(world):
+    world.press("PARAM", HOLD_MS)
+    assert says(world, "MENU")
+
+
+def leave(world):
+    for _ in range(DEPTH_MAX):
+        if world.reads("S:"):
+            return
+        tap(world, "PARAM")
+    raise AssertionError(world.lcd())
 
 
 def test_with_31_drives_there_is_memory_left_here_and_on_the_esp32s_that_the_manual_names():

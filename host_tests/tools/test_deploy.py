@@ -254,10 +254,10 @@ def test_a_board_file_that_was_changed_on_the_chip_is_kept():
 
 def test_a_board_file_that_was_named_replaces_it_and_is_yours_from_then_on():
     FLASH.put("board.py", b"my pins")
-    deploy(FakeChip(), firmware(OLD | {"board.py": b"new pins"}), new_board=True)
-    assert FLASH.files["board.py"] == b"new pins"
+    deploy(FakeChip(), firmware(OLD | {"board.py": b"new_pins = 1"}), new_board=True)
+    assert FLASH.files["board.py"] == b"new_pins = 1"
     deploy(FakeChip(), firmware(NEWER))
-    assert FLASH.files["board.py"] == b"new pins"
+    assert FLASH.files["board.py"] == b"new_pins = 1"
     deploy(FakeChip(), firmware({}))
     assert names() == ["board.py"]
 

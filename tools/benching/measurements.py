@@ -436,8 +436,8 @@ def steps(quick, baud, drives):
 # entries. MENU is a PARAM that is held, BACK one that is pressed until the home page is there.
 MENU, BACK = "menu", "back"
 HOME = "S:"  # row 1 of the home page begins with it
-HOLD_MS, READ_MS = 1_300, 300
-SCENE_MS = 12_000
+HOLD_MS, READ_MS, OPENS_MS = 1_300, 300, 700
+SCENE_MS = 15_000
 ENTRIES = 13
 FIND = 2  # the entry in whose list SET would begin a search, which is another program
 OPENS = 2 * (MENU, BACK)
@@ -485,7 +485,7 @@ def do_at_the_menu(world, key):
         return
     world.press("PARAM" if key == MENU else key, HOLD_MS if key == MENU else TAP_MS)
     world.run(READ_MS)
-    if key == MENU and world.lcd()[0].startswith(HOME):
+    if key == MENU and not world.run_until(lambda: not world.reads(HOME), OPENS_MS):
         raise RuntimeError("the menu does not open: %r" % (world.lcd(),))
 
 

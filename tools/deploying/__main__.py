@@ -19,7 +19,7 @@ from tools.deploying.arrival import wait_for_panel  # noqa: E402
 from tools.deploying.chip import Chip  # noqa: E402
 from tools.deploying.deployment import Deployment, Options  # noqa: E402
 from tools.deploying.errors import DeployError  # noqa: E402
-from tools.deploying.image import BOARD, Firmware, mpy_cross  # noqa: E402
+from tools.deploying.image import BOARD, Firmware, module_of, mpy_cross  # noqa: E402
 from tools.deploying.ports import choose, waits_for_uf2  # noqa: E402
 from tools.deploying.targets import chip_of  # noqa: E402
 
@@ -45,6 +45,7 @@ def arguments(words):
     add("--replace", action="store_true", help="also files of others that are in the way")
     add("--remove", action="store_true", help="take away what tools/deploy has copied")
     add("--dry-run", action="store_true", help="only say what would be done; stops the drives too")
+    add("--names", action="store_true", help="say what the short names in a traceback stand for")
     chosen = parser.parse_args(words)
     if chosen.board_file and not Path(chosen.board_file).is_file():
         parser.error(f"--board-file: there is no file {chosen.board_file}")
@@ -78,9 +79,21 @@ def deploy(chosen, say):
         say("The panel runs.")
 
 
+def tell_names(chosen):
+    """The compiled files have short names for what is private to a file (`names`)."""
+    firmware = Firmware.read(TOP, chosen.board, chosen.board_file)
+    for path, short in firmware.short_names().items():
+        for name in short:
+            print(f"{module_of(path)}  {short[name]}  {name}")
+
+
 def main():
+    chosen = arguments(sys.argv[1:])
     try:
-        deploy(arguments(sys.argv[1:]), lambda line: print(line, flush=True))
+        if chosen.names:
+            tell_names(chosen)
+        else:
+            deploy(chosen, lambda line: print(line, flush=True))
     except DeployError as error:
         print(f"tools/deploy: {error}", file=sys.stderr)
         return 1

@@ -17,6 +17,7 @@ import tempfile
 from pathlib import Path
 
 from tools.deploying.errors import DeployError
+from tools.deploying.names import short_names, shortened
 from tools.deploying.targets import TARGETS, USUAL, chip_of
 
 MAIN = "main.py"
@@ -71,9 +72,16 @@ class Firmware:
         return cls(sources, chip)
 
     def compile(self, compiler):
-        for path, source in self.sources.items():
+        for path, source in shortened(self.programs(), STAY_SOURCE).items():
             if not stays(path):
                 self.compiled[path[:-3] + ".mpy"] = compiler(path, source)
+
+    def programs(self):
+        return {path: self.sources[path] for path in self.sources if not path.endswith(TABLE)}
+
+    def short_names(self):
+        """{path: {name in the source: that in the compiled file}}, of what only this file has."""
+        return short_names(self.programs(), STAY_SOURCE)
 
     def files(self, chip_mpy):
         """{path: bytes} for a chip whose `sys.implementation._mpy` is this (0: takes none)."""
@@ -108,6 +116,11 @@ def stays(path):
     return path in STAY_SOURCE or path.endswith(TABLE)
 
 
+def module_of(path):
+    """As a traceback from the chip names it: "uss.drive"."""
+    return path.removesuffix(".py").removesuffix("/__init__").replace("/", ".")
+
+
 def suits(mpy_file, chip_mpy):
     """Whether a chip with this `sys.implementation._mpy` takes this .mpy file."""
     magic, version, features = mpy_file[:3]
@@ -135,9 +148,9 @@ def mpy_cross(chip=USUAL):
             # -s: the name that tracebacks show, and the function: that of the module, which is in
             # the chip's memory anyway; a path would take 1.5 KB. -O3: no lines, which would take
             # 5 KB. The firmware has no assert that it would leave out.
-            name = path.removesuffix(".py").removesuffix("/__init__").replace("/", ".")
+            names = ("-s", module_of(path), "-o", str(output), str(there))
             process = run(
-                *(f"-march={machine_code}", "-O3", "-s", name, "-o", str(output), str(there)),
+                *(f"-march={machine_code}", "-O3", *names),
                 stdout=subprocess.PIPE,
                 stderr=subprocess.STDOUT,
             )
