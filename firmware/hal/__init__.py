@@ -49,6 +49,8 @@ link                    half duplex; the driver enable is the link's affair
     sent_at             clock.ticks_us() of that instant
     defect              optional; what it found wrong with itself when it was made: "", or of
                         hal.link.rp2_check.DEFECTS
+    stack_bytes         optional; how deep the program may be in the stack on which on_activity is
+                        called, if there is a place where it leaves too little for the engine
     foreseen            optional; True: sent_at holds as soon as `send` has returned
     receive(buffer, at) -> int   interrupt. Moves what was received to buffer[at:], as far as there
                         is room, and answers how many characters. The caller must process them: a

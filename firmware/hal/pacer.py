@@ -3,7 +3,8 @@
 
 The receive interrupt, a one-shot timer and the main loop all end in `run`, which enters the engine
 once at a time and sets the timer for when the engine wants to be called. So interrupt and polled
-operation share one path. An exception in the engine must not get out: if a hard interrupt raises,
+operation share one path. A hard interrupt that comes where the program has left too little of the
+stack puts the engine off. An exception in the engine must not get out: if a hard interrupt raises,
 MicroPython disables it for good. The engine counts it, takes back every ON and begins anew.
 
     pacer = Pacer(bus, link, board.clock, board.timer)
@@ -14,10 +15,19 @@ MicroPython disables it for good. The engine counts it, takes back every ON and 
 
 from micropython import const
 
+try:
+    from micropython import stack_use
+except ImportError:  # CPython, and ports that leave it out
+
+    def stack_use():
+        return 0
+
+
 _RETRY_US = const(1_000)  # after an exception in the engine
 WAKE_US = const(1_000)
 _PERIOD_MIN_US = const(20)  # or the timer would fire before it is armed
 OVERDUE_US = const(50_000)  # a timer that is so late is set again
+_ENGINE_BYTES = const(2_500)  # of the stack, from `run` on: host_tests/pico/test_pico_stack.py
 ROUNDS_MAX = const(4)  # entries in a row for events that came meanwhile; the timer takes the rest
 
 
@@ -25,13 +35,16 @@ class Pacer:
     """engine: has poll(now_us) -> microseconds, and recover(now_us). link, clock, timer: of
     `hal`.
 
-    Fields to look at: `runs` (entries into the engine, 16 bit, wraps) and `failure` (the exception
-    caught last; the engine counts them).
+    Fields to look at: `runs` (entries into the engine, 16 bit, wraps), `put_off` (those that found
+    no stack, 16 bit, wraps) and `failure` (the exception caught last; the engine counts them).
     """
 
     def __init__(self, engine, link, clock, timer):
         self.runs = 0
+        self.put_off = 0
         self.failure = None
+        stack_bytes = getattr(link, "stack_bytes", 0)
+        self._deep_bytes = stack_bytes and stack_bytes - _ENGINE_BYTES  # 0: it is long enough
         self._engine = engine
         self._link = link
         self._ticks_us = clock.ticks_us
@@ -83,6 +96,9 @@ class Pacer:
             if inside:
                 self._again = True
                 return
+            if self._deep_bytes and stack_use() > self._deep_bytes:
+                self._put_off()
+                return
             for _ in range(ROUNDS_MAX):
                 # The order matters, or an interrupt in between would be forgotten: it either
                 # enters by itself, or is noted. Look at what is due after that, as it may change
@@ -117,6 +133,15 @@ class Pacer:
                 self._recover()
             finally:
                 self._inside = False
+
+    def _put_off(self):
+        """The engine is entered a little later, when the program is not so deep any more."""
+        self._inside = True
+        self.put_off = (self.put_off + 1) & 0xFFFF
+        self._asked_at_us = self._ticks_us()
+        self._due_us = 0
+        self._arm(WAKE_US)
+        self._inside = False
 
     def _recover(self):
         try:

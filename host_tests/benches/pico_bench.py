@@ -8,8 +8,11 @@ A script takes the place of the frozen main.py by way of boot.py. It runs after 
 what comes after a reset is the firmware as it is. There is no USB in boot.py: the LED tells.
 """
 
+import os
+
 from panel_bench import OFF1, ON, row_2, starts, telegrams
-from tools.emulator.world import PicoWorld
+from tools.emulator.flash_image import files_in
+from tools.emulator.world import PicoWorld, temporary
 
 BOOT_MS = 3_000
 START_MS = 5_000
@@ -39,6 +42,20 @@ def panel(**options):
     world = PicoWorld("panel", **options)
     assert world.run_until(lambda: row_2(world).startswith("READY"), BOOT_MS), world.lcd()
     return world
+
+
+def deployed(files=(), **options):
+    """A Pico with plain MicroPython and the panel as files, and these files besides."""
+    folder = temporary()
+    write = "build/mpremote/bin/python -B tools/benching/deployed.py %s" % folder
+    assert os.system(write) == 0
+    try:
+        everything = dict(files_in(folder))
+        everything.update(files)
+        options.setdefault("parameters", QUICK)
+        return PicoWorld("stock", files=everything, **options)
+    finally:
+        os.system("rm -r %s" % folder)
 
 
 def running(**options):

@@ -3,6 +3,7 @@
 
 import main
 from boards.sim.world import World
+from hal import pacer as pacing
 from hal.pacer import OVERDUE_US, ROUNDS_MAX, WAKE_US, Pacer
 from uss.master import SENDING
 
@@ -82,8 +83,10 @@ class InterruptedPacer(Pacer):
 
 
 class Bench:
-    def __init__(self, timer=True, pacer=Pacer):
+    def __init__(self, timer=True, pacer=Pacer, stack_bytes=0):
         self.clock, self.engine, self.link = Clock(), Engine(), Link()
+        if stack_bytes:
+            self.link.stack_bytes = stack_bytes
         self.timer = Timer() if timer else None
         self.pacer = pacer(self.engine, self.link, self.clock, self.timer)
         self.pacer.start()
@@ -98,6 +101,65 @@ def test_the_timer_is_set_to_what_the_engine_asks():
     assert bench.engine.entries == 1 and bench.timer.period == 700
     bench.let_timer_fire()
     assert bench.engine.entries == 2 and bench.timer.period == 700
+
+
+class Depth:
+    """So deep the program is when an interrupt comes, in place of the interpreter's stack."""
+
+    def __init__(self, depth_bytes):
+        self.depth_bytes = depth_bytes
+        self._real = pacing.stack_use
+
+    def __enter__(self):
+        pacing.stack_use = lambda: self.depth_bytes
+        return self
+
+    def __exit__(self, *_):
+        pacing.stack_use = self._real
+
+
+STACK_BYTES, DEEP_BYTES = 7_936, 5_500
+
+
+def test_an_interrupt_that_finds_no_stack_puts_the_engine_off():
+    bench = Bench(stack_bytes=STACK_BYTES)
+    with Depth(DEEP_BYTES) as program:
+        bench.timer.period = None
+        bench.link.on_activity()
+        assert bench.engine.entries == 1 and bench.timer.period == WAKE_US
+        bench.let_timer_fire()
+        assert bench.engine.entries == 1 and bench.timer.period == WAKE_US
+        program.depth_bytes = 0  # the program has come back from there
+        bench.let_timer_fire()
+    assert bench.engine.entries == 2 and bench.timer.period == 700
+    assert bench.pacer.put_off == 2 and bench.engine.recovered == 0
+
+
+def test_an_interrupt_while_the_engine_is_put_off_is_not_forgotten():
+    bench = Bench(stack_bytes=STACK_BYTES)
+    with Depth(DEEP_BYTES):
+        bench.clock.meanwhile = bench.pacer.run
+        bench.link.on_activity()
+        bench.clock.meanwhile = None
+    assert bench.engine.entries == 1
+    bench.let_timer_fire()
+    assert bench.engine.entries == 2
+
+
+def test_where_the_stack_is_long_nobody_looks():
+    bench = Bench()
+    with Depth(DEEP_BYTES):
+        bench.link.on_activity()
+    assert bench.engine.entries == 2 and bench.pacer.put_off == 0
+
+
+def test_without_a_timer_the_main_loop_tries_again():
+    bench = Bench(timer=False, stack_bytes=STACK_BYTES)
+    with Depth(DEEP_BYTES):
+        bench.pacer.tend()
+    assert bench.engine.entries == 1
+    bench.pacer.tend()
+    assert bench.engine.entries == 2
 
 
 def test_a_timer_that_will_come_early_enough_is_not_set_again():

@@ -2,13 +2,9 @@
 """The panel as files on plain MicroPython, as tools/deploy leaves it: it lies in the chip's file
 system and runs from its memory. How it gets there: test_pico_deploy.py."""
 
-import os
-
 from boards.sim.ports.chips import HEAP_BYTES
 from panel.menu.main import LISTS
-from pico_bench import QUICK, says, stands, start, starts
-from tools.emulator.flash_image import files_in
-from tools.emulator.world import PicoWorld, temporary
+from pico_bench import deployed, says, stands, start, starts
 
 INTERPRETERS = "pico pico_hard"
 
@@ -30,18 +26,6 @@ FREE_BYTES = 36 * 1024
 # Of an ESP32, where the bytecode takes as much: boards/esp32/README.md says which ones will do.
 ESP32_FREE_BYTES = 40 * 1024
 WILL_DO = ("ESP32-S3", "ESP32 with PSRAM")
-
-
-def deployed(files=(), **options):
-    folder = temporary()
-    write = "build/mpremote/bin/python -B tools/benching/deployed.py %s" % folder
-    assert os.system(write) == 0
-    try:
-        everything = dict(files_in(folder))
-        everything.update(files)
-        return PicoWorld("stock", files=everything, parameters=QUICK, **options)
-    finally:
-        os.system("rm -r %s" % folder)
 
 
 def test_a_panel_that_was_deployed_runs_its_drive_and_stops_it():

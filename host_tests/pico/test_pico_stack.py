@@ -2,17 +2,20 @@
 """The stack of the chip: the receive interrupt may come at the deepest place of the main program.
 
 MicroPython refuses a call that would leave too little (RuntimeError). In the interrupt that costs
-an exchange and takes ON back from every drive; so there has to be room for both.
+an exchange and takes ON back from every drive. So the firmware of our own has room for both, and
+elsewhere the engine is put off (`hal.pacer`) where there is none.
 """
 
 from boards.sim.drives.families import g110, mm420
 from panel_bench import row_2
-from pico_bench import choose, go_to, panel, press
+from pico_bench import choose, deployed, go_to, panel, press, says
 
 INTERPRETERS = "pico_hard"  # there all of the engine runs in handlers; else a part of it does
 
 STACK_BYTES = 8192 + 704  # of the RP2040's two small banks, and STACK_MORE of tools/fetch/pico.sh
 MARGIN_BYTES = 256  # that MicroPython keeps for functions in C
+LOOK_BYTES = 900  # from the interrupt to where the pacer looks how much there is
+ENGINE_BYTES = 2_500  # that it wants to find, if it looks: hal/pacer.py
 
 
 def panel_of(family, name):
@@ -28,6 +31,7 @@ def check(world, what):
     print("%s: program %d, interrupts %d" % (what, program, handlers))
     assert program and handlers
     assert program + handlers <= STACK_BYTES - MARGIN_BYTES, what
+    assert handlers <= LOOK_BYTES + ENGINE_BYTES, what
     world.check()
 
 
@@ -95,3 +99,33 @@ def test_settings_and_diagnosis():
     go_to(world, "DIAGNOSIS", "BUS COUNTERS")
     world.run(2_000)
     check(world, "diagnosis")
+
+
+TELLS_PUT_OFF = b"""
+from hal import pacer
+from machine import Timer
+seen = []
+class Pacer(pacer.Pacer):
+    def start(self):
+        seen[:] = [self]
+        super().start()
+pacer.Pacer = Pacer
+def tell(_):
+    for one in seen:
+        print("PUT OFF", one.put_off, "FAILURE", one.failure)
+timer = Timer(period=500, mode=Timer.PERIODIC, callback=tell)
+"""
+
+
+def test_as_files_there_is_less_and_the_engine_is_put_off():
+    """On plain MicroPython; a set is what takes the most."""
+    kinds = {1: {"family": g110, "parameters": {2014: 2_000}}}
+    settings = {"kinds": {"1": "g110"}}
+    world = deployed({"boot.py": TELLS_PUT_OFF}, baud=57600, kinds=kinds, settings=settings)
+    assert says(world, "READY", 15_000)
+    go_to(world, "SETS", "SAVE A1")
+    press(world, "SET")
+    world.run(20_000)
+    *_, told = bytes(world.usb).decode().strip().split("\r\n")
+    assert told.endswith("FAILURE None") and not told.startswith("PUT OFF 0 "), told
+    world.check()

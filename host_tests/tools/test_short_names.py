@@ -44,13 +44,15 @@ def test_each_place_of_a_name_has_the_short_one():
 
 
 def test_names_for_others_stay():
+    name = b"_one"
     sources = {
         "public.py": b"turns = STATES = 1\n",
-        "both.py": b"_shared = 1\n",
-        "too.py": b"import both\nboth._shared\n",
+        "of_two.py": b"%s = 1\n" % name,
+        "too.py": b"import of_two\nof_two.%s\n" % name,
         "by_text.py": b"_spoken = 1\nglobals()['_spoken']\n",
-        "interpreter.py": b"import sys\nsys.implementation._machine\n",
-        "given.py": b"def mark(drive):\n    drive._mark = 1\n",
+        "interpreter.py": b"import sys\nsys.implementation.%s\n" % b"_machine",
+        "taken.py": b"from machine import _pin\n_pin()\n",
+        "given.py": b"def mark(drive):\n    drive.%s = 1\n" % b"_mark",
     }
     assert shortened(sources) == sources
 

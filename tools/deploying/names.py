@@ -98,10 +98,11 @@ def _said(tree):
     said = set()
     alone = {node.value for node in ast.walk(tree) if isinstance(node, ast.Expr)}
     for node in ast.walk(tree):
-        is_text = isinstance(node, ast.Constant) and isinstance(node.value, (str, bytes))
-        if is_text and node not in alone:
-            text = node.value
-            said.update(WORD.findall(text if isinstance(text, str) else text.decode("latin-1")))
+        text = node.value if isinstance(node, ast.Constant) and node not in alone else None
+        if isinstance(text, bytes):
+            text = text.decode("latin-1")
+        if isinstance(text, str):
+            said.update(WORD.findall(text))
     return said
 
 
@@ -110,7 +111,8 @@ def _made(tree):
     return {
         name
         for node in ast.walk(tree)
-        if not isinstance(getattr(node, "ctx", None), ast.Load)
+        if not isinstance(node, (ast.alias, ast.ImportFrom))
+        and not isinstance(getattr(node, "ctx", None), ast.Load)
         for name in _names(node)
     }
 

@@ -21,6 +21,7 @@ import micropython
 import rp2
 from micropython import const
 
+import hal
 from hal.link.bursts import Bursts
 
 # Of the state machine. Its divider goes to 65536, so that 300 baud are possible up to a system
@@ -30,6 +31,9 @@ _LEAD_CYCLES = const(8)  # from the DMA's first word to the first start bit, at 
 _BITS_PER_CHARACTER = const(11)
 _BITS_BEFORE_STOP = const(10)
 _SIZE_MAX = const(256)
+# Of MicroPython as it comes: 8 KB, less what its functions in C keep. That of the firmware file is
+# longer (STACK_MORE of tools/fetch/pico.sh), and the engine finds room wherever the program is.
+_STACK_BYTES = const(7_936)
 _WORDS = const(1)  # code of the DMA for transfers of 16 bits
 
 
@@ -92,6 +96,8 @@ class Rp2Link(Bursts):
     """
 
     foreseen = True
+    if ".frozen" not in hal.__path__:
+        stack_bytes = _STACK_BYTES
     defect = ""  # who makes the link looks for one: rp2_check
 
     def __init__(self, uart, registers, state_machine, dma, tx_pin, driver_enable, clock, baud):
