@@ -33,6 +33,7 @@ _MESSAGE_MS = const(3_000)
 _LAST_TURN = const(7)
 _UNSEEN_MS = const(300)  # so long a page that is coming may go before the picture
 _WAITS_MAX = const(8)  # turns until what takes long does not wait for a telegram any more
+_LONG_US = const(2_500)  # it takes up to so long, and is not to be interrupted
 _LATE_US = const(900)  # a step that has taken so long is not to begin it: it was interrupted
 
 # They act on every page that obeys. STOP acts on every page.
@@ -137,7 +138,7 @@ class Panel:
         if self._acting:
             self._act(now_ms)
             return False
-        if self._waits and self.is_undisturbed() and self._go_on(now_ms):
+        if self._waits and self.is_undisturbed(_LONG_US) and self._go_on(now_ms):
             return False
         if self._place and self._page is self._home:
             self._rests = not self._rests
@@ -179,7 +180,7 @@ class Panel:
     def has_time(self):
         """Whether to begin what takes long, such as to load a module. Asked again in each turn."""
         self._waits += 1
-        if not self.is_undisturbed() and self._waits < _WAITS_MAX:
+        if not self.is_undisturbed(_LONG_US) and self._waits < _WAITS_MAX:
             return False
         self._waits = 0
         return True

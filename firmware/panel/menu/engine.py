@@ -113,7 +113,8 @@ class Menu(Page):
     def work(self, now_ms):
         """What takes long has a turn of its own: a module that comes, a piece of a search."""
         if self._page is not None:
-            self.panel.show_page(now_ms, self._page)
+            if self.panel.has_time():
+                self.panel.show_page(now_ms, self._page)
         elif not self._coming:
             self._lists[-1][1].search()
         elif self.panel.has_time():
@@ -142,8 +143,12 @@ class Menu(Page):
         if self._coming:
             self._forget(self._coming[0])
             self._coming = None
+        needed = []
         while self._lists:
-            self._drop_last()
+            name, shown, _ = self._lists.pop()
+            shown.end()
+            needed += shown.ahead + (_module(name),) + _WANTS.get(name, ())
+        self._drop(needed)
         self.panel.uncover()
 
     def draw(self, screen, now_ms):
@@ -241,7 +246,9 @@ class Menu(Page):
         if modules is self._keep:
             return
         keep = self._keep
-        on_demand.drop(*[name for name in modules if name not in needed and name not in keep])
+        if needed or keep:
+            modules = [name for name in modules if name not in needed and name not in keep]
+        on_demand.drop(*modules)
 
     def _leave(self, now_ms):
         """Back to the list above this one."""
