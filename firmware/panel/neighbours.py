@@ -12,15 +12,14 @@ _LONG_US = const(1_500)  # a step that has taken so long is not to do more
 
 
 class Neighbours:
-    """controls: of all drives. announcer: the `Announcer`. heed: called with a control whose drive
-    has told something. has_taken: whether the step has taken so many microseconds.
+    """controls: of all drives. announcer: the `Announcer`. panel: the `Panel`, which heeds what a
+    drive has told, and knows how long the step has taken.
     """
 
-    def __init__(self, controls, announcer, heed, has_taken):
+    def __init__(self, controls, announcer, panel):
         self._controls = controls
         self._announcer = announcer
-        self._heed = heed
-        self._has_taken = has_taken
+        self._panel = panel
         self._shown = 0  # place of the one that is shown
         self._place = 0  # of the one that was looked at last
         self._control = None  # it was asked, and is still to be watched,
@@ -46,9 +45,9 @@ class Neighbours:
             return
         control = self._next()
         if control.ask(now_us, _REREAD_US):
-            self._heed(control)
+            self._panel.heed(control)
             self._place -= 1  # it has told something: in its next turn it is asked for more
-        elif not self._has_taken(_LONG_US) and control.is_quiet():
+        elif not self._panel.has_taken(_LONG_US) and control.is_quiet():
             if not control.drive.contact:  # of the others nothing new can be said
                 self._announcer.look(self._place)
             self._at_rest += 1
@@ -60,7 +59,7 @@ class Neighbours:
             control.watch(now_us)
             control.keep_quiet()
             self._at_rest = 0 if control.is_active() else self._at_rest + 1
-            if self._has_taken(_LONG_US):
+            if self._panel.has_taken(_LONG_US):
                 self._is_watched = True
                 return
         self._is_watched = False

@@ -113,7 +113,7 @@ class Panel:
         self._drawn_at_ms = None  # when the picture was begun; None: a new one at once
         self._is_unseen = False  # the page shown was coming, and was not drawn
         self._position = 0  # of the selected one in the controls
-        self._neighbours = Neighbours(controls, self.announcer, self._heed, self.has_taken)
+        self._neighbours = Neighbours(controls, self.announcer, self)
         self._put_off = 0  # what can wait, in the turn before
         # What is not done at once takes turns, so that each step of the loop stays short.
         self._turns = (
@@ -180,8 +180,9 @@ class Panel:
     def has_time(self):
         """Whether to begin what takes long, such as to load a module. Asked again in each turn."""
         self._waits += 1
-        if not self.is_undisturbed(_LONG_US) and self._waits < _WAITS_MAX:
-            return False
+        if not self.is_undisturbed(_LONG_US):
+            if self._waits < _WAITS_MAX or self.has_taken(_LATE_US):
+                return False
         self._waits = 0
         return True
 
@@ -206,6 +207,12 @@ class Panel:
         """Close the menu, and show this page of the table."""
         self._cover.close(PAGES[place][2])
         self.turn_page(now_ms, place)
+
+    def heed(self, control):
+        """A drive has told its settings: its telegram-off time decides how soon it is asked."""
+        survey = control.survey
+        if survey.complete:
+            self.bus.deadlines.supervise(control.drive, survey.off_time_ms())
 
     def heed_settings(self, locked=False):
         """Settings that act at once have changed. locked: where they have a lock, it is closed."""
@@ -285,14 +292,8 @@ class Panel:
 
     def _ask(self, _now_ms, now_us):
         if self.selected.ask(now_us):
-            self._heed(self.selected)
+            self.heed(self.selected)
         return False
-
-    def _heed(self, control):
-        """A drive has told its settings: its telegram-off time decides how soon it is asked."""
-        survey = control.survey
-        if survey.complete:
-            self.bus.deadlines.supervise(control.drive, survey.off_time_ms())
 
     def _watch(self, _now_ms, now_us):
         on_demand.tidy()

@@ -21,8 +21,8 @@ from uss.timing import elapsed
 FAVOURITES = None
 FIRST, TYPED = const(-1), const(-2)
 
-_WORK_US = const(1_250)  # then a step has no time for a piece, which takes up to 1.2 ms, and
-_ALONE_US = const(1_900)  # likewise where no interrupt comes
+_WORK_US = const(900)  # then a step has no time for a piece, which takes up to 1.2 ms, and
+_ALONE_US = const(2_000)  # likewise where no interrupt comes
 _QUIET_US = const(4_000)  # so long a telegram is to be on its way, then none comes
 _PIECES_MAX = const(6)
 _READ_MS = const(500)  # between an answer and the next question

@@ -113,7 +113,9 @@ class Menu(Page):
     def work(self, now_ms):
         """What takes long has a turn of its own: a module that comes, a piece of a search."""
         if self._page is not None:
-            if self.panel.has_time():
+            if len(self._lists) > 1:  # the one that is shown goes with the page that comes
+                self._drop_list(0)
+            elif self.panel.has_time():
                 self.panel.show_page(now_ms, self._page)
         elif not self._coming:
             self._lists[-1][1].search()
@@ -231,8 +233,8 @@ class Menu(Page):
         if not self._lists:
             self.panel.uncover()
 
-    def _drop_last(self):
-        name, shown, _ = self._lists.pop()
+    def _drop_list(self, place):
+        name, shown, _ = self._lists.pop(place)
         shown.end()
         self._drop(shown.ahead)
         self._forget(name)
@@ -255,7 +257,7 @@ class Menu(Page):
         self._lists[-1][1].leave(now_ms)
         if not self._lists:  # that has closed the menu
             return
-        self._drop_last()
+        self._drop_list(-1)
         if not self._lists:
             self.panel.uncover()
 
