@@ -54,7 +54,7 @@ def load(name):
     if module is None:
         __import__(name)  # it answers the outermost package: to walk down from there takes long
         module = sys.modules[name]
-    while name in _idle:
+    elif name in _idle:
         _idle.remove(name)
     return module
 
@@ -67,23 +67,22 @@ def missing(names):
     return [name for name in names if name not in sys.modules]
 
 
-def drop(*names):
-    """Forget them. Their memory is free as soon as nobody uses what was in them; where there is
-    room, `tidy` does it, since to forget a page with all its modules would take some milliseconds.
+def drop(name):
+    """Forget it. Its memory is free as soon as nobody uses what was in it; where there is room,
+    `tidy` does it, since to forget a page with all its modules would take some milliseconds.
     """
+    if name in _kept or name in _idle or name not in sys.modules:
+        return
     if _kept:
-        _idle.extend(names)  # whatever they are: `tidy` looks at them
+        _idle.append(name)
     else:
-        for name in names:
-            _forget(name)
+        _forget(name)
 
 
 def tidy():
     """One of those that were dropped leaves the memory."""
     if _idle:
-        name = _idle.pop()
-        if name not in _kept:
-            _forget(name)
+        _forget(_idle.pop())
 
 
 def flush():
@@ -93,8 +92,7 @@ def flush():
 
 
 def _forget(name):
-    if sys.modules.pop(name, None) is None:
-        return
+    sys.modules.pop(name, None)
     package, _, module = name.rpartition(".")
     if package in sys.modules:
         try:
