@@ -74,6 +74,12 @@ def test_a_class_and_what_inherits_from_it_share_no_short_name():
     assert sorted(name for of in short.values() for name in of.values()) == ["_a", "_b", "_c"]
 
 
+def test_a_board_file_may_make_a_class_of_anything():
+    sources = {"board.py": b"class Pins(type(print)):\n    _led = 25\n"}
+    assert shortened(sources, ("board.py",)) == sources
+    assert shortened(sources)["board.py"] == b"class Pins(type(print)):\n    _a = 25\n"
+
+
 def test_a_short_name_is_none_that_the_firmware_has():
     assert shortened({"x.py": b"_row = 1\n", "y.py": b"_a = 2\n", "z.py": b"_a\n"})["x.py"] == (
         b"_b = 1\n"

@@ -138,8 +138,9 @@ def _families(trees):
                 home.setdefault(node.name, []).append(path)
     for path, tree in trees.items():
         for node in ast.walk(tree):
-            for base in node.bases if isinstance(node, ast.ClassDef) else ():
-                for other in home.get(_names(base)[0], ()):
+            bases = node.bases if isinstance(node, ast.ClassDef) else ()
+            for name in [name for base in bases for name in _names(base)]:
+                for other in home.get(name, ()):
                     joined = group[path] | group[other]
                     group.update(dict.fromkeys(joined, joined))
     return sorted({min(paths): sorted(paths) for paths in group.values()}.values())
