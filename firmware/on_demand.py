@@ -54,7 +54,7 @@ def load(name):
     if module is None:
         __import__(name)  # it answers the outermost package: to walk down from there takes long
         module = sys.modules[name]
-    elif name in _idle:
+    while name in _idle:
         _idle.remove(name)
     return module
 
@@ -67,22 +67,23 @@ def missing(names):
     return [name for name in names if name not in sys.modules]
 
 
-def drop(name):
-    """Forget it. Its memory is free as soon as nobody uses what was in it; where there is room,
-    `tidy` does it, since to forget a page with all its modules would take some milliseconds.
+def drop(*names):
+    """Forget them. Their memory is free as soon as nobody uses what was in them; where there is
+    room, `tidy` does it, since to forget a page with all its modules would take some milliseconds.
     """
-    if name in _kept or name in _idle or name not in sys.modules:
-        return
     if _kept:
-        _idle.append(name)
+        _idle.extend(names)  # whatever they are: `tidy` looks at them
     else:
-        _forget(name)
+        for name in names:
+            _forget(name)
 
 
 def tidy():
     """One of those that were dropped leaves the memory."""
     if _idle:
-        _forget(_idle.pop())
+        name = _idle.pop()
+        if name not in _kept:
+            _forget(name)
 
 
 def flush():
@@ -92,7 +93,8 @@ def flush():
 
 
 def _forget(name):
-    sys.modules.pop(name, None)
+    if sys.modules.pop(name, None) is None:
+        return
     package, _, module = name.rpartition(".")
     if package in sys.modules:
         try:

@@ -21,8 +21,12 @@ LEFT_OUT = ("uss/br/", "uss/s7/", "uss/tasks/")
 OPT = 3
 
 # The order in which they are frozen is part of the firmware's bytes. MicroPython looks through
-# their names from the beginning, so those that come while the panel works stand first.
-ON_DEMAND = ("panel/menu/", "panel/lookup/", "panel/sets/")
+# their names from the beginning, twice for a module that it loads: so those that come while the
+# panel works stand first, the tables before all. In front of the others are 1.5 ms fewer to read.
+ON_DEMAND = (
+    "panel/menu/", "panel/lookup/", "panel/sets/", "panel/commission/", "panel/pages/",
+    "panel/writer.py", "catalogue/", "uss/finding/", "settings_file.py",
+)  # fmt: skip
 
 
 def python_files(folder):
@@ -34,10 +38,6 @@ def python_files(folder):
                 found.append((not inside.startswith(ON_DEMAND), inside))
     return [inside for _, inside in sorted(found)]
 
-
-freeze("$(PORT_DIR)/modules", ("_boot.py", "rp2.py"))  # the port's own
-freeze("../../firmware", tuple(python_files("../../firmware")), opt=OPT)
-freeze("..", ("chips/rp2.py",), opt=OPT)
 
 # The tables, as constants; `tools` is found from the top of the tree. What is frozen
 # is compiled after this file has been read.
@@ -51,3 +51,7 @@ for path, source in packing.modules("../../firmware").items():
     with open(os.path.join(tables, path), "w") as file:
         file.write(source)
     freeze(tables, (path,), opt=OPT)
+
+freeze("$(PORT_DIR)/modules", ("_boot.py", "rp2.py"))  # the port's own
+freeze("../../firmware", tuple(python_files("../../firmware")), opt=OPT)
+freeze("..", ("chips/rp2.py",), opt=OPT)

@@ -22,7 +22,7 @@ import on_demand
 _WINDOW_BITS = const(11)  # of packing.py
 _ENTRY = "<II"
 _ENTRY_BYTES = const(8)
-_PIECE = const(128)  # that is unpacked in a step
+_FIRST, _PIECE = const(64), const(192)  # bytes that are unpacked in a step: first come the codes
 _NEAR = const(200)  # bytes; what is nearer is found by reading on
 
 
@@ -75,6 +75,8 @@ class Packed:
                 low = middle
             else:
                 high = middle
+            if 2 * _NEAR < high - low <= 4 * _NEAR:  # once
+                yield None
         self._at = low
 
     def go_on(self):
@@ -91,7 +93,7 @@ class Packed:
         self._blocks.seek(struct.unpack_from(_ENTRY, self._index, place)[1])
         packed = DeflateIO(self._blocks, RAW, _WINDOW_BITS)
         yield None
-        block, piece = b"", packed.read(_PIECE)
+        block, piece = b"", packed.read(_FIRST)
         while piece:
             yield None
             block += piece

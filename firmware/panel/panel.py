@@ -33,6 +33,8 @@ _MESSAGE_MS = const(3_000)
 _LAST_TURN = const(7)
 _UNSEEN_MS = const(300)  # so long a page that is coming may go before the picture
 _WAITS_MAX = const(8)  # turns until what takes long does not wait for a telegram any more
+_LONG_US = const(2_500)  # it takes up to so long, and is not to be interrupted
+_LATE_US = const(900)  # a step that has taken so long is not to begin it: it was interrupted
 
 # They act on every page that obeys. STOP acts on every page.
 COMMAND_KEYS = (
@@ -60,6 +62,7 @@ class Panel:
 
     def __init__(self, roster, bus, board, settings, mask, notices=()):
         self._turn = 0  # asked for in every step, so it is first: as in `Master`
+        self._begun_us = 0  # when the step began
         self._acting = False  # keys that were pressed are still to do what they do
         self._taker = None  # the page that is to take them now that the panel has
         self._rests = False  # the step is not for making a page
@@ -110,7 +113,7 @@ class Panel:
         self._drawn_at_ms = None  # when the picture was begun; None: a new one at once
         self._is_unseen = False  # the page shown was coming, and was not drawn
         self._position = 0  # of the selected one in the controls
-        self._neighbours = Neighbours(controls, self.announcer, self._heed)
+        self._neighbours = Neighbours(controls, self.announcer, self)
         self._put_off = 0  # what can wait, in the turn before
         # What is not done at once takes turns, so that each step of the loop stays short.
         self._turns = (
@@ -127,6 +130,7 @@ class Panel:
         display, and drives that are silent or wait too long.
         """
         keys = self._keys
+        self._begun_us = now_us
         self._turn = turn = self._turn + 1 & _LAST_TURN
         if raw_keys or unclear_keys or not keys.at_rest:
             if keys.update(raw_keys, now_ms, unclear_keys) and self._take_keys(keys, now_ms):
@@ -134,7 +138,7 @@ class Panel:
         if self._acting:
             self._act(now_ms)
             return False
-        if self._waits and self.is_undisturbed() and self._go_on(now_ms):
+        if self._waits and self.is_undisturbed(_LONG_US) and self._go_on(now_ms):
             return False
         if self._place and self._page is self._home:
             self._rests = not self._rests
@@ -157,8 +161,7 @@ class Panel:
         self._cover = page
 
     def uncover(self):
-        for module in self._cover.modules:
-            on_demand.drop(module)
+        on_demand.drop(*self._cover.modules)
         self._cover = None
 
     def write(self, now_ms, *what):
@@ -177,14 +180,24 @@ class Panel:
     def has_time(self):
         """Whether to begin what takes long, such as to load a module. Asked again in each turn."""
         self._waits += 1
-        if not self.is_undisturbed() and self._waits < _WAITS_MAX:
-            return False
+        if not self.is_undisturbed(_LONG_US):
+            if self._waits < _WAITS_MAX or self.has_taken(_LATE_US):
+                return False
         self._waits = 0
         return True
 
-    def is_undisturbed(self):
-        """Whether a telegram is being sent: nothing interrupts the loop until the reply comes."""
-        return self.bus.is_sending(self.board.clock.ticks_us())
+    def is_undisturbed(self, for_us=0):
+        """Whether a telegram is being sent, and for so long at least: nothing interrupts the loop
+        until the reply comes. In a step that was interrupted already, it is too late for what
+        takes long.
+        """
+        if self.has_taken(_LATE_US):
+            return False
+        return self.bus.is_sending(self.board.clock.ticks_us() + for_us & self.mask)
+
+    def has_taken(self, us):
+        """Whether this step has taken so long already."""
+        return (self.board.clock.ticks_us() - self._begun_us) & self.mask >= us
 
     def close_menu(self):
         """Close the menu that covers the page."""
@@ -194,6 +207,12 @@ class Panel:
         """Close the menu, and show this page of the table."""
         self._cover.close(PAGES[place][2])
         self.turn_page(now_ms, place)
+
+    def heed(self, control):
+        """A drive has told its settings: its telegram-off time decides how soon it is asked."""
+        survey = control.survey
+        if survey.complete:
+            self.bus.deadlines.supervise(control.drive, survey.off_time_ms())
 
     def heed_settings(self, locked=False):
         """Settings that act at once have changed. locked: where they have a lock, it is closed."""
@@ -273,14 +292,8 @@ class Panel:
 
     def _ask(self, _now_ms, now_us):
         if self.selected.ask(now_us):
-            self._heed(self.selected)
+            self.heed(self.selected)
         return False
-
-    def _heed(self, control):
-        """A drive has told its settings: its telegram-off time decides how soon it is asked."""
-        survey = control.survey
-        if survey.complete:
-            self.bus.deadlines.supervise(control.drive, survey.off_time_ms())
 
     def _watch(self, _now_ms, now_us):
         on_demand.tidy()
@@ -314,6 +327,7 @@ class Panel:
         if self._page.is_coming() and self._cover is None and drawn_at_ms is not None:
             if elapsed(now_ms, drawn_at_ms, self.mask) < _UNSEEN_MS:
                 self._is_unseen = True
+                self._waits = 1  # the other turns work on it as well, when nothing disturbs
                 self._page.work(now_ms)
                 return False
         if self._is_unseen:  # it has come: what was drawn before is of another page
@@ -466,8 +480,7 @@ class Panel:
         before = self._page
         self._place = place
         self._page = self._home
-        for module in before.modules:
-            on_demand.drop(module)
+        on_demand.drop(*before.modules)
         self._page.open()
 
     def _go_on(self, now_ms):
@@ -475,6 +488,8 @@ class Panel:
         self._waits = 0
         if self._place and self._page is self._home:
             return self._make_page(now_ms)
+        if self._page.is_coming():
+            self._waits = 1
         return self._works(now_ms)
 
     def _make_page(self, now_ms):
@@ -487,6 +502,7 @@ class Panel:
             module = on_demand.load(missing[0] if missing else modules[-1])
             if not missing:
                 self._page = getattr(module, page)(self)
+                self._waits = 1  # it may be coming still
         except MemoryError:
             self._place = 0
             self.say(now_ms, texts.NO_MEMORY)

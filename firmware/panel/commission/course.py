@@ -90,6 +90,7 @@ class List(Entries):
         self._phase = LOOKS
         self._first_turn = self.panel.announcer.page_turns  # its name comes first
         self._lines = []  # its name, and what to know about it
+        self._note = None  # makes the lines of that, one in a step
         self._row = None  # of its parameter
         self._form = None  # None: its value was not read
         self._failure = None  # why it cannot be
@@ -245,9 +246,12 @@ class List(Entries):
         return self._write is not None
 
     def is_searching(self):
-        return self._search.rows is not None
+        return self._search.rows is not None or self._note is not None
 
     def search(self):
+        if self._note is not None:
+            self._break_on()
+            return
         row = self._search.step()
         if not self._is_complete:
             if row:
@@ -257,13 +261,21 @@ class List(Entries):
                 self._is_complete = True
                 self._read_all()
         elif row and not self._lines:
-            note = broken(text(row, catalogue.STEP_NOTE), _WIDTH)
-            self._lines = [text(row)[:_WIDTH]] + list(note)
-            self._search_for("P", self._shown.number)
+            self._lines = [text(row)[:_WIDTH]]
+            self._note = broken(text(row, catalogue.STEP_NOTE), _WIDTH)
         elif row:
             self._row = row
         elif self._search.rows is None and not self._lines:
             self._lines = [texts.NOTHING]
+
+    def _break_on(self):
+        """The next line of what there is to know about the step; after it comes its parameter."""
+        line = next(self._note, None)
+        if line is None:
+            self._note = None
+            self._search_for("P", self._shown.number)
+        else:
+            self._lines.append(line)
 
     def step(self, position, now_ms):
         if not self._is_complete:

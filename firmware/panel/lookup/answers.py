@@ -21,7 +21,9 @@ from uss.timing import elapsed
 FAVOURITES = None
 FIRST, TYPED = const(-1), const(-2)
 
-_WORK_US = const(1_000)  # then it is enough for a step: a piece takes up to 1.2 ms
+_WORK_US = const(900)  # then a step has no time for a piece, which takes up to 1.2 ms, and
+_ALONE_US = const(2_000)  # likewise where no interrupt comes
+_QUIET_US = const(4_000)  # so long a telegram is to be on its way, then none comes
 _PIECES_MAX = const(6)
 _READ_MS = const(500)  # between an answer and the next question
 _STALE_MS = const(60_000)  # what nobody goes on typing is dropped
@@ -138,12 +140,12 @@ class Answers(Sight):
 
     def look_on(self):
         """As many pieces of it as fit a step of the loop."""
-        ticks_us = self.panel.board.clock.ticks_us
-        began_us = ticks_us()
+        panel = self.panel
+        work_us = _ALONE_US if panel.is_undisturbed(_QUIET_US) else _WORK_US
         for _ in range(_PIECES_MAX):
             if self._look_on() or not self.is_searching():
                 return
-            if elapsed(ticks_us(), began_us, self.panel.mask) >= _WORK_US:
+            if panel.has_taken(work_us):
                 return
 
     def _look_on(self):

@@ -113,7 +113,10 @@ class Menu(Page):
     def work(self, now_ms):
         """What takes long has a turn of its own: a module that comes, a piece of a search."""
         if self._page is not None:
-            self.panel.show_page(now_ms, self._page)
+            if len(self._lists) > 1:  # the one that is shown goes with the page that comes
+                self._drop_list(0)
+            elif self.panel.has_time():
+                self.panel.show_page(now_ms, self._page)
         elif not self._coming:
             self._lists[-1][1].search()
         elif self.panel.has_time():
@@ -142,8 +145,12 @@ class Menu(Page):
         if self._coming:
             self._forget(self._coming[0])
             self._coming = None
+        needed = []
         while self._lists:
-            self._drop_last()
+            name, shown, _ = self._lists.pop()
+            shown.end()
+            needed += shown.ahead + (_module(name),) + _WANTS.get(name, ())
+        self._drop(needed)
         self.panel.uncover()
 
     def draw(self, screen, now_ms):
@@ -226,8 +233,8 @@ class Menu(Page):
         if not self._lists:
             self.panel.uncover()
 
-    def _drop_last(self):
-        name, shown, _ = self._lists.pop()
+    def _drop_list(self, place):
+        name, shown, _ = self._lists.pop(place)
         shown.end()
         self._drop(shown.ahead)
         self._forget(name)
@@ -240,16 +247,17 @@ class Menu(Page):
     def _drop(self, modules, needed=()):
         if modules is self._keep:
             return
-        for module in modules:
-            if module not in needed and module not in self._keep:
-                on_demand.drop(module)
+        keep = self._keep
+        if needed or keep:
+            modules = [name for name in modules if name not in needed and name not in keep]
+        on_demand.drop(*modules)
 
     def _leave(self, now_ms):
         """Back to the list above this one."""
         self._lists[-1][1].leave(now_ms)
         if not self._lists:  # that has closed the menu
             return
-        self._drop_last()
+        self._drop_list(-1)
         if not self._lists:
             self.panel.uncover()
 

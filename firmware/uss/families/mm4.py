@@ -101,6 +101,7 @@ class MM420(GENERIC):
         970: CUTS_OFF,  # factory reset
         1000: CUTS_OFF,
         1070: CUTS_OFF,  # source of the setpoint
+        1910: CUTS_OFF,  # motor identification: the drive answers nothing while it lasts
         2000: RESCALES,
         2009: RESCALES,
         2010: CUTS_OFF,  # baud rate
