@@ -86,10 +86,10 @@ class App:
     def step(self):
         """One turn of the main loop, 4 ms of work at most; ends in the board's `idle`. Answers the
         program that comes next, None as long as this one goes on."""
+        now_us = self.ticks_us()  # first: an interrupt counts as time of this step
         board = self.board
         keypad = board.keypad
         now_ms = self._ticks_ms()
-        now_us = self.ticks_us()
         self.refresh_bus(now_us, False)
         if self.step_panel(keypad.read(), now_ms, now_us, keypad.unclear):
             self._look_or_show(now_us)

@@ -108,7 +108,8 @@ def _rows(family, kind, numbers):
         if is_completed:
             yield from _prepare(like)
         with _table(like) if is_completed else table as other:
-            yield None
+            if is_completed:
+                yield None
             for part in numbers.split():
                 first, _, last = part.partition(b"-")
                 first, last = _key(first, kind), _key(last or first, kind) | 0x1FF

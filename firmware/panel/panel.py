@@ -32,7 +32,8 @@ _DRAW_MS = const(50)
 _MESSAGE_MS = const(3_000)
 _LAST_TURN = const(7)
 _UNSEEN_MS = const(300)  # so long a page that is coming may go before the picture
-_WAITS_MAX = const(8)  # turns until what takes long does not wait for a telegram any more
+_WAITS_MAX = const(8)  # turns until what takes long does not wait for a telegram any more,
+_WAITS_MOST = const(16)  # and until it does not wait for a step that has just begun
 _LONG_US = const(2_500)  # it takes up to so long, and is not to be interrupted
 _LATE_US = const(900)  # a step that has taken so long is not to begin it: it was interrupted
 
@@ -181,19 +182,19 @@ class Panel:
         """Whether to begin what takes long, such as to load a module. Asked again in each turn."""
         self._waits += 1
         if not self.is_undisturbed(_LONG_US):
-            if self._waits < _WAITS_MAX or self.has_taken(_LATE_US):
+            waits = self._waits
+            if waits < _WAITS_MAX or waits < _WAITS_MOST and self.has_taken(_LATE_US):
                 return False
         self._waits = 0
         return True
 
     def is_undisturbed(self, for_us=0):
-        """Whether a telegram is being sent, and for so long at least: nothing interrupts the loop
-        until the reply comes. In a step that was interrupted already, it is too late for what
-        takes long.
+        """Whether nothing interrupts the loop for so long: a telegram is on its way, or the reply.
+        In a step that was interrupted already, it is too late for what takes long.
         """
         if self.has_taken(_LATE_US):
             return False
-        return self.bus.is_sending(self.board.clock.ticks_us() + for_us & self.mask)
+        return self.bus.is_undisturbed(self.board.clock.ticks_us() + for_us & self.mask)
 
     def has_taken(self, us):
         """Whether this step has taken so long already."""
@@ -484,13 +485,14 @@ class Panel:
         self._page.open()
 
     def _go_on(self, now_ms):
-        """What waited for a telegram goes on. Answers whether there was anything."""
-        self._waits = 0
+        """What waited for this goes on. Answers whether there was anything."""
+        self._waits = _WAITS_MAX  # `has_time` agrees, unless it is too late meanwhile
         if self._place and self._page is self._home:
-            return self._make_page(now_ms)
-        if self._page.is_coming():
-            self._waits = 1
-        return self._works(now_ms)
+            has_gone_on = self._make_page(now_ms)
+        else:
+            has_gone_on = self._works(now_ms)
+        self._waits = 1 if self._waits > _WAITS_MAX or self._page.is_coming() else 0
+        return has_gone_on
 
     def _make_page(self, now_ms):
         """One of its modules; when all are there, the page. Answers whether that took long."""

@@ -141,10 +141,13 @@ class Master:
                 exchanges = self.turns.exchanges - self._foreign_at
                 self._shared = exchanges & 0xFFFF < _SHARED_EXCHANGES
 
-    def is_sending(self, now):
-        """Whether a telegram is on its way: nothing is to be done until the reply to it comes."""
-        if self.phase == AWAITING:  # of a link that foresees its end
-            return 0 < (self._quiet_since - now) & self._mask <= self._mask >> 1
+    def is_undisturbed(self, until):
+        """Whether nothing is to be done until then: a telegram is on its way, or the reply to it,
+        which probably has as many characters.
+        """
+        if self.phase == AWAITING:
+            reply_us = self._start_interval_us + self._drive.size * self._character_us
+            return 0 < (self._quiet_since + reply_us - until) & self._mask <= self._mask >> 1
         return self.phase == SENDING
 
     def is_under_way(self, drive):

@@ -5,7 +5,16 @@ from master_bench import MASK, REPLY_DELAY_US, TIMING, Bus, parameters
 from uss import pkw, pzd
 from uss.drive import Drive
 from uss.layout import VARIABLE, Layout
-from uss.master import AWAITING, CLOSED, DEAD_MAN_US, LISTENING, LOST_US, RESTING, Master
+from uss.master import (
+    AWAITING,
+    CLOSED,
+    DEAD_MAN_US,
+    LISTENING,
+    LOST_US,
+    RESTING,
+    SENDING,
+    Master,
+)
 from uss.receiver import COMING
 from uss.timing import BAUD_RATES, Timing
 
@@ -763,6 +772,24 @@ def test_what_is_announced_in_the_microsecond_in_which_a_rest_begins_is_taken_at
     bus.receive = announce
     bus.master.poll(now & MASK)
     assert bus.receive is not announce and len(bus.sent) == sent + 1
+
+
+def test_the_loop_is_undisturbed_while_a_telegram_goes_out_and_until_a_reply_may_be_over():
+    bus = Bus()
+    bus.run(300_000)
+    while bus.master.phase != RESTING:
+        bus.run(1)
+    assert not bus.master.is_undisturbed(bus.now & MASK)
+    while bus.master.phase != SENDING:
+        bus.run(1)
+    assert bus.master.is_undisturbed(bus.now & MASK)
+    while bus.master.phase != AWAITING:
+        bus.run(1)
+    soonest_us = bus.sent_at + TIMING.start_interval_us + 16 * TIMING.character_us
+    assert soonest_us <= bus.reply_at
+    assert bus.master.is_undisturbed(bus.now & MASK)
+    assert bus.master.is_undisturbed(soonest_us - 1 & MASK)
+    assert not bus.master.is_undisturbed(soonest_us & MASK)
 
 
 def test_a_list_that_is_emptied_ends_the_telegrams_and_nothing_else():

@@ -141,6 +141,7 @@ pico_flags() {
     [[ $1 == stock* ]] ||
         echo -DMICROPY_OPT_MAP_LOOKUP_CACHE_SIZE=2048 -DVM_MAX_STATE_ON_STACK=96 \
             -DSTACK_MORE=704 -DMICROPY_ALLOC_GC_STACK_SIZE=192 -DUSS_PANEL=1 \
+            -DUSB_MAX_ENDPOINTS=3 -DPICO_TIME_DEFAULT_ALARM_POOL_MAX_TIMERS=8 \
             "-DPICO_PROGRAM_DESCRIPTION='\"USS panel $(panel_version)\"'"
 }
 
@@ -149,7 +150,7 @@ pico_flags() {
 # behind the port's own, and what lists the modules reads it, too.
 pico_omitted() {
     [[ $1 == stock* ]] || echo MICROPY_VFS_FAT MICROPY_PY_{FRAMEBUF,UCTYPES,CMATH,RE} \
-        MICROPY_PY_{CRYPTOLIB,HASHLIB_SHA1,ONEWIRE}
+        MICROPY_PY_{CRYPTOLIB,HASHLIB_SHA1,ONEWIRE,MACHINE_BITSTREAM,THREAD}
 }
 
 # pico_configuration NAME FOLDER: writes that header, and the options with which it is found.
@@ -170,7 +171,7 @@ pico_configuration() {
 # lines that a running panel misses there every third was one of these functions. They take 1.6 KB,
 # and make a step of the main loop a quarter shorter.
 pico_often="mp_setup_code_state_helper nlr_push nlr_push_tail nlr_pop mp_obj_class_lookup
-    mp_load_method_maybe bound_meth_call mp_cstack_usage mp_cstack_check"
+    mp_load_method_maybe bound_meth_call mp_cstack_usage mp_cstack_check mp_binary_op mp_map_lookup"
 
 # ---- the compilation --------------------------------------------------------------------------
 
