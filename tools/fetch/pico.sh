@@ -135,25 +135,21 @@ pico_manifest() {
 # in the midst of anything, such as a parameter that is searched in a table.
 # A collection that has more than 64 objects in hand looks through the whole heap once more, and
 # again: with room for 192 it takes half as long.
-# The USB serial port has the end points 0...2, and the panel has one timer: not to keep room for 16
-# of each leaves 1 KB for pico_often.
 # What pico_changes.sh changes acts by the last of them.
 # The description is what `picotool info` tells of a file; its version is MicroPython's.
 pico_flags() {
     [[ $1 == stock* ]] ||
         echo -DMICROPY_OPT_MAP_LOOKUP_CACHE_SIZE=2048 -DVM_MAX_STATE_ON_STACK=96 \
             -DSTACK_MORE=704 -DMICROPY_ALLOC_GC_STACK_SIZE=192 -DUSS_PANEL=1 \
-            -DUSB_MAX_ENDPOINTS=3 -DPICO_TIME_DEFAULT_ALARM_POOL_MAX_TIMERS=8 \
             "-DPICO_PROGRAM_DESCRIPTION='\"USS panel $(panel_version)\"'"
 }
 
 # The firmware has 640 KB of the flash, and the panel fills them: of MicroPython it leaves out what
-# neither the panel nor `tools/deploy` needs. Without threads it also looks up less: whose thread it
-# is in, each time that it enters a function. The port decides most of that itself, so a header goes
+# neither the panel nor `tools/deploy` needs. The port decides most of that itself, so a header goes
 # behind the port's own, and what lists the modules reads it, too.
 pico_omitted() {
     [[ $1 == stock* ]] || echo MICROPY_VFS_FAT MICROPY_PY_{FRAMEBUF,UCTYPES,CMATH,RE} \
-        MICROPY_PY_{CRYPTOLIB,HASHLIB_SHA1,ONEWIRE,MACHINE_BITSTREAM,THREAD}
+        MICROPY_PY_{CRYPTOLIB,HASHLIB_SHA1,ONEWIRE}
 }
 
 # pico_configuration NAME FOLDER: writes that header, and the options with which it is found.
@@ -171,11 +167,10 @@ pico_configuration() {
 }
 
 # What runs most often is kept in the chip's memory: its cache holds 16 KB of the flash, and of the
-# lines that a running panel misses there two in five were of these functions. They take 3.2 KB, and
-# make a step of the main loop a third shorter.
+# lines that a running panel misses there every third was one of these functions. They take 1.6 KB,
+# and make a step of the main loop a quarter shorter.
 pico_often="mp_setup_code_state_helper nlr_push nlr_push_tail nlr_pop mp_obj_class_lookup
-    mp_load_method_maybe bound_meth_call mp_cstack_usage mp_cstack_check mp_binary_op
-    mp_map_lookup"
+    mp_load_method_maybe bound_meth_call mp_cstack_usage mp_cstack_check"
 
 # ---- the compilation --------------------------------------------------------------------------
 

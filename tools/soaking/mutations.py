@@ -558,7 +558,7 @@ MUTATIONS = (
     Mutation(
         "lost a little later",
         "ON goes to a silent drive for a tenth longer than the settings say",
-        ("LOST",), 21,
+        ("LOST",), 35,
         ("app.py", "settings.lost_ms * 1000", "settings.lost_ms * 1100"),
     ),
     Typing(
@@ -1192,4 +1192,4 @@ MUTATIONS = (
 )  # fmt: skip
 
 # Rows that wait for a seed that finds them. Each still has to fit the firmware's text.
-UNFOUND = ()
+UNFOUND = ("back without listening",)
