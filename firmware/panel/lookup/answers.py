@@ -23,7 +23,7 @@ FIRST, TYPED = const(-1), const(-2)
 
 _WORK_US = const(900)  # then a step has no time for a piece, which takes up to 1.2 ms, and
 _ALONE_US = const(2_000)  # likewise where no interrupt comes
-_QUIET_US = const(4_000)  # so long a telegram is to be on its way, then none comes
+_QUIET_US = const(4_000)  # for so long no reply can be over: then none comes
 _PIECES_MAX = const(6)
 _READ_MS = const(500)  # between an answer and the next question
 _STALE_MS = const(60_000)  # what nobody goes on typing is dropped
