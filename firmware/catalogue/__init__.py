@@ -34,6 +34,7 @@ _READING, _PARAMETER = const(18), const(16)  # r and P, of which a table has one
 _LIKE, _COMMAND_SETS, _DRIVE_SETS = const(2), const(3), const(4)  # of the head
 
 _IS_FROZEN = ".frozen" in __path__  # then no table is a file, and nobody looks for one
+LOADS = ("catalogue.packed",) if _IS_FROZEN else ()  # it is needed for a search, and takes long
 _packed = []  # `Packed`, once it was needed
 
 

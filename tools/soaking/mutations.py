@@ -959,8 +959,8 @@ MUTATIONS = (
         ("WRITE",), 24,
         (
             "panel/commission/course.py",
-            "            self._bits = self._needed()\n            self._phase = ASKS\n",
-            "            self._bits = self._needed()\n            self._begin_write(now_ms)\n",
+            "            self._phase = ASKS\n        elif self._phase == TYPES:\n",
+            "            self._begin_write(now_ms)\n        elif self._phase == TYPES:\n",
         ),
     ),
     Mutation(
@@ -970,8 +970,8 @@ MUTATIONS = (
         (
             "panel/commission/course.py",
             "        elif self._phase == LOOKS and not self.is_searching():\n",
-            "        elif self._form is not None and step.needs.isdigit() and not step.is_done:\n"
-            "            self._bits = self._needed()\n"
+            "        elif self._form and step._needs.isdigit() and not step.is_done:\n"
+            "            self._bits = step.needed(self._form, self._has)\n"
             "            self._begin_write(now_ms)\n"
             "        elif self._phase == LOOKS and not self.is_searching():\n",
         ),
@@ -982,9 +982,8 @@ MUTATIONS = (
         ("WRITE",), 99,
         (
             "panel/commission/course.py",
-            "            if self._rescales():\n                self._phase = ASKS\n",
-            "            if self._rescales() and not self._bits:\n"
-            "                self._phase = ASKS\n",
+            "            if step.rescales(self._bits, self._has):\n",
+            "            if step.rescales(self._bits, self._has) and not self._bits:\n",
         ),
     ),
     Commissioning(
@@ -1169,11 +1168,11 @@ MUTATIONS = (
         ("WRITE",), 26,
         (
             "panel/commission/course.py",
-            "            self._bits = self._needed()\n            self._phase = ASKS\n",
-            "            self._bits = self._needed()\n"
+            "            self._phase = ASKS\n        elif self._phase == TYPES:\n",
             "            self._phase = ASKS\n"
             "            if step.number == 970:\n"
-            "                self._begin_write(now_ms)\n",
+            "                self._begin_write(now_ms)\n"
+            "        elif self._phase == TYPES:\n",
         ),
     ),
     Resetting(
@@ -1182,11 +1181,11 @@ MUTATIONS = (
         ("WRITE",), 34,
         (
             "panel/commission/course.py",
-            "            self._bits = self._needed()\n            self._phase = ASKS\n",
-            "            self._bits = self._needed()\n"
+            "            self._phase = ASKS\n        elif self._phase == TYPES:\n",
             "            self._phase = ASKS\n"
             "            if step.number == 1910:\n"
-            "                self._begin_write(now_ms)\n",
+            "                self._begin_write(now_ms)\n"
+            "        elif self._phase == TYPES:\n",
         ),
     ),
 )  # fmt: skip

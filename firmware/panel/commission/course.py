@@ -25,43 +25,16 @@ from panel import texts
 from panel.lookup import Search, broken, name_of, text, value
 from panel.menu import Entries
 from panel.commission import words
+from panel.commission.step import Step
 from panel.pages import parameter_words
 from panel.reading import Reading
 from uss import pkw
-from uss.families.generic import RESCALES
 
 LOOKS, TYPES, ASKS, WRITES = range(4)
 
-# What starts something reads 0 again, so no reading tells that it was done.
-_STARTS = (10, 970, 971, 1910, 3900)
-_OFF_TIME_MS = const(2_000)
-_TELLS = b"?"  # a person
-_STAYS = (b"@baud", b"@address")  # what it has is right: it answers
 _TOLD = "panel.commission.course"  # in `Panel.remembered`: keys of steps, by argument
 _MISSING = b"..."
-_SOURCES = (700, 1000)  # of commands and setpoint: the catalogue has them for the terminals
-_BOP_LINK = b"4"
 _WIDTH = const(15)  # of an entry
-
-
-class Step:
-    """key: of its row. number, index: of its parameter. needs: as in the catalogue.
-
-    is_told: no reading tells that it is done, a person does. is_done: as far as it is known.
-    """
-
-    def __init__(self, row, family, is_done):
-        self.key = catalogue.number(row)
-        self.number = number = int(row[catalogue.STEP_NUMBER])
-        self.index = int(row[catalogue.STEP_INDEX])
-        if number in family.linked:
-            self.index = family.link_index
-        self.needs = row[catalogue.STEP_VALUE]
-        if family.com is not None and number in _SOURCES:
-            self.needs = _BOP_LINK
-        starts = self.number in _STARTS and self.needs != b"0"
-        self.is_told = self.needs == _TELLS or starts
-        self.is_done = is_done and self.is_told
 
 
 class List(Entries):
@@ -94,7 +67,7 @@ class List(Entries):
         self._row = None  # of its parameter
         self._form = None  # None: its value was not read
         self._failure = None  # why it cannot be
-        self._high = self._low = 0
+        self._has = 0  # the bits of its value
         self._typed = self._at = None
         self._bits = 0  # that are to be written
         if step is None:
@@ -150,15 +123,15 @@ class List(Entries):
         step, form = self._shown, self._form
         if form is None:
             return texts.of(*self._failure) if self._failure else _MISSING
-        has = form.fitting(self._high, self._low, _WIDTH - 6)
-        if step.needs == _TELLS or step.is_done:
+        has = form.fitting(self._has >> 16, self._has & 0xFFFF, _WIDTH - 6)
+        if step.is_typed or step.is_done:
             return texts.of(words.IS, has)
-        bits = self._needed()
+        bits = step.needed(form, self._has)
         return texts.of(words.NEEDS, has, form.words(bits >> 16, bits & 0xFFFF))
 
     def _question(self, turn):
         form, bits = self._form, self._bits
-        if self._rescales() and turn & 1:
+        if self._shown.rescales(bits, self._has) and turn & 1:
             return texts.of(words.RESCALES)
         return texts.of(words.ASK, form.fitting(bits >> 16, bits & 0xFFFF, _WIDTH - 8))
 
@@ -189,13 +162,13 @@ class List(Entries):
             return
         if self._control.is_active():
             self.panel.say(now_ms, words.STOP_IT, self._control.drive.address)
-        elif self._phase == LOOKS and step.needs == _TELLS:
-            self._typed, self._at = form.typed(self._high, self._low)
+        elif self._phase == LOOKS and step.is_typed:
+            self._typed, self._at = form.typed(self._has >> 16, self._has & 0xFFFF)
             self._phase = TYPES
         elif self._phase == LOOKS and step.is_done and not step.is_told:
             self.panel.say(now_ms, words.IS_RIGHT)
         elif self._phase == LOOKS:
-            self._bits = self._needed()
+            self._bits = step.needed(form, self._has)
             self._phase = ASKS
         elif self._phase == TYPES:
             try:
@@ -203,34 +176,12 @@ class List(Entries):
             except ValueError:
                 self.panel.say(now_ms, parameter_words.REFUSALS[pkw.BEYOND_LIMITS])
                 return
-            if self._rescales():
+            if step.rescales(self._bits, self._has):
                 self._phase = ASKS
             else:
                 self._begin_write(now_ms)
         else:
             self._begin_write(now_ms)
-
-    def _rescales(self):
-        """Whether the setpoint means another speed once this is written."""
-        family, number = self._control.survey.family, self._shown.number
-        has = self._high << 16 | self._low
-        return family.ask_first.get(number) == RESCALES and self._bits != has
-
-    def _needed(self):
-        """The bits of what a step proposes."""
-        step, control = self._shown, self._control
-        has = self._high << 16 | self._low
-        if step.needs in _STAYS:
-            return has
-        if step.needs == b"@pkw":
-            return control.drive.layout.pkw_words
-        if step.needs == b"@off":
-            return has or max(_OFF_TIME_MS // control.survey.family.off_time_unit_ms, 1)
-        number = catalogue.value(step.needs)
-        if self._form.kind == value.FLOAT:
-            high, low = pkw.float_to_words(float(number))
-            return high << 16 | low
-        return self._form.of_number(number)
 
     def _begin_write(self, now_ms):
         step, family = self._shown, self._control.survey.family
@@ -256,7 +207,7 @@ class List(Entries):
         if not self._is_complete:
             if row:
                 is_done = catalogue.number(row) in self._told
-                self._steps.append(Step(row, self._control.survey.family, is_done))
+                self._steps.append(Step(row, self._control, is_done))
             elif self._search.rows is None:
                 self._is_complete = True
                 self._read_all()
@@ -310,12 +261,8 @@ class List(Entries):
         step = self._shown
         if step is None or self._form is not None or self._failure:
             step = self._unread[0] if self._unread else None
-        if step is not None and self._control.drive.contact:
-            family = self._control.survey.family
-            is_element = step.index and family.has_array_tasks
-            task = pkw.READ_ELEMENT if is_element else pkw.READ
-            if self._reading.ask(self._control.drive, step.number, step.index, task):
-                self._asked = step
+        if step is not None and step.ask(self._reading):
+            self._asked = step
 
     def _take_answer(self):
         job = self._reading.take()
@@ -325,27 +272,13 @@ class List(Entries):
         if step in self._unread:
             self._unread.remove(step)
         if not step.is_told:
-            step.is_done = job.state == pkw.DONE and self._is_right(step, job)
+            step.is_done = job.state == pkw.DONE and step.is_right(job)
         if step is not self._shown:
             return
         self._failure = None if job.state == pkw.DONE else parameter_words.failure(job)
         if self._failure is None:
-            self._high, self._low = job.high, job.low
-            integers = self._control.survey.family.integer_doubles
-            is_integer = job.width == pkw.WORD or integers and step.number in integers
-            self._form = value.Form(self._row, job.width, is_integer)
-
-    def _is_right(self, step, job):
-        """Whether the drive has what a step needs."""
-        has = job.integer_value()
-        if step.needs in _STAYS:
-            return True
-        if step.needs == b"@pkw":
-            return has == self._control.drive.layout.pkw_words
-        if step.needs == b"@off":
-            return has != 0
-        needs = catalogue.value(step.needs)
-        return needs in (has, pkw.words_to_float(job.high, job.low) if job.width > 1 else has)
+            self._has = job.integer_value()
+            self._form = step.form(self._row, job)
 
     def leave(self, now_ms):
         if not self._is_complete:

@@ -22,7 +22,12 @@ _DIAGNOSIS = ("panel.menu.diagnosis", "panel.menu.diagnosis.words")
 _WANTS = {
     "address": ("uss.finding", "uss.finding.mirror"),
     "commission.course": _COMMISSION
-    + ("panel.lookup.value", "panel.pages.parameter_words", "panel.writer"),
+    + (
+        "panel.lookup.value",
+        "panel.pages.parameter_words",
+        "panel.writer",
+        "panel.commission.step",
+    ),
     "commission.overview": _COMMISSION,
     "sets.overview": (
         "panel.menu.sets",
@@ -222,7 +227,8 @@ class Menu(Page):
         name, argument = self._coming
         try:
             if self._wanted:
-                on_demand.load(self._wanted.pop(0))
+                module = on_demand.load(self._wanted.pop(0))
+                self._wanted[:0] = getattr(module, "LOADS", ())
                 return
             shown = on_demand.load(_module(name)).List(self.panel, argument)
             self._lists.append((name, shown, shown.first()))
