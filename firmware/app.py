@@ -34,9 +34,11 @@ _FINDER = ("uss.finding", "uss.finding.mirror", "uss.finding.finder")
 _FAREWELL_STEPS = const(100)  # for the display to show that nothing is controlled any more
 _SAVE_AGAIN_MS = const(10_000)  # after the store failed
 _LONG_US = const(700)  # a step that has taken so long is not to do two more things
+_FULL_US = const(2_000)  # after so long, what can wait does
 _SHORT_US = const(700)  # one that has taken no longer has time for a piece of the log
 _SILENCES = const(3)  # telegrams without an answer, then somebody looks for another layout
 _FEED_MS = const(100)  # of the watchdog, which bites after 2 s
+_HUNGRY_MS = const(500)  # then it is fed in any step
 
 
 class App:
@@ -94,13 +96,14 @@ class App:
         if self.step_panel(keypad.read(), now_ms, now_us, keypad.unclear):
             self._look_or_show(now_us)
         elif (now_ms - self._fed_at_ms) & self._mask >= _FEED_MS:
-            self._feed(now_ms)
+            self._feed(now_ms, now_us)
         elif self._log is not None:
             self._log_on(now_ms, now_us)
         if self._polled:
             self._tend()
         if self.settings.dirty or self.panel.errand:
-            self._write_if_quiet(now_ms)
+            if (self.ticks_us() - now_us) & self._mask < _FULL_US:
+                self._write_if_quiet(now_ms)
         board.idle()
         return self._hand_over() if self.panel.wants else None
 
@@ -218,8 +221,11 @@ class App:
         except Exception:  # it may be the display that has failed
             pass
 
-    def _feed(self, now_ms):
-        """Feed the watchdog, as long as the engine works."""
+    def _feed(self, now_ms, now_us):
+        """Feed the watchdog, as long as the engine works; what took long is not made longer."""
+        unfed_ms = elapsed(now_ms, self._fed_at_ms, self._mask)
+        if unfed_ms < _HUNGRY_MS and (self.ticks_us() - now_us) & self._mask >= _FULL_US:
+            return
         self._fed_at_ms = now_ms
         if self.bus.progress != self._progress:
             self._progress = self.bus.progress

@@ -180,13 +180,14 @@ class Panel:
 
     def has_time(self):
         """Whether to begin what takes long, such as to load a module. Asked again in each turn."""
-        self._waits += 1
-        if not self.is_undisturbed(_LONG_US):
-            waits = self._waits
-            if waits < _WAITS_MAX or waits < _WAITS_MOST and self.has_taken(_LATE_US):
-                return False
-        self._waits = 0
-        return True
+        self._waits = waits = self._waits + 1
+        if waits < _WAITS_MAX:
+            has_time = self.is_undisturbed(_LONG_US)
+        else:
+            has_time = waits >= _WAITS_MOST or not self.has_taken(_LATE_US)
+        if has_time:
+            self._waits = 0
+        return has_time
 
     def is_undisturbed(self, for_us=0):
         """Whether nothing interrupts the loop for so long: a telegram is on its way, or the reply.
