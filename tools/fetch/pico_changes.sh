@@ -10,7 +10,8 @@ change_micropython() {
         open_stack_limit "$1/ports/rp2/main.c" &&
         pass_what_is_full "$1/py/gc.c" &&
         know_what_is_loaded "$1/py/builtinimport.c" &&
-        ask_for_files_first "$1/py/builtinimport.c" || return
+        ask_for_files_first "$1/py/builtinimport.c" &&
+        look_on_from_the_last "$1/py/frozenmod.c" || return
     [[ ! -d $2/src/rp2_common/pico_platform_common ]] ||
         name_common_part "$1/ports/rp2/CMakeLists.txt"
 }
@@ -18,7 +19,8 @@ change_micropython() {
 # One line for all of it: sources that were changed otherwise are fetched again.
 micropython_changes() {
     declare -f change_micropython open_frame_limit open_stack_limit pass_what_is_full \
-        know_what_is_loaded ask_for_files_first name_common_part insert_behind | sha256sum
+        know_what_is_loaded ask_for_files_first look_on_from_the_last name_common_part \
+        insert_behind | sha256sum
 }
 
 # Lets a compiler flag say what MicroPython fixes; without the flag nothing changes.
@@ -88,6 +90,44 @@ ask_for_files_first() {
         }
         path->len = length;
     }
+    #endif
+C
+}
+
+# MicroPython goes through the names of all frozen modules twice for each: whether it is there, and
+# where. Here a search begins where the last one ended, so the second one is short, and so is one
+# for a neighbour. Nothing but modules is frozen.
+look_on_from_the_last() {
+    insert_behind "$1" 'mp_import_stat_t mp_find_frozen_module(const char *str, int *frozen_type, void **data) {' <<'C'
+    #if USS_PANEL
+    static const char *at = mp_frozen_names;
+    static size_t place;
+    size_t length = strlen(str);
+    const char *first = at;
+    if (frozen_type != NULL) {
+        *frozen_type = MP_FROZEN_NONE;
+    }
+    do {
+        size_t at_length = strlen(at);
+        if (at_length >= length && memcmp(str, at, length) == 0) {
+            if (at_length == length) {
+                if (frozen_type != NULL) {
+                    *frozen_type = MP_FROZEN_MPY;
+                    *data = (void *)mp_frozen_mpy_content[place];
+                }
+                return MP_IMPORT_STAT_FILE;
+            } else if (at[length] == '/') {
+                return MP_IMPORT_STAT_DIR;
+            }
+        }
+        at += at_length + 1;
+        place++;
+        if (*at == 0) {
+            at = mp_frozen_names;
+            place = 0;
+        }
+    } while (at != first);
+    return MP_IMPORT_STAT_NO_EXIST;
     #endif
 C
 }
