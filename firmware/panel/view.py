@@ -24,9 +24,10 @@ from panel.announcer import NOTHING
 
 _ADDRESS_COLUMN = const(13)
 
-# The fields of a picture, in the order in which they are drawn. The last one may take the place of
-# PAGE and ADDRESS; a page that is whole has WHOLE alone, and BELOW where it draws row 2 by itself.
-SETPOINT, ACTUAL, ROW_2, PAGE, ADDRESS, DONE, ANNOUNCEMENT, WHOLE, BELOW = range(9)
+# The fields of a picture, in the order in which they are drawn. ROW_2 is that row up to the
+# address, unless ANNOUNCEMENT is drawn in its place; a page that is whole has WHOLE alone, and
+# BELOW where it draws row 2 by itself.
+SETPOINT, ACTUAL, ROW_2, ADDRESS, DONE, ANNOUNCEMENT, WHOLE, BELOW = range(8)
 
 
 class View:
@@ -77,9 +78,7 @@ class View:
             if values is None or not values.draw(screen):
                 _draw_actual(screen, panel.selected)
         elif field == ROW_2:
-            return self._draw_row_2(panel.selected)
-        elif field == PAGE:
-            self._page.draw(screen, now_ms)
+            return self._draw_row_2(panel.selected, now_ms)
         elif field == ADDRESS:
             _draw_address(screen, panel.selected)
         elif field == WHOLE:
@@ -121,21 +120,22 @@ class View:
             return False
         return True
 
-    def _draw_row_2(self, control):
-        """What must be said before the page; answers the field that is drawn next."""
+    def _draw_row_2(self, control, now_ms):
+        """What must be said, else what the page says; answers the field that is drawn next."""
         text = self._text()
         if text is None:
             if self._panel.announcer.kind != NOTHING:
                 return ANNOUNCEMENT
             if control.stop_watch.unconfirmed:
                 text = texts.of(texts.STOP_UNCONFIRMED)
-            elif control.lost_running:
-                self._screen.put(1, 0, _ADDRESS_COLUMN, texts.of(texts.MAY_RUN))
-                return ADDRESS
-            else:
-                return PAGE
-        self._screen.put(1, 0, texts.ROW_WIDTH, text)
-        return DONE  # no room for an address
+        if text is not None:
+            self._screen.put(1, 0, texts.ROW_WIDTH, text)
+            return DONE  # no room for an address
+        if control.lost_running:
+            self._screen.put(1, 0, _ADDRESS_COLUMN, texts.of(texts.MAY_RUN))
+        else:
+            self._page.draw(self._screen, now_ms)
+        return ADDRESS
 
     def _text(self):
         """The text that takes all of row 2 whatever is announced; None when there is none."""

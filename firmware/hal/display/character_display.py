@@ -6,7 +6,8 @@ pins, `rp2_hd44780` by the RP2040's PIO, `backpack` through I2C. The controller 
 (R/W is tied low), so the driver waits as long as the slowest specimen needs. It remembers what it
 wrote and writes only what differs. Panels live beside inverters: a pulse on the wires can swap
 nibbles, move the picture or spoil a character. So every REFRESH_US the driver sets the controller
-up and writes everything anew; this is not visible.
+up and writes everything anew; this is not visible. While it sets it up nothing else is written, so
+it rather begins when a change has just been written: the next one is not at hand yet.
 """
 
 from micropython import const
@@ -15,6 +16,7 @@ _COLUMNS = const(16)
 _CELLS = const(32)
 
 REFRESH_US = const(8_000_000)  # half a period of the shortest clock that a board may have
+_REFRESH_SOON_US = const(7_000_000)  # from then on it waits for a change
 
 # Data sheet: Hitachi HD44780U, ADE-207-272. Table 6, figure 10 and the bus timing give the figures
 # in the comments, for 270 kHz; the slowest oscillator has 190 kHz. What is at power-on: figure 24.
@@ -81,11 +83,18 @@ class CharacterDisplay:
 
     def show(self, picture):
         """Bring the display a piece nearer to `picture`, 32 codes; whether it shows it all."""
-        if (self._ticks_us() - self._since_us) & self._mask > self._wait_us:
+        waited_us = (self._ticks_us() - self._since_us) & self._mask
+        if waited_us > self._wait_us:
             self._put_in_order()
         if self._in_order and (self._unsure or self._shown != picture):
             self._write(picture)
+            if waited_us > _REFRESH_SOON_US and self._rests(picture):
+                self._put_in_order()
         return self._is_on and self._shown == picture
+
+    def _rests(self, picture):
+        """Whether all is written. (It is not after a failure, and not within a refresh.)"""
+        return self._in_order and not self._unsure and self._shown == picture
 
     def _start_over(self, after_us):
         """Set everything up anew, not before so many microseconds; assume nothing is shown."""
