@@ -34,7 +34,8 @@ _READING, _PARAMETER = const(18), const(16)  # r and P, of which a table has one
 _LIKE, _COMMAND_SETS, _DRIVE_SETS = const(2), const(3), const(4)  # of the head
 
 _IS_FROZEN = ".frozen" in __path__  # then no table is a file, and nobody looks for one
-LOADS = ("catalogue.packed",) if _IS_FROZEN else ()  # it is needed for a search, and takes long
+# What a search needs, from the bottom of the house up: to load it takes long.
+LOADS = ("catalogue.tables", "catalogue.packed") if _IS_FROZEN else ()
 _packed = []  # `Packed`, once it was needed
 
 

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: MIT
 """A table that is frozen into the firmware, where room is scarce: blocks of rows, each compressed.
 
-A module such as `catalogue.table_mm440` holds it, made by tools/deploying/packing.py:
+The module `catalogue.tables` holds them all, made by tools/deploying/packing.py. Of each it has
 
-    HEAD        the first line
-    BLOCKS      the blocks one after the other, raw deflate
-    INDEX       8 bytes for each: the key of its first row, and where it begins
+    head        the first line
+    blocks      one after the other, raw deflate
+    index       8 bytes for each block: the key of its first row, and where it begins
 
 `bring` finds the row of a key: it unpacks one block, of 2 KB, in which it searches. That block is
 in memory for as long as somebody reads.
@@ -17,7 +17,7 @@ from io import BytesIO
 from deflate import RAW, DeflateIO
 from micropython import const
 
-import on_demand
+from catalogue.tables import TABLES
 
 _WINDOW_BITS = const(11)  # of packing.py
 _ENTRY = "<II"
@@ -30,12 +30,10 @@ class Packed:
     """row_key: what tells the key of a row by its beginning."""
 
     def __init__(self, family, row_key):
-        module = on_demand.load("catalogue.table_" + family)
+        self._block, blocks, self._index = TABLES[family]
         self._row_key = row_key
-        self._index = module.INDEX
-        self._blocks = BytesIO(module.BLOCKS)  # which reads it where it is
+        self._blocks = BytesIO(blocks)  # which reads it where it is
         self._place = None  # of the block, in the index
-        self._block = module.HEAD
         self._at = 0  # so much of it has been read
 
     def __enter__(self):

@@ -2,7 +2,7 @@
 """The tables as modules to be frozen, which firmware/catalogue/packed.py and
 firmware/panel/languages/__init__.py read.
 
-    modules(top / "firmware")               # {"catalogue/table_mm440.py": text}
+    modules(top / "firmware")               # {"catalogue/tables.py": text}
 
 A frozen constant stays in the flash, of which the file system leaves little. So the rows of
 the catalogue are in ISO 8859-1, and compressed in blocks, so that a search need not unpack what
@@ -22,11 +22,11 @@ WINDOW_BITS = 11
 def modules(firmware):
     """{path in the firmware: source} of every table in this folder."""
     tables = {
-        f"catalogue/table_{path.stem}.py": module(path.read_bytes())
+        path.stem: packed(path.read_bytes())
         for path in sorted(Path(firmware, "catalogue").glob("*.tsv"))
     }
     words = Path(firmware, "panel/languages/words.tsv").read_bytes()
-    return tables | words_modules(words)
+    return {"catalogue/tables.py": f"TABLES = {tables!r}\n"} | words_modules(words)
 
 
 def words_modules(table):
@@ -51,19 +51,19 @@ def words_modules(table):
     return sources
 
 
-def module(table):
-    """The source of the module for the bytes of a table."""
-    packed = b""
+def packed(table):
+    """What packed.py reads, of the bytes of a table: its first line, the blocks, their index."""
+    stream = b""
     index = b""
     table = table.decode().encode("latin-1")
     assert not {0xC2, 0xC3}.intersection(table)  # by these the reader knows UTF-8
     head, *rows = [line for line in table.split(b"\n") if line and not line.startswith(b"#")]
     head, rows = head + b"\n", [row + b"\n" for row in rows]
     for first, block in blocks(rows):
-        index += struct.pack("<II", first, len(packed))
+        index += struct.pack("<II", first, len(stream))
         packer = zlib.compressobj(9, zlib.DEFLATED, -WINDOW_BITS)
-        packed += packer.compress(block) + packer.flush()
-    return f"HEAD = {head!r}\nBLOCKS = {packed!r}\nINDEX = {index!r}\n"
+        stream += packer.compress(block) + packer.flush()
+    return head, stream, index
 
 
 def blocks(rows):
