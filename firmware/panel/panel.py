@@ -28,7 +28,7 @@ from panel.screen import Screen
 from panel.view import View
 from uss.timing import elapsed
 
-_DRAW_MS = const(40)
+_DRAW_MS = const(45)
 _MESSAGE_MS = const(3_000)
 _LAST_TURN = const(7)
 _UNSEEN_MS = const(300)  # so long a page that is coming may go before the picture
