@@ -137,12 +137,13 @@ pico_manifest() {
 # again: with room for 192 it takes half as long.
 # The USB serial port has the end points 0...2, and the panel has one timer: not to keep room for 16
 # of each leaves 1 KB for pico_often.
-# What pico_changes.sh changes acts by the last of them.
+# What pico_changes.sh changes acts by USS_PANEL. A module's table of names begins with room for 23.
 # The description is what `picotool info` tells of a file; its version is MicroPython's.
 pico_flags() {
     [[ $1 == stock* ]] ||
         echo -DMICROPY_OPT_MAP_LOOKUP_CACHE_SIZE=2048 -DVM_MAX_STATE_ON_STACK=96 \
-            -DSTACK_MORE=704 -DMICROPY_ALLOC_GC_STACK_SIZE=192 -DUSS_PANEL=1 \
+            -DSTACK_MORE=704 -DMICROPY_ALLOC_GC_STACK_SIZE=192 \
+            -DUSS_PANEL=1 -DMICROPY_MODULE_DICT_SIZE=23 \
             -DUSB_MAX_ENDPOINTS=3 -DPICO_TIME_DEFAULT_ALARM_POOL_MAX_TIMERS=8 \
             "-DPICO_PROGRAM_DESCRIPTION='\"USS panel $(panel_version)\"'"
 }

@@ -9,8 +9,9 @@ change_micropython() {
     open_frame_limit "$1/py/objfun.c" &&
         open_stack_limit "$1/ports/rp2/main.c" &&
         pass_what_is_full "$1/py/gc.c" &&
+        probe_without_dividing "$1/py/map.c" &&
+        begin_with_room "$1/py/map.c" "$1/py/modbuiltins.c" "$1/py/builtinimport.c" &&
         know_what_is_loaded "$1/py/builtinimport.c" &&
-        ask_for_files_first "$1/py/builtinimport.c" &&
         look_on_from_the_last "$1/py/frozenmod.c" || return
     [[ ! -d $2/src/rp2_common/pico_platform_common ]] ||
         name_common_part "$1/ports/rp2/CMakeLists.txt"
@@ -19,8 +20,8 @@ change_micropython() {
 # One line for all of it: sources that were changed otherwise are fetched again.
 micropython_changes() {
     declare -f change_micropython open_frame_limit open_stack_limit pass_what_is_full \
-        know_what_is_loaded ask_for_files_first look_on_from_the_last name_common_part \
-        insert_behind | sha256sum
+        probe_without_dividing begin_with_room know_what_is_loaded \
+        look_on_from_the_last name_common_part insert_behind | sha256sum
 }
 
 # Lets a compiler flag say what MicroPython fixes; without the flag nothing changes.
@@ -61,12 +62,58 @@ pass_what_is_full() {
 C
 }
 
+# A table of names may be full, so that a name is looked for in many places. To go to the next one
+# takes a comparison here, not a division.
+probe_without_dividing() {
+    local line='        pos = (pos + 1) % map->alloc;'
+    grep -qFx -- "$line" "$1" &&
+        sed -i "s/^$line\$/#if USS_PANEL\n        pos = pos + 1 < map->alloc ? pos + 1 : 0;\n#else\n&\n#endif/" "$1"
+}
+
+# The names of a module and of a class come one by one into a table that grows each time it is full:
+# a dozen times for thirty, and each time all of them are entered anew. Here it begins with room for
+# most (for a module by MICROPY_MODULE_DICT_SIZE), and is cut to what it needs once it is complete.
+begin_with_room() {
+    insert_behind "$1" '    m_del(mp_map_elem_t, old_table, old_alloc);' <<'C' &&
+}
+
+void mp_map_fit(mp_map_t *map) {
+    mp_map_t fit;
+    mp_map_init(&fit, get_hash_alloc_greater_or_equal_to(map->used));
+    for (size_t i = 0; i < map->alloc; i++) {
+        if (mp_map_slot_is_filled(map, i)) {
+            mp_map_lookup(&fit, map->table[i].key, MP_MAP_LOOKUP_ADD_IF_NOT_FOUND)->value = map->table[i].value;
+        }
+    }
+    m_del(mp_map_elem_t, map->table, map->alloc);
+    *map = fit;
+C
+        insert_behind "$2" '    mp_obj_t class_locals = mp_obj_new_dict(0);' <<'C' &&
+    #if USS_PANEL
+    void mp_map_fit(mp_map_t *map);
+    class_locals = mp_obj_new_dict(29);
+    #endif
+C
+        insert_behind "$2" '    mp_obj_t cell = mp_call_function_0(args[0]);' <<'C' &&
+    #if USS_PANEL
+    mp_map_fit(mp_obj_dict_get_map(class_locals));
+    #endif
+C
+        insert_behind "$3" '    nlr_pop_jump_callback(false);' <<'C'
+    #if USS_PANEL
+    void mp_map_fit(mp_map_t *map);
+    mp_map_fit(&((mp_obj_module_t *)MP_OBJ_TO_PTR(module_obj))->globals->map);
+    #endif
+C
+}
+
 # `from a.b.c import d` looks for a, a.b and a.b.c, one after the other, each by its letters. Here a
-# module that is loaded is found by its whole name, which the bytecode has as a number.
+# module that is loaded is found by its whole name, which the bytecode has as a number. (`import a.b`
+# is about a, so it goes the long way.)
 know_what_is_loaded() {
     insert_behind "$1" '    DEBUG_printf("Starting module search for '"'%s'"'\n", module_name);' <<'C'
     #if USS_PANEL
-    if (level == 0 && fromtuple != mp_const_none && mp_obj_is_qstr(module_name_obj)) {
+    if (level == 0 && mp_obj_is_qstr(module_name_obj) && (fromtuple != mp_const_none || !strchr(module_name, '.'))) {
         mp_map_elem_t *loaded = mp_map_lookup(&MP_STATE_VM(mp_loaded_modules_dict).map, module_name_obj, MP_MAP_LOOKUP);
         if (loaded) {
             return loaded->value;
@@ -76,27 +123,10 @@ know_what_is_loaded() {
 C
 }
 
-# Whether a name is a folder is known once all that is frozen has been looked through; a file is
-# found on the way. Most modules are files.
-ask_for_files_first() {
-    insert_behind "$1" 'static mp_import_stat_t stat_module(vstr_t *path) {' <<'C'
-    #if USS_PANEL
-    size_t prefix = strlen(MP_FROZEN_PATH_PREFIX);
-    if (strncmp(vstr_null_terminated_str(path), MP_FROZEN_PATH_PREFIX, prefix) == 0) {
-        size_t length = path->len;
-        vstr_add_str(path, ".py");
-        if (mp_find_frozen_module(vstr_null_terminated_str(path) + prefix, NULL, NULL) == MP_IMPORT_STAT_FILE) {
-            return MP_IMPORT_STAT_FILE;
-        }
-        path->len = length;
-    }
-    #endif
-C
-}
-
-# MicroPython goes through the names of all frozen modules twice for each: whether it is there, and
-# where. Here a search begins where the last one ended, so the second one is short, and so is one
-# for a neighbour. Nothing but modules is frozen.
+# MicroPython goes through the names of all frozen modules three times for each: whether it is a
+# folder, whether it is a file, and where. Here a search begins where the last one ended, and the
+# first one stops at a file, so the others are short, and so is one for a neighbour. Nothing but
+# modules is frozen.
 look_on_from_the_last() {
     insert_behind "$1" 'mp_import_stat_t mp_find_frozen_module(const char *str, int *frozen_type, void **data) {' <<'C'
     #if USS_PANEL
@@ -118,6 +148,8 @@ look_on_from_the_last() {
                 return MP_IMPORT_STAT_FILE;
             } else if (at[length] == '/') {
                 return MP_IMPORT_STAT_DIR;
+            } else if (frozen_type == NULL && strcmp(at + length, ".py") == 0) {
+                return MP_IMPORT_STAT_FILE; // whoever asks for a folder asks for a file then
             }
         }
         at += at_length + 1;
