@@ -95,15 +95,14 @@ class App:
         self.refresh_bus(now_us, False)
         if self.step_panel(keypad.read(), now_ms, now_us, keypad.unclear):
             self._look_or_show(now_us)
+            if self.settings.dirty or self.panel.errand:
+                self._write_if_quiet(now_ms)
         elif (now_ms - self._fed_at_ms) & self._mask >= _FEED_MS:
             self._feed(now_ms, now_us)
         elif self._log is not None:
             self._log_on(now_ms, now_us)
         if self._polled:
             self._tend()
-        if self.settings.dirty or self.panel.errand:
-            if (self.ticks_us() - now_us) & self._mask < _FULL_US:
-                self._write_if_quiet(now_ms)
         board.idle()
         return self._hand_over() if self.panel.wants else None
 
