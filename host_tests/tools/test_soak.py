@@ -22,6 +22,8 @@ from tools.soaking.judging.announced import (
     OFF,
     RUNS,
     TRIPPED,
+    UNHEARD,
+    UNSURE,
     is_looked_up,
     number_in,
     said_in,
@@ -200,7 +202,8 @@ def test_what_an_announcement_says_of_whom_is_read_from_the_display():
     assert said_in("A3 RUN,HOLD=ALL ") == (3, (RUNS,))
     assert said_in("A31 FAULT F0001 ") == (31, (TRIPPED, OFF))
     assert said_in("A7 LINE FAILED  ") == (7, (OFF,))
-    assert said_in("LOST,MAY RUN: 12") == (ANY, (MAY_RUN,))
+    assert said_in("LOST,MAY RUN: 12") == (ANY, (MAY_RUN, UNSURE))
+    assert said_in("A30 MAY RUN     ") == (30, (UNHEARD, UNSURE))
     assert number_in(("S: 10.0 F: 10.00", "LOST,MAY RUN: 12")) == 12
     for other in ("RUNNING      A1 ", "P0700:     5 A1 ", "A", "                "):
         assert said_in(other) is None, other
@@ -549,5 +552,53 @@ def test_a_silent_drive_that_is_asked_what_it_is_is_not_neglected():
         shares.look(now)
     except Broken as broken:
         assert broken.args[0] == "NEGLECTED"
+    else:
+        raise AssertionError("nobody noticed")
+
+
+def test_a_reply_since_power_on_that_the_panel_may_not_have_taken_makes_nobody_lost():
+    """It says MAY RUN as of a drive that was never heard, and lets it rest as such a one."""
+    soak = Soak(13, drives=2)
+    soak.hand.run(3_000)
+    witness, reader = soak.judge.witness, soak.reader
+    shown, address = soak.plan.addresses
+    case, now = witness.cases[address], soak.world.clock.now_us
+    witness.shown, case.zsw, case.ran_us = shown, 0xFB34, now
+    case.answered_us, case.heard_us, case.lost_us = now, witness.boot_us - 1, now + 1
+    reader.rows = ("S: 10.0 F:  0.00", "A%d MAY RUN" % address)
+    shares = Shares(witness)
+    for _ in range(500):
+        now += 40_000
+        witness.cases[shown].answered_us = witness.cases[shown].heard_us = now
+        reader.announced.look(now)
+        case.asked_us = case.answered_us + 1
+        shares.ask(case, address, None, now)
+    case.heard_us = witness.boot_us + 1
+    try:
+        for _ in range(500):
+            now += 40_000
+            witness.cases[shown].answered_us = witness.cases[shown].heard_us = now
+            reader.announced.look(now)
+    except Broken as broken:
+        assert broken.args[0] == "ANNOUNCED"
+    else:
+        raise AssertionError("nobody noticed")
+
+
+def test_a_count_on_the_display_may_be_as_old_as_its_picture_and_no_older():
+    soak = Soak(13, drives=1)
+    soak.hand.run(2_000)
+    witness, (address,) = soak.judge.witness, soak.plan.addresses
+    case, now = witness.cases[address], soak.world.clock.now_us
+    case.heard = case.taken = 100
+    rows = "A%d GOOD     1/7" % address, ">  100  2880/min"
+    witness.diagnosed.read(rows, True, now)
+    case.heard = case.taken = 110
+    now += witness.seen_us - 1
+    witness.diagnosed.read(rows, True, now)
+    try:
+        witness.diagnosed.read(rows, True, now + witness.seen_us)
+    except Broken as broken:
+        assert broken.args[0] == "SHOWN"
     else:
         raise AssertionError("nobody noticed")

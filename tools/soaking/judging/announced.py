@@ -22,9 +22,9 @@ from tools.soaking.judging.facts import (
 )
 from tools.soaking.judging.rules import Broken
 
-RUNS, EXPOSED, TRIPPED, MAY_RUN, NOT_STOPPED, UNHEARD, OFF = (
+RUNS, EXPOSED, TRIPPED, MAY_RUN, NOT_STOPPED, UNHEARD, UNSURE, OFF = (
     "it runs", "it runs, and its P2014 is longer by now", "it has tripped", "it may run",
-    "STOP unconfirmed", "never heard", "it was stopped",
+    "STOP unconfirmed", "never heard", "it may run, or was never heard", "it was stopped",
 )  # fmt: skip
 
 ONE = (  # text after "A" and an address, and the troubles that it tells; any other text: it is off
@@ -35,18 +35,18 @@ ONE = (  # text after "A" and an address, and the troubles that it tells; any ot
     ("P2040 LONG", (RUNS, EXPOSED)),
     ("BELOW P", (RUNS,)),
     ("FAULT", (TRIPPED, OFF)),
-    ("LOST,MAY RUN", (MAY_RUN,)),
-    ("NOT STOPPED", (NOT_STOPPED, RUNS, EXPOSED, MAY_RUN)),
-    ("MAY RUN", (UNHEARD,)),
+    ("LOST,MAY RUN", (MAY_RUN, UNSURE)),
+    ("NOT STOPPED", (NOT_STOPPED, RUNS, EXPOSED, MAY_RUN, UNSURE)),
+    ("MAY RUN", (UNHEARD, UNSURE)),
     ("", (OFF,)),
 )
 MANY = (  # text before their number, if there are more than FEW of them
     ("RUN,HOLD=ALL:", (RUNS,)),
     ("RUN, P2014 ?:", (RUNS, EXPOSED)),
     ("DRIVES FAULT:", (TRIPPED, OFF)),
-    ("LOST,MAY RUN:", (MAY_RUN,)),
-    ("NOT STOPPED:", (NOT_STOPPED, RUNS, EXPOSED, MAY_RUN)),
-    ("MAY RUN:", (UNHEARD,)),
+    ("LOST,MAY RUN:", (MAY_RUN, UNSURE)),
+    ("NOT STOPPED:", (NOT_STOPPED, RUNS, EXPOSED, MAY_RUN, UNSURE)),
+    ("MAY RUN:", (UNHEARD, UNSURE)),
     ("DRIVES OFF:", (OFF,)),
 )
 UNCONFIRMED, LOST = "STOP UNCONFIRMED", "NO CONTACT, "  # an alarm of the drive shown, a row
@@ -116,7 +116,7 @@ class Announced:
                     self._many[troubles] = (number_in(rows), now)
         read = self._read
         if self._alarm and self.witness.shown is None:  # the page of whichever drive says it
-            read += ((SHOWN, (NOT_STOPPED, RUNS, EXPOSED, MAY_RUN)),)
+            read += ((SHOWN, (NOT_STOPPED, RUNS, EXPOSED, MAY_RUN, UNSURE)),)
         for address, troubles in read:
             since_us, last_us = self._times.get((address, troubles), (now, NEVER))
             if now - last_us > self._redrawn_us:
@@ -177,7 +177,9 @@ class Announced:
             if not witness.is_lost(case, now):
                 return None  # it may be, or about to be
             may_run = case.zsw & ZSW_RUNNING and case.ran_us == case.answered_us
-            return MAY_RUN if may_run else None
+            if not may_run:
+                return None
+            return MAY_RUN if case.heard_us >= witness.boot_us else UNSURE
         if case.zsw & ZSW_FAULT:
             return TRIPPED
         if case.zsw & ZSW_RUNNING:

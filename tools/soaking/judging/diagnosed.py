@@ -35,6 +35,7 @@ class Diagnosed:
         self._opened_us = NEVER  # it was: row 1 may announce something before it says of whom
         self._sent = self._returned = 0  # of these telegrams, since that SET
         self._since_us = NEVER
+        self._counted = []  # (when, address, good replies for sure), as long as it may be shown
 
     def read(self, rows, steady, now):
         """steady: both rows are drawn to their end."""
@@ -54,7 +55,7 @@ class Diagnosed:
             if (text == BY_WATCHDOG) != self.witness.bitten:
                 raise Broken("SHOWN", "%s, and that is not why it started" % text)
         elif address is not None and what.startswith(GOOD):
-            self._judge_good(address, text)
+            self._judge_good(address, text, now)
         elif address is not None and what.startswith(SENT):
             self._judge_sent(address, text)
 
@@ -97,17 +98,26 @@ class Diagnosed:
         if address == self._tested:
             self._returned += 1
 
-    def _judge_good(self, address, text):
+    def _judge_good(self, address, text, now):
         """It counts good replies, from the start of the panel on. To a question of what the drive
         is another one answers than the drive of the list."""
         digits = text[len(MENU) :].split()[0]
         case = self.witness.cases[address]
         if not digits.isdigit() or case.questions:
             return
-        shown = int(digits)
-        if not case.heard - SLACK <= shown <= case.taken + SLACK and case.taken < COUNTS // 2:
-            told = (text, address, case.heard, case.taken)
+        shown, least = int(digits), self._counted_before(address, case.heard, now)
+        if not least - SLACK <= shown <= case.taken + SLACK and case.taken < COUNTS // 2:
+            told = (text, address, least, case.taken)
             raise Broken("SHOWN", "%s: drive %d has sent %d good replies, or up to %d" % told)
+
+    def _counted_before(self, address, heard, now):
+        """How many it must have been when what is shown now was drawn; 0: nobody looked then."""
+        counted = self._counted
+        counted.append((now, address, heard))
+        while len(counted) > 1 and counted[1][0] <= now - self.witness.seen_us:
+            counted.pop(0)
+        when, whose, least = counted[0]
+        return least if whose == address and when <= now - self.witness.seen_us else 0
 
     def _judge_sent(self, address, text):
         """The first row of a telegram in hexadecimal."""

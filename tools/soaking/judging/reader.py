@@ -227,7 +227,7 @@ class Reader:
         for text in STATES + DOINGS:
             if row_2.startswith(text[0]) and address_in(row_2) == address:
                 raise Broken("MAY RUN", "%s, silent for %d ms" % (row_2, silent_us // MS))
-        if not self._may_run(case) or case.answered_us < witness.boot_us:
+        if not self._may_run(case) or case.heard_us < witness.boot_us:
             return
         if case.acknowledge_us > case.answered_us or "STOP" in witness.down:
             return

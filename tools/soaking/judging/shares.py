@@ -45,7 +45,9 @@ class Shares:
     def ask(self, case, address, task, now):
         witness = self.witness
         may_run = case.stw & RUN or (
-            case.zsw & ZSW_RUNNING and case.asked_us > case.answered_us > witness.boot_us
+            case.zsw & ZSW_RUNNING
+            and case.asked_us > case.answered_us
+            and case.heard_us > witness.boot_us  # the panel knows it
         )
         if may_run and address not in witness.moved:
             self._judge_gap(case, address, now)
@@ -110,8 +112,9 @@ class Shares:
         """Whether it is silent for so long that the panel does not wait for it, and was heard at
         rest since it was told to run."""
         witness = self.witness
-        if case.stw & RUN or case.zsw & ZSW_RUNNING or case.turned_us > case.rested_us:
-            return False
+        if case.heard_us > witness.boot_us or case.stw & RUN:  # else it does not know how it was
+            if case.stw & RUN or case.zsw & ZSW_RUNNING or case.turned_us > case.rested_us:
+                return False
         return now - max(case.answered_us, witness.boot_us) > witness.lost_us + S
 
     def _judge_gap(self, case, address, now):
