@@ -602,3 +602,22 @@ def test_a_count_on_the_display_may_be_as_old_as_its_picture_and_no_older():
         assert broken.args[0] == "SHOWN"
     else:
         raise AssertionError("nobody noticed")
+
+
+def test_a_drive_that_answers_and_takes_a_longer_telegram_may_be_asked_in_any_layout():
+    kind = Kind("mm440", VARIABLE, 4)
+    assert not kind.may_ask(5)
+    kind.mirror(8)
+    assert kind.may_ask(7) and not kind.may_ask(5)  # in its own length, behind a longer one
+    kind.returned(8, True)
+    assert kind.may_ask(5)
+
+
+def test_what_the_menu_asks_an_address_waits_on_a_line_that_others_talk_on():
+    soak = Soak(13, drives=1)
+    soak.hand.run(2_000)
+    witness, now = soak.judge.witness, soak.world.clock.now_us
+    witness.menu_us = witness.late_us = now
+    assert witness.may_look(now + 1_000_000) and not witness.may_look(now + 4_000_000)
+    witness.late_us = now + 3_000_000
+    assert witness.may_look(now + 4_000_000) and not witness.may_look(now + 60_000_000)

@@ -72,6 +72,7 @@ LONG_US = 2 * S  # a P2014 that is longer, or 4 rounds, is a risk
 HUNG_MAX_US = 5 * S
 LEFT_US = 30 * S  # when SET has said so, the panel has left the line by then, and 20 rounds
 LOOKED_FOR_US = 2 * S  # what the menu asks an address is sent by then, and 4 rounds
+BABBLED_US = 4 * S  # and so much later where the line was not free meanwhile
 LOST_SAID_US = 700 * MS  # until the display says that a drive is lost
 STUCK_US = 5_000 * MS  # a bus that stands for so long makes the watchdog bite
 WATCHDOG_US = 2_000 * MS

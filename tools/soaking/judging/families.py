@@ -311,7 +311,8 @@ class Kind:
     def returned(self, count, is_sure):
         """A mirror telegram of so many net words has come back."""
         self._came_back[count] = is_sure or self._came_back.get(count, False)
-        self._takes_any = count - 1 in self._came_back
+        is_own = _fitting(count - 1 - self.pzd_words, 0) & self.words  # in which it answers, too
+        self._takes_any = count - 1 in self._came_back or bool(is_own)
         if 3 in self.words and VARIABLE in self._found():
             self.words = self.words | {VARIABLE}  # its telegrams without a task look the same
 

@@ -15,6 +15,7 @@ from tools.soaking.judging.drive_settings import Settings
 from tools.soaking.judging.facts import (
     ALL_STOP_US,
     ALWAYS,
+    BABBLED_US,
     DEAD_MAN_US,
     DRAWN_STEPS,
     HELD_OPENS_US,
@@ -208,7 +209,9 @@ class Witness:
     def may_look(self, now):
         """Whether the display may have an address that the panel asks: in the menu, or because an
         address key is held."""
-        if self.is_in_menu() or now - self.menu_us < LOOKED_FOR_US + 4 * self.cycle_us:
+        # On a line that others talk on, what the menu has asked waits.
+        left_us = self.menu_us + max(0, min(self.late_us - self.menu_us, BABBLED_US))
+        if self.is_in_menu() or now - left_us < LOOKED_FOR_US + 4 * self.cycle_us:
             return True  # a STOP that is held hides its second row
         for key in ("ADDRESS_UP", "ADDRESS_DOWN"):
             until_us = now if key in self.down else self.up[key]
