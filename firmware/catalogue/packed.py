@@ -17,7 +17,7 @@ from io import BytesIO
 from deflate import RAW, DeflateIO
 from micropython import const
 
-from catalogue.tables import TABLES
+import on_demand
 
 _WINDOW_BITS = const(11)  # of packing.py
 _ENTRY = "<II"
@@ -30,7 +30,8 @@ class Packed:
     """row_key: what tells the key of a row by its beginning."""
 
     def __init__(self, family, row_key):
-        self._block, blocks, self._index = TABLES[family]
+        tables = on_demand.load("catalogue.tables").TABLES
+        self._block, blocks, self._index = tables[family]
         self._row_key = row_key
         self._blocks = BytesIO(blocks)  # which reads it where it is
         self._place = None  # of the block, in the index

@@ -49,7 +49,7 @@ def firmware_without_tables(folder):
     """Where the interpreter finds the firmware as it is in a firmware file, by its name, too."""
     folder = folder / ".frozen"
     (folder / "catalogue").mkdir(parents=True)
-    for name in ("catalogue/__init__.py", "catalogue/packed.py"):
+    for name in ("catalogue/__init__.py", "catalogue/packed.py", "on_demand.py"):
         (folder / name).write_bytes((TOP / "firmware" / name).read_bytes())
     for path, source in packing.modules(TOP / "firmware").items():
         if path.startswith("catalogue/"):

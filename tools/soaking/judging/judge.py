@@ -215,8 +215,9 @@ class Judge:
             return
         if not is_listed and address not in witness.moved:
             raise Broken("MIRROR", "%s, which is not in the list" % where)
-        # One that waits to be sent when the drive answers still goes out, perhaps behind another.
-        waits = 2 + 2 * witness.may_look(now)
+        # One that waits to be sent when the drive answers still goes out, perhaps behind another:
+        # every second telegram is one of the list, and of the others every second one.
+        waits = 4 + 2 * witness.may_look(now)
         waited_us = waits * (witness.exchange_us + self.plan.loop_us)
         recently_us = max(witness.boot_us, now - witness.lost_us * 9 // 10)
         may_run = case.turned_us > max(case.rested_us, witness.boot_us)
