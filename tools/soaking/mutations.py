@@ -346,10 +346,10 @@ MUTATIONS = (
         ("LINE",), 5,
         ("uss/timing.py", "START_INTERVAL_CHARACTERS = 2", "START_INTERVAL_CHARACTERS = 1"),
     ),
-    Mutation(
+    AtHome(
         "faults started",
         "START is obeyed by a drive that has tripped",
-        ("REFUSED",), 57,
+        ("REFUSED",), 73,
         (
             "panel/permits.py",
             "    if state == pzd.FAULT:\n        return texts.REFUSED_FAULT\n",
