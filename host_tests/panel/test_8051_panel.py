@@ -246,7 +246,7 @@ def test_a_drive_that_falls_silent_is_told_of_within_three_failures():
     unplugged_us = world.clock.now_us
     while len(telegrams(world, unplugged_us)) < 4:  # the fourth follows the third failure
         world.run(2)
-    world.run(100)  # the display is drawn every 50 ms
+    world.run(100)  # a picture is begun every 45 ms
     assert row_1(world) == "S: 10.0 F: -----"
     assert world.clock.now_us - unplugged_us < 300_000
     world.run(1200)
