@@ -19,8 +19,8 @@ from uss.timing import elapsed
 
 _NONE = const(-1)  # no version
 _START_US = const(5_000_000)  # a drive that does not run by then is told to stop again
-# START is given up if the drive has not told its settings by then, and in so many of the longest
-# rounds of the list: 17 questions take a drive 10 s at 1200 baud, and 23 s where eight are asked.
+# START is given up if ON has not been sent by then, and in so many of the longest rounds of the
+# list: 17 questions take a drive 10 s at 1200 baud, and 23 s where eight are asked.
 _CHECK_US = const(12_000_000)
 _CHECK_ROUNDS = const(10)
 
@@ -72,8 +72,8 @@ class Command:
         return self._bus.dead_man_trips != self._dead_man_trips
 
     def is_overdue(self, now_us):
-        """Whether whoever pressed START expects no motor to turn any more, though the drive has
-        not told all its settings: because it lags, or many others are asked.
+        """Whether whoever pressed START expects no motor to turn any more. The drive lags, or many
+        others are asked, or the loop is slow: all that is looked at before ON took too long.
         """
         most_us = self._mask >> 2  # a clock of a short period cannot tell more than half of it
         waited_us = elapsed(now_us, self._since_us, self._mask)

@@ -423,10 +423,10 @@ class Control:
             return  # HSW may be another once `ask` has taken them
         command = self._command
         refusal = permits.why_not_start(self)
-        if not refusal and (self.survey.unchecked or not self.survey.is_settled()):
-            if not command.is_overdue(now_us):
-                return
+        if not refusal and command.is_overdue(now_us):
             refusal = texts.REFUSED_CHECKING
+        if not refusal and (self.survey.unchecked or not self.survey.is_settled()):
+            return
         if not refusal and command.risk < len(risks.RISKS):  # one in a turn: each takes long
             if risks.is_open(self, command.risk):
                 self.phase = ASKING

@@ -13,6 +13,13 @@ from strict_screen import StrictScreen
 panel.panel.Screen = StrictScreen
 
 
+class SlowWorld(World):
+    """A step of the main loop may take as long as it does where it has much to do."""
+
+    def _uneven_loop_us(self):
+        return self.random(500, 10_000)
+
+
 def panel(**options):
     """A panel that was switched on a second ago."""
     world = World(main.start, **options)

@@ -4,8 +4,9 @@
 Every drive is on the line and answers; the master's list has each of them once.
 """
 
+import main
 from panel.control import Control
-from panel_bench import panel, row_2, telegrams, unsupervised, wait_until_known
+from panel_bench import SlowWorld, panel, row_2, starts, telegrams, unsupervised, wait_until_known
 
 INTERPRETERS = "unix64 unix32"
 
@@ -131,4 +132,23 @@ def test_whether_any_runs_is_known_soon_after_one_does():
     world.press("ADDRESS_UP")
     world.run(1_500)
     assert not world.app.panel.any_runs()
+    world.check()
+
+
+def test_a_start_that_is_not_through_in_twelve_seconds_is_given_up_though_the_drive_told_all():
+    """Another drive is shown, the loop is slow, and each look before ON is left to a turn of its
+    own. A START pressed 20 s ago is forgotten; the motor must not turn.
+    """
+    world = SlowWorld(main.start, addresses=ADDRESSES, baud=115200, seed=1)
+    world.run(30_000)
+    wait_until_known(world)
+    world.press("START")
+    world.run(600)  # it has told nearly all by then
+    world.press("ADDRESS_UP")
+    rows = set()
+    for _ in range(300):
+        world.run(100)
+        rows.add(row_2(world).rstrip())
+    assert "A1 NOT STARTED" in rows
+    assert starts(world) == 0
     world.check()

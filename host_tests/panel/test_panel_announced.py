@@ -9,6 +9,7 @@ import main
 from boards.sim.world import World
 from panel.pages.home import Home
 from panel_bench import (
+    SlowWorld,
     all_running,
     panel,
     row_1,
@@ -149,13 +150,6 @@ def test_with_n_drives_in_trouble_each_is_said_for_a_second_in_every_2_n_seconds
             assert rows.get(row, 0) >= 1_000, (row, rows)
         assert rows["READY        A6"] >= 1_000
     world.check()
-
-
-class SlowWorld(World):
-    """A step of the main loop may take as long as it does where it has much to do."""
-
-    def _uneven_loop_us(self):
-        return self.random(500, 10_000)
 
 
 def test_a_slow_loop_says_each_of_them_for_a_second_as_well():
