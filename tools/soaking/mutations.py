@@ -1189,6 +1189,3 @@ MUTATIONS = (
         ),
     ),
 )  # fmt: skip
-
-# Rows that wait for a seed that finds them. Each still has to fit the firmware's text.
-UNFOUND = ("back without listening",)
