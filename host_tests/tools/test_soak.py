@@ -556,6 +556,32 @@ def test_a_silent_drive_that_is_asked_what_it_is_is_not_neglected():
         raise AssertionError("nobody noticed")
 
 
+def test_a_drive_that_the_panel_may_have_heard_running_may_take_more_than_the_share():
+    """It is asked again and again while it is silent. One that was never heard is not."""
+    soak = Soak(13, drives=2)
+    soak.hand.run(3_000)
+    witness = soak.judge.witness
+    shown, address = soak.plan.addresses
+    case = witness.cases[address]
+    case.zsw, case.heard_us, case.answered_us = 0xFB34, NEVER, soak.world.clock.now_us
+    for replies in (1, 0):
+        case.taken, now = replies, case.answered_us + 10_000_000
+        shares = Shares(witness)
+        try:
+            for _ in range(1_000):
+                now += 40_000
+                witness.cases[shown].answered_us = now
+                witness.cases[shown].sent_us = case.sent_us = now
+                shares.ask(case, address, None, now)
+                shares.look(now)
+                shares.ask(witness.cases[shown], shown, None, now + 20_000)
+                shares.answered()
+        except Broken as broken:
+            assert replies == 0 and "silent drives take" in broken.args[1], (replies, broken)
+        else:
+            assert replies == 1, "nobody noticed"
+
+
 def test_a_reply_since_power_on_that_the_panel_may_not_have_taken_makes_nobody_lost():
     """It says MAY RUN as of a drive that was never heard, and lets it rest as such a one."""
     soak = Soak(13, drives=2)

@@ -62,7 +62,7 @@ class Shares:
 
     def look(self, now):
         witness = self.witness
-        silent = [case for case in self._listed() if self._is_silent(case, now)]
+        silent = [case for case in self._listed() if self._may_rest(case, now)]
         patience_us = OWED * max(FOUND_US, SHARED * SHARE * len(silent) * witness.exchange_us)
         if self._is_crowded():
             self._crowded_us = now
@@ -108,13 +108,21 @@ class Shares:
         witness = self.witness
         return [witness.cases[address] for address in witness.plan.listed]
 
-    def _is_silent(self, case, now):
-        """Whether it is silent for so long that the panel does not wait for it, and was heard at
-        rest since it was told to run."""
-        witness = self.witness
-        if case.heard_us > witness.boot_us or case.stw & RUN:  # else it does not know how it was
+    def _may_rest(self, case, now):
+        """Whether the panel may take it for one that is silent and was heard at rest."""
+        return self._is_silent(case, now, case.heard_us > self.witness.boot_us)
+
+    def _surely_rests(self, case, now):
+        """Whether it cannot take it for one that may run: it has heard it at rest, or never."""
+        return self._is_silent(case, now, case.taken > 0)
+
+    def _is_silent(self, case, now, is_known):
+        """Whether it is silent for so long that the panel does not wait for it, and was at rest
+        since it was told to run. is_known: the panel has heard how it was."""
+        if is_known or case.stw & RUN:
             if case.stw & RUN or case.zsw & ZSW_RUNNING or case.turned_us > case.rested_us:
                 return False
+        witness = self.witness
         return now - max(case.answered_us, witness.boot_us) > witness.lost_us + S
 
     def _judge_gap(self, case, address, now):
@@ -122,7 +130,7 @@ class Shares:
         witness = self.witness
         gap_us = witness.asked_for_us(case, now)
         others = witness.turns
-        silent = sum(1 for one in self._listed() if self._is_silent(one, now))
+        silent = sum(1 for one in self._listed() if self._surely_rests(one, now))
         round_us = (others - silent) * self._answer_us + witness.exchange_us
         longest_us = (
             max(self._limit_us(address), 2 * round_us) + 6 * witness.exchange_us + 200 * MS
@@ -166,7 +174,7 @@ class Shares:
     def _count(self, case, is_mirror, now):
         before = self._last
         if before is not None and not self._is_answered:
-            if self._is_mirror or self._is_silent(before, now):
+            if self._is_mirror or self._surely_rests(before, now):
                 self._silent_us += now - self._last_us
         self._last, self._last_us = case, now
         self._is_answered, self._is_mirror = False, is_mirror
