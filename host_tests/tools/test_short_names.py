@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """The names that a panel as files has on the chip: tools/deploying/names.py."""
 
+import ast
+
 from tiers import TOP
 from tools.deploying.image import MAIN, STAY_SOURCE, Firmware
 from tools.deploying.names import short_names, shortened
@@ -41,6 +43,24 @@ def test_each_place_of_a_name_has_the_short_one():
     getattr(inverter, short["_trips"])()
     assert getattr(inverter, short["_zsw"]) == getattr(inverter, short["_count"]) == 1
     assert ran[short["_last"]] is inverter
+
+
+def test_an_exchange_of_two_values_makes_no_tuple_on_the_chip():
+    """With parentheses MicroPython would make one, and an interrupt has no memory for it."""
+    for line in (b"a, b = _row, a", b"a.b, a[1] = f(_row, 1), (a, b)", b"a, b = f(_row)"):
+        source = b"_row = 1\n" + line + b"\n"
+        assert shortened({"x.py": source})["x.py"] == source.replace(b"_row", b"_a")
+    firmware = Firmware.read(TOP, "pico")
+    exchanges = 0
+    for path, source in shortened(firmware.programs(), STAY_SOURCE).items():
+        text = source.decode()
+        for node in ast.walk(ast.parse(text)):
+            if isinstance(node, ast.Assign) and isinstance(node.value, ast.Tuple):
+                if isinstance(node.targets[0], ast.Tuple):
+                    first = node.value.elts[0]
+                    assert node.value.col_offset == first.col_offset, (path, node.lineno)
+                    exchanges += 1
+    assert exchanges > 10
 
 
 def test_names_for_others_stay():

@@ -20,6 +20,7 @@ from string import ascii_lowercase
 
 PRIVATE = re.compile(r"_[a-zA-Z0-9]\w*")
 WORD = re.compile(r"\w+")
+EXCHANGE = re.compile(r"( *)(\(?[^=]+?,[^=]+?\)?) = (\(?[^=]+?,[^=]+?\)?)")
 FIELD = {  # where a name stands in a node of the syntax tree
     ast.Name: "id",
     ast.Attribute: "attr",
@@ -39,11 +40,31 @@ def shortened(sources, fixed=()):
     trees = {path: ast.parse(source) for path, source in sources.items()}
     short = _short(trees, fixed)
     return {
-        path: ast.unparse(_Renaming(short[path]).visit(tree)).encode() + b"\n"
+        path: _source(_Renaming(short[path]).visit(tree)).encode() + b"\n"
         if short[path]
         else sources[path]
         for path, tree in trees.items()
     }
+
+
+def _source(tree):
+    """The text of a tree. `a, b = b, a` stays without parentheses, which `ast.unparse` may put
+    round each side: with them MicroPython makes a tuple, and an interrupt has no memory for one.
+    """
+    return "\n".join(map(_exchange, ast.unparse(tree).split("\n")))
+
+
+def _exchange(line):
+    found = EXCHANGE.fullmatch(line)
+    if found:
+        indent, *sides = found.groups()
+        bare = " = ".join(side[1:-1] if side[0] + side[-1] == "()" else side for side in sides)
+        try:
+            if ast.dump(ast.parse(bare)) == ast.dump(ast.parse(line.strip())):
+                return indent + bare
+        except SyntaxError:
+            pass  # the parentheses belong to something else, or it is a line of a text
+    return line
 
 
 def short_names(sources, fixed=()):
