@@ -30,7 +30,7 @@ import pytest
 
 from line_coverage import LineCoverage
 from ordinary import OrdinaryRun, Teller
-from tiers import TIERS, TOP, FileRun, Survey, survey
+from tiers import TIERS, TOP, FileRun, Survey, interpreters, survey
 
 SURVEY = pytest.StashKey()
 POOL = pytest.StashKey()
@@ -152,14 +152,6 @@ def absence(tier, reason):
 
 
 # ---- from files to items --------------------------------------------------------------------
-
-
-def interpreters(tree):
-    """The names in the INTERPRETERS of a test file; the tiers for every file where it has none."""
-    for node in tree.body:
-        if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "INTERPRETERS":
-            return ast.literal_eval(node.value).split()
-    return [name for name in TIERS if TIERS[name].everywhere]
 
 
 class MicroPythonFile(pytest.File):

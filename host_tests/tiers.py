@@ -13,6 +13,7 @@ function at fault fails, and the ones after it run in a new process. This module
 pytest; conftest.py uses it.
 """
 
+import ast
 import os
 import re
 import selectors
@@ -81,6 +82,14 @@ TIERS = {
         _pico_hard("pico_hard_again", twin="pico_hard"),
     )
 }
+
+
+def interpreters(tree):
+    """The names in the INTERPRETERS of a test file; the tiers for every file where it has none."""
+    for node in tree.body:
+        if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "INTERPRETERS":
+            return ast.literal_eval(node.value).split()
+    return [name for name in TIERS if TIERS[name].everywhere]
 
 
 class Verdict(NamedTuple):

@@ -54,13 +54,20 @@ class _Loader(SourceFileLoader):
 @cache  # the panel throws modules away and imports them again and again
 def _compiled(path):
     with open(path, "rb") as source:
-        tree = ast.parse(source.read(), path)
-    return compile(_Noting(path).visit(tree), path, "exec", dont_inherit=True)
+        tree = Noting(path, _places).visit(ast.parse(source.read(), path))
+    _ran.extend([False] * (len(_places) - len(_ran)))
+    return compile(tree, path, "exec", dont_inherit=True)
 
 
-class _Noting(ast.NodeTransformer):
-    def __init__(self, path):
-        self._path = path
+class Noting(ast.NodeTransformer):
+    """Puts before every statement of a file one that notes its line: `NOTES[number] = True`.
+
+    places: takes path and line number of each note, which is its place there.
+    """
+
+    def __init__(self, path, places):
+        self.path = path
+        self.places = places
 
     def generic_visit(self, node):
         super().generic_visit(node)
@@ -74,24 +81,23 @@ class _Noting(ast.NodeTransformer):
         """Its line runs when it is asked whether it takes the exception."""
         self.generic_visit(node)
         if node.type:
-            noted = self._noting("{}.__setitem__({}, True)", node.lineno).value
+            noted = self.noting("{}.__setitem__({}, True)", node.lineno).value
             node.type = ast.copy_location(ast.BoolOp(ast.Or(), [noted, node.type]), node.type)
         else:
-            node.body.insert(0, self._noting("{}[{}] = True", node.lineno))
+            node.body.insert(0, self.noting("{}[{}] = True", node.lineno))
         return node
 
     def _noted(self, statements):
         for statement in statements:
             if not (statement is statements[0] and _is_text(statement)):
                 for each in (*getattr(statement, "decorator_list", ()), statement):
-                    yield self._noting("{}[{}] = True", each.lineno)
+                    yield self.noting("{}[{}] = True", each.lineno)
             yield statement
 
-    def _noting(self, text, number):
+    def noting(self, text, number):
         """A statement on that line, with a note of its own."""
-        (statement,) = ast.parse(text.format(NOTES, len(_ran))).body
-        _ran.append(False)
-        _places.append((self._path, number))
+        (statement,) = ast.parse(text.format(NOTES, len(self.places))).body
+        self.places.append((self.path, number))
         return ast.increment_lineno(statement, number - statement.lineno)
 
 

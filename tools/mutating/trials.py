@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: MIT
+"""The trial of a mutant: the tests that run its line, the nearest first, until one fails.
+
+    trials = Trials(tree, reach, folder, patience_s)      # folder: for a copy of the tree
+    verdict = trials.of(mutant)
+
+What runs on the chip alone is tried with the tests of the emulated Pico, on a firmware that is
+built with the mutant in it.
+"""
+
+import subprocess
+from itertools import groupby
+from typing import NamedTuple
+
+import tiers
+from tools.mutating.mutants import read
+from tools.mutating.reach import TIER, tests_of
+from tools.mutating.scratch import scratch
+
+PICO = "pico"
+FIRST_OF_A_FILE = 3  # so many of each test file run before the rest of any
+TIMES = 8  # a function may take so many times as long as without the mutant: others are busy too
+PICO_TIMEOUT_S = 120  # as host_tests/pytest.ini has it
+BUILD_TIMEOUT_S = 600
+
+# Builds the firmware of the panel from a copy, in the copy's own build/.
+BUILD = """
+top=$PWD
+for part in version folder packages pytest pico; do . tools/fetch/$part.sh; done
+get_pico_firmware panel
+"""
+
+
+class Verdict(NamedTuple):
+    """by: the test that found it, or "" if none did. reason: the line that tells why.
+    tests: how many functions ran, or had to run if it survived."""
+
+    by: str
+    reason: str
+    tests: int
+
+
+class Trials:
+    def __init__(self, tree, reach, folder, patience_s):
+        self.tree = tree
+        self.reach = reach
+        self.copy = scratch(tree, folder)
+        self.patience_s = patience_s
+
+    def of(self, mutant):
+        path = self.copy / mutant.path
+        source = read(path)
+        path.write_text(mutant.applied(source), encoding="utf-8")
+        try:
+            if self.reach.is_reached(mutant.path):
+                return self._on_unix(mutant)
+            return self._on_chip(mutant)
+        finally:
+            path.write_text(source, encoding="utf-8")
+
+    def _on_unix(self, mutant):
+        functions = self.reach.functions(mutant.path, mutant.line)
+        for path, some in in_turns(functions):
+            longest_s = max(function.seconds for function in some)
+            names = [function.name for function in some]
+            found = self._failure(TIER, path, names, TIMES * longest_s + self.patience_s)
+            if found:
+                return Verdict(*found, len(functions))
+        return Verdict("", "", len(functions))
+
+    def _on_chip(self, mutant):
+        if not (self.copy / "tools" / "fetch" / "pico.sh").exists():
+            return Verdict("", "", 0)
+        build = ["bash", "-c", BUILD]
+        built = subprocess.run(
+            build, cwd=self.copy, stdin=subprocess.DEVNULL, capture_output=True, text=True,
+            timeout=BUILD_TIMEOUT_S,
+        )  # fmt: skip
+        if built.returncode:
+            return Verdict("the build of the Pico's firmware", _last_line(built.stderr), 0)
+        files = self._chip_tests(mutant)
+        for path in files:
+            found = self._failure(PICO, path, (), PICO_TIMEOUT_S)
+            if found:
+                return Verdict(*found, len(files))
+        return Verdict("", "", len(files))
+
+    def _chip_tests(self, mutant):
+        """The test files of the Pico: first those that speak most of what the file is about."""
+        about = mutant.path.split("/")[-2]
+        paths = list(tests_of(self.copy, PICO))
+        paths.sort(key=lambda path: -path.read_text(encoding="utf-8").lower().count(about))
+        return [str(path.relative_to(self.copy)) for path in paths]
+
+    def _failure(self, tier, path, names, timeout_s):
+        """The first of these functions that fails, of all without names, and why; or None."""
+        command = [*tiers.TIERS[tier].command, tiers.RUNNER, tier, path, *names]
+        process = tiers.start(command, cwd=self.copy)
+        name = "the file"
+        for text, word, argument in tiers.reports(process, timeout_s):
+            if word == "began":
+                name = argument
+            elif word == "failed":
+                process.kill()
+                return "%s::%s" % (path, name), _last_line(text)
+            elif word == "ended" and argument:
+                return "%s::%s" % (path, name), argument
+        return None
+
+
+def in_turns(functions):
+    """(path, functions of it), so that the best come first and few processes are started."""
+    first, rest = [], []
+    counts = {}
+    for function in functions:
+        counts[function.path] = counts.get(function.path, 0) + 1
+        (first if counts[function.path] <= FIRST_OF_A_FILE else rest).append(function)
+    for some in first, rest:
+        order = {path: at for at, path in reversed(list(enumerate(one.path for one in some)))}
+        some.sort(key=lambda function: order[function.path])
+        for path, group in groupby(some, key=lambda function: function.path):
+            yield path, list(group)
+
+
+def _last_line(text):
+    return text.strip().rpartition("\n")[2].strip()
