@@ -5,6 +5,7 @@ import main
 from boards.sim.drives.kinds import listed_drives, simulated
 from boards.sim.world import World
 from panel_bench import OFF1, panel, row_2, running, said, settled, starts, telegrams
+from uss import pkw
 from uss.master import LISTENING, OFF
 
 INTERPRETERS = "unix64 unix32"
@@ -151,6 +152,24 @@ def test_what_a_parameter_task_says_is_there_in_words():
         world.run(30)
         seen.add(row_2(world)[1:])
     assert [row for row in seen if row[:6] in ("READ P", "READ r")], seen
+    world.check()
+
+
+def test_a_parameter_task_is_told_with_its_number_and_index_on_every_page():
+    """Six bits of IND say which 2000 numbers are meant. The drive has none of these."""
+    world = panel()
+    open_menu(world, "DIAGNOSIS", "A1", "TELEGRAMS")
+    drive = world.app.bus.turns.at(1)
+    for page in (0, 1, 2, 4, 8, 16, 32):
+        job, told = pkw.read(2000 * page + 7, 3), "READ P%04d[3]" % (2000 * page + 7)
+        for _ in range(200):
+            if job.state != pkw.PENDING:
+                drive.ask(job)
+            world.run(30)
+            if row_2(world)[1:] == told:
+                break
+        else:
+            raise AssertionError("never said: " + told)
     world.check()
 
 

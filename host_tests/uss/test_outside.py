@@ -182,6 +182,17 @@ def test_the_broadcast_that_stops_goes_before_everything():
     assert {bench.stws(address)[-1] for address in range(1, 7)} == {pzd.OFF1}
 
 
+def test_a_broadcast_says_bit_by_bit_what_is_taken_of_pzd_1_4_and_5():
+    """The enable array (appendix of the specification): which places, and these three masks."""
+    words = (pzd.OFF1, 0x1000, 0, 0x5678, 0x9ABC)
+    request = Broadcast(words, {1: 0x0080, 4: 0x00F0, 5: 0x0F00}).request
+    assert request[3:11] == b"\x00\x33\x00\x80\x00\xf0\x0f\x00", request
+    assert request[11:-1] == b"\x04\x7e\x10\x00\x00\x00\x56\x78\x9a\xbc", request
+    for place in (2, 3, 6):
+        refused(Broadcast, words + (0,), {place: 0x00F0})
+        assert Broadcast(words + (0,), {place: 0xFFFF}).request[4] == 1 | 1 << place
+
+
 def test_a_broadcast_to_drives_of_several_layouts_is_refused_and_they_are_stopped():
     bench = Bench([Node(1), Node(2, 3, 2)])
     bench.contact()
