@@ -269,6 +269,22 @@ def test_an_alarm_makes_light_whichever_drive_is_shown():
         world.check()
 
 
+def test_a_motor_that_may_run_unheard_makes_light_though_another_drive_is_shown():
+    world = panel((1, 2), light_minutes=1)
+    press(world, "ADDRESS_UP", "START", "ADDRESS_DOWN")
+    world.run(65_000)
+    assert not world.lcd_chip.lit and world.drives[2].state == "running"
+    world.drives[2].unplug()
+    world.run(3000)
+    assert world.lcd_chip.lit, world.lcd()
+    world.run(65_000)
+    assert world.lcd_chip.lit, world.lcd()  # as long as nobody knows what the motor does
+    hold(world, "STOP", 4500)  # of all drives, which this one does not confirm
+    world.run(65_000)
+    assert world.lcd_chip.lit, world.lcd()
+    world.check()
+
+
 def test_a_board_that_cannot_switch_its_light_has_no_such_setting():
     for has in (True, False):
         world = panel()
