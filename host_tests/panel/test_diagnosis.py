@@ -52,6 +52,42 @@ def walk(world, arrived, what):
     raise AssertionError("no %s: %r" % (what, world.lcd()))
 
 
+def test_stop_is_for_the_drive_that_is_shown_and_for_the_one_that_is_looked_at():
+    """A page of the bus looks at none."""
+    for shown, entries, is_open, stopped in (
+        (1, ("A3",), False, (1, 3)),
+        (3, ("A1",), False, (3, 1)),
+        (1, ("A3", "COUNTERS"), True, (1, 3)),
+        (1, ("A3", "TIMES"), True, (1, 3)),
+        (1, ("A3", "TELEGRAMS"), True, (1, 3)),
+        (1, ("A3", "MIRROR TEST"), True, (1, 3)),
+        (1, ("BUS COUNTERS",), True, (1,)),
+        (1, ("THE PANEL",), False, (1,)),
+    ):
+        world = running(addresses=(1, 2, 3))
+        world.press("ADDRESS_DOWN")
+        world.run(2_500)
+        world.press("START")
+        world.run(3_000)
+        assert world.drives[3].state == "running"
+        if shown == 1:
+            world.press("ADDRESS_UP")
+            world.run(300)
+        open_menu(world, "DIAGNOSIS", *entries[:-1])
+        walk_to(world, entries[-1])
+        if is_open:
+            world.press("SET")
+            world.run(300)
+        world.press("STOP")
+        world.run(200)
+        words = ">%s: STOP" % " ".join(["A%d" % address for address in stopped])
+        assert row_2(world) == words, (entries, world.lcd())
+        world.run(4_000)
+        for address in stopped:
+            assert world.drives[address].state == "ready", (entries, address)
+        world.check()
+
+
 # --- the pages ----------------------------------------------------------------------------------
 
 
