@@ -245,6 +245,23 @@ def test_compare_shows_what_differs_and_writes_nothing():
     assert finish(world) == "ALL EQUAL", world.lcd()
 
 
+def test_a_comparison_tells_how_far_it_is():
+    world = two()
+    numbers, indices = range(1001, 1016), range(3)  # fixed frequencies
+    rows = [(number, index, b"Float", b"0" * 8) for number in numbers for index in indices]
+    put(world, *rows)
+    begin(world, "A1 MADE", "COMPARE A2")
+    told = []
+    for _ in range(1000):
+        row = row_1(world)
+        if row.startswith("A2 COMPARE ") and "%" in row:
+            told.append(int(row[len("A2 COMPARE ") :].split("%")[0]))
+        elif told:
+            break
+        world.run(50)
+    assert told == sorted(told) and told[0] < 20 and 80 < told[-1] <= 100, told
+
+
 def test_nothing_is_written_without_a_yes():
     world = two()
     put(world)

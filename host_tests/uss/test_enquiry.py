@@ -40,11 +40,12 @@ def test_of_two_links_that_are_set_alike_it_is_the_one_with_the_address():
 
 def test_if_both_have_the_address_it_is_the_one_that_commands_the_drive():
     """P0700: 4 is the BOP link, 5 the COM link; any other source tells nothing."""
-    for source, family in (
-        (5, families.MM4),
-        (4, families.on_bop(families.MM4)),
-        (2, families.MM4),
-        (None, families.MM4),
+    on_bop = families.on_bop(families.MM4)
+    for source, family, off_time_ms in (
+        (5, families.MM4, 1500),
+        (4, on_bop, 700),
+        (2, families.MM4, 1500),
+        (None, families.MM4, 1500),
     ):
         node = asked(MM4 | {(2011, 0): ADDRESS, (2011, 1): ADDRESS, (700, 0): source})
-        assert node.family is family, (source, node)
+        assert node.family is family and node.off_time_ms == off_time_ms, (source, node)
