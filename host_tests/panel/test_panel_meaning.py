@@ -16,6 +16,7 @@ from panel_bench import (
     settled_row_2,
     starts,
     telegrams,
+    unsupervised,
     wait_until_known,
 )
 from uss.families import rows
@@ -272,6 +273,31 @@ def test_a_drive_that_falls_silent_on_what_it_lacks_is_known_all_the_same():
     world.run(10_000)
     assert row_2(world) == "RUNNING      A1" and starts(world) == 1
     world.check()
+
+
+def test_a_drive_that_comes_back_is_asked_anew_for_what_it_did_not_answer():
+    """It may be another one. Silence about r0050 and r0051 counts when it has come twice."""
+    world = panel(kinds={1: {"switches": {"silent_refusals": True}}}, **unsupervised())
+    wait_until_known(world, 40_000)
+    before = questions(world, 50, 51)
+    world.drives[1].unplug()
+    world.run(3000)
+    back_us = world.clock.now_us
+    world.drives[1].plug()
+    world.run(1000)
+    wait_until_known(world, 40_000)
+    after = questions(world, 50, 51, since_us=back_us)
+    assert after >= before > 4, (before, after)
+    world.check()
+
+
+def questions(world, *numbers, since_us=0):
+    """How many telegrams ask for one of these parameters."""
+    count = 0
+    for at_us, from_panel, characters in world.wire.log.last(5000):
+        if from_panel and at_us >= since_us and len(characters) == 16:
+            count += (characters[3] << 8 | characters[4]) - 0x1000 in numbers
+    return count
 
 
 def test_a_drive_that_is_silent_about_a_parameter_is_known_on_a_slow_line_as_well():
