@@ -92,6 +92,28 @@ def test_many_dead_drives_leave_the_living_ones_their_rate():
     assert all(drive.contact for drive in bench.master.turns.drives)
 
 
+def test_many_dead_drives_are_looked_after_a_few_at_a_time():
+    """All of them take an eighth of a second, so that no step of the loop takes long."""
+    bench = Bench(nodes(31))
+    for address in range(3, 32):
+        bench.nodes[address].plugged = False
+    bench.run(5_000_000)
+    deadlines, counts = bench.master.deadlines, [0]
+    look, look_after = deadlines.look, deadlines.silence.look_after
+
+    def counted_look(now):
+        counts.append(0)
+        look(now)
+
+    def counted_look_after(drive):
+        counts[-1] += 1
+        look_after(drive)
+
+    deadlines.look, deadlines.silence.look_after = counted_look, counted_look_after
+    bench.run(2_000_000)
+    assert 10 * 29 < sum(counts) < 20 * 29 and max(counts) <= 8, (sum(counts), max(counts))
+
+
 def test_a_bus_on_which_everybody_is_dead_goes_on_asking():
     bench = Bench(nodes(3))
     for node in bench.nodes.values():
