@@ -266,6 +266,23 @@ def test_the_value_stays_selected_while_other_drives_are_shown():
     world.check()
 
 
+def test_from_a_value_that_a_drive_lacks_the_keys_go_on_as_from_its_frequency():
+    from boards.sim.drives.families import mm3, mm440
+
+    kinds, settings = {1: {"family": mm440}, 2: {"family": mm3}}, {"1": "mm440", "2": "mm3"}
+    for key, unit in (("NEXT", "%"), ("PREVIOUS", "Vdc")):
+        world = panel(addresses=(1, 2), kinds=kinds, settings={"kinds": settings})
+        wait_until_known(world)
+        show(world, "kW")
+        world.press("ADDRESS_UP")
+        world.run(1500)
+        assert "F:" in row_1(world) and row_2(world).endswith("A2"), world.lcd()
+        world.press(key)
+        world.run(700)
+        assert units([shown(world)]) == [unit], (key, world.lcd())
+        world.check()
+
+
 def test_without_contact_it_is_dashes():
     world = show(panel(), "Vdc")
     world.drives[1].unplug()
