@@ -151,6 +151,19 @@ def test_a_set_has_all_parameters_of_an_mm440_and_all_their_indices():
     world.check()
 
 
+def test_how_saving_has_ended_is_told_until_set_goes_back_to_the_sets():
+    world = two()
+    sets(world)
+    walk_to(world, "SAVE A1")
+    press(world, "SET", "SET")
+    told = wait(world, "SAVED")
+    press(world, "NEXT", "DOWN")
+    assert settled(world)[1].rstrip() == told, world.lcd()
+    press(world, "SET")
+    assert settled(world)[1].startswith(">SAVE A1"), world.lcd()
+    world.check()
+
+
 def test_a_name_is_given_letter_by_letter():
     world = two()
     sets(world)
