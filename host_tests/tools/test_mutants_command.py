@@ -91,13 +91,13 @@ def test_a_mutant_that_a_test_finds_is_told_with_the_test_and_the_reason(tree):
     assert status == 0, told + trouble
     assert "    -    return percent > 50\n    +    return percent >= 50\n" in told
     assert "found by host_tests/valve/test_valve.py::test_a_valve_opens_above_the_half" in told
-    assert "1 mutants, the tests found 1" in told and "processor time" in told
+    assert "the tests found 1 of 1 mutants" in told and "processor time" in told
 
 
 @needs_cosmic_ray
 def test_a_mutant_that_no_test_finds_survives_and_the_command_tries_it_again(tree):
     status, told, _ = of(tree, ONE_STEP_MORE)
-    assert status == 1 and "SURVIVED 1 tests" in told, told
+    assert status == 1 and "SURVIVED, tests that run it: 1" in told, told
     assert "again: ./tools/mutants --mutant " + ONE_STEP_MORE in told
     with open(tree / "host_tests/valve/test_valve.py", "a") as tests:
         tests.write("\n\ndef test_a_valve_is_where_it_was_sent():\n    assert steps(20) == 20\n")
@@ -114,14 +114,14 @@ def test_a_mutant_that_hangs_is_found(tree):
 @needs_cosmic_ray
 def test_a_line_that_no_test_runs_is_told(tree):
     status, told, _ = of(tree, SPARE)
-    assert status == 1 and "SURVIVED: no test runs it" in told, told
+    assert status == 1 and "SURVIVED, tests that run it: 0" in told, told
 
 
 @needs_cosmic_ray
 def test_a_seed_gives_the_same_mutants_again(tree):
     words = ("--tree", tree, "--only", "firmware", "--patience", 1, "--count", 3)
     first = mutants(*words, "--jobs", 1)[1]
-    seed = re.search(r"seed (\d+): 3 mutants", first)[1]
+    seed = re.search(r"seed (\d+): the tests found \d of 3 mutants", first)[1]
     again = mutants(*words, "--jobs", 1, "--seed", seed)[1]
     named = r"^\d: (firmware/valve.py:\S+)$"
     assert re.findall(named, first, re.M) == re.findall(named, again, re.M)
@@ -141,7 +141,7 @@ def test_what_is_no_change_is_no_mutant(tree):
     (tree / "firmware/valve.py").write_text('"""1 < 2."""\n\nVALVES = 3\n')
     (tree / "host_tests/valve/test_valve.py").write_text("import valve\n")
     status, told, trouble = mutants("--tree", tree, "--only", "firmware", "--count", 20)
-    assert "1 mutants, the tests found 0" in told, told + trouble
+    assert "the tests found 0 of 1 mutants" in told, told + trouble
     assert "VALVES = 4" in told or "VALVES = 2" in told
 
 

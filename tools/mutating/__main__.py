@@ -129,7 +129,7 @@ class Tally:
             told = "found by %s: %s" % (verdict.by, verdict.reason or "no reason is told")
         else:
             self.survivors.append(mutant)
-            told = "SURVIVED %d tests" % verdict.tests if verdict.tests else "SURVIVED: no test runs it"
+            told = "SURVIVED, tests that run it: %d" % verdict.tests
         show_line("")
         print("%d: %s" % (self.done, str(mutant)))
         source = (self.wanted.tree / mutant.path).read_text(encoding="utf-8")
@@ -149,7 +149,7 @@ class Tally:
             yield "again: ./tools/mutants --mutant " + str(mutant)
         seed = "" if self.wanted.mutant else "seed %d: " % self.wanted.seed
         found = self.done - len(self.survivors)
-        yield "%s%d mutants, the tests found %d" % (seed, self.done, found)
+        yield "%sthe tests found %d of %d mutants" % (seed, found, self.done)
         took = minutes(time.monotonic() - self.began)
         yield "took %s, and %s of processor time" % (took, minutes(cpu_s))
 
@@ -186,7 +186,9 @@ def run(wanted, found):
     reach = Reach(wanted.tree, room)
     reach.learn(
         wanted.jobs,
-        lambda done, files: show_line("which tests run which line: %d of %d files" % (done, files)),
+        lambda done, files: show_line(
+            "which tests run which line: %d of %d files" % (done, files)
+        ),
     )
     waiting, told = queue.SimpleQueue(), queue.SimpleQueue()
     for mutant in found:

@@ -20,6 +20,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from line_notes import Noting
+
 from tiers import TIERS, interpreters
 from tools.mutating.noting import MARK
 from tools.mutating.scratch import scratch
@@ -64,21 +65,17 @@ class Reach:
         self.room = room
         self.kept = room / "reach"  # a file for each test file
         self.places = []  # path, line number: of each note
-        self.noted = {
-            str(path.relative_to(tree)): self._noted(path)
-            for path in sorted((tree / "firmware").rglob("*.py"))
-        }
+        self.noted = {}  # path -> syntax tree, with notes
+        self._in_file = {}  # path -> its statements, as bits
+        for path in sorted((tree / "firmware").rglob("*.py")):
+            name, first = str(path.relative_to(tree)), len(self.places)
+            noting = _Noting(name, self.places)
+            self.noted[name] = noting.visit(ast.parse(path.read_bytes()))
+            self._in_file[name] = (1 << len(self.places)) - (1 << first)
         self.ground = digest(tree, [file for one in GROUND for file in _files(tree / one)])
         self.known = {}  # path of a test file -> {function: (seconds, passed, statements as bits)}
-        self._in_file = {path: self._bits(lambda place: place[0] == path) for path in self.noted}
         inside = set(self._inside())
         self._outside = self._bits(lambda place: place not in inside)
-
-    def _noted(self, path):
-        tree = _Noting(str(path.relative_to(self.tree)), self.places).visit(
-            ast.parse(path.read_bytes())
-        )
-        return ast.unparse(tree) + "\n"
 
     def files(self):
         """The test files that this is about, from the top of the tree."""
@@ -95,8 +92,8 @@ class Reach:
         if not unknown:
             return
         copy = scratch(self.tree, self.room / "noting")
-        for path, text in self.noted.items():
-            (copy / path).write_text(text, encoding="utf-8")
+        for path, noted in self.noted.items():
+            (copy / path).write_text(ast.unparse(noted) + "\n", encoding="utf-8")
         tell(0, len(unknown))
         with ThreadPoolExecutor(jobs) as pool:
             runs = {pool.submit(self._run, copy, path): path for path in unknown}
@@ -107,9 +104,10 @@ class Reach:
                 tell(done, len(unknown))
 
     def functions(self, path, line):
-        """The test functions that run a line, the best first: those that take little time, and most
-        of it with this file. A test file of the same name takes part in any case."""
-        wanted = self._statement(path, line)
+        """The test functions that run a line, the best first: those that take little time, and
+        most of it with this file. Machine code notes nothing: there the test files of the same
+        name take part, and all that import it."""
+        wanted, is_noted = self._statement(path, line)
         names = {"test_%s.py" % word for word in path.removesuffix(".py").split("/")[-2:]}
         found = []
         for test, functions in self.known.items():
@@ -117,7 +115,7 @@ class Reach:
             # A module is imported by the first function that wants it, for all of its file.
             for _, _, bits in functions.values():
                 once |= bits & self._outside
-            is_namesake = test.rpartition("/")[2] in names
+            is_namesake = not is_noted and test.rpartition("/")[2] in names
             for name, (seconds, _, bits) in functions.items():
                 bits |= once
                 if name != "import" and (bits & wanted or is_namesake):
@@ -127,18 +125,18 @@ class Reach:
         return sorted(found, key=lambda one: (one.seconds + 0.05) / one.nearness)
 
     def _statement(self, path, line):
-        """The innermost statement with that line that is noted, as bits: machine code is not."""
+        """The innermost noted statement with that line, as bits; whether it is the innermost."""
         tree = ast.parse((self.tree / path).read_bytes())
         around = [
             node
             for node in ast.walk(tree)
             if isinstance(node, ast.stmt) and node.lineno <= line <= node.end_lineno
         ]
-        for node in reversed(sorted(around, key=lambda node: node.lineno)):
+        for node in sorted(around, key=lambda node: node.lineno, reverse=True):
             bits = self._bits(lambda place, at=(path, node.lineno): place == at)
             if bits:
-                return bits
-        return 0
+                return bits, node.lineno == max(one.lineno for one in around)
+        return 0, True
 
     def is_reached(self, path):
         """Whether any test on this interpreter runs anything of that file."""

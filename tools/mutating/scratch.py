@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Copies of the tree, in which tests run while something of the firmware is changed.
 
-    scratch(tree, folder)     # the same files; its build/ is that of the tree, but for the Pico's
+scratch(tree, folder)     # the same files; its build/ is that of the tree, but for the Pico's
 """
 
 import shutil

@@ -123,4 +123,6 @@ def in_turns(functions):
 
 
 def _last_line(text):
-    return text.strip().rpartition("\n")[2].strip()
+    """Of a traceback: what it says, or the line of an `assert`, which says more."""
+    *_, before, last = ["", "", *text.strip().splitlines()]
+    return (before if last.startswith("AssertionError") else last).strip()
