@@ -107,6 +107,12 @@ UNDERSTOOD = (
         'Import "(umodbus|minimalmodbus|pymodbus|turboctl)',
         "fetched where somebody compares",
     ),
+    (
+        "tools/mutating/",
+        'Import "cosmic_ray',
+        "fetched where somebody makes mutants",
+    ),
+    ("tools/mutating/", 'Import "(tiers|line_notes)', "of the tests, which it runs"),
     ("tools/pc/", "is specified in __all__", "loaded when it is named"),
     ("tools/", 'Import "rich', "fetched where somebody uses tools/uss"),
     ("tools/", 'Import "uss_serial.port', "tools/port, which the package takes in"),

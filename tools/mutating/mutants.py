@@ -75,7 +75,7 @@ def places(path, source):
     for node in ast_nodes(get_ast(source)):
         for name, operator in fitting(node):
             for index, (start, _) in enumerate(operator.mutation_positions(node)):
-                found[start].append(Mutant(path, *start, name, index))
+                found[start].append(Mutant(path, start[0], start[1], name, index))
     return found
 
 
