@@ -155,6 +155,18 @@ def test_the_times_are_those_of_the_line():
     world.check()
 
 
+def test_a_start_delay_behind_a_drive_that_does_not_answer_is_not_measured():
+    """Nobody has seen the end of a reply there."""
+    world = panel(addresses=(1, 2))
+    world.drives[2].unplug()
+    world.run(2_000)
+    open_menu(world, "DIAGNOSIS", "A1", "TIMES")
+    world.run(3_000)
+    least, most = [float(ms) for ms in read(world, "A1 START")[:-3].split("-")]
+    assert 1.1 <= least <= most < 5, world.lcd()
+    world.check()
+
+
 def test_the_last_telegrams_are_shown_in_words_and_in_hexadecimal():
     world = running()
     open_menu(world, "DIAGNOSIS", "A1", "TELEGRAMS")

@@ -29,6 +29,17 @@ def test_a_reply_that_comes_too_early_is_none():
     assert line.silence(25_000) == BAD_START
 
 
+def test_a_reply_in_one_burst_with_the_echo_needs_its_start_interval_as_well():
+    for pause_us, finding in (
+        (LINE.start_interval_us, GOOD),
+        (LINE.start_interval_us * 95 // 100, WAITING),
+    ):
+        line = Line()
+        echo = bytes(line.drive.request[: line.drive.size])
+        assert line.come(echo + REPLY, pause_us - len(echo) * TCH) == finding, pause_us
+    assert line.silence(25_000) == BAD_START
+
+
 def test_silence_is_noticed_when_the_response_delay_is_over():
     line = Line()
     assert line.silence(20_000) == WAITING  # its first character may be under way
