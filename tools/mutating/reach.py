@@ -26,7 +26,7 @@ from tools.mutating.noting import MARK
 from tools.mutating.scratch import scratch
 
 GROUND = ("firmware", "boards", "host_tests/benches", "host_tests/runner.py")
-TIER = "unix64"
+TIERS_TRIED = ("unix64", "cpython")  # a test file runs on the first of these that it has
 NOTING = Path(__file__).parent / "noting.py"
 COMMANDS = {  # by the first of these tiers that a file has; noting.py finds the modules
     "cpython": (sys.executable, "-s", "-X", "utf8"),
@@ -79,7 +79,9 @@ class Reach:
 
     def files(self):
         """The test files that this is about, from the top of the tree."""
-        return sorted(str(path.relative_to(self.tree)) for path in tests_of(self.tree, TIER))
+        return sorted(
+            str(path.relative_to(self.tree)) for path in tests_of(self.tree, TIERS_TRIED)
+        )
 
     def learn(self, jobs, tell):
         """Run what is not known. tell(done, count) is called as it goes on."""
@@ -168,9 +170,8 @@ class Reach:
 
     def _run(self, copy, path):
         """What noting.py tells of a file. Functions that came to no end have run nothing."""
-        on = interpreters(ast.parse((self.tree / path).read_bytes()))
-        tier = next(tier for tier in COMMANDS if tier in on)
-        command = [*COMMANDS[tier], str(NOTING), path, str(len(self.places))]
+        command = COMMANDS[tier_of(self.tree / path, COMMANDS)]
+        command = [*command, str(NOTING), path, str(len(self.places))]
         try:
             done = subprocess.run(
                 command, cwd=copy, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
@@ -208,11 +209,17 @@ class Reach:
         return digest(self.tree, [self.tree / path]) + self.ground
 
 
-def tests_of(tree, tier):
-    """The test files that run on a tier."""
+def tests_of(tree, tiers):
+    """The test files that run on one of these tiers."""
     for path in sorted((tree / "host_tests").rglob("test_*.py")):
-        if tier in interpreters(ast.parse(path.read_bytes())):
+        if tier_of(path, tiers):
             yield path
+
+
+def tier_of(path, tiers):
+    """The first of these tiers that a test file runs on, or None."""
+    has = interpreters(ast.parse(path.read_bytes()))
+    return next((tier for tier in tiers if tier in has), None)
 
 
 def digest(tree, files):

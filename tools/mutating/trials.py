@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import tiers
 from tools.mutating.mutants import read
-from tools.mutating.reach import TIER, tests_of
+from tools.mutating.reach import TIERS_TRIED, tests_of, tier_of
 from tools.mutating.scratch import scratch
 
 PICO = "pico"
@@ -63,7 +63,8 @@ class Trials:
         for path, some in in_turns(functions):
             longest_s = max(function.seconds for function in some)
             names = [function.name for function in some]
-            found = self._failure(TIER, path, names, TIMES * longest_s + self.patience_s)
+            tier = tier_of(self.tree / path, TIERS_TRIED)
+            found = self._failure(tier, path, names, TIMES * longest_s + self.patience_s)
             if found:
                 return Verdict(*found, len(functions))
         return Verdict("", "", len(functions))
@@ -88,7 +89,7 @@ class Trials:
     def _chip_tests(self, mutant):
         """The test files of the Pico: first those that speak most of what the file is about."""
         about = mutant.path.split("/")[-2]
-        paths = list(tests_of(self.copy, PICO))
+        paths = list(tests_of(self.copy, (PICO,)))
         paths.sort(key=lambda path: -path.read_text(encoding="utf-8").lower().count(about))
         return [str(path.relative_to(self.copy)) for path in paths]
 
