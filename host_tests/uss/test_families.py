@@ -203,6 +203,17 @@ def test_the_rows_of_a_micromaster_4():
     assert missing == [rows.source(2036), rows.source(2018, 1)]
 
 
+def test_a_g110_is_asked_for_the_numbers_of_a_micromaster_4_as_far_as_it_has_them():
+    """Always with index 0. It has no P2009, no data sets, no P2019[1] and no PID controller."""
+    asked = [row and row[:3] for row in G110.survey]
+    lacks = (rows.ABSOLUTE, rows.COMMAND_SET, rows.DRIVE_SET, rows.ACTUAL_SENT, rows.PID)
+    assert [row for row in range(len(asked)) if asked[row] is None] == sorted(lacks)
+    for row in range(len(asked)):
+        if row not in lacks:
+            number, _, kind, _ = MM4.survey[row]
+            assert asked[row] == (number, 0, kind), row
+
+
 def test_every_rule_says_which_values_of_which_row_are_right():
     for family in FAMILIES:
         for subject, row, place, right, digit in family.meaning:
