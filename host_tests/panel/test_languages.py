@@ -6,6 +6,7 @@ If you add a text, add its row to firmware/panel/languages/words.tsv, and here, 
 narrower than a row, how wide that is, and if numbers belong into it, the widest of these.
 """
 
+import gc
 import json
 import sys
 from io import BytesIO
@@ -367,6 +368,19 @@ def test_what_was_found_is_kept_and_takes_no_memory():
         heap_unlock()
     assert unread == b"READY"  # no memory: in English, and in German as soon as there is some
     assert german.get(b"READY", b"") == b"BEREIT"
+
+
+def test_of_hundreds_of_words_that_were_shown_a_few_are_kept():
+    """A chip has no room for all: the ones that were shown last take their place."""
+    german, found = Language("de"), list(columns()["de"])
+    assert len(found) > 200
+    taken = []
+    for some in (found[:60], found[60:]):
+        for text in some:
+            german.get(text, text)
+        gc.collect()
+        taken.append(gc.mem_alloc())
+    assert taken[1] - taken[0] < 2_000, taken
 
 
 # --- at the panel --------------------------------------------------------------------------------
