@@ -116,6 +116,22 @@ def test_a_held_key_repeats_after_400_ms_and_then_every_120():
     assert hand.keys.repeats == 0
 
 
+def test_a_key_is_held_once_with_its_first_repeat_after_a_second():
+    for delay_ms, repeat_ms in ((400, 120), (200, 50), (300, 300), (900, 60), (500, 500)):
+        hand = Hand()
+        hand.keys.pace(delay_ms, repeat_ms)
+        acts = Acts(hand.keys)
+        held = []
+        for _ in range(3_000):
+            hand.hold(UP, 1)
+            acts.note()
+            if acts.is_held(UP):
+                held.append(hand.repeated[-1][0] - hand.pressed[0][0])
+            assert not acts.is_held(START)
+        (at_ms,) = held
+        assert 1_000 <= at_ms < 1_000 + repeat_ms, (delay_ms, repeat_ms, at_ms)
+
+
 def test_the_key_pressed_last_is_the_one_that_repeats():
     hand = Hand()
     hand.hold(UP, 200).hold(UP | STOP, 500)
