@@ -170,6 +170,39 @@ def test_stop_and_start_are_read_while_the_matrix_is_ambiguous():
     assert bench.down() == {"UP", "DOWN"}
 
 
+class SlowLine:
+    """The pins of a row and of a column with one key between them, which is down. What the row
+    does arrives at the column 15 us later, down and up."""
+
+    def __init__(self, clock):
+        self.clock = clock
+        self.changes = [(-100, 1)]
+        self.row, self.column = Level(self.put), Level(self.level)
+
+    def put(self, level):
+        self.changes.append((self.clock.now_us, level))
+
+    def level(self):
+        arrived = [level for at_us, level in self.changes if at_us + 15 <= self.clock.now_us]
+        return arrived[-1]
+
+
+class Level:
+    def __init__(self, value):
+        self.value = value
+
+
+def test_a_column_has_time_to_fall_and_to_rise_at_every_look():
+    clock = Clock()
+    line, other = SlowLine(clock), SlowLine(clock)
+    other.column.value = lambda: 1  # no key of that column is down
+    names = (("UP", "DOWN"), ("SET", "EDIT"))
+    keys = Matrix((line.row, other.row), (line.column, other.column), names, clock)
+    for _ in range(3):
+        assert keys.read() == 1 and keys.unclear == 0
+        clock.advance(2000)
+
+
 def test_keys_of_a_column_on_ground_do_not_count_and_the_others_do():
     bench = Bench()
     bench.switches.ground(1)
