@@ -817,7 +817,7 @@ def test_uf2_tells_where_the_file_is_and_how_it_gets_onto_the_pico(pico, tmp_pat
         assert (tmp_path / file).read_text() == "first\n"
 
 
-COMMANDS = "panel drive example test soak bench uf2 deploy check-board bringup uss".split()
+COMMANDS = "panel drive example test soak mutants bench uf2 deploy check-board bringup uss".split()
 
 
 @pytest.mark.parametrize("command", COMMANDS)
