@@ -369,7 +369,7 @@ class Turns:
                 self._round_left_us = cycle_us - passed_us
                 return False
             if passed_us < 2 * cycle_us:  # keep in step with the rounds before
-                now = (began_at + cycle_us) & self._mask
+                now = (began_at - (self._mask - cycle_us) - 1) & self._mask  # a small integer
         self._round_began_at = now
         return True
 

@@ -20,7 +20,7 @@ from string import ascii_lowercase
 
 PRIVATE = re.compile(r"_[a-zA-Z0-9]\w*")
 WORD = re.compile(r"\w+")
-EXCHANGE = re.compile(r"( *)(\(?[^=]+?,[^=]+?\)?) = (\(?[^=]+?,[^=]+?\)?)")
+EXCHANGE = re.compile(r"( *)(.+?,.+?) = (.+,.+)")
 FIELD = {  # where a name stands in a node of the syntax tree
     ast.Name: "id",
     ast.Attribute: "attr",

@@ -132,7 +132,8 @@ class Rp2Link(Bursts):
         self._started_at_us = started_at_us = self._ticks_us()
         _transmit(buffer, count, self._words, self._channel)
         self._duration_us = duration_us
-        self.sent_at = (started_at_us + duration_us) & self._mask
+        # Not the sum: the clock's last tick is the largest small integer, and beyond is no memory.
+        self.sent_at = (started_at_us - (self._mask - duration_us) - 1) & self._mask
 
     def sending_us(self, now_us):
         passed_us = (now_us - self._started_at_us) & self._mask

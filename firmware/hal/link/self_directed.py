@@ -36,7 +36,8 @@ class SelfDirectedLink(Bursts):
         self._duration_us = duration_us = self._durations_us[count]
         self._started_at_us = started_at_us = self._ticks_us()
         self._uart.write(buffer, count)
-        self.sent_at = (started_at_us + duration_us) & self._mask
+        # Not the sum: the clock's last tick is the largest small integer, and beyond is no memory.
+        self.sent_at = (started_at_us - (self._mask - duration_us) - 1) & self._mask
 
     def sending_us(self, now_us):
         duration_us = self._duration_us
