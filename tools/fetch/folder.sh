@@ -35,22 +35,59 @@ fill() {
         # The lock is held by this subshell, and so is released however it ends.
         lock
         "$is_whole" "$build/$name" && exit           # another run has made it meanwhile
-        # $BASHPID is the number of this subshell, $$ that of the whole script.
-        aside=$build/aside.$BASHPID
+        # With the number of this subshell: $$ is that of the whole script.
+        aside=$build/aside.$(exec bash -c 'echo $PPID')
         trap 'rm -rf "$aside"' EXIT
         mkdir "$aside" && "$@" "$aside" && "$is_whole" "$aside" || exit
         rm -rf "${build:?}/$name"
-        mv -T "$aside" "$build/$name"
+        mv "$aside" "$build/$name"
     ) 9>"$build/lock"
 }
 
-# Waits for the other runs. A system without flock does without: then two first runs at once do the
-# same work twice, and the one that is last is the one that stays.
+# Waits for the other runs. macOS has no flock, but Python has. A system with neither does without:
+# then two first runs at once do the same work twice.
 lock() {
-    type -P flock >/dev/null || return 0
-    if ! flock --nonblock 9; then
+    type -P flock >/dev/null || has_python || return 0
+    if ! take_lock --nonblock; then
         say "waiting for another run that is filling build/"
-        flock 9
+        take_lock
     fi
     rm -rf "$build"/aside.*                          # left behind by a run that was killed
+}
+
+# take_lock [--nonblock]: it is held as long as file 9 is open, also when Python has gone.
+take_lock() {
+    if type -P flock >/dev/null; then
+        flock "$@" 9
+    else
+        python3 -c 'import fcntl, sys
+fcntl.flock(9, fcntl.LOCK_EX | (fcntl.LOCK_NB if sys.argv[1:] else 0))' "$@" 2>/dev/null
+    fi
+}
+
+has_python() {
+    python3 -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null
+}
+
+# within SECONDS COMMAND...: its status; when it takes longer it is killed. macOS has no timeout.
+within() {
+    local child looks=$(($1 * 20))
+    "${@:2}" <&0 &
+    child=$!
+    while kill -0 "$child" && ((looks-- > 0)); do
+        sleep 0.05
+    done
+    ((looks >= 0)) || kill -9 "$child"
+    wait "$child"
+} 2>/dev/null
+
+# how_to_get DEBIAN HOMEBREW ARCH FEDORA: the command that installs these packages, by the package
+# manager that is here, or by each of them.
+how_to_get() {
+    local commands=("apt-get install $1" "brew install $2" "pacman -S $3" "dnf install $4") one all=
+    for one in "${commands[@]}"; do
+        type -P "${one%% *}" >/dev/null && echo "$one" && return
+        all+="${all:+, or }$one"
+    done
+    echo "$all"
 }

@@ -27,10 +27,5 @@ make_libraries() {
 
 # What to do when they are not there. $1 is the command to be tried again.
 no_libraries() {
-    if ! has_python; then
-        say "$1: wants Python 3.11 or newer as python3:  apt-get install python3 python3-venv"
-    else
-        say "$1: the libraries to compare with could not be installed (see above)."
-        say "  They come over the network with pip:  apt-get install python3-venv ca-certificates"
-    fi
+    not_installed "$1" "the libraries to compare with"
 }

@@ -46,7 +46,7 @@ ways_to() {
 # Whether a program is MicroPython and new enough: it is asked itself, since it knows best. The
 # limit in time is for a program of that name that is something else and waits.
 works() {
-    [[ $(timeout 10 "$1" -c "
+    [[ $(within 10 "$1" -c "
 import sys
 name, version = sys.implementation[0], sys.implementation[1]
 print(name, tuple(version[:2]) >= (${oldest/./, }))
@@ -57,8 +57,9 @@ print(name, tuple(version[:2]) >= (${oldest/./, }))
 no_micropython() {
     say "$1: no MicroPython $oldest or newer is here, and none could be fetched (see above)."
     say "One of these helps:"
-    say "  - install it:  apt-get install micropython   (Debian 13, Ubuntu 25.10, or newer),"
-    say "    or from wherever your system has it, so that 'micropython' is on the PATH;"
+    say "  - install it, so that 'micropython' is on the PATH:"
+    say "    $(how_to_get micropython micropython micropython micropython)"
+    say "    (Debian has it from 13 on, Ubuntu from 25.10 on);"
     say "  - on Debian or Ubuntu, see that 'apt-get update' reaches its mirror, and run $1 again;"
     say "  - where that has no package for this machine, have it built:"
     say "    apt-get install gcc libc6-dev make python3"

@@ -38,10 +38,5 @@ write_mpremote() {
 
 # What to do when there is no mpremote. $1 is the command to be tried again.
 no_mpremote() {
-    if ! has_python; then
-        say "$1: wants Python 3.11 or newer as python3:  apt-get install python3 python3-venv"
-    else
-        say "$1: mpremote could not be installed (see above)."
-        say "  It comes over the network with pip:  apt-get install python3-venv ca-certificates"
-    fi
+    not_installed "$1" "mpremote"
 }

@@ -31,9 +31,5 @@ install_mutating() {
 
 # What to do when it is not there. $1 is the command to be tried again.
 no_mutating() {
-    if ! has_python; then
-        no_pytest "$1"
-    else
-        say "$1: cosmic-ray could not be installed (see above). It comes over the network with pip."
-    fi
+    not_installed "$1" "cosmic-ray"
 }

@@ -61,7 +61,7 @@ get_pico_firmware() {
 # What to do when it could not be made. $1 is the command to be tried again.
 no_pico_firmware() {
     if ! has_python; then
-        say "$1: wants Python 3.11 or newer as python3:  apt-get install python3 python3-venv"
+        wants_python "$1"
         return
     fi
     local micropython sdk

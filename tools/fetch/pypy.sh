@@ -18,7 +18,7 @@ has_pypy() {
 
 # It is asked itself, as MicroPython is.
 pypy_works() {
-    [[ $(timeout 20 "$1" -c "
+    [[ $(within 20 "$1" -c "
 import sys
 print(sys.implementation.name, sys.version_info >= ($pypy_oldest))
 " </dev/null 2>/dev/null) == 'pypy True' ]]

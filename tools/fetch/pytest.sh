@@ -8,10 +8,6 @@ get_pytest() {
     fill pytest has_pytest make_pytest
 }
 
-has_python() {
-    python3 -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null
-}
-
 # The environment is whole when it was made for these requirements and pytest is found in it; it is
 # not when the machine has got another Python since.
 has_pytest() {
@@ -55,10 +51,20 @@ unpack_pip() {
 
 # What to do when there is no pytest. $1 is the command to be tried again.
 no_pytest() {
+    not_installed "$1" pytest
+}
+
+# not_installed COMMAND WHAT: the same of anything that stands in an environment.
+not_installed() {
     if ! has_python; then
-        say "$1: wants Python 3.11 or newer as python3:  apt-get install python3 python3-venv"
+        wants_python "$1"
     else
-        say "$1: pytest could not be installed (see above)."
-        say "  It comes over the network with pip:  apt-get install python3-venv ca-certificates"
+        say "$1: $2 could not be installed (see above). It comes over the network with pip:"
+        say "  $(how_to_get 'python3-venv ca-certificates' python python python3-pip)"
     fi
+}
+
+wants_python() {
+    say "$1: wants Python 3.11 or newer as python3:"
+    say "  $(how_to_get 'python3 python3-venv' python python python3)"
 }
