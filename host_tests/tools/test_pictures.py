@@ -1,0 +1,157 @@
+# SPDX-License-Identifier: MIT
+"""The pictures of the manuals: each is as panel and tables make it now, and can be read."""
+
+import re
+import xml.etree.ElementTree
+from functools import cache
+
+import pytest
+
+from boards.sim.board import COMPACT_KEYS, KEYS
+from panel.keys.compact import FUNCTIONS
+from tiers import TOP
+from tools.pictures.__main__ import FOLDER, files
+from tools.pictures.svg import COLOURS, DEPTH, HEIGHT, Picture, width, wrapped
+
+INTERPRETERS = "host"
+
+PHONE = 358  # pixels that a manual has for a picture on a phone
+SMALLEST = 8  # pixels of a font there
+SVG = "{http://www.w3.org/2000/svg}"
+
+
+@cache
+def made(path):
+    return files()[path]()
+
+
+def named(name):
+    return made(f"{FOLDER}/{name}.svg")
+
+
+def words(picture):
+    return [box.text for box in picture.texts]
+
+
+@pytest.mark.parametrize("path", files())
+def test_what_is_there_is_what_the_panel_and_the_tables_make(path):
+    assert (TOP / path).read_text() == made(path).svg(), "python3 tools/pictures makes it anew"
+
+
+def test_there_is_no_picture_that_nobody_makes():
+    there = {f"{FOLDER}/{path.name}" for path in (TOP / FOLDER).glob("*.svg")}
+    assert there == set(files())
+
+
+@pytest.mark.parametrize("path", files())
+def test_no_text_overlaps_another_and_none_leaves_the_picture(path):
+    picture = made(path)
+    for at, box in enumerate(picture.texts):
+        assert box.left >= 0 and box.right <= picture.across, box
+        assert box.top >= 0 and box.bottom <= picture.down, box
+        for other in picture.texts[:at]:
+            assert not box.overlaps(other), (box, other)
+
+
+@pytest.mark.parametrize("path", files())
+def test_the_texts_can_be_read_on_a_phone(path):
+    picture = made(path)
+    for box in picture.texts:
+        font = (box.bottom - box.top) / (HEIGHT + DEPTH)
+        assert font * min(1, PHONE / picture.across) >= SMALLEST, box
+
+
+@pytest.mark.parametrize("path", files())
+def test_it_says_what_it_is_and_needs_nothing_from_elsewhere(path):
+    root = xml.etree.ElementTree.fromstring((TOP / path).read_text())
+    assert len(root.find(SVG + "title").text) > 5
+    assert len(root.find(SVG + "desc").text) > 40
+    for part in root.iter():
+        assert part.tag in {SVG + name for name in (
+            "svg", "title", "desc", "style", "defs", "rect", "path", "text", "g", "use"
+        )}  # fmt: skip
+        for name, value in part.attrib.items():
+            assert name != "href" or value.startswith("#"), value
+            assert "url(" not in value
+
+
+@pytest.mark.parametrize("path", files())
+def test_each_colour_has_another_one_for_the_dark(path):
+    text = (TOP / path).read_text()
+    style = text[text.index("<style>") : text.index("</style>")]
+    light, dark = style.split("@media (prefers-color-scheme: dark)")
+    classes = set(re.findall(r"^\.([\w-]+){", light, re.M))
+    assert classes == set(re.findall(r"^\.([\w-]+){", dark, re.M))
+    used = {name for names in re.findall(r' class="([^"]*)"', text) for name in names.split()}
+    assert used == classes
+
+
+def brightness(colour):
+    """Of sRGB, as WCAG has it."""
+    parts = [int(colour[at : at + 2], 16) / 255 for at in (1, 3, 5)]
+    red, green, blue = (x / 12.92 if x <= 0.04045 else ((x + 0.055) / 1.055) ** 2.4 for x in parts)
+    return 0.2126 * red + 0.7152 * green + 0.0722 * blue
+
+
+@pytest.mark.parametrize(
+    "letters, paper",
+    [
+        *((name, "paper") for name in ("ink", "pale", "blue", "green", "orange", "violet", "red")),
+        *((name, "box") for name in ("ink", "pale", "blue", "green", "orange", "violet", "red")),
+        ("on cap", "cap"), ("on plate", "plate"), ("white", "go"), ("white", "stop"),
+        ("dot", "cell"), ("white", "circuit"), ("on circuit", "circuit"), ("white", "module"),
+    ],
+)  # fmt: skip
+def test_what_is_written_stands_out_by_day_and_by_night(letters, paper):
+    for at in (0, 1):
+        low, high = sorted(brightness(COLOURS[name][at]) for name in (letters, paper))
+        assert (high + 0.05) / (low + 0.05) >= 4.2, at
+
+
+# --- what is to be seen -------------------------------------------------------------------------
+
+
+def test_the_front_has_the_keys_of_the_board_each_once():
+    assert sorted(words(named("panel"))) == sorted(KEYS)
+
+
+def test_the_front_with_eight_keys_says_what_each_is_behind_fn():
+    shown = words(named("panel_eight_keys"))
+    assert [word for word in shown if word in COMPACT_KEYS] == list(COMPACT_KEYS)
+    behind = [name for row in FUNCTIONS.values() for name in row[1:] if name]
+    assert len(behind) == 6
+    assert sorted(word.lstrip("^ ") for word in shown if "^" in word) == sorted(behind)
+    assert "^ SET" in shown and "^^ EDIT" in shown
+
+
+# --- how texts are measured ---------------------------------------------------------------------
+
+
+def test_a_text_is_as_wide_as_its_characters():
+    assert width("Wi", 10) == pytest.approx(9.44 + 2.22)
+    assert width("Wi", 10, bold=True) == pytest.approx(9.44 + 2.78)
+    assert width("Wi", 10, mono=True) == pytest.approx(12)
+    with pytest.raises(KeyError):
+        width("é", 10)
+
+
+def test_a_long_text_is_wrapped_between_words():
+    assert wrapped("START or STOP or JOG", 60, 10) == ["START or", "STOP or", "JOG"]
+    assert wrapped("unbreakable", 10, 10) == ["unbreakable"]
+
+
+def test_two_texts_in_one_place_are_found():
+    picture = Picture(100, "", "")
+    for y in (20, 24, 40):
+        picture.text(10, y, "START")
+    first, second, third = picture.texts
+    assert first.overlaps(second) and second.overlaps(first)
+    assert not first.overlaps(third)
+
+
+def test_text_is_written_as_text():
+    picture = Picture(100, "a < b", 'c & "d"')
+    picture.text(10, 20, "a<b & c", anchor="middle")
+    root = xml.etree.ElementTree.fromstring(picture.svg())
+    assert root.find(SVG + "title").text == "a < b"
+    assert root.find(SVG + "text").text == "a<b & c"
