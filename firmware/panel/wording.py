@@ -74,6 +74,12 @@ def _running(control):
     return remark(control) or texts.RUNNING
 
 
+def alarm(control):
+    """What needs attention of a drive, as a row: of a page that takes both."""
+    text = texts.OTHER_UNCONFIRMED if control.stop_watch.unconfirmed else texts.OTHER_LOST
+    return b"A%d%s" % (control.drive.address, texts.of(text))
+
+
 def remark(control):
     """What somebody has changed at a drive that is on, since it was started, or NOTHING."""
     if not control.remark and control.phase != JOGGING and control.setpoint.is_below():

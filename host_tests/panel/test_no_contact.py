@@ -106,6 +106,29 @@ def test_the_rate_can_be_changed_from_there():
     world.check()
 
 
+def test_drives_at_another_rate_are_looked_for_though_no_stop_is_confirmed():
+    world = panel(baud=9600, settings={"baud": 19200})
+    world.run(3000)
+    press(world, "STOP")
+    world.run(2000)
+    assert "STOP UNCONFIRMED" in world.lcd(), world.lcd()
+    _, steps = why(world)
+    assert steps[-1] == "FIND DRIVES", steps
+    press(world, "UP", "SET")
+    assert row_2(world) == ">AT ALL RATES", world.lcd()
+    press(world, "SET")
+    asked = set()
+    for _ in range(60):
+        world.run(200)
+        asked.add(settled(world)[0].rstrip())
+    assert row_2(world) == "SET=DO  PARAM=NO", world.lcd()
+    assert asked >= {"FIND DRIVES?", "A1 NOT STOPPED"}, asked  # the alarm takes turns
+    press(world, "SET")
+    world.run(3000)
+    assert row_2(world) == "3 RATES SET=GO", world.lcd()
+    world.check()
+
+
 def test_a_drive_that_somebody_has_given_another_address_is_found_from_there():
     world = panel(addresses=(1, 2))
     world.run(1000)

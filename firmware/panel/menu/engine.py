@@ -8,7 +8,7 @@ motor. A menu that nobody has used for a minute closes.
 from micropython import const
 
 import on_demand
-from panel import texts
+from panel import texts, wording
 from panel.menu import BACK, PAGE
 from panel.pages import Page
 from uss.timing import elapsed
@@ -165,7 +165,8 @@ class Menu(Page):
         count = shown.count()
         position = min(position, count - 1)  # what was last in it may have gone
         if self._alarmed and self.panel.announcer.page_turns & 1:
-            self._draw_alarm(screen, self.panel.selected)
+            # That of the drive shown, in turn with the title: only the others are announced.
+            screen.put(0, 0, texts.ROW_WIDTH, wording.alarm(self.panel.selected))
         else:
             width = _COUNT_COLUMN if count > 1 else texts.ROW_WIDTH
             screen.put(0, 0, width, shown.heading(position))
@@ -180,11 +181,6 @@ class Menu(Page):
         position = min(position, shown.count() - 1)
         screen.put(1, 0, 1, texts.of(texts.MENU_MARK))
         screen.put(1, 1, texts.ROW_WIDTH - 1, self._told or shown.words(position))
-
-    def _draw_alarm(self, screen, control):
-        """That of the drive shown, in turn with the title: only the others are announced."""
-        text = texts.OTHER_UNCONFIRMED if control.stop_watch.unconfirmed else texts.OTHER_LOST
-        screen.put(0, 0, texts.ROW_WIDTH, b"A%d%s" % (control.drive.address, texts.of(text)))
 
     def _stop(self, now_ms):
         """STOP has stopped the drive shown, and row 2 may name another one: that stops as well,

@@ -10,7 +10,7 @@ Row 1 says in turn what is at stake, row 2 which keys answer. STOP does its work
 
 from micropython import const
 
-from panel import texts
+from panel import texts, wording
 from panel.pages import Page
 from uss.timing import elapsed
 
@@ -38,6 +38,7 @@ class Question(Page):
         self._deaf_ms = deaf_ms
         self._shown_at_ms = None
         self._hidden_at_ms = None  # a message was in row 2, until then
+        self._alarmed = panel.selected.needs_attention()
 
     def take_keys(self, acts, now_ms):
         if not acts.pressed:
@@ -63,12 +64,20 @@ class Question(Page):
             if elapsed(now_ms, self._hidden_at_ms, self.panel.mask) >= _UNREAD_MS:
                 self._hidden_at_ms = None
         is_stale = self._shown_for_ms(now_ms) >= _STALE_MS
-        if is_stale or self.panel.selected.needs_attention():  # an alarm is not to be hidden
+        # An alarm is not to be hidden; but one that nobody can end may need the answer.
+        alarmed, self._alarmed = self._alarmed, self.panel.selected.needs_attention()
+        if is_stale or self._alarmed and not alarmed:
             self.close()
 
     def draw(self, screen, now_ms):
-        stakes = self._stakes
-        screen.put(0, 0, texts.ROW_WIDTH, stakes[self.panel.announcer.page_turns % len(stakes)])
+        turn, stakes = self.panel.announcer.page_turns, self._stakes
+        if not self._alarmed:
+            row = stakes[turn % len(stakes)]
+        elif turn & 1:
+            row = wording.alarm(self.panel.selected)
+        else:
+            row = stakes[turn // 2 % len(stakes)]
+        screen.put(0, 0, texts.ROW_WIDTH, row)
         screen.put(1, 0, texts.ROW_WIDTH, texts.of(self._choice))
 
     def _shown_for_ms(self, now_ms):
