@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""The screens of the operator's manual, made by running the panel.
+"""The screens of the panel's manuals, made by running the panel.
 
 A block of the manual that has keys in its first line, and below them one display or several:
 
@@ -11,7 +11,8 @@ A block of the manual that has keys in its first line, and below them one displa
 
 It begins at the home page of a panel with two drives that stand. Each part between the colons is
 pressed, and what the display says then is its picture, from left to right. A part is keys with
-commas between them, `KEY held`, `KEY x3`, or `5 s`; or it is a row of SITUATIONS.
+commas between them, `KEY held`, `KEY x3`, or `5 s`; or it is a row of SITUATIONS, one of which may
+begin with another panel.
 
 A block that begins with MENU is the tree of the menu, as such a panel has it.
 """
@@ -57,7 +58,16 @@ def it_is_unplugged(world):
     world.run(2_500)
 
 
+def as_delivered(_world):
+    """Another panel: its only drive is one that nobody has set up."""
+    kinds = simulated(listed_drives("1=mm420/factory"))
+    world = World(main.start, (1,), kinds=kinds, settings={"drives": [1]})
+    world.run(7_000)
+    return world
+
+
 SITUATIONS = {
+    "A MICROMASTER 420 as delivered": as_delivered,
     "Drive 1 trips": it_trips,
     "Drive 1 warns": it_warns,
     "Nobody answers at address 1": it_is_unplugged,
@@ -85,10 +95,9 @@ def _is_known(part):
 
 
 def do(world, part):
-    """A part of the first line."""
+    """A part of the first line; the panel that it is about from now on."""
     if part in SITUATIONS:
-        SITUATIONS[part](world)
-        return
+        return SITUATIONS[part](world) or world
     for key in part.split(", "):
         words = key.split()
         if words[-1] == "held":
@@ -99,6 +108,7 @@ def do(world, part):
             for _ in range(int(words[1][1:]) if len(words) > 1 else 1):
                 press(world, words[0])
     world.run(600)
+    return world
 
 
 def picture(displays):
@@ -143,14 +153,15 @@ def _inside(*way):
 def made(text):
     """The manual with the screens that the panel shows now, and how many there are."""
     lines = text.split("\n")
-    begin = lines.index("    " + TREE)
-    lines[begin : lines.index("", begin)] = ["    " + line for line in tree()]
+    if "    " + TREE in lines:
+        begin = lines.index("    " + TREE)
+        lines[begin : lines.index("", begin)] = ["    " + line for line in tree()]
     text = "\n".join(lines)
     count = 0
     for place, parts in blocks(text):
         world, displays = two_drives(), []
         for part in parts:
-            do(world, part)
+            world = do(world, part)
             displays.append(world.lcd())
         count += len(displays)
         lines[place + 1 : place + 5] = ["    " + line for line in picture(displays)]

@@ -13,6 +13,7 @@ import pytest
 import settings_file as settings
 import version
 from boards.sim.script import COMMANDS
+from page_bench import indented, pattern, prose, section, text
 from panel import texts
 from panel.pages import splash
 from text_bench import named, parts
@@ -28,25 +29,6 @@ MANUALS = sorted(
     if not MADE.intersection(path.parts)
 )
 PANEL, TOOLS, PICO = "firmware/panel/README.md", "tools/README.md", "boards/pico/README.md"
-
-
-def text(manual):
-    return (TOP / manual).read_text(encoding="utf-8")
-
-
-def prose(manual):
-    """Without the blocks of examples, in which a bracket is no link and # no heading."""
-    found = re.sub(r"^```.*?^```", "", text(manual), flags=re.M | re.S)
-    return "\n".join(line for line in found.split("\n") if not line.startswith("    "))
-
-
-def section(manual, title):
-    """What stands under a heading, down to the next one of its kind."""
-    level = re.search(rf"^(#+) {re.escape(title)}$", text(manual), re.M)
-    assert level, (manual, title)
-    rest = text(manual)[level.end() :]
-    end = re.search(rf"^#{{1,{len(level[1])}}} ", rest, re.M)
-    return rest[: end.start()] if end else rest
 
 
 # ---- the front page -------------------------------------------------------------------------
@@ -67,12 +49,6 @@ def test_every_manual_is_reached_from_the_front_page():
             reached.add(manual)
             waiting += [path for path, _ in links(manual) if path in MANUALS]
     assert reached == set(MANUALS)
-
-
-def indented(page):
-    """The indented blocks of a manual, without the indent."""
-    blocks = re.findall(r"(?:^    .*\n(?:\n(?=    ))?)+", page, re.M)
-    return [re.sub("^    ", "", block, flags=re.M) for block in blocks]
 
 
 def test_the_first_command_prints_what_the_front_page_shows():
@@ -128,13 +104,6 @@ def test_every_file_and_folder_that_a_table_names_is_there():
 
 
 # ---- the operator's manual ------------------------------------------------------------------
-
-
-def pattern(text):
-    """A text of the display as a pattern: a number may be any, blanks count once."""
-    words = [re.escape(word) for word in text.decode("latin-1").split()]
-    words = [word.replace("%04X", "[0-9A-F]{4}") for word in words]
-    return re.sub("%0?[0-9]?d", r"\\d+", r"\s*".join(words)).replace("%s", ".+").replace("%%", "%")
 
 
 def test_every_text_of_the_display_is_explained():
