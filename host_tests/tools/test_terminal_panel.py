@@ -8,6 +8,7 @@ import main
 from boards.sim.script import ORDER
 from boards.sim.world import World
 from tools.live.hand import FIRST_REPEAT_MS, REPEAT_MS, WAITING_MAX, Hand
+from tools.live.pace import WORK_MS, Pace, RealPace
 from tools.live.picture import (
     COLUMNS,
     ROWS,
@@ -22,9 +23,6 @@ from tools.live.picture import (
 )
 from tools.live.terminal import ESCAPE, OTHER, Strokes
 from tools.live.terminal_panel import (
-    WORK_MS,
-    Pace,
-    RealPace,
     Session,
     farewell,
     shows_boxes,

@@ -24,6 +24,7 @@ from boards.sim.world import World
 from hal.store import FileStore
 from settings_file import SIZE_MAX, load, save
 from strict_json import fields
+from tools.live.lines import speak
 from tools.live.picture import in_ascii
 from tools.live.terminal_panel import live, shows_boxes
 from uss.telegram import NODE_MAX
@@ -64,9 +65,12 @@ usage: ./tools/panel [--speed N] [--drives 1,2=g110] [--baud 19200] [--settings 
        ./tools/panel --script FILE|- ...
        ./tools/panel --board pico [--flash FILE] ...
        ./tools/panel --port PATH [--reply-timeout MS] [--script FILE|-] ...
+       ./tools/panel --lines ...
 
   --speed N       in a terminal: time passes N times as fast, 1...100 (1)
   --script FILE   do the commands in FILE, or from standard input (-), in virtual time
+  --lines         for a front end of your own: speak tools/live/README.md on standard input and
+                  output, in real time
   --drives LIST   the simulated drives (1, or those of the settings): addresses 0...31, and what is
                   there, if it is no mm420: 1,2=g110,3=v20/4,4=mm440/4+4,8=mm420/factory
                   families: %s
@@ -177,6 +181,7 @@ WIRED = "--keys %s: keys are wired " + " or ".join(sorted(KEYPADS))
 # Option: name of the value, default, reader. An option without a reader is a switch.
 OPTIONS = {
     "--script": ("script", None, str),
+    "--lines": ("lines", False, None),
     "--speed": ("speed", 1, one_of(range(1, 101), SPEEDS)),
     "--drives": ("drives", None, str),
     "--baud": ("baud", None, one_of(BAUD_RATES, RATES)),
@@ -647,7 +652,10 @@ def panel(words):
             if not chosen["check"]:
                 show(USAGE)
             return 0
-        if chosen["script"] is None and not (isatty(0) and isatty(1)):
+        if chosen["lines"] and chosen["script"] is not None:
+            raise UsageError("--lines and --script both want standard input")
+        silent = chosen["lines"] or chosen["script"] is not None
+        if not silent and not (isatty(0) and isatty(1)):
             raise UsageError("this is no terminal: give the panel a --script FILE, or --script -")
         fit_for_board(chosen)
         if chosen["check"]:
@@ -658,7 +666,9 @@ def panel(words):
         for line in said:
             complain(line)
         try:
-            if chosen["script"] is None:
+            if chosen["lines"]:
+                speak(world, chosen["speed"], said)
+            elif chosen["script"] is None:
                 live(world, chosen["speed"], said)
             else:
                 run_script(world, chosen["script"])
