@@ -9,8 +9,11 @@ import pytest
 
 from boards.sim.board import COMPACT_KEYS, KEYS
 from panel.keys.compact import FUNCTIONS
+from panel.menu.main import LISTS
 from tiers import TOP
+from tools.pictures import pages
 from tools.pictures.__main__ import FOLDER, files
+from tools.pictures.lcd import ACROSS, DOWN, PITCH, ROW_PITCH
 from tools.pictures.svg import COLOURS, DEPTH, HEIGHT, Picture, width, wrapped
 
 INTERPRETERS = "host"
@@ -122,6 +125,41 @@ def test_the_front_with_eight_keys_says_what_each_is_behind_fn():
     assert len(behind) == 6
     assert sorted(word.lstrip("^ ") for word in shown if "^" in word) == sorted(behind)
     assert "^ SET" in shown and "^^ EDIT" in shown
+
+
+def test_the_menu_has_every_list_and_the_manual_has_what_is_seen_there():
+    shown = words(named("menu"))
+    assert all(text.decode() in shown for text, _ in LISTS) and len(LISTS) > 10
+    manual = (TOP / "firmware" / "panel" / "README.md").read_text()
+    for tile in pages.lists():
+        _, entry = pages.seen(tile).rows
+        assert entry.startswith(">") and entry[1:].strip() in manual, entry
+
+
+def test_the_pages_show_what_they_are_called():
+    rows = {tile.name: pages.seen(tile).rows for tile in pages.PAGES}
+    assert rows["Home page"] == ("S: 10.0 F:  0.00", "READY        A1 ")
+    assert rows["A jog, as long as its key is held"][1] == "JOG RIGHT    A1 "
+    assert rows["START asks"] == ("P2014=0: IT RUNS", "SET=FIX START=GO")
+    assert rows["A drive is lost while it runs"] == ("NO CONTACT,     ", "MAY RUN      A1 ")
+    assert rows["A value is being changed"][1] == "P1000:     6↕A1 "
+
+
+def test_the_dots_of_a_display_are_those_of_its_characters():
+    """Put together again from the file: where each is drawn, and what."""
+    root = xml.etree.ElementTree.fromstring((TOP / FOLDER / "panel.svg").read_text())
+    drawn = root.findall(f".//{SVG}use[@x]")
+    placed = {
+        (round(float(use.get("x")) / PITCH), round(float(use.get("y")) / ROW_PITCH)): chr(
+            int(use.get("href")[2:], 16)
+        )
+        for use in drawn
+        if use.get("href") != "#cells"
+    }
+    rows = ["".join(placed.get((x, y), " ") for x in range(ACROSS)) for y in range(DOWN)]
+    assert rows == ["S: 10.0 F:  0.00", "READY        A1 "]
+    colon = next(path for path in root.iter(SVG + "path") if path.get("id") == "c3A")
+    assert colon.get("d").count("M") == 8  # a colon has two squares of four dots
 
 
 # --- how texts are measured ---------------------------------------------------------------------

@@ -14,12 +14,14 @@ TOP = Path(__file__).resolve().parents[2]
 # In host_tests/cpython is a module `micropython`: the panel runs on CPython here.
 sys.path[:1] = [str(TOP), str(TOP / "firmware"), str(TOP / "host_tests" / "cpython")]
 
-from tools.pictures import front  # noqa: E402
+from tools.pictures import front, pages  # noqa: E402
 
 FOLDER = ".github/pictures"
 PICTURES = {
     "panel": front.fourteen,
     "panel_eight_keys": front.eight,
+    "pages": pages.pages,
+    "menu": pages.menu,
 }
 
 
