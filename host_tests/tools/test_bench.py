@@ -195,4 +195,5 @@ def test_a_command_line_that_cannot_be_understood_is_status_2():
         ("stop",),
     ):
         status, said = bench(*arguments)
-        assert status == 2 and "usage: tools/bench" in said, arguments
+        assert status == 2 and said.startswith("tools/bench: "), arguments
+        assert said.count("\n") == 1

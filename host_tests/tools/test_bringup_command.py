@@ -75,7 +75,8 @@ def test_a_report_that_cannot_be_written_is_told_before_anything_is_sent(report,
 )
 def test_a_word_that_is_wrong_is_named(words, tmp_path):
     ended = bringup(*words, folder=tmp_path)
-    assert ended.returncode == 2 and "tools/bringup: error: " in ended.stderr.splitlines()[-1]
+    assert ended.returncode == 2 and ended.stderr.startswith("tools/bringup: ")
+    assert words[0] in ended.stderr and ended.stderr.count("\n") == 1
 
 
 def test_what_was_found_before_the_cable_was_pulled_is_in_the_report(tmp_path):

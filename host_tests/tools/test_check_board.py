@@ -132,7 +132,12 @@ def test_pico_and_pico_2_are_wired_alike():
 
 
 def test_it_says_how_it_is_called():
-    assert check("--help")[0] == 0
-    for word in ("nix", "boards", "--wrong", "/nix/board.py"):
-        status, said = check(word)
-        assert status == 2 and "usage: tools/check-board" in said
+    status, said = check("--help")
+    assert status == 0 and said.startswith("usage: tools/check-board")
+    for word, told in (
+        ("nix", "there is no board nix"),
+        ("boards", "there is no board boards"),
+        ("--wrong", "say which: a folder of boards/, or a board.py of your own"),
+        ("/nix/board.py", "there is no board /nix/board.py"),
+    ):
+        assert check(word) == (2, f"tools/check-board: {told}\n")

@@ -136,7 +136,7 @@ def test_a_family_of_the_settings_that_is_not_simulated_is_pointed_out(tmp_path)
 def test_what_there_cannot_be_is_refused(words, said):
     ended = panel("--drives", *words)
     assert ended.returncode == 2 and ended.stderr.startswith("panel: " + said), ended.stderr
-    assert "\nusage: " in ended.stderr and not ended.stdout
+    assert ended.stderr.count("\n") == 1 and not ended.stdout
 
 
 def test_thirty_one_known_drives_and_one_as_delivered_are_the_most():

@@ -45,12 +45,15 @@ def example(*words):
     return done.returncode, done.stdout
 
 
+NAMES = "broadcast_stop one_drive own_family own_program parameters plc_br plc_s7 three_drives"
+
+
 def test_without_a_name_it_tells_which_there_are():
-    status, printed = example()
-    assert status == 2
-    assert printed.startswith(
-        "usage: ./tools/example broadcast_stop|one_drive|own_family|own_program|"
-    )
+    done = called()
+    assert (done.returncode, done.stdout) == (2, "")
+    assert done.stderr == f"tools/example: say which: {NAMES}, or FILE.py\n"
+    status, printed = example("--help")
+    assert status == 0 and f"  NAME         {NAMES} \n" in printed
 
 
 def test_what_there_is_not_is_said_in_a_line():

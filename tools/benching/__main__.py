@@ -24,6 +24,7 @@ sys.path[0] = str(TOP)
 
 from tools.benching import report  # noqa: E402
 from tools.benching.rows import ROWS, TASKS, names  # noqa: E402
+from tools.command_line import Parser  # noqa: E402
 
 LAUNCH = [sys.executable, "-I", "-B", "tools/emulator/launch.py"]
 MICROPYTHON = ["build/unix64/micropython", "-X"]
@@ -36,7 +37,7 @@ TIMEOUT_S = 900  # of one measurement; the longest takes five minutes on a slow 
 
 
 def parser():
-    arguments = argparse.ArgumentParser(
+    arguments = Parser(
         prog="tools/bench",
         description="Measures the firmware on the emulated Pico, and the host.",
         epilog="Exit status: 0 all bars of the chip hold, 1 one does not, 2 wrong arguments.",

@@ -1,14 +1,6 @@
 # SPDX-License-Identifier: MIT
-"""Checks a Raspberry Pi Pico or Pico 2, with MicroPython on it, before and while it is wired.
+"""Checks a chip with MicroPython before and while it is wired: tools/bringup --help."""
 
-First the board is bare: no transceiver, no display, no keys; one short wire joins GP4 to GP5
-(pins 6 and 7), another one GP6 to GP3 (pins 9 and 5). Later, without these wires, --wired says
-what is there. Each of sixteen checks is a line: PASS or FAIL with its figure, or NOT CHECKED and
-why. What fails is explained. Nothing of it stays on the chip, but what ran there is ended. Please
-send us the report, also if all is well: nobody has run the firmware on a real chip yet.
-"""
-
-import argparse
 import os
 import sys
 import time
@@ -22,20 +14,17 @@ sys.path.append(str(TOP / "firmware"))
 
 from tools.bringing_up.checks import (  # noqa: E402
     CHECKS,
-    DISPLAY,
-    DRIVE,
     JUMPERS,
     NOTHING,
     RESTART,
-    TRANSCEIVER,
     WHY_NOT,
     judge_identity,
     line_of,
 )
+from tools.bringing_up.options import arguments  # noqa: E402
 from tools.deploying.chip import Chip  # noqa: E402
 from tools.deploying.errors import DeployError  # noqa: E402
 from tools.deploying.ports import choose, waits_for_uf2  # noqa: E402
-from uss.timing import BAUD_RATES  # noqa: E402
 from version import VERSION  # noqa: E402
 
 HERE = Path(__file__).parent
@@ -45,33 +34,9 @@ BOOT, BITTEN = "boot.py", f"{PLACE}/bitten"
 OLDEST = "the firmware needs MicroPython 1.25 or newer"
 RESTART_S = 60  # until a chip that has restarted is at its prompt; an emulated one takes its time
 AGAIN_S = 0.2
-REPORT = "bringup.txt"
 ASK_BARE = "The board is bare, GP4 is joined to GP5 and GP6 to GP3? This sends on them. yes/no: "
 ASK_WIRED = "The jumpers are gone, and no motor can start? This sends on the bus. yes/no: "
 ASK_PAGE = "Does the display show the characters {first:02X}h to {last:02X}h? yes/no: "
-
-
-def arguments(words):
-    parser = argparse.ArgumentParser(
-        prog="tools/bringup",
-        description=__doc__,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    add = parser.add_argument
-    add("--port", metavar="PATH", help="serial port of the Pico; needed when there are several")
-    add(
-        "--wired",
-        choices=(DISPLAY, TRANSCEIVER, DRIVE),
-        action="append",
-        help="this is there, and no jumper; may be given several times",
-    )
-    add("--address", type=int, default=1, choices=range(32), metavar="N",
-        help="of the drive; it gets OFF1; 1")  # fmt: skip
-    add("--baud", type=int, default=19_200, choices=BAUD_RATES, metavar="RATE",
-        help="of the wired bus; 19200")  # fmt: skip
-    add("--yes", action="store_true", help="it is as --wired says: do not ask")
-    add("--report", metavar="FILE", default=REPORT, help=f"where the report goes; {REPORT}")
-    return parser.parse_args(words)
 
 
 def files():

@@ -16,7 +16,7 @@ from boards.sim.ports.loading import chip_of, load
 from boards.sim.ports.machine import Port
 from panel.keys import COMPACT_NAMES, NAMES
 
-USAGE = "usage: tools/check-board NAME|FILE   (a folder of boards/, or a board.py of your own)"
+CALLED = "tools/check-board: say which: a folder of boards/, or a board.py of your own"
 LINES_MAX = 60
 NAME_MAX = 16
 BAUD = 19_200
@@ -208,12 +208,11 @@ def path_of(word):
 
 def main(words):
     if len(words) != 1 or words[0].startswith("-"):
-        print(USAGE)
-        return 0 if words in (["-h"], ["--help"]) else 2
+        print(CALLED)
+        return 2
     path = path_of(words[0])
     if path is None:
         print("tools/check-board: there is no board %s" % words[0])
-        print(USAGE)
         return 2
     found = list(findings(path))
     for one in found:

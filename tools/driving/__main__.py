@@ -26,6 +26,7 @@ from boards.sim.script import (
     parameter,
     value,
 )
+from tools.command_line import Parser
 from tools.driving.line import OF_THE_PANEL, DriveLine
 from tools.port.serial_port import PortError, Pty, SerialPort
 from tools.port.standard_streams import Output, is_ours, open_missing
@@ -80,7 +81,7 @@ class Once(argparse.Action):
 
 
 def arguments(words):
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="tools/drive",
         description=DESCRIPTION,
         epilog=EPILOG,

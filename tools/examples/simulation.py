@@ -34,7 +34,7 @@ SOMEBODY = {"own_program": ((2.0, "START"), (12.0, "STOP"), (40.0, CTRL_C))}
 # Example: its drives, where those of --drives would not do.
 DRIVES = {"own_family": {1: {"family": pump}}}
 
-USAGE = "usage: ./tools/example %s|FILE.py [--drives 1,2=g110]"
+NO_NAME = "say which: %s, or FILE.py"
 
 
 class UsageError(Exception):
@@ -139,8 +139,7 @@ def run(words):
     try:
         name, found = understood(words)
         if name is None:
-            print(USAGE % "|".join(names()))
-            return 2
+            raise UsageError(NO_NAME % " ".join(names()))
         main = program(name)
     except UsageError as error:
         print("tools/example: %s" % error, file=sys.stderr)

@@ -20,13 +20,15 @@ from pathlib import Path
 TOP = Path(__file__).resolve().parents[2]
 sys.path[:1] = map(str, (TOP, TOP / "host_tests", TOP / "host_tests" / "cpython"))
 
+from tools.command_line import Parser  # noqa: E402
+
 USUAL = ("firmware/uss", "firmware/panel", "firmware/app.py", "firmware/hal")
 SURVIVED, WRONG = 1, 2
 COUNT_MAX = 100_000
 
 
 def parser():
-    arguments = argparse.ArgumentParser(
+    arguments = Parser(
         prog="tools/mutants",
         description="Makes mutants of the firmware, each with one small bug, and runs the tests "
         "that run its line, until one fails.",

@@ -6,7 +6,6 @@ computer has no keys, no display and no watchdog. Exit status: 0; 1 if an except
 program, told in one line where it is of the library; 2 not understood; 5 no such port.
 """
 
-import argparse
 import runpy
 import sys
 import types
@@ -14,11 +13,12 @@ from pathlib import Path
 
 TOP = Path(__file__).resolve().parents[2]
 EXAMPLES = TOP / "tools" / "examples"
-sys.path[0] = str(TOP / "tools" / "pc")
+sys.path[:1] = map(str, (TOP / "tools" / "pc", TOP))
 
 import uss_serial  # noqa: E402
 
 import uss.bus  # noqa: E402
+from tools.command_line import Parser  # noqa: E402
 from uss.errors import UssError  # noqa: E402
 
 FAILED, NOT_UNDERSTOOD, NO_PORT, INTERRUPTED = 1, 2, 5, 130
@@ -52,7 +52,7 @@ class Board(types.ModuleType):
 
 
 def arguments(words):
-    parser = argparse.ArgumentParser(prog="tools/example", description=__doc__.split("\n\n")[0])
+    parser = Parser(prog="tools/example", description=__doc__.split("\n\n")[0])
     parser.add_argument("program", help="an example's name, or FILE.py")
     parser.add_argument("--port", required=True, metavar="PATH", help="such as /dev/ttyUSB0")
     return parser.parse_args(words)

@@ -21,6 +21,7 @@ from pathlib import Path
 
 sys.path[0] = str(Path(__file__).resolve().parents[2])
 
+from tools.command_line import Parser  # noqa: E402
 from tools.soaking import interpreters  # noqa: E402
 from tools.soaking.interpreters import CPYTHON, NAMES, PYPY, TOP  # noqa: E402
 
@@ -32,7 +33,7 @@ MINUTES_MAX = 1_000_000
 
 
 def parser():
-    arguments = argparse.ArgumentParser(
+    arguments = Parser(
         prog="tools/soak",
         description="The whole panel in virtual time: an operator who presses random keys, "
         "drives, seeded faults, and the rules that must hold at every step.",

@@ -22,6 +22,7 @@ sys.path.append(str(TOP / "tools" / "pc"))
 import uss_serial  # noqa: E402, F401 - finds firmware/uss
 from uss_serial.port.errors import PortError  # noqa: E402
 
+from tools.command_line import Parser  # noqa: E402
 from tools.uss_command import (  # noqa: E402
     commissioning,
     explaining,
@@ -59,7 +60,7 @@ Without a drive: ./tools/drive --pty --baud 9600 prints the path of a port with 
 
 def options(default):
     """Those of every command. default: argparse.SUPPRESS where they stand a second time."""
-    parser = argparse.ArgumentParser(add_help=False, argument_default=default)
+    parser = Parser(add_help=False, argument_default=default)
     add = parser.add_argument
     add("--port", metavar="PATH", help="/dev/ttyUSB0, COM5, or socket://host:port")
     add("--baud", metavar="RATE", help="(9600)")
@@ -78,7 +79,7 @@ def options(default):
 
 
 def arguments(words):
-    parser = argparse.ArgumentParser(
+    parser = Parser(
         prog="tools/uss",
         description=__doc__,
         epilog=EPILOG,

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Values over time as a picture: a strip for each, one above the other, all with the same time."""
 
-from xml.sax.saxutils import escape
+from html import escape
 
 WIDTH, STRIP, MARGIN, GAP = 900, 120, 60, 34
 COLOURS = ("#1b6ca8", "#c0392b", "#1e8449", "#8e44ad", "#b9770e", "#117a65")
@@ -30,7 +30,7 @@ def _strip(head, points, top, colour):
     known = [value for _, value in points if value is not None]
     low, high = min(known, default=0), max(known, default=0)
     span = high - low or 1
-    yield '<text x="%d" y="%d">%s</text>' % (MARGIN, top - 6, escape(head))
+    yield '<text x="%d" y="%d">%s</text>' % (MARGIN, top - 6, escape(head, quote=False))
     yield '<rect x="%d" y="%d" width="%d" height="%d" fill="none" stroke="#bbb"/>' % (
         MARGIN, top, WIDTH - MARGIN - 10, STRIP,
     )  # fmt: skip
