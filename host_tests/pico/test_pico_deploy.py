@@ -5,79 +5,17 @@ The tool is a process of its own at the chip's serial port; meanwhile the world'
 """
 
 import os
-import time
 
+from serial_tool_bench import AtPort, at_port, read, ready, start
 from tools.emulator.world import PicoWorld, temporary
 
 INTERPRETERS = "pico"
 
-HOST_LIMIT_S = 100
-STEP_MS = 5
 OWN_BOARD = "boards/pico/board.py"
 
 
-def read(path):
-    try:
-        with open(path) as file:
-            return file.read()
-    except OSError:
-        return ""
-
-
-class Deploy:
-    """tools/deploy at work; `done` when it has ended, `said` is what it has printed so far."""
-
-    def __init__(self, world, *arguments):
-        self.world = world
-        self._output = temporary()
-        world.tell("S", 1)
-        os.system(
-            "{ ./tools/deploy --port $USS_PICO_SERIAL %s; echo EXIT $?; } >%s 2>&1 </dev/null &"
-            % (" ".join(arguments), self._output)
-        )
-
-    @property
-    def said(self):
-        return read(self._output)
-
-    def goes_on_until(self, condition):
-        began = time.time()
-        while not condition():
-            assert time.time() - began < HOST_LIMIT_S, self.said
-            self.world.run(STEP_MS)
-
-    def ends(self):
-        """Its exit status and what it said."""
-        self.goes_on_until(lambda: "EXIT " in self.said)
-        said, _, status = self.said.rpartition("EXIT ")
-        os.remove(self._output)
-        self.world.tell("S", 0)
-        return int(status), said
-
-
 def deploy(world, *arguments):
-    return Deploy(world, *arguments).ends()
-
-
-def ready(world):
-    """A person waits for the panel. A drive that heard nothing meanwhile has tripped: STOP."""
-    up = ("READY", "F0072")
-    assert world.run_until(lambda: any(map(world.reads, up)), 15_000), world.lcd()
-    if world.reads("F0072"):
-        world.run(1_500)
-        world.press("STOP")
-    assert world.run_until(lambda: world.reads("READY"), 5_000), world.lcd()
-
-
-def start(world):
-    """A motor that turns already is left alone."""
-    if world.drives[1].hz() > 1:
-        return
-    ready(world)
-    world.press("START")
-    assert world.run_until(lambda: world.reads("RUNNING"), 5_000), world.lcd()
-    world.run(1_000)
-    assert world.drives[1].hz() > 1
+    return at_port(world, "deploy", *arguments)
 
 
 def quiet(world, ms):
@@ -173,7 +111,7 @@ def frozen_panel_with_half_of_the_files():
     if not half_made:
         world = PicoWorld("panel")
         start(world)
-        tool = Deploy(world)
+        tool = AtPort(world, "deploy")
         tool.goes_on_until(lambda: "copy    hal/keypad.mpy" in tool.said)
         world.cut_power()
         ended = tool.ends()

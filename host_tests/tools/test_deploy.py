@@ -520,7 +520,21 @@ def test_a_file_that_arrives_changed_is_noticed_before_the_panel_may_start():
 def test_a_frozen_panel_keeps_its_main_and_that_is_said():
     said = deploy(FakeChip(modules=FROZEN), firmware(OLD))
     assert "but for main.py,\n    which stays the frozen one" in said
+    assert "tools/deploy --remove takes it away again" in said
     assert "main.py" not in FLASH.files and "app.mpy" in FLASH.files
+
+
+def test_what_lies_beside_a_frozen_panel_is_listed_and_removed():
+    prepare(firmware(OLD), True)
+    listed = deploy(FakeChip(modules=FROZEN), firmware({}), dry_run=True)
+    names = {line.split()[2] for line in listed.splitlines() if line.startswith("would remove")}
+    assert names == {*firmware(OLD).files(MPY)} - {"main.py"}
+    said = deploy(FakeChip(modules=FROZEN), firmware({}))
+    assert said.splitlines()[-2:] == [
+        "The panel that is frozen into its MicroPython runs now.",
+        "Restarted.",
+    ]
+    assert not names & {*FLASH.files}
 
 
 def test_a_main_of_ours_goes_when_the_panel_is_frozen_in_later():

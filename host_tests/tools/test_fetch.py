@@ -818,7 +818,8 @@ def test_uf2_tells_where_the_file_is_and_how_it_gets_onto_the_pico(pico, tmp_pat
         assert (tmp_path / file).read_text() == "first\n"
 
 
-COMMANDS = "panel drive example test soak mutants bench uf2 deploy check-board bringup uss".split()
+COMMANDS = "panel drive example test soak mutants bench uf2 deploy check-board bringup".split()
+COMMANDS += "uss settings".split()
 
 
 @pytest.mark.parametrize("command", COMMANDS)

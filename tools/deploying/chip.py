@@ -116,6 +116,17 @@ class Chip:
         words = ", ".join(repr(argument) for argument in arguments)
         return self.evaluate(f"{function}({words})")
 
+    def read(self, path):
+        """The bytes of a file that is there, piece by piece."""
+        try:
+            with silence():
+                return bytes(self._line.fs_readfile(path, chunk_size=PIECE))
+        except TransportExecError as error:
+            reason = _last_line(error.error_output)
+            raise DeployError(f"{path} cannot be read: {reason}") from None
+        except LINE_ERRORS as error:
+            raise DeployError(f"{path} could not be read: {error}") from None
+
     def write(self, path, data):
         """Write these bytes to a new file, which replaces no other."""
         try:

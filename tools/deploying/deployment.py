@@ -34,7 +34,10 @@ LOOK_AT_ONCE = 16  # paths; the answer stays small
 
 FROZEN = """\
 The panel is frozen into its MicroPython. What is copied goes before that, but for main.py,
-    which stays the frozen one: where that has changed, tools/uf2 helps."""
+    which stays the frozen one: where that has changed, tools/uf2 helps.
+    tools/deploy --remove takes it away again; with --dry-run it lists what is there."""
+
+FROZEN_AGAIN = "The panel that is frozen into its MicroPython runs now."
 
 FROZEN_OTHER = """\
 another program is frozen into its MicroPython as main.py, and goes before the panel's:
@@ -111,7 +114,8 @@ class Deployment:
             self.say("Nothing was changed. It could not be restarted: unplug it, and plug it in.")
 
     def _update(self):
-        plan = self._plan(self._files(self._identify()))
+        identity = self._identify()
+        plan = self._plan(self._files(identity))
         if self.options.dry_run:
             self._announce(plan)
         elif plan.nothing_to_do:
@@ -122,6 +126,8 @@ class Deployment:
             )
         else:
             self._copy(plan)
+        if identity.panel_is_frozen and not plan.files and not self.options.dry_run:
+            self.say(FROZEN_AGAIN)
 
     # ---- what is there ------------------------------------------------------------------------
 

@@ -46,6 +46,11 @@ def read(path):
         return file.read()
 
 
+def names(ending):
+    """The files at the top that end so."""
+    return sorted([name for name in os.listdir() if name.endswith(ending)])
+
+
 def free_blocks():
     """(bytes of a block, blocks that are free) of the file system."""
     status = os.statvfs(os.getcwd())

@@ -45,6 +45,15 @@ def choose(ports, waits_for_uf2=False, chip=USUAL):
     raise DeployError(WAITS_FOR_UF2 if waits_for_uf2 else NO_PICO)
 
 
+def choose_any(ports, waits_for_uf2=False):
+    """As `choose`, whichever chip it is."""
+    known = {target.usb: chip for chip, target in TARGETS.items() if target.usb}
+    there = [known[port.vid, port.pid] for port in ports if (port.vid, port.pid) in known]
+    if len({*there}) > 1:
+        raise DeployError("there are several boards: say which is meant, --port PATH")
+    return choose(ports, waits_for_uf2, there[0] if there else USUAL)
+
+
 def waits_for_uf2(folder=USB_DEVICES):
     """Whether a Pico is plugged in with its boot ROM running; False where that cannot be told."""
     try:
