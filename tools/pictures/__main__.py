@@ -14,7 +14,7 @@ TOP = Path(__file__).resolve().parents[2]
 # In host_tests/cpython is a module `micropython`: the panel runs on CPython here.
 sys.path[:1] = [str(TOP), str(TOP / "firmware"), str(TOP / "host_tests" / "cpython")]
 
-from tools.pictures import front, pages  # noqa: E402
+from tools.pictures import front, pages, states  # noqa: E402
 
 FOLDER = ".github/pictures"
 PICTURES = {
@@ -22,6 +22,7 @@ PICTURES = {
     "panel_eight_keys": front.eight,
     "pages": pages.pages,
     "menu": pages.menu,
+    "states": states.states,
 }
 
 

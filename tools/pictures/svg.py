@@ -155,8 +155,9 @@ class Picture:
         self.texts.append(Box(text, left, y - HEIGHT * size, left + long, y + DEPTH * size))
         weight = ' font-weight="bold"' if bold else ""
         family = f' font-family="{FONTS[True]}"' if mono else ""
+        blanks = ' xml:space="preserve"' if "  " in text else ""
         self._add(
-            f'<text x="{_n(left)}" y="{_n(y)}" font-size="{_n(size)}"{weight}{family}'
+            f'<text x="{_n(left)}" y="{_n(y)}" font-size="{_n(size)}"{weight}{family}{blanks}'
             f'{self._class(colour, None)} textLength="{_n(long)}">{escape(text)}</text>'
         )
 
