@@ -13,7 +13,7 @@ import pytest
 
 from conftest import strict
 from tiers import TOP
-from tools.benching import report, rows
+from tools.benching import beside_s7, report, rows
 
 INTERPRETERS = "host"
 
@@ -95,6 +95,41 @@ def test_a_run_on_the_host_alone_leaves_what_was_measured_on_the_chip():
     assert later.index("2026-01-31") < later.index("On this host") < later.index("2026-02-01")
     again = report.with_host(later, host, ["new"], "2026-02-01", "./tools/bench --host", False)
     assert again == later
+
+
+def test_the_rates_stand_beside_those_of_an_s7_and_what_the_wire_allows():
+    rated = [row for row in rows.ROWS if row.beside]
+    assert [row.beside for row in rated] == list(rows.BAUDS)
+    figures = {row.task: {"rate": float(row.beside) / 1000} for row in rated}
+    page = report.page(report.judge(rated, figures), [], "", "", False)
+    assert "| 9600 | 8.6 | 20.0 | 9.6 | 24.2 | 40 % |" in page
+    assert "| 187500 | - | - | 187.5 | 473.5 | 40 % |" in page
+    found = {row.baud: row.rates for row in beside_s7.rows_of(page)}
+    assert list(found) == list(rows.BAUDS)
+    assert found[115200] == {
+        "S7-1200": 35.6, "S7-200": 40.0, beside_s7.OURS: 115.2, beside_s7.WIRE: 290.9
+    }  # fmt: skip
+    assert found[187500] == {beside_s7.OURS: 187.5, beside_s7.WIRE: 473.5}
+
+
+def test_a_rate_that_could_not_be_measured_is_not_in_the_table():
+    rated = [row for row in rows.ROWS if row.beside]
+    figures = {row.task: {"rate": 20.0} for row in rated}
+    figures[rated[0].task] = {"error": "no reply"}
+    page = report.page(report.judge(rated, figures), [], "", "", False)
+    assert [row.baud for row in beside_s7.rows_of(page)] == list(rows.BAUDS[1:])
+
+
+def test_the_table_of_the_last_run_is_that_of_its_rows():
+    page = (TOP / "tools" / "bench.md").read_text(encoding="utf-8")
+    found = {row.baud: row.rates[beside_s7.OURS] for row in beside_s7.rows_of(page)}
+    assert set(found) == set(rows.BAUDS)
+    for row in rows.ROWS:
+        if row.beside:
+            (line,) = [line for line in page.split("\n") if line.startswith("| %s |" % row.what)]
+            assert line.split("|")[3].strip() == "%.1f" % found[row.beside], line
+    section = beside_s7.section({baud: "%.1f" % rate for baud, rate in found.items()})
+    assert section in page
 
 
 def library_figures(exchange_us, fastest_us):

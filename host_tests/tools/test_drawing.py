@@ -9,7 +9,7 @@ import pytest
 from tiers import TOP
 from tools.drawing.__main__ import files
 from tools.drawing.layouts import LAYOUTS, RESISTOR, modules, sides
-from tools.drawing.picture import CHARACTER, EDGE, FONT, texts_of
+from tools.drawing.picture import picture
 from tools.drawing.wires import keep_off, table, wires
 
 INTERPRETERS = "host"
@@ -20,26 +20,22 @@ def test_what_is_there_is_what_the_tables_make(path):
     assert (TOP / path).read_text() == files()[path], "python3 tools/drawing makes it anew"
 
 
+def texts_of(board):
+    return [box.text for box in picture(board).texts]
+
+
 @pytest.mark.parametrize("board", LAYOUTS)
 def test_no_text_overlaps_another_and_none_leaves_the_picture(board):
-    boxes = []
-    for x, y, text, _ in texts_of(board):
-        box = (x, y - FONT, x + len(text) * CHARACTER, y + FONT // 3)
-        assert box[0] >= 0 and box[2] <= EDGE, text
-        for other in boxes:
-            apart = (
-                box[2] <= other[0]
-                or other[2] <= box[0]
-                or box[3] <= other[1]
-                or other[3] <= box[1]
-            )
-            assert apart, (text, other)
-        boxes.append(box)
+    drawn = picture(board)
+    for at, box in enumerate(drawn.texts):
+        assert box.left >= 0 and box.right <= drawn.across and box.bottom <= drawn.down, box
+        for other in drawn.texts[:at]:
+            assert not box.overlaps(other), (box, other)
 
 
 @pytest.mark.parametrize("board", LAYOUTS)
 def test_each_wire_and_each_pin_is_in_the_picture(board):
-    shown = [text for _, _, text, _ in texts_of(board)]
+    shown = texts_of(board)
     for side in sides(board):
         for pin in side:
             assert pin in shown, pin
@@ -77,7 +73,7 @@ def test_transceiver_and_level_shifter_are_at_the_pins_of_the_board_file(board):
 
 @pytest.mark.parametrize("board", LAYOUTS)
 def test_the_resistor_that_silences_the_driver_is_that_of_the_manual(board):
-    shown = [text for _, _, text, _ in texts_of(board)]
+    shown = texts_of(board)
     way = "to ground" if table(board)["DRIVER_ENABLE"] is not None else "to 3V3"
     assert shown.count(f"{RESISTOR[board]} {way}") == 1
     assert RESISTOR[board] in (TOP / "boards" / board / "README.md").read_text()
@@ -88,7 +84,7 @@ def test_a_pin_that_has_a_wire_is_not_one_to_leave_alone(board):
     """Or the picture would say so."""
     assert not set(wires(board)) & set(keep_off(board))
     if board == "pico":
-        assert [text for _, _, text, _ in texts_of(board)].count("no key here") == 1
+        assert texts_of(board).count("no key here") == 1
 
 
 def rows_of_manual(board):

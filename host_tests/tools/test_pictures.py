@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
 """The pictures of the manuals: each is as panel and tables make it now, and can be read."""
 
+import functools
+import operator
 import re
 import xml.etree.ElementTree
-from functools import cache
 
 import pytest
 
@@ -11,10 +12,12 @@ from boards.sim.board import COMPACT_KEYS, KEYS
 from panel.keys.compact import FUNCTIONS
 from panel.menu.main import LISTS
 from tiers import TOP
-from tools.pictures import pages
+from tools.benching import beside_s7
+from tools.pictures import exchange, pages, running
 from tools.pictures.__main__ import FOLDER, files
 from tools.pictures.lcd import ACROSS, DOWN, PITCH, ROW_PITCH
 from tools.pictures.svg import COLOURS, DEPTH, HEIGHT, Picture, width, wrapped
+from uss.timing import Timing
 
 INTERPRETERS = "host"
 
@@ -23,7 +26,7 @@ SMALLEST = 8  # pixels of a font there
 SVG = "{http://www.w3.org/2000/svg}"
 
 
-@cache
+@functools.cache
 def made(path):
     return files()[path]()
 
@@ -160,6 +163,52 @@ def test_the_dots_of_a_display_are_those_of_its_characters():
     assert rows == ["S: 10.0 F:  0.00", "READY        A1 "]
     colon = next(path for path in root.iter(SVG + "path") if path.get("id") == "c3A")
     assert colon.get("d").count("M") == 8  # a colon has two squares of four dots
+
+
+def test_the_times_of_an_exchange_are_those_of_the_line():
+    shown = words(named("exchange"))
+    each, all_us = exchange.times(19200)
+    assert sum(each.values()) == all_us == Timing(19200).exchange_us(12, 1146)
+    assert list(each.values()) == [1146, 9167, 1146, 9167]
+    for text in ("1.15 ms", "9.17 ms", "20.63 ms", "2.29 ms", "115200", "291", "187500"):
+        assert text in shown, text
+    heard = exchange.telegrams()
+    for kind, data in heard.items():
+        assert len(data) == 16 and functools.reduce(operator.xor, data) == 0
+        assert shown.count(data[-1:].hex().upper()) >= 1, kind
+    assert {"STX", "LGE", "ADR", "PKE", "IND", "PWE", "STW", "HSW", "ZSW", "HIW"} < set(shown)
+    assert "04 7F" in shown  # ON
+
+
+def test_the_line_of_the_virtual_board_keeps_these_times():
+    world = running.panel()
+    each, _ = exchange.times(19200)
+    heard = world.wire.log.last(30)
+    intervals = [
+        (reply_us - request_us, request)
+        for (request_us, asks, request), (reply_us, answers, _) in zip(heard, heard[1:])
+        if asks and not answers
+    ]
+    assert len(intervals) > 10
+    for interval_us, request in intervals:
+        assert interval_us >= each[exchange.REQUEST] + each[exchange.DELAY] or len(request) != 16
+
+
+def test_the_bars_are_as_long_as_their_figures():
+    page = (TOP / "tools" / "bench.md").read_text()
+    shown = words(named("bench"))
+    root = xml.etree.ElementTree.fromstring((TOP / FOLDER / "bench.svg").read_text())
+    bars = [float(rect.get("width")) for rect in root.findall(SVG + "rect")][1:]
+    rows = beside_s7.rows_of(page)
+    wanted = []
+    for row in rows:
+        limit = row.rates[beside_s7.WIRE]
+        assert f"{row.baud} baud" in shown and f"{beside_s7.WIRE} {limit}" in shown
+        for name, rate in row.rates.items():
+            if name != beside_s7.WIRE:
+                assert name in shown and str(rate) in shown
+                wanted += [1, rate / limit]
+    assert [bar / max(bars) for bar in bars] == pytest.approx(wanted, abs=0.001)
 
 
 # --- how texts are measured ---------------------------------------------------------------------

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""tools/bench: measures, prints one table, writes it into tools/bench.md.
+"""tools/bench: measures, prints one table, writes it into tools/bench.md, and draws its bars.
 
     python3 tools/benching [--host] [--only NAME ...] [--quick]
 
@@ -22,9 +22,13 @@ from pathlib import Path
 TOP = Path(__file__).resolve().parents[2]
 sys.path[0] = str(TOP)
 
-from tools.benching import report  # noqa: E402
+from tools.benching import beside_s7, report  # noqa: E402
 from tools.benching.rows import ROWS, TASKS, names  # noqa: E402
+<<<<<<< HEAD
 from tools.command_line import Parser  # noqa: E402
+=======
+from tools.pictures.bench import bench  # noqa: E402
+>>>>>>> 9c6da35 (bench: beside an S7-1200, an S7-200 and the wire, table and bars)
 
 LAUNCH = [sys.executable, "-I", "-B", "tools/emulator/launch.py"]
 MICROPYTHON = ["build/unix64/micropython", "-X"]
@@ -32,6 +36,7 @@ HEAPS = {True: "heapsize=64M", False: "heapsize=16M"}  # beside a chip; alone, a
 PROGRAM = "tools/benching/measurements.py"
 LIBRARIES = ["build/libraries/bin/python", "-I", "-B", "tools/benching/libraries.py"]
 OUTPUT = TOP / "tools" / "bench.md"
+PICTURE = TOP / ".github" / "pictures" / beside_s7.PICTURE
 AT_A_TIME = 2
 TIMEOUT_S = 900  # of one measurement; the longest takes five minutes on a slow machine
 
@@ -153,6 +158,7 @@ def main(arguments):
         if options.host:
             text = report.with_host(OUTPUT.read_text(encoding="utf-8"), judged, *made)
         OUTPUT.write_text(text + "\n", encoding="utf-8")
+        PICTURE.write_text(bench().svg(), encoding="utf-8")
     return report.status(judged)
 
 

@@ -10,6 +10,8 @@ In use:
 
 from typing import NamedTuple
 
+from tools.benching import beside_s7
+
 MET, NOT_MET, NO_BAR, FAILED = "met", "NOT MET", "", "FAILED"
 
 HEAD = ("what", "bar", "figure", "")
@@ -54,9 +56,17 @@ def page(judged, versions, date, command, quick):
     if quick:
         parts.append("QUICK: few samples. What is rare may not have shown itself.")
     parts.append(origin(versions, date, command))
+    ours = {line.row.beside: line.figure for line in chip if is_beside(line)}
+    if ours:
+        parts.append(beside_s7.section(ours))
     if chip:
         parts += ["## On the chip", CHIP, table(chip)]
     return "\n\n".join(parts + host_parts(judged))
+
+
+def is_beside(line):
+    """Whether it stands in the table of `beside_s7`."""
+    return line.row.beside and line.verdict != FAILED
 
 
 def with_host(page_before, judged, versions, date, command, quick):
@@ -105,6 +115,5 @@ it. Computing time is right to 30 %, the wires to the nanosecond. While it is me
 pressed, the display changes, and garbage is collected every 100 ms, unless the row says otherwise.
 What the menu needs comes from the flash, a module in a step of the loop: frozen modules, or files,
 for which a step takes the time of the chip's file system.
-One drive, telegrams of 16 characters, replies after 2 characters, unless the row says otherwise.
-The intervals of the S7-200 (poll time of an active drive) and the S7-1200 (scan interval) are
-those of their system manuals; they offer no 187500."""
+One drive, telegrams of 16 characters, replies after 2 characters, unless the row says
+otherwise."""

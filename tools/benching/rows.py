@@ -9,6 +9,8 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 from boards.sim.ports.chips import HEAP_BYTES
+from tools.benching import beside_s7
+from tools.benching.beside_s7 import CHARACTER_BITS, CHARACTERS
 
 
 class Task(NamedTuple):
@@ -26,21 +28,19 @@ class Task(NamedTuple):
 
 
 class Row(NamedTuple):
-    """show: figures -> text. holds: figures -> whether the bar is reached; None: there is none."""
+    """show: figures -> text. holds: figures -> whether the bar is reached; None: there is none.
+    beside: the baud rate, if the figure stands in the table of `beside_s7`.
+    """
 
     task: Task
     what: str
     bar: str
     show: Callable
     holds: Callable | None
+    beside: int | None = None
 
 
-CHARACTER_BITS = 11
-CHARACTERS = 2 + 16 + 2 + 16  # of an exchange: start interval, request, the drive's time, reply
-
-# Baud -> milliseconds between two telegrams to a drive, and how many telegrams are measured.
-S7_200_MS = {9600: 50, 19200: 35, 38400: 30, 57600: 25, 115200: 25}
-S7_1200_MS = {9600: 116.3, 19200: 68.2, 38400: 44.1, 57600: 36.1, 115200: 28.1}
+# How many telegrams are measured at which baud rate.
 BAUDS = (9600, 19200, 38400, 115200, 187500)
 FAST_BAUD = 57600
 TELEGRAMS_FAST, TELEGRAMS_SLOW = 10_000, 50  # bar of the driver enable
@@ -158,20 +158,17 @@ def within_a_character(spread, character_ns):
 # --- rows ---------------------------------------------------------------------------------------
 
 
-def rate_row(task, what, baud):
+def rate_row(task, what, baud, beside=None):
     bar = RATE_BAR if baud == 115200 else None
-    limit = "wire's limit %.1f" % (baud / (CHARACTERS * CHARACTER_BITS))
-    others = [
-        "%s %.1f" % (name, 1000 / intervals[baud])
-        for name, intervals in (("S7-200", S7_200_MS), ("S7-1200", S7_1200_MS))
-        if baud in intervals
-    ]
+    limit = "wire's limit %.1f" % beside_s7.limit(baud)
+    others = ["%s %.1f" % at for at in beside_s7.rates(baud).items()]
     return Row(
         task,
         "exchanges per second, %s (%s)" % (what, ", ".join([limit, *others])),
         ">= %d" % bar if bar else "",
         lambda figures: "%.1f" % figures["rate"],
         (lambda figures: figures["rate"] >= bar) if bar else None,
+        beside,
     )
 
 
@@ -495,7 +492,7 @@ MENU_US = {"frozen": STEP_US, "files": READ_US}
 MIXED_TEXT = "31 drives of mixed layouts, %d baud, master alone"
 
 ROWS = (
-    *(rate_row(LINES[baud], baud_of(baud), baud) for baud in BAUDS),
+    *(rate_row(LINES[baud], baud_of(baud), baud, baud) for baud in BAUDS),
     *(rate_row(FULL_LINES[baud], FULL % baud, baud) for baud in FULL_BAUDS),
     *(rate_row(task, ASKING[at], at[0]) for at, task in ASKING_LINES.items()),
     *(mixed_rate_row(MIXED[baud], MIXED_TEXT % baud) for baud in FULL_BAUDS),

@@ -19,7 +19,7 @@ from tools.drawing.wokwi import diagram  # noqa: E402
 
 def files():
     """{path from the top: text}."""
-    made = {f"boards/{board}/pins.svg": picture(board) for board in LAYOUTS}
+    made = {f"boards/{board}/pins.svg": picture(board).svg() for board in LAYOUTS}
     made["boards/pico/diagram.json"] = diagram()
     return made
 

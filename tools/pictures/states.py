@@ -55,7 +55,9 @@ def table():
             found[-1] = [f"{one} {more}".strip() for one, more in zip(found[-1], cells)]
     names = "|".join(cells[0] for cells in found)
     exits = re.compile(rf"[; ]*(.+?): ({names})\b")
-    return [Phase(*cells[:2], tuple(exits.findall(cells[2]))) for cells in found], rest.strip()
+    return [
+        Phase(name, what, tuple(exits.findall(ends))) for name, what, ends in found
+    ], rest.strip()
 
 
 class Told(NamedTuple):
