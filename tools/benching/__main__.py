@@ -24,11 +24,8 @@ sys.path[0] = str(TOP)
 
 from tools.benching import beside_s7, report  # noqa: E402
 from tools.benching.rows import ROWS, TASKS, names  # noqa: E402
-<<<<<<< HEAD
 from tools.command_line import Parser  # noqa: E402
-=======
 from tools.pictures.bench import bench  # noqa: E402
->>>>>>> 9c6da35 (bench: beside an S7-1200, an S7-200 and the wire, table and bars)
 
 LAUNCH = [sys.executable, "-I", "-B", "tools/emulator/launch.py"]
 MICROPYTHON = ["build/unix64/micropython", "-X"]
