@@ -5,6 +5,13 @@ import re
 
 from tiers import TOP
 
+MADE = {"build", ".git", ".pytest_cache"}  # folders in which nothing is ours
+MANUALS = sorted(
+    path.as_posix()
+    for path in (found.relative_to(TOP) for found in TOP.rglob("*.md"))
+    if not MADE.intersection(path.parts)
+)
+
 
 def text(manual):
     return (TOP / manual).read_text(encoding="utf-8")

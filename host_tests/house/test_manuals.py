@@ -13,7 +13,7 @@ import pytest
 import settings_file as settings
 import version
 from boards.sim.script import COMMANDS
-from page_bench import indented, pattern, prose, section, text
+from page_bench import MANUALS, indented, pattern, prose, section, text
 from panel import texts
 from panel.pages import splash
 from text_bench import named, parts
@@ -22,12 +22,6 @@ from tools.live import virtual_panel
 
 INTERPRETERS = "host"
 
-MADE = {"build", ".git", ".pytest_cache"}  # folders in which nothing is ours
-MANUALS = sorted(
-    path.as_posix()
-    for path in (found.relative_to(TOP) for found in TOP.rglob("*.md"))
-    if not MADE.intersection(path.parts)
-)
 PANEL, TOOLS, PICO = "firmware/panel/README.md", "tools/README.md", "boards/pico/README.md"
 
 
