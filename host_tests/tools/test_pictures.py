@@ -13,7 +13,7 @@ from panel.keys.compact import FUNCTIONS
 from panel.menu.main import LISTS
 from tiers import TOP
 from tools.benching import beside_s7
-from tools.pictures import exchange, pages, running
+from tools.pictures import bus, exchange, pages, running
 from tools.pictures.__main__ import FOLDER, files
 from tools.pictures.lcd import ACROSS, DOWN, PITCH, ROW_PITCH
 from tools.pictures.svg import COLOURS, DEPTH, HEIGHT, Picture, width, wrapped
@@ -209,6 +209,16 @@ def test_the_bars_are_as_long_as_their_figures():
                 assert name in shown and str(rate) in shown
                 wanted += [1, rate / limit]
     assert [bar / max(bars) for bar in bars] == pytest.approx(wanted, abs=0.001)
+
+
+def test_the_line_has_every_drive_whose_terminals_the_manual_has():
+    shown = " ".join(words(named("bus")))
+    listed = {drive.name: drive.terminals for drive in bus.drives()}
+    assert listed["MICROMASTER 420"] == ("14", "15", "2")
+    assert listed["SINAMICS V20"] == ("6", "7", "5") and len(listed) >= 6
+    for name, terminals in listed.items():
+        assert name in shown and " ".join(terminals) in shown
+    assert shown.count("120 ohm at its two ends") == 1 and shown.count("120 ohm") == 3
 
 
 # --- how texts are measured ---------------------------------------------------------------------

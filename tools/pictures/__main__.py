@@ -14,7 +14,7 @@ TOP = Path(__file__).resolve().parents[2]
 # In host_tests/cpython is a module `micropython`: the panel runs on CPython here.
 sys.path[:1] = [str(TOP), str(TOP / "firmware"), str(TOP / "host_tests" / "cpython")]
 
-from tools.pictures import bench, exchange, front, pages, states  # noqa: E402
+from tools.pictures import bench, bus, exchange, front, pages, states  # noqa: E402
 
 FOLDER = ".github/pictures"
 PICTURES = {
@@ -25,6 +25,7 @@ PICTURES = {
     "states": states.states,
     "exchange": exchange.exchange,
     "bench": bench.bench,
+    "bus": bus.bus,
 }
 
 
