@@ -20,12 +20,13 @@ A block that begins with MENU is the tree of the menu, as such a panel has it.
 import main
 from boards.sim.drives.kinds import listed_drives, simulated
 from boards.sim.world import World
-from lookup_bench import entries, go_to, hold, press
+from lookup_bench import entries, go_to, hold
 from panel_bench import wait_until_known
+from tools.pictures import running
 
 EDGE = "+------------------+"
 GAP = "   "
-HELD_MS = 1_400
+SETTLED_MS = 600
 TREE = "MENU"
 LONG_MAX, LONG = 20, 4  # of a list with more than 20 entries the first 4
 KEYS = (
@@ -98,16 +99,7 @@ def do(world, part):
     """A part of the first line; the panel that it is about from now on."""
     if part in SITUATIONS:
         return SITUATIONS[part](world) or world
-    for key in part.split(", "):
-        words = key.split()
-        if words[-1] == "held":
-            hold(world, words[0], HELD_MS)
-        elif words[-1] == "s":
-            world.run(int(float(words[0]) * 1000))
-        else:
-            for _ in range(int(words[1][1:]) if len(words) > 1 else 1):
-                press(world, words[0])
-    world.run(600)
+    running.press(world, part, SETTLED_MS)
     return world
 
 
@@ -123,7 +115,7 @@ def picture(displays):
 def tree():
     """The lines of the menu: its lists and what is in them, and what is in a drive's."""
     world = two_drives()
-    hold(world, "PARAM", HELD_MS)
+    hold(world, "PARAM", running.HELD_MS)
     lines = [TREE]
     for _, entry in entries(world):
         lines.append("  " + entry)

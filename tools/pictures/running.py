@@ -35,7 +35,7 @@ def happen(world, commands):
     Script(world, show=lambda line: None).run(commands.split(";"))
 
 
-def press(world, keys):
+def press(world, keys, settled_ms=SETTLED_MS):
     """Keys with commas between them: `KEY`, `KEY x3`, `KEY held`, or `5 s` to wait.
     `KEY kept down`: it is still down in the end.
     """
@@ -46,10 +46,12 @@ def press(world, keys):
         elif how == "kept down":
             world.down(name)
         elif how == "held":
-            world.press(name, HELD_MS)
+            world.down(name)
+            world.run(HELD_MS)
+            world.up(name)
             world.run(REST_MS)
         else:
             for _ in range(int(how[1:]) if how else 1):
                 world.press(name)
                 world.run(REST_MS)
-    world.run(SETTLED_MS)
+    world.run(settled_ms)
