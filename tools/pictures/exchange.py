@@ -7,13 +7,14 @@
 from tools.pictures import running
 from tools.pictures.svg import Picture
 from uss.layout import Layout
+from uss.telegram import NET
 from uss.timing import FRAME_CHARACTERS, RESPONSE_DELAY_US, Timing
 
 ACROSS, EDGE = 460, 14
 LAYOUT = Layout(4, 2)
 BAUD = 19200
 BAUDS = (9600, 19200, 38400, 57600, 115200, 187500)
-ADR = 2  # place of the address in a telegram
+ADR = NET - 1  # place of the address in a telegram
 PAUSE_CHARACTERS = 2  # in which the drive answers here: the least that it may
 FONT, SMALL, STEP = 12, 11, 17
 AXIS, BAR, ROW = 82, 24, 36  # where the times begin; height of a telegram, and of its row
@@ -38,13 +39,14 @@ def times(baud):
 
 
 def telegrams():
-    """A request and its reply, with the motor running: {"request": bytes, "reply": bytes}."""
+    """A request without a task and its reply, with the motor running: {"request": bytes, ...}."""
     world = running.panel()
     running.press(world, "START, 3 s")
     address = world.app.panel.selected.drive.address
     heard = world.wire.log.last(20)
     for (_, _, request), (_, from_panel, reply) in zip(heard, heard[1:]):
-        if not from_panel and request[ADR] == reply[ADR] == address:
+        is_plain = not any(request[NET : NET + 2])  # PKE
+        if not from_panel and is_plain and request[ADR] == reply[ADR] == address:
             return {"request": request, "reply": reply}
     raise AssertionError(heard)
 

@@ -31,7 +31,7 @@ PAGES = (
     Tile("Home page"),
     Tile("A motor runs", "START, 3 s"),
     Tile("The other direction", "START, 3 s, REVERSE, 4 s"),
-    Tile("STOP, as long as it is held", "START, 3 s, STOP kept down"),
+    Tile("STOP, as long as it is held", "STOP kept down"),
     Tile("A jog, as long as its key is held", "JOG_RIGHT kept down"),
     Tile("Another value: motor current", "START, 3 s, NEXT x4, 3 s"),
     Tile("Another drive", "ADDRESS_UP"),
@@ -51,13 +51,13 @@ PAGES = (
 INSIDE = (  # some of what the lists lead to
     Tile("A drive of the list", "PARAM held, SET, SET"),
     Tile("A setting", "PARAM held, DOWN x3, SET, SET, UP"),
-    Tile("Counters of drive 1", "PARAM held, DOWN x7, SET, DOWN x4, SET, SET, 4 s"),
+    Tile("Counters of drive 1", "PARAM held, DOWN x7, SET, DOWN x4, SET, SET, DOWN x3, 3 s"),
     Tile(
         "Any parameter",
         "PARAM held, DOWN x8, SET, SET, UP, NEXT, UP, NEXT, UP x2, SET, 2 s",
     ),
     Tile("A step of commissioning", "PARAM held, DOWN x9, SET, 1 s, DOWN x2, SET, 3 s, DOWN x6"),
-    Tile("A set is saved", "PARAM held, DOWN x4, SET, SET, SET, 8 s"),
+    Tile("A set gets a name", "PARAM held, DOWN x4, SET, SET"),
 )
 
 
