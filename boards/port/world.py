@@ -23,7 +23,8 @@ HANG_STEP_MS = 20
 
 # Of the script language what is done to the panel; all else is done to simulated drives.
 TO_THE_PANEL = (
-    "press", "hold", "down", "up", "wait", "lcd", "expect", "bus", "hang", "reset", "power",
+    "press", "hold", "down", "up", "setpoint", "wait", "lcd", "expect", "bus", "hang", "reset",
+    "power",
 )  # fmt: skip
 NOT_SIMULATED = "no drive is simulated here: the line is a real one"
 

@@ -16,6 +16,7 @@ from boards.sim.drives.switches import switch_value
 from boards.sim.line.faults import KINDS, SUPPLIES, WAYS, LineFaults
 from boards.sim.drives.mains import Mains
 from boards.sim.drives.power.plant import EXPONENTS, FAN
+from boards.sim.setpoint import Untyped, centihertz, typed
 
 FAULT_MAX = 9999
 DAYS_MAX = 100
@@ -126,6 +127,17 @@ class Script:
 
     def load(self, drive, percent, kind=FAN):
         drive.load(percent, kind)
+
+    def setpoint(self, wanted):
+        try:
+            for key, down_ms, up_ms in typed(self.world, wanted):
+                if key:
+                    self.world.down(key)
+                    self.world.run(down_ms)
+                    self.world.up(key)
+                self.world.run(up_ms)
+        except Untyped as error:
+            raise Refused(error.args[0])
 
     # --- the line -------------------------------------------------------------------------------
 
@@ -285,6 +297,10 @@ def setting(world, word):
         raise ValueError("%s: %s" % (word, error.args[0]))
 
 
+def setpoint(world, word):
+    return centihertz(word)
+
+
 def rate(world, word):
     """A number, on or off."""
     if word in ("on", "off"):
@@ -323,6 +339,7 @@ COMMANDS = {
     "hold": ("hold KEY MS", (key, duration), 0, lambda do, key, ms: do.world.press(key, ms)),
     "down": ("down KEY", (key,), 0, lambda do, key: do.world.down(key)),
     "up": ("up KEY", (key,), 0, lambda do, key: do.world.up(key)),
+    "setpoint": ("setpoint HZ", (setpoint,), 0, Script.setpoint),
     "wait": ("wait MS", (milliseconds,), 0, lambda do, ms: do.world.run(ms)),
     "lcd": ("lcd", (), 0, Script.lcd),
     "bus": ("bus N", (count,), 0, Script.bus),
@@ -353,8 +370,8 @@ COMMANDS = {
 }  # fmt: skip
 
 ORDER = (
-    "press", "hold", "down", "up", "wait", "lcd", "expect", "bus", "drive", "param", "fault",
-    "clear", "warn", "load", "supply", "off", "on", "switch", "unplug", "plug", "hang",
+    "press", "hold", "down", "up", "setpoint", "wait", "lcd", "expect", "bus", "drive", "param",
+    "fault", "clear", "warn", "load", "supply", "off", "on", "switch", "unplug", "plug", "hang",
     "reset", "power",
     "line", "strike", "late", "babble", "cut", "mend", "dip",
 )  # fmt: skip

@@ -387,3 +387,43 @@ def test_the_table_has_a_way_for_each_message():
         values = {"v": 1, "key": "STOP", "n": 1, "line": "lcd", "x": 1}
         talk.say(kind, **{name: values[name] for name, _ in fields})
     assert talk.last("error") is None
+
+
+def test_a_setpoint_is_typed_while_time_goes_on():
+    talk = Talk()
+    talk.ready()
+    talk.wait(1500)
+    talk.say("do", n=4, line="setpoint 12.5")
+    talk.wait(100)
+    assert talk.last("state")["doing"]["line"] == "setpoint 12.5"
+    talk.wait(3000)
+    done = talk.last("done")
+    assert (done["n"], done["ok"], done["out"]) == (4, 1, []), done
+    assert talk.lcd()[0].startswith("S: 12.5") and not talk.down()
+
+
+def test_a_setpoint_that_cannot_be_typed_is_refused():
+    talk = Talk()
+    talk.ready()
+    talk.tap("PARAM")
+    talk.wait(500)
+    talk.say("do", n=5, line="setpoint 12.5")
+    talk.wait(2000)
+    done = talk.last("done")
+    assert (done["n"], done["ok"]) == (5, 0)
+    assert done["out"][0].startswith("no setpoint can be typed now, the display shows S: 10.0")
+
+
+def test_stop_and_release_end_the_typing_and_nothing_takes_effect():
+    for kind, fields in (("release", {}), ("down", {"key": "STOP"})):
+        talk = Talk()
+        talk.runs()
+        talk.say("do", n=6, line="setpoint 47.5")
+        talk.wait(600)
+        talk.say(kind, **fields)
+        talk.wait(200)
+        assert talk.last("done")["ok"] == 0 and "UP" not in talk.down()
+        talk.say("release")
+        talk.wait(1000)
+        assert talk.lcd()[0].startswith("S: 10.0"), talk.lcd()
+        assert talk.state() == ("running" if kind == "release" else "stopping")

@@ -12,9 +12,10 @@ It knows neither a pipe nor a browser: `lines` and `in_browser` are its ways to 
 
 import version
 from boards.sim.script import COMMANDS, ORDER, ExpectationFailed, Script, ScriptError
+from boards.sim.setpoint import Untyped
 from tools.live.errand import ERRANDS, Errand
-from tools.live.hand import STOP
 from tools.live.holds import Holds, KeyRefused
+from tools.live.keys import STOP
 from tools.live.language import SPEED_MAX, VERSION, Misunderstood, spoken, understood
 from tools.live.pace import UNHEARD_MS, Pace, RealPace
 from tools.live.sights import Sights
@@ -82,7 +83,12 @@ class Conversation:
         if self._errand is None:
             self._world.run(ms)
             return
-        self._errand.run(ms)
+        try:
+            self._errand.run(ms)
+        except Untyped as error:
+            self._print(str(error))
+            self._end_errand(ENDED)
+            return
         if not self._errand.left_us():
             self._end_errand(DONE)
 

@@ -12,33 +12,7 @@ the same: a terminal that went silent must not move a setpoint on and on.
 """
 
 from boards.sim.world import RELEASE_MS, TAP_MS
-
-STOP = "STOP"
-
-# Letter: the key that it taps; the capital holds it. In the order in which a legend shows them.
-# A panel has either all functions as keys of their own, or the last three keys for the rest.
-LETTERS = (
-    ("s", "START"),
-    ("t", STOP),
-    ("r", "REVERSE"),
-    ("l", "JOG_RIGHT"),
-    ("j", "JOG_LEFT"),
-    ("u", "UP"),
-    ("d", "DOWN"),
-    ("a", "ADDRESS_UP"),
-    ("z", "ADDRESS_DOWN"),
-    ("p", "PARAM"),
-    ("n", "NEXT"),
-    ("b", "PREVIOUS"),
-    ("e", "EDIT"),
-    ("w", "SET"),
-    ("j", "JOG"),
-    ("p", "P"),
-    ("f", "FN"),
-)
-JOGS = ("JOG_RIGHT", "JOG_LEFT", "JOG")
-STARTERS = ("START",) + JOGS  # what turns a motor
-ARM = "g"  # typed before each of these on a real line
+from tools.live.keys import JOGS, STOP
 
 TAP_US = TAP_MS * 1000
 RELEASE_US = RELEASE_MS * 1000  # a key that was let go is up for so long before the next one

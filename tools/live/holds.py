@@ -14,7 +14,7 @@ all drives get OFF1.
 """
 
 from boards.sim.world import RELEASE_MS, TAP_MS
-from tools.live.hand import STARTERS, STOP
+from tools.live.keys import STARTERS, STOP
 from tools.live.pace import UNHEARD_MS
 
 ALONE_MS = 2_000

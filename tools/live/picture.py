@@ -9,7 +9,7 @@ It looks at a `World` and a `Hand`, changes nothing, and knows no terminal: test
 lit (the display, keys that are down) stands between the marks HIGHLIGHT and PLAIN.
 """
 
-from tools.live.hand import ARM, LETTERS, STARTERS
+from tools.live.keys import ARM, LETTERS, STARTERS
 from tools.live.terminal import HIGHLIGHT, PLAIN
 
 ROWS = 24

@@ -17,8 +17,10 @@ import os
 import time
 
 from boards.sim.script import ORDER, ExpectationFailed, Script, ScriptError
+from boards.sim.setpoint import Untyped
 from tools.live.errand import ERRANDS, Errand
-from tools.live.hand import ARM, LETTERS, STARTERS, STOP, Hand
+from tools.live.hand import Hand
+from tools.live.keys import ARM, LETTERS, STARTERS, STOP
 from tools.live.pace import FRAME_MS, Pace, RealPace
 from tools.live.picture import COLUMNS, SAID_ROWS, Picture, fitted, folded, shows_display
 from tools.live.terminal import ESCAPE, Strokes, Terminal
@@ -139,7 +141,12 @@ class Session:
         if not self.errand:
             self._world.run(ms)
             return
-        self.errand.run(ms)
+        try:
+            self.errand.run(ms)
+        except Untyped as error:
+            self._end_errand("ended early: ")
+            self._print(str(error))
+            return
         if not self.errand.left_us():
             self._end_errand("done: ")
 
