@@ -38,7 +38,6 @@ RUNS = {
     "./tools/panel --settings panel1/settings.json": (LOOK, READY),
     "./tools/drive --switch help": ("", "boot_ms"),
     "./tools/example one_drive": ("", "running"),
-    "./tools/example mine.py --drives 1,2=g110": ("", "running"),
     "./tools/example mine.py --drives 1,2=g110,5=mm440": ("", "running"),
     "./tools/check-board mine.py": ("", "nothing is wrong with it"),
 }

@@ -30,9 +30,55 @@ PANEL, TOOLS, PICO = "firmware/panel/README.md", "tools/README.md", "boards/pico
 
 def test_the_front_page_is_short_and_says_what_it_must():
     page = text("README.md")
-    assert page.count("\n") < 110
+    assert page.count("\n") < 100
     assert "STOP on this panel is not an emergency stop." in page
     assert "MIT" in section("README.md", "Licence") and (TOP / "firmware/LICENSE").exists()
+
+
+def test_the_four_questions_of_a_newcomer_have_links_at_the_top():
+    top = "\n".join(text("README.md").split("\n")[:40])
+    asked = dict(
+        re.findall(r"\[(What to buy|How to \w+(?: the drive)?|What NO \w+ means)\]\((\S+)\)", top)
+    )
+    assert asked == {
+        "What to buy": "boards/pico/README.md#parts",
+        "How to flash": "boards/pico/README.md#the-firmware",
+        "How to set the drive": "boards/COMMISSIONING.md",
+        "What NO CONTACT means": "firmware/panel/TROUBLESHOOTING.md#no-contact",
+    }
+    assert "Two commands" in top and "pictures/panel.svg" in top
+
+
+def rows_of_bench(begin):
+    """The figures of the rows of tools/bench.md that begin so, as numbers."""
+    rows = re.findall(rf"^\| {re.escape(begin)}.*?\|.*?\| (.*?) \|", text("tools/bench.md"), re.M)
+    assert rows, begin
+    return [[float(one) for one in re.findall(r"\d+(?:\.\d+)?", row)] for row in rows]
+
+
+def test_the_figures_of_the_front_page_are_those_that_were_measured():
+    told = section("README.md", "Figures")
+    exchanges = [
+        row[0]
+        for begin in (
+            "exchanges per second, 115200 baud",
+            "exchanges per second, 31 drives, 115200 baud",
+        )
+        for row in rows_of_bench(begin)
+    ]
+    s7_1200 = float(re.search(r"115200 baud \(.*?S7-1200 ([\d.]+)\)", text("tools/bench.md"))[1])
+    assert min(exchanges) > int(re.search(r"more than (\d+) exchanges", told)[1])
+    assert min(exchanges) > 6 * s7_1200 and "six times as many as an S7-1200" in told
+    stops = [
+        row[2]
+        for drives in ("1 drive", "31 drives")
+        for row in rows_of_bench(
+            f"STOP pressed to the end of the OFF1 telegram, {drives}, 115200 baud"
+        )
+    ]
+    assert max(stops) < int(re.search(r"within (\d+) ms of the key", told)[1])
+    hangs = [row[0] for row in rows_of_bench("main loop hangs in")]
+    assert len(hangs) > 3 and max(hangs) < 350 and "0.3 s later" in told
 
 
 def test_every_manual_is_reached_from_the_front_page():
