@@ -13,6 +13,8 @@ from panel.keys.compact import FUNCTIONS
 from panel.menu.main import LISTS
 from tiers import TOP
 from tools.benching import beside_s7
+from tools.drawing.layouts import LAYOUTS
+from tools.drawing.picture import picture as drawn
 from tools.pictures import bus, exchange, pages, running
 from tools.pictures.__main__ import FOLDER, files
 from tools.pictures.lcd import ACROSS, DOWN, PITCH, ROW_PITCH
@@ -26,9 +28,15 @@ SMALLEST = 8  # pixels of a font there
 SVG = "{http://www.w3.org/2000/svg}"
 
 
+PICTURES = {
+    **files(),
+    **{f"boards/{board}/pins.svg": functools.partial(drawn, board) for board in LAYOUTS},
+}
+
+
 @functools.cache
 def made(path):
-    return files()[path]()
+    return PICTURES[path]()
 
 
 def named(name):
@@ -39,17 +47,19 @@ def words(picture):
     return [box.text for box in picture.texts]
 
 
-@pytest.mark.parametrize("path", files())
+@pytest.mark.parametrize("path", PICTURES)
 def test_what_is_there_is_what_the_panel_and_the_tables_make(path):
-    assert (TOP / path).read_text() == made(path).svg(), "python3 tools/pictures makes it anew"
+    tool = "drawing" if path.startswith("boards/") else "pictures"
+    assert (TOP / path).read_text() == made(path).svg(), f"python3 tools/{tool} makes it anew"
 
 
 def test_there_is_no_picture_that_nobody_makes():
-    there = {f"{FOLDER}/{path.name}" for path in (TOP / FOLDER).glob("*.svg")}
-    assert there == set(files())
+    folders = (TOP / FOLDER, TOP / "boards")
+    there = [path.relative_to(TOP).as_posix() for at in folders for path in at.rglob("*.svg")]
+    assert sorted(there) == sorted(PICTURES)
 
 
-@pytest.mark.parametrize("path", files())
+@pytest.mark.parametrize("path", PICTURES)
 def test_no_text_overlaps_another_and_none_leaves_the_picture(path):
     picture = made(path)
     for at, box in enumerate(picture.texts):
@@ -59,7 +69,7 @@ def test_no_text_overlaps_another_and_none_leaves_the_picture(path):
             assert not box.overlaps(other), (box, other)
 
 
-@pytest.mark.parametrize("path", files())
+@pytest.mark.parametrize("path", PICTURES)
 def test_the_texts_can_be_read_on_a_phone(path):
     picture = made(path)
     for box in picture.texts:
@@ -67,7 +77,7 @@ def test_the_texts_can_be_read_on_a_phone(path):
         assert font * min(1, PHONE / picture.across) >= SMALLEST, box
 
 
-@pytest.mark.parametrize("path", files())
+@pytest.mark.parametrize("path", PICTURES)
 def test_it_says_what_it_is_and_needs_nothing_from_elsewhere(path):
     root = xml.etree.ElementTree.fromstring((TOP / path).read_text())
     assert len(root.find(SVG + "title").text) > 5
@@ -81,7 +91,7 @@ def test_it_says_what_it_is_and_needs_nothing_from_elsewhere(path):
             assert "url(" not in value
 
 
-@pytest.mark.parametrize("path", files())
+@pytest.mark.parametrize("path", PICTURES)
 def test_each_colour_has_another_one_for_the_dark(path):
     text = (TOP / path).read_text()
     style = text[text.index("<style>") : text.index("</style>")]

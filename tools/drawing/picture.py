@@ -75,14 +75,14 @@ def _box(drawn, box, off):
         y = box.y + 8 + ROW * place + ROW / 2
         drawn.text(LEFT_X + inside, y + 4, pin, "white", FONT)
         if box.numbers:
-            drawn.text(LEFT_X + INSIDE, y + 4, str(place + 1), box.pale, FONT - 1)
+            drawn.text(LEFT_X + INSIDE, y + 4, str(place + 1), box.pale, FONT)
         _wire(drawn, LEFT_X, -1, y, what, off)
     for place, (what, pin) in enumerate(right):
         y = box.y + 8 + ROW * place + ROW / 2
         drawn.text(RIGHT_X - inside, y + 4, pin, "white", FONT, "end")
         if box.numbers:
             number = str(len(left) + len(right) - place)
-            drawn.text(RIGHT_X - INSIDE, y + 4, number, box.pale, FONT - 1, "end")
+            drawn.text(RIGHT_X - INSIDE, y + 4, number, box.pale, FONT, "end")
         _wire(drawn, RIGHT_X, 1, y, what, off)
 
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """What the display shows on each page of the panel, and which keys lead there."""
 
+from functools import cache
 from typing import NamedTuple
 
 from panel.menu.main import LISTS
@@ -106,6 +107,7 @@ def _picture(title, words, tiles):
     return picture
 
 
+@cache
 def seen(tile):
     """What the display shows then."""
     world = running.panel(ms=tile.ms)
