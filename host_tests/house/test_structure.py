@@ -113,6 +113,7 @@ UNDERSTOOD = (
         "fetched where somebody makes mutants",
     ),
     ("tools/mutating/", 'Import "(tiers|line_notes)', "of the tests, which it runs"),
+    ("tools/web/", 'Import "aiohttp', "fetched where somebody uses --web"),
     ("tools/pc/", "is specified in __all__", "loaded when it is named"),
     ("tools/", 'Import "rich', "fetched where somebody uses tools/uss"),
     ("tools/", 'Import "uss_serial.port', "tools/port, which the package takes in"),

@@ -13,9 +13,10 @@ It knows neither a pipe nor a browser: `lines` and `in_browser` are its ways to 
 import version
 from boards.sim.script import COMMANDS, ORDER, ExpectationFailed, Script, ScriptError
 from boards.sim.setpoint import Untyped
+from panel.keys.compact import FUNCTIONS
 from tools.live.errand import ERRANDS, Errand
 from tools.live.holds import Holds, KeyRefused
-from tools.live.keys import STOP
+from tools.live.keys import LETTERS, STOP
 from tools.live.language import SPEED_MAX, VERSION, Misunderstood, spoken, understood
 from tools.live.pace import UNHEARD_MS, Pace, RealPace
 from tools.live.sights import Sights
@@ -33,6 +34,7 @@ REAL_TIME = "the time of a real line is the real one"
 SPEEDS = "time passes 0...%d times as fast" % SPEED_MAX
 STALE = "the panel stood still: this %s was left out"
 NOBODY = "nobody was heard at the panel for 2 s: every drive was sent OFF1"
+FN = "FN"
 DONE, ENDED = 1, 0
 
 
@@ -250,13 +252,17 @@ class Conversation:
 
     def _greeting(self):
         world = self._world
-        refused = world.refused
+        refused, names = world.refused, list(world.keypad.names)
         return {
             "v": VERSION,
             "version": version.VERSION,
             "place": world.place,
             "real": int(self._is_real),
-            "keys": list(world.keypad.names),
+            "keys": names,
+            "letters": {key: letter for letter, key in LETTERS if key in names},
+            "behind_fn": {
+                key: FUNCTIONS[key][1:] for key in names if FN in names and key in FUNCTIONS
+            },
             "drives": self._sights.addresses(),
             "baud": world.wire.baud,
             "lease_ms": UNHEARD_MS,

@@ -30,7 +30,8 @@ TO_PANEL = {
 # From the panel. Kind: its fields. Those of `ANSWERS` are for one front end, the one of their id.
 FROM_PANEL = {
     "hello": (
-        "v", "version", "place", "real", "keys", "drives", "baud", "lease_ms", "commands",
+        "v", "version", "place", "real", "keys", "letters", "behind_fn", "drives", "baud",
+        "lease_ms", "commands",
     ),
     "state": ("us", "lcd", "down", "shown", "doing"),
     "time": ("us", "speed", "wanted"),

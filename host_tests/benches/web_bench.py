@@ -1,0 +1,271 @@
+# SPDX-License-Identifier: MIT
+"""A real Chromium before the page of ./tools/panel --web.
+
+In use:
+
+    served = pytest.fixture(scope="module")(servers)
+    browser = pytest.fixture(scope="module")(browsers)
+
+    def test_it(served, browser):
+        page = browser.open(served("--drives", "1,2").link, "phone")
+        page.shows("READY")                     # on the display; gives up after a while
+        page.press("START")
+"""
+
+import json
+import shutil
+import signal
+import socket
+import subprocess
+import threading
+import time
+
+import pytest
+
+from conftest import strict
+from program_bench import PANEL, PATIENCE_S, as_in_a_terminal
+from tiers import TOP
+
+NODE = TOP / "build/node/node"
+PACKAGES = TOP / "build/browser"
+DRIVER = TOP / "host_tests/web/driver.mjs"
+CHROMIUMS = ("chromium", "chromium-browser", "google-chrome-stable", "google-chrome")
+PRESS_S = 0.06
+DISPLAY = "#display-text"
+FASTEST, LONG_MS = 20, 3_000
+LONGER = 1.4  # than a key has to be held
+SPEED = 5  # at which scripts are played: the shortest press with the mouse is no longer than a tap
+NOTE_KEYS = """
+    window.noted = 0;
+    const button = document.querySelector(`#keys [data-key=${%s}]`);
+    new MutationObserver(() => {
+      if (!button.classList.contains("down")) window.noted ||= Date.now();
+    }).observe(button, { attributes: true });
+"""
+# Opens a connection, and then says what there is to say: [what came, how it was closed].
+HEARD = """
+    (async () => {
+      const { link, says } = %s;
+      const socket = new WebSocket(link);
+      const heard = [];
+      const closed = new Promise((resolve) => {
+        socket.onclose = (event) => resolve(event.code);
+      });
+      socket.onmessage = ({ data }) => heard.push(JSON.parse(data));
+      await new Promise((resolve) => { socket.onopen = socket.onerror = resolve; });
+      if (socket.readyState === WebSocket.OPEN) says.forEach((one) => socket.send(one));
+      const late = new Promise((resolve) => setTimeout(resolve, 1500, 0));
+      const code = await Promise.race([closed, late]);
+      socket.close();
+      return [heard.filter((one) => one.t === "error").map((one) => one.text), code];
+    })()
+"""
+
+
+def missing():
+    """What the tests in a browser lack; "" if nothing."""
+    if chromium() is None:
+        return "there is no Chromium:  apt-get install chromium"
+    if not (PACKAGES / "node_modules").is_dir():
+        return "build/browser lacks playwright-core:  tools/test fetches it where Chromium is"
+    return ""
+
+
+def chromium():
+    return next(filter(None, map(shutil.which, CHROMIUMS)), None)
+
+
+def require():
+    """Skips the test, or fails it where nothing may be missing."""
+    lack = missing()
+    if lack and strict():
+        pytest.fail(lack)
+    if lack:
+        pytest.skip(lack)
+
+
+class Served:
+    """./tools/panel --web. link: what it has printed."""
+
+    def __init__(self, *options):
+        self.process = subprocess.Popen(
+            [PANEL, "--web", *options],
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            text=True,
+            preexec_fn=as_in_a_terminal,
+        )
+        said = self.process.stdout.readline()
+        assert "http://" in said, said + self.process.stderr.read()
+        self.link = said.split(": ", 1)[1].strip()
+        self.base, _, self.token = self.link.partition("#")
+
+    def ends(self, number=signal.SIGINT):
+        self.process.send_signal(number)
+        return self.process.wait(PATIENCE_S)
+
+
+class Browser:
+    """Chromium, and pages in it, each in a window of its own."""
+
+    def __init__(self):
+        self.process = subprocess.Popen(
+            [NODE, DRIVER, chromium(), PACKAGES],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+        )
+
+    def open(self, link, size="desktop", motion="reduce"):
+        """motion: "reduce", or None: motors turn, which costs much of a processor."""
+        return Page(self, self.call(None, "open", link, size, motion))
+
+    def call(self, page, deed, *values):
+        line = json.dumps({"page": page, "do": deed, "with": values})
+        self.process.stdin.write(line + "\n")
+        self.process.stdin.flush()
+        answer = json.loads(self.process.stdout.readline())
+        assert "error" not in answer, (deed, values, answer["error"])
+        return answer["value"]
+
+    def close(self):
+        self.process.stdin.close()
+        self.process.wait(PATIENCE_S)
+
+
+class Page:
+    def __init__(self, browser, number):
+        self.browser = browser
+        self.number = number
+
+    def __getattr__(self, deed):
+        """A deed of driver.mjs."""
+        return lambda *values: self.browser.call(self.number, deed, *values)
+
+    def shows(self, text, where=DISPLAY, patience_s=PATIENCE_S):
+        try:
+            self.browser.call(self.number, "shows", where, text, int(patience_s * 1000))
+        except AssertionError:
+            raise AssertionError((text, self.text(where))) from None
+
+    def press(self, key, s=PRESS_S):
+        """A press with the mouse, as short as a person makes one."""
+        self.hold(f"#keys [data-key={key}]")
+        time.sleep(s)
+        self.letGo()
+
+    def plays(self, script):
+        """Do what a script of tools/examples does, with the mouse, at high speed."""
+        self.choose("#speed", str(SPEED))
+        for line in (TOP / "tools/examples" / script).read_text().splitlines():
+            word, _, rest = line.partition("#")[0].strip().partition(" ")
+            if word == "press":
+                self.press(rest, 0)
+            elif word == "hold":
+                key, ms = rest.split()
+                self.press(key, int(ms) / 1000 / SPEED * LONGER)
+            elif word == "wait":
+                self._waits(int(rest))
+            elif word == "expect":
+                self.shows(rest)
+            elif word not in ("", "lcd", "drive"):
+                self.does(line)
+        self.choose("#speed", "1")
+
+    def _waits(self, ms):
+        """So much of the panel's time; a long one passes faster."""
+        speed = FASTEST if ms >= LONG_MS else SPEED
+        if speed != SPEED:
+            self.choose("#speed", str(speed))
+        time.sleep(ms / 1000 / speed)
+        if speed != SPEED:
+            self.choose("#speed", str(SPEED))
+
+    def notes_keys(self, key):
+        """From now on `noted` tells when this key came up, whoever held it."""
+        self.run(NOTE_KEYS % json.dumps(key))
+
+    def noted(self):
+        """Seconds since 1970."""
+        deadline = time.monotonic() + PATIENCE_S
+        while not (ms := self.run("window.noted")):
+            assert time.monotonic() < deadline
+            time.sleep(0.02)
+        return ms / 1000
+
+    def hears(self, source):
+        """What became of a connection of its own that this page opened: `HEARD`."""
+        return self.run(HEARD % source)
+
+    def type(self, letter):
+        self.keyDown(letter)
+        time.sleep(PRESS_S)
+        self.keyUp(letter)
+
+    def does(self, command):
+        """A command of the script language."""
+        self.fill("#command", command)
+        self.click("#command-form button")
+
+    def display(self):
+        return self.text(DISPLAY)
+
+
+def servers():
+    """A fixture: makes `Served`, and ends them."""
+    require()
+    made = []
+
+    def make(*options):
+        made.append(Served(*options))
+        return made[-1]
+
+    yield make
+    for one in made:
+        if one.process.poll() is None:
+            one.ends()
+
+
+def browsers():
+    """A fixture: a `Browser`."""
+    require()
+    browser = Browser()
+    yield browser
+    browser.close()
+
+
+class Cable:
+    """Between a browser and a server: what it carries, until somebody pulls it."""
+
+    def __init__(self, base):
+        self._far = ("127.0.0.1", int(base.rstrip("/").rpartition(":")[2]))
+        self._is_pulled = False
+        self._near = socket.create_server(("127.0.0.1", 0))
+        self.base = "http://127.0.0.1:%d/" % self._near.getsockname()[1]
+        threading.Thread(target=self._accept, daemon=True).start()
+
+    def pull(self):
+        """Nothing passes any more, and nobody is told."""
+        self._is_pulled = True
+
+    def close(self):
+        self._near.close()
+
+    def _accept(self):
+        while True:
+            try:
+                one, _ = self._near.accept()
+            except OSError:
+                return
+            other = socket.create_connection(self._far)
+            for way in ((one, other), (other, one)):
+                threading.Thread(target=self._carry, args=way, daemon=True).start()
+
+    def _carry(self, source, sink):
+        try:
+            while data := source.recv(65_536):
+                if not self._is_pulled:
+                    sink.sendall(data)
+            sink.shutdown(socket.SHUT_WR)
+        except OSError:
+            pass
