@@ -240,6 +240,7 @@ class Cable:
     def __init__(self, base):
         self._far = ("127.0.0.1", int(base.rstrip("/").rpartition(":")[2]))
         self._is_pulled = False
+        self._ends = []
         self._near = socket.create_server(("127.0.0.1", 0))
         self.base = "http://127.0.0.1:%d/" % self._near.getsockname()[1]
         threading.Thread(target=self._accept, daemon=True).start()
@@ -247,6 +248,11 @@ class Cable:
     def pull(self):
         """Nothing passes any more, and nobody is told."""
         self._is_pulled = True
+
+    def reset(self):
+        """Ends the connections that there are; new ones are carried."""
+        for one in self._ends:
+            one.close()
 
     def close(self):
         self._near.close()
@@ -258,6 +264,7 @@ class Cable:
             except OSError:
                 return
             other = socket.create_connection(self._far)
+            self._ends += [one, other]
             for way in ((one, other), (other, one)):
                 threading.Thread(target=self._carry, args=way, daemon=True).start()
 
