@@ -22,8 +22,6 @@ MICROPYTHON = PACKAGES / "@micropython/micropython-webassembly-pyscript"
 INTERPRETER = ("micropython.mjs", "micropython.wasm")
 SOURCES = ("firmware", "boards/sim", "tools/live", "tools/driving/decoding.py")
 ENDINGS = (".py", ".tsv")
-# Of tools/live only what needs no terminal.
-LIVE = ("conversation", "errand", "hand", "holds", "in_browser", "language", "pace", "sights")
 KIT = "firmware.json"
 MARK = ".uss-panel"  # lies in a folder that this has made, and that it may make anew
 LINK = 'name="link" content="%s"'
@@ -87,6 +85,5 @@ def sources():
     for place in SOURCES:
         path = TOP / place
         for file in sorted(path.rglob("*")) if path.is_dir() else [path]:
-            is_wanted = path.name != "live" or file.stem in LIVE
-            if file.suffix in ENDINGS and is_wanted:
+            if file.suffix in ENDINGS:
                 yield file.relative_to(TOP).as_posix(), file.read_text(encoding="utf-8")
