@@ -148,7 +148,7 @@ def test_every_option_of_a_command_is_one_of_its_own():
     for manual, command in commands():
         found = re.match(r"\./tools/([\w-]+) (.*)", command)
         if found and found[1] in NAMES:
-            known = options(found[1]) | {"--help", "--version", "--web"}
+            known = options(found[1]) | {"--help", "--version"}
             for option in re.findall(rf"(?<!\S)({OPTION})", found[2]):
                 count += 1
                 assert option in known, (manual, command)
