@@ -26,6 +26,7 @@ from tools.benching import beside_s7, report  # noqa: E402
 from tools.benching.rows import ROWS, TASKS, names  # noqa: E402
 from tools.command_line import Parser  # noqa: E402
 from tools.pictures.bench import bench  # noqa: E402
+from tools.progress import Progress  # noqa: E402
 
 LAUNCH = [sys.executable, "-I", "-B", "tools/emulator/launch.py"]
 MICROPYTHON = ["build/unix64/micropython", "-X"]
@@ -105,12 +106,14 @@ def understood(said, status):
 def measure_all(tasks, quick):
     """{task: figures}; runs the long tasks first. Tells errors at once."""
     figures = {}
+    progress = Progress(len(tasks))
     with concurrent.futures.ThreadPoolExecutor(AT_A_TIME) as pool:
         running = {pool.submit(measure, task, quick): task for task in tasks}
         for done in concurrent.futures.as_completed(running):
             task = running[done]
             figures[task] = done.result()
-            print("    " + " ".join(task.command), file=sys.stderr, flush=True)
+            line = f"    {' '.join(task.command)}  {progress.line(len(figures))}"
+            print(line, file=sys.stderr, flush=True)
             if "error" in figures[task]:
                 print(figures[task].get("said", figures[task]["error"]), file=sys.stderr)
     return figures

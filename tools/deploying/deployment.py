@@ -26,6 +26,7 @@ from tools.deploying.plan import (
     sha256,
     write_list,
 )
+from tools.progress import Progress
 
 OLDEST = (1, 25)
 STOPPED = "USS panel: stopped"  # how the line begins that firmware/main.py prints
@@ -224,10 +225,14 @@ class Deployment:
         for path in sorted({*plan.remove} | main, key=lambda path: (path != MAIN, path)):
             self.say(f"remove  {path}")
             self.chip.call("remove", path)
-        for path, data in plan.copy.items():
-            if path not in (MAIN, GATE):
-                self.say(f"copy    {path}  {len(data)} bytes")
-                self._put(path, data)
+        files = [path for path in plan.copy if path not in (MAIN, GATE)]
+        progress, sent = Progress(sum(len(plan.copy[path]) for path in files)), 0
+        for number, path in enumerate(files, 1):
+            data = plan.copy[path]
+            far = ", ".join(filter(None, (f"{number} of {len(files)}", progress.left(sent))))
+            self.say(f"copy    {path}  {len(data)} bytes, {far}")
+            self._put(path, data)
+            sent += len(data)
         self._verify(plan.files, [path for path in plan.files if path not in (MAIN, GATE)])
         if MAIN in plan.files:
             self.say(f"copy    {MAIN}  {len(plan.files[MAIN])} bytes")

@@ -14,15 +14,41 @@ say() {
 }
 
 # quietly LOG COMMAND...
-#   Runs the command with its output in LOG; when it fails, shows what it said last.
+#   Runs the command with its output in LOG; when it fails, shows what it said last. Meanwhile a
+#   terminal is told how far it is.
 quietly() {
-    local log=$1
+    local log=$1 watch= status=0
     shift
-    "$@" >"$log" 2>&1 && return
+    if [[ -t 2 ]]; then
+        tell_how_far "$log" "$$" 9>&- &
+        watch=$!
+    fi
+    "$@" >"$log" 2>&1 || status=$?
+    if [[ -n $watch ]]; then
+        kill "$watch" 2>/dev/null
+        wait "$watch" 2>/dev/null || :
+        printf '\r\033[K' >&2
+    fi
+    ((status)) || return 0
     say "    that failed:"
     tail -n 8 "$log" | sed 's/^/    /' >&2
     return 1
 }
+
+# tell_how_far LOG PROCESS: a line that is written over once a second, as long as the process is
+# there: "412 of 980, 35 s left", where the log counts as ninja does, or the seconds.
+tell_how_far() {
+    local began=$SECONDS counted took far
+    while sleep 1 && kill -0 "$2"; do
+        took=$((SECONDS - began))
+        counted=$(tail -n 1 "$1" | sed -n 's/^\[\([0-9]*\)\/\([0-9]*\)\].*/\1 \2/p')
+        far="$took s"
+        if [[ -n $counted && ${counted% *} -gt 0 ]]; then
+            far="${counted% *} of ${counted#* }, $((took * (${counted#* } - ${counted% *}) / ${counted% *})) s left"
+        fi
+        printf '\r\033[K    %s' "$far" >&3
+    done
+} 3>&2 2>/dev/null
 
 # fill NAME IS_WHOLE MAKE...
 #   Sees to it that build/NAME is whole. `IS_WHOLE FOLDER` judges; `MAKE... FOLDER` makes it in an

@@ -22,6 +22,7 @@ from pathlib import Path
 sys.path[0] = str(Path(__file__).resolve().parents[2])
 
 from tools.command_line import Parser  # noqa: E402
+from tools.progress import Progress  # noqa: E402
 from tools.soaking import interpreters  # noqa: E402
 from tools.soaking.interpreters import CPYTHON, NAMES, PYPY, TOP  # noqa: E402
 
@@ -155,9 +156,11 @@ class Worker:
 class Tally:
     """What has been done so far."""
 
-    def __init__(self, count):
+    def __init__(self, count, seed_s):
         self.count = count
+        self.seed_s = seed_s  # virtual time of each
         self.began = time.monotonic()
+        self.progress = Progress(count)
         self.running = {}  # worker -> virtual seconds of its present seed
         self.done = 0
         self.seconds = 0
@@ -180,9 +183,12 @@ class Tally:
                 self.broken.append(what)
 
     def line(self):
-        seconds = self.seconds + sum(self.running.values())
-        return "%d of %d seeds, %.1f h of virtual time, %d times real time, %d broken" % (
-            self.done, self.count, seconds / 3600, seconds / self.took_s(), len(self.broken),
+        running = sum(self.running.values())
+        seconds = self.seconds + running
+        left = self.progress.left(self.done + running / self.seed_s)
+        return "%d of %d seeds, %s%.1f h of virtual time, %d times real time, %d broken" % (
+            self.done, self.count, left and left + ", ", seconds / 3600,
+            seconds / self.took_s(), len(self.broken),
         )  # fmt: skip
 
     def took_s(self):
@@ -253,7 +259,7 @@ def soak(wanted):
     troubles, roams = 1 + wanted.two_troubles, 1 - wanted.at_home
     arguments = ["soak", wanted.minutes, wanted.drives or 0, troubles, roams]
     workers, said = start(wanted, arguments)
-    tally = Tally(wanted.seeds)
+    tally = Tally(wanted.seeds, 60 * wanted.minutes)
     crashed = 0
     for worker, what in sayings(workers, said):
         tally.take(worker, what)
