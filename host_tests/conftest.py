@@ -13,7 +13,8 @@ module level:
     INTERPRETERS = "pico pico_hard"     # ... on both builds: with soft timers and with hard ones
     INTERPRETERS = "host"               # an ordinary pytest file, with fixtures and all
 
-On CPython the lines of the firmware that run are noted (cpython/line_notes.py).
+With --coverage the lines of the firmware that run on CPython are noted (cpython/line_notes.py).
+-k passes over files that it cannot mean (selection.py).
 """
 
 import ast
@@ -30,9 +31,11 @@ import pytest
 
 from line_coverage import LineCoverage
 from ordinary import OrdinaryRun, Teller
-from tiers import TIERS, TOP, FileRun, Survey, interpreters, survey
+from selection import Selection, files_of
+from tiers import COVERAGE, ENVIRONMENT, TIERS, TOP, FileRun, Survey, interpreters, survey
 
 SURVEY = pytest.StashKey()
+SELECTION = pytest.StashKey()
 POOL = pytest.StashKey()
 
 
@@ -43,14 +46,50 @@ def pytest_addoption(parser):
     parser.addini("function_timeout_s", "a test function without a verdict for so long is hung")
     only = "runs this test and tells of it: so the pool runs ordinary files (ordinary.py)"
     parser.addoption("--only", action="append", metavar="NODEID", help=only)
+    lines = "shows which lines of the firmware the tests on CPython ran"
+    parser.addoption("--coverage", action="store_true", help=lines)
 
 
 def pytest_configure(config):
     only = config.option.only
     if only:
         config.pluginmanager.register(Teller(config, only))
-    config.stash[SURVEY] = Survey({}, {}) if only else survey()
+    if config.option.coverage:
+        ENVIRONMENT[COVERAGE] = "1"  # of the processes that run the tests
+    config.stash[SELECTION] = selection(config)
+    config.stash[SURVEY] = Survey({}, {}) if only else survey(tiers_that_may_run(config))
     config.stash[POOL] = Pool(config)
+
+
+def selection(config):
+    """By what -k says; None where nothing is passed over: the tiers all have to be there, or
+    somebody wants to see what is not chosen as well.
+    """
+    if strict() or not config.option.keyword:
+        return None
+    try:
+        return Selection(config.option.keyword)
+    except ValueError:
+        return None  # pytest says what is wrong
+
+
+def tiers_that_may_run(config):
+    chosen = config.stash[SELECTION]
+    if chosen is None:
+        return TIERS
+    return {tier for path in files_of(config.args) for tier in chosen.tiers(path)}
+
+
+def pytest_ignore_collect(collection_path, config):
+    """A file whose tests -k cannot mean is not read. One that is named is."""
+    chosen = config.stash[SELECTION]
+    if chosen is None or collection_path.suffix != ".py" or _is_named(collection_path, config):
+        return None
+    return not chosen.may_run(collection_path) or None
+
+
+def _is_named(path, config):
+    return any(Path(word.partition("::")[0]).resolve() == path for word in config.args)
 
 
 def pytest_report_header(config):

@@ -33,6 +33,7 @@ SURVEY_TIMEOUT_S = 20
 # A copy: pytest changes the environment in one thread while processes start in others, and a new
 # process that is handed the living environment at that instant is not started (EFAULT).
 ENVIRONMENT = dict(os.environ)
+COVERAGE = "USS_COVERAGE"  # there: the lines that run are noted
 OUTPUT_LIMIT = 10_000_000  # characters that one function may print
 REPORT = re.compile(rf"{MARK}(\w+) ?(.*)\n")
 
@@ -104,12 +105,16 @@ class Survey(NamedTuple):
     missing: dict[str, str]  # the others -> why
 
 
-def survey() -> Survey:
-    """Asks every tier what it is, and so learns which are here and are what they promise."""
+def survey(names=TIERS) -> Survey:
+    """Asks these tiers what they are, and so learns which are here and are what they promise."""
     found = Survey({}, {})
+    wanted = {name: tier for name, tier in TIERS.items() if name in names}
     with ThreadPoolExecutor() as pool:
-        asked = {name: pool.submit(_ask, tier) for name, tier in TIERS.items() if not tier.twin}
-    for name, tier in TIERS.items():
+        asked = {
+            name: pool.submit(_ask, TIERS[name])
+            for name in {tier.twin or name for name, tier in wanted.items()}
+        }
+    for name, tier in wanted.items():
         is_here, line = asked[tier.twin or name].result()
         (found.versions if is_here else found.missing)[name] = line
     return found

@@ -106,7 +106,7 @@ def test_the_second_command_is_what_the_check_on_a_fresh_clone_calls():
     command = indented(section("README.md", "Two commands"))[2].strip()
     assert command == "./tools/test"
     last = text(".ci/run").rstrip().splitlines()[-1]
-    assert last.endswith('exec tools/test "$@"')
+    assert last.endswith('exec tools/test --coverage "$@"')
 
 
 # ---- links ----------------------------------------------------------------------------------

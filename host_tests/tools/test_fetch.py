@@ -321,7 +321,8 @@ def test_the_lines_that_the_tests_of_a_file_ran_are_noted(run_pytest):
     more = "def test_b(): assert elapsed(3, 1, 255) == 2\n"
 
     def lines_not_run(source):
-        run = run_pytest(source)
+        assert "line coverage" not in run_pytest(source).stdout
+        run = run_pytest(source, "--coverage")
         assert " passed" in run.stdout, run.stdout
         row = next(row for row in run.stdout.splitlines() if "uss/timing.py" in row)
         return int(row.split()[2])
