@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """How far long work is, and how long the rest will take.
 
-    progress = Progress(20)                     # pieces of work, or bytes
-    progress.line(3)                            # 3 of 20, 1:40 min left
+progress = Progress(20)                     # pieces of work, or bytes
+progress.line(3)                            # 3 of 20, 1:40 min left
 """
 
 import time

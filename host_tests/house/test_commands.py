@@ -61,6 +61,7 @@ ELSEWHERE = {
     "./tools/panel --script": "test_key_scripts.py, test_first_power_on.py, test_manuals.py",
     "./tools/panel --unset --baud 38400": "test_first_power_on.py",
     "./tools/panel --web": "test_page.py, test_page_static.py",
+    "./tools/release": "test_release.py",
     "./tools/settings": "test_settings_command.py",
     "./tools/soak": "test_soak_command.py",
     "./tools/test": "it is what runs this",
@@ -70,6 +71,7 @@ ELSEWHERE = {
     "python3 tools/emulator/launch.py": "test_pico_command.py",
     "python3 tools/pictures": "test_pictures.py",
     "python3 tools/reference": "test_reference.py",
+    "python3 tools/releasing/mip.py": "test_release.py",
 }
 
 

@@ -820,7 +820,7 @@ def test_uf2_tells_where_the_file_is_and_how_it_gets_onto_the_pico(pico, tmp_pat
 
 
 COMMANDS = "panel drive example test soak mutants bench uf2 deploy check-board bringup".split()
-COMMANDS += "uss settings".split()
+COMMANDS += "uss settings release".split()
 
 
 @pytest.mark.parametrize("command", COMMANDS)

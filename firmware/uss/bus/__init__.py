@@ -873,6 +873,13 @@ class Master:
                 self._link.bus = None
 
 
+def help():
+    """Print every verb of a bus and of a drive."""
+    from uss.bus import verbs  # here, because a program does without
+
+    verbs.tell()
+
+
 def _check_kind(kind):
     if kind not in (None, int, float):
         raise ValueError("kind is int or float, not %r" % (kind,))

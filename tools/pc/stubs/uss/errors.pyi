@@ -1,0 +1,19 @@
+# SPDX-License-Identifier: MIT
+from typing import Any
+
+WHY_SILENT: dict[int, str]
+
+class UssError(Exception): ...
+
+class NoContact(UssError):
+    trouble: int | None
+    def __init__(self, text: str, trouble: int | None = None) -> None: ...
+
+class TimedOut(UssError): ...
+class FallsSilent(TimedOut): ...
+class NotStarted(UssError): ...
+
+class Refused(UssError):
+    number: int
+    job: Any
+    def __init__(self, text: str, job: Any) -> None: ...
