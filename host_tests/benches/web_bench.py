@@ -4,7 +4,8 @@
 In use:
 
     served = pytest.fixture(scope="module")(servers)
-    browser = pytest.fixture(scope="module")(browsers)
+    chromium = pytest.fixture(scope="module")(browsers)
+    browser = pytest.fixture(swept)
 
     def test_it(served, browser):
         page = browser.open(served("--drives", "1,2").link, "phone")
@@ -227,11 +228,17 @@ def servers():
 
 
 def browsers():
-    """A fixture: a `Browser`."""
+    """A fixture: a `Browser`, for all tests of a file."""
     require()
     browser = Browser()
     yield browser
     browser.close()
+
+
+def swept(chromium):
+    """A fixture: that one; what a test leaves open is closed."""
+    yield chromium
+    chromium.call(None, "sweep")
 
 
 class Cable:

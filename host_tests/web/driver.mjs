@@ -65,6 +65,12 @@ const shows = ([selector, text]) =>
     [textContent, textContent.split(/\s+/).join(" ")].some((one) => one.includes(text)),
   );
 
+// Closes what a test has left open.
+async function sweep() {
+  for (const { context } of pages.values()) await context.close();
+  pages.clear();
+}
+
 const DEEDS = {
   goto: ({ page }, url) => page.goto(url),
   reload: ({ page }) => page.reload(),
@@ -99,9 +105,6 @@ const DEEDS = {
   cut: ({ context }, isCut) => context.setOffline(isCut),
   shot: ({ page }, path, fullPage) => page.screenshot({ path, fullPage }),
   complaints: ({ complaints }) => complaints,
-  async freeze({ session }) {
-    await session.send("Page.setWebLifecycleState", { state: "frozen" });
-  },
   async axe({ page, session }) {
     // In this way it may run, although the page allows no scripts but its own.
     await session.send("Runtime.evaluate", { expression: readFileSync(AXE, "utf8") });
@@ -115,8 +118,8 @@ for await (const line of createInterface({ input: process.stdin })) {
   let answer;
   try {
     const value =
-      call.do === "open"
-        ? await open(...call.with)
+      call.page === null
+        ? await { open, sweep }[call.do](...call.with)
         : await DEEDS[call.do](pages.get(call.page), ...call.with);
     answer = { value: ["goto", "reload"].includes(call.do) ? null : (value ?? null) };
   } catch (error) {

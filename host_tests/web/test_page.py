@@ -6,12 +6,13 @@ import time
 import pytest
 
 import web_bench
-from web_bench import browsers, servers
+from web_bench import browsers, servers, swept
 
 INTERPRETERS = "host"
 
 served = pytest.fixture(scope="module")(servers)
-browser = pytest.fixture(scope="module")(browsers)
+chromium = pytest.fixture(scope="module")(browsers)
+browser = pytest.fixture(swept)
 SIZES = ("desktop", "phone")
 STATE = ".drive .state"
 

@@ -11,11 +11,12 @@ import pytest
 import web_bench
 from program_bench import PANEL
 from tiers import TOP
-from web_bench import browsers
+from web_bench import browsers, swept
 
 INTERPRETERS = "host"
 
-browser = pytest.fixture(scope="module")(browsers)
+chromium = pytest.fixture(scope="module")(browsers)
+browser = pytest.fixture(swept)
 
 
 class Quiet(http.server.SimpleHTTPRequestHandler):
