@@ -97,7 +97,7 @@ const DEEDS = {
     await session.send("Input.dispatchTouchEvent", { type, touchPoints });
   },
   shows: async ({ page }, selector, text, patience) => {
-    await page.waitForFunction(shows, [selector, text], { polling: 20, timeout: patience });
+    await page.waitForFunction(shows, [selector, text], { polling: 50, timeout: patience });
   },
   text: ({ page }, selector) => page.textContent(selector),
   visible: ({ page }, selector) => page.isVisible(selector),

@@ -13,12 +13,11 @@ export class Telegrams {
     this.rows = [];
     this.latest = new Map(); // who talks to whom -> its row
     this.isHeld = false;
-    this.isStale = false;
+    this.changed = new Set(); // rows that are not drawn as they are
     pause.addEventListener("click", () => {
       this.isHeld = !this.isHeld;
       pause.setAttribute("aria-pressed", String(this.isHeld));
       pause.textContent = this.isHeld ? "Go on" : "Pause";
-      this.isStale = true;
     });
     showHex.addEventListener("change", () => body.classList.toggle("with-hex", showHex.checked));
     setInterval(() => this.draw(), DRAW_MS);
@@ -27,34 +26,41 @@ export class Telegrams {
   forget() {
     this.rows = [];
     this.latest.clear();
-    this.isStale = true;
+    this.changed.clear();
+    this.body.replaceChildren();
   }
 
   add(telegram) {
     const who = telegram.from + partner(telegram.hex);
-    const row = this.latest.get(who);
+    let row = this.latest.get(who);
     if (row?.hex === telegram.hex && this.rows.includes(row)) {
       row.times += 1;
       row.us = telegram.us;
     } else {
-      const fresh = { ...telegram, times: 1 };
-      this.latest.set(who, fresh);
-      this.rows.push(fresh);
-      if (this.rows.length > ROWS_MAX) this.rows.shift();
+      row = { ...telegram, times: 1, element: null };
+      this.latest.set(who, row);
+      this.rows.push(row);
+      if (this.rows.length > ROWS_MAX) this.changed.add(this.rows.shift());
     }
-    this.isStale = true;
+    this.changed.add(row);
   }
 
+  // Touches what has changed alone: a table is dear.
   draw() {
-    if (this.isHeld || !this.isStale) return;
-    this.isStale = false;
-    const rows = this.rows.toReversed().map((row) => {
-      const line = (row.element ??= element(row));
-      line.cells[0].textContent = (row.us / 1e6).toFixed(3);
-      line.cells[3].textContent = row.times > 1 ? `${row.times} x` : "";
-      return line;
-    });
-    this.body.replaceChildren(...rows);
+    if (this.isHeld) return;
+    for (const row of this.changed) {
+      if (!this.rows.includes(row)) {
+        row.element?.remove();
+        continue;
+      }
+      if (!row.element) {
+        row.element = element(row);
+        this.body.prepend(row.element);
+      }
+      row.element.cells[0].textContent = (row.us / 1e6).toFixed(3);
+      row.element.cells[3].textContent = row.times > 1 ? `${row.times} x` : "";
+    }
+    this.changed.clear();
   }
 }
 
