@@ -174,7 +174,19 @@ pico_configuration() {
 # lines that a running panel misses there two in five were of these functions. They take 2.5 KB; all
 # but mp_binary_op, which came later, make a step of the main loop a quarter shorter.
 pico_often="mp_setup_code_state_helper nlr_push nlr_push_tail nlr_pop mp_obj_class_lookup
-    mp_load_method_maybe bound_meth_call mp_cstack_usage mp_cstack_check mp_binary_op"
+    mp_load_method_maybe bound_meth_call mp_cstack_usage mp_cstack_check mp_binary_op
+    array_get_buffer array_subscr dict_get_helper find_qstr fun_bc_call fun_builtin_1_call
+    fun_builtin_var_call fun_viper_call gc_lock gc_unlock machine_uart_any
+    mp_call_function_1 mp_call_function_n_kw mp_call_method_n_kw mp_call_method_self_n_kw
+    mp_convert_member_lookup mp_decode_uint mp_decode_uint_skip mp_decode_uint_value
+    mp_execute_bytecode mp_get_buffer mp_get_index mp_irq_handler mp_load_attr
+    mp_load_global mp_load_method mp_load_name mp_machine_uart_read mp_map_lookup
+    mp_native_type_from_qstr mp_obj_equal mp_obj_get_array_fixed_n mp_obj_get_int
+    mp_obj_get_type mp_obj_instance_attr mp_obj_is_subclass_fast mp_obj_is_true
+    mp_obj_new_int mp_obj_subscr mp_sched_lock mp_sched_unlock mp_setup_code_state
+    mp_small_int_floor_divide mp_store_attr mp_stream_rw mp_unary_op qstr_hash
+    stream_readinto time_ticks_us type_attr uart1_irq_handler uart_drain_rx_fifo
+    uart_fill_tx_fifo uart_service_interrupt"
 
 # ---- the compilation --------------------------------------------------------------------------
 
