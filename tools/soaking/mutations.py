@@ -1188,4 +1188,65 @@ MUTATIONS = (
             "        elif self._phase == TYPES:\n",
         ),
     ),
+    Mutation(
+        "goes on though somebody calls",
+        "the telegram that was made ready goes out though the program has taken ON back",
+        ("STOP", "TURNS", "START"), 1,
+        ("uss/going_on/viper.py", "    return attention[96] == 0  # ANY\n", "    return True\n"),
+        ("uss/going_on/python.py", "    return attention[ANY] == 0\n", "    return True\n"),
+    ),
+    Mutation(
+        "goes on without a check",
+        "the next telegram follows what is no reply",
+        ("WITHOUT REASON", "SHOWN", "LOST", "START", "STOP"), 1,
+        (
+            "uss/going_on/viper.py",
+            "    if check != 0 or differs == 0:\n        return False\n",
+            "",
+        ),
+        (
+            "uss/going_on/python.py",
+            "    if not is_reply(reply, count, request) or"
+            " agreeing(reply, 0, request, 0, count) == count:\n        return False\n",
+            "",
+        ),
+    ),
+    Mutation(
+        "goes on beside bad news",
+        "a drive that trips or stops by itself is sent ON once more",
+        ("STOP", "TURNS", "START"), 1,
+        ("uss/going_on/viper.py", "& 0x4C:  # PLAN_ZSW", "& 0:"),
+        ("uss/going_on/python.py", "^ plan[PLAN_ZSW]) & MOTION:", "^ plan[PLAN_ZSW]) & 0:"),
+    ),
+    Mutation(
+        "goes on with what was ready before",
+        "an entry into the engine leaves the telegram that was made ready",
+        ("STOP", "WATCHDOG"), 3,
+        (
+            "uss/going_on/master.py",
+            "        self._link.take_back()\n        due_us",
+            "        due_us",
+        ),
+    ),
+    Mutation(
+        "goes on to a drive that moved",
+        "the telegram that was made ready goes to the old address, or to a drive that was removed",
+        ("LIST", "LAYOUT", "STOP", "TELEGRAM"), 1,
+        (
+            "uss/turns.py",
+            "        self.attention[ANY] = 1  # the next telegram is perhaps made ready, for this"
+            " drive\n",
+            "",
+        ),
+    ),
+    Mutation(
+        "goes on for a dead loop",
+        "the telegram that was made ready carries ON though the loop has stood still for 300 ms",
+        ("DEAD MAN",), 1,
+        (
+            "uss/going_on/master.py",
+            "        if (now - self._refreshed_at) & self._mask > left_us:\n            return\n",
+            "",
+        ),
+    ),
 )  # fmt: skip

@@ -19,11 +19,13 @@ import main
 import on_demand
 import tools.soaking.technician  # noqa: F401
 import tools.soaking.worlds  # noqa: F401
+import uss.drive
 from tools.soaking.hand import Hand
 from tools.soaking.judging.judge import Judge
 from tools.soaking.judging.reader import Reader
 from tools.soaking.judging.rules import Broken
 from tools.soaking.weather import Weather
+from tools.soaking.withdrawn import Withdrawn
 from tools.soaking.worlds import Plan, SoakWorld
 
 LOADED_FIRST = tuple(sys.modules)
@@ -57,6 +59,7 @@ class Soak:
         self.plan = plan = Plan(seed, drives, troubles, roams)
         self.world = world = SoakWorld(main.start, plan)
         self.judge = judge = Judge(world, plan)
+        Withdrawn(uss.drive.Drive, judge.tape, world.clock)
         self.reader = reader = Reader(world, plan, judge.witness)
         self.weather = judge.witness.weather = weather = Weather(world, plan)
         self.hand = Hand(world, plan, judge, reader, weather)

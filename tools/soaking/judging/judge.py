@@ -370,6 +370,8 @@ class Judge:
             high = tape.word(row, 2) if task in DOUBLES else 0
             value = tape.word(row, 2 if pkw_words == 3 else 3)
             self._judge_task(task, pke & 0x7FF, index, (high, value), now, address)
+        if stw & RUN and tape.withdrawn[row]:
+            raise Broken("STOP", "drive %d gets %04X after ON was taken back" % (address, stw))
         if not stw & RUN:
             if hsw:
                 raise Broken("SETPOINT", "%04X with OFF" % hsw)

@@ -34,6 +34,8 @@ class Tape:
     after the request it began, and `flawless`: nothing was heard in between, and no character came
     with an error.
 
+    withdrawn_now   by address, whether the program has taken ON back from the drive; of a request,
+                  `withdrawn` says whether it had when that began
     telegrams     ever
     sent_us       when the last request began
     blurred_us    the end of the last telegram that somebody talked into
@@ -51,6 +53,8 @@ class Tape:
         self.delay_us = [0] * LENGTH
         self.flawless = bytearray(LENGTH)
         self.count = bytearray(LENGTH)
+        self.withdrawn = bytearray(LENGTH)
+        self.withdrawn_now = bytearray(NODE_MAX + 1)
         self._data = bytearray(SIZE * LENGTH)
         self.silence_us = [0] * LENGTH
         self.telegrams = 0
@@ -87,6 +91,13 @@ class Tape:
         """Whether all net data are zeros."""
         at = SIZE * row
         return not any(self._data[at : at + 2 * self.count[row]])
+
+    def too_late(self, address, now_us):
+        """If the last telegram is one to this drive and began just now, it should not have."""
+        row = (self.telegrams - 1) % LENGTH
+        if self.kind[row] == REQUEST and self.address[row] == address:
+            if self.at_us[row] == now_us:
+                self.withdrawn[row] = 1
 
     def is_settled(self, row, now_us):
         """Whether nothing can come behind this reply any more that would spoil it."""
@@ -166,6 +177,7 @@ class Tape:
         self.flawless[index] = burst.errors is None and burst.silence_us + ROUNDING_US >= delay_us
         self.kind[index] = kind
         self.address[index] = address = data[2] & NODE_MAX
+        self.withdrawn[index] = self.withdrawn_now[address]
         self.count[index] = 0
         net_count = count - FRAME
         is_frame = net_count > 0 and not count & 1 and data[0] == STX and data[1] == count - 2
