@@ -18,7 +18,8 @@ import on_demand
 import uss.fast  # noqa: F401
 from uss.timing import Timing, elapsed
 from uss.drive import Drive
-from uss.master import Master
+import uss.master  # noqa: F401
+from uss.going_on import master_of
 from uss.leave import leave, persist
 import uss.survey  # noqa: F401
 from hal.pacer import Pacer
@@ -33,7 +34,8 @@ from panel.screen import GLYPHS
 _FINDER = ("uss.finding", "uss.finding.mirror", "uss.finding.finder")
 _FAREWELL_STEPS = const(100)  # for the display to show that nothing is controlled any more
 _SAVE_AGAIN_MS = const(10_000)  # after the store failed
-_LONG_US = const(700)  # a step that has taken so long is not to do two more things
+_LONG_US = const(500)  # a step that has taken so long is not to do two more things
+_ENOUGH_US = const(1_500)  # if the panel has taken so long, the step is over
 _FULL_US = const(2_000)  # after so long, what can wait does
 _SHORT_US = const(700)  # one that has taken no longer has time for a piece of the log
 _SILENCES = const(3)  # telegrams without an answer, then somebody looks for another layout
@@ -54,7 +56,7 @@ class App:
         mask = board.clock.ticks_mask
         self.link = board.make_link(settings.baud)
         timing = Timing(settings.baud, settings.reply_timeout_ms * 1000)
-        self.bus = Master(self.link, timing, mask, settings.lost_ms * 1000)
+        self.bus = master_of(self.link, timing, mask, settings.lost_ms * 1000)
         self._finder = None
         self._doubts = Drive.doubts
         self.pacer = Pacer(self.bus, self.link, board.clock, board.timer)
@@ -94,13 +96,16 @@ class App:
         now_ms = self._ticks_ms()
         self.refresh_bus(now_us, False)
         if self.step_panel(keypad.read(), now_ms, now_us, keypad.unclear):
-            self._look_or_show(now_us)
+            if (self.ticks_us() - now_us) & self._mask <= _ENOUGH_US:
+                self._look_or_show(now_us)
             if self.settings.dirty or self.panel.errand:
                 self._write_if_quiet(now_ms)
         elif (now_ms - self._fed_at_ms) & self._mask >= _FEED_MS:
             self._feed(now_ms, now_us)
         elif self._log is not None:
             self._log_on(now_ms, now_us)
+        elif (self.ticks_us() - now_us) & self._mask <= _LONG_US:
+            self._tend()  # the panel may have asked for something
         if self._polled:
             self._tend()
         board.idle()
@@ -124,8 +129,8 @@ class App:
         return Handover(self.board, self.settings, wanted)
 
     def _look_or_show(self, now_us):
-        """The drives that are silent or wait too long; a piece of the display, and the pacer: both
-        of these, or one where the step has taken long already, and next time the other one.
+        """The drives that are silent or wait too long, and the pacer; a piece of the display: both
+        of these, or one where that has taken long, and next time the other one.
         """
         if not self._shows_next:
             if self._finder is None and self._wants_finder():
@@ -134,12 +139,11 @@ class App:
             self.refresh_bus(now_us)
             if self._finder is not None:
                 self._find(now_us)
-            if (self.ticks_us() - now_us) & self._mask > _LONG_US:
+            if (self.ticks_us() - now_us) & self._mask > _LONG_US or self._tend():
                 self._shows_next = True
                 return
         self._shows_next = False
         self.board.display.show(self.panel.screen.picture)
-        self._tend()
 
     def _find(self, now_us):
         """Look for drives that are silent because their telegrams are divided differently."""

@@ -27,7 +27,10 @@ from machine import I2C, UART, WDT, Pin, Timer
 
 from hal.display.probe import answers, free
 from hal.keypad import Keypad
-from hal.link.rp2_rs485 import Rp2Link
+from hal.link.rp2_rs485 import Rp2Link, is_frozen
+
+if is_frozen:  # only then is there memory for it
+    from hal.link.rp2_going_on import Rp2GoingOnLink as Rp2Link
 from hal.store import FileStore
 
 # --- which part of the chip does what ------------------------------------------------------------

@@ -6,10 +6,10 @@ the chip. Every restart makes a new board, as on the chip.
 """
 
 from boards.sim.chip.machine import UART, WDT, Pin, Timer
+from boards.sim.going_on import GoingOnLink
 from boards.sim.line.wire import Transceiver
 from hal.display.hd44780 import Hd44780
 from hal.keypad import Keypad, Matrix
-from hal.link.rs485 import Rs485Link
 
 KEYS = (
     "START",
@@ -115,7 +115,7 @@ class Board:
         timer = HardTimer(chip)
         interrupts = not self._polled
         fifo = (uart.fifo_holds, clear_fifo)
-        return Rs485Link(
+        return GoingOnLink(
             uart, driver_enable, timer, chip.clock, baud, interrupts=interrupts, fifo=fifo
         )
 

@@ -59,6 +59,18 @@ link                    half duplex; the driver enable is the link's affair
                         hands over none before.
     received_at         clock.ticks_us() of the end of the last of them
     close()             driver off, nothing sent any more, no interrupt left
+    goes_on             optional; True: the link can send the next telegram by itself as soon as
+                        the reply is complete, and has these four methods as well
+    instruct(buffer, says_nothing_new, plan, attention)   called once, before `prepare`: where a
+                        reply goes that is looked at, and the function that does it (see
+                        uss.going_on), which gets the plan and the attention
+    prepare(request, size, telegram, count, after_us)   interrupt. When the `size` characters of
+                        the reply to `request` are there, not sooner than after_us after it, and
+                        says_nothing_new(buffer, size, request, plan, attention), the link sends
+                        the first `count` characters of `telegram`; it makes a copy of them now.
+                        `receive` answers `size` then, and nothing has been moved
+    take_back()         interrupt. It does not do so any more
+    follow() -> bool    interrupt. Whether it has done so since the last call
 
 timer                   of the chip: init(mode=timer.ONE_SHOT, period=us, tick_hz=1_000_000,
                         callback=function of the timer), deinit(). Both: interrupt.

@@ -32,8 +32,8 @@ ROUNDS_MAX = const(4)  # entries in a row for events that came meanwhile; the ti
 
 
 class Pacer:
-    """engine: has poll(now_us) -> microseconds, and recover(now_us). link, clock, timer: of
-    `hal`.
+    """engine: has poll(now_us) -> microseconds, recover(now_us), and is_overtaken(now_us), whether
+    it had better be entered though nothing is due. link, clock, timer: of `hal`.
 
     Fields to look at: `runs` (entries into the engine, 16 bit, wraps), `put_off` (those that found
     no stack, 16 bit, wraps) and `failure` (the exception caught last; the engine counts them).
@@ -74,16 +74,20 @@ class Pacer:
         self._link.close()
 
     def tend(self):
-        """From the main loop: drives the engine if there is no timer, and wakes a stuck timer.
+        """From the main loop: drives the engine if there is no timer or it has made ready what is
+        not wanted any more, and wakes a stuck timer. Answers whether it has entered the engine.
 
         Raises the KeyboardInterrupt that came while the engine was running.
         """
-        late_us = ((self._ticks_us() - self._asked_at_us) & self._mask) - self._due_us
-        if self._timer is None or late_us > OVERDUE_US:
+        now_us = self._ticks_us()
+        late_us = ((now_us - self._asked_at_us) & self._mask) - self._due_us
+        enters = self._timer is None or late_us > OVERDUE_US or self._engine.is_overtaken(now_us)
+        if enters:
             self.run()
         if self._thrown is not None:
             thrown, self._thrown = self._thrown, None
             raise thrown
+        return enters
 
     def run(self, only_if_due=False):
         """Enter the engine. If it is running already, let it be entered once more afterwards.

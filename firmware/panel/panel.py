@@ -34,7 +34,7 @@ _LAST_TURN = const(7)
 _UNSEEN_MS = const(300)  # so long a page that is coming may go before the picture
 _WAITS_MAX = const(8)  # turns until what takes long does not wait for a telegram any more,
 _WAITS_MOST = const(16)  # and until it does not wait for a step that has just begun
-_LONG_US = const(2_500)  # it takes up to so long, and is not to be interrupted
+_LONG_US = const(2_000)  # it takes up to so long, and is not to be interrupted
 _LATE_US = const(800)  # a step that has taken so long is not to begin it: it was interrupted
 
 # They act on every page that obeys. STOP acts on every page.

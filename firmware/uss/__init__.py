@@ -20,6 +20,7 @@ The engine, which may run in interrupts:
     drive            one slave: commands, process image, counters
     channel          the parameter channel of one drive: jobs wait, one task is on the line
     outside          telegrams outside the list: mirror, broadcast, special
+    going_on         the next telegram is made ready while the one before is on the line
     errors           why something was not done, as exceptions
     leave            how a program ends: every drive is stopped, then the line is left
     fast             the loops over characters: machine code, or else plain Python

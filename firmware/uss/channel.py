@@ -39,7 +39,8 @@ _VARIABLE = const(127)  # of `layout`, which would be an import too deep for the
 _THREE_WORDS = const(6)
 _FOUR_WORDS = const(8)
 _VARIABLE_LENGTH = const(0x100)
-_FOLLOWED = const(0x200)  # bit of _form: `follow` has set where change reports go
+_SHORT = const(0x200)  # bit of _form: a request without a task has no PKW words
+_FOLLOWED = const(0x400)  # bit of _form: `follow` has set where change reports go
 _POSITION = const(7)  # bits of a place in the queue
 _LAGS_MAX = const(4)  # so many old answers in a row are counted
 _WAITING = const(-1)  # `tries` of a job whose turn has not come
@@ -49,7 +50,8 @@ _FIRST_PERMANENT = const(11)
 
 class Channel:
     """mask: the clock's period - 1. pkw_words: 0, 3, 4 or layout.VARIABLE. longest: with VARIABLE
-    the most PKW words that a request has room for.
+    the most PKW words that a request has room for. short: with VARIABLE, requests without a task
+    have none.
 
     idle: there is no task, and the telegram says so: neither `fill` nor `take` would do anything.
 
@@ -59,10 +61,12 @@ class Channel:
 
     # Eight fields. One more would take 16 bytes more of each drive.
 
-    def __init__(self, mask, pkw_words=4, longest=10):
+    def __init__(self, mask, pkw_words=4, longest=10, short=False):
         variable = pkw_words == _VARIABLE
         self.idle = pkw_words == 0
         self._form = _VARIABLE_LENGTH | 2 * longest if variable else 2 * pkw_words
+        if short:
+            self._form |= _SHORT
         self._mask = mask
         self._queue = [None] * JOBS_MAX if pkw_words else NO_QUEUE
         self._in = 0  # the place of the next job in the queue,
@@ -175,7 +179,9 @@ class Channel:
         form = self._form
         size = form & 0xFF
         if form & _VARIABLE_LENGTH:
-            size = _THREE_WORDS if words is NO_TASK else job.size()
+            size = job.size() if words is not NO_TASK else _THREE_WORDS
+            if words is NO_TASK and form & _SHORT and form < _FOLLOWED:
+                return 0
         copy(words, net, at, size)
         if size == _THREE_WORDS:  # the word of a value goes where the high word was
             net[at + 4] = words[6]
@@ -184,9 +190,65 @@ class Channel:
             net[at] |= self.reports.bit
         return size
 
+    def foresee(self, answering):
+        """The words that `fill` would write if nothing happens meanwhile; None: that depends. This
+        changes nothing; `sent` says that they went out.
+
+        answering: a reply is under way; it is as `awaits` says.
+        """
+        if self._form != _FOUR_WORDS:
+            return None
+        out = self._out
+        job = self._queue[out]
+        without = self._without
+        ended = self._ended
+        if without < 0:
+            return None
+        if answering:
+            if without:
+                without = 0
+            elif job is not None and job.tries > 0:
+                ended = _ANY if job.task >= _FIRST_PERMANENT else job.key
+                job = self._queue[out + 1 & _POSITION]
+                without = REST_MAX
+        if job is None:
+            return NO_TASK
+        if job.tries == _WAITING:
+            if ended != _ANY and ended != job.key:
+                without = 0
+        elif job.tries >= _TRIES_MIN:
+            return None
+        return NO_TASK if without else job.words
+
+    def awaits(self):
+        """Which AK the reply to the last request must have, a bit for each, so that this channel
+        goes on as `foresee` says; 0: any. Unless it is AK 0, it is about the task's parameter.
+        """
+        if self._without:
+            return 1
+        job = self._queue[self._out]
+        return pkw.FITTING[job.task] if job is not None and job.tries > 0 else 0
+
+    def sent(self, net, at, now):
+        """The words in `net` from index `at` on, of `foresee`, are on the line."""
+        job = self._queue[self._out]
+        if net[at] < 0x10:  # no task
+            if job is None:
+                self.idle = not self._without and self._form < _FOLLOWED
+        elif job is not None:
+            if job.tries == _WAITING:
+                job.tries = 0
+                job.since = now
+            job.tries += 1
+            self._without = 0
+
     def take(self, net, at, count=8):
-        """Take the PKW words of a valid reply, `count` characters in `net` from index `at` on."""
+        """Take the PKW words of a valid reply, `count` characters in `net` from index `at` on.
+        None at all means the same as AK 0.
+        """
         form = self._form
+        if not count:
+            net, at, count = NO_TASK, 0, _THREE_WORDS
         if form >= _FOLLOWED:
             form -= _FOLLOWED
             self.reports.take(net, at, count, form)

@@ -32,7 +32,7 @@ from micropython import const
 
 from uss import pzd
 from uss.channel import Channel
-from uss.fast import get_words
+from uss.fast import copy, frame, get_words
 from uss.layout import STANDARD
 from uss.pzd import STW_ON, STW_RUN, ZSW_RUNNING
 from uss.receiver import SILENCE, TROUBLES
@@ -54,6 +54,7 @@ _ORDER = const(0x0071)  # STW bits of an ON whose setpoint counts: 0, 4, 5 and 6
 _PERCENT = const(100)
 _TROUBLE = const(0x0048)  # ZSW_FAULT, ZSW_INHIBIT; the compiler does not know an imported const
 _MOTION = const(0x004C)  # and ZSW_RUNNING
+MOTION = _MOTION
 _COUNTER_MASK = const(0xFFFF)  # counters wrap like the drive's own (specification A-5.2.3)
 
 # The counter of each receiver finding, and its bit of the error status word, both named as in
@@ -73,14 +74,23 @@ STATUS_BITS = (0x00, 0x08, 0x40, 0x10, 0x08, 0x80, 0x20, 0x40)
 _GARBLED_COUNTER = const(2)  # "length", because GARBLED has no counter of its own
 
 # What the drives of a bus tell the engine, in three rows by address: how urgent a command is; that
-# the drive's next turn would be too late; that the drive wants more than its turn. At ANY: whether
-# any of them may be set. Only the engine clears them.
+# the drive's next turn would be too late; that the drive wants more than its turn. At ANY: that
+# any of them may be set, and a telegram that was made ready is not to go before the engine has
+# looked; at SOON: the same, but such a telegram may go. Only the engine clears them.
 NODES = const(32)
 COMMANDS = const(0)
 OVERDUE = const(32)
 WANTS = const(64)
 ANY = const(96)
-ATTENTION = const(97)
+SOON = const(97)
+ATTENTION = const(98)
+
+# Of the plan by which `uss.going_on` looks at a reply, see `watch`: words of 16 bits.
+PLAN_AK = const(0)  # which AK it may have, a bit each; 0: any
+PLAN_ZSW_AT = const(1)  # where its ZSW stands; 0: that may be anything
+PLAN_ZSW = const(2)  # what the bits of motion in it must be
+PLAN_NEAR = const(3)  # HIW must be further from 0 than half of this; 0: it may be anything
+PLAN_WORDS = const(4)
 
 OFFS = (pzd.OFF1, pzd.OFF2, pzd.OFF3)
 NO_CONTROL = const(0)  # in place of an OFF: bit 10 is 0, and the drive is told nothing
@@ -114,7 +124,7 @@ class Drive:
             raise ValueError("drive address %r is not 0...31" % (address,))
         self.address = address
         self.layout = layout
-        self.channel = Channel(mask, layout.pkw_words, layout.longest)
+        self.channel = Channel(mask, layout.pkw_words, layout.longest, layout.short)
         self.request = bytearray(NET + layout.net_max + 1)  # the telegram to the drive
         self.size = NET + layout.net_count + 1  # of the request, in characters
         self.sealed = False  # the request is whole: frame and BCC fit its words
@@ -257,11 +267,12 @@ class Drive:
         """Let the engine look once more at all that this drive may have called for."""
         self.call()
         self._call_for_turns()
+        self._attention[ANY] = 1
 
     def _call_for_turns(self):
         attention = self._attention
         attention[WANTS + self.address] = 1
-        attention[ANY] = 1
+        attention[SOON] = 1
 
     def want_turns(self, asking):
         """Set whether it gets more than its turn in the list, for its parameters."""
@@ -347,6 +358,7 @@ class Drive:
         drive has no parameter channel. A job that does not fit its layout is REFUSED at once.
         """
         self.channel.ask(job)
+        self._attention[SOON] = 1
 
     # --- for the engine: allocates nothing ------------------------------------------------------
 
@@ -373,7 +385,7 @@ class Drive:
         """
         attention = self._attention
         attention[OVERDUE + self.address] = urgency
-        attention[ANY] = 1
+        attention[SOON] = 1
 
     def is_told_in_vain(self):
         """Whether it does not answer, and must still be told to stop or asked once more."""
@@ -444,6 +456,63 @@ class Drive:
                     self._put_further(at + 4)
         self._sent_stw = stw
         self.steady = not self.insist and self.acknowledgements == self.acknowledged
+
+    def foresee(self, telegram, answering):
+        """What the next request is if nothing happens meanwhile: the last one, or `telegram`, in
+        which it is put together; None if it depends on something. Nothing of the drive changes:
+        `follow` says that it went out.
+
+        Its control word is that of the last request. answering: a reply of this drive is under
+        way, to that request; it is as `channel.awaits` says and shows nothing that matters.
+        """
+        request = self.request
+        if not self.steady or not self.sealed or request[2] != self.address:
+            return None
+        hsw = self.hsw
+        if self.channel.idle and (hsw == self._hsw or not self._sent_stw & STW_ON):
+            return request
+        size = self.size
+        copy(request, telegram, 0, size)
+        if not self.channel.idle:
+            words = self.channel.foresee(answering)
+            if words is None:
+                return None
+            copy(words, telegram, NET, len(words))
+        if hsw != self._hsw and self._sent_stw & STW_ON:
+            at = size - self.layout.pzd_count + 1
+            if at < size - 1:
+                telegram[at] = hsw >> 8
+                telegram[at + 1] = hsw & 0xFF
+        frame(telegram, size, self.address)
+        return telegram
+
+    def follow(self, telegram, now):
+        """The telegram that `foresee` has put together is on the line."""
+        size = self.size
+        copy(telegram, self.request, 0, size)
+        if not self.channel.idle:
+            self.channel.sent(telegram, NET, now)
+        stw = self._sent_stw
+        behind = self.layout.pzd_count + 1
+        if behind >= 5 and stw & STW_ON:
+            at = size - behind + 2
+            hsw = telegram[at] << 8 | telegram[at + 1]
+            if hsw != self._hsw:
+                self._hsw = hsw
+                self._note_order(stw, hsw)
+
+    def watch(self, plan):
+        """Say what must not change in the reply that is under way if another request with ON may
+        follow at once: see `uss.going_on`. With the words as they were, `take` takes nothing back.
+        """
+        channel = self.channel
+        plan[PLAN_AK] = 0 if channel.idle else channel.awaits()
+        if not self._sent_stw & STW_RUN:
+            plan[PLAN_ZSW_AT] = 0
+            return
+        plan[PLAN_ZSW_AT] = self.size - self.layout.pzd_count - 1
+        plan[PLAN_ZSW] = self.zsw & _MOTION
+        plan[PLAN_NEAR] = self.near if self._arrived and self._order >= 0 else 0
 
     def _note_order(self, stw, hsw):
         """Note what HIW should become by this telegram. A new value has not arrived yet."""

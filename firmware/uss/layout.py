@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: MIT
 """How the net data of a drive's telegrams are divided: PKW words, then PZD words.
 
-    PKW  0, 3 or 4 words, or VARIABLE: as many as a task or its reply needs, 3 at the least
+    PKW  0, 3 or 4 words, or VARIABLE: as many as a task or its reply needs, 3 at the least; or
+         none, where both sides may leave them out while there is no task
     PZD  0...16 words, the same number both ways
 
 Both are agreed with each drive before the bus starts and may differ from drive to drive
@@ -10,6 +11,7 @@ request and reply are equally long. Together they are 126 words at the most.
 
     Layout(4, 2)                # STANDARD
     Layout(VARIABLE, 4)         # P2013 = 127, P2012 = 4
+    Layout(VARIABLE, 2, short=True)     # without a task STW and HSW alone
 """
 
 from micropython import const
@@ -29,13 +31,16 @@ class Layout:
     longest: with VARIABLE, the most PKW words of a request, 3...126; the drive's request buffer
     has room for them. The drive's answer may have any length.
 
+    short: with VARIABLE, a request without a task has no PKW words. An exchange takes half of the
+    time. No document promises that a drive takes such requests: try it.
+
     ValueError if there is no such layout, or it has no words.
 
     net_count: net characters of a request without a task. pzd_count: characters of the PZD.
     net_max: net characters of the longest request.
     """
 
-    def __init__(self, pkw_words=4, pzd_words=2, longest=_TEXT_PKW_WORDS):
+    def __init__(self, pkw_words=4, pzd_words=2, longest=_TEXT_PKW_WORDS, short=False):
         if pkw_words not in PKW_WORDS:
             raise ValueError("PKW of %r words is none of %s" % (pkw_words, PKW_WORDS))
         if pzd_words not in range(PZD_WORDS_MAX + 1):
@@ -45,7 +50,10 @@ class Layout:
         self.pkw_words = pkw_words
         self.pzd_words = pzd_words
         self.variable = pkw_words == VARIABLE
-        idle_words = _LEAST_PKW_WORDS if self.variable else pkw_words
+        self.short = short
+        if short and not (self.variable and pzd_words):
+            raise ValueError("only PKW words of variable length beside PZD words are left out")
+        idle_words = 0 if short else _LEAST_PKW_WORDS if self.variable else pkw_words
         self.longest = longest if self.variable else pkw_words
         if self.variable and not _LEAST_PKW_WORDS <= longest <= WORDS_MAX - pzd_words:
             raise ValueError("%r PKW words and %d PZD words" % (longest, pzd_words))
@@ -57,11 +65,17 @@ class Layout:
         """Whether a reply may have so many net characters."""
         if not self.variable:
             return net_count == self.net_count
-        return net_count & 1 == 0 and net_count >= self.net_count
+        if net_count == self.net_count:
+            return True
+        return net_count & 1 == 0 and net_count >= self.pzd_count + 2 * _LEAST_PKW_WORDS
 
     def is_like(self, other):
         """Whether drives with the two layouts take the same telegrams."""
-        return self.pkw_words == other.pkw_words and self.pzd_words == other.pzd_words
+        return (
+            self.pkw_words == other.pkw_words
+            and self.pzd_words == other.pzd_words
+            and self.short == other.short
+        )
 
     def suits(self, family):
         """Whether drives of the family can have such telegrams."""
@@ -72,7 +86,8 @@ class Layout:
         return self.pkw_words == ENABLE_WORDS and self.pzd_words > 0
 
     def __repr__(self):
-        return "Layout(%d, %d)" % (self.pkw_words, self.pzd_words)
+        short = ", short=True" if self.short else ""
+        return "Layout(%d, %d%s)" % (self.pkw_words, self.pzd_words, short)
 
 
 STANDARD = Layout(4, 2)

@@ -141,6 +141,10 @@ class Master:
                 exchanges = self.turns.exchanges - self._foreign_at
                 self._shared = exchanges & 0xFFFF < _SHARED_EXCHANGES
 
+    def is_overtaken(self, now):
+        """Whether the engine should be entered though nothing is due: see `uss.going_on`."""
+        return False
+
     def is_undisturbed(self, until):
         """Whether nothing is to be done until then: a telegram is on its way, or the reply to it,
         which probably has as many characters.
@@ -463,6 +467,12 @@ class Master:
         return self._rest(now)
 
     def _await(self, now):
+        return self._take(now) or self._go_on_at_once(now)
+
+    def _take(self, now):
+        """Take the reply, or count that there was none; 0. Before that: microseconds until there
+        may be something to take.
+        """
         if self._abandoned is not None:
             self._replace()
         receiver = self._receiver
@@ -473,12 +483,21 @@ class Master:
             return receiver.due_us(self._link, now)
         else:
             self._miss(finding, now)
+        self._conclude(finding)
+        return 0
+
+    def _conclude(self, finding):
+        """The exchange is over."""
+        receiver = self._receiver
         if self.witness is not None:
             self.witness.note(self._drive, finding, receiver)
         self._failures_in_row = 0
         self.progress = (self.progress + 1) & 0xFFFF
-        self._quiet_since = quiet_since = receiver.heard_at
-        silent_us = (now - quiet_since) & self._mask
+        self._quiet_since = receiver.heard_at
+
+    def _go_on_at_once(self, now):
+        """After an exchange: the next one, or the silence before it."""
+        silent_us = (now - self._quiet_since) & self._mask
         if self._start_interval_us <= silent_us < _BABBLE_US and not self._held:
             # The link took longer to report the reply than the rest lasts.
             drive = self._choose(now)

@@ -42,7 +42,7 @@ _STX = const(0x02)
 _GOOD = const(0)
 _FRAME = const(4)  # characters of a telegram that are not net data
 
-_ROUNDING_US = const(2)  # of two instants, each rounded to a microsecond
+ROUNDING_US = const(2)  # of two instants, each rounded to a microsecond
 
 
 class Receiver:
@@ -65,9 +65,9 @@ class Receiver:
         self._start_interval_us = timing.start_interval_us
         # The first bit of STX may come at the very end of the response delay; STX is seen one
         # character later.
-        self.window_us = timing.reply_timeout_us + timing.character_us + _ROUNDING_US
+        self.window_us = timing.reply_timeout_us + timing.character_us + ROUNDING_US
         # Rounded down, so that no pause counts as shorter than it was.
-        self._sixteen_us = 16 * BITS_PER_CHARACTER * 1_000_000 // timing.baud
+        self.sixteen_us = 16 * BITS_PER_CHARACTER * 1_000_000 // timing.baud
         self._mask = mask
         self._awaited = None
         self.sent_at = 0
@@ -91,6 +91,11 @@ class Receiver:
         self._echoed = 0
         self._coming = False
 
+    def accept(self, count, received_at):
+        """The reply is in `buffer`, and somebody has found that `take` would say GOOD."""
+        self.count = count
+        self.heard_at = received_at
+
     def await_instead(self, awaited):
         """Go on with the same request, of which `awaited` says now what a reply is."""
         self._awaited = awaited
@@ -110,8 +115,8 @@ class Receiver:
         if count == 0:
             mask = self._mask
             since_us = (received_at - self.heard_at) & mask
-            length_us = added * self._sixteen_us >> 4
-            pause_us = since_us - length_us + _ROUNDING_US
+            length_us = added * self.sixteen_us >> 4
+            pause_us = since_us - length_us + ROUNDING_US
             # A link that sees late says so by its resolution. So the telegram is refused only if
             # the pause was certainly too short. But after stray characters there must certainly
             # have been a pause: a look may have separated them from what follows without one.
@@ -216,8 +221,8 @@ class Receiver:
             return WAITING
         for index in range(added):
             buffer[index] = buffer[count + index]
-        began_at = (link.received_at - (added * self._sixteen_us >> 4)) & self._mask
-        pause_us = elapsed(began_at, self.sent_at, self._mask) + _ROUNDING_US
+        began_at = (link.received_at - (added * self.sixteen_us >> 4)) & self._mask
+        pause_us = elapsed(began_at, self.sent_at, self._mask) + ROUNDING_US
         self.heard_at = link.received_at
         if pause_us + link.resolution_us < self._start_interval_us or buffer[0] != _STX:
             self.stray = True
@@ -261,7 +266,7 @@ class Receiver:
             left = self.window_us - passed_us
         if not link.interrupts:
             earliest_us = self._start_interval_us
-            earliest_us += self._awaited.size * self._sixteen_us >> 4
+            earliest_us += self._awaited.size * self.sixteen_us >> 4
             left = min(left, max(earliest_us - passed_us, _POLL_US))
         return max(left, 1)
 

@@ -23,7 +23,9 @@ which of these rest, `deadlines` which drives need more turns. `master` does the
 from micropython import const
 
 from uss import pkw, telegram
-from uss.drive import ANY, ATTENTION, COMMANDS, NO_CONTROL, NODES, OVERDUE, WANTS, Drive
+from uss.drive import (
+    ANY, ATTENTION, COMMANDS, NO_CONTROL, NODES, OVERDUE, SOON, WANTS, Drive,
+)  # fmt: skip
 from uss.deadlines import Deadlines
 from uss.fast import calling, greatest
 from uss.layout import STANDARD
@@ -57,12 +59,14 @@ class Turns:
 
     def __init__(self, timing, mask, lost_us, is_under_way, abandon=None):
         # What every exchange asks for comes first, as in `Master`.
-        self._attention = bytearray(ATTENTION)
+        self.attention = bytearray(ATTENTION)  # of the drives, see `drive`
         self.following = _LIST_MAX  # the next drive's place in the round; beyond it a round begins
         self.round_count = 0  # so many entries of `round` count
         self.round = []  # the list without the drives that rest
         self.exchanges = 0
         self.cycle_us = 0
+        self._more = False  # besides the list there was something that waits for a later telegram
+        self._foreseen = None  # the drive that `foresee` named, until it has its turn
         self.drives = []
         self.list = []
         self.by_address = [None] * NODES  # the same drives, by address
@@ -101,7 +105,7 @@ class Turns:
             raise ValueError("the circulating list holds %d entries" % _LIST_MAX)
         drive = self.at(address)
         if drive is None:
-            drive = make(address, self._mask, self._attention, layout or STANDARD)
+            drive = make(address, self._mask, self.attention, layout or STANDARD)
             # New lists, because an interrupt may have come in while it walks the old ones.
             self.by_address[address] = drive
             self.drives = self.drives + [drive]
@@ -127,8 +131,15 @@ class Turns:
         self.drives = [other for other in self.drives if other is not drive]
         self._set_list([entry for entry in self.list if entry is not drive])
         self.by_address[drive.address] = None
+        self._forget_turn(drive)
+
+    def _forget_turn(self, drive):
+        """It has no turn any more that was promised already."""
         if self._again is drive:
             self._again = None
+        if self._foreseen is drive:
+            self._foreseen = None
+        self.attention[ANY] = 1  # the next telegram is perhaps made ready, for this drive
 
     def arrange(self, entries):
         """Make this the circulating list: drives of this bus, each at least once, in any order.
@@ -163,7 +174,7 @@ class Turns:
         self.by_address[address] = drive
         drive.move(address)
         self.deadlines.readdressed(old, address)
-        self._attention[old] = 0
+        self.attention[old] = 0
         self.by_address[old] = None
 
     def relayout(self, drive, layout, doubted=False):
@@ -180,15 +191,14 @@ class Turns:
         if self.by_address[address] is not drive:
             raise ValueError("drive %d is not on this bus" % address)
         self._check_lost(drive, doubted)
-        fresh = Drive(address, self._mask, self._attention, layout)
+        fresh = Drive(address, self._mask, self.attention, layout)
         # While its parts do not fit together, no exchange with it begins: nobody finds it. The
         # last one that may have begun is no longer its own.
         is_in_round = not self.deadlines.silence.rests[address]
         self.by_address[address] = None
-        if self._again is drive:
-            self._again = None
         if is_in_round:
             self.leave_round(drive)
+        self._forget_turn(drive)
         try:
             self._check_lost(drive, doubted)
             if self._abandon:
@@ -234,7 +244,7 @@ class Turns:
         else:
             self._outside[self._outside_in] = telegram_outside
             self._outside_in = following
-        self._attention[ANY] = 1
+        self.attention[ANY] = 1
 
     def longest_cycle_us(self, entries=None):
         """How long a round of the list, or of `entries` in its place, takes if every drive replies
@@ -318,17 +328,52 @@ class Turns:
 
         None if there is none to ask now; `wait_us` tells for how long.
         """
-        drive = self._most_urgent() if self._attention[ANY] else None
+        drive = self._most_urgent() if self._more or self.is_called() else None
         if drive is None:
-            position = self.following
-            if position >= self.round_count:
-                if not self.round_count or self.cycle_us and not self._begin_round(now):
+            drive, self._foreseen = self._foreseen, None
+            if drive is None:
+                drive = self._next_of_list(now)
+                if drive is None:
                     return None
-                position = 0
-            self.following = position + 1
-            drive = self.round[position]
         self.exchanges = (self.exchanges + 1) & 0xFFFF
         return drive
+
+    def foresee(self, now):
+        """The drive that has the next turn if nobody calls meanwhile; None: that depends.
+
+        Until its turn has come, by `choose` or `pass_on`, it is the same one, and what is more
+        urgent goes before it.
+        """
+        attention = self.attention
+        if attention[ANY] or attention[SOON]:
+            rows = calling(attention, NODES, ANY)
+            if self._ahead is not None or rows & (_COMMANDS | _OVERDUE):
+                return None
+            attention[ANY] = attention[SOON] = 0  # who calls from now on is heard
+            self._more = True
+        if self._again is not None or self.cycle_us:
+            return None
+        drive = self._foreseen
+        if drive is None:
+            if self._more:
+                self._more = False
+                drive = self._extra(calling(attention, NODES, ANY))
+            self._foreseen = drive = drive or self._next_of_list(now)
+        return drive
+
+    def pass_on(self):
+        """The foreseen drive has its turn now."""
+        self._foreseen = None
+        self.exchanges = (self.exchanges + 1) & 0xFFFF
+
+    def _next_of_list(self, now):
+        position = self.following
+        if position >= self.round_count:
+            if not self.round_count or self.cycle_us and not self._begin_round(now):
+                return None
+            position = 0
+        self.following = position + 1
+        return self.round[position]
 
     def wait_us(self):
         """After `choose` has found none: what is left of the cycle time; 0: the list is empty."""
@@ -339,11 +384,15 @@ class Turns:
         """There was no valid reply: once more, unless the drive was removed meanwhile."""
         if drive.outside or self.by_address[drive.address] is drive:
             self._again = drive
-            self._attention[ANY] = 1
+            self._more = True
+
+    def is_called(self):
+        """Whether a drive or a telegram outside the list has called, and nobody has heard it."""
+        return self.attention[ANY] != 0 or self.attention[SOON] != 0
 
     def has_command(self):
         """Whether there is a command that does not wait for its turn."""
-        return self._ahead is not None or greatest(self._attention, COMMANDS, NODES, 0) >= 0
+        return self._ahead is not None or greatest(self.attention, COMMANDS, NODES, 0) >= 0
 
     def all_told(self):
         """Whether every drive in contact has answered its OFF1 and the others were sent it; drives
@@ -381,11 +430,13 @@ class Turns:
         contact takes long. So after such a command, three overdue drives that are not told to run
         go before the next.
         """
-        attention = self._attention
-        attention[ANY] = 0  # cleared before the look, so that a drive that calls now is not missed
+        attention = self.attention
+        # Cleared before the look, so that a drive that calls now is not missed.
+        attention[ANY] = attention[SOON] = 0
+        self._more = False
         if self._ahead is not None:
             drive, self._ahead = self._ahead, None
-            attention[ANY] = 1
+            self._more = True
             return drive
         rows = calling(attention, NODES, ANY)
         if rows & _COMMANDS:
@@ -404,12 +455,20 @@ class Turns:
         self._overdue = 0
         if self._again is not None:
             drive, self._again = self._again, None
-            attention[ANY] = 1
+            self._more = True
             return drive
+        if self._foreseen is not None:
+            self._more = True
+            return None
+        return self._extra(rows)
+
+    def _extra(self, rows):
+        """What gets an extra turn: a telegram outside the list, or a drive that wants more than
+        its turn; None if the list may go on. rows: who calls."""
         if self._lists_left:
             self._lists_left -= 1
             if rows or self._lists_left or self._outside_out != self._outside_in:
-                attention[ANY] = 1
+                self._more = True
             return None
         drive = self._find(WANTS, 1) if rows & _WANTS and self._outside_last else None
         self._outside_last = False
@@ -426,14 +485,14 @@ class Turns:
         """Whether the next overdue drive is told to run: such a telegram must not go before a
         stop.
         """
-        drive = self.by_address[greatest(self._attention, OVERDUE, NODES, self._overdue_from)]
+        drive = self.by_address[greatest(self.attention, OVERDUE, NODES, self._overdue_from)]
         return drive is not None and drive.wanted != 0
 
     def _next_overdue(self):
-        attention = self._attention
+        attention = self.attention
         address = greatest(attention, OVERDUE, NODES, self._overdue_from)
         attention[OVERDUE + address] = 0  # it is asked now
-        attention[ANY] = 1
+        self._more = True
         self._overdue_from = address
         return self.by_address[address]
 
@@ -442,12 +501,12 @@ class Turns:
         `least`; else None. Calls of drives that were served meanwhile are cleared, only a few each
         time, because an interrupt must not take long.
         """
-        attention = self._attention
+        attention = self.attention
         for _ in range(NODES if row == COMMANDS else _FORGOTTEN_MAX):
             address = greatest(attention, row, NODES, self._look_from)
             if address < 0:
                 return None
-            attention[ANY] = 1
+            self._more = True
             drive = self.by_address[address]
             if drive is not None and drive.urgency() >= least:
                 self._look_from = address
@@ -462,5 +521,5 @@ class Turns:
         telegram_outside = self._outside[place]
         self._outside[place] = None
         self._outside_out = (place + 1) % len(self._outside)
-        self._attention[ANY] = 1
+        self._more = True
         return telegram_outside

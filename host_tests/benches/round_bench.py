@@ -12,8 +12,8 @@ asked to be and when characters have come, and by nobody else: not when a comman
     bench.sent[-1].stw()                # 047Fh
 """
 
+from uss.going_on import master_of
 from uss.layout import Layout
-from uss.master import Master
 from uss.timing import Timing
 
 MASK = (1 << 30) - 1
@@ -116,19 +116,25 @@ class Bench:
 
     echo: the master hears what it sends. idle_us: a link with interrupts announces characters when
     nothing has come for so long. interrupts: False is a link that has to be looked at. foreseen:
-    it knows beforehand when the last stop bit will have left; another one reports that. mask: of
-    the clock's counter.
+    it knows beforehand when the last stop bit will have left; another one reports that. goes_on:
+    it sends by itself what was made ready. mask: of the clock's counter.
 
     loop        called as often as the main loop comes round
     refreshing  False: the main loop hangs
     entries     instants at which the engine was entered
+    went_on     how often the link has sent a telegram by itself
     """
 
     def __init__(
         self, nodes, baud=19200, listed=True, echo=False, idle_us=0, interrupts=True,
-        foreseen=False, mask=MASK,
+        foreseen=False, goes_on=False, mask=MASK,
     ):  # fmt: skip
         self.foreseen = foreseen
+        self.goes_on = goes_on
+        self.went_on = 0
+        self._ready = None  # (request, size of the reply, telegram, not before) for `_go_on`
+        self._handed = 0  # characters of a reply that `_go_on` has taken
+        self._follows = False
         self.timing = Timing(baud)
         self.now = 0
         self.mask = mask
@@ -149,7 +155,7 @@ class Bench:
         self._taken = 0  # characters of the first one that were
         self.due = 0
         self._loop_at = 0
-        self.master = Master(self, self.timing, mask)
+        self.master = master_of(self, self.timing, mask)
         self.drives = {}
         if listed:
             for node in nodes:
@@ -196,8 +202,40 @@ class Bench:
             reports_at = min(reports_at, self._sending_until)
         return reports_at
 
+    def instruct(self, buffer, says_nothing_new, plan, attention):
+        self._instructions = buffer, says_nothing_new, plan, attention
+
+    def prepare(self, request, size, buffer, count, after_us):
+        self._ready = request, size, bytes(buffer[:count]), after_us
+
+    def take_back(self):
+        self._ready = None
+
+    def follow(self):
+        follows, self._follows = self._follows, False
+        if follows:
+            self._handed = 0
+        return follows
+
+    def _go_on(self):
+        """A burst is over: look at the reply, and send what was made ready."""
+        buffer, says_nothing_new, plan, attention = self._instructions
+        (request, size, following, after_us), self._ready = self._ready, None
+        if sum(len(characters) for _, _, characters in self.bursts) != size:
+            return
+        sent_at = self.sent_at
+        self._handed = self.receive(buffer, 0)
+        if (self.received_at - sent_at) & self.mask < after_us:
+            return
+        if says_nothing_new(buffer, size, request, plan, attention):
+            self.send(following, len(following))
+            self.went_on += 1
+            self._follows = True
+
     def receive(self, buffer, at):
-        count = 0
+        count, self._handed = self._handed, 0
+        if count:
+            return count
         while self.bursts:
             start, end, characters = self.bursts[0]
             arrived = len(characters)
@@ -269,6 +307,8 @@ class Bench:
         ended = None
         if self.interrupts and self.now >= self._announced_at():
             ended = self.bursts[0]
+            if self._ready:
+                self._go_on()
         wait_us = self.master.poll(self.now & self.mask)
         assert wait_us >= 1
         self.entries.append(self.now)

@@ -1279,7 +1279,7 @@ def test_a_failure_in_the_engine_is_not_hidden_and_takes_every_on_back():
     bench = Bench()
     bench.drive.run(10.0)
     bench.bus.wait(0.5)
-    bench.bus.engine._choose = bench.bus.engine._rest = None
+    bench.drive.engine.take = None
     try:
         bench.bus.wait(1)
     except TypeError:

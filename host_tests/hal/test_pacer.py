@@ -54,6 +54,10 @@ class Engine:
         self.recovered = 0
         self.meanwhile = None
         self.due_us = 700
+        self.overtaken = False
+
+    def is_overtaken(self, now):
+        return self.overtaken
 
     def poll(self, now):
         self.entries += 1

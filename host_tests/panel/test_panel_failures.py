@@ -441,35 +441,25 @@ def leave(app, error):
     raise AssertionError("the error got lost")
 
 
-class Failing:
-    """Stands before a receiver and fails some times. The heap is locked: nothing is made here."""
+def fail(drive, times):
+    """Let `drive` fail so many times at the replies to come. The heap is locked then: nothing is
+    made there."""
+    take = drive.take
+    left = [times]
 
-    def __init__(self, receiver, times):
-        self.take = receiver.take
-        self.due_us = receiver.due_us
-        self.buffer = receiver.buffer
-        self.times = times
-        self._receiver = receiver
-
-    @property
-    def heard_at(self):
-        return self._receiver.heard_at
-
-    @property
-    def count(self):
-        return self._receiver.count
-
-    def open(self, awaited, sent_at):
-        if self.times:
-            self.times -= 1
+    def fail_to_take(buffer, count, now):
+        if left[0]:
+            left[0] -= 1
             raise ERROR
-        self._receiver.open(awaited, sent_at)
+        take(buffer, count, now)
+
+    drive.take = fail_to_take
 
 
 def test_an_exception_in_the_bus_engine_stops_the_motor_and_is_shown():
     world = running()
     bus = world.app.bus
-    bus._receiver = Failing(bus._receiver, 3)
+    fail(bus.turns.drives[0], 3)
     world.run(12000)
     assert bus.failures == 3
     assert world.drives[1].hz() == 0 and starts(world) == 1

@@ -5,6 +5,7 @@ A kind is written as --drives has it: g110, or mm440/4+4 with the PKW and PZD wo
 """
 
 import main
+from boards.sim.drives.families import mm440
 from boards.sim.drives.kinds import listed_drives, simulated
 from boards.sim.world import World
 from kind_bench import is_untold, panel_of, start
@@ -47,6 +48,22 @@ def test_every_family_in_every_layout_runs_turns_round_trips_and_stops():
         world.run(8000)
         assert drive.hz() == 0 and row_2(world) == "READY        A1", (kind, world.lcd())
         world.check()
+
+
+def test_a_drive_with_short_telegrams_runs_and_shows_its_parameters():
+    kinds = {1: {"family": mm440, "parameters": {2013: 127, 2014: 2_000}}}
+    world = World(main.start, kinds=kinds, settings={"kinds": {"1": "mm440/127s"}})
+    world.run(1000)
+    wait_until_known(world)
+    world.press("START")
+    world.run(5000)
+    assert world.lcd() == ("S: 10.0 F: 10.00", "RUNNING      A1 "), world.lcd()
+    lengths = {len(telegram) for _, _, telegram in world.wire.log.last(20)}
+    assert 8 in lengths, lengths
+    world.press("STOP")
+    world.run(8000)
+    assert world.drives[1].hz() == 0 and row_2(world) == "READY        A1", world.lcd()
+    world.check()
 
 
 def test_a_drive_jogs_if_its_family_can():

@@ -14,6 +14,7 @@ import main
 from boards.sim.drives.families import generic
 from boards.sim.world import World
 from fleet_bench import Fleet
+from hal.link.self_directed import SelfDirectedLink
 from uss import pkw, pzd
 from uss.drive import ATTENTION, Drive
 from uss.families.status import TranslatedDrive
@@ -293,3 +294,45 @@ def test_a_bus_with_31_drives_takes_less_than_32_kb():
         used = taken(lambda: make(layouts))
         print("%d bytes" % used)
         assert used < 32_768 * WORD // 4
+
+
+# --- a telegram that is on its way while the clock wraps -----------------------------------------
+
+
+class WrappingClock:
+    """The RP2040's: its last tick is the largest small integer of a chip."""
+
+    ticks_mask = (1 << 30) - 1
+
+    def __init__(self):
+        self.now_us = 0
+
+    def ticks_us(self):
+        return self.now_us
+
+
+class SendingUart:
+    """What a link that needs no driver enable asks of a UART that sends."""
+
+    IRQ_RXIDLE = 1
+
+    def irq(self, handler, trigger, hard=False):
+        pass
+
+    def write(self, buffer, count):
+        pass
+
+
+def test_a_telegram_is_sent_across_the_wrap_of_the_clock_without_memory():
+    clock = WrappingClock()
+    link = SelfDirectedLink(SendingUart(), clock, 19200, 1_000, 2_000)
+    telegram = bytearray(16)
+    for before_us in range(0, 20_000, 500):
+        clock.now_us = clock.ticks_mask - before_us
+        micropython.heap_lock()
+        try:
+            link.send(telegram, 16)
+        finally:
+            micropython.heap_unlock()
+        left_us = (link.sent_at - clock.now_us) & clock.ticks_mask
+        assert 16 * 572 <= left_us <= 16 * 573, (before_us, left_us)

@@ -289,6 +289,19 @@ def test_a_kind_says_which_link_it_is_on():
         assert refused(understood, word), word
 
 
+def test_a_kind_says_that_telegrams_without_a_task_are_short():
+    for word, layout in (
+        ("mm440/127s", Layout(VARIABLE, 2, short=True)),
+        ("g110/127s", Layout(VARIABLE, 2, short=True)),
+        ("mm420-bop/127s+4", Layout(VARIABLE, 4, short=True)),
+    ):
+        found = understood(word)
+        assert found[1].is_like(layout), word
+        assert text(*found) == word
+    for word in ("mm440/4s", "mm440/s", "mm440/127ss", "mm440/127s+", "mm3/127s"):
+        assert refused(understood, word), word
+
+
 def test_values_of_a_survey():
     frequency = pkw.read(2000)
     frequency.high, frequency.low, frequency.width = 0x4248, 0x0000, 2

@@ -449,3 +449,46 @@ def test_a_layout_that_is_none_is_refused():
         except ValueError:
             continue
         raise AssertionError("%r + %r words were accepted" % (pkw_words, pzd_words))
+
+
+def test_a_short_telegram_has_no_pkw_words_unless_there_is_a_task():
+    """STX LGE ADR STW HSW BCC both ways; a task and its answer have as many words as ever."""
+    seeded()
+    for pzd_words in (1, 2, 4, 16):
+        layout = Layout(VARIABLE, pzd_words, short=True)
+        assert layout.net_count == 2 * pzd_words
+        bench = Bench({2013: 127, 2012: pzd_words}, family=generic)
+        line = Line(bench.ask)
+        drive = line.master.turns.add(1, layout)
+        line.exchange(2)
+        assert drive.contact and drive.size == 4 + 2 * pzd_words, layout
+        drive.start(0x2000)
+        line.exchange(2)
+        assert drive.state() == pzd.RUNNING and bench.drive.state == "running", layout
+        value = random.getrandbits(16)
+        assert done(line, drive, pkw.write_word(18, value)).state == pkw.DONE, layout
+        assert bench.drive.read(18) == value, layout
+        jobs = [pkw.read(18), pkw.read(18), pkw.read(1082)]
+        for job in jobs:
+            drive.ask(job)
+        line.exchange(6)
+        assert [job.state for job in jobs] == [pkw.DONE] * 3, layout
+        assert jobs[1].integer_value() == value and jobs[2].float_value() == 50.0
+        line.exchange()
+        assert drive.size == 4 + 2 * pzd_words and drive.channel.idle, layout
+        assert bench.drive.state == "running", layout
+
+
+def test_a_reply_with_half_a_parameter_channel_fits_no_short_layout():
+    layout = Layout(VARIABLE, 2, short=True)
+    assert [count for count in range(14) if layout.fits(count)] == [4, 10, 12]
+
+
+def test_only_pkw_words_of_variable_length_beside_pzd_words_are_left_out():
+    for pkw_words, pzd_words in ((4, 2), (0, 2), (VARIABLE, 0)):
+        try:
+            Layout(pkw_words, pzd_words, short=True)
+        except ValueError:
+            continue
+        raise AssertionError("%r + %r words were accepted" % (pkw_words, pzd_words))
+    assert not Layout(VARIABLE, 2, short=True).is_like(Layout(VARIABLE, 2))

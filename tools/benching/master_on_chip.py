@@ -7,15 +7,16 @@ import time
 import board
 
 from hal.pacer import Pacer
+from uss.going_on import master_of
 from uss.layout import Layout
-from uss.master import CLOSED, Master
+from uss.master import CLOSED
 from uss.timing import Timing
 
 
 def mixed(baud, layouts, ms):
     """The master alone for so long; layouts: [(address, PKW words, PZD words), ...]."""
     link = board.make_link(baud)
-    bus = Master(link, Timing(baud), board.clock.ticks_mask)
+    bus = master_of(link, Timing(baud), board.clock.ticks_mask)
     for address, pkw_words, pzd_words in layouts:
         bus.turns.add(address, Layout(pkw_words, pzd_words))
     pacer = Pacer(bus, link, board.clock, board.timer)

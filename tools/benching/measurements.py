@@ -20,6 +20,7 @@ COLLECT_AFTER = 1_000_000
 
 CHARACTER_BITS = 11
 TELEGRAM_CHARACTERS = 16
+SHORT_NET_CHARACTERS = 4  # STW and HSW
 COLLECT_MS = 100
 REPLY_CHARACTERS = 2
 LOG_BEGINS_MS = 1_000
@@ -169,6 +170,17 @@ def line(quick, baud, drives):
     return exchanges(quick, baud, drives, False)
 
 
+def short(quick, baud):
+    """As `line`, with one drive whose telegrams without a task have no PKW words."""
+    from boards.sim.drives.families import mm440
+
+    kinds = {1: {"family": mm440, "parameters": {2013: 127, 2014: 2_000}}}
+    settings = {"kinds": {"1": "mm440/127s"}}
+    found = exchanges(quick, baud, 1, False, kinds=kinds, settings=settings)
+    found["limit"] = rate_limit(int(baud), SHORT_NET_CHARACTERS)
+    return found
+
+
 def asking(quick, baud, drives):
     """As `line`, and each drive always has a parameter task pending."""
     return exchanges(quick, baud, drives, True)
@@ -181,11 +193,11 @@ def logging(quick, baud, drives):
     return exchanges(quick, baud, drives, False, LOG_BEGINS_MS, settings={"log": "JSON"})
 
 
-def exchanges(quick, baud, drives, tasks, begins_ms=0, **more):
+def exchanges(quick, baud, drives, tasks, begins_ms=0, kinds=None, **more):
     baud, drives = int(baud), int(drives)
     most = 10_000 if drives == 1 else 3_000
     telegrams = (100 if quick else 400) if baud < 57600 else 500 if quick else most
-    world = world_at(baud, drives, **more)
+    world = world_of(kinds, baud, **more) if kinds else world_at(baud, drives, **more)
     at_the_prompt(world)
     busy_ms = telegrams * 1000 // rate_limit(baud) * 18 // 10 + 2_000
     whole_ms = busy_ms + SETTLE_MS + 3_000 + 400 * drives
@@ -745,6 +757,7 @@ MEASUREMENTS = {
     function.__name__: function
     for function in (
         line,
+        short,
         asking,
         logging,
         mixed,

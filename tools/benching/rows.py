@@ -46,14 +46,17 @@ FAST_BAUD = 57600
 TELEGRAMS_FAST, TELEGRAMS_SLOW = 10_000, 50  # bar of the driver enable
 TELEGRAMS_FULL = {19200: 400, 115200: 2_000}  # with 31 drives
 
-RATE_BAR = 200  # exchanges a second at 115200
+RATE_BARS = {115200: 260, 187500: 420}  # exchanges a second
+SHORT_RATE_BAR = 440
 # From a reply to the next start bit, beyond the start interval: median, 99 of 100.
 IDLE_NS = {
     9600: (2_400_000, None),
     19200: (2_000_000, None),
     38400: (1_600_000, None),
-    115200: (1_300_000, 1_700_000),
+    115200: (250_000, 1_100_000),
 }
+ASKING_IDLE_NS = {115200: (700_000, None)}  # a parameter task always pending
+MIXED_IDLE_NS = {115200: (500_000, 1_100_000)}  # many lengths, some of them long
 DEBOUNCE_US = 20_000
 START_US = {(19200, 1): 1_000_000, (19200, 31): 3_000_000}
 HANG_US = 400_000
@@ -62,7 +65,7 @@ READ_US = 100_000  # a step that reads a module from a file: a third of the dead
 FIRST_TELEGRAM_US = 500_000
 PICTURE_US = 100_000
 FIRST_ROW_US = 300_000
-FREE_BYTES = {"frozen": 133 * 1024, "files": 36 * 1024}
+FREE_BYTES = {"frozen": 118 * 1024, "files": 36 * 1024}
 ESP32_FREE_BYTES = 40 * 1024
 TOO_SMALL = ("ESP32 without PSRAM",)  # boards/esp32/README.md says so
 SIMULATION_TIMES = 100
@@ -80,6 +83,7 @@ ASKING_LINES = {
     for drives in (1, 31)
     for baud in FULL_BAUDS
 }
+SHORT = Task(("short", "115200"))
 LOGGING = Task(("logging", "115200", "31"))
 MIXED = {baud: Task(("mixed", str(baud))) for baud in FULL_BAUDS}
 SAVING = Task(("saving",))
@@ -110,7 +114,7 @@ OTHERS = ("TurboCtl", "MinimalModbus", "PyModbus", "UModbus")
 # The long ones first, so that the last one does not run alone for long.
 TASKS = (
     LINES[115200], LINES[187500], *MEMORIES.values(), *FULL_LINES.values(),
-    *ASKING_LINES.values(), LOGGING, *STOPS.values(),
+    *ASKING_LINES.values(), SHORT, LOGGING, *STOPS.values(),
     FULL_STEPS, STEPS, *MENUS.values(), *LOOKUPS.values(), *HANGING.values(), SAVING, CUTS,
     *MIXED.values(),
     LINES[9600], LINES[19200], LINES[38400], *PICTURES.values(), *BOOTS.values(), *HEAPS.values(),
@@ -159,7 +163,7 @@ def within_a_character(spread, character_ns):
 
 
 def rate_row(task, what, baud, beside=None):
-    bar = RATE_BAR if baud == 115200 else None
+    bar = RATE_BARS.get(baud)
     limit = "wire's limit %.1f" % beside_s7.limit(baud)
     others = ["%s %.1f" % at for at in beside_s7.rates(baud).items()]
     return Row(
@@ -172,8 +176,18 @@ def rate_row(task, what, baud, beside=None):
     )
 
 
-def idle_row(task, what, baud, has_bar=True):
-    bars_ns = IDLE_NS.get(baud, (None, None)) if has_bar else (None, None)
+def short_row():
+    return Row(
+        SHORT,
+        "exchanges per second, 115200 baud, telegrams of 8 characters without a task",
+        ">= %d" % SHORT_RATE_BAR,
+        lambda figures: "%.1f (wire's limit %.1f)" % (figures["rate"], figures["limit"]),
+        lambda figures: figures["rate"] >= SHORT_RATE_BAR,
+    )
+
+
+def idle_row(task, what, baud, bars=IDLE_NS):
+    bars_ns = bars.get(baud, (None, None))
 
     def show(figures):
         _, median, p99, most, count = figures["idle_ns"]
@@ -495,12 +509,13 @@ ROWS = (
     *(rate_row(LINES[baud], baud_of(baud), baud, baud) for baud in BAUDS),
     *(rate_row(FULL_LINES[baud], FULL % baud, baud) for baud in FULL_BAUDS),
     *(rate_row(task, ASKING[at], at[0]) for at, task in ASKING_LINES.items()),
+    short_row(),
     *(mixed_rate_row(MIXED[baud], MIXED_TEXT % baud) for baud in FULL_BAUDS),
     *(idle_row(LINES[baud], baud_of(baud), baud) for baud in BAUDS),
     *(idle_row(FULL_LINES[baud], FULL % baud, baud) for baud in FULL_BAUDS),
-    *(idle_row(task, ASKING[at], at[0], False) for at, task in ASKING_LINES.items()),
+    *(idle_row(task, ASKING[at], at[0], ASKING_IDLE_NS) for at, task in ASKING_LINES.items()),
     *(tasks_row(task, ASKING[at]) for at, task in ASKING_LINES.items()),
-    *(idle_row(MIXED[baud], MIXED_TEXT % baud, baud) for baud in FULL_BAUDS),
+    *(idle_row(MIXED[b], MIXED_TEXT % b, b, MIXED_IDLE_NS) for b in FULL_BAUDS),
     *(release_row(LINES[baud], baud_of(baud), baud, wanted_at(baud)) for baud in BAUDS),
     *(release_row(FULL_LINES[b], FULL % b, b, TELEGRAMS_FULL[b]) for b in FULL_BAUDS),
     *(release_row(MIXED[b], MIXED_TEXT % b, b, TELEGRAMS_SLOW) for b in FULL_BAUDS),

@@ -13,7 +13,8 @@ from boards.sim.ports import rp2
 from boards.sim.ports.module import Module
 
 NAMES = ("machine", "time", "sys", "micropython", "rp2")
-LOADED = ("chips", "hal.link.rp2_rs485", "hal.display.rp2_hd44780")  # they bind such modules
+# They bind such modules.
+LOADED = ("chips", "hal.link.rp2_rs485", "hal.link.rp2_going_on", "hal.display.rp2_hd44780")
 
 
 def install(port):

@@ -30,11 +30,13 @@ _CYCLES_PER_BIT = const(16)
 _LEAD_CYCLES = const(8)  # from the DMA's first word to the first start bit, at the most
 _BITS_PER_CHARACTER = const(11)
 _BITS_BEFORE_STOP = const(10)
-_SIZE_MAX = const(256)
+SIZE_MAX = const(256)
 # Of MicroPython as it comes: 8 KB, less what its functions in C keep. That of the firmware file is
 # longer (STACK_MORE of tools/fetch/pico.sh), and the engine finds room wherever the program is.
 _STACK_BYTES = const(7_936)
 _WORDS = const(1)  # code of the DMA for transfers of 16 bits
+
+is_frozen = ".frozen" in hal.__path__
 
 
 @rp2.asm_pio(
@@ -43,7 +45,7 @@ _WORDS = const(1)  # code of the DMA for transfers of 16 bits
     out_shiftdir=rp2.PIO.SHIFT_RIGHT,
 )
 def transmitter():
-    """First word: characters - 1. Then a word for each character, as `_transmit` makes them.
+    """First word: characters - 1. Then a word for each character, as `encode` makes them.
 
     A bit takes 16 cycles; characters follow each other without a gap, because fetching the next
     one is part of the stop bit. The DMA writes 16 bits, which the chip puts on both halves of the
@@ -63,10 +65,11 @@ def transmitter():
 
 
 @micropython.viper
-def _transmit(buffer: ptr8, count: int, words: ptr16, channel: ptr32):
-    """Put the state machine's words into `words`, and start the DMA channel that brings them.
+def encode(buffer: ptr8, count: int, words: ptr16):
+    """Put the state machine's words into `words`.
 
-    Each word has the 11 bits of a character in the order sent: 0, 8 bits, even parity, 1.
+    Each word has the 11 bits of a character in the order sent: 0, 8 bits, even parity, 1. Before
+    them comes how many there are.
     """
     words[0] = count - 1
     index = 0
@@ -75,6 +78,11 @@ def _transmit(buffer: ptr8, count: int, words: ptr16, channel: ptr32):
         parity = 0x6996 >> ((character ^ character >> 4) & 15) & 1  # of four bits, looked up
         index += 1
         words[index] = 1 << 10 | parity << 9 | character << 1
+
+
+@micropython.viper
+def begin(words: ptr16, count: int, channel: ptr32):
+    """Start the DMA channel that brings the words of so many characters."""
     channel[14] = count + 1  # AL3_TRANS_COUNT
     channel[15] = int(words)  # AL3_READ_ADDR_TRIG: begins
 
@@ -96,7 +104,7 @@ class Rp2Link(Bursts):
     """
 
     foreseen = True
-    if ".frozen" not in hal.__path__:
+    if not is_frozen:
         stack_bytes = _STACK_BYTES
     defect = ""  # who makes the link looks for one: rp2_check
 
@@ -114,7 +122,7 @@ class Rp2Link(Bursts):
         self._sixty_four_us = -(-64 * _BITS_PER_CHARACTER * 1_000_000 // baud)
         self._started_at_us = 0
         self._duration_us = 0
-        self._words = array("H", bytes(2 * (_SIZE_MAX + 1)))
+        self._words = array("H", bytes(2 * (SIZE_MAX + 1)))
         self._state_machine = rp2.StateMachine(state_machine)
         self._set_up()
         request = (state_machine >> 2) * 8 + (state_machine & 3)  # "its FIFO has room"
@@ -128,9 +136,11 @@ class Rp2Link(Bursts):
             self._dma.active(0)
             self._set_up()
         self._burst_ended = False
+        words = self._words
+        encode(buffer, count, words)
         duration_us = (count * self._sixty_four_us >> 6) + self._lead_us
         self._started_at_us = started_at_us = self._ticks_us()
-        _transmit(buffer, count, self._words, self._channel)
+        begin(words, count, self._channel)
         self._duration_us = duration_us
         # Not the sum: the clock's last tick is the largest small integer, and beyond is no memory.
         self.sent_at = (started_at_us - (self._mask - duration_us) - 1) & self._mask

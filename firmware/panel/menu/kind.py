@@ -58,9 +58,11 @@ class List(Entries):
         family, layout, row = self._family, self._layout, self._row
         is_bop = family.com is not None
         if row == words.PKW:
-            return family, Layout(choice, layout.pzd_words)
+            return family, Layout(
+                choice, layout.pzd_words
+            )  # not short: that was tried for another
         if row == words.PZD:
-            return family, Layout(layout.pkw_words, choice)
+            return family, Layout(layout.pkw_words, choice, short=layout.short)
         base = family.com or family
         if row == words.FAMILY:
             base = getattr(families, choice)

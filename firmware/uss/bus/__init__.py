@@ -21,6 +21,7 @@ stops every motor.
 from uss.timing import Timing, elapsed
 from uss.drive import COUNTERS, NO_CONTROL
 from uss import bits, families, master, outside, pkw, pzd
+from uss.going_on import master_of
 from uss.bus import pkw_errors
 from uss.errors import WHY_SILENT, UssError
 from uss.errors import FallsSilent, NoContact, NotStarted, Refused, TimedOut
@@ -591,7 +592,7 @@ class Master:
         timing = Timing(baud, reply_timeout_ms * 1000)
         if getattr(link, "bus", None):
             raise ValueError("another Master has this link: close() that one first")
-        self.engine = master.Master(link, timing, clock.ticks_mask, lost_ms * 1000)
+        self.engine = master_of(link, timing, clock.ticks_mask, lost_ms * 1000)
         self._link = link
         self._uncontrolled = 0  # so many drives were added without control
         link.bus = self

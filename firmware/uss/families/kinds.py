@@ -3,6 +3,7 @@
 
     kind("g110")                # (G110, Layout(127, 2)): as that family usually is
     kind("mm440/4+4")           # (MM440, Layout(4, 4)): PKW words, and PZD words if not 2
+    kind("mm440/127s")          # no PKW words in a telegram without a task: `Layout`, short
     kind("mm440-bop/127")       # USS on the BOP link, not on the RS-485 terminals
     text(MM440, Layout(4, 4))   # "mm440/4+4"
 
@@ -13,6 +14,7 @@ from uss import families
 from uss.layout import STANDARD, Layout
 
 _BOP = "-bop"
+_SHORT = "s"
 _PZD_USUAL = 2
 PZD_MIN = 2  # STW and HSW: without them nobody commands a drive
 
@@ -38,15 +40,18 @@ def text(family, layout):
     name = family.__name__.lower()
     if layout.is_like(family.layout):
         return name
+    short = _SHORT if layout.short else ""
     more = "" if layout.pzd_words == _PZD_USUAL else "+%d" % layout.pzd_words
-    return "%s/%d%s" % (name, layout.pkw_words, more)
+    return "%s/%d%s%s" % (name, layout.pkw_words, short, more)
 
 
 def _layout(words):
     pkw_words, plus, pzd_words = words.partition("+")
+    short = pkw_words.endswith(_SHORT)
+    pkw_words = pkw_words[:-1] if short else pkw_words
     if not (pkw_words.isdigit() and (pzd_words.isdigit() or not plus)):
         raise ValueError("/%s is no layout such as /4, or /4+6" % words)
     pzd_words = int(pzd_words) if plus else _PZD_USUAL
     if pzd_words < PZD_MIN:
         raise ValueError("a drive without PZD1 and PZD2 takes no commands")
-    return Layout(int(pkw_words), pzd_words)
+    return Layout(int(pkw_words), pzd_words, short=short)

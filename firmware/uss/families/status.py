@@ -36,6 +36,10 @@ class TranslatedDrive(Drive):
             buffer[at + 1] = zsw & 0xFF
         Drive.take(self, buffer, count, now)
 
+    def foresee(self, telegram, answering):
+        """Not while it answers: what its reply means is not to be seen before that is taken."""
+        return None if answering else Drive.foresee(self, telegram, answering)
+
     def may_reply_alike(self):
         """Nobody knows which bits its status word has."""
         return True

@@ -44,6 +44,10 @@ class OutsideTelegram:
     def fill(self, now):
         """Nothing to do: the telegram does not change."""
 
+    def foresee(self, room, answering):
+        """It is made ready only when its turn has come: see `Drive.foresee`."""
+        return
+
     def take(self, buffer, count, now):
         self.state = DONE
 

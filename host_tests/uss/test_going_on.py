@@ -1,0 +1,484 @@
+# SPDX-License-Identifier: MIT
+"""Going on at once: the next telegram leaves as soon as the reply is there, and says nothing that
+the reply, the program or another master has changed meanwhile.
+
+The link looks at the reply by itself, 32 bits after its last character as the RP2040's does.
+"""
+
+import random
+
+from round_bench import READY, RUNNING, Bench, Node, framed
+from uss import pkw, pzd
+from uss.drive import ANY, ATTENTION, PLAN_AK, PLAN_NEAR, PLAN_WORDS, PLAN_ZSW, PLAN_ZSW_AT
+from uss.going_on import master as going_on
+from uss.going_on import python
+from uss.layout import Layout
+from uss.outside import Mirror
+
+IDLE_US = 1_667  # 32 bits at 19200
+FAULT, INHIBIT = 0x0008, 0x0040
+LATE_US = 20  # after the end of a reply is known
+
+
+class Telling(Node):
+    """Answers what it is asked for; the value of a parameter is its number. lag: it does so so
+    many telegrams later. deaf: it takes no task at all."""
+
+    def __init__(self, address, lag=0, deaf=False, **more):
+        Node.__init__(self, address, **more)
+        self.asked = []
+        self.lag = lag
+        self.deaf = deaf
+        self.hiw = 0
+        self._pkw = [bytes(8)] * (lag + 1)
+
+    def answer(self, characters):
+        reply = Node.answer(self, characters)
+        if reply is None or characters[2] != self.address:
+            return reply
+        words = bytearray(8)
+        if characters[3] >> 4 == pkw.READ and not self.deaf:
+            self.asked.append((characters[3] & 0x07) << 8 | characters[4])
+            words[:] = characters[3:7] + bytes((0, 0)) + characters[3:5]
+            words[6] &= 0x07
+        self._pkw = self._pkw[1:] + [words]
+        net = bytearray(reply[3:-1])
+        net[:8] = self._pkw[0]
+        net[10:12] = bytes((self.hiw >> 8 & 0xFF, self.hiw & 0xFF))
+        return framed(self.address, net)
+
+
+def going(nodes, **more):
+    """A bus in contact with everybody, whose link goes on by itself."""
+    more.setdefault("foreseen", True)
+    bench = Bench(nodes, idle_us=IDLE_US, goes_on=True, **more)
+    bench.contact()
+    bench.run(300_000)
+    assert bench.went_on > 3
+    return bench
+
+
+def running(node, **more):
+    bench = going([node], **more)
+    bench.drives[1].start(0x2000)
+    bench.run(300_000)
+    assert node.stw == 0x047F, node.stw
+    return bench
+
+
+def next_stw(bench):
+    """The control word of the telegram after the one that is on the line."""
+    count = len(bench.sent)
+    bench.run_until(lambda: len(bench.sent) > count)
+    return bench.sent[-1].stw()
+
+
+def begin_of_a_telegram(bench):
+    count = len(bench.sent)
+    bench.run_until(lambda: len(bench.sent) > count)
+
+
+# --- how soon ------------------------------------------------------------------------------------
+
+
+def test_the_next_telegram_leaves_when_the_reply_is_complete():
+    for foreseen in (True, False):
+        bench = going([Node(1), Node(2)], foreseen=foreseen)
+        went_on = bench.went_on
+        sent = len(bench.sent)
+        bench.run(500_000)
+        assert bench.went_on - went_on == len(bench.sent) - sent
+        assert bench.addresses(-4) in ([1, 2, 1, 2], [2, 1, 2, 1])
+        reply_us = 2 * bench.timing.telegram_us(12) + 3 * bench.timing.character_us
+        for before, after in zip(bench.sent[-9:], bench.sent[-8:]):
+            assert after.at - before.at - reply_us - IDLE_US in range(LATE_US)
+
+
+def test_a_new_setpoint_is_in_the_next_telegram_but_one():
+    bench = running(Node(1))
+    went_on = bench.went_on
+    begin_of_a_telegram(bench)
+    bench.drives[1].hsw = 0x2345
+    begin_of_a_telegram(bench)
+    begin_of_a_telegram(bench)
+    assert bench.sent[-1].characters[-3:-1] == b"\x23\x45"
+    assert bench.went_on > went_on + 1
+
+
+def test_a_drive_that_is_listed_twice_is_asked_twice():
+    bench = going([Node(1), Node(2), Node(3)])
+    drives = bench.drives
+    bench.master.turns.arrange([drives[1], drives[2], drives[1], drives[3]])
+    bench.run(2_000_000)
+    lately = bench.addresses(-40)
+    assert lately.count(1) == 20 and lately.count(2) == 10, lately
+
+
+def test_a_silent_drive_is_waited_for_and_the_others_go_on():
+    nodes = [Node(1), Node(2), Node(3)]
+    bench = going(nodes)
+    nodes[1].plugged = False
+    bench.run(3_000_000)
+    assert not bench.drives[2].contact and bench.drives[1].contact and bench.drives[3].contact
+    went_on = bench.went_on
+    bench.run(1_000_000)
+    assert bench.went_on > went_on
+
+
+# --- what the reply says -------------------------------------------------------------------------
+
+
+def test_a_drive_that_trips_inhibits_or_stops_gets_no_second_telegram_with_on():
+    for zsw in (RUNNING | FAULT, RUNNING | INHIBIT, READY):
+        node = Node(1)
+        bench = running(node)
+        node.follows = False
+        node.zsw = zsw
+        begin_of_a_telegram(bench)  # its reply has that status word
+        assert bench.sent[-1].stw() & 1
+        assert not next_stw(bench) & 1, "%04X" % zsw
+        assert bench.drives[1].stopped_by_engine()
+
+
+def test_a_motor_that_stands_still_unordered_gets_no_second_telegram_with_on():
+    node = Telling(1)
+    bench = running(node)
+    node.hiw = 0x2000
+    bench.run(300_000)
+    node.hiw = 0x0010
+    begin_of_a_telegram(bench)
+    assert not next_stw(bench) & 1
+
+
+def test_a_motor_that_ramps_up_goes_on_at_once():
+    node = Telling(1)
+    bench = running(node)
+    went_on, sent = bench.went_on, len(bench.sent)
+    for hiw in range(0, 0x2000, 0x100):
+        node.hiw = hiw
+        begin_of_a_telegram(bench)
+    assert bench.went_on - went_on == len(bench.sent) - sent
+    assert bench.sent[-1].stw() & 1
+
+
+def test_a_reply_that_is_spoilt_starts_nothing():
+    """Each of its bits, in turn, is another one: there is no byte that is not checked."""
+    request = framed(1, bytes(8) + b"\x04\x7f\x20\x00")
+    reply = framed(1, bytes(8) + b"\xfb\x34\x20\x00")
+    plan = plan_of(zsw=RUNNING)
+    attention = bytearray(ATTENTION)
+    assert judged(reply, request, plan, attention)
+    for index in range(len(reply)):
+        for bit in range(8):
+            spoilt = bytearray(reply)
+            spoilt[index] ^= 1 << bit
+            assert not judged(spoilt, request, plan, attention), (index, bit)
+    assert not judged(request, request, plan, attention), "an echo"
+
+
+def judged(reply, *arguments):
+    """What both twins say."""
+    says = [
+        bool(says_nothing_new(reply, len(reply), *arguments))
+        for says_nothing_new in (python.says_nothing_new, going_on.says_nothing_new)
+    ]
+    assert says[0] == says[1], (reply, arguments)
+    return says[0]
+
+
+def plan_of(answers=0, zsw=None, near=0):
+    plan = going_on.array("H", bytes(2 * PLAN_WORDS))
+    plan[PLAN_AK] = answers
+    if zsw is not None:
+        plan[PLAN_ZSW_AT] = 11
+        plan[PLAN_ZSW] = zsw & 0x4C
+        plan[PLAN_NEAR] = near
+    return plan
+
+
+def test_both_twins_say_the_same_of_anything():
+    seed = 20_261_126
+    print("seed", seed)
+    dice = random
+    dice.seed(seed)
+    agreed = 0
+    for _ in range(3000):
+        task = bytes((dice.getrandbits(8), dice.getrandbits(8), dice.getrandbits(8), 3))
+        request = framed(1, task + bytes(4) + b"\x04\x7f\x20\x00")
+        answer = bytearray(task + bytes(4))
+        answer[0] = answer[0] & 0x0F | dice.getrandbits(2) << 4
+        if not dice.getrandbits(2):
+            answer[dice.getrandbits(2)] ^= 1 << dice.getrandbits(3)
+        zsw = RUNNING ^ (1 << dice.getrandbits(3))
+        hiw = bytes((0 if dice.getrandbits(1) else 0x20, dice.getrandbits(8)))
+        reply = framed(1, bytes(answer) + bytes((zsw >> 8, zsw & 0xFF)) + hiw)
+        plan = plan_of(dice.getrandbits(4), RUNNING, dice.getrandbits(1) * 326)
+        attention = bytearray(ATTENTION)
+        attention[ANY] = not dice.getrandbits(3)
+        agreed += judged(reply, request, plan, attention)
+    assert 100 < agreed < 2000, agreed
+
+
+def test_a_reply_behind_a_stray_character_or_before_another_one_starts_nothing():
+    for more, at_us in ((b"\x55", -2_000), (b"\x55", 10_500)):
+        bench = going([Node(1), Node(2)])
+        begin_of_a_telegram(bench)
+        sent = bench.sent[-1]
+        bench.talk(more, sent.at + bench.timing.telegram_us(12) + 1_719 + at_us)
+        bench.bursts.sort()
+        count = len(bench.sent)
+        bench.run_until(lambda: len(bench.sent) > count)
+        quiet_us = bench.sent[-1].at - sent.at - 2 * bench.timing.telegram_us(12)
+        assert quiet_us >= 1_719 + IDLE_US, (more, at_us, quiet_us)
+
+
+def test_a_line_with_an_echo_takes_the_usual_way():
+    bench = Bench([Node(1)], idle_us=IDLE_US, goes_on=True, foreseen=True, echo=True)
+    bench.contact()
+    bench.run(500_000)
+    assert bench.master.has_echo() and bench.went_on == 0
+
+
+def test_a_reply_that_comes_too_soon_starts_nothing():
+    bench = Bench([Node(1, delay_us=100)], idle_us=300, goes_on=True, foreseen=True)
+    bench.run(3_000_000)
+    assert bench.went_on == 0
+
+
+# --- parameters ----------------------------------------------------------------------------------
+
+
+def ask(bench, address, numbers):
+    jobs = [pkw.read(number) for number in numbers]
+    for job in jobs:
+        bench.drives[address].ask(job)
+    return jobs
+
+
+def test_the_next_task_follows_the_answer_at_once():
+    node = Telling(1)
+    bench = going([node])
+    went_on, sent = bench.went_on, len(bench.sent)
+    jobs = ask(bench, 1, range(700, 708))
+    bench.run(500_000)
+    assert [job.integer_value() for job in jobs] == list(range(700, 708))
+    assert node.asked == list(range(700, 708))
+    # The first one could not be foreseen, nor the one to the drive when the first was made ready.
+    assert len(bench.sent) - sent - (bench.went_on - went_on) <= 2
+
+
+def test_the_same_question_twice_has_no_task_between():
+    node = Telling(1)
+    bench = going([node])
+    jobs = ask(bench, 1, (700, 700))
+    count = len(bench.sent)
+    bench.run(300_000)
+    assert [job.state for job in jobs] == [pkw.DONE, pkw.DONE]
+    tasks = [telegram.task() for telegram in bench.sent[count:]]
+    first = tasks.index(1)
+    assert tasks[first : first + 4] == [1, 0, 1, 0], tasks
+
+
+def test_a_drive_that_lags_or_is_deaf_is_asked_as_before():
+    for lag in range(4):
+        bench = going([Telling(1, lag=lag), Telling(2)])
+        jobs = ask(bench, 1, (700, 1082, 2000 - 1)) + ask(bench, 2, (5, 6))
+        bench.run(1_500_000)
+        assert [job.state for job in jobs] == [pkw.DONE] * 5, (lag, jobs)
+        assert [job.integer_value() for job in jobs] == [700, 1082, 1999, 5, 6]
+    bench = going([Telling(1, deaf=True)])
+    jobs = ask(bench, 1, (700,))
+    bench.run(3_000_000)
+    assert jobs[0].state == pkw.TIMED_OUT
+
+
+def test_random_questions_commands_and_silences():
+    """Every question is answered rightly, every command goes out, and no ON after a stop."""
+    for seed in range(12):
+        print("seed", seed)
+        random.seed(seed)
+        nodes = [Telling(each, lag=random.getrandbits(1)) for each in (1, 2, 3)]
+        bench = going(nodes, foreseen=seed & 1 == 0)
+        waiting = []
+        for _ in range(150):
+            address = 1 + random.getrandbits(8) % 3
+            drive, node = bench.drives[address], nodes[address - 1]
+            what = random.getrandbits(3)
+            if what < 3 and not drive.channel.is_full():
+                number = random.getrandbits(10)
+                waiting.append((number, ask(bench, address, (number,))[0]))
+            elif what == 3:
+                drive.start(0x1000 | random.getrandbits(10))
+            elif what == 4:
+                others = max([other.urgency() for other in bench.drives.values()])
+                ran = drive.is_on() and others < 3  # nobody else must be stopped as well
+                drive.stop()
+                count = len(bench.sent)
+                bench.run_until(lambda: len(bench.sent) > count)
+                next_one = bench.sent[-1]
+                assert not ran or next_one.address == address and not next_one.stw() & 1
+            elif what == 5:
+                drive.hsw = 0x1000 | random.getrandbits(10)
+            elif what == 6:
+                node.plugged = not node.plugged or random.getrandbits(1) == 0
+            bench.run(random.getrandbits(15))
+        for node in nodes:
+            node.plugged = True
+        bench.run(6_000_000)
+        for number, job in waiting:
+            done = job.state == pkw.DONE and job.integer_value() == number
+            assert done or job.state in (pkw.TIMED_OUT, pkw.UNANSWERED), (number, job)
+        assert sum([job.state == pkw.DONE for _, job in waiting]) > len(waiting) // 2
+
+
+# --- what the program does meanwhile -------------------------------------------------------------
+
+
+def at_every_instant(prepare, change, check, step_us=500):
+    """Do the change at each instant of an exchange, in a bus of its own each time."""
+    bench = prepare()
+    began = bench.now
+    count = len(bench.sent)
+    bench.run_until(lambda: len(bench.sent) > count + 1)
+    for after_us in range(0, bench.now - began, step_us):
+        bench = prepare()
+        bench.run(after_us)
+        change(bench)
+        check(bench)
+
+
+def test_a_stop_is_in_the_next_telegram_whenever_it_comes():
+    def check(bench):
+        count = len(bench.sent)
+        bench.run_until(lambda: len(bench.sent) > count)
+        assert bench.sent[-1].address == 1 and not bench.sent[-1].stw() & 1
+
+    def prepare():
+        bench = going([Node(1), Node(2)])
+        bench.drives[1].start(0x2000)
+        bench.run(300_000)
+        return bench
+
+    at_every_instant(prepare, lambda bench: bench.drives[1].stop(), check)
+
+
+def test_a_drive_that_is_removed_moved_or_divided_anew_gets_no_old_telegram():
+    def prepare():
+        return going([Node(1), Node(2)])
+
+    def remove(bench):
+        bench.master.turns.remove(bench.drives[2])
+
+    def nothing_to_2(bench):
+        count = len(bench.sent)
+        bench.run(200_000)
+        assert 2 not in bench.addresses(count), bench.sent[count:]
+
+    at_every_instant(prepare, remove, nothing_to_2)
+
+    def move(bench):
+        bench.nodes[7] = bench.nodes.pop(2)
+        bench.nodes[7].address = 7
+        bench.master.turns.readdress(bench.drives[2], 7)
+
+    def move_check(bench):
+        nothing_to_2(bench)
+        assert bench.drives[2].contact
+
+    at_every_instant(prepare, move, move_check)
+
+    def divide(bench):
+        node = bench.nodes[2]
+        node.plugged = False
+        bench.run_until(lambda: not bench.drives[2].contact)
+        node.plugged = True
+        node.pkw_words = 3
+        bench.master.turns.relayout(bench.drives[2], Layout(3, 2))
+
+    def divide_check(bench):
+        count = len(bench.sent)
+        bench.run(200_000)
+        lengths = {len(sent.characters) for sent in bench.sent[count:] if sent.address == 2}
+        assert lengths == {14}, lengths
+
+    at_every_instant(prepare, divide, divide_check, 4_000)
+
+
+def test_a_telegram_outside_the_list_is_the_next_but_one_at_the_latest():
+    bench = going([Node(1), Node(2)])
+    begin_of_a_telegram(bench)
+    mirror = Mirror(2, bytes(range(12)))
+    bench.master.turns.post(mirror)
+    begin_of_a_telegram(bench)
+    begin_of_a_telegram(bench)
+    assert 2 | 0x40 in bench.addresses(-2)
+    bench.run(200_000)
+    assert mirror.state == pkw.DONE
+
+
+def test_a_dead_loop_stops_the_motor_in_time():
+    node = Node(1)
+    bench = running(node)
+    bench.refreshing = False
+    since = bench.now
+    bench.run_until(lambda: not node.stw & 1)
+    assert bench.now - since < 400_000, bench.now - since
+
+
+def test_at_a_rate_at_which_an_exchange_outlasts_the_dead_man_nothing_is_made_ready():
+    bench = Bench([Node(1)], baud=300, idle_us=106_667, goes_on=True, foreseen=True)
+    bench.run(5_000_000)
+    assert bench.drives[1].contact and bench.went_on == 0
+
+
+def test_a_pause_begins_after_the_telegram_that_was_ready():
+    bench = going([Node(1), Node(2)])
+    begin_of_a_telegram(bench)
+    bench.master.pause()
+    count = len(bench.sent)
+    bench.run(100_000)
+    assert bench.master.paused and len(bench.sent) - count <= 1
+    bench.master.resume()
+    bench.run(100_000)
+    assert len(bench.sent) - count > 2
+
+
+def test_close_tells_every_drive_to_stop():
+    nodes = [Node(1), Node(2)]
+    bench = going(nodes)
+    for drive in bench.drives.values():
+        drive.start(0x2000)
+    bench.run(300_000)
+    bench.master.close()
+    bench.run(500_000)
+    assert [node.stw & 1 for node in nodes] == [0, 0]
+    count = len(bench.sent)
+    bench.run(200_000)
+    assert len(bench.sent) == count
+
+
+def test_an_exception_in_the_engine_takes_on_back_though_the_link_has_gone_on():
+    node = Node(1)
+    bench = running(node)
+    drive = bench.drives[1]
+    take = drive.take
+    failed = []
+
+    def fail(buffer, count, now):
+        if not failed:
+            failed.append(now)
+            raise ValueError("once")
+        take(buffer, count, now)
+
+    drive.take = fail
+    went_on = bench.went_on
+    try:
+        bench.run(100_000)
+    except ValueError:
+        bench.master.recover(bench.now)
+        bench.due = bench.now
+    assert failed and bench.went_on > went_on
+    count = len(bench.sent)
+    bench.run(300_000)
+    assert bench.sent[count].stw() == pzd.OFF1 and not node.stw & 1
+    assert bench.master.foreign == 0
