@@ -5,6 +5,8 @@ The display's controller, the switches and the flash belong to the panel and out
 the chip. Every restart makes a new board, as on the chip.
 """
 
+# Lower layers first: an import inside an import inside an import takes stack.
+import hal.link.rs485  # noqa: F401
 from boards.sim.chip.machine import UART, WDT, Pin, Timer
 from boards.sim.going_on import GoingOnLink
 from boards.sim.line.wire import Transceiver
