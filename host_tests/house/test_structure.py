@@ -77,7 +77,6 @@ PRIVATE = {
     ("test_bus.py", "_idle"): "a board's `idle` fails while the program runs, not at the start",
     ("test_drive_command.py", "_descriptor"): "a pty has no rate of its own to be set",
     ("test_pacer.py", "_inside"): "Ctrl-C comes in one certain jump of the interpreter",
-    ("test_panel_failures.py", "_link"): "the link fails in the middle of a run",
     ("test_panel_one_run.py", "_asked"): "an answer is there that the loop has not taken",
     ("test_request.py", "_sent_stw"): "a request is made anew, to compare it with one made ready",
     ("test_soak.py", "_obey"): "a start that no key asked for",
