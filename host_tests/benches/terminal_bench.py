@@ -26,21 +26,31 @@ from tiers import TOP
 PANEL = os.path.join(TOP, "tools", "panel")
 PATIENCE_S = 30  # for a machine that does other things as well
 
-SEQUENCE = re.compile(rb"\x1b\[([?\d;]*)([A-Za-z])")
+SEQUENCE = re.compile(rb"\x1b\[([<-?]?)([\d;:]*)([ -/]*)([@-~])")
+POINTER = re.compile(rb"\x1b\]22;\w*\x07")  # how the mouse looks
+CURSOR, WRAPS, SECOND, BRACKETS = "25", "7", "1049", "2004"
+MOUSE, FOCUS = ("1000", "1003", "1015", "1006"), "1004"
+MODES = (CURSOR, WRAPS, SECOND, BRACKETS, *MOUSE, FOCUS, "2026")
 
 
 class Screen:
-    """What a terminal shows: as much of ECMA-48 as the panel uses. Anything else is an error."""
+    """What a terminal shows and answers: as much of ECMA-48 and of xterm as the panel uses.
+    Anything else is an error. answer(bytes): to the program; silent: it answers nothing.
+    """
 
-    def __init__(self, rows, columns):
+    def __init__(self, rows, columns, answer=None):
         self.rows, self.columns = rows, columns
         self.normal = []  # what was printed on the normal screen
-        self.second = False
-        self.cursor = True
-        self.wraps = True
-        self.brackets = False  # around what is pasted
+        self.modes = {CURSOR, WRAPS}
+        self.answer = answer
         self.clear()
         self._pending = b""
+
+    second = property(lambda self: SECOND in self.modes)
+    cursor = property(lambda self: CURSOR in self.modes)
+    wraps = property(lambda self: WRAPS in self.modes)
+    brackets = property(lambda self: BRACKETS in self.modes)
+    mouse = property(lambda self: not self.modes.isdisjoint(MOUSE))
 
     def clear(self):
         self.cells = [[" "] * self.columns for _ in range(self.rows)]
@@ -52,16 +62,24 @@ class Screen:
     def text(self):
         return "\n".join(self.lines() if self.second else "".join(self.normal).splitlines())
 
+    def place(self, text):
+        """Row and column of a text, from 1 on, as the mouse counts them."""
+        for row, line in enumerate(self.lines()):
+            if text in line:
+                return row + 1, line.index(text) + 1
+        raise AssertionError("%s is not on the screen:\n%s" % (text, self.text()))
+
     def write(self, data):
         data = self._pending + data
         at = 0
         while at < len(data):
             if data[at] == 0x1B:
-                found = SEQUENCE.match(data, at)
+                found = SEQUENCE.match(data, at) or POINTER.match(data, at)
                 if not found:
-                    assert len(data) - at < 12, data[at : at + 20]
+                    assert len(data) - at < 16, data[at : at + 20]
                     break
-                self._obey(found[1].decode(), found[2].decode())
+                if found.re is SEQUENCE:
+                    self._obey(*(part.decode() for part in found.groups()))
                 at = found.end()
                 continue
             size = 1 if data[at] < 0x80 else 2 if data[at] < 0xE0 else 3
@@ -71,45 +89,51 @@ class Screen:
             at += size
         self._pending = data[at:]
 
-    def _obey(self, parameters, final):
-        if final in "hl":
-            on = final == "h"
-            if parameters == "?1049":
-                self.second = on
+    def _obey(self, private, parameters, between, final):
+        if private == "?" and final in "hl":
+            assert parameters in MODES, parameters
+            if parameters == SECOND:
                 self.clear()
-            elif parameters == "?25":
-                self.cursor = on
-            elif parameters == "?2004":
-                self.brackets = on
-            else:
-                assert parameters == "?7", parameters
-                self.wraps = on
+            (self.modes.add if final == "h" else self.modes.discard)(parameters)
+        elif private == "?" and between + final == "$p":
+            self._answer("\x1b[?%s;0$y" % parameters)  # a mode that it does not know
+        elif private and final == "u":
+            assert private == "<", "it leaves the keyboard as it is"
+        elif final == "n":
+            assert parameters == "6", parameters
+            self._answer("\x1b[%d;%dR" % (self.row + 1, self.column + 1))
         elif final == "H":
-            row, column = map(int, parameters.split(";"))
-            assert 1 <= row <= self.rows and column == 1, parameters
-            self.row, self.column = row - 1, 0
-        elif final == "K":
-            # After a character in the last column the cursor still stands on it.
-            column = min(self.column, self.columns - 1)
-            self.cells[self.row][column:] = [" "] * (self.columns - column)
+            row, column = (int(number) for number in (parameters or "1;1").split(";"))
+            assert 1 <= row <= self.rows and 1 <= column <= self.columns + 1, parameters
+            self.row, self.column = row - 1, column - 1
         elif final == "J":
             self.clear()
         else:
-            assert final == "m" and parameters in ("0", "7", "27"), (parameters, final)
+            assert final == "m" and not private, (private, parameters, between, final)
+
+    def _answer(self, text):
+        if self.answer:
+            self.answer(text.encode())
 
     def _put(self, character):
         if not self.second:
             self.normal.append(character)
-            return
-        assert character >= " " and self.column < self.columns, "it would leave the screen"
-        self.cells[self.row][self.column] = character
-        self.column += 1
+        elif character == "\r":
+            self.column = 0
+        elif character == "\n":
+            self.row = min(self.row + 1, self.rows - 1)
+        else:
+            assert character >= " ", repr(character)
+            if self.row < self.rows and self.column < self.columns:  # a smaller one cuts it off
+                self.cells[self.row][self.column] = character
+            self.column += 1
 
 
 class Terminal:
     """A terminal in which a program runs: ./tools/panel, with options, or another one."""
 
     def __init__(self, *options, rows=24, columns=80, program=None, discipline="0", **environment):
+        self.is_dead = False  # it answers nothing, as behind a connection that froze
         self.master, self.slave = os.openpty()
         self.resize(rows, columns)
         subprocess.run(["stty", "line", discipline], stdin=self.slave, check=True)
@@ -122,8 +146,15 @@ class Terminal:
         )  # fmt: skip
 
     def resize(self, rows, columns):
-        self.screen = Screen(rows, columns)
+        before = getattr(self, "screen", None)
+        self.screen = Screen(rows, columns, self._answer)
+        if before:
+            self.screen.modes = before.modes
         fcntl.ioctl(self.slave, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
+
+    def _answer(self, data):
+        if not self.is_dead:
+            os.write(self.master, data)
 
     def settings(self):
         """All of them: Python knows no line discipline."""
@@ -137,19 +168,28 @@ class Terminal:
 
     def commands(self, *commands):
         """Type what the script language knows after `:`. The line is left open."""
-        if " :_" not in self.screen.text():
+        if not self.is_open():
             self.type(":")
         for command in commands:
-            self.shows(" :_")
+            self.waits(self.is_open, "the command line")
             self.type(command)
-            self.shows(" :%s_" % command)
+            self.waits(lambda: " :" + command in self.screen.lines(), command)
             time.sleep(0.2)  # at once it would be a part of what came at once
             self.type("\r")
 
+    def is_open(self):
+        """Whether a command can be typed."""
+        return " :" in self.screen.lines()
+
     def back_to_the_keys(self):
-        self.shows(" :_")
+        self.waits(self.is_open, "the command line")
         self.type("\r")
-        self.shows_no_more(" :_")
+        self.waits(lambda: not self.is_open(), "the keys")
+
+    def mouse(self, place, down):
+        """The left button goes down or up there: (row, column), from 1 on."""
+        row, column = place
+        self.type("\x1b[<0;%d;%d%s" % (column, row, "M" if down else "m"))
 
     def waits(self, condition, what):
         """Take what is written until the condition holds."""
@@ -180,11 +220,11 @@ class Terminal:
     def is_as_before(self):
         assert self.settings() == self.before
         assert self.screen.cursor and self.screen.wraps
-        assert not (self.screen.second or self.screen.brackets)
+        assert not (self.screen.second or self.screen.brackets or self.screen.mouse)
         return True
 
     def program(self):
-        """The process id of the program that the wrapper runs."""
+        """The process id of the panel behind the picture."""
         with open("/proc/%d/task/%d/children" % (self.process.pid, self.process.pid)) as file:
             return int(file.read().split()[0])
 

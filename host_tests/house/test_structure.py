@@ -79,6 +79,7 @@ PRIVATE = {
     ("test_pacer.py", "_inside"): "Ctrl-C comes in one certain jump of the interpreter",
     ("test_panel_one_run.py", "_asked"): "an answer is there that the loop has not taken",
     ("test_request.py", "_sent_stw"): "a request is made anew, to compare it with one made ready",
+    ("window_bench.py", "_compositor"): "Textual tells nowhere else what is on the screen",
     ("test_soak.py", "_obey"): "a start that no key asked for",
 }
 
@@ -110,7 +111,9 @@ UNDERSTOOD = (
     ("tools/mutating/", 'Import "(tiers|line_notes)', "of the tests, which it runs"),
     ("tools/web/", 'Import "aiohttp', "fetched where somebody uses --web"),
     ("tools/pc/", "is specified in __all__", "loaded when it is named"),
-    ("tools/", 'Import "rich', "fetched where somebody uses tools/uss"),
+    ("tools/", 'Import "rich', "fetched where somebody uses tools/uss or the live panel"),
+    ("tools/terminal/", 'Import "textual', "fetched where somebody uses the live panel"),
+    ("tools/terminal/", 'parameter named "bubble"', "of a class of Textual"),
     ("tools/", 'Import "uss_serial.port', "tools/port, which the package takes in"),
 )
 

@@ -25,8 +25,7 @@ from hal.store import FileStore
 from settings_file import SIZE_MAX, load, save
 from strict_json import fields
 from tools.live.lines import speak
-from tools.live.picture import in_ascii
-from tools.live.terminal_panel import live, shows_boxes
+from tools.live.plain import in_ascii, understands_utf_8
 from tools.live.usage import USAGE
 from uss.telegram import NODE_MAX
 from uss.timing import BAUD_RATES
@@ -590,7 +589,7 @@ def show(line):
 
 def legible(line, descriptor):
     """The line as a person can read it there. What goes into a file or a pipe is UTF-8."""
-    return line if shows_boxes(os.getenv) or not isatty(descriptor) else in_ascii(line)
+    return line if understands_utf_8(os.getenv) or not isatty(descriptor) else in_ascii(line)
 
 
 def run_script(world, name):
@@ -614,6 +613,8 @@ def panel(words):
         fit_for_board(chosen)
         if chosen["check"]:
             return 0
+        if not silent:
+            raise UsageError("this shows no picture: start ./tools/panel")
         world, said = world_of(chosen)
         if chosen["json"] is not None:
             keep_log(world, chosen["json"])
@@ -622,8 +623,6 @@ def panel(words):
         try:
             if chosen["lines"]:
                 speak(world, chosen["speed"], said)
-            elif chosen["script"] is None:
-                live(world, chosen["speed"], said)
             else:
                 run_script(world, chosen["script"])
         finally:
@@ -652,7 +651,7 @@ def panel(words):
 
 
 def leave_line(world):
-    """Stop every drive first; the live panel has done that already."""
+    """Stop every drive first."""
     world.close()
     tell_notices(world)
     if world.unconfirmed():
