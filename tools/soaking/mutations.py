@@ -1198,7 +1198,7 @@ MUTATIONS = (
     Mutation(
         "goes on without a check",
         "the next telegram follows what is no reply",
-        ("WITHOUT REASON", "SHOWN", "LOST", "START", "STOP"), 1,
+        ("WITHOUT REASON", "SHOWN", "LOST", "START", "STOP"), 55,
         (
             "uss/going_on/viper.py",
             "    if check != 0 or differs == 0:\n        return False\n",
@@ -1226,27 +1226,6 @@ MUTATIONS = (
             "uss/going_on/master.py",
             "        self._link.take_back()\n        due_us",
             "        due_us",
-        ),
-    ),
-    Mutation(
-        "goes on to a drive that moved",
-        "the telegram that was made ready goes to the old address, or to a drive that was removed",
-        ("LIST", "LAYOUT", "STOP", "TELEGRAM"), 1,
-        (
-            "uss/turns.py",
-            "        self.attention[ANY] = 1  # the next telegram is perhaps made ready, for this"
-            " drive\n",
-            "",
-        ),
-    ),
-    Mutation(
-        "goes on for a dead loop",
-        "the telegram that was made ready carries ON though the loop has stood still for 300 ms",
-        ("DEAD MAN",), 1,
-        (
-            "uss/going_on/master.py",
-            "        if (now - self._refreshed_at) & self._mask > left_us:\n            return\n",
-            "",
         ),
     ),
 )  # fmt: skip
