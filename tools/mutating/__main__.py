@@ -20,7 +20,7 @@ from pathlib import Path
 TOP = Path(__file__).resolve().parents[2]
 sys.path[:1] = map(str, (TOP, TOP / "host_tests", TOP / "host_tests" / "cpython"))
 
-from tools.command_line import Parser  # noqa: E402
+from tools.command_line import Parser, count  # noqa: E402
 
 USUAL = ("firmware/uss", "firmware/panel", "firmware/app.py", "firmware/hal")
 SURVIVED, WRONG = 1, 2
@@ -62,21 +62,6 @@ def parser():
     add("--tree", metavar="FOLDER", type=Path, default=TOP, help="another tree than this one")
     add("--check", action="store_true", help=argparse.SUPPRESS)
     return arguments
-
-
-def count(low, high):
-    """Type of an argument: an integer from low to high."""
-
-    def understand(word):
-        try:
-            number = int(word)
-        except ValueError:
-            raise argparse.ArgumentTypeError("%s is no whole number" % word) from None
-        if not low <= number <= high:
-            raise argparse.ArgumentTypeError("%s is not %d...%d" % (word, low, high))
-        return number
-
-    return understand
 
 
 def name(word):

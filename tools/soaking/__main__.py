@@ -21,7 +21,7 @@ from pathlib import Path
 
 sys.path[0] = str(Path(__file__).resolve().parents[2])
 
-from tools.command_line import Parser  # noqa: E402
+from tools.command_line import Parser, count  # noqa: E402
 from tools.progress import Progress  # noqa: E402
 from tools.soaking import interpreters  # noqa: E402
 from tools.soaking.interpreters import CPYTHON, NAMES, PYPY, TOP  # noqa: E402
@@ -67,21 +67,6 @@ def parser():
     add("--firmware", metavar="FOLDER", default=TOP / "firmware", help="another copy of firmware/")
     add("--needs", action="store_true", help=argparse.SUPPRESS)  # what it runs on, for tools/soak
     return arguments
-
-
-def count(low, high):
-    """Type of an argument: an integer from low to high."""
-
-    def understand(word):
-        try:
-            number = int(word)
-        except ValueError:
-            raise argparse.ArgumentTypeError("%s is no whole number" % word) from None
-        if not low <= number <= high:
-            raise argparse.ArgumentTypeError("%s is not %d...%d" % (word, low, high))
-        return number
-
-    return understand
 
 
 def minutes(word):
