@@ -10,6 +10,7 @@ usage: ./tools/panel [--speed N] [--drives 1,2=g110] [--baud 19200] [--settings 
        ./tools/panel --port PATH [--reply-timeout MS] [--script FILE|-] ...
        ./tools/panel --web [--bind ADDRESS] [--web-port N] ...
        ./tools/panel --web --static FOLDER [--drives LIST] [--baud RATE] [--keys WIRING] [--seed N]
+       ./tools/panel --join LINK
        ./tools/panel --lines ...
 
   --speed N       in a terminal: time passes N times as fast, 1...100 (1)
@@ -19,6 +20,7 @@ usage: ./tools/panel [--speed N] [--drives 1,2=g110] [--baud 19200] [--settings 
   --web-port N    web: on this port; 0 takes a free one (0)
   --static FOLDER web: write the page into FOLDER, with a panel that runs in the browser itself and
                   needs no server of ours
+  --join LINK     be one more front end of the panel whose link --web has printed, in a terminal
   --lines         for a front end of your own: speak tools/live/README.md on standard input and
                   output, in real time
   --drives LIST   the simulated drives (1, or those of the settings): addresses 0...31, and what is

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Whether the program has taken ON back from a drive: what the engine was told last.
 
-The only thing that the judge has from the firmware. Nobody else can tell whether a telegram with ON
-began before or after it: a telegram too much lasts a few milliseconds, which keys, motors and
+The only thing that the judge has from the firmware. Nobody else can tell whether a telegram with
+ON began before or after it: a telegram too much lasts a few milliseconds, which keys, motors and
 display do not show.
 """
 

@@ -56,7 +56,9 @@ def main(command):
 
 
 def farewell(told):
-    """What the panel says when it has gone."""
+    """What the panel says when it has gone; nothing if it goes on without us."""
+    if told.hello.get("joined"):
+        return "USS panel: left; it goes on."
     if told.hello["real"]:
         return "USS panel: ended; " + LEFT
     seconds = told.us // 1_000_000
