@@ -222,6 +222,30 @@ def test_two_short_presses_are_two():
     assert talk.lcd()[0].startswith("S: 10.3")
 
 
+def test_a_key_does_not_overtake_presses_of_another_one():
+    """DOWN three times and SET, faster than the panel looks: it is the third DOWN that is set."""
+    talk = Talk()
+    talk.ready()
+    downs = []
+    press = talk.world.down
+
+    def noted(key):
+        downs.append((key, talk.world.clock.now_us))
+        press(key)
+
+    talk.world.down = noted
+    for key in ("DOWN", "DOWN", "DOWN", "SET", "UP"):
+        talk.tap(key)
+    talk.wait(1500)
+    assert [key for key, _ in downs] == ["DOWN", "DOWN", "DOWN", "SET", "UP"], downs
+    apart = [after - before for (_, before), (_, after) in zip(downs, downs[1:])]
+    assert min(apart) >= 100_000, apart
+    talk.tap("UP")
+    talk.tap("DOWN")
+    talk.tap("STOP")
+    assert downs[-1][0] == "STOP", "it waits for nobody"
+
+
 def test_too_many_presses_are_left_out_and_it_says_so():
     talk = Talk()
     talk.ready()

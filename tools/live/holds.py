@@ -8,7 +8,8 @@
     holds.step(now_ms)                  # every few milliseconds, now_ms is real time
 
 A key is down while anybody holds it. It stays down for 100 ms of the panel's time, so that the
-panel sees the shortest press. STOP wins: whoever presses it, all other keys come up. Who was not
+panel sees the shortest press. Presses that have to wait for that begin in the order in which they
+came, so that SET does not overtake the DOWN before it. STOP waits for nobody and wins: whoever presses it, all other keys come up. Who was not
 heard for 300 ms holds no key any more. When nobody is heard for 2 s, nobody could press STOP: then
 all drives get OFF1.
 """
@@ -55,6 +56,8 @@ class Holds:
         self.lonely = False
         self._world = world
         self._presses = {}
+        self._order = []  # keys of the presses that wait, the first one first
+        self._next_us = 0  # the next of them begins then at the earliest
         self._heard_ms = {}  # of each front end that is there
         self._armed_ms = {}
         self._now_ms = 0
@@ -96,6 +99,7 @@ class Holds:
             if press.waiting >= WAITING_MAX:
                 raise KeyRefused(TOO_FAST % key)
             press.waiting += 1
+            self._order.append(key)
         press.holders.add(who)
         self._do_due(key, press)
         if key == STOP:
@@ -114,7 +118,7 @@ class Holds:
     def vanish(self):
         """Nobody was heard: let go of every key."""
         for key, press in self._presses.items():
-            press.waiting = 0
+            self._forget(key, press)
             press.holders.clear()
             self._do_due(key, press)
 
@@ -122,7 +126,7 @@ class Holds:
         """A command that lets time pass has put a key down, or up: `Errand`."""
         press = self._press(key)
         press.is_down = down
-        press.waiting = 0
+        self._forget(key, press)
         press.least_us = 0
         if down:
             press.holders.add(COMMAND)
@@ -133,6 +137,7 @@ class Holds:
         press.free_us = self._world.clock.now_us + RELEASE_MS * 1000
         if press.holders:  # somebody else holds it as well
             press.waiting = 1
+            self._order.append(key)
 
     def keys(self):
         """Those that are down."""
@@ -183,9 +188,17 @@ class Holds:
             if key == STOP:
                 continue
             press.holders.clear()
-            press.waiting = 0
+            self._forget(key, press)
             press.least_us = 0
             self._do_due(key, press)
+
+    def _forget(self, key, press):
+        """Its presses that wait do not come any more."""
+        press.waiting = 0
+        self._order = [other for other in self._order if other != key]
+
+    def _has_its_turn(self, key, now_us):
+        return key == STOP or self._order[0] == key and now_us >= self._next_us
 
     def _do_due(self, key, press):
         now_us = self._world.clock.now_us
@@ -194,10 +207,13 @@ class Holds:
                 self._world.up(key)
                 press.is_down = False
                 press.free_us = now_us + RELEASE_MS * 1000
-        elif press.waiting and now_us >= press.free_us:
+        elif press.waiting and now_us >= press.free_us and self._has_its_turn(key, now_us):
             self._world.down(key)
             press.is_down = True
             press.waiting -= 1
+            self._order.remove(key)
+            if self._order:  # somebody presses faster than the panel looks
+                self._next_us = now_us + (TAP_MS + RELEASE_MS) * 1000
             press.least_us = now_us + TAP_MS * 1000
 
 
