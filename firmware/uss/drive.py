@@ -511,7 +511,7 @@ class Drive:
             plan[PLAN_ZSW_AT] = 0
             return
         plan[PLAN_ZSW_AT] = self.size - self.layout.pzd_count - 1
-        plan[PLAN_ZSW] = self.zsw & _MOTION
+        plan[PLAN_ZSW] = self.zsw & ZSW_RUNNING  # and neither fault nor inhibit, old or new
         plan[PLAN_NEAR] = self.near if self._arrived and self._order >= 0 else 0
 
     def _note_order(self, stw, hsw):

@@ -140,6 +140,20 @@ def test_a_drive_that_trips_inhibits_or_stops_gets_no_second_telegram_with_on():
         assert bench.drives[1].stopped_by_engine()
 
 
+def test_a_drive_that_is_in_trouble_already_gets_one_telegram_with_on():
+    for zsw in (READY | FAULT, READY | INHIBIT):
+        node = Node(1)
+        bench = going([node])
+        node.follows = False
+        node.zsw = zsw
+        bench.run(100_000)
+        count = len(bench.sent)
+        bench.drives[1].start(0x2000)
+        bench.run(200_000)
+        stws = bench.stws(1, count)
+        assert sum([stw & 1 for stw in stws]) == 1, (zsw, stws)
+
+
 def test_a_motor_that_stands_still_unordered_gets_no_second_telegram_with_on():
     node = Telling(1)
     bench = running(node)
