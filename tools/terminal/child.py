@@ -53,14 +53,14 @@ class Child:
         return self._process.stderr.fileno()
 
     def first(self):
-        """Wait for its first messages; none if it has ended."""
+        """Wait for its `hello`; the messages up to then. Without one, it has ended."""
         messages = []
-        while not messages and not self.is_over:
+        while not self.is_over and not any(message["t"] == "hello" for message in messages):
             ready, _, _ = select.select([self.fileno(), self.errors()], [], [])
             if self.errors() in ready:
                 self.hear()
             if self.fileno() in ready:
-                messages = self.read()
+                messages += self.read()
         return messages
 
     def read(self):
