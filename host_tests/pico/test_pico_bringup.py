@@ -4,9 +4,8 @@ there for."""
 
 import os
 
-from test_pico_deploy import Deploy
-
 from bringup_bench import BOTH, DRIVER, HEARS_ITSELF, PLACE, ask, bare_pico, bite, files
+from serial_tool_bench import at_port
 from tools.bringing_up.checks import (
     CHECKS,
     DISPLAY,
@@ -264,23 +263,12 @@ def test_every_check_was_seen_to_fail():
     assert [check.number for check in CHECKS] == list(range(1, 17))
 
 
-class BringUp(Deploy):
-    def __init__(self, world, report, *words):
-        self.world = world
-        self._output = temporary()
-        world.tell("S", 1)
-        os.system(
-            "{ ./tools/bringup --port $USS_PICO_SERIAL --yes --report %s %s; echo EXIT $?; } "
-            ">%s 2>&1 </dev/null &" % (report, " ".join(words), self._output)
-        )
-
-
 def bring_up(*words, jumpers=BOTH):
     """The tool on a board that nothing else was done to: its exit status, the first words of its
     sixteen lines, what it said."""
     world = PicoWorld("stock", addresses=(), baud=115_200, jumpers=jumpers)
     report = temporary()
-    status, said = BringUp(world, report, *words).ends()
+    status, said = at_port(world, "bringup", "--yes", "--report", report, *words)
     lines = [line for line in said.split("\n") if line[:4] in ("PASS", "FAIL", "NOT ")]
     with open(report) as file:
         assert said == file.read()

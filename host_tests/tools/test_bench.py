@@ -177,8 +177,8 @@ def test_what_is_measured_on_the_host_alone_can_be_measured():
 
 def line_figures(**changed):
     figures = {
-        "rate": 250.0,
-        "idle_ns": [1, 700_000, 1_000_000, 1_000_000, 10_000],
+        "rate": 270.0,
+        "idle_ns": [1, 240_000, 1_000_000, 1_000_000, 10_000],
         "release_ns": [1_000, 1_100, 1_100, 1_200, 10_000],
         "lead_ns": [1_000, 1_100, 1_100, 1_200, 10_000],
         "steps_us": [1_000, 1_500, 1_900, 1_000],
@@ -202,10 +202,10 @@ def test_the_bars_of_the_line_are_where_the_design_puts_them():
     idle = "reply to next start bit beyond the start interval"
     for changed, wanted in (
         ({}, []),
-        ({"rate": 199.9}, ["exchanges per second"]),
-        ({"idle_ns": [1, 1_300_000, 1_700_000, 9_999_999, 10_000]}, []),
-        ({"idle_ns": [1, 1_300_001, 1_400_000, 1_400_000, 10_000]}, [idle]),
-        ({"idle_ns": [1, 1_200_000, 1_700_001, 1_800_000, 10_000]}, [idle]),
+        ({"rate": 259.9}, ["exchanges per second"]),
+        ({"idle_ns": [1, 250_000, 1_100_000, 9_999_999, 10_000]}, []),
+        ({"idle_ns": [1, 250_001, 1_000_000, 1_400_000, 10_000]}, [idle]),
+        ({"idle_ns": [1, 200_000, 1_100_001, 1_800_000, 10_000]}, [idle]),
         ({"release_ns": [0, 1, 1, 95_486, 10_000]}, []),
         ({"release_ns": [-1, 1, 1, 95_486, 10_000]}, [release]),
         ({"release_ns": [0, 1, 1, 95_487, 10_000]}, [release]),

@@ -24,7 +24,9 @@ LONGEST_WAIT_US = 1_000_000
 
 LOST = "%d characters are lost: they came faster than a line of %d baud carries them"
 NO_PANEL = "there is no panel here, only drives"
-OF_THE_PANEL = ("press", "hold", "down", "up", "lcd", "expect", "hang", "reset", "power")
+OF_THE_PANEL = (
+    "press", "hold", "down", "up", "setpoint", "lcd", "expect", "hang", "reset", "power",
+)  # fmt: skip
 
 
 class DriveLine:

@@ -9,9 +9,9 @@
 
 A key is down while anybody holds it. It stays down for 100 ms of the panel's time, so that the
 panel sees the shortest press. Presses that have to wait for that begin in the order in which they
-came, so that SET does not overtake the DOWN before it. STOP waits for nobody and wins: whoever presses it, all other keys come up. Who was not
-heard for 300 ms holds no key any more. When nobody is heard for 2 s, nobody could press STOP: then
-all drives get OFF1.
+came, so that SET does not overtake the DOWN before it. STOP waits for nobody and wins: whoever
+presses it, all other keys come up. Who was not heard for 300 ms holds no key any more. When nobody
+is heard for 2 s, nobody could press STOP: then all drives get OFF1.
 """
 
 from boards.sim.world import RELEASE_MS, TAP_MS
