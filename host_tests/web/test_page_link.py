@@ -232,13 +232,13 @@ def test_nothing_but_the_page_is_handed_out(panel):
             0,
         ),
         ("[new Uint8Array(9)]", [], 1000),
-        ("['x'.repeat(100000)]", [], 1009),
+        ("['x'.repeat(100000)]", [], (1009, 1006)),  # the rest of it may find the door closed
         ("Array(1000).fill('{}')", None, 1008),
     ),
 )
 def test_whatever_a_page_says_the_panel_runs_on(says, errors, code, panel, watcher):
     heard, closed = watcher.hears(LINK % (json.dumps(socket_of(panel)), says))
-    assert closed == code
+    assert closed in (code if isinstance(code, tuple) else (code,))
     if errors is not None:
         assert len(heard) == len(errors), heard
         for text, why in zip(heard, errors, strict=True):
