@@ -104,7 +104,7 @@ class App:
             self._feed(now_ms, now_us)
         elif self._log is not None:
             self._log_on(now_ms, now_us)
-        elif (self.ticks_us() - now_us) & self._mask <= _LONG_US:
+        elif not self._is_long(now_us):
             self._tend()  # the panel may have asked for something
         if self._polled:
             self._tend()
@@ -139,11 +139,15 @@ class App:
             self.refresh_bus(now_us)
             if self._finder is not None:
                 self._find(now_us)
-            if (self.ticks_us() - now_us) & self._mask > _LONG_US or self._tend():
+            if self._is_long(now_us) or self._tend() and self._is_long(now_us):
                 self._shows_next = True
                 return
         self._shows_next = False
         self.board.display.show(self.panel.screen.picture)
+
+    def _is_long(self, now_us):
+        """Whether the step that began then has taken long."""
+        return (self.ticks_us() - now_us) & self._mask > _LONG_US
 
     def _find(self, now_us):
         """Look for drives that are silent because their telegrams are divided differently."""

@@ -27,7 +27,7 @@ _RETRY_US = const(1_000)  # after an exception in the engine
 WAKE_US = const(1_000)
 _PERIOD_MIN_US = const(20)  # or the timer would fire before it is armed
 OVERDUE_US = const(50_000)  # a timer that is so late is set again
-_ENGINE_BYTES = const(2_500)  # of the stack, from `run` on: host_tests/pico/test_pico_stack.py
+_ENGINE_BYTES = const(2_800)  # of the stack, from `run` on
 ROUNDS_MAX = const(4)  # entries in a row for events that came meanwhile; the timer takes the rest
 
 

@@ -194,7 +194,7 @@ class Channel:
         """The words that `fill` would write if nothing happens meanwhile; None: that depends. This
         changes nothing; `sent` says that they went out.
 
-        answering: a reply is under way; it is as `awaits` says.
+        answering: a reply is under way; it is as `going_on.plan` says.
         """
         if self._form != _FOUR_WORDS:
             return None
@@ -219,15 +219,6 @@ class Channel:
         elif job.tries >= _TRIES_MIN:
             return None
         return NO_TASK if without else job.words
-
-    def awaits(self):
-        """Which AK the reply to the last request must have, a bit for each, so that this channel
-        goes on as `foresee` says; 0: any. Unless it is AK 0, it is about the task's parameter.
-        """
-        if self._without:
-            return 1
-        job = self._queue[self._out]
-        return pkw.FITTING[job.task] if job is not None and job.tries > 0 else 0
 
     def sent(self, net, at, now):
         """The words in `net` from index `at` on, of `foresee`, are on the line."""

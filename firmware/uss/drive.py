@@ -85,13 +85,6 @@ ANY = const(96)
 SOON = const(97)
 ATTENTION = const(98)
 
-# Of the plan by which `uss.going_on` looks at a reply, see `watch`: words of 16 bits.
-PLAN_AK = const(0)  # which AK it may have, a bit each; 0: any
-PLAN_ZSW_AT = const(1)  # where its ZSW stands; 0: that may be anything
-PLAN_ZSW = const(2)  # what the bits of motion in it must be
-PLAN_NEAR = const(3)  # HIW must be further from 0 than half of this; 0: it may be anything
-PLAN_WORDS = const(4)
-
 OFFS = (pzd.OFF1, pzd.OFF2, pzd.OFF3)
 NO_CONTROL = const(0)  # in place of an OFF: bit 10 is 0, and the drive is told nothing
 
@@ -463,7 +456,7 @@ class Drive:
         `follow` says that it went out.
 
         Its control word is that of the last request. answering: a reply of this drive is under
-        way, to that request; it is as `channel.awaits` says and shows nothing that matters.
+        way, to that request; it is as `going_on.plan` says.
         """
         request = self.request
         if not self.steady or not self.sealed or request[2] != self.address:
@@ -500,19 +493,6 @@ class Drive:
             if hsw != self._hsw:
                 self._hsw = hsw
                 self._note_order(stw, hsw)
-
-    def watch(self, plan):
-        """Say what must not change in the reply that is under way if another request with ON may
-        follow at once: see `uss.going_on`. With the words as they were, `take` takes nothing back.
-        """
-        channel = self.channel
-        plan[PLAN_AK] = 0 if channel.idle else channel.awaits()
-        if not self._sent_stw & STW_RUN:
-            plan[PLAN_ZSW_AT] = 0
-            return
-        plan[PLAN_ZSW_AT] = self.size - self.layout.pzd_count - 1
-        plan[PLAN_ZSW] = self.zsw & ZSW_RUNNING  # and neither fault nor inhibit, old or new
-        plan[PLAN_NEAR] = self.near if self._arrived and self._order >= 0 else 0
 
     def _note_order(self, stw, hsw):
         """Note what HIW should become by this telegram. A new value has not arrived yet."""

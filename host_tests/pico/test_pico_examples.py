@@ -76,6 +76,7 @@ def test_plain_micropython_starts_with_a_program_of_ones_own():
         "uss/families",
         "uss/fast",
         "uss/finding",
+        "uss/going_on",
         "hal",
         "hal/display",
         "hal/link",

@@ -9,8 +9,9 @@ import random
 
 from round_bench import READY, RUNNING, Bench, Node, framed
 from uss import pkw, pzd
-from uss.drive import ANY, ATTENTION, PLAN_AK, PLAN_NEAR, PLAN_WORDS, PLAN_ZSW, PLAN_ZSW_AT
+from uss.drive import ANY, ATTENTION
 from uss.going_on import master as going_on
+from uss.going_on import plan as plans
 from uss.going_on import python
 from uss.layout import Layout
 from uss.outside import Mirror
@@ -201,12 +202,12 @@ def judged(reply, *arguments):
 
 
 def plan_of(answers=0, zsw=None, near=0):
-    plan = going_on.array("H", bytes(2 * PLAN_WORDS))
-    plan[PLAN_AK] = answers
+    plan = going_on.array("H", bytes(2 * plans.WORDS))
+    plan[plans.AK] = answers
     if zsw is not None:
-        plan[PLAN_ZSW_AT] = 11
-        plan[PLAN_ZSW] = zsw & 0x4C
-        plan[PLAN_NEAR] = near
+        plan[plans.ZSW_AT] = 11
+        plan[plans.ZSW] = zsw & 0x4C
+        plan[plans.NEAR] = near
     return plan
 
 

@@ -142,7 +142,7 @@ pico_manifest() {
 pico_flags() {
     [[ $1 == stock* ]] ||
         echo -DMICROPY_OPT_MAP_LOOKUP_CACHE_SIZE=2048 -DVM_MAX_STATE_ON_STACK=96 \
-            -DSTACK_MORE=704 -DMICROPY_ALLOC_GC_STACK_SIZE=192 \
+            -DSTACK_MORE=1984 -DMICROPY_ALLOC_GC_STACK_SIZE=192 \
             -DUSS_PANEL=1 -DMICROPY_MODULE_DICT_SIZE=23 \
             -DUSB_MAX_ENDPOINTS=3 -DPICO_TIME_DEFAULT_ALARM_POOL_MAX_TIMERS=8 \
             "-DPICO_PROGRAM_DESCRIPTION='\"USS panel $(panel_version)\"'"

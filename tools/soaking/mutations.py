@@ -1215,8 +1215,8 @@ MUTATIONS = (
         "goes on beside bad news",
         "a drive that trips or stops by itself is sent ON once more",
         ("STOP", "TURNS", "START"), 1,
-        ("uss/going_on/viper.py", "& 0x4C:  # PLAN_ZSW", "& 0:"),
-        ("uss/going_on/python.py", "^ plan[PLAN_ZSW]) & MOTION:", "^ plan[PLAN_ZSW]) & 0:"),
+        ("uss/going_on/viper.py", "& 0x4C:  # plan.ZSW", "& 0:"),
+        ("uss/going_on/python.py", "^ plan[ZSW]) & MOTION:", "^ plan[ZSW]) & 0:"),
     ),
     Mutation(
         "goes on with what was ready before",

@@ -11,7 +11,7 @@ What makes it safe:
 * Whoever calls (a stop, any command, a drive that was changed) sets the attention of `Turns`, and
   the link looks at that microseconds before it sends.
 * If the telegram goes to the drive that answers, everything in the reply that takes ON back is
-  new (`Drive.watch`). If it goes to another one, the reply matters to the next telegram but one.
+  new (`plan.watch`). If it goes to another one, the reply matters to the next telegram but one.
 * Each entry into the engine takes the telegram back first, and makes it ready anew at last.
 * The loop must have refreshed so lately that the dead man does not trip before the reply is there.
 """
@@ -21,7 +21,7 @@ from array import array
 from micropython import const
 
 from uss import telegram
-from uss.drive import PLAN_AK, PLAN_WORDS, PLAN_ZSW_AT
+from uss.going_on.plan import WORDS, leave_open, watch
 from uss.receiver import ROUNDING_US
 from uss.master import AWAITING, DEAD_MAN_US, LOST_US, SENDING, Master
 
@@ -45,7 +45,7 @@ class GoingOnMaster(Master):
         receiver = self._receiver
         self._sixteen_us = receiver.sixteen_us
         turns = self.turns
-        plan = array("H", bytes(2 * PLAN_WORDS))
+        plan = array("H", bytes(2 * WORDS))
         room = bytearray(telegram.SIZE_MAX)
         self._parts = (turns, receiver, link, plan, room)  # one look for all
         link.instruct(receiver.buffer, says_nothing_new, plan, turns.attention)
@@ -118,9 +118,9 @@ class GoingOnMaster(Master):
         if sent is None:
             return
         if answering:
-            drive.watch(plan)
+            watch(plan, drive)
         else:
-            plan[PLAN_AK] = plan[PLAN_ZSW_AT] = 0
+            leave_open(plan)
         self._sent = sent
         self._following = following
         size = drive.size

@@ -19,7 +19,7 @@ def says_nothing_new(reply: ptr8, count: int, request: ptr8, plan: ptr16, attent
         index += 1
     if check != 0 or differs == 0:
         return False
-    answers = plan[0]  # PLAN_AK
+    answers = plan[0]  # plan.AK
     if answers != 0:
         answer = reply[3] >> 4
         if answers >> answer & 1 == 0:
@@ -29,11 +29,11 @@ def says_nothing_new(reply: ptr8, count: int, request: ptr8, plan: ptr16, attent
                 return False
             if reply[5] != request[5] or reply[6] != request[6]:
                 return False
-    at = plan[1]  # PLAN_ZSW_AT
+    at = plan[1]  # plan.ZSW_AT
     if at != 0:
-        if ((reply[at] << 8 | reply[at + 1]) ^ plan[2]) & 0x4C:  # PLAN_ZSW
+        if ((reply[at] << 8 | reply[at + 1]) ^ plan[2]) & 0x4C:  # plan.ZSW
             return False
-        near = plan[3]  # PLAN_NEAR
+        near = plan[3]  # plan.NEAR
         if near != 0:
             hiw = reply[at + 2] << 8 | reply[at + 3]
             if (hiw + (near >> 1)) & 0xFFFF <= near:
