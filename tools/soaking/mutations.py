@@ -349,7 +349,7 @@ MUTATIONS = (
     AtHome(
         "faults started",
         "START is obeyed by a drive that has tripped",
-        ("REFUSED",), 73,
+        ("REFUSED",), 87,
         (
             "panel/permits.py",
             "    if state == pzd.FAULT:\n        return texts.REFUSED_FAULT\n",
