@@ -61,6 +61,7 @@ ELSEWHERE = {
     "./tools/panel --script": "test_key_scripts.py, test_first_power_on.py, test_manuals.py",
     "./tools/panel --unset --baud 38400": "test_first_power_on.py",
     "./tools/panel --web": "test_page.py, test_page_link.py, test_page_static.py",
+    "./tools/panel --join": "test_join.py",
     "./tools/release": "test_release.py",
     "./tools/settings": "test_settings_command.py",
     "./tools/soak": "test_soak_command.py",
