@@ -696,12 +696,6 @@ MUTATIONS = (
             "    if 0 < off_time_ms <= control.desk.longest_off_time_ms:\n",
         ),
     ),
-    Mutation(
-        "seconds are milliseconds",
-        "a MICROMASTER 3 runs on for minutes without the panel, and nobody is asked",
-        ("UNSUPERVISED",), 294,
-        ("uss/families/mm3.py", "off_time_unit_ms = 1000", "off_time_unit_ms = 1"),
-    ),
     AtHome(
         "reversed without a bit",
         "the display says left, and a drive without a reverse bit is sent the same setpoint",
@@ -974,16 +968,6 @@ MUTATIONS = (
             "            self._bits = step.needed(self._form, self._has)\n"
             "            self._begin_write(now_ms)\n"
             "        elif self._phase == LOOKS and not self.is_searching():\n",
-        ),
-    ),
-    Commissioning(
-        "rescales unasked",
-        "P2000 is written without a word, and the setpoint means another speed",
-        ("WRITE",), 99,
-        (
-            "panel/commission/course.py",
-            "            if step.rescales(self._bits, self._has):\n",
-            "            if step.rescales(self._bits, self._has) and not self._bits:\n",
         ),
     ),
     Commissioning(
