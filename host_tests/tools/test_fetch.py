@@ -45,7 +45,8 @@ def run_pytest(tmp_path):
         (tmp_path / "test_it.py").write_text(source)
         if not any("pico" in text for text in (source, *arguments)):
             arguments += ("-p", "without_pico")  # to ask them takes seconds
-        inherited = {k: v for k, v in os.environ.items() if k not in ("CI", "USS_STRICT")}
+        ours = ("CI", "USS_STRICT", "USS_COVERAGE")  # of the run that this test is part of
+        inherited = {k: v for k, v in os.environ.items() if k not in ours}
         return subprocess.run(
             [sys.executable, "-B", "-m", "pytest", "-c", HOST_TESTS / "pytest.ini"]
             + ["--rootdir", tmp_path, "-p", "no:cacheprovider", "-p", "conftest", *arguments],

@@ -29,10 +29,10 @@ def test_a_tap_is_seen_at_every_speed():
         talk = Talk(speed)
         talk.ready()
         talk.tap("START")
-        talk.wait(2000)
+        talk.wait(200 + 2000 // speed)
         assert talk.state() == "running", speed
         talk.tap("STOP")
-        talk.wait(8000)
+        talk.wait(200 + 8000 // speed)
         assert talk.state() == "ready", speed
 
 
