@@ -8,16 +8,19 @@ function is a pytest item of its own: `uss/test_telegram.py::unix32::test_bcc_co
 module level:
 
     INTERPRETERS = "unix64 unix32"      # a part of: unix64 unix32 cpython
+    INTERPRETERS = "unix32|unix64"      # one of them is enough, the first that is here
     INTERPRETERS = "pico"               # beside an emulated Pico: tools/emulator/world.py
     INTERPRETERS = "pico pico_again"    # ... whose UART behaves in either way the documents allow
     INTERPRETERS = "pico pico_hard"     # ... on both builds: with soft timers and with hard ones
     INTERPRETERS = "host"               # an ordinary pytest file, with fixtures and all
 
 With --coverage the lines of the firmware that run on CPython are noted (cpython/line_notes.py).
+Then some functions run there whose file does not: those of cpython/lines_once.json.
 -k passes over files that it cannot mean (selection.py).
 """
 
 import ast
+import json
 import os
 import signal
 import time
@@ -32,8 +35,9 @@ import pytest
 from line_coverage import LineCoverage
 from ordinary import OrdinaryRun, Teller
 from selection import Selection, files_of
-from tiers import COVERAGE, ENVIRONMENT, TIERS, TOP, FileRun, Survey, interpreters, survey
+from tiers import COVERAGE, ENVIRONMENT, OR, TIERS, TOP, FileRun, Survey, interpreters, survey
 
+LINES_ONCE = Path(__file__).parent / "cpython" / "lines_once.json"  # choose_lines.py writes it
 SURVEY = pytest.StashKey()
 SELECTION = pytest.StashKey()
 POOL = pytest.StashKey()
@@ -102,7 +106,7 @@ def pytest_pycollect_makemodule(module_path, parent):
         tree = ast.parse(module_path.read_bytes(), filename=str(module_path))
     except SyntaxError:
         return None  # pytest shows it best
-    names = interpreters(tree)
+    names = interpreters(tree, module_path)
     if names == ["host"]:
         return None  # an ordinary pytest file
     return MicroPythonFile.from_parent(parent, path=module_path, tree=tree, interpreters=names)
@@ -201,12 +205,28 @@ class MicroPythonFile(pytest.File):
 
     def collect(self):
         functions = self.functions()
-        unknown = [name for name in self.interpreters if name not in TIERS]
-        if unknown:
-            raise self.CollectError(f"INTERPRETERS names {unknown[0]!r}, which is not a tier")
-        for name in self.interpreters:
-            if name in self.config.stash[SURVEY].versions:
+        here = self.config.stash[SURVEY].versions
+        for word in self.interpreters:
+            names = word.split(OR)
+            for name in names:
+                if name not in TIERS:
+                    raise self.CollectError(f"INTERPRETERS names {name!r}, which is not a tier")
+            for name in [name for name in names if name in here][:1]:
                 yield TierOfFile.from_parent(self, name=name, functions=functions)
+        for_lines = {name: functions[name] for name in self.for_lines(functions)}
+        if for_lines and "cpython" in here:
+            yield TierOfFile.from_parent(self, name="cpython", functions=for_lines)
+
+    def for_lines(self, functions):
+        """The functions that run on CPython as well, because no other runs some line there."""
+        if not self.config.option.coverage or not self.path.is_relative_to(LINES_ONCE.parents[1]):
+            return []
+        path = str(self.path.relative_to(LINES_ONCE.parents[1]))
+        names = json.loads(LINES_ONCE.read_text(encoding="utf-8")).get(path, [])
+        for name in names:
+            if name not in functions:
+                raise self.CollectError(f"{LINES_ONCE.name} names {name}, which is not here")
+        return names
 
     def functions(self):
         """Name -> line. What would silently not run as a test is refused."""

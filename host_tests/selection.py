@@ -16,7 +16,7 @@ from pathlib import Path
 
 from _pytest.mark.expression import Expression
 
-from tiers import TIERS, TOP
+from tiers import OR, TIERS, TOP, usual
 
 TESTS = TOP / "host_tests"
 ORDINARY = "host"
@@ -47,7 +47,8 @@ class Selection:
         """surely: without those of which nobody knows yet whether they may."""
         text = path.read_text(encoding="utf-8", errors="replace")
         named = INTERPRETERS.search(text)
-        names = named[1].split() if named else [tier for tier in TIERS if TIERS[tier].everywhere]
+        words = named[1].split() if named else usual(path)
+        names = [name for word in words for name in word.split(OR)]
         if self._expression is None:
             return names
         of_path = path.relative_to(TESTS).parts if path.is_relative_to(TESTS) else (path.name,)

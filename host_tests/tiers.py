@@ -85,12 +85,25 @@ TIERS = {
 }
 
 
-def interpreters(tree):
-    """The names in the INTERPRETERS of a test file; the tiers for every file where it has none."""
+# What the test files of a folder run on that do not say it themselves; of tiers with this between
+# them, the first one that is here. The panel is a program for MicroPython, and takes its time: it
+# runs with the chip's small integers, and where a PC has no such MicroPython, on the one it has.
+OR = "|"
+OF_FOLDER = {"panel": ("unix32|unix64",)}
+
+
+def interpreters(tree, path):
+    """The words in the INTERPRETERS of a test file; where it has none, those of its folder."""
     for node in tree.body:
         if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "INTERPRETERS":
             return ast.literal_eval(node.value).split()
-    return [name for name in TIERS if TIERS[name].everywhere]
+    return usual(path)
+
+
+def usual(path):
+    """What a test file runs on that does not say it."""
+    everywhere = [name for name in TIERS if TIERS[name].everywhere]
+    return list(OF_FOLDER.get(path.parent.name, everywhere))
 
 
 class Verdict(NamedTuple):

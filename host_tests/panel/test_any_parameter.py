@@ -20,8 +20,6 @@ from lookup_bench import (
 )
 from panel_bench import row_1, row_2, starts
 
-INTERPRETERS = "unix64 unix32"
-
 YES_OR_NO = "SET=DO  PARAM=NO"
 
 

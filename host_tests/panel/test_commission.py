@@ -6,8 +6,6 @@ step, until its motor turns.
 from lookup_bench import choose, go_to, press, settled_heading, speak, world_of
 from panel_bench import row_1, settled_row_2, wait_until_known
 
-INTERPRETERS = "unix64 unix32"
-
 PLATE = (  # of the motor: number, what is typed over what is there, what is read then
     (304, "400", 400),
     (305, "200", 2.0),

@@ -8,8 +8,6 @@ from panel_bench import OFF1, panel, row_2, running, said, settled, starts, tele
 from uss import pkw
 from uss.master import LISTENING, OFF
 
-INTERPRETERS = "unix64 unix32"
-
 FOUR = (1, 2, 3, 4)
 
 

@@ -6,8 +6,6 @@ from panel.menu.events import age
 from panel.reports.journal import EVENTS, NOBODY, Journal
 from panel_bench import row_2
 
-INTERPRETERS = "unix64 unix32"
-
 
 def run_motor(world):
     press(world, "START")

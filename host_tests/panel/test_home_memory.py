@@ -10,8 +10,6 @@ from micropython import heap_lock, heap_unlock
 
 from panel_bench import panel, row_1, row_2, running
 
-INTERPRETERS = "unix64 unix32"
-
 MINUTES = 10
 
 

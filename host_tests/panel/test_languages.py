@@ -36,8 +36,6 @@ from tools.live.plain import in_ascii
 from uss import families
 from version import VERSION
 
-INTERPRETERS = "unix64 unix32"
-
 ROW, STATE, ENTRY, TITLE = 16, 12, 15, 11  # places; an entry stands behind the mark of the menu
 BESIDE_ADDRESS = ROW - len("A31")
 COUNTED = ROW - len(" 31")

@@ -5,8 +5,6 @@ import json
 
 from panel_bench import OFF1, panel, row_1, row_2, running, starts, telegrams
 
-INTERPRETERS = "unix64 unix32"
-
 LOG = {"log": "JSON"}
 MANUAL = "firmware/panel/README.md"
 

@@ -11,8 +11,6 @@ from panel_bench import OFF1, row_2, settled, starts, telegrams
 from uss.master import OFF
 from walk_bench import is_parameter, running, silent, standing, wait_until_it_runs, warned, ways
 
-INTERPRETERS = "unix64 unix32"
-
 MOTION_KEYS = ("START", "REVERSE", "JOG_RIGHT", "JOG_LEFT")
 NO_LISTS = ("__init__", "engine", "words", "diagnosis")  # modules of the menu
 LISTS_BESIDE = (

@@ -8,8 +8,6 @@ import main
 from panel.control import Control
 from panel_bench import SlowWorld, panel, row_2, starts, telegrams, unsupervised, wait_until_known
 
-INTERPRETERS = "unix64 unix32"
-
 ADDRESSES = tuple(range(1, 32))
 SETTLE_MS = 10_000  # each has told its settings by then
 

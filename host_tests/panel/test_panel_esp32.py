@@ -10,7 +10,7 @@ from boards.sim.ports.world import PortWorld
 from panel_bench import OFF1, ON, starts, telegrams, wait_until_known
 from strict_screen import StrictScreen
 
-INTERPRETERS = "unix64 unix32"  # CPython's imports need its own `sys`
+INTERPRETERS = "unix32|unix64"  # CPython's imports need its own `sys`
 
 panel.panel.Screen = StrictScreen
 

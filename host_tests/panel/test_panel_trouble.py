@@ -7,8 +7,6 @@ Silence, noise, another length, another address, a wrong check have each a cure 
 from panel_bench import panel, row_1, row_2, starts
 from spoilt_bench import TROUBLES, spoil
 
-INTERPRETERS = "unix64 unix32"
-
 
 def test_a_drive_whose_telegrams_have_another_length_is_found_and_not_started():
     """P2013 = 127 as it is delivered, and every telegram is answered: no wire is broken."""

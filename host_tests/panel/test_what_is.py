@@ -6,8 +6,6 @@ import sys
 from lookup_bench import choose, entries, forget_modules, go_to, hold, press, speak, wait, world_of
 from panel_bench import OFF1, row_1, row_2, telegrams
 
-INTERPRETERS = "unix64 unix32"
-
 
 def text_of(world):
     """What the list says, heading by heading, each in one line."""

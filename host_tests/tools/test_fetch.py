@@ -279,6 +279,16 @@ def test_a_tier_that_nobody_has_to_have_is_named_and_no_failure(run_pytest, tmp_
     assert "1 passed" in run.stdout, run.stdout
 
 
+def test_where_one_of_several_tiers_is_enough_the_first_that_is_here_runs(run_pytest, tmp_path):
+    (tmp_path / "without_unix32.py").write_text(without("unix32"))
+    source = 'INTERPRETERS = "unix32|cpython"\ndef test_a(): pass\n'
+    run = run_pytest(source, "--collect-only", "-q", "-p", "without_unix32")
+    assert "::cpython::test_a\n" in run.stdout and "1 test coll" in run.stdout, run.stdout
+    if "unix32" in versions():
+        run = run_pytest(source, "--collect-only", "-q")
+        assert "::unix32::test_a\n" in run.stdout and "1 test coll" in run.stdout, run.stdout
+
+
 def without(*names):
     """A plugin that takes these tiers away."""
     return (

@@ -53,6 +53,19 @@ def test_a_file_names_its_tiers(file):
     assert Selection("unix64").tiers(path) == []
 
 
+def test_a_file_names_tiers_of_which_one_is_enough(file):
+    path = file('INTERPRETERS = "unix32|unix64 cpython"\n' + PLAIN)
+    assert Selection("unix").tiers(path) == ["unix32", "unix64"]
+    assert Selection("unix64").tiers(path) == ["unix64"]
+
+
+def test_a_file_of_the_panel_runs_on_one_micropython(tmp_path):
+    (tmp_path / "panel").mkdir()
+    path = tmp_path / "panel" / "test_file.py"
+    path.write_text(PLAIN)
+    assert Selection("home").tiers(path) == ["unix32", "unix64"]
+
+
 @pytest.mark.parametrize("expression", ["value", "not value", "a and not b", "host and value"])
 def test_values_may_have_any_name(file, expression):
     assert Selection(expression).tiers(file(VALUES)) == ["host"]

@@ -39,7 +39,7 @@ make_micropython() {
 ways_to() {
     case $1 in
         unix64) echo link_installed unpack_packages build_from_source ;;
-        unix32) echo unpack_packages build_from_source ;;
+        unix32) echo build_from_source unpack_packages ;; # what is built here takes 0.6 of the time
     esac
 }
 

@@ -21,7 +21,7 @@ from typing import NamedTuple
 
 from line_notes import Noting
 
-from tiers import TIERS, interpreters
+from tiers import OR, TIERS, interpreters
 from tools.mutating.noting import MARK
 from tools.mutating.scratch import scratch
 
@@ -218,7 +218,8 @@ def tests_of(tree, tiers):
 
 def tier_of(path, tiers):
     """The first of these tiers that a test file runs on, or None."""
-    has = interpreters(ast.parse(path.read_bytes()))
+    words = interpreters(ast.parse(path.read_bytes()), path)
+    has = [name for word in words for name in word.split(OR)]
     return next((tier for tier in tiers if tier in has), None)
 
 
