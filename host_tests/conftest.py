@@ -346,16 +346,19 @@ def jobs_of(items):
 class Pool:
     """Runs the files ahead of pytest, which asks for verdict after verdict in the same order.
 
-    It runs one job more at a time than there are processors, for ordinary files often wait. They
-    come first. Of either kind the longest come first, as far as the last run can tell, so that all
-    processors are busy to the end.
+    Of ordinary files as many run at a time as there are processors, and as many beside them of the
+    others. An ordinary file often waits: for a page, a terminal, a serial port. The others only
+    compute, and stand back (tiers.py) for what has to be in time. Of either kind the longest come
+    first, as far as the last run can tell, so that all processors are busy to the end.
     """
 
     def __init__(self, config):
         self.config = config
         self.timeout_s = float(config.getini("function_timeout_s") or 120)
         self.coverage = LineCoverage(TOP)
-        self.executor = ThreadPoolExecutor(max_workers=(os.cpu_count() or 1) + 1)
+        processors = os.cpu_count() or 1
+        self.ordinary = ThreadPoolExecutor(processors)
+        self.others = ThreadPoolExecutor(processors)
         self.verdicts = {}  # item -> future of its Verdict, of an ordinary test: of what was Told
         self.runs = []
         self.lasted_s = {}
@@ -397,7 +400,8 @@ class Pool:
             yield pytest.TestReport(item.nodeid, item.location, {}, "failed", failure, "call")
 
     def stop(self):
-        self.executor.shutdown(wait=False, cancel_futures=True)
+        for executor in (self.ordinary, self.others):
+            executor.shutdown(wait=False, cancel_futures=True)
         for run in self.runs:
             run.stop()
         for run in self.runs:
@@ -430,7 +434,8 @@ class Pool:
                         future.set_exception(error)
 
         self.runs.append(run)
-        self.executor.submit(work)
+        executor = self.ordinary if job.tier == ORDINARY else self.others
+        executor.submit(work)
 
     def _on_tier(self, job, names, publish):
         note = self.coverage.note

@@ -17,6 +17,7 @@ import ast
 import os
 import re
 import selectors
+import shutil
 import signal
 import subprocess
 import sys
@@ -35,6 +36,8 @@ SURVEY_TIMEOUT_S = 20
 ENVIRONMENT = dict(os.environ)
 COVERAGE = "USS_COVERAGE"  # there: the lines that run are noted
 OUTPUT_LIMIT = 10_000_000  # characters that one function may print
+# Virtual time waits: the processors belong to the tests that run in the time of this machine.
+STANDS_BACK = ("nice", "-n", "10") if shutil.which("nice") else ()
 REPORT = re.compile(rf"{MARK}(\w+) ?(.*)\n")
 
 
@@ -165,7 +168,7 @@ class FileRun:
     """
 
     def __init__(self, tier, path, names, timeout_s, publish, note_lines):
-        self.command = [*tier.command, RUNNER, tier.name, _from_top(path)]
+        self.command = [*STANDS_BACK, *tier.command, RUNNER, tier.name, _from_top(path)]
         self.left = list(names)
         self.timeout_s = timeout_s
         self.publish = publish

@@ -22,6 +22,7 @@ from pathlib import Path
 
 import pytest
 
+from tiers import STANDS_BACK
 from tools.soaking import interpreters
 from tools.soaking.interpreters import TOP
 from tools.soaking.mutations import MUTATIONS
@@ -37,8 +38,9 @@ ANY_DRIVES, ONE_TROUBLE = 0, 1
 
 def soaked(folder, seeds, roams, name):
     """What the soak says of each seed, with the firmware in folder/firmware."""
+    command = interpreters.command(name, ["soak", MINUTES, ANY_DRIVES, ONE_TROUBLE, int(roams)])
     done = subprocess.Popen(
-        interpreters.command(name, ["soak", MINUTES, ANY_DRIVES, ONE_TROUBLE, int(roams)]),
+        [*STANDS_BACK, *command],
         cwd=TOP,
         env=interpreters.environment(name, folder / "firmware"),
         stdin=subprocess.PIPE,
