@@ -11,7 +11,8 @@ module level:
     INTERPRETERS = "unix32|unix64"      # one of them is enough, the first that is here
     INTERPRETERS = "pico"               # beside an emulated Pico: tools/emulator/world.py
     INTERPRETERS = "pico pico_again"    # ... whose UART behaves in either way the documents allow
-    INTERPRETERS = "pico pico_hard"     # ... on both builds: with soft timers and with hard ones
+    INTERPRETERS = "pico_hard"          # ... on the build with hard timers
+    INTERPRETERS = "pico pico_hard_again"  # each build and each behaviour has its turn
     INTERPRETERS = "host"               # an ordinary pytest file, with fixtures and all
 
 With --coverage the lines of the firmware that run on CPython are noted (cpython/line_notes.py).

@@ -7,7 +7,7 @@ from panel_bench import row_2, said, starts
 from pico_bench import BOOT_MS, start
 from tools.emulator.world import DRIVER_ENABLE, LOW, NOBODY, RECEIVES, SHORTED_HIGH, PicoWorld
 
-INTERPRETERS = "pico pico_again"
+INTERPRETERS = "pico_again"
 
 RATES = (1_200, 9_600, 19_200, 187_500)
 LONGEST_US = 20_000

@@ -6,7 +6,7 @@ from boards.sim.ports.chips import HEAP_BYTES
 from panel.menu.main import LISTS
 from pico_bench import deployed, says, stands, start, starts
 
-INTERPRETERS = "pico pico_hard"
+INTERPRETERS = "pico"
 
 BOOT_MS = 15_000
 ALL = tuple(range(1, 32))

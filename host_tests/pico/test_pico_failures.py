@@ -18,7 +18,7 @@ from pico_bench import (
     telegrams,
 )
 
-INTERPRETERS = "pico pico_again pico_hard pico_hard_again"
+INTERPRETERS = "pico pico_hard_again"
 
 STOPPED = b"USS panel: stopped, and every drive with it."
 

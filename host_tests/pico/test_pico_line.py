@@ -5,7 +5,7 @@ other things to do: collections, the display, saving. Figures are nanoseconds of
 from pico_bench import scripted, set_off, stands, start
 from tools.emulator.world import PicoWorld
 
-INTERPRETERS = "pico pico_again pico_hard pico_hard_again"
+INTERPRETERS = "pico pico_hard_again"
 
 RATES = (2_400, 9_600, 19_200, 38_400, 57_600, 115_200)
 TELEGRAMS = 40

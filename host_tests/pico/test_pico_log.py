@@ -6,7 +6,7 @@ import json
 
 from pico_bench import running, says, stands, starts, stops
 
-INTERPRETERS = "pico pico_hard"
+INTERPRETERS = "pico"
 
 LOG = {"log": "JSON"}
 READS, READS_NOTHING = 0, 2  # of the record S

@@ -16,7 +16,7 @@ from pico_bench import (
 from tools.emulator.world import PicoWorld
 from version import VERSION
 
-INTERPRETERS = "pico pico_again pico_hard pico_hard_again"
+INTERPRETERS = "pico pico_hard_again"
 
 
 def test_after_power_on_the_panel_says_what_it_is_not_and_shows_its_drive():

@@ -6,7 +6,7 @@ from boards.sim.drives.kinds import listed_drives, simulated
 from pico_bench import row_2, says
 from tools.emulator.world import PicoWorld
 
-INTERPRETERS = "pico pico_again"
+INTERPRETERS = "pico_again"
 
 HUNT_MS = 30_000  # three rates
 

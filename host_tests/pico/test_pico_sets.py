@@ -20,7 +20,7 @@ INTERPRETERS = "pico"
 
 SET_MS = 180_000
 LOOK_MS = 100
-CUTS = 5  # instants at which power goes, spread over the flash operations of one saving
+CUTS = 3  # instants at which power goes, spread over the flash operations of one saving
 ROOM_BYTES = 900 * 1024  # that is left beside ten sets
 
 

@@ -9,7 +9,7 @@ from pico_bench import panel, running, says, scripted, set_off, stands, starts
 from tools.emulator.flash_image import FILES_AT
 from tools.emulator.world import PROGRAMS, PicoWorld, program_path, temporary
 
-INTERPRETERS = "pico pico_again pico_hard pico_hard_again"
+INTERPRETERS = "pico pico_hard_again"
 
 # At SET the panel has something to save: drive 2 is accepted as it is.
 ACCEPT = "app.settings.accept_unsupervised(2)\nwhile True:\n    app.step()"

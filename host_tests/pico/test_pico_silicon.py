@@ -8,7 +8,7 @@ from panel_bench import row_2
 from pico_bench import BOOT_MS, panel, start
 from tools.emulator.world import PicoWorld
 
-INTERPRETERS = "pico pico_again pico_hard pico_hard_again"
+INTERPRETERS = "pico pico_hard_again"
 
 # A radio takes a state machine of PIO 1, and room for its program; here it has taken all of both.
 RADIO = b"""
