@@ -222,7 +222,7 @@ MUTATIONS = (
     Mutation(
         "EEPROM without asking",
         "every write wears the EEPROM",
-        ("EEPROM",), 12,
+        ("EEPROM",), 26,
         (
             "panel/writer.py",
             "pkw.WRITE_WORD_EEPROM if write.eeprom else pkw.WRITE_WORD",
@@ -313,7 +313,7 @@ MUTATIONS = (
     Mutation(
         "unconfirmed STOP unsaid",
         "nobody is told that a STOP has no effect",
-        ("UNCONFIRMED",), 6,
+        ("UNCONFIRMED",), 15,
         ("panel/stop_watch.py", "            self.unconfirmed = True\n", "            pass\n"),
     ),
     Mutation(
@@ -429,7 +429,7 @@ MUTATIONS = (
     Mutation(
         "another value written",
         "what is written is not what was confirmed",
-        ("WRITE",), 1,
+        ("WRITE",), 12,
         (
             "panel/writer.py",
             "write.number, write.index, high, low)",
@@ -661,7 +661,7 @@ MUTATIONS = (
     Mutation(
         "percent sent as hertz",
         "10.0% goes out as 10 Hz of 50 Hz",
-        ("SHOWN", "SETPOINT"), 11,
+        ("SHOWN", "SETPOINT"), 15,
         ("uss/survey.py", "_HUNDRED_PERCENT = const(10_000)", "_HUNDRED_PERCENT = const(5_000)"),
     ),
     Mutation(
@@ -709,7 +709,7 @@ MUTATIONS = (
     Mutation(
         "jogs without a jog",
         "a drive whose family has no jog is sent that of another",
-        ("CONTROL",), 14,
+        ("CONTROL",), 15,
         (
             "panel/permits.py",
             "    if not control.survey.family.jog_right:\n"
@@ -776,7 +776,7 @@ MUTATIONS = (
     Mutation(
         "found and forgotten",
         "the layout of a drive is found out, and not used",
-        ("RECOVERS",), 8,
+        ("RECOVERS",), 15,
         (
             "uss/finding/finder.py",
             "            self._turns.relayout(drive, layout, drive.doubted)\n",
@@ -810,7 +810,7 @@ MUTATIONS = (
     Mutation(
         "jog keys act in the menu",
         "a motor jogs that nobody has on the display",
-        ("JOG",), 8,
+        ("JOG",), 16,
         (
             "panel/panel.py",
             "            allowed = page.obeys and not self.stop_key.is_down\n",
@@ -841,7 +841,7 @@ MUTATIONS = (
     Mutation(
         "search without a question",
         "the panel leaves its drives for others, and nobody has said yes",
-        ("SEARCH",), 1,
+        ("SEARCH",), 7,
         (
             "panel/panel.py",
             "            return\n"
