@@ -8,7 +8,7 @@ same life on every interpreter (test_soak_interpreters.py); these are lived on C
 speed, or on PyPy where there are many. Where a change takes the text of a row away this fails:
 give the row its new text. Better seeds are looked for by
 
-    PYTHONPATH=.:host_tests build/pytest/bin/python host_tests/tools/test_soak_mutations.py [NAME ...]
+    PYTHONPATH=.:host_tests build/pytest/bin/python host_tests/tools/test_soak_mutations.py NAME
 """
 
 import json
