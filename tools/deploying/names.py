@@ -40,14 +40,14 @@ def shortened(sources, fixed=()):
     trees = {path: ast.parse(source) for path, source in sources.items()}
     short = _short(trees, fixed)
     return {
-        path: _source(_Renaming(short[path]).visit(tree)).encode() + b"\n"
+        path: source_of(_Renaming(short[path]).visit(tree)).encode() + b"\n"
         if short[path]
         else sources[path]
         for path, tree in trees.items()
     }
 
 
-def _source(tree):
+def source_of(tree):
     """The text of a tree. `a, b = b, a` stays without parentheses, which `ast.unparse` may put
     round each side: with them MicroPython makes a tuple, and an interrupt has no memory for one.
     """

@@ -22,6 +22,7 @@ from typing import NamedTuple
 from line_notes import Noting
 
 from tiers import OR, TIERS, interpreters
+from tools.deploying.names import source_of
 from tools.mutating.noting import MARK
 from tools.mutating.scratch import scratch
 
@@ -95,7 +96,7 @@ class Reach:
             return
         copy = scratch(self.tree, self.room / "noting")
         for path, noted in self.noted.items():
-            (copy / path).write_text(ast.unparse(noted) + "\n", encoding="utf-8")
+            (copy / path).write_text(source_of(noted) + "\n", encoding="utf-8")
         tell(0, len(unknown))
         with ThreadPoolExecutor(jobs) as pool:
             runs = {pool.submit(self._run, copy, path): path for path in unknown}
