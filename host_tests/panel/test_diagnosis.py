@@ -292,6 +292,16 @@ def test_bus_off_leaves_the_line_and_param_takes_it_back_listening_first():
     world.check()
 
 
+def test_bus_off_says_what_it_may_cost_and_asks():
+    world = panel()
+    world.run(3_000)
+    open_menu(world, "DIAGNOSIS", "BUS OFF")
+    assert settled(world) == ("P2014 MAY TRIP  ", ">SET=LEAVE LINE "), world.lcd()
+    world.press("PARAM")
+    world.run(500)
+    assert world.app.bus.phase != OFF
+
+
 def test_bus_off_is_refused_while_a_motor_runs():
     world = running(addresses=(1, 2))
     open_menu(world, "DIAGNOSIS", "BUS OFF")

@@ -3,6 +3,7 @@
 
 import json
 
+from boards.sim.drives.families import generic
 from panel_bench import panel, row_1, row_2, settled, telegrams, wait_until_known
 from spoilt_bench import TROUBLES, spoil
 
@@ -59,6 +60,30 @@ def test_where_no_drive_answers_the_wires_of_the_panel_come_first():
     world.run(2000)
     assert row_2(world) == ">IT ANSWERS NOW", world.lcd()
     world.check()
+
+
+def test_a_step_stays_where_it_is_read_though_something_else_is_heard_by_now():
+    world = panel(addresses=(1, 2))
+    for drive in world.drives.values():
+        drive.unplug()
+    world.run(3000)
+    why(world)
+    press(world, "DOWN", "DOWN")
+    assert row_2(world) == ">PLUG AND WIRES", world.lcd()
+    world.drives[2].plug()  # so it is drive 1 alone: then its mains would come first
+    world.run(3000)
+    assert row_2(world) == ">PLUG AND WIRES", world.lcd()
+    press(world, "UP", "UP")
+    world.run(500)
+    assert row_2(world) == ">NOTHING", world.lcd()
+
+
+def test_of_a_drive_whose_parameters_nobody_knows_the_values_are_named():
+    world = panel(kinds={1: {"family": generic}}, settings={"kinds": {"1": "generic"}})
+    world.drives[1].unplug()
+    world.run(3000)
+    _, steps = why(world)
+    assert "RATE 19200" in steps and "ADDRESS 1" in steps, steps
 
 
 def test_where_the_others_answer_it_is_that_drive():

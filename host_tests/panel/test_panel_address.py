@@ -196,6 +196,22 @@ def test_a_drive_whose_answer_was_lost_is_found_at_its_new_address():
         world.check()
 
 
+def test_a_drive_that_fell_silent_is_spoken_to_at_either_address_three_times_in_turn():
+    world = edit(parameter("P2011", parameters={2014: 20_000}), 5)
+    world.press("SET")
+    since_us = world.clock.now_us
+    lose_answer(world, 2011, 5, 1500)
+    asked = []  # [address, so many telegrams one after the other]
+    for at_us, from_panel, characters in world.wire.log.last(200):
+        if from_panel and at_us > since_us:
+            if not asked or asked[-1][0] != characters[2]:
+                asked.append([characters[2], 0])
+            asked[-1][1] += 1
+    told = asked[2:10]  # later mirrors of the search stand between
+    assert {count for _, count in told} == {3} and len(told) == 8, asked
+    assert {address for address, _ in told} == {1, 5}, asked
+
+
 def test_a_long_list_gets_time_to_find_the_drive_as_well():
     """With 20 drives at 2400 baud a round of the bus takes more than 3 s."""
     world = panel(addresses=tuple(range(1, 21)), baud=2400)

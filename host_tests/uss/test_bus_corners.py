@@ -412,6 +412,19 @@ def test_a_further_word_is_sent_from_the_next_telegram_on():
     assert bench.sent[sent].characters[-3:-1] == b"\x20\x00"
 
 
+def test_a_word_that_has_no_place_in_the_telegrams_or_16_bits_is_refused():
+    drive = Bench([Node(1, pzd_words=4)]).drives[1]
+    for place, word in ((2, 0), (5, 0), (3, 0x10000), (3, -1)):
+        before = bytes(drive.further)
+        try:
+            drive.put(place, word)
+        except ValueError as error:
+            assert "PZD%d" % place in str(error)
+        else:
+            raise AssertionError((place, word))
+        assert bytes(drive.further) == before
+
+
 def test_the_control_word_moves_with_the_length_of_the_task():
     """With variable length a double word takes more room, and the process data stand behind it."""
     bench = Bench([Node(1, pkw_words=127, pzd_words=4)])

@@ -10,6 +10,7 @@ import random
 from round_bench import READY, RUNNING, Bench, Node, framed
 from uss import pkw, pzd
 from uss.drive import ANY, ATTENTION
+from uss.families import GENERIC, drive_maker
 from uss.going_on import master as going_on
 from uss.going_on import plan as plans
 from uss.going_on import python
@@ -19,6 +20,10 @@ from uss.outside import Mirror
 IDLE_US = 1_667  # 32 bits at 19200
 FAULT, INHIBIT = 0x0008, 0x0040
 LATE_US = 20  # after the end of a reply is known
+
+
+class Pump(GENERIC):
+    zsw_says = ((0, 0, pzd.ZSW_READY),)
 
 
 class Telling(Node):
@@ -93,6 +98,20 @@ def test_the_next_telegram_leaves_when_the_reply_is_complete():
         reply_us = 2 * bench.timing.telegram_us(12) + 3 * bench.timing.character_us
         for before, after in zip(bench.sent[-9:], bench.sent[-8:]):
             assert after.at - before.at - reply_us - IDLE_US in range(LATE_US)
+
+
+def test_a_drive_with_a_status_word_of_its_own_goes_on_behind_another_drive():
+    """Behind its own reply it does not: what that means is not known before it is translated."""
+    for count, goes_on in ((2, True), (1, False)):
+        nodes = [Node(address) for address in range(1, count + 1)]
+        bench = Bench(nodes, idle_us=IDLE_US, goes_on=True, foreseen=True, listed=False)
+        for node in nodes:
+            layout = Layout(node.pkw_words, node.pzd_words)
+            make = drive_maker(Pump)
+            bench.drives[node.address] = bench.master.turns.add(node.address, layout, make)
+        bench.contact()
+        bench.run(500_000)
+        assert (bench.went_on > 3) == goes_on, (count, bench.went_on)
 
 
 def test_a_new_setpoint_is_in_the_next_telegram_but_one():
