@@ -37,6 +37,16 @@ def test_a_drive_refuses_a_text():
         assert job.state == pkw.REFUSED and job.error == error
 
 
+def test_nothing_but_a_text_is_the_answer():
+    line = Line(VARIABLE_WORDS)
+    job = line.ask(texts.read_text(7, 3))
+    line.send()
+    for reply in range(15):
+        if reply not in (pkw.REFUSED_REPLY, pkw.NO_RIGHTS_REPLY):
+            line.answer(reply << 12 | 7, 3, *text_words("300 BAUD        "))
+            assert job.state == pkw.PENDING, reply
+
+
 def test_texts_need_variable_length():
     for pkw_words in (3, 4):
         job = Line(pkw_words).ask(texts.read_text(7, 3))
