@@ -208,16 +208,18 @@ def test_two_fingers_hold_two_keys(panel, browser):
     page.close()
 
 
-def test_a_parameter_is_edited_by_keys(browser, served):
-    page = browser.open(served("--drives", "1,2").link)
+@pytest.mark.parametrize("size", SIZES)
+def test_a_parameter_is_edited_by_keys(browser, served, size):
+    page = browser.open(served("--drives", "1,2").link, size)
     page.plays("parameter.txt")
     page.does("param 1 P1120")
     page.shows("P1120[0]=2.5", "#said")
     page.close()
 
 
-def test_a_set_is_copied_from_drive_to_drive(browser, served):
-    page = browser.open(served("--drives", "1=mm440,2=mm440").link, "phone")
+@pytest.mark.parametrize("size", SIZES)
+def test_a_set_is_copied_from_drive_to_drive(browser, served, size):
+    page = browser.open(served("--drives", "1=mm440,2=mm440").link, size)
     page.plays("parameter_set.txt")
     page.does("param 2 P1120")
     page.shows("P1120[0]=2.5", "#said")
