@@ -474,8 +474,8 @@ def menu(quick, how, drives):
     world = world_at(19200, int(drives), **firmware_as(how))
     at_the_prompt(world)
     begun_ms = world.clock.now_us // 1000
-    call = (SCENE_MS, len(scenes), COLLECT_MS, False, settled_ms)
-    world.repl.begin("steps(%d, %d, %d, %r, %d)" % call)
+    call = (SCENE_MS, len(scenes), COLLECT_MS, False, settled_ms, len(scenes) - len(LISTS) + 1)
+    world.repl.begin("steps(%d, %d, %d, %r, %d, %d)" % call)
     settle(world)
     for place, keys in enumerate(scenes):
         # The chip is some way behind with its start, and more so as files.
@@ -485,8 +485,8 @@ def menu(quick, how, drives):
             do_at_the_menu(world, key)
         if world.clock.now_us // 1000 > begins_ms + SCENE_MS - BEGINS_MS[how]:
             raise RuntimeError("%r takes more than %d ms" % (keys, SCENE_MS))
-    opening, walking, *lists = result(world, 2 * SCENE_MS)["steps"]
-    found = {"opening": opening, "walking": walking, "lists": sorted(sum(lists, []))}
+    opening, walking, lists = result(world, 2 * SCENE_MS)["steps"]
+    found = {"opening": opening, "walking": walking, "lists": lists}
     return checked(world, {name: steps_of(table) for name, table in found.items()})
 
 

@@ -45,15 +45,17 @@ class Tasks:
             drive.ask(job)
 
 
-def steps(phase_ms, phases, collect_ms, tasks=False, settled_ms=0):
+def steps(phase_ms, phases, collect_ms, tasks=False, settled_ms=0, apart=None):
     """Step the panel; print {"steps": [[[us, count], ...] for each phase], "collections_us"}.
 
-    settled_ms: for so long before the first phase.
+    settled_ms: for so long before the first phase. apart: only so many phases have a table of
+    their own, of 2 KB; the last one is that of all others as well.
     tasks: each drive has a parameter task always pending; how many were done is "tasks".
     """
     ticks_us, ticks_ms, since = time.ticks_us, time.ticks_ms, time.ticks_diff
-    tables = [array("H", bytes(2 * BUCKETS)) for _ in range(phases)]
-    longer = [[] for _ in range(phases)]
+    last = (apart or phases) - 1
+    tables = [array("H", bytes(2 * BUCKETS)) for _ in range(last + 1)]
+    longer = [[] for _ in range(last + 1)]
     collections = array("I")
     board.idle = idle
     app = main.start(board)
@@ -64,7 +66,7 @@ def steps(phase_ms, phases, collect_ms, tasks=False, settled_ms=0):
         began = collected = ticks_ms()
         passed = 0
         while passed < phases * phase_ms:
-            phase = passed // phase_ms
+            phase = min(passed // phase_ms, last)
             at = ticks_us()
             following = app.step()
             if following:  # to hand over is no step of the loop: no motor runs
