@@ -45,11 +45,23 @@ class Tasks:
             drive.ask(job)
 
 
+def show(tables, longer):
+    """Print tables of durations as JSON, row by row: there is no room for all in one piece."""
+    for phase, table in enumerate(tables):
+        print("," if phase else "", "[[0, 0]")
+        for at, n in enumerate(table):
+            if n:
+                print(",", [at * BUCKET_US, n])
+        for at in sorted(longer[phase]):
+            print(",", [at * BUCKET_US, 1])
+        print("]")
+
+
 def steps(phase_ms, phases, collect_ms, tasks=False, settled_ms=0, apart=None):
     """Step the panel; print {"steps": [[[us, count], ...] for each phase], "collections_us"}.
 
     settled_ms: for so long before the first phase. apart: only so many phases have a table of
-    their own, of 2 KB; the last one is that of all others as well.
+    their own; the last one is that of all others as well.
     tasks: each drive has a parameter task always pending; how many were done is "tasks".
     """
     ticks_us, ticks_ms, since = time.ticks_us, time.ticks_ms, time.ticks_diff
@@ -92,12 +104,7 @@ def steps(phase_ms, phases, collect_ms, tasks=False, settled_ms=0, apart=None):
     app = None
     gc.collect()
     print('{"collections_us": %s, "tasks": %d, "steps": [' % (list(collections), asking.ended))
-    for phase, table in enumerate(tables):  # there is no room for all of it in one piece
-        print("," if phase else "", "[")
-        rows = [(at, n) for at, n in enumerate(table) if n] + [(at, 1) for at in longer[phase]]
-        for place, (at, n) in enumerate(sorted(rows)):
-            print("," if place else "", [at * BUCKET_US, n])
-        print("]")
+    show(tables, longer)
     print("]}")
 
 

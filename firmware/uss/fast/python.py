@@ -4,6 +4,8 @@
 Each has a twin in machine code in `viper`.
 """
 
+import sys
+
 
 def exclusive_or(buffer, count):
     """Exclusive or of the first `count` characters."""
@@ -93,10 +95,21 @@ def calling(values, size, count):
     bit 0 for the first."""
     rows = 0
     for row in range(count // size):
-        for index in range(size):
-            if values[row * size + index]:
+        for at in range(row * size, row * size + size):
+            if values[at]:
                 rows |= 1 << row
+                break
     return rows
+
+
+if sys.implementation.name == "cpython":  # a third of an exchange went into that loop
+
+    def calling(values, size, count):
+        rows = 0
+        for row in range(count // size):
+            if values.count(0, row * size, row * size + size) < size:
+                rows |= 1 << row
+        return rows
 
 
 def reply_about(net, at, words):
