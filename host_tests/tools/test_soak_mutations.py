@@ -8,7 +8,7 @@ same life on every interpreter (test_soak_interpreters.py); these are lived on C
 speed, or on PyPy where there are many. Where a change takes the text of a row away this fails:
 give the row its new text. Better seeds are looked for by
 
-    PYTHONPATH=.:host_tests build/pytest/bin/python host_tests/tools/test_soak_mutations.py NAME
+    PYTHONPATH=. build/pytest/bin/python host_tests/tools/test_soak_mutations.py NAME
 """
 
 import json
@@ -22,7 +22,6 @@ from pathlib import Path
 
 import pytest
 
-from tiers import STANDS_BACK
 from tools.soaking import interpreters
 from tools.soaking.interpreters import TOP
 from tools.soaking.mutations import MUTATIONS
@@ -32,15 +31,14 @@ INTERPRETERS = "host"
 MINUTES = 2
 SEEDS = 200  # that are looked through for better ones
 OTHERS = 24  # that a test tries
-PARTS = 4  # of the seeds of the firmware as it is: a test may take two minutes
+PARTS = 8  # of the seeds of the firmware as it is: a test may take two minutes
 ANY_DRIVES, ONE_TROUBLE = 0, 1
 
 
 def soaked(folder, seeds, roams, name):
     """What the soak says of each seed, with the firmware in folder/firmware."""
-    command = interpreters.command(name, ["soak", MINUTES, ANY_DRIVES, ONE_TROUBLE, int(roams)])
     done = subprocess.Popen(
-        [*STANDS_BACK, *command],
+        interpreters.command(name, ["soak", MINUTES, ANY_DRIVES, ONE_TROUBLE, int(roams)]),
         cwd=TOP,
         env=interpreters.environment(name, folder / "firmware"),
         stdin=subprocess.PIPE,
