@@ -232,7 +232,7 @@ MUTATIONS = (
     Mutation(
         "no question",
         "a parameter that cuts the panel off is written at once",
-        ("WRITE",), 1,
+        ("WRITE",), 14,
         ("panel/pages/writing.py", "if risk is not None and not", "if risk == -1 and not"),
     ),
     Mutation(
