@@ -12,7 +12,7 @@ needs all the time may stay there.
 import gc
 import sys
 
-ROOMY_BYTES = 100_000  # where so much is free, what a key may ask for any time stays loaded
+ROOMY_BYTES = 80_000  # where so much is free, what a key may ask for any time stays loaded
 
 _kept = ()  # names that `drop` leaves alone
 _idle = []  # those that were dropped, where there is room: they leave one by one
