@@ -53,6 +53,13 @@ def test_every_setting_is_shown_with_its_meaning_and_limits(settings):
     assert "no file of settings yet" in ended.stderr
 
 
+def test_the_file_may_be_named_behind_the_command(settings, tmp_path):
+    """Whichever of the two comes to mind first. The last one counts."""
+    settings("set", "baud=9600", "--file", "other.json")
+    assert json.loads((tmp_path / "other.json").read_text())["baud"] == 9600
+    assert not (tmp_path / "panel.json").exists()
+
+
 def test_for_programs_it_is_json(settings):
     assert json.loads(settings("get", "--json").stdout)["baud"] == 19200
     assert json.loads(settings("get", "baud", "lost_ms", "--json").stdout) == {

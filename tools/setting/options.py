@@ -5,6 +5,7 @@ that needs nothing that has to be installed.
 
 import argparse
 import sys
+from functools import partial
 from pathlib import Path
 
 TOP = Path(__file__).resolve().parents[2]
@@ -37,14 +38,15 @@ def arguments(words):
         epilog=EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    parser.add_argument("--port", metavar="PATH", help="serial port of the chip; of several")
-    parser.add_argument("--file", metavar="FILE", help="a file of settings, and no chip")
+    place(parser, None)
     commands = parser.add_subparsers(metavar="COMMAND", required=True, dest="command")
 
     def add(name, what):
-        return commands.add_parser(
+        command = commands.add_parser(
             name, help=what, description=what, prog="tools/settings " + name
         )
+        place(command, argparse.SUPPRESS)  # what stands before the command holds
+        return command
 
     get = add("get", "show settings, what they mean and may be")
     get.add_argument("names", nargs="*", metavar="NAME", help="(all)")
@@ -63,6 +65,13 @@ def arguments(words):
         if "=" not in change:
             parser.error(f"{change}: say NAME=VALUE")
     return chosen
+
+
+def place(parser, otherwise):
+    """Where the settings are may be said before the command and behind it."""
+    say = partial(parser.add_argument, default=otherwise)
+    say("--port", metavar="PATH", help="serial port of the chip; of several")
+    say("--file", metavar="FILE", help="a file of settings, and no chip")
 
 
 if __name__ == "__main__":
