@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: MIT
 """The page's connection: what happens when it breaks, who is let in, and several pages at once."""
 
+import ipaddress
 import json
 import time
-from urllib import error, request
+from urllib import error, parse, request
 
 import pytest
 
@@ -169,9 +170,18 @@ def test_an_answer_goes_to_the_page_that_asked(browser, panel, watcher):
 # --- who is let in ------------------------------------------------------------------------------
 
 
+def test_a_telephone_gets_an_address_and_no_name(served):
+    """Nobody in the network but this machine knows its name."""
+    host = parse.urlsplit(served("--bind", "0.0.0.0").link).hostname
+    assert not ipaddress.ip_address(host).is_unspecified
+
+
 def test_a_wrong_token_is_refused(browser, panel):
     page = browser.open(panel.base + "#wrong")
-    page.shows("does not let this page in", "#status")
+    for _ in range(3):  # it does not become another reason while the page tries again
+        page.shows("does not let this page in", "#status")
+        time.sleep(0.5)
+    assert "does not let this page in" in page.text("#status")
     page.close()
 
 

@@ -45,6 +45,7 @@ SECURITY = {
     "Cache-Control": "no-cache",
 }
 ENDED = "the panel has ended"
+ELSEWHERE = "192.0.2.1", 9  # an address that nobody has (RFC 5737)
 TOO_MUCH = "more than %d messages a second" % MESSAGES_A_SECOND
 
 
@@ -214,9 +215,20 @@ def link(address, token):
     """What a browser is to open. The part behind # is never sent anywhere: the page reads it."""
     host, port = address[:2]
     if ipaddress.ip_address(host).is_unspecified:
-        host = socket.gethostname()
+        host = own_address() or socket.gethostname()
     host = "[%s]" % host if ":" in host else host
     return "http://%s:%d/#%s" % (host, port, token)
+
+
+def own_address():
+    """The address of this machine in its network: a telephone there knows no name of it. "": none.
+    Nothing is sent: a datagram's socket only looks up the way."""
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as asked:
+        try:
+            asked.connect(ELSEWHERE)
+        except OSError:
+            return ""
+        return asked.getsockname()[0]
 
 
 def say(line):

@@ -56,6 +56,7 @@ class SocketWay {
   constructor(handlers) {
     this.handlers = handlers;
     this.tries = 0;
+    this.wasLetIn = false;
     this.socket = null;
   }
 
@@ -63,30 +64,25 @@ class SocketWay {
     const token = encodeURIComponent(location.hash.slice(1));
     const scheme = location.protocol === "https:" ? "wss:" : "ws:";
     const socket = new WebSocket(`${scheme}//${location.host}/panel?token=${token}`);
-    let wasOpen = false;
     socket.onopen = () => {
-      wasOpen = true;
+      this.wasLetIn = true;
       this.tries = 0;
       this.handlers.tell(TEXTS.connected, "good");
       this.opened();
     };
     socket.onmessage = (event) => this.handlers.take(JSON.parse(event.data));
-    socket.onclose = (event) => this.closed(event, wasOpen);
+    socket.onclose = (event) => this.closed(event);
     this.socket = socket;
   }
 
-  closed(event, wasOpen) {
+  closed(event) {
     this.socket = null;
     this.handlers.gone();
     if (event.code === POLICY || event.code === GOING_AWAY) {
       this.handlers.tell(`Disconnected: ${event.reason}.`, "bad");
       return;
     }
-    if (!wasOpen && this.tries === 0) {
-      this.handlers.tell(TEXTS.refused, "bad");
-    } else {
-      this.handlers.tell(TEXTS.again, "bad");
-    }
+    this.handlers.tell(this.wasLetIn ? TEXTS.again : TEXTS.refused, "bad");
     const again = AGAIN_MS[Math.min(this.tries, AGAIN_MS.length - 1)];
     this.tries += 1;
     setTimeout(() => this.open(), again);
