@@ -88,7 +88,17 @@ def test_a_link_to_nowhere_is_told(link, status, why):
 def test_a_wrong_token_is_told(served):
     other = joined(served().base + "#wrong")
     said = other.communicate(timeout=PATIENCE_S)[1]
-    assert other.returncode == 1 and "lets nobody in" in said, said
+    assert other.returncode == 1 and "take the link that it has printed" in said, said
+
+
+def test_a_program_that_does_not_listen_any_more_ends_without_a_traceback(served):
+    other = joined(served().link, "--lines")
+    assert json.loads(other.stdout.readline())
+    other.stdout.close()
+    assert other.wait(PATIENCE_S) == 1
+    assert "Traceback" not in (said := other.stderr.read()), said
+    other.stdin.close()
+    other.stderr.close()
 
 
 def test_the_end_of_the_panel_is_told(served):

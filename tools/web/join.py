@@ -9,6 +9,7 @@ or ends; 2 for a wrong command line; 130 after Ctrl-C.
 
 import asyncio
 import json
+import os
 import sys
 from pathlib import Path
 from urllib.parse import urlsplit
@@ -25,6 +26,7 @@ FORBIDDEN = 403
 HEARTBEAT_S = 5  # as the server
 SAID_MAX = 1 << 20  # of what the panel says at a time
 NO_LINK = "--join %s: the link that --web prints, such as http://127.0.0.1:8080/#TOKEN"
+OTHER_LINK = "take the link that it has printed"
 
 
 class NotLetIn(Exception):
@@ -56,18 +58,20 @@ async def join(address, origin):
                 max_msg_size=SAID_MAX,
             )
         except aiohttp.WSServerHandshakeError as refused:
-            why = "its link is another one" if refused.status == FORBIDDEN else refused.message
-            raise NotLetIn("%s: it lets nobody in, %s" % (origin, why)) from None
+            why = OTHER_LINK if refused.status == FORBIDDEN else refused.message
+            raise NotLetIn("%s: the panel does not let you in: %s" % (origin, why)) from None
         except (aiohttp.ClientError, OSError):
             raise NotLetIn("%s: no panel is there" % origin) from None
         async with connection:
             speaks = asyncio.create_task(speak(connection))
             hears = asyncio.create_task(hear(connection))
             await asyncio.wait((speaks, hears), return_when=asyncio.FIRST_COMPLETED)
+            if hears.done():
+                speaks.cancel()
+                hears.result()  # BrokenPipeError: nobody reads what the panel says
             if speaks.done():
                 hears.cancel()
                 return 0
-            speaks.cancel()
             raise NotLetIn("%s: the panel has ended, or is out of reach" % origin)
 
 
@@ -101,6 +105,7 @@ def main(words):
     except NotLetIn as error:
         return complain(error, FAILED)
     except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # for the flush at the end
         return FAILED
     except KeyboardInterrupt:
         return INTERRUPTED
