@@ -520,7 +520,7 @@ TEXT = struct.unpack(">8H", b"BAUDRATE FOR XS2")
         (0x20, (0x8002, 0, 0, 0, 0x047E, 0), "all broadcast, enable 8002 0000 0000 0000 047E"),
         (0x81, NOTHING + (0x047E, 0), "(special telegram)"),
         (9, NOTHING + (0x047E, 0), "(nobody has address 9)"),
-        (1, (0x047E, 0), "(LGE 6 should be 14: 4 + 2 words)"),
+        (1, (0x047E, 0), "(A1 has 4 + 2 words: LGE 6 should be 14)"),
     ],
 )  # fmt: skip
 def test_a_request_in_words(adr, words, said):

@@ -117,10 +117,12 @@ def _why_not_taken(characters, from_master, here):
     pkw, pzd = here[adr & NODE].layout
     words = (characters[1] - 2) // 2
     if pkw == VARIABLE:
-        return "" if words >= pzd else "LGE %d, the drive has %d PZD words" % (characters[1], pzd)
+        short = "A%d has %d PZD words: LGE %d is too short"
+        return "" if words >= pzd else short % (adr & NODE, pzd, characters[1])
     if words != pkw + pzd or characters[1] & 1:
         expected = 2 * (pkw + pzd) + 2
-        return "LGE %d should be %d: %d + %d words" % (characters[1], expected, pkw, pzd)
+        wrong = "A%d has %d + %d words: LGE %d should be %d"
+        return wrong % (adr & NODE, pkw, pzd, characters[1], expected)
     return ""
 
 
