@@ -19,6 +19,7 @@ from panel.pages import splash
 from text_bench import named, parts
 from tiers import TOP
 from tools.live import virtual_panel
+from tools.terminal import manuals
 
 INTERPRETERS = "host"
 
@@ -159,6 +160,16 @@ def test_the_splash_is_where_it_is_seen_first():
     first = texts.of(splash.SPLASH[0], version.VERSION.encode()).decode()
     second = splash.SPLASH[1].decode()
     assert f"`{first}` / `{second}`" in section(PICO, "First power-on")
+
+
+def test_what_help_says_of_a_text_needs_no_row_above_it():
+    """`:help NOT STARTED` of the live panel shows a row alone, its first cell and its second."""
+    rows = [cells[1:3] for source in manuals.HELP for cells in manuals.rows(*source)]
+    rows = [row for row in rows if len(row) == 2 and re.search("[A-Z]{2}", row[0])]
+    assert len(rows) > 150
+    for shown, said in rows:
+        assert not re.match(r"(likewise|the same|as above)\b", said), (shown, said)
+        assert re.search("[a-z]{3}", said), (shown, said)  # words, and not one more text
 
 
 def test_every_key_is_explained():

@@ -429,7 +429,7 @@ def test_help_is_there_and_the_display_stays_in_sight(terminal):
     panel.shows("telegrams:")
     for word, meaning in (
         ("help unplug", "pull and push its RS-485 connector"),
-        ("help REVERSE", "the other direction, negative on the display"),
+        ("help REVERSE", "changes the direction; left is negative on the display"),
         ("help NOT STARTED", "it did not run within 5 s after START"),
         ("help xyzzy", "nothing is called xyzzy"),
     ):

@@ -12,6 +12,7 @@ from pathlib import Path
 
 TOP = Path(__file__).resolve().parents[2]
 TOOLS, PANEL = "tools/README.md", "firmware/panel/README.md"
+HELP = (TOOLS, "Scripts"), (PANEL, "The keys"), (PANEL, "What the display says")
 STROKES = "you type"  # the head of the table of strokes
 LINK = re.compile(r"\[([^]]*)\]\([^)]*\)")
 BAR = "\0"  # stands for a bar that divides no cells
@@ -57,9 +58,7 @@ def explained(word):
     pattern = re.compile(rf"(?<![\w-]){re.escape(word)}(?![\w-])", 0 if word.isupper() else re.I)
     found = []
     if word:
-        for manual, heading in (
-            (TOOLS, "Scripts"), (PANEL, "The keys"), (PANEL, "What the display says"),
-        ):  # fmt: skip
+        for manual, heading in HELP:
             for cells in rows(manual, heading):
                 if len(cells) > 2 and pattern.search(cells[1]):
                     found.append((cells[1], cells[2]))
