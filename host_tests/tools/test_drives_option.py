@@ -84,6 +84,33 @@ def test_one_as_delivered_answers_at_its_own_rate():
     assert "NO CONTACT" not in ended.stdout
 
 
+FOUND_AND_TAKEN = """
+wait 3000
+press SET
+wait 3000
+press SET
+wait 40000
+press PARAM
+wait 500
+press SET
+wait 8000
+"""
+
+
+@pytest.mark.parametrize(
+    "kind, fault, then", (("v20", "FAULT F72", "LOCAL"), ("g120", "FAULT F01910", "READY"))
+)
+def test_mains_off_and_on_clear_the_fault_of_one_that_obeys_its_terminals(kind, fault, then):
+    """TROUBLESHOOTING, a drive as delivered: it trips when it is found, and takes no STOP."""
+    script = (
+        FOUND_AND_TAKEN + "press STOP\nwait 3000\nlcd\noff 8\nwait 2000\non 8\nwait 4000\nlcd\n"
+    )
+    ended = panel("--unset", "--drives", "8=%s/factory" % kind, script=script)
+    assert ended.returncode == 0
+    before, after = ended.stdout.splitlines()[1::2]
+    assert fault in before and then in after
+
+
 def test_the_settings_keep_the_kinds_and_the_next_run_simulates_them(tmp_path):
     words = ("--settings", str(tmp_path / "kept.json"))
     drives = "1,2=g110,3=v20/4,7=mm440/4+4"
