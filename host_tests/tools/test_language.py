@@ -5,6 +5,7 @@ import json
 
 from boards.sim.dice import Dice
 from conversation_bench import Talk
+from tools.live.holds import stop_all
 from tools.live.language import FROM_PANEL, LINE_MAX, TO_PANEL, Misunderstood, spoken, understood
 
 INTERPRETERS = "unix64 unix32 cpython"
@@ -353,6 +354,32 @@ def test_a_key_that_a_command_put_down_has_a_lease_too():
     talk.alive = []
     talk.wait(JOG_ENDS_MS)
     assert talk.down() == []
+
+
+class Sealed:
+    """A world like that of the emulated Pico: nobody can look into the firmware."""
+
+    def __init__(self, world):
+        self._world = world
+        for name in ("clock", "drives", "down", "up", "run"):
+            setattr(self, name, getattr(world, name))
+
+
+def test_where_nobody_can_look_into_the_firmware_stop_is_held_until_all_drives_stand():
+    talk = Talk(addresses=(1, 2))
+    talk.ready()
+    talk.tap("START")
+    talk.wait(3000)
+    talk.tap("ADDRESS_UP")
+    talk.wait(1500)
+    talk.tap("START")
+    talk.wait(3000)
+    assert talk.state(1) == talk.state(2) == "running"
+    stop_all(Sealed(talk.world))
+    talk.wait(12_000)
+    assert talk.state(1) == talk.state(2) == "ready", talk.world.lcd()
+    assert talk.world.reads("READY"), talk.world.lcd()  # STOP is up again
+    talk.world.check()
 
 
 def test_when_nobody_is_heard_the_drives_are_stopped():

@@ -14,12 +14,14 @@ presses it, all other keys come up. Who was not heard for 300 ms holds no key an
 is heard for 2 s, nobody could press STOP: then all drives get OFF1.
 """
 
+from boards.sim.clock import Event
 from boards.sim.world import RELEASE_MS, TAP_MS
 from tools.live.keys import STARTERS, STOP
 from tools.live.pace import UNHEARD_MS
 
 ALONE_MS = 2_000
 ARMED_MS = 2_000
+STOP_ALL_MS = 4_500  # STOP held for so long stops every drive
 WAITING_MAX = 6  # presses of a key that wait; more would come after the person wants them
 COMMAND = -1  # holds the key of a command that lets time pass
 
@@ -219,7 +221,11 @@ class Holds:
 
 def stop_all(world):
     """OFF1 to every drive; the panel goes on."""
-    app = getattr(world, "app", None)
-    bus = getattr(app, "bus", None)  # a search has none, and no motor runs then
+    if not hasattr(world, "app"):  # an emulated chip: there a person would hold STOP
+        world.down(STOP)
+        let_go = Event(lambda: world.up(STOP))
+        world.clock.schedule(let_go, world.clock.now_us + STOP_ALL_MS * 1000)
+        return
+    bus = getattr(world.app, "bus", None)  # a search has none, and no motor runs then
     if bus is not None:
         bus.stop_all()
