@@ -180,6 +180,23 @@ def test_the_splash_is_where_it_is_seen_first():
     assert f"`{first}` / `{second}`" in section(PICO, "First power-on")
 
 
+def test_the_first_power_on_is_that_of_a_new_panel():
+    """Its drives are off, and it has no settings yet."""
+    script = "off 1\nwait 3000\nlcd\npress PARAM\nwait 900\nlcd\npress START\nwait 300\nlcd\n"
+    run = subprocess.run(
+        [TOP / "tools/panel", "--unset", "--drives", "1", "--script", "-"],
+        input=script, capture_output=True, text=True,
+    )  # fmt: skip
+    asked, home, refused = (run.stdout.splitlines()[at + 1] for at in (0, 2, 4))
+    assert asked == "|SET=DO  PARAM=NO|"
+    assert home in ("|NO CONTACT   A1 |", "|A1 MAY RUN      |")
+    assert refused == "|NO: NO CONTACT  |"
+    told = section(PICO, "First power-on")
+    says = ("FIND DRIVES?", "PARAM", "`NO CONTACT   A1`", "`A1 MAY RUN`", "NO: NO CONTACT")
+    places = [told.index(one) for one in says]
+    assert places == sorted(places)
+
+
 def test_what_help_says_of_a_text_needs_no_row_above_it():
     """`:help NOT STARTED` of the live panel shows a row alone, its first cell and its second."""
     rows = [cells[1:3] for source in manuals.HELP for cells in manuals.rows(*source)]
