@@ -58,7 +58,7 @@ class World:
     def ctrl_c_after(self, seconds):
         self.interrupt_us = self.clock.now_us + int(seconds * 1_000_000)
 
-    def uss(self, *words, baud=None):
+    def uss(self, *words, baud=None, as_json=True):
         output, errors = io.StringIO(), io.StringIO()
         now_s = SimpleNamespace(monotonic=lambda: self.clock.now_us / 1e6)
         before = [(one, one.time) for one in TIMED], line.SerialLink
@@ -66,7 +66,7 @@ class World:
         for one in TIMED:
             one.time = now_s
         line.SerialLink = lambda port, baud, watch=None: Laptop(self, baud, watch)
-        options = ["--json", "--port", "virtual", "--baud", str(baud or self.baud)]
+        options = ["--port", "virtual", "--baud", str(baud or self.baud)] + ["--json"] * as_json
         try:
             with contextlib.redirect_stdout(output), contextlib.redirect_stderr(errors):
                 status = uss_command.main(options + list(words))

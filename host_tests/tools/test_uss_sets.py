@@ -34,6 +34,8 @@ def test_a_drive_is_saved_changed_compared_and_restored(tmp_path):
     assert "\nfamily mm440\naddress 1\nname pump 3\n" in text
     assert "P1082 0 Float 42480000" in text and "# 50 Hz, Max. frequency" in text
     assert world.uss("--kind", "mm440", "compare", file).status == 0
+    dry = world.uss("--kind", "mm440", "restore", file, "--dry-run", as_json=False)
+    assert dry.output == "0 would be written, 0 left out\n", "a person is told that, too"
     world.drives[1].write(1120, 0, 7.5)
     world.drives[1].write(2000, 0, 60)
     world.drives[1].write(304, 0, 400)

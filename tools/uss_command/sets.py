@@ -120,6 +120,8 @@ def restore(screen, settings, chosen):
         if chosen.dry_run:
             rows = [difference(node.facts, old, new) for new, old in todo]
             screen.table("would be written", COLUMNS, rows, left_out=len(left_out))
+            if not screen.as_json:
+                screen.event("%d would be written, %d left out" % (len(todo), len(left_out)))
             return 0
         writer.write_all(todo)
         still = writer.differing(row for row, _ in todo)
