@@ -111,6 +111,15 @@ def test_mains_off_and_on_clear_the_fault_of_one_that_obeys_its_terminals(kind, 
     assert fault in before and then in after
 
 
+def test_two_drives_with_one_address_show_what_troubleshooting_says():
+    script = "wait 3000\nline twin 1\n" + 20 * "wait 700\nlcd\n"
+    ended = panel("--drives", "1,2", script=script)
+    assert ended.returncode == 0
+    shown = {row.strip("|").rsplit("A1")[0].strip() for row in ended.stdout.splitlines()[1::2]}
+    assert {"CHECKING", "LINE NOISE"} & shown, shown
+    assert shown <= {"CHECKING", "LINE NOISE", "READY"}, shown
+
+
 def test_the_settings_keep_the_kinds_and_the_next_run_simulates_them(tmp_path):
     words = ("--settings", str(tmp_path / "kept.json"))
     drives = "1,2=g110,3=v20/4,7=mm440/4+4"
