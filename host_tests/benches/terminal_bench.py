@@ -168,8 +168,8 @@ class Terminal:
 
     def commands(self, *commands):
         """Type what the script language knows after `:`. The line is left open."""
-        if not self.is_open():
-            self.type(":")
+        if not any(line.startswith(" :") for line in self.screen.lines()):
+            self.type(":")  # not while the command before still stands there
         for command in commands:
             self.waits(self.is_open, "the command line")
             self.type(command)
