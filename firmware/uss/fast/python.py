@@ -4,8 +4,6 @@
 Each has a twin in machine code in `viper`.
 """
 
-import sys
-
 
 def exclusive_or(buffer, count):
     """Exclusive or of the first `count` characters."""
@@ -102,7 +100,15 @@ def calling(values, size, count):
     return rows
 
 
-if sys.implementation.name == "cpython":  # a third of an exchange went into that loop
+def _can_count():
+    """Whether a bytearray counts numbers in a part of it, as CPython's does."""
+    try:
+        return bytearray(2).count(0, 1, 2) == 1
+    except (AttributeError, TypeError):
+        return False
+
+
+if _can_count():  # a third of an exchange went into that loop
 
     def calling(values, size, count):
         rows = 0
