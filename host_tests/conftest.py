@@ -347,9 +347,9 @@ def jobs_of(items):
 class Pool:
     """Runs the files ahead of pytest, which asks for verdict after verdict in the same order.
 
-    Of ordinary files as many run at a time as there are processors, and as many beside them of the
-    others. An ordinary file often waits: for a page, a terminal, a serial port. The others only
-    compute, and stand back (tiers.py) for what has to be in time. Of either kind the longest come
+    Of the files that only compute as many run at a time as there are processors, and half as many
+    ordinary ones beside them. An ordinary file often waits: for a page, a terminal, a serial port.
+    The others stand back (tiers.py) for what has to be in time. Of either kind the longest come
     first, as far as the last run can tell, so that all processors are busy to the end.
     """
 
@@ -358,7 +358,7 @@ class Pool:
         self.timeout_s = float(config.getini("function_timeout_s") or 120)
         self.coverage = LineCoverage(TOP)
         processors = os.cpu_count() or 1
-        self.ordinary = ThreadPoolExecutor(processors)
+        self.ordinary = ThreadPoolExecutor(max(1, processors // 2))
         self.others = ThreadPoolExecutor(processors)
         self.verdicts = {}  # item -> future of its Verdict, of an ordinary test: of what was Told
         self.runs = []

@@ -36,8 +36,8 @@ SURVEY_TIMEOUT_S = 20
 ENVIRONMENT = dict(os.environ)
 COVERAGE = "USS_COVERAGE"  # there: the lines that run are noted
 OUTPUT_LIMIT = 10_000_000  # characters that one function may print
-# Virtual time waits: the processors belong to the tests that run in the time of this machine.
-STANDS_BACK = ("nice", "-n", "10") if shutil.which("nice") else ()
+# Virtual time waits: tests that run in the time of this machine have the larger share of it.
+STANDS_BACK = ("nice", "-n", "3") if shutil.which("nice") else ()
 REPORT = re.compile(rf"{MARK}(\w+) ?(.*)\n")
 
 
