@@ -5,7 +5,8 @@ A tier is one interpreter; runner.py is what runs inside it. `pico` is one of th
 Raspberry Pi Pico beside it, for the files that ask for it; `pico_again` is the same with a UART
 whose receive time-out comes again while characters are left (tools/emulator/README.md).
 `pico_hard` and `pico_hard_again` are these two with the firmware of a later MicroPython, whose
-timers have hard callbacks (tools/fetch/pico.sh).
+timers have hard callbacks (tools/fetch/pico.sh). A file that wants both builds and both behaviours
+names two of the four, `pico pico_hard_again`: all four would take twice as long.
 
 `survey` asks each tier for its version; a FileRun runs functions of one file on one tier and
 publishes a verdict for each, also when the process crashes or hangs in the middle: then the
