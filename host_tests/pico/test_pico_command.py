@@ -11,11 +11,11 @@ INTERPRETERS = "pico"
 START_AND_STOP = """\
 wait 1500
 press START
-wait 5000
+wait 3500
 expect RUNNING
 lcd
 press STOP
-wait 8000
+wait 3000
 drive 1
 """
 
@@ -101,6 +101,6 @@ def test_what_the_chip_cannot_do_is_refused():
 
 def test_power_cut_and_reset_start_the_panel_anew_and_no_motor():
     for what in ("power cut", "reset"):
-        script = "wait 1500\npress START\nwait 3000\n%s\nwait 9000\nexpect READY\ndrive 1\n" % what
+        script = "wait 1500\npress START\nwait 3000\n%s\nwait 5000\nexpect READY\ndrive 1\n" % what
         status, said = panel("", script)
         assert status == 0 and "state=ready" in said and "starts=1" in said, said
