@@ -44,18 +44,23 @@ def panel(**options):
     return world
 
 
-def deployed(files=(), **options):
-    """A Pico with plain MicroPython and the panel as files, and these files besides."""
+def panel_files():
+    """{path: content} of the panel as files, as tools/deploy copies them onto a Pico."""
     folder = temporary()
     write = "build/mpremote/bin/python -B tools/benching/deployed.py %s" % folder
     assert os.system(write) == 0
     try:
-        everything = dict(files_in(folder))
-        everything.update(files)
-        options.setdefault("parameters", QUICK)
-        return PicoWorld("stock", files=everything, **options)
+        return files_in(folder)
     finally:
         os.system("rm -r %s" % folder)
+
+
+def deployed(files=(), **options):
+    """A Pico with plain MicroPython and the panel as files, and these files besides."""
+    everything = dict(panel_files())
+    everything.update(files)
+    options.setdefault("parameters", QUICK)
+    return PicoWorld("stock", files=everything, **options)
 
 
 def running(**options):
