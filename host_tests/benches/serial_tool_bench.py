@@ -3,7 +3,9 @@
 
     status, said = at_port(world, "deploy", "--dry-run")
 
-The command is a process of its own; meanwhile the world's time goes on.
+The command is a process of its own; meanwhile the world's time goes on. A chip that only waits
+for the command runs far ahead of it, for nothing: so the world stands until the command has said
+that it begins, and rests while the chip sleeps.
 """
 
 import os
@@ -13,6 +15,9 @@ from tools.emulator.world import temporary
 
 HOST_LIMIT_S = 100
 STEP_MS = 5
+ASLEEP_US = 1_000  # of the host, for a step; a chip that works takes more
+REST_MS = 1
+SPEAK_FIRST = ("deploy", "settings")  # before they do anything at the port; deploy compiles first
 
 
 def read(path):
@@ -34,16 +39,27 @@ class AtPort:
             "{ ./tools/%s --port $USS_PICO_SERIAL %s; echo EXIT $?; } >%s 2>&1 </dev/null &"
             % (command, " ".join(arguments), self._output)
         )
+        if command in SPEAK_FIRST:
+            self._until(lambda: self.said, time.sleep_ms, 10 * REST_MS)
 
     @property
     def said(self):
         return read(self._output)
 
     def goes_on_until(self, condition):
+        self._until(condition, self._step)
+
+    def _until(self, condition, act, *arguments):
         began = time.time()
         while not condition():
             assert time.time() - began < HOST_LIMIT_S, self.said
-            self.world.run(STEP_MS)
+            act(*arguments)
+
+    def _step(self):
+        began = time.ticks_us()
+        self.world.run(STEP_MS)
+        if time.ticks_diff(time.ticks_us(), began) < ASLEEP_US:
+            time.sleep_ms(REST_MS)
 
     def ends(self):
         """Its exit status and what it said."""
