@@ -120,7 +120,7 @@ def test_ctrl_c_stops_every_drive_and_ends_in_a_maintenance_mode_without_watchdo
     assert stands(world) and starts(world) == 1
     assert world.lcd() == ("PANEL STOPPED   ", "NO CONTROL      ")
     quiet_us = world.clock.now_us
-    world.run(5_000)
+    world.run(3_000)
     assert not world.restarts and not telegrams(world, quiet_us)
     world.repl.open()
     assert world.repl.execute("print('here')") == ("here\r\n", "")
