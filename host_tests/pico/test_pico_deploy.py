@@ -68,13 +68,14 @@ made = []  # the world of a stock Pico that has become a panel, and what was sai
 def stock_pico_with_the_panel():
     if not made:
         world = PicoWorld("stock", files={"boot.py": b"# mine"})
-        made.append((world,) + deploy(world))
+        status, said = deploy(world)
+        assert status == 0 and said.endswith("The panel runs.\n"), said
+        made.append((world, said))
     return made[0]
 
 
 def test_a_stock_pico_becomes_a_panel():
-    world, status, said = stock_pico_with_the_panel()
-    assert status == 0 and said.endswith("The panel runs.\n"), said
+    world, said = stock_pico_with_the_panel()
     assert "It is Raspberry Pi Pico with RP2040, micropython 1.25.0." in said
     assert "app.mpy" in said  # compiled for the chip
     assert "catalogue/mm440.tsv" in said  # as it is
@@ -83,7 +84,7 @@ def test_a_stock_pico_becomes_a_panel():
 
 
 def test_a_running_panel_is_stopped_and_brought_up_to_date():
-    world, _, _ = stock_pico_with_the_panel()
+    world, _ = stock_pico_with_the_panel()
     start(world)
     with open(OWN_BOARD) as file:
         own = file.read() + "# mine\n"
