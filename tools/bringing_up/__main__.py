@@ -36,6 +36,7 @@ RESTART_S = 60  # until a chip that has restarted is at its prompt; an emulated 
 AGAIN_S = 0.2
 ASK_BARE = "The board is bare, GP4 is joined to GP5 and GP6 to GP3? This sends on them. yes/no: "
 ASK_WIRED = "The jumpers are gone, and no motor can start? This sends on the bus. yes/no: "
+AFTERWARDS = "The chip is at its prompt now. A panel on it starts when it gets power anew."
 ASK_PAGE = "Does the display show the characters {first:02X}h to {last:02X}h? yes/no: "
 
 
@@ -219,6 +220,7 @@ def main():
     if bench:
         for line in summary(bench):
             say(line)
+        print(AFTERWARDS)
     else:
         print(f"tools/bringup: {ended}", file=sys.stderr)
     if lines:
