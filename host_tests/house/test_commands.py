@@ -49,7 +49,7 @@ ELSEWHERE = {
     "./tools/bench": "test_bench.py",
     "./tools/bringup": "test_bringup_command.py, test_pico_bringup.py",
     "./tools/check-board NAME": "test_check_board.py",
-    "./tools/deploy": "test_pico_deploy.py, test_deploy.py",
+    "./tools/deploy": "test_pico_deploy.py, test_pico_deploy_stock.py, test_deploy.py",
     "./tools/drive --pty": "test_drive_command.py",
     "./tools/example FILE --port PATH": "test_uss_serial.py",
     "./tools/example one_drive --port": "test_uss_serial.py",

@@ -12,8 +12,6 @@ from tools.emulator.world import PicoWorld, temporary
 
 INTERPRETERS = "pico"
 
-OWN_BOARD = "boards/pico/board.py"
-
 # Packages that lie on a frozen panel before the tool comes: one whole copying, that onto the stock
 # Pico, is enough. A part of a package would hide the frozen rest of it.
 LIE_THERE = ("catalogue", "panel", "search")
@@ -60,54 +58,6 @@ def test_a_panel_that_logs_is_stopped_too():
     ready(world)
     assert world.drives[1].hz() == 0
     world.check()
-
-
-made = []  # the world of a stock Pico that has become a panel, and what was said: it takes a while
-
-
-def stock_pico_with_the_panel():
-    if not made:
-        world = PicoWorld("stock", files={"boot.py": b"# mine"})
-        status, said = deploy(world)
-        assert status == 0 and said.endswith("The panel runs.\n"), said
-        made.append((world, said))
-    return made[0]
-
-
-def test_a_stock_pico_becomes_a_panel():
-    world, said = stock_pico_with_the_panel()
-    assert "It is Raspberry Pi Pico with RP2040, micropython 1.25.0." in said
-    assert "app.mpy" in said  # compiled for the chip
-    assert "catalogue/mm440.tsv" in said  # as it is
-    start(world)
-    world.check()
-
-
-def test_a_running_panel_is_stopped_and_brought_up_to_date():
-    world, _ = stock_pico_with_the_panel()
-    start(world)
-    with open(OWN_BOARD) as file:
-        own = file.read() + "# mine\n"
-    board = temporary()
-    with open(board, "w") as file:
-        file.write(own)
-    status, said = deploy(world, "--board-file", board)
-    os.remove(board)
-    assert status == 0 and "It has stopped them." in said, said
-    assert "copy    board.py" in said and "app.mpy" not in said
-    assert world.restarts[-1][1] == "reset"
-    ready(world)
-    world.run(1_000)
-    assert world.drives[1].hz() == 0 and world.drives[1].state == "ready"
-
-    # The board file is one's own now, and nothing else differs.
-    status, said = deploy(world)
-    assert status == 0 and "nothing is copied" in said, said
-    assert "board.py on the chip is not the tree's, and is kept" in said
-    assert world.read_file("board.py").decode() == own
-    assert world.read_file("boot.py") == b"# mine"
-    assert world.settings()["drives"] == [1]
-    start(world)
 
 
 half_made = []  # the world of a frozen panel with half of the files, and what the tool said

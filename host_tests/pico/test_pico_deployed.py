@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: MIT
 """The panel as files on plain MicroPython, as tools/deploy leaves it: it lies in the chip's file
-system and runs from its memory. How it gets there: test_pico_deploy.py."""
+system and runs from its memory. How it gets there: test_pico_deploy_stock.py."""
 
 from boards.sim.ports.chips import HEAP_BYTES
 from panel.menu.main import LISTS

@@ -31,7 +31,7 @@ INTERPRETERS = "host"
 MINUTES = 2
 SEEDS = 200  # that are looked through for better ones
 OTHERS = 24  # that a test tries
-PARTS = 8  # of the seeds of the firmware as it is: a test may take two minutes
+PARTS = 3  # of the seeds of the firmware as it is: a test may take two minutes
 ANY_DRIVES, ONE_TROUBLE = 0, 1
 
 
@@ -78,13 +78,14 @@ def hunted(mutation):
 
 @pytest.fixture(scope="module")
 def hunts(request):
-    """By name, a future of each planted bug that is to be tested: a hunt takes one processor."""
+    """By name, a future of each planted bug that is to be tested: a hunt takes one processor, and
+    tests of other files run beside this one."""
     wanted = [
         item.callspec.params["mutation"]
         for item in request.session.items
         if getattr(item, "function", None) is test_a_planted_bug_is_found
     ]
-    pool = ThreadPoolExecutor(os.cpu_count())
+    pool = ThreadPoolExecutor(max(1, os.cpu_count() // 2))
     yield {mutation.name: pool.submit(hunted, mutation) for mutation in wanted}
     pool.shutdown(cancel_futures=True)
 
