@@ -487,12 +487,16 @@ class Panel:
 
     def _go_on(self, now_ms):
         """What waited for this goes on. Answers whether there was anything."""
-        self._waits = _WAITS_MAX  # `has_time` agrees, unless it is too late meanwhile
+        waited = self._waits
+        self._waits = begun = max(waited, _WAITS_MAX)  # `has_time` agrees, unless it is too late
         if self._place and self._page is self._home:
             has_gone_on = self._make_page(now_ms)
         else:
             has_gone_on = self._works(now_ms)
-        self._waits = 1 if self._waits > _WAITS_MAX or self._page.is_coming() else 0
+        if self._waits > begun:  # it was too late: this turn counts like any other
+            self._waits = waited + 1
+        else:
+            self._waits = 1 if self._page.is_coming() else 0
         return has_gone_on
 
     def _make_page(self, now_ms):

@@ -6,6 +6,7 @@ The same firmware as on the chip, in virtual time.
 
 import main
 import panel.panel
+from boards.sim.clock import Clock
 from boards.sim.world import World
 from panel.pages.table import HOME, PAGES
 from strict_screen import StrictScreen
@@ -18,6 +19,17 @@ class SlowWorld(World):
 
     def _uneven_loop_us(self):
         return self.random(500, 10_000)
+
+
+class SlowClock(Clock):
+    """To read it takes `reading_us`: so the time goes on within a step, as on a slow chip."""
+
+    reading_us = 0
+
+    def ticks_us(self):
+        if not self._advancing:
+            self.advance(self.reading_us)
+        return super().ticks_us()
 
 
 def panel(**options):

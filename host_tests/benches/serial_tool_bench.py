@@ -50,11 +50,12 @@ class AtPort:
         self._until(condition, self._step)
 
     def _until(self, condition, act, *arguments):
-        heard, length = time.time(), 0
+        heard, before = time.time(), ""
         while not condition():
-            if len(self.said) != length:
-                heard, length = time.time(), len(self.said)
-            assert time.time() - heard < SILENT_S, self.said
+            said = self.said
+            if said != before:
+                heard, before = time.time(), said
+            assert time.time() - heard < SILENT_S, said
             act(*arguments)
 
     def _step(self):

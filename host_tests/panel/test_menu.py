@@ -9,7 +9,17 @@ import app
 import main
 from boards.sim.drives.kinds import listed_drives, simulated
 from boards.sim.world import World
-from panel_bench import panel, row_1, row_2, running, said, starts, telegrams, wait_until_known
+from panel_bench import (
+    SlowClock,
+    panel,
+    row_1,
+    row_2,
+    running,
+    said,
+    starts,
+    telegrams,
+    wait_until_known,
+)
 from version import VERSION
 
 OFF1 = 0x047E
@@ -54,6 +64,22 @@ def test_it_opens_and_closes():
     world.run(61_000)
     assert row_2(world) == "READY        A1", world.lcd()  # nobody has used it for a minute
     world.check()
+
+
+def test_it_opens_and_its_lists_do_however_slow_the_chip_is():
+    """A step in which it is too late for a module must not put off those that follow."""
+    for reading_us in (100, 200, 300, 400, 500):
+        world = panel(clock=SlowClock())
+        wait_until_known(world)
+        world.clock.reading_us = reading_us
+        menu(world)
+        press(world, "UP", "UP", "UP", "UP", "UP", "SET")
+        world.run(1000)
+        assert row_1(world) == "PARAMETERS  1/22", (reading_us, world.lcd())
+        press(world, "SET")
+        world.run(1000)
+        assert row_1(world) == "NUMBER  SET=SHOW", (reading_us, world.lcd())
+        world.check()
 
 
 def test_it_tells_what_this_is():

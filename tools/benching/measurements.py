@@ -40,9 +40,6 @@ ACTUAL_AT = 10  # column of the actual frequency, in the first row
 KEY_MS = 200
 TAP_MS = 100
 BEGINS_MS = {"frozen": 300, "files": 700}
-# How often a collection is made at the menu. As files one takes 70 ms: made every 100 ms, it would
-# leave too little for the loop to go on with.
-MENU_COLLECT_MS = {"frozen": COLLECT_MS, "files": 3 * COLLECT_MS}
 CHANGES = 20  # of the display, then the other key
 
 BOOT_MS = 5_000  # to the prompt; as files it takes longer
@@ -477,8 +474,7 @@ def menu(quick, how, drives):
     world = world_at(19200, int(drives), **firmware_as(how))
     at_the_prompt(world)
     begun_ms = world.clock.now_us // 1000
-    apart = len(scenes) - len(LISTS) + 1
-    call = (SCENE_MS, len(scenes), MENU_COLLECT_MS[how], False, settled_ms, apart)
+    call = (SCENE_MS, len(scenes), COLLECT_MS, False, settled_ms, len(scenes) - len(LISTS) + 1)
     world.repl.begin("steps(%d, %d, %d, %r, %d, %d)" % call)
     settle(world)
     for place, keys in enumerate(scenes):
