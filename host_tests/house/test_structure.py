@@ -324,7 +324,7 @@ def bound(at):
 
 
 def test_every_source_file_begins_with_the_licence():
-    marks = {".py": "# ", ".sh": "# ", ".mjs": "// "}
+    marks = {".py": "# ", ".sh": "# ", ".mjs": "// ", ".ts": "// "}
     for folder in ("firmware", "boards", "host_tests", "tools", ".ci"):
         for path, _, names in os.walk(os.path.join(TOP, folder)):
             for name in names:
@@ -341,7 +341,7 @@ def test_no_folder_has_more_files_than_a_reader_takes_in():
     """Tests are many. The engine's folder has wings, which stand beside it."""
     for folder in ("firmware", "boards", "tools"):
         for path, _, names in os.walk(os.path.join(TOP, folder)):
-            code = [name for name in names if name.endswith((".py", ".sh", ".mjs", ".c"))]
+            code = [name for name in names if name.endswith((".py", ".sh", ".mjs", ".ts", ".c"))]
             assert len(code) <= 20, (os.path.relpath(path, TOP), len(code))
 
 

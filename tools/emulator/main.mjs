@@ -9,7 +9,6 @@ import fs from 'node:fs';
 import { Fault } from './rp2040/core.mjs';
 import { FLASH_BYTES, layUf2 } from './rp2040/flash.mjs';
 import { Pico } from './rp2040/pico.mjs';
-import { practise } from './rp2040/practice.mjs';
 import { Reader, Writer } from './records.mjs';
 import { Terminal } from './terminal.mjs';
 
@@ -220,6 +219,5 @@ function fillFlash(bytes, { uf2, flash, keep }) {
 
 process.env.TZ = 'UTC'; // the chip's calendar knows no other, and must not know this machine's
 console.warn = () => {}; // rp2040js has a logger, and in places forgets it
-practise();
 const [read, write, pty] = process.argv.slice(2).map(Number);
 new Server(read, write, pty).serve();

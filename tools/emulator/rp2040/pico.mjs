@@ -4,7 +4,7 @@
 // One object is one Pico; `run` moves its time, `pulseRunPin` and `cutPower` are what they are
 // called. It tells what happens through the `report` it was given (see the methods called on it
 // below and main.mjs). A reset makes a new chip; flash, wires and time stay.
-import { Cache, CacheControl } from './cache.mjs';
+import { CacheControl, flushCache } from './cache.mjs';
 import { Clock } from './clock.mjs';
 import { Core } from './core.mjs';
 import { LineDecoder } from './decoder.mjs';
@@ -14,6 +14,7 @@ import { BitBangedI2c, SCL, SDA, TimedI2c } from './i2c.mjs';
 import { bootRom, RP2040 } from './library.mjs';
 import { isUart, LOW, RELEASED, Wires } from './pins.mjs';
 import { TimedPio } from './pio.mjs';
+import { flash, ram, rom } from './processor.mjs';
 import { Resets } from './resets.mjs';
 import { Sio } from './sio.mjs';
 import { ExactTimer } from './timer.mjs';
@@ -81,13 +82,15 @@ export class Pico {
     this.clock = clock;
     this.mcu = mcu;
     mcu.logger = this.report;
+    mcu.bootrom = rom;
     mcu.bootrom.set(ROM);
-    const { bytes } = this.flash;
-    mcu.flash = bytes;
-    mcu.flash16 = new Uint16Array(bytes.buffer);
-    mcu.flashView = new DataView(bytes.buffer);
-    this.cache = new Cache(this.model.cache_miss_cycles);
-    this.core = mcu.core = new Core(mcu, this.cache);
+    mcu.sram = ram.fill(0);
+    mcu.sramView = new DataView(ram.buffer, ram.byteOffset, ram.length);
+    mcu.flash = flash;
+    mcu.flash16 = new Uint16Array(flash.buffer, flash.byteOffset, flash.length >> 1);
+    mcu.flashView = new DataView(flash.buffer, flash.byteOffset, flash.length);
+    flushCache();
+    this.core = mcu.core = new Core(mcu, this.model.cache_miss_cycles);
     this.core.SP = ROM[0];
     this.core.PC = START;
     this.flash.reset(clock);
@@ -110,7 +113,7 @@ export class Pico {
     new TimedI2c(mcu, mcu.i2c[0], this.addresses, this.written);
     new TimedI2c(mcu, mcu.i2c[1], new Set(), this.written);
     peripherals[0x4000c] = new Resets(mcu, 'RESETS');
-    peripherals[0x14000] = new CacheControl(mcu, this.cache);
+    peripherals[0x14000] = new CacheControl(mcu);
     peripherals[0x18000] = new Ssi(mcu, this.flash);
     peripherals[0x40018] = new IoQspi(mcu, this.flash);
     peripherals[0x40054] = new ExactTimer(mcu);
