@@ -28,6 +28,7 @@ import time
 from collections import defaultdict
 from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
+from threading import Lock
 from types import SimpleNamespace
 from typing import NamedTuple
 
@@ -344,13 +345,20 @@ def jobs_of(items):
     return jobs
 
 
+def once(work):
+    """The same work, for whoever comes first."""
+    free = Lock()
+    return lambda: work() if free.acquire(blocking=False) else None
+
+
 class Pool:
     """Runs the files ahead of pytest, which asks for verdict after verdict in the same order.
 
     Of the files that only compute as many run at a time as there are processors, and half as many
     ordinary ones beside them. An ordinary file often waits: for a page, a terminal, a serial port.
     The others stand back (tiers.py) for what has to be in time. Of either kind the longest come
-    first, as far as the last run can tell, so that all processors are busy to the end.
+    first, as far as the last run can tell, and when the others are done, more ordinary ones run at
+    a time, so that all processors are busy to the end.
     """
 
     def __init__(self, config):
@@ -379,11 +387,17 @@ class Pool:
         items[:] = [item for job in sorted(jobs, key=rank) for item in jobs[job]]
 
     def start(self, items):
+        beside = []
         for job, chosen in jobs_of(items).items():
             if job.tier != ORDINARY:
-                self._start(job, {item.name: item for item in chosen}, self._on_tier)
+                work = self._work(job, {item.name: item for item in chosen}, self._on_tier)
+                self.others.submit(work)
             elif self._runs_ordinary_files():
-                self._start(job, {item.nodeid: item for item in chosen}, self._in_a_pytest)
+                work = self._work(job, {item.nodeid: item for item in chosen}, self._in_a_pytest)
+                beside.append(once(work))
+                self.ordinary.submit(beside[-1])
+        for work in beside:  # who has done all the others takes from these
+            self.others.submit(work)
 
     def verdict(self, item):
         return self.verdicts[item].result()
@@ -419,7 +433,7 @@ class Pool:
         by_hand = option.usepdb or option.trace or option.setupshow or option.capture == "no"
         return not option.only and not by_hand
 
-    def _start(self, job, by_name, make_run):
+    def _work(self, job, by_name, make_run):
         futures = {name: Future() for name in by_name}
         self.verdicts.update((item, futures[name]) for name, item in by_name.items())
         run = make_run(job, by_name, lambda name, verdict: futures[name].set_result(verdict))
@@ -435,8 +449,7 @@ class Pool:
                         future.set_exception(error)
 
         self.runs.append(run)
-        executor = self.ordinary if job.tier == ORDINARY else self.others
-        executor.submit(work)
+        return work
 
     def _on_tier(self, job, names, publish):
         note = self.coverage.note
