@@ -113,7 +113,7 @@ MUTATIONS = (
     Mutation(
         "ON kept over a loss",
         "a drive that comes back into contact starts by itself",
-        ("START", "LOST"), 11,
+        ("START", "LOST"), 1,
         (
             "uss/drive.py",
             "            self.was_running = self._may_run or not self.tells_status\n"
@@ -139,7 +139,7 @@ MUTATIONS = (
     Mutation(
         "stale PKW accepted",
         "an old answer is taken for that of another parameter",
-        ("SETPOINT", "SHOWN", "RECOVERS"), 3,
+        ("SETPOINT", "SHOWN", "RECOVERS"), 1,
         (
             "uss/pkw.py",
             "reply = reply_about(net, at, self.words)",
@@ -337,7 +337,7 @@ MUTATIONS = (
     Mutation(
         "listens to nobody",
         "the panel talks into another master's telegrams after power-on",
-        ("LISTEN",), 6,
+        ("LISTEN",), 3,
         ("uss/master.py", "LISTEN_US = const(100_000)", "LISTEN_US = const(10_000)"),
     ),
     Mutation(
@@ -391,7 +391,7 @@ MUTATIONS = (
     Mutation(
         "all stopped too soon",
         "STOP held for the second stop stops every drive",
-        ("WITHOUT REASON",), 3,
+        ("WITHOUT REASON",), 4,
         ("panel/keys/stop_key.py", "_ALL_MS = const(4_000)", "_ALL_MS = const(1_500)"),
     ),
     Mutation(
@@ -408,7 +408,7 @@ MUTATIONS = (
     Mutation(
         "second stop given up",
         "OFF3 is sent once, whether or not the drive has heard it",
-        ("SECOND STOP",), 2,
+        ("SECOND STOP",), 1,
         (
             "panel/control.py",
             "        if drive.answered_stw & ~pzd.STW_ACKNOWLEDGE != drive.off:\n"
@@ -508,7 +508,7 @@ MUTATIONS = (
     Mutation(
         "never heard is nothing",
         "nobody is told that a drive that is silent since power-on may be running",
-        ("ANNOUNCED",), 8,
+        ("ANNOUNCED",), 1,
         (
             "panel/control.py",
             "return not self.drive.contacts and self.drive.silent >= _SILENT_MAX",
@@ -548,7 +548,7 @@ MUTATIONS = (
     Mutation(
         "a task for ever",
         "a task that a drive answers with silence is sent until the drive is lost",
-        ("TASK",), 4,
+        ("TASK",), 1,
         (
             "uss/channel.py",
             "            if pressing or silences >= _SILENCES_MAX:\n",
@@ -726,7 +726,7 @@ MUTATIONS = (
     Mutation(
         "looked for though it answers",
         "a drive that answers is sent telegrams in other layouts",
-        ("MIRROR",), 2,
+        ("MIRROR",), 3,
         (
             "uss/finding/finder.py",
             "            if not drive.doubted or drive.may_run():\n                return False\n",
@@ -786,7 +786,7 @@ MUTATIONS = (
     Mutation(
         "STOP dead in the menu",
         "whoever reads a list cannot stop the motor",
-        ("STOP",), 8,
+        ("STOP",), 6,
         (
             "panel/panel.py",
             "        if down & self._stop_bit:\n",
@@ -820,7 +820,7 @@ MUTATIONS = (
     Mutation(
         "address key held starts",
         "a key that only looks at addresses starts a motor",
-        ("START",), 2,
+        ("START",), 3,
         (
             "panel/panel.py",
             "            self._open_menu(now_ms, (\"address\", None))\n",
@@ -831,7 +831,7 @@ MUTATIONS = (
     Mutation(
         "looked for before it is stopped",
         "a drive that may run is sent mirror telegrams in place of its STOP",
-        ("MIRROR",), 11,
+        ("MIRROR",), 1,
         (
             "uss/finding/finder.py",
             "(drive.silent < STOPPED_MIN or drive.is_told_in_vain())",
@@ -1175,7 +1175,7 @@ MUTATIONS = (
     Mutation(
         "goes on though somebody calls",
         "the telegram that was made ready goes out though the program has taken ON back",
-        ("STOP", "TURNS", "START"), 1,
+        ("STOP", "TURNS", "START"), 16,
         ("uss/going_on/viper.py", "    return attention[96] == 0  # ANY\n", "    return True\n"),
         ("uss/going_on/python.py", "    return attention[ANY] == 0\n", "    return True\n"),
     ),

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: MIT
 """One process of a soak, on MicroPython: takes seeds from standard input, tells how they ended.
+Behind a seed there may be minutes, or a count of bytes, for it alone.
 
     micropython tools/soaking/worker.py soak MINUTES [DRIVES TROUBLES ROAMS]
     micropython tools/soaking/worker.py fuzz BYTES
@@ -57,7 +58,8 @@ def main(deed, *arguments):
     if hasattr(gc, "threshold"):
         gc.threshold(COLLECT_AFTER)
     for line in sys.stdin:
-        DEEDS[deed](int(line), *arguments)
+        seed, *own = line.split()
+        DEEDS[deed](int(seed), *own, *arguments[len(own) :])
         gc.collect()
 
 
