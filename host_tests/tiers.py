@@ -66,7 +66,7 @@ PICO = (*BESIDE_A_CHIP, *_micropython("unix64", heap="64M"))
 
 
 def _pico(name: str, twin: str = "") -> Tier:
-    remedy = "tools/panel --board pico (it takes 550 MB)"
+    remedy = "tools/panel --board pico (it takes 580 MB)"
     return Tier(name, PICO, remedy, everywhere=False, twin=twin)
 
 

@@ -42,14 +42,16 @@ class Commissioned:
         if number is None:  # row 1 may announce something meanwhile
             if self._offer is not None and row_2 == self._row_2:
                 self._offered_us = now
+            elif is_typed(row_2) and self._last is not None and now - self._open_us < S:
+                self._row_2 = row_2  # it was announced while a digit was being changed
+                self._offer_value(self._last[0], typed_in(row_2), False, now)
             return
         self._row_2 = row_2
         self._open_us = now
         if row_2.endswith(YES):
             self._offer_value(number, row_2[len(MENU) : -len(YES)], True, now)
-        elif "[" in row_2 and "]" in row_2:
-            typed = row_2[len(MENU) :].replace("[", "").replace("]", "")
-            self._offer_value(number, typed, False, now)
+        elif is_typed(row_2):
+            self._offer_value(number, typed_in(row_2), False, now)
         elif row_2 == RESCALES:  # of what was just typed, or in turn with the value
             if self._last is not None and self._last[0] == number:
                 if now - self._offered_us < SEEN_US:
@@ -101,6 +103,14 @@ class Commissioned:
             return drive is None or _reads(text, drive.read(number))
         except KeyError:
             return False
+
+
+def is_typed(row_2):
+    return row_2.startswith(MENU) and "[" in row_2 and "]" in row_2
+
+
+def typed_in(row_2):
+    return row_2[len(MENU) :].replace("[", "").replace("]", "")
 
 
 def step_in(rows):
