@@ -1114,6 +1114,20 @@ def test_a_link_has_one_master_at_a_time():
     other.close()
 
 
+def test_a_closed_bus_leaves_line_and_chip_alone():
+    for paced in (False, True):
+        bench = Bench(paced=paced)
+        bench.bus.wait(0.3)
+        stations = bench.wire.names()
+        bench.bus.close()
+        assert len(bench.wire.names()) == len(stations) - 1, (stations, bench.wire.names())
+        entered = []
+        bench.bus.engine.poll = lambda now, entered=entered: entered.append(now)
+        bench.clock.advance(1_000_000)
+        assert not entered
+        bench.check()
+
+
 def test_mirror_tells_who_is_there():
     bench = Bench((1, 7))
     bench.bus.remove(bench.bus.drives[1])

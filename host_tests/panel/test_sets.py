@@ -341,6 +341,20 @@ def test_another_drive_keeps_bus_and_sources_and_with_another_rating_its_motor()
     assert world.drives[2].read(304) == 400 and world.drives[2].read(1000) == 5
 
 
+def test_another_drive_takes_what_a_setpoint_means_after_a_question():
+    """P2000 asks first, as what cuts the panel off does; but it goes with the setpoints."""
+    world = two()
+    put(world, (2000, 0, b"Float", b"42700000"), *ROWS)
+    begin(world, "A1 MADE", "INTO A2 RAM")
+    wait(world, "SET=WRITE A2")
+    press(world, "SET")
+    wait(world, "SET=DO")
+    assert row_1(world).startswith("1 MAY CUT") and world.drives[2].read(2000) == 50.0
+    press(world, "SET")
+    assert finish(world) == "WRITTEN, EQUAL", world.lcd()
+    assert world.drives[2].read(2000) == 60.0 and world.drives[2].read(1120) == 2.5
+
+
 def test_a_set_of_another_family_is_refused():
     world = two()
     put(world, family=b"mm420")
