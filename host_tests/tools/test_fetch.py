@@ -43,6 +43,8 @@ def run_pytest(tmp_path):
 
     def run(source, *arguments, **environment):
         (tmp_path / "test_it.py").write_text(source)
+        # pytest's usual folder is for all who run it: the one who leaves it may clear away much.
+        arguments += (f"--basetemp={tmp_path.with_suffix('.base')}",)
         if not any("pico" in text for text in (source, *arguments)):
             arguments += ("-p", "without_pico")  # to ask them takes seconds
         ours = ("CI", "USS_STRICT", "USS_COVERAGE")  # of the run that this test is part of
