@@ -35,6 +35,7 @@ def test_what_stopped_a_motor_stands_in_the_list_the_last_first():
     world.run(1500)
     told = events(world)
     assert told[-1] == ("A1", "STOP KEY"), told
+    assert told.count(("A1", "STOP KEY")) == 1, told  # the second one found a motor that stood
     assert ("A1", "FAULT F0001") in told, told
     assert told.index(("A1", "FAULT F0001")) < len(told) - 1, told
     world.check()
