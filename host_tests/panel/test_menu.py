@@ -651,7 +651,9 @@ def test_each_choice_is_one_that_the_family_has():
         press(world, "SET", "SET")
         for what, count in zip(("PKW", "PZD", "LINK"), offered):
             go_to(world, what)
+            as_it_is = row_2(world)
             press(world, "SET")
+            assert row_2(world) == as_it_is, (kind, what, world.lcd())  # where the list begins
             assert len(entries(world)) == count, (kind, what, entries(world))
             press(world, "PARAM")
 
