@@ -526,6 +526,33 @@ def test_an_alarm_closes_it_also_while_a_picture_of_it_is_drawn():
     world.check()
 
 
+def test_who_turns_to_another_address_while_a_drive_is_asked_takes_the_other_one():
+    kinds = simulated(listed_drives("7=mm440,8=mm3"))
+    for ms in (50, 200, 350):
+        world = World(main.start, (1, 7, 8), settings={"drives": [1]}, kinds=kinds)
+        world.run(3000)
+        world.down("ADDRESS_UP")
+        world.run(1400)
+        world.up("ADDRESS_UP")
+        while not row_2(world).startswith(">A7 "):
+            press(world, "ADDRESS_UP")
+        told(world)
+        world.press("SET")
+        world.run(ms)  # A7 is being asked what it is
+        press(world, "ADDRESS_UP")
+        told(world)
+        assert row_2(world) == ">A8  ANSWERS", (ms, world.lcd())
+        press(world, "SET")
+        for _ in range(60):
+            world.run(100)
+            if row_2(world) == "A8 ADDED":
+                break
+        assert row_2(world) == "A8 ADDED", (ms, world.lcd())
+        world.run(2000)
+        assert world.app.settings.kinds["8"] == "mm3" and "7" not in world.app.settings.kinds, ms
+        world.check()
+
+
 def test_an_address_key_that_is_held_leaves_the_list_and_counts_through_all_addresses():
     world = World(main.start, (1, 4, 6), settings={"drives": [1]},
                   kinds={6: {"parameters": {2013: 127, 2014: 2000}}})  # fmt: skip
