@@ -75,8 +75,8 @@ function state({ core, sram }, cycles) {
 }
 
 // Where rp2040js does not do as the manual says: the carry of a shift by a register that holds 0 or
-// more than 32; V of SBCS; BX and BLX of PC and LR, and STMIA of its own address, which no
-// compiler writes.
+// more than 32; V of SBCS; BLX of LR; STMIA of its own address. And BX and BLX of PC, which neither
+// of the two does as in the manual, and no compiler writes.
 function isKnown(half, dealt, difference) {
   if (half >> 11 === STMIA && half & (1 << ((half >> 8) & 7))) return true;
   if ([BX_PC, BLX_PC, BLX_LR].includes(half & 0xfff8)) return true;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The processor's instructions, in AssemblyScript (assemblyscript.org), which becomes WebAssembly:
-// twice as fast as the same in JavaScript. core.mjs is the rest of the processor.
+// which takes two thirds of the time of JavaScript. core.mjs is the rest of the processor.
 //
 // `stretch` executes instructions until its cycles are spent. The clock stands still meanwhile. An
 // access to what is neither RAM nor flash goes to core.mjs, which puts the clock right first. What
