@@ -59,7 +59,7 @@ except TypeError:
 
 # Bytes between two collections. Fewer, and a test with many objects collects most of the time;
 # more, and MicroPython takes ever longer to find the last holes in its heap.
-COLLECT_AFTER = 4_000_000
+COLLECT_AFTER = 8_000_000
 
 # The 32-bit Unix port has 40 KB of stack, and each import within an import takes over 4 KB of it.
 # What lies deep is imported first, so that it does not come below all that a test imports.

@@ -4,7 +4,8 @@
 //
 //     node processor_beside_rp2040js.mjs SEED
 //
-// Prints how many were the same, and each that was not: what it did here and there.
+// Then it divides, and compares that with the data sheet. Prints how many were the same, and each
+// that was not: what it did here and there.
 import { Clock } from '../../tools/emulator/rp2040/clock.mjs';
 import { Core } from '../../tools/emulator/rp2040/core.mjs';
 import { RP2040 } from '../../tools/emulator/rp2040/library.mjs';
@@ -128,4 +129,45 @@ for (let left = PAIRS; left > 0; left--) {
   note([first | (first === FIRST[0] ? draw(0x800) : 0),
     draw(3) ? SECOND[draw(SECOND.length)] | draw(2) : draw(0x10000)]);
 }
+
+// A program writes r1 and r2 to the divider, and reads from it; r0 is its address.
+const DIVIDER = 0xd0000060, DIVISIONS = 20000;
+const UDIVIDEND = 0, UDIVISOR = 1, SDIVIDEND = 2, SDIVISOR = 3;
+const QUOTIENT = 4, REMAINDER = 5, CSR = 6;
+const str = (register, word) => 0x6000 | (word << 6) | register; // STR rd, [r0, #4 * word]
+const ldr = (register, word) => 0x6800 | (word << 6) | register;
+const READ_ALL = [ldr(3, CSR), ldr(4, REMAINDER), ldr(5, QUOTIENT), ldr(6, CSR)];
+const DIRTY_AND_READY = 3, READY = 1;
+
+function divide(dividend, divisor, isSigned) {
+  const [{ core, clock }] = pair;
+  const [one, other] = isSigned ? [SDIVIDEND, SDIVISOR] : [UDIVIDEND, UDIVISOR];
+  const program = [str(1, one), str(2, other), ...READ_ALL, ldr(1, one), ldr(2, other)];
+  deal(pair, program);
+  core.registers.set([DIVIDER, dividend, divisor]);
+  const began = clock.nanosCounter;
+  core.run(began + program.length * CYCLE_NANOS);
+  const cycles = (clock.nanosCounter - began) / CYCLE_NANOS;
+  return [...core.registers.subarray(1, 7), cycles].join(' ');
+}
+
+// RP2040 data sheet, 2.3.1.5.
+function divided(dividend, divisor, isSigned) {
+  const [one, other] = isSigned ? [dividend | 0, divisor | 0] : [dividend, divisor];
+  const quotient = other === 0 ? (one < 0 ? 1 : -1) : Math.trunc(one / other);
+  const remainder = other === 0 ? one : one % other;
+  const words = [dividend, divisor, DIRTY_AND_READY, remainder, quotient, READY];
+  return [...Uint32Array.from(words), 2 + READ_ALL.length + 2].join(' ');
+}
+
+for (let left = DIVISIONS; left > 0; left--) {
+  const dividend = value() >>> 0, divisor = draw(20) ? value() >>> 0 : [0, 0xffffffff][draw(2)];
+  const isSigned = draw(2) === 1;
+  const one = divide(dividend, divisor, isSigned), other = divided(dividend, divisor, isSigned);
+  if (one === other) counts.same++;
+  else if (counts.different++ < SHOWN) {
+    console.log('divided', dividend, divisor, isSigned, 'here', one, 'and there', other);
+  }
+}
+
 console.log(JSON.stringify(counts));

@@ -33,7 +33,7 @@ export const ram = view(Uint8Array, 'RAM', 264 * 1024);
 export const flash = view(Uint8Array, 'FLASH', 2 * 1024 * 1024);
 export const registers = view(Uint32Array, 'REGISTERS', 16);
 export const lines = view(Int32Array, 'LINES', 2048);
-export const state = view(Uint32Array, 'STATE', 6);
+export const state = view(Uint32Array, 'STATE', 11);
 
 // What is where in `state`.
 export const APSR = 0, PRIMASK = 1, LOWEST = 2, CHANGED = 3, RARE = 4, MISS_CYCLES = 5;

@@ -13,7 +13,7 @@ export const ROM = memory.data(16384, 16);
 export const RAM = memory.data(264 * 1024, 16);
 export const FLASH = memory.data(2 * 1024 * 1024, 16);
 export const REGISTERS = memory.data(16 * 4, 16);
-export const STATE = memory.data(6 * 4, 16);
+export const STATE = memory.data(11 * 4, 16);
 export const LINES = memory.data(1024 * 2 * 4, 16); // the cache (cache.mjs)
 
 // The words of STATE, and where they are.
@@ -23,6 +23,11 @@ const LOWEST: usize = STATE + 8; // where SP has been, counted at PUSH
 const CHANGED: usize = STATE + 12; // core.mjs sets it: the stretch is to end
 const RARE: usize = STATE + 16; // the next instruction is one for rp2040js
 const MISS_CYCLES: usize = STATE + 20; // how long the processor waits for a line of the cache
+const DIVIDEND: usize = STATE + 24; // of the divider, see below
+const DIVISOR: usize = STATE + 28;
+const QUOTIENT: usize = STATE + 32;
+const REMAINDER: usize = STATE + 36;
+const DIRTY: usize = STATE + 40;
 
 const KINDS = memory.data(65536); // of each instruction, which case of the switch executes it
 
@@ -152,6 +157,10 @@ let spent = 0; // by the last one, but for the first cycle
 }
 
 function takeFar(address: i32, bytes: i32, left: i32): i32 {
+  if (isNear(address)) {
+    spent = 0;
+    return readNear(address);
+  }
   const value = read(address, bytes, left), digit = address >>> 28;
   spent = (digit == 0xd ? 0 : digit == 4 ? 3 : 1) + (load<i32>(CHANGED) ? ENOUGH : 0);
   return value;
@@ -168,9 +177,65 @@ function takeFar(address: i32, bytes: i32, left: i32): i32 {
 }
 
 function putFar(address: i32, bytes: i32, value: i32, left: i32): void {
+  if (isNear(address)) {
+    spent = 0;
+    return writeNear(address, value);
+  }
   write(address, bytes, value, left);
   const digit = address >>> 28;
   spent = (digit == 0xd ? 0 : digit == 4 ? 4 : 1) + (load<i32>(CHANGED) ? ENOUGH : 0);
+}
+
+// Outside of the memories nothing is accessed as often as the core's number and its divider. That
+// has divided at once (RP2040 data sheet, 2.3.1.1 and 2.3.1.5).
+
+const CPUID: i32 = 0xd0000000, DIVIDER: i32 = 0xd0000060, DIVIDER_MASK = ~0x1f;
+
+@inline function isNear(address: i32): bool {
+  return (address & DIVIDER_MASK) == DIVIDER || address == CPUID;
+}
+
+function readNear(address: i32): i32 {
+  switch (address - DIVIDER) {
+    case 0x00: case 0x08: return load<i32>(DIVIDEND);
+    case 0x04: case 0x0c: return load<i32>(DIVISOR);
+    case 0x10:
+      store<i32>(DIRTY, 0);
+      return load<i32>(QUOTIENT);
+    case 0x14: return load<i32>(REMAINDER);
+    case 0x18: return (load<i32>(DIRTY) << 1) | 1; // and it is ready
+  }
+  return 0; // the number of the first core
+}
+
+function writeNear(address: i32, value: i32): void {
+  switch (address - DIVIDER) {
+    case 0x00: case 0x08: store<i32>(DIVIDEND, value); divide((address & 8) != 0); break;
+    case 0x04: case 0x0c: store<i32>(DIVISOR, value); divide((address & 8) != 0); break;
+    case 0x10: store<i32>(QUOTIENT, value); break;
+    case 0x14: store<i32>(REMAINDER, value); break;
+    default: return;
+  }
+  store<i32>(DIRTY, 1);
+}
+
+function divide(isSigned: bool): void {
+  const dividend = load<i32>(DIVIDEND), divisor = load<i32>(DIVISOR);
+  let quotient = 0, remainder = 0;
+  if (divisor == 0) {
+    quotient = isSigned && dividend < 0 ? 1 : -1;
+    remainder = dividend;
+  } else if (!isSigned) {
+    quotient = <u32>dividend / <u32>divisor;
+    remainder = <u32>dividend % <u32>divisor;
+  } else if (divisor == -1) { // WebAssembly does not divide the least number by it
+    quotient = -dividend;
+  } else {
+    quotient = dividend / divisor;
+    remainder = dividend % divisor;
+  }
+  store<i32>(QUOTIENT, quotient);
+  store<i32>(REMAINDER, remainder);
 }
 
 @inline function hop(op: i32): i32 { return 2 + ((op << 24) >> 23); }
