@@ -1212,4 +1212,19 @@ MUTATIONS = (
             "        due_us",
         ),
     ),
+    Mutation(
+        "goes on to where a drive was",
+        "the telegram that was made ready for a drive goes out after that has moved",
+        ("ADDRESS",), 20,
+        (
+            "uss/drive.py",
+            "        self.address = address\n        self.call_again()  #",
+            "        self.address = address\n        #",
+        ),
+        (
+            "panel/writer.py",
+            "readdress(drive, address)\n        drive.hurry()\n",
+            "readdress(drive, address)\n",
+        ),
+    ),
 )  # fmt: skip

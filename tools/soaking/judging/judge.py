@@ -346,6 +346,8 @@ class Judge:
             case.question_us = now
             self._shares.mirror(case, now)
             return
+        if tape.left[row]:
+            raise Broken("ADDRESS", "%d at %d, which its drive had left" % (address, now))
         pkw_words = tape.count[row] - kind.pzd_words
         pke = tape.word(row, 0) if pkw_words > 0 else 0
         task = pke >> 12

@@ -28,6 +28,7 @@ RULES = {
     "CONTROL": "bit 10 of the control word is never 0, and no unknown control word is sent",
     "TELEGRAM": "every telegram of the panel is well formed, in the layout that is told or found",
     "MIRROR": "mirror telegrams say nothing, and go to silent drives, or where somebody looks",
+    "ADDRESS": "a drive that moved gets no telegram more at the address that it has left",
     "SEARCH": "the panel leaves the line for a search when SET confirmed that, and not otherwise",
     "SETPOINT": "the setpoint sent is within the limits of the drive and of the settings",
     "WRITE": "a parameter is written only when SET confirmed the question about this very value",

@@ -36,6 +36,7 @@ class Tape:
 
     withdrawn_now   by address, whether the program has taken ON back from the drive; of a request,
                   `withdrawn` says whether it had when that began
+    left_now      by address, whether a drive was there and has moved; `left` is of a request, too
     telegrams     ever
     sent_us       when the last request began
     blurred_us    the end of the last telegram that somebody talked into
@@ -55,6 +56,8 @@ class Tape:
         self.count = bytearray(LENGTH)
         self.withdrawn = bytearray(LENGTH)
         self.withdrawn_now = bytearray(NODE_MAX + 1)
+        self.left = bytearray(LENGTH)
+        self.left_now = bytearray(NODE_MAX + 1)
         self._data = bytearray(SIZE * LENGTH)
         self.silence_us = [0] * LENGTH
         self.telegrams = 0
@@ -178,6 +181,7 @@ class Tape:
         self.kind[index] = kind
         self.address[index] = address = data[2] & NODE_MAX
         self.withdrawn[index] = self.withdrawn_now[address]
+        self.left[index] = self.left_now[address]
         self.count[index] = 0
         net_count = count - FRAME
         is_frame = net_count > 0 and not count & 1 and data[0] == STX and data[1] == count - 2
