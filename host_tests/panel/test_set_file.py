@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """The file of a parameter set, and what ten of them take."""
 
+import io
+
 import catalogue
 from boards.sim.chip.flash import BLOCK_BYTES, CAPACITY_BYTES, Flash
 from hal.store import FileStore
@@ -56,6 +58,40 @@ def test_what_was_written_is_read():
     head = set_file.read_head(store_with(one=data), "one.set")
     assert (head.family, head.address, head.name) == ("mm440", 1, b"MADE")
     assert head.ratings == {206: (0x3F40, 0)}
+
+
+class Store:
+    """Counts the files that are open."""
+
+    def __init__(self, data):
+        self.data = data
+        self.opened = 0
+
+    def open(self, name):
+        self.opened += 1
+        return File(self)
+
+
+class File:
+    def __init__(self, store):
+        self.store = store
+        self.read = io.BytesIO(store.data).read
+
+    def close(self):
+        self.store.opened -= 1
+
+
+def test_no_file_stays_open_whatever_is_in_it():
+    good = made([(3, 0, b"U16", b"0003")])
+    for data in (good, good[:40], good.replace(b"0003", b"0004"), b""):
+        store = Store(data)
+        try:
+            set_file.read_head(store, "one.set")
+            assert store.opened == 0
+            list(set_file.rows(store, "one.set"))
+        except ValueError:
+            pass
+        assert store.opened == 0, data
 
 
 def test_what_the_manual_prints_is_a_set():

@@ -305,8 +305,7 @@ class Drive:
                 "no task of %s writes the EEPROM: write parameter %d afterwards"
                 % (self.family.name, self.family.save[0])
             )
-        asked_first = number in self.family.ask_first
-        if asked_first and not sure:
+        if number in self.family.ask_first and not sure:
             raise ValueError(
                 "%s may take drive %d away from this bus, or change what a speed means; "
                 "sure=True writes it all the same" % (pkw.name(number, index), self.engine.address)
@@ -325,8 +324,6 @@ class Drive:
             job = pkw.write_double(number, int(value), index, eeprom)
         else:
             job = pkw.write_word(number, int(value), index, eeprom)
-        if asked_first:
-            self.survey.forget()
         return self._value(self.do(self.addressed(job)), kind)
 
     def do(self, job):
