@@ -96,6 +96,15 @@ def test_how_long_ago_it_was():
     ]  # fmt: skip
 
 
+def test_an_hour_is_an_hour():
+    journal = Journal(0xFFFF)
+    journal.tick(0)
+    journal.note(b"FAULT")
+    for second in range(1, 3_601):
+        journal.tick(second * 1_000 & 0xFFFF)
+    assert journal.event(0)[3] == 3_600
+
+
 def test_the_journal_keeps_the_last_events_and_counts_on_when_the_clock_wraps():
     journal = Journal(0xFFFF)
     now_ms = 0xFF00

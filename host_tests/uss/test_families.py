@@ -343,3 +343,14 @@ def test_a_drive_of_ones_own_is_one_more_class():
 
     assert Pump.layout.pzd_words == 4 and Pump.on_reverse == 0x0C7F
     assert MM440.layout.pzd_words == 2
+
+
+def test_a_generic_drive_may_have_every_layout_that_there_is():
+    for pkw_words in (0, 3, 4, VARIABLE):
+        for pzd_words in range(17):
+            try:
+                layout = Layout(pkw_words, pzd_words)
+            except ValueError:
+                continue
+            assert layout.suits(GENERIC), layout
+    assert Layout(3, 0).suits(GENERIC) and not Layout(3, 0).suits(MM3)
