@@ -386,6 +386,19 @@ def test_keys_stay_down_over_a_reset_of_the_chip():
         assert world.drives[1].hz() == 0, "a START that was down at power-on"
 
 
+def test_keys_are_unclear_only_in_the_reading_that_could_not_tell():
+    world = panel(keys="matrix")
+    keypad = world.app.board.keypad
+    for key in ("JOG_RIGHT", "DOWN", "PARAM"):
+        world.down(key)
+    assert keypad.read() == 0 and keypad.unclear
+    for key in ("JOG_RIGHT", "DOWN", "PARAM"):
+        world.up(key)
+    world.run(100)  # they have bounced
+    assert keypad.read() == 0 and not keypad.unclear
+    world.check()
+
+
 def test_keys_are_wired_one_way_or_the_other():
     assert "direct" in refused(World, main.start, keys="diagonal")
 

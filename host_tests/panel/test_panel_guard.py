@@ -344,3 +344,18 @@ def test_what_was_accepted_is_taken_back_by_key():
     world.run(1500)
     assert row_2(world) == "SET=FIX START=GO", world.lcd()
     assert starts(world) == 0
+
+
+def test_when_the_last_of_a_list_is_taken_back_the_one_before_is_shown():
+    accepted = {"unsupervised": [1, 2, 3]}
+    world = World(main.start, (1, 2, 3), parameters={2014: 0}, settings=accepted)
+    world.run(1500)
+    wait_until_known(world)
+    open_settings(world)
+    while row_2(world) != ">P2014=0 OK":
+        press(world, "DOWN")
+    press(world, "SET", "UP")
+    assert row_1(world).endswith("3/3") and row_2(world) == ">A3  SET=ASK", world.lcd()
+    press(world, "SET")
+    world.run(3500)
+    assert row_1(world).endswith("2/2") and row_2(world) == ">A2  SET=ASK", world.lcd()

@@ -4,9 +4,8 @@
 Each row of tools/soaking/mutations.py is soaked with the seed that is known to find it, then with
 others whose operator is given to the same: a change of firmware or simulation may have made
 another life of that one. The same lives, as long as that took, break no rule without the bugs. A
-seed is the same life on every interpreter (test_soak_interpreters.py). The lives with bugs are
-short, and lived on CPython; those without are many in one process, for which PyPy is the fastest.
-Where a change takes the text of a row away this fails: give the row its new text.
+seed is the same life on every interpreter (test_soak_interpreters.py); these are lived on CPython,
+for its speed. Where a change takes the text of a row away this fails: give the row its new text.
 Better seeds are looked for by
 
     PYTHONPATH=. build/pytest/bin/python host_tests/tools/test_soak_mutations.py NAME
@@ -33,7 +32,7 @@ INTERPRETERS = "host"
 MINUTES = 2
 SEEDS = 200  # that are looked through for better ones
 OTHERS = 24  # that a test tries
-PARTS = 2  # of the lives in the firmware as it is: without PyPy they take a minute each
+PARTS = 2  # of the lives in the firmware as it is: a test may take two minutes
 ANY_DRIVES, ONE_TROUBLE = 0, 1
 
 
@@ -64,11 +63,6 @@ def soaked(folder, lives, roams, name):
     finally:
         done.kill()
         done.communicate()
-
-
-def fast_for_many():
-    """The interpreter for a process with many lives."""
-    return interpreters.PYPY if interpreters.is_here(interpreters.PYPY) else interpreters.CPYTHON
 
 
 def mutated(mutation, folder):
@@ -125,7 +119,7 @@ def lives_of(mutations, hunts):
 @pytest.mark.parametrize("roams", [True, False])
 def test_the_same_lives_find_nothing_in_the_firmware_as_it_is(roams, part, hunts):
     lives = lives_of((one for one in MUTATIONS if one.roams == roams), hunts)[part::PARTS]
-    said = soaked(TOP, lives, roams, fast_for_many())
+    said = soaked(TOP, lives, roams, interpreters.CPYTHON)
     stories = [one["story"] for one in said if one["rule"]]
     assert lives and not stories, "\n".join(map("\n".join, stories))
 
@@ -153,10 +147,11 @@ def find_seeds(names):
 
 
 def find_seed(mutation):
+    fast = interpreters.PYPY if interpreters.is_here(interpreters.PYPY) else interpreters.CPYTHON
     with tempfile.TemporaryDirectory() as folder:
         planted = mutated(mutation, Path(folder))
         lives = [(seed, MINUTES) for seed in mutation.seeds(SEEDS)]
-        for said in soaked(planted, lives, mutation.roams, fast_for_many()):
+        for said in soaked(planted, lives, mutation.roams, fast):
             if said["rule"]:
                 print(mutation.name, said["seed"], said["rule"], said["seconds"], flush=True)
             if said["rule"] in mutation.rules:
