@@ -57,14 +57,14 @@ class Lines:
 
     def lets_the_pipe_fill(self):
         """Reads nothing until no more goes in. A panel that has no processor for a second puts
-        nothing in either, but then there is room.
+        nothing in either, but then more than half of it is free.
         """
         deadline = time.monotonic() + PATIENCE_S
         before, waiting = -1, array("i", [0])
         room = PIPE_BYTES
         if hasattr(fcntl, "F_GETPIPE_SZ"):
             room = fcntl.fcntl(self.process.stdout, fcntl.F_GETPIPE_SZ)
-        while waiting[0] != before or waiting[0] < room * 3 // 4:
+        while waiting[0] != before or waiting[0] < room // 2:
             assert time.monotonic() < deadline, waiting
             before = waiting[0]
             for _ in range(10):
