@@ -330,14 +330,22 @@ def test_the_key_test_names_each_key_and_stop_acts():
 # --- what was accepted ---------------------------------------------------------------------------
 
 
-def test_what_was_accepted_is_taken_back_by_key():
-    world = World(main.start, (1, 2), parameters={2014: 0}, settings={"unsupervised": [1, 2]})
+def accepted(*addresses):
+    """A panel that shows the drives which were accepted with P2014 = 0: all that it has."""
+    settings = {"unsupervised": list(addresses)}
+    world = World(main.start, addresses, parameters={2014: 0}, settings=settings)
     world.run(1500)
     wait_until_known(world)
     open_settings(world)
     while row_2(world) != ">P2014=0 OK":
         press(world, "DOWN")
-    press(world, "SET", "SET")
+    press(world, "SET")
+    return world
+
+
+def test_what_was_accepted_is_taken_back_by_key():
+    world = accepted(1, 2)
+    press(world, "SET")
     world.run(3500)
     assert row_2(world) == ">A2  SET=ASK" and kept(world)["unsupervised"] == [2], world.lcd()
     press(world, "PARAM", "PARAM", "PARAM", "START")
@@ -347,14 +355,8 @@ def test_what_was_accepted_is_taken_back_by_key():
 
 
 def test_when_the_last_of_a_list_is_taken_back_the_one_before_is_shown():
-    accepted = {"unsupervised": [1, 2, 3]}
-    world = World(main.start, (1, 2, 3), parameters={2014: 0}, settings=accepted)
-    world.run(1500)
-    wait_until_known(world)
-    open_settings(world)
-    while row_2(world) != ">P2014=0 OK":
-        press(world, "DOWN")
-    press(world, "SET", "UP")
+    world = accepted(1, 2, 3)
+    press(world, "UP")
     assert row_1(world).endswith("3/3") and row_2(world) == ">A3  SET=ASK", world.lcd()
     press(world, "SET")
     world.run(3500)

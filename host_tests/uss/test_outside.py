@@ -211,14 +211,5 @@ def test_what_would_start_a_motor_or_is_no_telegram_is_refused():
     refused(Broadcast, (pzd.OFF1,) * 17, {2: 0xFFFF})
     refused(Mirror, 32)
     refused(Special, 40, b"\x00")
+    refused(Special, -1, b"\x00")
     refused(Mirror, 1, bytes(253))
-
-
-def test_there_is_no_node_but_0_to_31():
-    for node in (-1, 32):
-        for make in (lambda node: Mirror(node, NET), lambda node: Special(node, b"\x01")):
-            try:
-                make(node)
-                raise AssertionError(node)
-            except ValueError as error:
-                assert "is not 0...31" in str(error), error
