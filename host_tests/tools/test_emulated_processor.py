@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The emulated Pico's processor (tools/emulator/rp2040/processor.ts), instruction by instruction
-beside rp2040js, which knows nothing of it; and its divider."""
+beside rp2040js, which knows nothing of it; its divider; and the waiting for the flash that it
+leaves out."""
 
 import json
 import subprocess
@@ -15,15 +16,32 @@ INTERPRETERS = "host"
 NODE = TOP / "build/node/node"
 WASM = TOP / "build/processor/processor.wasm"
 SCRIPT = TOP / "host_tests/benches/processor_beside_rp2040js.mjs"
+WAITS = TOP / "host_tests/benches/waits_for_flash.mjs"
+PANEL = TOP / "build/pico/panel.uf2"
 SEED = 2040
 
 
-def test_every_instruction_does_what_it_does_in_rp2040js_in_as_many_cycles_and_it_divides():
-    if not WASM.exists() and not strict():
+def needs(path):
+    if not path.exists() and not strict():
         pytest.skip("the emulated Pico is not here: tools/panel --board pico fetches it")
+
+
+def test_every_instruction_does_what_it_does_in_rp2040js_in_as_many_cycles_and_it_divides():
+    needs(WASM)
     run = subprocess.run([NODE, SCRIPT, str(SEED)], capture_output=True, text=True)
     print(f"seed {SEED}", run.stdout, run.stderr, sep="\n")
     assert run.returncode == 0
     counts = json.loads(run.stdout.splitlines()[-1])
     assert counts["different"] == 0
     assert counts["same"] > 120_000  # and not all of them accesses to somewhere else
+
+
+def test_what_it_leaves_out_of_the_waiting_for_the_flash_changes_nothing():
+    needs(PANEL)
+    ran = [
+        subprocess.run([NODE, WAITS, *how], capture_output=True, text=True, check=True).stdout
+        for how in ([], ["patiently"])
+    ]
+    shortly, patiently = map(json.loads, ran)
+    assert shortly["was"] == patiently["was"]
+    assert 100 < shortly["polls"] < patiently["polls"] / 10

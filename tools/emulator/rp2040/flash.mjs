@@ -26,9 +26,11 @@ const BUSY = 1, WRITE_ENABLED = 2, QUAD_ENABLED = 2;
 
 export class Flash {
   // report(code, nanos): an operation begins that takes so long. times: "typical" or "maximum".
-  constructor(report, seed, times) {
+  // onPoll(): somebody has asked whether it is over, and it is not.
+  constructor(report, seed, times, onPoll) {
     this.bytes = flash.fill(0xff);
     this.report = report;
+    this.onPoll = onPoll;
     this.seed = seed;
     this.times = times;
     this.busyUntil = 0;
@@ -59,6 +61,7 @@ export class Flash {
     if (code === WRITE_ENABLE) this.writeEnabled = true;
     else if (code === WRITE_DISABLE || code === WRITE_STATUS) this.writeEnabled = false;
     else if (code in OPERATIONS && this.writeEnabled && !this.busy) this.begin(code);
+    else if (code === READ_STATUS && this.busy) this.onPoll();
   }
 
   begin(code) {
