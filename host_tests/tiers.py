@@ -32,9 +32,23 @@ from runner import MARK
 TOP = Path(__file__).resolve().parent.parent
 RUNNER = "host_tests/runner.py"
 SURVEY_TIMEOUT_S = 20
-# A copy: pytest changes the environment in one thread while processes start in others, and a new
-# process that is handed the living environment at that instant is not started (EFAULT).
-ENVIRONMENT = dict(os.environ)
+
+
+def _environment():
+    """A copy: pytest changes the environment in one thread while processes start in others, and a
+    new process that is handed the living environment at that instant is not started (EFAULT).
+
+    In it `python3` is the program that runs this. Of pyenv and its like it would be a script that
+    takes 90 ms to find that, and the commands under test start it a thousand times.
+    """
+    copy = dict(os.environ)
+    python = os.path.realpath(sys.executable)
+    if os.path.realpath(shutil.which("python3") or python) != python:
+        copy["PATH"] = os.pathsep.join((os.path.dirname(python), copy["PATH"]))
+    return copy
+
+
+ENVIRONMENT = _environment()
 COVERAGE = "USS_COVERAGE"  # there: the lines that run are noted
 OUTPUT_LIMIT = 10_000_000  # characters that one function may print
 # Virtual time waits: tests that run in the time of this machine have the larger share of it.
