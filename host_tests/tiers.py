@@ -44,7 +44,7 @@ def _environment():
     copy = dict(os.environ)
     python = os.path.realpath(sys.executable)
     if os.path.realpath(shutil.which("python3") or python) != python:
-        copy["PATH"] = os.pathsep.join((os.path.dirname(python), copy["PATH"]))
+        copy["PATH"] = os.pathsep.join((os.path.dirname(python), copy.get("PATH", os.defpath)))
     return copy
 
 
@@ -103,11 +103,21 @@ TIERS = {
 }
 
 
-# What the test files of a folder run on that do not say it themselves; of tiers with this between
-# them, the first one that is here. The panel is a program for MicroPython, and takes its time: it
-# runs with the chip's small integers, and where a PC has no such MicroPython, on the one it has.
+# What the test files of a folder run on that do not say it themselves, where that is not every
+# tier; of tiers with OR between them, the first one that is here. What only a chip runs is tried
+# with the chip's small integers, and where a PC has no such MicroPython, with the one it has. What
+# only a PC runs is tried on what PCs have; that the simulation works with small integers as well
+# is seen in each test of the panel.
 OR = "|"
-OF_FOLDER = {"panel": ("unix32|unix64",)}
+ON_CHIP, ON_PC = "unix32|unix64", "unix64|unix32"
+OF_FOLDER = {
+    "panel": (ON_CHIP,),
+    "search": (ON_CHIP, "cpython"),
+    "sim": (ON_PC, "cpython"),
+    "drives": (ON_PC, "cpython"),
+    "tools": (ON_PC, "cpython"),
+    "house": (ON_PC, "cpython"),
+}
 
 
 def interpreters(tree, path):

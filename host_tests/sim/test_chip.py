@@ -5,6 +5,8 @@ from boards.sim.chip.machine import UART, WDT, Chip, Pin, Timer, heap_lock, heap
 from boards.sim.clock import Clock, Event
 from boards.sim.line.wire import GARBLE, Transceiver, Wire
 
+INTERPRETERS = "unix64 unix32 cpython"  # what takes no heap depends on the size of integers
+
 TELEGRAM = bytes(range(0x20, 0x30))  # 16 characters
 TELEGRAM_US = 9166  # at 19200 baud
 RXIDLE_US = 1667  # 32 bits at 19200 baud

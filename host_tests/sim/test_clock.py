@@ -6,6 +6,8 @@ import random
 from boards.sim.chip.machine import heap_lock, heap_unlock
 from boards.sim.clock import Clock, Event
 
+INTERPRETERS = "unix64 unix32 cpython"  # what takes no heap depends on the size of integers
+
 
 class Recorder:
     """Notes the instants at which its event happens."""

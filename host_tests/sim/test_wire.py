@@ -5,6 +5,8 @@ from boards.sim.chip.machine import heap_lock, heap_unlock
 from boards.sim.clock import Clock, Event
 from boards.sim.line.wire import GARBLE, LOG_CHARACTERS, LOG_TELEGRAMS, VIOLATION_LIMIT, Wire
 
+INTERPRETERS = "unix64 unix32 cpython"  # what takes no heap depends on the size of integers
+
 TELEGRAM = bytes(range(0x10, 0x20))  # 16 characters
 BAUD_RATES = (1200, 2400, 4800, 9600, 19200, 38400, 57600, 76800, 93750, 115200, 187500)
 
