@@ -8,6 +8,7 @@ from test_interrupted import interrupted
 from test_relayout import LAYOUTS, LOST, OLD, bench_of, check_wire, is_whole, relayout
 from test_thrown import Throwing, Thrown
 
+from interruption_bench import again
 from round_bench import RUNNING
 from uss import pkw, pzd
 from uss.layout import Layout
@@ -111,10 +112,11 @@ def test_a_drive_that_answers_at_the_last_moment_keeps_its_layout():
 
 def test_no_ctrl_c_has_a_telegram_go_out_that_is_half_old():
     """Where it comes in the middle, nobody asks the drive any more; the others go on."""
+    prepare = again(prepared(Layout(3, 2), 1_000, True))
     left_out = count = 0
     while True:
         count += 1
-        bench = prepared(Layout(3, 2), 1_000, True)()
+        bench = prepare()
         drive = bench.drives[LOST]
         job = pkw.read(700)
         drive.ask(job)
@@ -141,12 +143,18 @@ def test_no_ctrl_c_has_a_telegram_go_out_that_is_half_old():
 
 def test_an_exception_in_the_engine_meanwhile():
     """Whatever line of it throws in the exchange that is no longer the drive's own."""
-    count = 1
-    while True:
+
+    def prepare():
         bench = bench_of(Layout(3, 2))
         bench.run_until(lambda: bench.sent[-1].address == LOST)
         bench.run(5_000)
         relayout(bench, Layout(3, 2))
+        return bench
+
+    prepare = again(prepare)
+    count = 1
+    while True:
+        bench = prepare()
         try:
             with Throwing(count):
                 bench.run(40_000)

@@ -8,7 +8,7 @@ line throws, one after the other, and the engine recovers as `hal.pacer` has it.
 
 import sys
 
-from interruption_bench import ROOM, interrupted
+from interruption_bench import ROOM, again, interrupted
 from round_bench import Bench, Node
 from uss import pzd
 from uss.outside import DONE, PENDING, Mirror
@@ -47,6 +47,7 @@ class Throwing:
 def thrown(prepare, us):
     """Each line that the protocol comes to in the `us` after `prepare` throws: yields the bench
     when it has recovered."""
+    prepare = again(prepare)
     count = 1
     while True:
         bench = prepare()
@@ -104,22 +105,21 @@ def test_all_that_run_are_stopped_and_need_a_new_start():
 
 def test_a_telegram_outside_the_list_comes_to_an_end():
     """But for one that was out of the queue already, and was not begun."""
-    probes = []
 
     def prepare():
         bench = running()
-        probes[:] = [Mirror(3)]
-        bench.master.turns.post(probes[0])
+        bench.probe = Mirror(3)
+        bench.master.turns.post(bench.probe)
         return bench
 
     for bench in thrown(prepare, 60_000):
         bench.run(500_000)
-        if probes[0].state == PENDING:
+        if bench.probe.state == PENDING:
             assert 0x43 not in bench.addresses()
             continue
-        bench.master.turns.post(probes[0])
+        bench.master.turns.post(bench.probe)
         bench.run(300_000)
-        assert probes[0].state == DONE
+        assert bench.probe.state == DONE
 
 
 # --- refresh, between any two lines of which the engine comes in ---------------------------------
