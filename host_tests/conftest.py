@@ -34,10 +34,12 @@ from typing import NamedTuple
 
 import pytest
 
+from compiled import use_compiled
 from line_coverage import LineCoverage
 from ordinary import OrdinaryRun, Teller
+from runner import COVERAGE
 from selection import Selection, files_of
-from tiers import COVERAGE, ENVIRONMENT, OR, TIERS, TOP, FileRun, Survey, interpreters, survey
+from tiers import ENVIRONMENT, OR, TIERS, TOP, FileRun, Survey, interpreters, survey
 
 LINES_ONCE = Path(__file__).parent / "cpython" / "lines_once.json"  # choose_lines.py writes it
 SURVEY = pytest.StashKey()
@@ -64,6 +66,7 @@ def pytest_configure(config):
         ENVIRONMENT[COVERAGE] = "1"  # of the processes that run the tests
     config.stash[SELECTION] = selection(config)
     config.stash[SURVEY] = Survey({}, {}) if only else survey(tiers_that_may_run(config))
+    use_compiled(config.stash[SURVEY].versions)
     config.stash[POOL] = Pool(config)
 
 

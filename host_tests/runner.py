@@ -12,6 +12,7 @@ Before anything else it proves that the interpreter is what the tier promises.
 
 import gc
 import io
+import os
 import sys
 
 # A report is a line that begins with this character (ASCII "record separator"), so that it cannot
@@ -65,8 +66,12 @@ COLLECT_AFTER = 8_000_000
 # What lies deep is imported first, so that it does not come below all that a test imports.
 DEEP = ("uss.master", "main")
 
-# Relative to the top of the tree, which is the working directory.
+# Relative to the top of the tree, which is the working directory. compiled.py makes the other one.
 IMPORT_FOLDERS = ("", "firmware", "host_tests/benches")
+COMPILED_FOLDER = "build/compiled"
+
+# In the environment: the tree whose modules are compiled there; that lines are to be noted.
+COMPILED, COVERAGE = "USS_COMPILED", "USS_COVERAGE"
 
 
 def main(tier, path=None, *names):
@@ -81,7 +86,7 @@ def main(tier, path=None, *names):
     if path is None:
         print(version)
         return
-    notes = tier == "cpython" and lines_are_noted()
+    notes = tier == "cpython" and os.getenv(COVERAGE)
     if notes:
         import line_notes
 
@@ -100,12 +105,6 @@ def main(tier, path=None, *names):
     if notes:
         for path, numbers in line_notes.seen():
             report("lines", path, *map(str, sorted(numbers)))
-
-
-def lines_are_noted():
-    import os
-
-    return os.getenv("USS_COVERAGE")
 
 
 def report(*words):
@@ -134,7 +133,10 @@ def test_functions(module):
 
 def search_path():
     if sys.implementation.name == "micropython":
-        return list(IMPORT_FOLDERS) + [".frozen"]
+        folders = list(IMPORT_FOLDERS) + [".frozen"]
+        if os.getenv(COMPILED) == os.getcwd():  # that of another tree is not this program
+            folders[:0] = [COMPILED_FOLDER + "/" + folder for folder in IMPORT_FOLDERS]
+        return folders
     return list(IMPORT_FOLDERS) + ["host_tests/cpython"] + sys.path
 
 

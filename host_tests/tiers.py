@@ -49,7 +49,6 @@ def _environment():
 
 
 ENVIRONMENT = _environment()
-COVERAGE = "USS_COVERAGE"  # there: the lines that run are noted
 OUTPUT_LIMIT = 10_000_000  # characters that one function may print
 # Virtual time waits: tests that run in the time of this machine have the larger share of it.
 STANDS_BACK = ("nice", "-n", "3") if shutil.which("nice") else ()
@@ -70,7 +69,7 @@ class Tier(NamedTuple):
 CPYTHON_OPTIONS = ("-I", "-u", "-B", "-X", "utf8", "-X", "no_debug_ranges")
 
 
-def _micropython(name: str, heap: str = "32M") -> tuple[str, ...]:
+def _micropython(name: str, heap: str = "16M") -> tuple[str, ...]:
     return (f"{TOP}/build/{name}/micropython", "-X", f"heapsize={heap}")
 
 

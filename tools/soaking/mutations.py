@@ -82,7 +82,7 @@ MUTATIONS = (
     Mutation(
         "jog bit kept",
         "a jog goes on when its key is let go",
-        ("JOG",), 4,
+        ("JOG",), 17,
         (
             "panel/keys/jog_keys.py",
             "if down != self._key or control is not",
@@ -113,7 +113,7 @@ MUTATIONS = (
     Mutation(
         "ON kept over a loss",
         "a drive that comes back into contact starts by itself",
-        ("START", "LOST"), 1,
+        ("START", "LOST"), 5,
         (
             "uss/drive.py",
             "            self.was_running = self._may_run or not self.tells_status\n"
@@ -129,7 +129,7 @@ MUTATIONS = (
     Mutation(
         "ON while lost",
         "ON is sent to a drive that does not answer",
-        ("LOST", "MAY RUN"), 5,
+        ("LOST", "MAY RUN"), 4,
         (
             "uss/master.py",
             "drive.miss(finding, now, self.turns.lost_us, self._mask)\n        if",
@@ -139,7 +139,7 @@ MUTATIONS = (
     Mutation(
         "stale PKW accepted",
         "an old answer is taken for that of another parameter",
-        ("SETPOINT", "SHOWN", "RECOVERS"), 1,
+        ("SETPOINT", "SHOWN", "RECOVERS"), 16,
         (
             "uss/pkw.py",
             "reply = reply_about(net, at, self.words)",
@@ -175,7 +175,7 @@ MUTATIONS = (
     Mutation(
         "STOP waits its turn",
         "STOP does not go before the list",
-        ("STOP",), 2,
+        ("STOP",), 4,
         (
             "uss/drive.py",
             "        self.stops = (self.stops + 1) & _TICKET_MASK\n        self.hurry()\n",
@@ -185,7 +185,7 @@ MUTATIONS = (
     AtHome(
         "STOP beaten by START",
         "START is obeyed while STOP is down",
-        ("STOP", "START"), 1,
+        ("STOP", "START"), 7,
         (
             "panel/panel.py",
             "if self.stop_key.is_down and acts.pressed & self._motion_bits:",
@@ -238,7 +238,7 @@ MUTATIONS = (
     Mutation(
         "setpoint limit dropped",
         "the limits of the drive are not kept",
-        ("SETPOINT",), 56,
+        ("SETPOINT",), 5,
         (
             "panel/setpoint.py",
             "            highest = min(highest, survey.highest())\n",
@@ -248,7 +248,7 @@ MUTATIONS = (
     Mutation(
         "bit 10 dropped",
         "the drive ignores the telegram and goes on as before",
-        ("CONTROL",), 2,
+        ("CONTROL",), 3,
         ("uss/pzd.py", "OFF3 = const(0x047A)", "OFF3 = const(0x007A)"),
     ),
     Mutation(
@@ -303,7 +303,7 @@ MUTATIONS = (
     Mutation(
         "lost drive forgotten",
         "a drive that ran and is lost is just NO CONTACT",
-        ("MAY RUN",), 35,
+        ("MAY RUN",), 5,
         (
             "panel/control.py",
             "is_lost_running = drive.was_running and not drive.contact",
@@ -319,7 +319,7 @@ MUTATIONS = (
     Mutation(
         "faults acknowledged by themselves",
         "a tripped drive is reset though nobody has seen it",
-        ("ACKNOWLEDGE",), 5,
+        ("ACKNOWLEDGE",), 11,
         (
             "panel/reports/fault.py",
             "            self._shown_ms += passed_ms\n",
@@ -337,13 +337,13 @@ MUTATIONS = (
     Mutation(
         "listens to nobody",
         "the panel talks into another master's telegrams after power-on",
-        ("LISTEN",), 3,
+        ("LISTEN",), 19,
         ("uss/master.py", "LISTEN_US = const(100_000)", "LISTEN_US = const(10_000)"),
     ),
     Mutation(
         "start interval halved",
         "the drives miss telegrams that come too soon",
-        ("LINE",), 5,
+        ("LINE",), 1,
         ("uss/timing.py", "START_INTERVAL_CHARACTERS = 2", "START_INTERVAL_CHARACTERS = 1"),
     ),
     AtHome(
@@ -379,7 +379,7 @@ MUTATIONS = (
     Mutation(
         "STOP stops all",
         "STOP stops drives that are not shown",
-        ("WITHOUT REASON",), 20,
+        ("WITHOUT REASON",), 15,
         (
             "panel/keys/stop_key.py",
             "            control.stop()\n",
@@ -391,7 +391,7 @@ MUTATIONS = (
     Mutation(
         "all stopped too soon",
         "STOP held for the second stop stops every drive",
-        ("WITHOUT REASON",), 4,
+        ("WITHOUT REASON",), 9,
         ("panel/keys/stop_key.py", "_ALL_MS = const(4_000)", "_ALL_MS = const(1_500)"),
     ),
     Mutation(
@@ -518,7 +518,7 @@ MUTATIONS = (
     Mutation(
         "trips unseen",
         "a drive that is not shown trips, and nobody is told",
-        ("ANNOUNCED",), 5,
+        ("ANNOUNCED",), 7,
         (
             "panel/announcer.py",
             "        if control.fault.active:\n            return TRIPPED\n",
@@ -548,7 +548,7 @@ MUTATIONS = (
     Mutation(
         "a task for ever",
         "a task that a drive answers with silence is sent until the drive is lost",
-        ("TASK",), 1,
+        ("TASK",), 8,
         (
             "uss/channel.py",
             "            if pressing or silences >= _SILENCES_MAX:\n",
@@ -564,7 +564,7 @@ MUTATIONS = (
     Typing(
         "digits take effect without SET",
         "a motor goes faster while somebody still types what it shall turn with",
-        ("RISES",), 26,
+        ("RISES",), 57,
         (
             "panel/pages/digits.py",
             "        self._centihertz += ((digit + direction) % 10 - digit) * worth\n",
@@ -688,7 +688,7 @@ MUTATIONS = (
     Mutation(
         "untold is supervised",
         "a drive without a parameter channel is started, and nobody is asked",
-        ("UNSUPERVISED",), 3,
+        ("UNSUPERVISED",), 21,
         (
             "panel/risks.py",
             "    if 0 < off_time_ms <= control.desk.longest_off_time_ms:\n",
@@ -726,7 +726,7 @@ MUTATIONS = (
     Mutation(
         "looked for though it answers",
         "a drive that answers is sent telegrams in other layouts",
-        ("MIRROR",), 3,
+        ("MIRROR",), 6,
         (
             "uss/finding/finder.py",
             "            if not drive.doubted or drive.may_run():\n                return False\n",
@@ -752,7 +752,7 @@ MUTATIONS = (
     Mutation(
         "mirrors have no share",
         "looking for layouts takes the line from the drives that run",
-        ("NEGLECTED",), 4,
+        ("NEGLECTED",), 14,
         (
             "uss/finding/finder.py",
             "        if self._turns.has_command() or silence.shared_us != silence.charged_us:\n"
@@ -831,7 +831,7 @@ MUTATIONS = (
     Mutation(
         "looked for before it is stopped",
         "a drive that may run is sent mirror telegrams in place of its STOP",
-        ("MIRROR",), 1,
+        ("MIRROR",), 25,
         (
             "uss/finding/finder.py",
             "(drive.silent < STOPPED_MIN or drive.is_told_in_vain())",
@@ -934,7 +934,7 @@ MUTATIONS = (
     Diagnosing(
         "a mirror test that commands",
         "a drive that takes it for one of its own telegrams obeys what it says",
-        ("MIRROR",), 61,
+        ("MIRROR",), 186,
         ("panel/menu/diagnosis/mirror.py", "] &= 0xFB", "] |= 0x04"),
     ),
     Diagnosing(
@@ -950,7 +950,7 @@ MUTATIONS = (
     Commissioning(
         "a step unasked",
         "SET writes a step of commissioning at once, and nobody has seen what",
-        ("WRITE",), 24,
+        ("WRITE",), 228,
         (
             "panel/commission/course.py",
             "            self._phase = ASKS\n        elif self._phase == TYPES:\n",
@@ -1051,7 +1051,7 @@ MUTATIONS = (
     Locking(
         "STOP dead while locked",
         "the lock is closed, and nobody can stop a motor",
-        ("STOP", "STOP ALL", "SECOND STOP"), 32,
+        ("STOP", "STOP ALL", "SECOND STOP"), 39,
         (
             "panel/panel.py",
             "        if down & self._stop_bit:\n",
@@ -1131,7 +1131,7 @@ MUTATIONS = (
     Arranging(
         "turns of another drive",
         "SET gives other turns to a drive than to that which the display names",
-        ("LIST",), 74,
+        ("LIST",), 216,
         (
             "panel/menu/turns.py",
             "        address = panel.controls[position].drive.address\n"
@@ -1149,7 +1149,7 @@ MUTATIONS = (
     Resetting(
         "reset unasked",
         "one SET gives a drive its factory settings",
-        ("WRITE",), 26,
+        ("WRITE",), 34,
         (
             "panel/commission/course.py",
             "            self._phase = ASKS\n        elif self._phase == TYPES:\n",
@@ -1162,7 +1162,7 @@ MUTATIONS = (
     Resetting(
         "identified unasked",
         "one SET makes the next ON one that gives the motor current",
-        ("WRITE",), 34,
+        ("WRITE",), 130,
         (
             "panel/commission/course.py",
             "            self._phase = ASKS\n        elif self._phase == TYPES:\n",
@@ -1175,7 +1175,7 @@ MUTATIONS = (
     Mutation(
         "goes on though somebody calls",
         "the telegram that was made ready goes out though the program has taken ON back",
-        ("STOP", "TURNS", "START"), 16,
+        ("STOP", "TURNS", "START"), 38,
         ("uss/going_on/viper.py", "    return attention[96] == 0  # ANY\n", "    return True\n"),
         ("uss/going_on/python.py", "    return attention[ANY] == 0\n", "    return True\n"),
     ),
