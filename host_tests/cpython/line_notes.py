@@ -11,33 +11,34 @@ is. In use:
 
 import ast
 import builtins
+import marshal
+import os
 import sys
 from functools import cache
+from hashlib import sha256
 from importlib.machinery import SOURCE_SUFFIXES, FileFinder, SourceFileLoader
-from os.path import abspath, join, relpath
+from itertools import compress
+from os.path import abspath, dirname, join, relpath
 
 ROOM = abspath("firmware")
+KEPT = abspath("build/noted")  # to compile with notes takes each process 0.2 s: what is made stays
 
 # The statements find the notes among the builtins, so that no module has a name more than it has
-# on the chip. A list, for in nothing else is an entry set as quickly.
-NOTES = "__lines_that_ran__"
-_ran = []
-_places = []  # for each note: path, line number
+# on the chip. A list for each file, for in nothing else is an entry set as quickly.
+NOTES = "__lines_of_{}__"
+_noted = {}  # path -> whether each note was made, and the number of its line
 
 
 def begin():
-    setattr(builtins, NOTES, _ran)
     sys.path_hooks.insert(0, _finder)
     sys.path_importer_cache.clear()
 
 
 def seen():
     """Each file of which lines ran, from the top of the tree, and their numbers."""
-    numbers = {}
-    for ran, (path, number) in zip(_ran, _places, strict=True):
-        if ran:
-            numbers.setdefault(relpath(path), set()).add(number)
-    return numbers.items()
+    for path, (made, numbers) in _noted.items():
+        if any(made):
+            yield relpath(path), set(compress(numbers, made))
 
 
 def _finder(folder):
@@ -53,21 +54,54 @@ class _Loader(SourceFileLoader):
 
 @cache  # the panel throws modules away and imports them again and again
 def _compiled(path):
-    with open(path, "rb") as source:
-        tree = Noting(path, _places).visit(ast.parse(source.read(), path))
-    _ran.extend([False] * (len(_places) - len(_ran)))
-    return compile(tree, path, "exec", dont_inherit=True)
+    path = abspath(path)
+    place = join(KEPT, relpath(path, ROOM))
+    with open(path, "rb") as source, open(__file__, "rb") as own:
+        content = source.read()
+        made_of = sha256(b"\n".join((content, own.read(), sys.version.encode()))).digest()
+    try:
+        with open(place, "rb") as file:
+            was_made_of, notes, numbers, code = marshal.load(file)
+    except (OSError, EOFError, ValueError, TypeError):
+        was_made_of = None
+    if was_made_of != made_of:
+        notes = NOTES.format(relpath(path, ROOM).encode().hex())
+        code, numbers = _compile(path, content, notes)
+        _keep(place, (made_of, notes, numbers, code))
+    made = [False] * len(numbers)
+    _noted[path] = made, numbers
+    setattr(builtins, notes, made)
+    return code
+
+
+def _compile(path, content, notes):
+    places = []
+    tree = Noting(path, places, notes).visit(ast.parse(content, path))
+    code = compile(tree, path, "exec", dont_inherit=True)
+    return code, [number for _, number in places]
+
+
+def _keep(place, what):
+    """For the next process, if there is a build/: others may be doing the same."""
+    if os.path.isdir(dirname(KEPT)):
+        os.makedirs(dirname(place), exist_ok=True)
+        unfinished = f"{place}.{os.getpid()}"
+        with open(unfinished, "wb") as file:
+            marshal.dump(what, file)
+        os.replace(unfinished, place)
 
 
 class Noting(ast.NodeTransformer):
-    """Puts before every statement of a file one that notes its line: `NOTES[number] = True`.
+    """Puts before every statement of a file one that notes its line: `notes[number] = True`.
 
-    places: takes path and line number of each note, which is its place there.
+    places: takes path and line number of each note, which is its place there. notes: the name of
+    the list.
     """
 
-    def __init__(self, path, places):
+    def __init__(self, path, places, notes):
         self.path = path
         self.places = places
+        self.notes = notes
 
     def generic_visit(self, node):
         super().generic_visit(node)
@@ -96,7 +130,7 @@ class Noting(ast.NodeTransformer):
 
     def noting(self, text, number):
         """A statement on that line, with a note of its own."""
-        (statement,) = ast.parse(text.format(NOTES, len(self.places))).body
+        (statement,) = ast.parse(text.format(self.notes, len(self.places))).body
         self.places.append((self.path, number))
         return ast.increment_lineno(statement, number - statement.lineno)
 

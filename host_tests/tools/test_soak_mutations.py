@@ -11,8 +11,10 @@ Better seeds are looked for by
     PYTHONPATH=. build/pytest/bin/python host_tests/tools/test_soak_mutations.py NAME
 """
 
+import itertools
 import json
 import os
+import queue
 import shutil
 import subprocess
 import sys
@@ -45,10 +47,11 @@ class Hunt(NamedTuple):
 def soaked(folder, lives, roams, name):
     """What the soak says of each life, a seed and its minutes, with the firmware in
     folder/firmware."""
+    caches = interpreters.CACHES if folder == TOP else folder / "pycache"
     done = subprocess.Popen(
         interpreters.command(name, ["soak", MINUTES, ANY_DRIVES, ONE_TROUBLE, int(roams)]),
         cwd=TOP,
-        env=interpreters.environment(name, folder / "firmware"),
+        env=interpreters.environment(name, folder / "firmware", caches),
         stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         text=True,
@@ -65,27 +68,50 @@ def soaked(folder, lives, roams, name):
         done.communicate()
 
 
-def mutated(mutation, folder):
-    shutil.copytree(TOP / "firmware", folder / "firmware")
-    mutation.apply(folder / "firmware")
-    return folder
+class Planting:
+    """A copy of the firmware in a folder, into which one bug after the other is planted.
+
+    What CPython has compiled stays there: an import takes what has the time and the size of its
+    source, so each planting has a time of its own.
+    """
+
+    times = itertools.count(1)
+
+    def __init__(self, folder):
+        self.folder = folder
+        shutil.copytree(TOP / "firmware", folder / "firmware")
+
+    def plant(self, mutation):
+        mutation.apply(self.folder / "firmware")
+        time = next(self.times)
+        for name, _, _ in mutation.changes:
+            os.utime(self.folder / "firmware" / name, (time, time))
+
+    def weed(self, mutation):
+        for name, _, _ in mutation.changes:
+            shutil.copy2(TOP / "firmware" / name, self.folder / "firmware" / name)
 
 
-def hunted(mutation):
+def hunted(mutation, plantings):
+    """plantings: a queue of those that are free."""
     told = []
-    with tempfile.TemporaryDirectory() as folder:
+    planting = plantings.get()
+    try:
+        planting.plant(mutation)
         lives = [(seed, MINUTES) for seed in (mutation.seed, *mutation.seeds(OTHERS))]
-        planted = mutated(mutation, Path(folder))
-        for said in soaked(planted, lives, mutation.roams, interpreters.CPYTHON):
+        for said in soaked(planting.folder, lives, mutation.roams, interpreters.CPYTHON):
             seed, minutes = said["seed"], (said["seconds"] + 1) / 60
             if said["rule"] in mutation.rules:
                 return Hunt(seed, minutes, [])
             told += said["story"][:2]
+    finally:
+        planting.weed(mutation)
+        plantings.put(planting)
     return Hunt(seed, minutes, told or ["every rule held"])
 
 
 @pytest.fixture(scope="module")
-def hunts(request):
+def hunts(request, tmp_path_factory):
     """By name, a future of each planted bug that is to be tested: a hunt takes one processor, and
     tests of other files run beside this one."""
     wanted = [
@@ -93,8 +119,12 @@ def hunts(request):
         for item in request.session.items
         if getattr(item, "function", None) is test_a_planted_bug_is_found
     ]
-    pool = ThreadPoolExecutor(max(1, os.cpu_count() // 2))
-    yield {mutation.name: pool.submit(hunted, mutation) for mutation in wanted}
+    at_once = max(1, os.cpu_count() // 2)
+    plantings = queue.SimpleQueue()
+    for _ in range(at_once):
+        plantings.put(Planting(tmp_path_factory.mktemp("planting")))
+    pool = ThreadPoolExecutor(at_once)
+    yield {mutation.name: pool.submit(hunted, mutation, plantings) for mutation in wanted}
     pool.shutdown(cancel_futures=True)
 
 
@@ -149,9 +179,10 @@ def find_seeds(names):
 def find_seed(mutation):
     fast = interpreters.PYPY if interpreters.is_here(interpreters.PYPY) else interpreters.CPYTHON
     with tempfile.TemporaryDirectory() as folder:
-        planted = mutated(mutation, Path(folder))
+        planting = Planting(Path(folder))
+        planting.plant(mutation)
         lives = [(seed, MINUTES) for seed in mutation.seeds(SEEDS)]
-        for said in soaked(planted, lives, mutation.roams, fast):
+        for said in soaked(planting.folder, lives, mutation.roams, fast):
             if said["rule"]:
                 print(mutation.name, said["seed"], said["rule"], said["seconds"], flush=True)
             if said["rule"] in mutation.rules:

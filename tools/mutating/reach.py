@@ -23,7 +23,7 @@ from line_notes import Noting
 
 from tiers import OR, TIERS, interpreters
 from tools.deploying.names import source_of
-from tools.mutating.noting import MARK
+from tools.mutating.noting import MARK, NOTES
 from tools.mutating.scratch import scratch
 
 GROUND = ("firmware", "boards", "host_tests/benches", "host_tests/runner.py")
@@ -70,7 +70,7 @@ class Reach:
         self._in_file = {}  # path -> its statements, as bits
         for path in sorted((tree / "firmware").rglob("*.py")):
             name, first = str(path.relative_to(tree)), len(self.places)
-            noting = _Noting(name, self.places)
+            noting = _Noting(name, self.places, NOTES)
             self.noted[name] = noting.visit(ast.parse(path.read_bytes()))
             self._in_file[name] = (1 << len(self.places)) - (1 << first)
         self.ground = digest(tree, [file for one in GROUND for file in _files(tree / one)])

@@ -12,10 +12,11 @@ from pathlib import Path
 
 TOP = Path(__file__).resolve().parents[2]
 WORKER = "tools/soaking/worker.py"
+CACHES = TOP / "build/pycache"
+KEEPS_NOTHING = "PYTHONDONTWRITEBYTECODE"
 MICROPYTHON, CPYTHON, PYPY = "micropython", "cpython", "pypy"
 
-# -u: its output must not be buffered. -B: no bytecode goes into firmware/.
-PYTHON = ("-u", "-B", "-s")
+PYTHON = ("-u", "-s")  # -u: its output must not be buffered
 COMMANDS = {
     MICROPYTHON: (TOP / "build/unix64/micropython", "-X", "heapsize=96M"),
     CPYTHON: (sys.executable, *PYTHON),
@@ -46,10 +47,14 @@ def command(name, arguments):
     return [*map(str, COMMANDS[name]), WORKER, *map(str, arguments)]
 
 
-def environment(name, firmware):
-    """The environment by which it finds its modules. firmware: the folder."""
+def environment(name, firmware, caches=CACHES):
+    """The environment by which it finds its modules. firmware: the folder. caches: that for what
+    it has compiled, for the panel loads some modules again and again."""
     if name == MICROPYTHON:
         return {**os.environ, "MICROPYPATH": "%s:%s:.frozen" % (firmware, TOP)}
     paths = (firmware, TOP, TOP / "host_tests/cpython")  # which has a module `micropython`
-    # The order of a set must not change from run to run.
-    return {**os.environ, "PYTHONPATH": ":".join(map(str, paths)), "PYTHONHASHSEED": "0"}
+    found = {name: os.environ[name] for name in os.environ if name != KEEPS_NOTHING}
+    found["PYTHONPATH"] = ":".join(map(str, paths))
+    found["PYTHONPYCACHEPREFIX"] = str(caches)
+    found["PYTHONHASHSEED"] = "0"  # the order of a set must not change from run to run
+    return found
