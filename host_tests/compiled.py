@@ -15,6 +15,7 @@ import os
 import shutil
 import subprocess
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 
 from runner import COMPILED, COMPILED_FOLDER
 from tiers import ENVIRONMENT, TIERS, TOP
@@ -48,6 +49,8 @@ def compile_all(compiler):
     made = _read(MADE_OF)
     for path in made.keys() - wanted.keys():
         _remove(path)
+        with suppress(OSError):  # where it is not the last one
+            os.removedirs((ROOM / path).parent)
     stale = [path for path in wanted if made.get(path) != wanted[path]]
     if stale or made.keys() != wanted.keys():
         MADE_OF.unlink(missing_ok=True)  # should this be broken off, nothing counts as made

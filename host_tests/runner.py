@@ -222,7 +222,8 @@ def print_traceback(error):
         return
     text = io.StringIO()
     sys.print_exception(error, text)
-    for line in text.getvalue().split("\n"):
+    told = text.getvalue().replace(COMPILED_FOLDER + "/", "")  # of what could not be compiled
+    for line in told.split("\n"):
         if not line.startswith('  File "'):
             print(line)
             continue
