@@ -44,20 +44,25 @@ def panel(**options):
     return world
 
 
+_panel_files = {}  # once made
+
+
 def panel_files():
     """{path: content} of the panel as files, as tools/deploy copies them onto a Pico."""
-    folder = temporary()
-    write = "build/mpremote/bin/python -B tools/benching/deployed.py %s" % folder
-    assert os.system(write) == 0
-    try:
-        return files_in(folder)
-    finally:
-        os.system("rm -r %s" % folder)
+    if not _panel_files:
+        folder = temporary()
+        write = "build/mpremote/bin/python -B tools/benching/deployed.py %s" % folder
+        assert os.system(write) == 0
+        try:
+            _panel_files.update(files_in(folder))
+        finally:
+            os.system("rm -r %s" % folder)
+    return dict(_panel_files)
 
 
 def deployed(files=(), **options):
     """A Pico with plain MicroPython and the panel as files, and these files besides."""
-    everything = dict(panel_files())
+    everything = panel_files()
     everything.update(files)
     options.setdefault("parameters", QUICK)
     return PicoWorld("stock", files=everything, **options)
