@@ -9,8 +9,6 @@ import io
 from collections import defaultdict
 from pathlib import Path
 
-from coverage import Coverage
-
 # Where no line is ever seen, and why.
 UNSEEN = (
     "hal/*/rp2_*.py",  # runs on the chip alone: tier pico
@@ -28,6 +26,8 @@ class LineCoverage:
 
     def report(self):
         """The lines of the table, the total last."""
+        from coverage import Coverage  # here: a pytest that runs one file need not wait for it
+
         firmware = self.top / "firmware"
         coverage = Coverage(None, config_file=False)
         data = coverage.get_data()
