@@ -89,11 +89,10 @@ async def hear(connection):
     async for message in connection:
         if message.type is not aiohttp.WSMsgType.TEXT:
             return
-        for line in message.data.split("\n"):
-            told = json.loads(line)
-            if told["t"] == "hello":
-                told["joined"] = 1
-            sys.stdout.write(json.dumps(told) + "\n")
+        told = json.loads(message.data)
+        if told["t"] == "hello":
+            told["joined"] = 1
+        sys.stdout.write(json.dumps(told) + "\n")
         sys.stdout.flush()
 
 

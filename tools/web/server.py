@@ -3,11 +3,10 @@
 
     status = await serve(chosen, ["tools/panel", "--lines"])
 
-A page has a WebSocket, on which it and the panel say what tools/live/README.md lists: the page a
-message each, the panel a line for each message that waits, so that many of them cost little. Who
-has not got the token of the link, or comes from another site, is not let in. Whatever else a page
-does, the panel and the other pages go on: messages are short, a page that does not read hears
-less, and one that talks too much is thrown out.
+A page has a WebSocket, on which it and the panel say what tools/live/README.md lists, a message
+each. Who has not got the token of the link, or comes from another site, is not let in. Whatever
+else a page does, the panel and the other pages go on: messages are short, a page that does not
+read hears less, and one that talks too much is thrown out.
 """
 
 import asyncio
@@ -177,8 +176,8 @@ class Server:
     async def _send(self, connection, outbox):
         try:
             while True:
-                lines = map(json.dumps, await outbox.get())
-                await connection.send_str("\n".join(lines))
+                for message in await outbox.get():
+                    await connection.send_str(json.dumps(message))
         except (ConnectionError, RuntimeError):
             pass  # it is gone
 

@@ -70,9 +70,7 @@ class SocketWay {
       this.handlers.tell(TEXTS.connected, "good");
       this.opened();
     };
-    socket.onmessage = ({ data }) => {
-      data.split("\n").forEach((line) => this.handlers.take(JSON.parse(line)));
-    };
+    socket.onmessage = (event) => this.handlers.take(JSON.parse(event.data));
     socket.onclose = (event) => this.closed(event);
     this.socket = socket;
   }
