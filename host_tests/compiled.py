@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Compiles what the tests on MicroPython import, as mpy-cross does for a chip.
 
-MicroPython keeps nothing of what it compiles. Each process would compile 80 modules before its
-first test, and the panel loads some of its own again whenever somebody opens a page.
+MicroPython keeps nothing of what it compiles. Each process would compile for 80 ms before its
+first test, and the panel loads some of its modules again whenever somebody opens a page.
 
 `compile_all` makes a mirror of FOLDERS in build/compiled, up to date with their content; runner.py
 looks there first when the environment says so. Whoever runs runner.py by hand runs the sources.
@@ -33,9 +33,10 @@ def use_compiled(tiers):
     interpreters = {TIERS[tier].command[0] for tier in tiers if tier in MICROPYTHONS}
     compiler = next(TOP.glob(COMPILERS), None)
     if compiler and interpreters:
-        compile_all(compiler)
-        if all(map(takes, interpreters)):
-            ENVIRONMENT[COMPILED] = str(TOP)
+        with suppress(OSError):  # a build/ that nobody may write to: the sources will do
+            compile_all(compiler)
+            if all(map(takes, interpreters)):
+                ENVIRONMENT[COMPILED] = str(TOP)
 
 
 def takes(interpreter):
@@ -53,11 +54,11 @@ def compile_all(compiler):
             os.removedirs((ROOM / path).parent)
     stale = [path for path in wanted if made.get(path) != wanted[path]]
     if stale or made.keys() != wanted.keys():
-        MADE_OF.unlink(missing_ok=True)  # should this be broken off, nothing counts as made
+        # Should this be broken off, what is stale is still known to be.
+        _write(MADE_OF, {**wanted, **dict.fromkeys(stale, "")})
         with ThreadPoolExecutor(os.cpu_count()) as pool:
             list(pool.map(lambda path: _make(compiler, path), stale))
-        MADE_OF.parent.mkdir(parents=True, exist_ok=True)
-        _write(MADE_OF, json.dumps(wanted).encode())
+        _write(MADE_OF, wanted)
 
 
 def digests(compiler):
@@ -98,7 +99,8 @@ def _read(path):
         return {}
 
 
-def _write(path, content):
+def _write(path, table):
+    path.parent.mkdir(parents=True, exist_ok=True)
     unfinished = path.with_suffix(f".{os.getpid()}")
-    unfinished.write_bytes(content)
+    unfinished.write_text(json.dumps(table), encoding="utf-8")
     os.replace(unfinished, path)

@@ -39,7 +39,7 @@ def _environment():
     new process that is handed the living environment at that instant is not started (EFAULT).
 
     In it `python3` is the program that runs this. Of pyenv and its like it would be a script that
-    takes 90 ms to find that, and the commands under test start it a thousand times.
+    takes 90 ms to find that, and the commands under test start it again and again.
     """
     copy = dict(os.environ)
     python = os.path.realpath(sys.executable)

@@ -14,6 +14,7 @@ import builtins
 import marshal
 import os
 import sys
+from contextlib import suppress
 from functools import cache
 from hashlib import sha256
 from importlib.machinery import SOURCE_SUFFIXES, FileFinder, SourceFileLoader
@@ -82,10 +83,12 @@ def _compile(path, content, notes):
 
 
 def _keep(place, what):
-    """For the next process, if there is a build/: others may be doing the same."""
-    if os.path.isdir(dirname(KEPT)):
+    """For the next process, if there is a build/ to write to: others may be doing the same."""
+    if not os.path.isdir(dirname(KEPT)):
+        return
+    unfinished = f"{place}.{os.getpid()}"
+    with suppress(OSError):
         os.makedirs(dirname(place), exist_ok=True)
-        unfinished = f"{place}.{os.getpid()}"
         with open(unfinished, "wb") as file:
             marshal.dump(what, file)
         os.replace(unfinished, place)

@@ -83,11 +83,27 @@ def test_a_file_that_is_broken_says_so_as_ever(tree):
     assert "SyntaxError" in told and 'it.py", line 1' in told
 
 
-def test_what_was_broken_off_is_made_anew(tree):
+def test_what_was_broken_off_is_made_anew(tree, monkeypatch):
+    def broken_off(*_):
+        (tree.room / "firmware/it.mpy").write_bytes(b"")
+        raise KeyboardInterrupt
+
     tree()
-    (tree.room / "firmware/it.mpy").write_bytes(b"")
-    (tree.room / "made_of.json").unlink()
-    assert tree() == "first"
+    put(tree.top, "firmware/it.py", "says = 'other'")
+    with monkeypatch.context() as patched, pytest.raises(KeyboardInterrupt):
+        patched.setattr(compiled, "_make", broken_off)
+        tree()
+    assert tree() == "other"
+
+
+def test_where_nobody_may_write_the_sources_will_do(monkeypatch):
+    def refused(*_):
+        raise PermissionError
+
+    monkeypatch.setattr(compiled, "ENVIRONMENT", environment := {})
+    monkeypatch.setattr(compiled, "compile_all", refused)
+    compiled.use_compiled(["unix64"])
+    assert not environment
 
 
 @pytest.mark.parametrize("tier", ["unix64", "cpython"])
