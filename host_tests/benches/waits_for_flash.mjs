@@ -12,7 +12,7 @@ import { Pico } from '../../tools/emulator/rp2040/pico.mjs';
 const PANEL = new URL('../../build/pico/panel.uf2', import.meta.url);
 const SECOND = 1e9, SLICE = 777777; // ns
 const nothing = () => {};
-const report = new Proxy({ stop: false }, { get: (it, name) => it[name] ?? nothing });
+const report = new Proxy({ until: Infinity }, { get: (it, name) => it[name] ?? nothing });
 
 let polls = 0;
 const { skipPolls } = Pico.prototype;

@@ -2,6 +2,8 @@
 """The emulated Pico itself, with plain MicroPython on it, where a wrong model would make us
 believe something false: how long things take, what a reset leaves, what a power cut leaves."""
 
+from boards.sim.clock import Event
+from pico_bench import running
 from tools.emulator.chip import EmulatorError
 from tools.emulator.flash_image import FlashImage
 from tools.emulator.world import PicoWorld
@@ -367,6 +369,17 @@ def test_the_same_again_is_the_same_to_the_nanosecond():
     assert run() == run()
 
 
+def test_a_chip_that_stops_seldom_does_the_same_as_one_that_stops_at_each_character():
+    """Somebody talks into telegrams and replies, replies are cut, and the power fails."""
+    seldom, often = (disturbed(is_often) for is_often in (False, True))
+    assert seldom == often
+
+
+def test_a_chip_that_stops_seldom_hears_the_same_while_it_talks_into_what_others_say():
+    seldom, often = (talks_into_others(is_often) for is_often in (False, True))
+    assert seldom == often
+
+
 def test_characters_of_another_rate_are_garbage_with_framing_errors():
     world = stock(SET_UP + "machine.mem32[0x40038038] = 0\n")  # no interrupt empties the FIFO
     sent = b"\x02\x0a\x01"
@@ -401,3 +414,62 @@ def test_a_chip_that_changes_its_rate_talks_at_the_new_one():
         world.run(10)
     assert heard == [(9600, b"\x02\x0a"), (38400, b"\x02\x0a")]
     assert world.station.baud == 38400 and not world.station.complaints
+
+
+def disturbed(is_often):
+    """What a panel on a bad line did, as those on the line and on its board saw it."""
+    world = running(baud=115200, addresses=(1, 2))
+    stops(world, is_often)
+    talker, drive = Talker(world), world.drives[1]
+    again(world, 53_170, lambda: talker.say(b"\x02\x0e\x41"))
+    again(world, 17_730, lambda: world.wire.silence(drive))
+    world.run(150)
+    world.press("UP")
+    world.cut_power(world.clock.now_us + 1_234)
+    world.run(300)
+    figures = world.figures
+    measured = [list(each) for each in (figures.lead_ns, figures.release_ns, figures.idle_ns)]
+    log = world.wire.log
+    assert log.count > 200 and len(world.complaints()) > 5
+    return log.last(1000), measured, figures.driver, world.complaints(), drive.report()
+
+
+TALKS = """
+heard = b""
+for turn in range(30):
+    time.sleep_us(1000 + 137 * turn)
+    driver(1)
+    if turn % 3:
+        uart.write(b"ab")
+        while not uart.txdone(): pass
+    driver(0)
+    heard += uart.read() or b""
+print(heard)
+"""
+
+
+def talks_into_others(is_often):
+    """What came in at a chip that talks, or only enables its driver, whenever it likes."""
+    world = stock()
+    stops(world, is_often)
+    talker = Talker(world)
+    again(world, 23_000, lambda: talker.say(bytes(range(32))))
+    heard = does(world, TALKS)
+    assert len(heard) > 100
+    return heard, world.wire.log.last(1000), world.complaints()
+
+
+def stops(world, is_often):
+    if is_often:
+        world.station.goes_on_percent, world.station.tells_ahead = 0, False
+
+
+def again(world, every_us, happens):
+    """Now, and ever again."""
+
+    def happen():
+        world.clock.schedule(event, world.clock.now_us + every_us)
+        happens()
+
+    event = Event(happen)
+    happen()

@@ -15,6 +15,7 @@ import struct
 
 RECORD = "<QBBH"
 RECORD_BYTES = 12
+KIND_AT, HEARD = 8, ord("C")
 CONTENT_MAX = 0xFFFF
 
 # Kinds of record that have a content behind them, of b bytes.
@@ -41,7 +42,7 @@ class Chip:
         self._writer = writer
         self._whole = True  # no answer was broken off, as by Ctrl-C
         self._waiting = []  # (at_ns, record and content), in the order of time
-        self._record = bytearray(RECORD_BYTES)
+        self._heard_until_ns = None  # what was to be received later was taken back
 
     def begin(
         self,
@@ -62,6 +63,7 @@ class Chip:
         addresses that acknowledge. model: what is modelled otherwise than `usual` says. jumpers:
         (from, to) of the wires that join a GPIO to another one.
         """
+        self.take_back(self.now_ns)  # what the old one was to hear
         self._waiting = []
         wanted = {
             "uf2": program,
@@ -91,38 +93,57 @@ class Chip:
             place -= 1
         waiting.insert(place, (at_ns, record))
 
-    def run(self, until_ns, take):
+    def take_back(self, after_ns):
+        """Characters that were to be received later than `after_ns` do not come."""
+        waiting = self._waiting
+        self._waiting = [one for one in waiting if one[0] <= after_ns or one[1][KIND_AT] != HEARD]
+        earlier_ns = self._heard_until_ns
+        self._heard_until_ns = after_ns if earlier_ns is None else min(after_ns, earlier_ns)
+
+    def run(self, until_ns, take, goes_on_percent=0):
         """Let the chip run until `until_ns`, or until it stops early; `now_ns` says how far.
 
         take(at_ns, kind, a, b, content) is called for everything that the chip did meanwhile.
+        goes_on_percent: of a bit, from the beginning of a character that the chip sends with its
+        driver on to where it stops; the next character moves that. 0: it stops at each.
         """
         if not self._whole:
             raise EmulatorError("the emulator was interrupted in the middle of an answer")
         self._whole = False
+        told = []
+        if self._heard_until_ns is not None:
+            told.append(struct.pack(RECORD, self._heard_until_ns, ord("W"), 0, 0))
+            self._heard_until_ns = None
         waiting = self._waiting
         while waiting and waiting[0][0] <= until_ns:
-            self._writer.write(waiting.pop(0)[1])
-        self._writer.write(struct.pack(RECORD, until_ns, ord("R"), 0, 0))
-        failure = None
-        while True:
-            at_ns, kind, a, b = self._next()
-            kind = chr(kind)
-            content = self._read(b) if kind in WITH_CONTENT else None
-            if kind == "D":
-                break
-            if kind == "!":
-                failure = failure or content.decode()
-            else:
-                take(at_ns, kind, a, b, content)
-        self.now_ns = at_ns
+            told.append(waiting.pop(0)[1])
+        told.append(struct.pack(RECORD, until_ns, ord("R"), 0, goes_on_percent))
+        self._writer.write(b"".join(told))
+        reached_ns, _, high, low = struct.unpack(RECORD, self._read(RECORD_BYTES))
+        failure = self._hand_over(self._read(high << 16 | low), take)
+        self.now_ns = reached_ns
         self._whole = True
         if failure:
             raise EmulatorError(failure)
 
-    def _next(self):
-        if self._reader.readinto(self._record) != RECORD_BYTES:
-            raise EmulatorError("the emulator has ended")
-        return struct.unpack(RECORD, self._record)
+    @staticmethod
+    def _hand_over(answer, take):
+        """Give an answer's records to `take`. Answers what the emulator failed at, or None."""
+        failure = None
+        at = 0
+        while at < len(answer):
+            at_ns, kind, a, b = struct.unpack_from(RECORD, answer, at)
+            at += RECORD_BYTES
+            content = None
+            kind = chr(kind)
+            if kind in WITH_CONTENT:
+                content = answer[at : at + b]
+                at += b
+            if kind == "!":
+                failure = failure or content.decode()
+            else:
+                take(at_ns, kind, a, b, content)
+        return failure
 
     def _read(self, count):
         content = self._reader.read(count) if count else b""

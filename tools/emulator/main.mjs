@@ -17,13 +17,14 @@ const ORPHAN_SLICES = 20; // and how often whether anybody still waits for the a
 const COMPLAINTS = 20; // different ones, for each chip
 const PAYLOADS = new Set(['N', 'U', 'F']);
 const UNIT_NANOS = 100000; // of V's duration
+const HUNDREDTH_NANOS = 1e7; // of a bit, at 1 bit/s
 const UNIT_BAUD = 50; // of a rate: the greatest common divisor of those of USS
 
 // What the chip reports, as records. It is the chip's logger as well.
 class Report {
   constructor(server) {
     this.server = server;
-    this.stop = false; // the run is to end here
+    this.until = 0; // the run ends here
     this.complaints = new Set();
   }
 
@@ -35,9 +36,15 @@ class Report {
     this.server.writer.add(this.now, kind, a, b, payload);
   }
 
-  character(start, byte, parityWrong, stopWrong) {
+  // isDriven: the chip's driver is on, and so its receiver off.
+  character(start, byte, parityWrong, stopWrong, isDriven) {
     this.server.writer.add(start, 'T', byte, parityWrong | (stopWrong << 1));
-    this.stop = true;
+    this.until = isDriven && !this.server.isHearing() ? this.server.goesOnUntil(start) : this.now;
+  }
+
+  // The driver was switched: what is coming in may not be heard.
+  driver() {
+    if (this.server.isHearing()) this.until = this.now;
   }
 
   tuned(baud) {
@@ -58,7 +65,7 @@ class Report {
 
   restarted(why) {
     this.add('Z', why, 0);
-    this.stop = true;
+    this.until = this.now;
   }
 
   serial(bytes) {
@@ -95,6 +102,7 @@ class Server {
     this.report = new Report(this);
     this.idleNanos = 0; // the time, while there is no chip
     this.pending = []; // records not yet due, in order of time
+    this.run = null; // the R that is being answered
     this.parent = process.ppid;
   }
 
@@ -111,7 +119,8 @@ class Server {
         if (payload === null) return;
         record.payload = Buffer.from(payload);
       }
-      if (record.kind === 'R') this.answer(record.time);
+      if (record.kind === 'R') this.answer(record);
+      else if (record.kind === 'W') this.takeBack(record.time);
       else this.queue(record);
     }
   }
@@ -123,10 +132,16 @@ class Server {
     pending.splice(at, 0, record);
   }
 
-  answer(until) {
-    this.report.stop = false;
+  // Characters that were to come later do not.
+  takeBack(after) {
+    this.pending = this.pending.filter(({ kind, time }) => kind !== 'C' || time <= after);
+  }
+
+  answer(run) {
+    this.run = run;
+    this.report.until = run.time;
     try {
-      this.runAndApply(until);
+      this.runAndApply();
     } catch (error) {
       this.report.failed(error instanceof Fault ? `HardFault: ${error.message}` : error.stack);
       this.idleNanos = this.now;
@@ -135,22 +150,32 @@ class Server {
     this.writer.finish(this.now);
   }
 
-  runAndApply(until) {
+  runAndApply() {
     const { pending, report } = this;
-    while (!report.stop) {
+    do {
       while (pending.length && pending[0].time <= this.now) this.apply(pending.shift());
-      if (this.now >= until || report.stop) break;
-      this.runTo(pending.length ? Math.min(pending[0].time, until) : until);
-    }
+      this.runTo(pending.length ? pending[0].time : Infinity);
+    } while (this.now < report.until);
+  }
+
+  // Whether characters are on their way to the chip.
+  isHearing() {
+    return this.pending.some(({ kind }) => kind === 'C');
+  }
+
+  // The end of the run after a character whose start bit began then: the next one moves it on.
+  goesOnUntil(start) {
+    const nanos = (this.run.b * HUNDREDTH_NANOS) / this.pico.baud;
+    return Math.max(this.now, Math.min(start + nanos, this.run.time));
   }
 
   runTo(instant) {
     const { report, terminal } = this;
     if (!this.pico) {
-      this.idleNanos = instant;
+      this.idleNanos = Math.min(instant, report.until);
       return;
     }
-    for (let slice = 0; this.now < instant && !report.stop; slice++) {
+    for (let slice = 0; this.now < Math.min(instant, report.until); slice++) {
       if (terminal.on) this.pico.send(terminal.read());
       if (slice % ORPHAN_SLICES === 0 && process.ppid !== this.parent) process.exit(0);
       this.pico.run(Math.min(instant, this.now + SLICE_NANOS));

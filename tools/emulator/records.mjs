@@ -55,11 +55,13 @@ export class Writer {
     this.records.push({ time, bytes });
   }
 
-  // Sends the answer: its records in order of time, then D.
+  // Sends the answer: D, and the records in order of time.
   finish(time) {
-    this.records.sort((one, other) => one.time - other.time);
-    this.add(time, 'D', 0, 0);
-    const all = Buffer.concat(this.records.map((record) => record.bytes));
+    const records = this.records.sort((one, other) => one.time - other.time);
+    const length = records.reduce((sum, { bytes }) => sum + bytes.length, 0);
+    this.records = [];
+    this.add(time, 'D', length >> 16, length & 0xffff);
+    const all = Buffer.concat([...this.records, ...records].map(({ bytes }) => bytes));
     this.records = [];
     try {
       for (let at = 0; at < all.length;) at += fs.writeSync(this.descriptor, all, at);

@@ -6,8 +6,8 @@ another one, the UART gets as garbage, and so does a drive what the chip says.
 
 The chip tells a character when it is over, with the instant of its start bit; the world runs so
 far behind that the character can still begin on the wire at that instant. What others send goes to
-the chip character by character, each as late as possible, so that a collision can garble it and a
-cut can end it. As on the `Transceiver` of boards.sim.line.wire, the receiver is off while the
+the chip character by character, and is taken back where a collision garbles it or a cut ends it.
+As on the `Transceiver` of boards.sim.line.wire, the receiver is off while the
 driver is on. It keeps the figures of the line, in nanoseconds of the chip's clock.
 """
 
@@ -17,6 +17,10 @@ from boards.sim.clock import Event
 from uss.timing import BAUD_RATES
 
 BITS = 11  # of a character
+# In bits, after the beginning of the last character: where a chip that drives the line stops for
+# the world. The character is over then in the world as well. What others say from then on, the
+# chip hears later; what they have said before, it does not hear.
+GOES_ON_BITS_PERCENT = 2195
 FOLLOWS_BITS_PERCENT = 40  # a later start bit is a gap; the world is that far behind
 EDGES_KEPT = 16  # of the driver: more than there are while one character lasts
 FIGURES_MAX = 20_000
@@ -65,8 +69,7 @@ class Figures:
 
 
 class Station:
-    """wire: the line. tell(at_ns, kind, a, b): to the chip. origin_ns: the chip's time when the
-    world's clock was 0.
+    """wire: the line. chip: a `Chip`. origin_ns: the chip's time when the world's clock was 0.
 
     complaints   characters that were no characters, as texts, the first 16
     figures      see `Figures`
@@ -75,13 +78,15 @@ class Station:
     name = "panel"
     has_driver_enable = True
     is_panel = True
+    goes_on_percent = GOES_ON_BITS_PERCENT  # 0: the chip stops at each character
+    tells_ahead = True  # False: a character is told when it begins
 
-    def __init__(self, wire, tell, origin_ns):
+    def __init__(self, wire, chip, origin_ns):
         self.complaints = []
         self.figures = Figures()
         self._wire = wire
         self._clock = wire.clock
-        self._tell = tell
+        self._chip = chip
         self._origin_ns = origin_ns
         self.tune(wire.baud)
         self._one = bytearray(1)
@@ -93,9 +98,12 @@ class Station:
         self._sending = False  # characters came since then
         self._edges = []  # (at_ns, on) of the driver, of late
         self._driving = False
+        self._switched = 0  # how often the driver was, as far as it was told
         self._coming = None  # the burst of somebody else
         self._coming_us = 0
-        self._taken = 0  # how many of its characters have begun
+        self._taken = 0  # how many of its characters have begun, or were told before they did
+        self._told = None  # how it was when such were told: see `_state`
+        self._told_ends = None  # the ends of its characters, in microseconds after the first start
         self._next = Event(self._receive)
         self._heard_until_ns = None  # the end of what the chip heard last, until it sends
         wire.attach(self)
@@ -136,6 +144,7 @@ class Station:
         elif self._sending:
             Figures.note(self.figures.release_ns, at_ns - self._sent_until_ns)
             self._sending = False
+        self._switched += 1
         self._edges = self._edges[1 - EDGES_KEPT :] + [(at_ns, on)]
         if on != self._driving:
             self._driving = on
@@ -162,6 +171,8 @@ class Station:
         self._to_send = []
         self._burst = None
         self._coming = None
+        self._told = None
+        self._chip.take_back(self._chip.now_ns)
         self._sending = False
         self._rose_ns = None
         self._heard_until_ns = None
@@ -207,32 +218,88 @@ class Station:
             self._coming = None
 
     def _receive(self):
-        """A character begins: the chip will have it when it is over."""
+        """A character begins: the chip will have it when it is over. It is told of all that follow
+        as well, in as far as nothing hinders them now.
+        """
         burst = self._coming
         at = self._taken
         if burst is None or burst.start_us != self._coming_us or at >= burst.count:
             return
-        self._taken = at + 1
-        starts_ns = self._instant_ns(burst, at)
-        ends_ns = self._instant_ns(burst, at + 1)
-        if not self._deaf(starts_ns, ends_ns):
-            self._tell(ends_ns, "C", burst.data[at], burst.baud // UNIT_BAUD << RATE_SHIFT)
-            self._heard_until_ns = ends_ns
-            self.figures.heard_ns = ends_ns - self._origin_ns
-        if at + 1 < burst.count:
+        count = burst.count
+        goes_through = (
+            self.tells_ahead and burst.ends is burst.even_ends and not self._deaf(burst, at, count)
+        )
+        last = count if goes_through else at + 1
+        self._taken = last
+        if goes_through or not self._deaf(burst, at, last):
+            for one in range(at, last):
+                self._tell(burst, one)
+        if goes_through:
+            self._told = self._state(burst)
+            self._told_ends = burst.ends
+        elif last < count:
             self._clock.schedule(self._next, burst.start_us + burst.ends[at])
 
-    def _instant_ns(self, burst, characters):
-        """When so many characters of a burst are over."""
-        characters_ns = characters * BITS * 1_000_000_000 // burst.baud
-        return self._origin_ns + burst.start_us * 1000 + characters_ns
+    def _tell(self, burst, at):
+        baud = burst.baud
+        ends_ns = self._over_ns(burst.start_us, baud, at + 1)
+        self._chip.tell(ends_ns, "C", burst.data[at], baud // UNIT_BAUD << RATE_SHIFT)
+        self._hear_until(ends_ns)
 
-    def _deaf(self, from_ns, until_ns):
-        """Whether the driver was on, and so the receiver off, at any instant between these."""
+    def _hear_until(self, at_ns):
+        self._heard_until_ns = at_ns
+        self.figures.heard_ns = at_ns - self._origin_ns
+
+    def _deaf(self, burst, first, last):
+        """Whether the driver was on, and so the receiver off, during any of these characters."""
+        from_ns = self._over_ns(burst.start_us, burst.baud, first)
+        until_ns = self._over_ns(burst.start_us, burst.baud, last)
         edges = self._edges
         while len(edges) > 1 and edges[1][0] <= from_ns:
             edges.pop(0)
         return any(on for at_ns, on in edges if at_ns < until_ns)
+
+    def _over_ns(self, start_us, baud, characters):
+        """When so many characters are over that follow one another."""
+        return self._origin_ns + start_us * 1000 + characters * BITS * 1_000_000_000 // baud
+
+    # What was told before it began
+
+    def revise(self):
+        """Before time goes on: if something has happened to what is coming in, the characters that
+        were told and have not begun are taken back. They are told when they begin.
+        """
+        told = self._told
+        if told is None:
+            return
+        burst, start_us, end_us = told[:3]
+        now_us = self._clock.now_us
+        if now_us >= end_us:
+            self._told = None
+        elif told != self._state(burst):
+            self._told = None
+            begun = self._begun_by(now_us - start_us)
+            until_ns = self._over_ns(start_us, burst.baud, begun)
+            self._chip.take_back(until_ns)
+            if self._heard_until_ns is not None:
+                self._hear_until(until_ns)
+            if burst is self._coming and burst.start_us == start_us:
+                self._taken = begun
+                self._clock.schedule(self._next, start_us + self._told_ends[begun - 1])
+
+    def _state(self, burst):
+        """What changes when something happens to a burst, or to hearing it."""
+        return (
+            burst, burst.start_us, burst.end_us, burst.count, burst.garbled, self._switched
+        )  # fmt: skip
+
+    def _begun_by(self, elapsed_us):
+        """How many of the characters that were told have begun so long after the first one."""
+        ends = self._told_ends
+        begun = 1
+        while ends[begun - 1] <= elapsed_us:
+            begun += 1
+        return begun
 
     def _complain(self, at_ns, text):
         if len(self.complaints) < COMPLAINTS_MAX:

@@ -150,7 +150,7 @@ class PicoWorld(Surroundings):
         if new:
             self.stored = None
         self._begin_chip(program_path(program), baud, display, files or {}, flash, model, jumpers)
-        self.station = Station(self.wire, self.chip.tell, self._origin_ns)
+        self.station = Station(self.wire, self.chip, self._origin_ns)
         self.figures = self.station.figures
         self.backpack = None
         if display == "backpack":
@@ -165,9 +165,10 @@ class PicoWorld(Surroundings):
         clock = self.clock
         until_us = clock.now_us + ms * 1000
         while clock.now_us < until_us:
+            self.station.revise()
             # What happens in the world at an instant reaches the chip a character later.
             bound_us = self._next_event_us(until_us)
-            self.chip.run(self._chip_ns(bound_us), self._take)
+            self.chip.run(self._chip_ns(bound_us), self._take, self.station.goes_on_percent)
             reached_us = (self.chip.now_ns - self._origin_ns - self._behind_ns) // 1000
             clock.advance_to(max(clock.now_us, min(reached_us, until_us)))
 

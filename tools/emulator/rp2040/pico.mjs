@@ -12,7 +12,7 @@ import { giveTime } from './dma.mjs';
 import { Flash, IoQspi, Ssi } from './flash.mjs';
 import { BitBangedI2c, SCL, SDA, TimedI2c } from './i2c.mjs';
 import { bootRom, RP2040 } from './library.mjs';
-import { isUart, LOW, RELEASED, Wires } from './pins.mjs';
+import { HIGH, isUart, LOW, RELEASED, Wires } from './pins.mjs';
 import { TimedPio } from './pio.mjs';
 import { flash, ram, rom } from './processor.mjs';
 import { Resets } from './resets.mjs';
@@ -22,7 +22,7 @@ import { TimedUart } from './uart.mjs';
 import { UsbSerial } from './usb.mjs';
 import { BY_TIMER, ChipReset, HAD_POWER_ON, HAD_RUN_PIN, Watchdog } from './watchdog.mjs';
 
-const LINE = { tx: 4, rx: 5, uart: 1 }; // GPIO numbers and the UART at the RX pin
+const LINE = { tx: 4, rx: 5, enable: 6, uart: 1 }; // GPIO numbers and the UART at the RX pin
 const BITS = 11; // of a character on the line
 const START = 0x10000000; // of the second-stage boot loader, at the beginning of the flash
 const ROM = bootRom();
@@ -127,11 +127,13 @@ export class Pico {
 
   // Time
 
-  // Runs until the instant, or until `report.stop` is set.
-  run(until) {
+  // Runs until the instant, or until `report.until`, which what happens meanwhile may move.
+  run(instant) {
     const { report } = this;
-    while (this.clock.nanosCounter < until && !report.stop) {
+    for (;;) {
       const { clock, core } = this;
+      const until = Math.min(instant, report.until);
+      if (clock.nanosCounter >= until) return;
       if (core.waiting) {
         clock.skip(until);
       } else {
@@ -209,11 +211,16 @@ export class Pico {
   pinChanged(gpio, state) {
     if (this.watched.has(gpio)) this.report.pin(gpio, state);
     if (gpio === LINE.tx) this.decoder.change(state === LOW ? 0 : 1);
+    if (gpio === LINE.enable) {
+      this.report.driver();
+      this.core.leave = true;
+    }
   }
 
   // A character is over, but for half a bit, at the TX pin. A jumper brings it to the RX pin.
   said(start, byte, parityWrong, stopWrong) {
-    this.report.character(start, byte, parityWrong, stopWrong);
+    const isDriven = this.wires.level[LINE.enable] === HIGH;
+    this.report.character(start, byte, parityWrong, stopWrong, isDriven);
     if (!this.hearsItself) return;
     const { baud, clock } = this;
     const heard = () => this.receive(byte, !!parityWrong, !!stopWrong, baud);
