@@ -547,6 +547,17 @@ def test_an_installed_node_is_used_when_it_is_new_enough(machine):
     assert f"using {machine.programs}/node" in run.stderr
 
 
+def test_a_slow_node_is_used_where_no_fast_one_can_be_fetched(machine):
+    slow = '#!/bin/sh\ncase "$2" in *"< 18 "*) exit 0 ;; esac\nexit 1\n'
+    machine.install("node", slow)
+    machine.install("npm", "#!/bin/sh\n")
+    run = machine.shell("get_pytest() { :; }; get_node", NODE_FILES)
+    assert run.returncode == 0 and "fetching it" in run.stderr
+    assert f"using {machine.programs}/node" in run.stderr
+    run = machine.shell("get_pytest() { :; }; get_node", NODE_FILES)
+    assert (run.returncode, run.stderr) == (0, "")
+
+
 @pytest.mark.parametrize("installed", [(), ("node",), ("node", "npm")])
 def test_an_old_node_or_one_without_npm_is_not_used(machine, installed):
     for name in installed:
