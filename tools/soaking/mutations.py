@@ -331,7 +331,7 @@ MUTATIONS = (
     Mutation(
         "wrong sign shown",
         "a motor that turns left reads as one that turns right",
-        ("SHOWN",), 30,
+        ("SHOWN",), 25,
         ("panel/view.py", "-setpoint if control.reversed else setpoint", "setpoint"),
     ),
     Mutation(
