@@ -3,7 +3,7 @@
 
 In use:
 
-    served = pytest.fixture(scope="module")(servers)
+    served = pytest.fixture(servers)      # a panel lasts as long as its test
     chromium = pytest.fixture(scope="module")(browsers)
     browser = pytest.fixture(swept)
 

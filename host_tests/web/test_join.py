@@ -12,7 +12,7 @@ from web_bench import browsers, servers, swept
 
 INTERPRETERS = "host"
 
-served = pytest.fixture(scope="module")(servers)
+served = pytest.fixture(servers)
 chromium = pytest.fixture(scope="module")(browsers)
 browser = pytest.fixture(swept)
 terminal = pytest.fixture(terminals)

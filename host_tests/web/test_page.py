@@ -10,7 +10,8 @@ from web_bench import browsers, servers, swept
 
 INTERPRETERS = "host"
 
-served = pytest.fixture(scope="module")(servers)
+shared = pytest.fixture(scope="module")(servers)
+served = pytest.fixture(servers)
 chromium = pytest.fixture(scope="module")(browsers)
 browser = pytest.fixture(swept)
 SIZES = ("desktop", "phone")
@@ -18,8 +19,8 @@ STATE = ".drive .state"
 
 
 @pytest.fixture(scope="module")
-def panel(served):
-    return served("--drives", "1,2")
+def panel(shared):
+    return shared("--drives", "1,2")
 
 
 @pytest.fixture

@@ -12,7 +12,8 @@ from web_bench import Cable, browsers, servers, swept
 
 INTERPRETERS = "host"
 
-served = pytest.fixture(scope="module")(servers)
+shared = pytest.fixture(scope="module")(servers)
+served = pytest.fixture(servers)
 chromium = pytest.fixture(scope="module")(browsers)
 browser = pytest.fixture(swept)
 STATE = ".drive .state"
@@ -25,8 +26,8 @@ LINK = "{ link: %s, says: %s }"
 
 
 @pytest.fixture(scope="module")
-def panel(served):
-    return served("--drives", "1,2")
+def panel(shared):
+    return shared("--drives", "1,2")
 
 
 @pytest.fixture
