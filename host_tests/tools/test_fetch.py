@@ -537,6 +537,7 @@ def test_a_tar_of_sources_is_unpacked_without_its_outermost_folder(machine, tmp_
 # ---- obtaining node -------------------------------------------------------------------------
 
 NODE_FILES = ("folder", "packages", "pytest", "node")
+SLOW_NODE = '#!/bin/sh\ncase "$2" in *"< 18 "*) exit 0 ;; esac\nexit 1\n'  # 18 to 23, if asked
 
 
 def test_an_installed_node_is_used_when_it_is_new_enough(machine):
@@ -548,12 +549,24 @@ def test_an_installed_node_is_used_when_it_is_new_enough(machine):
 
 
 def test_a_slow_node_is_used_where_no_fast_one_can_be_fetched(machine):
-    slow = '#!/bin/sh\ncase "$2" in *"< 18 "*) exit 0 ;; esac\nexit 1\n'
-    machine.install("node", slow)
+    machine.install("node", SLOW_NODE)
     machine.install("npm", "#!/bin/sh\n")
     run = machine.shell("get_pytest() { :; }; get_node", NODE_FILES)
     assert run.returncode == 0 and "fetching it" in run.stderr
     assert f"using {machine.programs}/node" in run.stderr
+    run = machine.shell("get_pytest() { :; }; get_node", NODE_FILES)
+    assert (run.returncode, run.stderr) == (0, "")
+
+
+def test_one_that_was_fetched_before_is_kept_where_no_other_is_to_be_had(machine):
+    fetched = machine.top / "build/node"
+    fetched.mkdir(parents=True)
+    for name, text in (("node", SLOW_NODE), ("npm", "#!/bin/sh\n")):
+        (fetched / name).write_text(text)
+        (fetched / name).chmod(0o755)
+    run = machine.shell("get_pytest() { :; }; get_node", NODE_FILES)
+    assert run.returncode == 0 and "keeping the old one" in run.stderr
+    assert (fetched / "node").read_text() == SLOW_NODE
     run = machine.shell("get_pytest() { :; }; get_node", NODE_FILES)
     assert (run.returncode, run.stderr) == (0, "")
 

@@ -98,7 +98,7 @@ class Station:
         self._sending = False  # characters came since then
         self._edges = []  # (at_ns, on) of the driver, of late
         self._driving = False
-        self._switched = 0  # how often the driver was, as far as it was told
+        self._switched = 0  # how often the driver was switched, as far as it was told
         self._coming = None  # the burst of somebody else
         self._coming_us = 0
         self._taken = 0  # how many of its characters have begun, or were told before they did

@@ -78,8 +78,9 @@ make_processor() {
     cp "$processor_source" "$1" && quietly "$1/log" compile_processor "$1"
 }
 
-# No run-time library: it keeps its memory itself.
+# No run-time library: it keeps its memory itself, which lies behind the chip's RAM (0x20042000).
 compile_processor() (
     cd "$1" && "$build/node/node" "$build/emulator/node_modules/assemblyscript/bin/asc.js" \
-        processor.ts --outFile processor.wasm -O3 --runtime stub --noAssert
+        processor.ts --outFile processor.wasm -O3 --runtime stub --noAssert \
+        --memoryBase $((0x20050000)) --initialMemory $((0x2006))
 )

@@ -3,8 +3,8 @@
 # after folder.sh, packages.sh and pytest.sh.
 #
 # Links to what is installed, when that is a fast one; else both from a Python package that carries
-# them, as they come from Debian in some hundred packages; else links to what is installed, if it is
-# new enough. A fast one takes 0.9 of the time of the one before for the emulated Pico, and 0.7 for
+# them, as they come from Debian in some hundred packages; else links to what is installed, or what
+# was fetched before, if it is new enough. A fast one takes 0.9 of the time of the one before for the emulated Pico, and 0.7 for
 # pyright.
 
 node_least=18
@@ -38,7 +38,7 @@ make_node() {
     use_installed "$folder" "$node_fast" && return
     say "node: fetching it into build/node, 60 MB"
     fetch_node "$folder" && is_node "$folder" "$node_fast" && return
-    if use_installed "$folder" "$node_least"; then
+    if use_installed "$folder" "$node_least" || keep_fetched "$folder"; then
         : >"$folder/slow"
         return
     fi
@@ -52,6 +52,10 @@ use_installed() {
     link_node "$1" && is_node "$1" "$2" && say "node: using $(type -P node)" && return
     rm -rf "${1:?}"/*
     return 1
+}
+
+keep_fetched() {
+    is_node "$build/node" "$node_least" && cp -a "$build/node/." "$1" && say "node: keeping the old one"
 }
 
 fetch_node() {

@@ -6,14 +6,16 @@
 // and is put right before anything outside of RAM, flash and ROM is touched, so that each access
 // happens at the very instant at which it would if the clock ticked for each instruction.
 import { CortexM0Core } from './library.mjs';
-import { flash, join, ram, registers, rom, state, stretch } from './processor.mjs';
-import { APSR, CHANGED, LOWEST, MISS_CYCLES, PRIMASK, RARE } from './processor.mjs';
+import { flash, ram, registers, rom, state, stretch } from './processor.mjs';
+import { ADDRESS, APSR, BYTES, LOWEST, MISS_CYCLES, NUMBER, PRIMASK, WHY } from './processor.mjs';
+import { LOAD, LOAD_SIGNED, LOST, RARE, STORE, UNMASKED } from './processor.mjs';
 
 const CYCLE_NANOS = 8;
 const STRETCH_CYCLES = 1 << 24;
 const RAM = 0x20000000;
 const FLASH_MASK = flash.length - 1, ROM_BYTES = 4 * rom.length;
 const FLASH_WINDOWS = 4; // 0x10000000 ... 0x13ffffff: the flash, cached or not; in 64 MiB
+const LOAD_CYCLES = { 0x4: 4, 0xd: 1 }, STORE_CYCLES = { 0x4: 5, 0xd: 1 }; // elsewhere 2
 const NOWHERE = 0xffffffff; // where SP has been, when it has not been anywhere
 
 const hex = (address) => (address >>> 0).toString(16);
@@ -30,13 +32,13 @@ export class Core extends CortexM0Core {
     state[LOWEST] = NOWHERE; // SP, in this mode
     state[MISS_CYCLES] = missCycles;
     this.leave = false; // the stretch is to end: the chip is about to be reset
+    this.changed = false; // it is to end, for this or another reason
     this.start = 0; // of the stretch: its instant, and how many cycles it may take
     this.budget = 0;
     this.dueAt = 0; // when the next alarm goes off, as it was at the start
     this.depths = { program: 0, handlers: 0 }; // of the stack, bytes
     this.entered = 0; // SP when the handler interrupted the program
     this.flash = new Int32Array(flash.buffer, flash.byteOffset, flash.length >> 2);
-    join(this);
   }
 
   // Asleep with interrupts masked, the processor wakes but takes none (rp2040js takes it).
@@ -76,12 +78,11 @@ export class Core extends CortexM0Core {
     super.exceptionReturn(how);
   }
 
-  // Whether an interrupt waits that is not masked any more. If so, the stretch ends.
+  // Whether an interrupt waits that is not masked any more.
   waits() {
     if (!(this.pendingInterrupts & this.enabledInterrupts || this.pendingPendSV
       || this.pendingSystick || this.pendingSVCall || this.pendingNMI)) return false;
     this.interruptsUpdated = true;
-    state[CHANGED] = 1;
     return true;
   }
 
@@ -89,8 +90,23 @@ export class Core extends CortexM0Core {
     return registers[15] >>> 28 === 1;
   }
 
-  // Access to what is neither RAM nor flash through the cache. `left`: the cycles of the stretch
-  // that are not yet spent.
+  // Loads from what is neither RAM nor flash through the cache, and stores there. `left`: the cycles
+  // of the stretch that are not yet spent.
+
+  load(left, isSigned) {
+    const address = state[ADDRESS] | 0, bytes = state[BYTES], above = 32 - 8 * bytes;
+    const value = this.read(address, bytes, left);
+    registers[state[NUMBER]] = isSigned ? (value << above) >> above : value;
+    registers[15] += 2;
+    return left - (LOAD_CYCLES[address >>> 28] ?? 2);
+  }
+
+  store(left) {
+    const address = state[ADDRESS] | 0;
+    this.write(address, state[BYTES], registers[state[NUMBER]], left);
+    registers[15] += 2;
+    return left - (STORE_CYCLES[address >>> 28] ?? 2);
+  }
 
   read(address, bytes, left) {
     if (address & (bytes - 1)) this.check(address, bytes, false);
@@ -128,7 +144,7 @@ export class Core extends CortexM0Core {
 
   after() {
     const isDue = this.rp2040.clock.dueAt < this.dueAt;
-    state[CHANGED] = this.leave || this.interruptsUpdated || this.waiting || isDue ? 1 : 0;
+    this.changed = this.leave || this.interruptsUpdated || this.waiting || isDue;
   }
 
   // Throws where the chip has a HardFault: unaligned, where nothing is, into the flash.
@@ -145,6 +161,23 @@ export class Core extends CortexM0Core {
     throw new Fault(`the program has run to ${hex(pc)}, where no code is`);
   }
 
+  // The stretch, and what it leaves to others. Returns the cycles that remain.
+  stretch() {
+    let left = this.budget;
+    while (!this.changed) {
+      left = stretch(left);
+      switch (state[WHY]) {
+        case LOAD: left = this.load(left, false); break;
+        case LOAD_SIGNED: left = this.load(left, true); break;
+        case STORE: left = this.store(left); break;
+        case UNMASKED: this.changed = this.waits(); break;
+        case LOST: return this.lost(registers[15]);
+        default: return left;
+      }
+    }
+    return left;
+  }
+
   // Executes instructions until the instant, or until an alarm or an interrupt is due.
   run(until) {
     const { clock } = this.rp2040;
@@ -157,11 +190,11 @@ export class Core extends CortexM0Core {
     this.dueAt = clock.dueAt;
     state[APSR] = this.APSR;
     state[PRIMASK] = this.PM ? 1 : 0;
-    state[CHANGED] = 0;
-    const left = stretch(this.budget);
+    this.changed = false;
+    const left = this.stretch();
     this.APSR = state[APSR];
     this.PM = state[PRIMASK] !== 0;
     clock.nanosCounter = this.start + (this.budget - left) * CYCLE_NANOS;
-    if (state[RARE]) clock.nanosCounter += super.executeInstruction() * CYCLE_NANOS;
+    if (state[WHY] === RARE) clock.nanosCounter += super.executeInstruction() * CYCLE_NANOS;
   }
 }

@@ -1,28 +1,11 @@
 // SPDX-License-Identifier: MIT
-// processor.ts as it runs: one processor for this process of node, its memories, and whom it asks.
+// processor.ts as it runs: one processor for this process of node, and its memories.
 // tools/fetch/emulator.sh compiles it.
 import fs from 'node:fs';
 
 const WASM = new URL('../../../build/processor/processor.wasm', import.meta.url);
 
-let core = null; // of the chip whose instructions are executed
-
-// The chip has a new processor.
-export function join(newCore) {
-  core = newCore;
-}
-
-const { exports } = new WebAssembly.Instance(
-  new WebAssembly.Module(fs.readFileSync(WASM)),
-  {
-    core: {
-      read: (address, bytes, left) => core.read(address, bytes, left),
-      write: (address, bytes, value, left) => core.write(address, bytes, value, left),
-      waits: () => core.waits(),
-      lost: (pc) => core.lost(pc),
-    },
-  },
-);
+const { exports } = new WebAssembly.Instance(new WebAssembly.Module(fs.readFileSync(WASM)));
 
 export const { stretch } = exports;
 
@@ -33,7 +16,11 @@ export const ram = view(Uint8Array, 'RAM', 264 * 1024);
 export const flash = view(Uint8Array, 'FLASH', 2 * 1024 * 1024);
 export const registers = view(Uint32Array, 'REGISTERS', 16);
 export const lines = view(Int32Array, 'LINES', 2048);
-export const state = view(Uint32Array, 'STATE', 11);
+export const state = view(Uint32Array, 'STATE', 13);
 
 // What is where in `state`.
-export const APSR = 0, PRIMASK = 1, LOWEST = 2, CHANGED = 3, RARE = 4, MISS_CYCLES = 5;
+export const APSR = 0, PRIMASK = 1, LOWEST = 2, MISS_CYCLES = 3, WHY = 4;
+export const ADDRESS = 5, BYTES = 6, NUMBER = 7;
+
+// Why a stretch has ended.
+export const RARE = 1, LOAD = 2, LOAD_SIGNED = 3, STORE = 4, UNMASKED = 5, LOST = 6;

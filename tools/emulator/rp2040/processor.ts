@@ -2,66 +2,64 @@
 // The processor's instructions, in AssemblyScript (assemblyscript.org), which becomes WebAssembly:
 // which takes two thirds of the time of JavaScript. core.mjs is the rest of the processor.
 //
-// `stretch` executes instructions until its cycles are spent. The clock stands still meanwhile. An
-// access to what is neither RAM nor flash goes to core.mjs, which puts the clock right first. What
-// becomes due by it (an alarm, an interrupt, a reset) ends the stretch, and so does a rare
-// instruction: that is for rp2040js. Cycles are counted as rp2040js does, and besides them those
-// that the processor waits for the flash.
+// `stretch` executes instructions until its cycles are spent. The clock stands still meanwhile. A
+// load or store beyond the memories ends it, and so does a rare instruction: those are for core.mjs,
+// which puts the clock right first. So it calls nothing, and most of its variables stay in registers
+// of the host. Cycles are counted as rp2040js does, and besides them those that the processor waits
+// for the flash.
 
-// Memory that core.mjs and the rest of the chip see too, by these addresses in it.
-export const ROM = memory.data(16384, 16);
-export const RAM = memory.data(264 * 1024, 16);
-export const FLASH = memory.data(2 * 1024 * 1024, 16);
+// The memories lie where they lie on the chip. What is beside them comes behind (see the compiler's
+// options in tools/fetch/emulator.sh); core.mjs and the rest of the chip see it too.
+export const ROM = 0, FLASH = 0x10000000, RAM = 0x20000000;
 export const REGISTERS = memory.data(16 * 4, 16);
-export const STATE = memory.data(11 * 4, 16);
+export const STATE = memory.data(13 * 4, 16);
 export const LINES = memory.data(1024 * 2 * 4, 16); // the cache (cache.mjs)
 
 // The words of STATE, and where they are.
 const APSR: usize = STATE; // the flags N, Z, C, V in the uppermost bits
 const PRIMASK: usize = STATE + 4; // 1: interrupts are masked
 const LOWEST: usize = STATE + 8; // where SP has been, counted at PUSH
-const CHANGED: usize = STATE + 12; // core.mjs sets it: the stretch is to end
-const RARE: usize = STATE + 16; // the next instruction is one for rp2040js
-const MISS_CYCLES: usize = STATE + 20; // how long the processor waits for a line of the cache
-const DIVIDEND: usize = STATE + 24; // of the divider, see below
-const DIVISOR: usize = STATE + 28;
-const QUOTIENT: usize = STATE + 32;
-const REMAINDER: usize = STATE + 36;
-const DIRTY: usize = STATE + 40;
+const MISS_CYCLES: usize = STATE + 12; // how long the processor waits for a line of the cache
+const WHY: usize = STATE + 16; // the stretch has ended: one of the reasons below
+const ADDRESS: usize = STATE + 20; // of that load or store,
+const BYTES: usize = STATE + 24; // how many,
+const NUMBER: usize = STATE + 28; // and of which register
+const DIVIDEND: usize = STATE + 32; // of the divider, see below
+const DIVISOR: usize = STATE + 36;
+const QUOTIENT: usize = STATE + 40;
+const REMAINDER: usize = STATE + 44;
+const DIRTY: usize = STATE + 48;
 
-const KINDS = memory.data(65536); // of each instruction, which case of the switch executes it
+// Why a stretch has ended.
+const SPENT = 0; // no cycles are left
+const RARE = 1; // the next instruction is one for rp2040js
+const LOAD = 2; // and so are these three, for core.mjs
+const LOAD_SIGNED = 3;
+const STORE = 4;
+const UNMASKED = 5; // interrupts are no longer masked: one may wait
+const LOST = 6; // no code is there
+
+const KINDS = memory.data(1024); // by the first ten bits of an instruction: its case of the switch
 
 const ROM_BYTES: u32 = 16384, RAM_BYTES: u32 = 264 * 1024, FLASH_BYTES: u32 = 2 * 1024 * 1024;
-const RAM_BASE = 0x20000000, FLASH_BASE = 0x10000000, FLASH_MASK = 2 * 1024 * 1024 - 1;
-const CACHED = 0x10; // the first byte of the addresses of the flash, read through the cache
 const LINE_SHIFT = 3; // of an address, to the number of its line
 const SETS_MASK = 1023;
-const REGION_MASK: i32 = 0xf0000000;
 const EXCEPTION_RETURN = 15; // the first digit of its addresses
 const SPECIAL_PRIMASK = 16; // the number of the special register
-const ENOUGH = 1 << 30; // cycles: more than any stretch has. Taken off, they end it
 const MOST_PUSHED: u32 = 36; // bytes
 
-// core.mjs: access to what is neither RAM nor flash, `left` cycles before the end of the stretch.
-@external("core", "read") declare function read(address: i32, bytes: i32, left: i32): i32;
-@external("core", "write")
-declare function write(address: i32, bytes: i32, value: i32, left: i32): void;
-// Whether an interrupt that is no longer masked waits.
-@external("core", "waits") declare function waits(): bool;
-// Does not return.
-@external("core", "lost") declare function lost(pc: i32): void;
-
 // The kinds of instructions. Letters are bits of operands: i immediate, d m n registers, r a list.
+// The first ten bits tell the kind; what the others must be, its case asks.
 
 function kind(number: u8, pattern: string): void {
   let mask = 0, value = 0;
-  for (let i = 0; i < 16; i++) {
+  for (let i = 0; i < 10; i++) {
     const letter = pattern.charCodeAt(i), isOne = letter == 0x31;
     mask = (mask << 1) | i32(isOne || letter == 0x30);
     value = (value << 1) | i32(isOne);
   }
   // All that the other bits may be, from all ones down to none.
-  for (let bits = ~mask & 0xffff; ; bits = (bits - 1) & ~mask) {
+  for (let bits = ~mask & 1023; ; bits = (bits - 1) & ~mask) {
     store<u8>(KINDS + (value | bits), number);
     if (bits == 0) break;
   }
@@ -79,11 +77,11 @@ kind(25, "0100001101nnnddd"); kind(26, "0100001110nnnddd"); kind(27, "0100001111
 kind(28, "01000100dnnnnddd"); kind(29, "01000101dnnnnddd"); kind(30, "01000110dnnnnddd");
 kind(31, "010001110nnnn000"); kind(32, "010001111nnnn000"); kind(33, "01001dddiiiiiiii");
 kind(34, "0101000mmmnnnddd"); kind(35, "0101001mmmnnnddd"); kind(36, "0101010mmmnnnddd");
-kind(37, "0101011mmmnnnddd"); kind(38, "0101100mmmnnnddd"); kind(39, "0101101mmmnnnddd");
-kind(40, "0101110mmmnnnddd"); kind(41, "0101111mmmnnnddd"); kind(42, "01100iiiiinnnddd");
-kind(43, "01101iiiiinnnddd"); kind(44, "01110iiiiinnnddd"); kind(45, "01111iiiiinnnddd");
-kind(46, "10000iiiiinnnddd"); kind(47, "10001iiiiinnnddd"); kind(48, "10010dddiiiiiiii");
-kind(49, "10011dddiiiiiiii"); kind(50, "10100dddiiiiiiii"); kind(51, "10101dddiiiiiiii");
+kind(37, "01100iiiiinnnddd"); kind(38, "10000iiiiinnnddd"); kind(39, "01110iiiiinnnddd");
+kind(40, "10010dddiiiiiiii"); kind(41, "0101100mmmnnnddd"); kind(42, "0101101mmmnnnddd");
+kind(43, "0101110mmmnnnddd"); kind(44, "01101iiiiinnnddd"); kind(45, "10001iiiiinnnddd");
+kind(46, "01111iiiiinnnddd"); kind(47, "10011dddiiiiiiii"); kind(48, "0101111mmmnnnddd");
+kind(49, "0101011mmmnnnddd"); kind(50, "10100dddiiiiiiii"); kind(51, "10101dddiiiiiiii");
 kind(52, "101100000iiiiiii"); kind(53, "101100001iiiiiii"); kind(54, "1011001000nnnddd");
 kind(55, "1011001001nnnddd"); kind(56, "1011001010nnnddd"); kind(57, "1011001011nnnddd");
 kind(58, "1011010rrrrrrrrr"); kind(59, "10111100rrrrrrrr"); kind(60, "10111101rrrrrrrr");
@@ -93,8 +91,7 @@ kind(67, "11010010iiiiiiii"); kind(68, "11010011iiiiiiii"); kind(69, "11010100ii
 kind(70, "11010101iiiiiiii"); kind(71, "11010110iiiiiiii"); kind(72, "11010111iiiiiiii");
 kind(73, "11011000iiiiiiii"); kind(74, "11011001iiiiiiii"); kind(75, "11011010iiiiiiii");
 kind(76, "11011011iiiiiiii"); kind(77, "11011100iiiiiiii"); kind(78, "11011101iiiiiiii");
-kind(79, "11100iiiiiiiiiii"); kind(80, "11110iiiiiiiiiii"); kind(81, "1011011001100010");
-kind(82, "1011011001110010");
+kind(79, "11100iiiiiiiiiii"); kind(80, "11110iiiiiiiiiii"); kind(81, "10110110011s0010");
 
 // The operands of an instruction: registers, by where the bits of their numbers are.
 
@@ -117,73 +114,37 @@ kind(82, "1011011001110010");
   store<i32>(number << 2, value, REGISTERS);
 }
 
+// Loads and stores: the kinds of both, and how many bytes each moves.
+
+const STORES = 34, LOADS = 41, ACCESSES_END = 50;
+const SIZES = memory.data<u8>([4, 2, 1, 4, 2, 1, 4, 4, 2, 1, 4, 2, 1, 4, 2, 1]);
+
+// Whether it is there, and aligned.
+@inline function inRam<T>(address: i32): bool {
+  const shift = <i32>alignof<T>();
+  return <u32>rotr(address - RAM, shift) < RAM_BYTES >> shift;
+}
+
+// What a load of this kind makes of a word, of which it has read the first bytes.
+@inline function extended(kind: i32, word: i32): i32 {
+  switch (kind) {
+    case 42: case 45: return word & 0xffff;
+    case 43: case 46: return word & 0xff;
+    case 48: return <i32><i16>word;
+    case 49: return <i32><i8>word;
+  }
+  return word;
+}
+
 // The cycles that the processor waits for a line (cache.mjs says how the cache works).
 @inline function wait(line: i32): i32 {
   const at = (line & SETS_MASK) << 3;
   const last = load<i32>(at, LINES);
-  return last == line ? 0 : waitForOther(at, line, last);
-}
-
-function waitForOther(at: i32, line: i32, last: i32): i32 {
+  if (last == line) return 0;
   const other = load<i32>(at, LINES + 4);
   store<i32>(at, line, LINES);
   store<i32>(at, last, LINES + 4);
   return other == line ? 0 : load<i32>(MISS_CYCLES);
-}
-
-// The same for the words of the registers in `list`, one after the other.
-function waitForAll(address: i32, list: i32): i32 {
-  let cycles = 0;
-  for (; list; list &= list - 1, address += 4) cycles += wait(address >> LINE_SHIFT);
-  return cycles;
-}
-
-// Loads and stores. `left`: the cycles that were left before the instruction.
-
-let spent = 0; // by the last one, but for the first cycle
-
-@inline function take<T>(address: i32, left: i32): i32 {
-  const offset = address - RAM_BASE;
-  const isAligned = (address & (sizeof<T>() - 1)) == 0;
-  if (<u32>offset < RAM_BYTES && isAligned) {
-    spent = 1;
-    return load<T>(offset, RAM);
-  }
-  if (address >>> 24 == CACHED && isAligned) {
-    spent = 1 + wait(address >> LINE_SHIFT);
-    return load<T>(address & FLASH_MASK, FLASH);
-  }
-  return <T>takeFar(address, sizeof<T>(), left);
-}
-
-function takeFar(address: i32, bytes: i32, left: i32): i32 {
-  if (isNear(address)) {
-    spent = 0;
-    return readNear(address);
-  }
-  const value = read(address, bytes, left), digit = address >>> 28;
-  spent = (digit == 0xd ? 0 : digit == 4 ? 3 : 1) + (load<i32>(CHANGED) ? ENOUGH : 0);
-  return value;
-}
-
-@inline function put<T>(address: i32, value: i32, left: i32): void {
-  const offset = address - RAM_BASE;
-  if (<u32>offset < RAM_BYTES && (address & (sizeof<T>() - 1)) == 0) {
-    spent = 1;
-    store<T>(offset, <T>value, RAM);
-    return;
-  }
-  putFar(address, sizeof<T>(), value, left);
-}
-
-function putFar(address: i32, bytes: i32, value: i32, left: i32): void {
-  if (isNear(address)) {
-    spent = 0;
-    return writeNear(address, value);
-  }
-  write(address, bytes, value, left);
-  const digit = address >>> 28;
-  spent = (digit == 0xd ? 0 : digit == 4 ? 4 : 1) + (load<i32>(CHANGED) ? ENOUGH : 0);
 }
 
 // Outside of the memories nothing is accessed as often as the core's number and its divider. That
@@ -195,7 +156,7 @@ const CPUID: i32 = 0xd0000000, DIVIDER: i32 = 0xd0000060, DIVIDER_MASK = ~0x1f;
   return (address & DIVIDER_MASK) == DIVIDER || address == CPUID;
 }
 
-function readNear(address: i32): i32 {
+@inline function readNear(address: i32): i32 {
   switch (address - DIVIDER) {
     case 0x00: case 0x08: return load<i32>(DIVIDEND);
     case 0x04: case 0x0c: return load<i32>(DIVISOR);
@@ -208,18 +169,19 @@ function readNear(address: i32): i32 {
   return 0; // the number of the first core
 }
 
-function writeNear(address: i32, value: i32): void {
-  switch (address - DIVIDER) {
-    case 0x00: case 0x08: store<i32>(DIVIDEND, value); divide((address & 8) != 0); break;
-    case 0x04: case 0x0c: store<i32>(DIVISOR, value); divide((address & 8) != 0); break;
+@inline function writeNear(address: i32, value: i32): void {
+  const register = address - DIVIDER;
+  switch (register) {
+    case 0x00: case 0x08: store<i32>(DIVIDEND, value); break;
+    case 0x04: case 0x0c: store<i32>(DIVISOR, value); break;
     case 0x10: store<i32>(QUOTIENT, value); break;
     case 0x14: store<i32>(REMAINDER, value); break;
-    default: return;
   }
-  store<i32>(DIRTY, 1);
+  if (<u32>register < 0x18) store<i32>(DIRTY, 1);
+  if (<u32>register < 0x10) divide((register & 8) != 0);
 }
 
-function divide(isSigned: bool): void {
+@inline function divide(isSigned: bool): void {
   const dividend = load<i32>(DIVIDEND), divisor = load<i32>(DIVISOR);
   let quotient = 0, remainder = 0;
   if (divisor == 0) {
@@ -240,57 +202,51 @@ function divide(isSigned: bool): void {
 
 @inline function hop(op: i32): i32 { return 2 + ((op << 24) >> 23); }
 
+// After a comparison comes BEQ or BNE, more often than not: it is executed with it, if it is in the
+// same line.
+
+const BEQ_OR_BNE = 0xd000, BEQ_OR_BNE_MASK = 0xfe00, IS_BNE = 0x100, IN_LINE_MASK = 6;
+
+@inline function branchesHere(pc: i32): bool {
+  return (pc & IN_LINE_MASK) != 0 && (<i32>load<u16>(pc) & BEQ_OR_BNE_MASK) == BEQ_OR_BNE;
+}
+
+@inline function isTaken(branch: i32, rest: i32): bool {
+  return (rest == 0) == ((branch & IS_BNE) == 0);
+}
+
 @inline function isStack(offset: i32): bool {
   return <u32>offset <= RAM_BYTES - MOST_PUSHED;
 }
 
-// Where the code of a region is in this memory, less its first address; how much there is.
-function placeOf(region: i32): i32 {
-  return <i32>(region == RAM_BASE ? RAM : region == FLASH_BASE ? FLASH : ROM) - region;
-}
-
-function bytesOf(region: i32): u32 {
-  switch (region) {
-    case 0: return ROM_BYTES;
-    case FLASH_BASE: return FLASH_BYTES;
-    case RAM_BASE: return RAM_BYTES;
-  }
-  return 0;
-}
-
-// Takes the cycles that are left, returns those that remain (or were taken too many). One function
-// and long: each call would cost more than the instruction.
+// Takes the cycles that are left, returns those that remain (or were taken too many); WHY tells why.
+// One function and long: each call would cost more than the instruction.
 export function stretch(left: i32): i32 {
   let pc = get(15) & ~1; // of the next instruction
-  let region = pc & REGION_MASK;
-  let place = placeOf(region);
-  let bytes = bytesOf(region);
   let line = -1; // from which the last instruction came
   const flags = load<i32>(APSR);
   let negative = flags; // below 0: N is set
   let zero = ~flags & 0x40000000; // 0: Z is set
   let c = (flags >>> 29) & 1;
   let v = (flags >>> 28) & 1;
-  let isRare = false;
+  let why = SPENT;
+  let address = 0; // of the load or store
   while (left > 0) {
     if (pc >> LINE_SHIFT != line) {
       line = pc >> LINE_SHIFT;
-      if (<u32>(pc - region) >= bytes) { // a jump to another region
-        region = pc & REGION_MASK;
-        place = placeOf(region);
-        bytes = bytesOf(region);
-        if (<u32>(pc - region) >= bytes) lost(pc);
-      }
-      if (region == FLASH_BASE) {
+      if (<u32>(pc - FLASH) < FLASH_BYTES) {
         left -= wait(line);
         if (left <= 0) break; // something is due before the line has come
+      } else if (<u32>(pc - RAM) >= RAM_BYTES && <u32>pc >= ROM_BYTES) {
+        why = LOST;
+        break;
       }
     }
-    const op = <i32>load<u16>(pc + place);
+    const op = <i32>load<u16>(pc);
     // Every instruction takes a cycle and is followed by the next; what differs says so below.
     left -= 1;
     pc += 2;
-    switch (<i32>load<u8>(op, KINDS)) {
+    switch (<i32>load<u8>(op >> 6, KINDS)) {
       case 1: { // LSLS immediate
         const count = (op >> 6) & 31, value = n(op);
         if (count) c = (value >>> (32 - count)) & 1;
@@ -345,6 +301,12 @@ export function stretch(left: i32): i32 {
         c = i32(<u32>one >= <u32>other);
         v = (one & ~rest) >>> 31;
         negative = zero = rest;
+        if (left > 0 && branchesHere(pc)) {
+          const branch = <i32>load<u16>(pc);
+          left -= 1;
+          pc += 2;
+          if (isTaken(branch, rest)) { pc += hop(branch); left -= 1; }
+        }
         continue;
       }
       case 10: { // ADDS immediate, 8 bits
@@ -420,6 +382,12 @@ export function stretch(left: i32): i32 {
         c = i32(<u32>one >= <u32>other);
         v = ((one ^ other) & (one ^ rest)) >>> 31;
         negative = zero = rest;
+        if (left > 0 && branchesHere(pc)) {
+          const branch = <i32>load<u16>(pc);
+          left -= 1;
+          pc += 2;
+          if (isTaken(branch, rest)) { pc += hop(branch); left -= 1; }
+        }
         continue;
       }
       case 23: { // CMN
@@ -473,12 +441,13 @@ export function stretch(left: i32): i32 {
       }
       case 31: { // BX
         const target = get((op >> 3) & 15);
-        if (target >>> 28 == EXCEPTION_RETURN) break;
+        if ((op & 7) != 0 || target >>> 28 == EXCEPTION_RETURN) break;
         pc = target & ~1;
         left -= 1;
         continue;
       }
       case 32: { // BLX
+        if ((op & 7) != 0) break;
         const target = get((op >> 3) & 15);
         set(14, pc | 1);
         pc = target & ~1;
@@ -486,75 +455,107 @@ export function stretch(left: i32): i32 {
         continue;
       }
       case 33: { // LDR literal
-        const address = ((pc + 2) & ~3) + ((op & 0xff) << 2);
-        setD8(op, load<i32>(address + place));
-        if (region == FLASH_BASE) left -= wait(address >> LINE_SHIFT);
+        const literal = ((pc + 2) & ~3) + ((op & 0xff) << 2);
+        setD8(op, load<i32>(literal));
+        if (<u32>(pc - FLASH) < FLASH_BYTES) left -= wait(literal >> LINE_SHIFT);
         left -= 1;
         continue;
       }
       case 34: // STR register
-        put<i32>(n(op) + m(op), d(op), left + 1);
-        left -= spent;
+        address = n(op) + m(op);
+        if (!inRam<i32>(address)) break;
+        store<i32>(address, d(op));
+        left -= 1;
         continue;
       case 35: // STRH register
-        put<u16>(n(op) + m(op), d(op), left + 1);
-        left -= spent;
+        address = n(op) + m(op);
+        if (!inRam<u16>(address)) break;
+        store<u16>(address, <u16>d(op));
+        left -= 1;
         continue;
       case 36: // STRB register
-        put<u8>(n(op) + m(op), d(op), left + 1);
-        left -= spent;
+        address = n(op) + m(op);
+        if (!inRam<u8>(address)) break;
+        store<u8>(address, <u8>d(op));
+        left -= 1;
         continue;
-      case 37: // LDRSB register
-        setD(op, take<i8>(n(op) + m(op), left + 1));
-        left -= spent;
+      case 37: // STR immediate
+        address = n(op) + ((op >> 4) & 0x7c);
+        if (!inRam<i32>(address)) break;
+        store<i32>(address, d(op));
+        left -= 1;
         continue;
-      case 38: // LDR register
-        setD(op, take<i32>(n(op) + m(op), left + 1));
-        left -= spent;
+      case 38: // STRH immediate
+        address = n(op) + ((op >> 5) & 0x3e);
+        if (!inRam<u16>(address)) break;
+        store<u16>(address, <u16>d(op));
+        left -= 1;
         continue;
-      case 39: // LDRH register
-        setD(op, take<u16>(n(op) + m(op), left + 1));
-        left -= spent;
+      case 39: // STRB immediate
+        address = n(op) + ((op >> 6) & 31);
+        if (!inRam<u8>(address)) break;
+        store<u8>(address, <u8>d(op));
+        left -= 1;
         continue;
-      case 40: // LDRB register
-        setD(op, take<u8>(n(op) + m(op), left + 1));
-        left -= spent;
+      case 40: // STR, SP plus immediate
+        address = get(13) + ((op & 0xff) << 2);
+        if (!inRam<i32>(address)) break;
+        store<i32>(address, d8(op));
+        left -= 1;
         continue;
-      case 41: // LDRSH register
-        setD(op, take<i16>(n(op) + m(op), left + 1));
-        left -= spent;
+      case 41: // LDR register
+        address = n(op) + m(op);
+        if (!inRam<i32>(address)) break;
+        setD(op, load<i32>(address));
+        left -= 1;
         continue;
-      case 42: // STR immediate
-        put<i32>(n(op) + ((op >> 4) & 0x7c), d(op), left + 1);
-        left -= spent;
+      case 42: // LDRH register
+        address = n(op) + m(op);
+        if (!inRam<u16>(address)) break;
+        setD(op, load<u16>(address));
+        left -= 1;
         continue;
-      case 43: // LDR immediate
-        setD(op, take<i32>(n(op) + ((op >> 4) & 0x7c), left + 1));
-        left -= spent;
+      case 43: // LDRB register
+        address = n(op) + m(op);
+        if (!inRam<u8>(address)) break;
+        setD(op, load<u8>(address));
+        left -= 1;
         continue;
-      case 44: // STRB immediate
-        put<u8>(n(op) + ((op >> 6) & 31), d(op), left + 1);
-        left -= spent;
+      case 44: // LDR immediate
+        address = n(op) + ((op >> 4) & 0x7c);
+        if (!inRam<i32>(address)) break;
+        setD(op, load<i32>(address));
+        left -= 1;
         continue;
-      case 45: // LDRB immediate
-        setD(op, take<u8>(n(op) + ((op >> 6) & 31), left + 1));
-        left -= spent;
+      case 45: // LDRH immediate
+        address = n(op) + ((op >> 5) & 0x3e);
+        if (!inRam<u16>(address)) break;
+        setD(op, load<u16>(address));
+        left -= 1;
         continue;
-      case 46: // STRH immediate
-        put<u16>(n(op) + ((op >> 5) & 0x3e), d(op), left + 1);
-        left -= spent;
+      case 46: // LDRB immediate
+        address = n(op) + ((op >> 6) & 31);
+        if (!inRam<u8>(address)) break;
+        setD(op, load<u8>(address));
+        left -= 1;
         continue;
-      case 47: // LDRH immediate
-        setD(op, take<u16>(n(op) + ((op >> 5) & 0x3e), left + 1));
-        left -= spent;
+      case 47: // LDR, SP plus immediate
+        address = get(13) + ((op & 0xff) << 2);
+        if (!inRam<i32>(address)) break;
+        setD8(op, load<i32>(address));
+        left -= 1;
         continue;
-      case 48: // STR, SP plus immediate
-        put<i32>(get(13) + ((op & 0xff) << 2), d8(op), left + 1);
-        left -= spent;
+      case 48: // LDRSH register
+        address = n(op) + m(op);
+        if (!inRam<i16>(address)) break;
+        setD(op, load<i16>(address));
+        left -= 1;
         continue;
-      case 49: // LDR, SP plus immediate
-        setD8(op, take<i32>(get(13) + ((op & 0xff) << 2), left + 1));
-        left -= spent;
+      case 49: // LDRSB register
+        address = n(op) + m(op);
+        if (!inRam<i8>(address)) break;
+        setD(op, load<i8>(address));
+        left -= 1;
         continue;
       case 50: // ADR
         setD8(op, ((pc + 2) & ~3) + ((op & 0xff) << 2));
@@ -582,12 +583,10 @@ export function stretch(left: i32): i32 {
         continue;
       case 58: { // PUSH
         const count = popcnt(op & 0x1ff), bottom = get(13) - 4 * count;
-        let offset = bottom - RAM_BASE;
+        let offset = bottom - RAM;
         if (!isStack(offset)) break;
-        for (let i = 0; i < 8; i++) {
-          if ((op & (1 << i)) == 0) continue;
-          store<i32>(offset, get(i), RAM);
-          offset += 4;
+        for (let list = op & 0xff; list; list &= list - 1, offset += 4) {
+          store<i32>(offset, get(ctz(list)), RAM);
         }
         const link = (op >> 8) & 1;
         if (link) store<i32>(offset, get(14), RAM);
@@ -597,28 +596,24 @@ export function stretch(left: i32): i32 {
         continue;
       }
       case 59: { // POP without PC
-        let offset = get(13) - RAM_BASE;
+        let offset = get(13) - RAM;
         if (!isStack(offset)) break;
-        for (let i = 0; i < 8; i++) {
-          if ((op & (1 << i)) == 0) continue;
-          set(i, load<i32>(offset, RAM));
-          offset += 4;
+        for (let list = op & 0xff; list; list &= list - 1, offset += 4) {
+          set(ctz(list), load<i32>(offset, RAM));
         }
-        set(13, RAM_BASE + offset);
+        set(13, RAM + offset);
         left -= popcnt(op & 0xff);
         continue;
       }
       case 60: { // POP with PC
-        let offset = get(13) - RAM_BASE;
+        let offset = get(13) - RAM;
         if (!isStack(offset)) break;
         const count = popcnt(op & 0xff), target = load<i32>(offset + 4 * count, RAM);
         if (target >>> 28 == EXCEPTION_RETURN) break;
-        for (let i = 0; i < 8; i++) {
-          if ((op & (1 << i)) == 0) continue;
-          set(i, load<i32>(offset, RAM));
-          offset += 4;
+        for (let list = op & 0xff; list; list &= list - 1, offset += 4) {
+          set(ctz(list), load<i32>(offset, RAM));
         }
-        set(13, RAM_BASE + offset + 4);
+        set(13, RAM + offset + 4);
         pc = target & ~1;
         left -= 2 + count;
         continue;
@@ -627,33 +622,34 @@ export function stretch(left: i32): i32 {
         setD(op, bswap(n(op)));
         continue;
       case 62: // NOP
+        if (op != 0xbf00) break;
         continue;
       case 63: { // STMIA
         const to = (op >> 8) & 7;
-        let offset = get(to) - RAM_BASE;
+        let offset = get(to) - RAM;
         if (!isStack(offset) || (offset & 3) != 0) break;
-        for (let i = 0; i < 8; i++) {
-          if ((op & (1 << i)) == 0) continue;
-          store<i32>(offset, get(i), RAM);
-          offset += 4;
+        for (let list = op & 0xff; list; list &= list - 1, offset += 4) {
+          store<i32>(offset, get(ctz(list)), RAM);
         }
-        set(to, RAM_BASE + offset);
+        set(to, RAM + offset);
         left -= popcnt(op & 0xff);
         continue;
       }
       case 64: { // LDMIA
         const from = (op >> 8) & 7;
-        let offset = get(from) - RAM_BASE;
+        let offset = get(from) - RAM;
         if (!isStack(offset) || (offset & 3) != 0) {
-          if (get(from) >>> 24 == CACHED) left -= waitForAll(get(from), op & 0xff);
+          address = get(from);
+          if (<u32>(address - FLASH) >= FLASH_BYTES) break;
+          for (let list = op & 0xff; list; list &= list - 1, address += 4) {
+            left -= wait(address >> LINE_SHIFT);
+          }
           break;
         }
-        for (let i = 0; i < 8; i++) {
-          if ((op & (1 << i)) == 0) continue;
-          set(i, load<i32>(offset, RAM));
-          offset += 4;
+        for (let list = op & 0xff; list; list &= list - 1, offset += 4) {
+          set(ctz(list), load<i32>(offset, RAM));
         }
-        if ((op & (1 << from)) == 0) set(from, RAM_BASE + offset);
+        if ((op & (1 << from)) == 0) set(from, RAM + offset);
         left -= popcnt(op & 0xff);
         continue;
       }
@@ -704,7 +700,7 @@ export function stretch(left: i32): i32 {
         left -= 1;
         continue;
       case 80: { // the wide ones: BL, MRS and MSR of PRIMASK, barriers
-        const second = <i32>load<u16>(pc + place);
+        const second = <i32>load<u16>(pc);
         if ((second & 0xd000) == 0xd000) { // BL
           const sign = (op << 21) >> 31; // all ones or zeros
           const i1 = ~((second >> 13) ^ sign) & 1, i2 = ~((second >> 11) ^ sign) & 1;
@@ -725,8 +721,9 @@ export function stretch(left: i32): i32 {
           store<i32>(PRIMASK, isMasked);
           pc += 2;
           left -= 2;
-          if (!isMasked && waits()) left -= ENOUGH;
-          continue;
+          if (isMasked) continue;
+          why = UNMASKED;
+          break;
         }
         if (op == 0xf3bf && second >= 0x8f40 && second < 0x8f70) { // DSB, DMB, ISB
           pc += 2;
@@ -735,22 +732,49 @@ export function stretch(left: i32): i32 {
         }
         break;
       }
-      case 81: // CPSIE
-        store<i32>(PRIMASK, 0);
-        if (waits()) left -= ENOUGH;
-        continue;
-      case 82: // CPSID
-        store<i32>(PRIMASK, 1);
-        continue;
+      case 81: // CPSIE, CPSID
+        if (op == 0xb662) {
+          store<i32>(PRIMASK, 0);
+          why = UNMASKED;
+        } else if (op == 0xb672) {
+          store<i32>(PRIMASK, 1);
+          continue;
+        }
+        break;
     }
-    // What has not gone on by now is for rp2040js.
+    if (why == UNMASKED) break;
+    // What has not gone on by now is a load or store elsewhere, or a rare instruction.
+    const kind = <i32>load<u8>(op >> 6, KINDS);
+    why = RARE;
+    if (kind >= STORES && kind < ACCESSES_END) {
+      const number = (kind == 40 || kind == 47 ? op >> 8 : op) & 7;
+      const bytes = <i32>load<u8>(kind, SIZES - STORES);
+      if (isNear(address)) {
+        if (kind < LOADS) writeNear(address, get(number));
+        else set(number, extended(kind, readNear(address)));
+        why = SPENT;
+        continue;
+      }
+      if (kind < LOADS) {
+        why = STORE;
+      } else if (<u32>(address - FLASH) < FLASH_BYTES && (address & (bytes - 1)) == 0) {
+        set(number, extended(kind, load<i32>(address)));
+        left -= 1 + wait(address >> LINE_SHIFT);
+        why = SPENT;
+        continue;
+      } else {
+        why = kind < 48 ? LOAD : LOAD_SIGNED;
+      }
+      store<i32>(ADDRESS, address);
+      store<i32>(BYTES, bytes);
+      store<i32>(NUMBER, number);
+    }
     pc -= 2;
     left += 1;
-    isRare = true;
     break;
   }
   store<i32>(APSR, (negative & <i32>0x80000000) | (i32(zero == 0) << 30) | (c << 29) | (v << 28));
-  store<i32>(RARE, i32(isRare));
+  store<i32>(WHY, why);
   set(15, pc);
-  return load<i32>(CHANGED) ? left + ENOUGH : left;
+  return left;
 }
