@@ -16,6 +16,7 @@ the same object.
 import ast
 import re
 from collections import Counter
+from functools import cached_property
 from string import ascii_lowercase
 
 PRIVATE = re.compile(r"_[a-zA-Z0-9]\w*")
@@ -37,13 +38,11 @@ def shortened(sources, fixed=()):
     """The same sources with short names. Those whose path is in `fixed` stay as they are, and so
     do the names in them.
     """
-    trees = {path: ast.parse(source) for path, source in sources.items()}
-    short = _short(trees, fixed)
+    files = {path: _File(source) for path, source in sources.items()}
+    short = _short(files, fixed)
     return {
-        path: source_of(_Renaming(short[path]).visit(tree)).encode() + b"\n"
-        if short[path]
-        else sources[path]
-        for path, tree in trees.items()
+        path: file.renamed(short[path]) if short[path] else sources[path]
+        for path, file in files.items()
     }
 
 
@@ -69,14 +68,14 @@ def _exchange(line):
 
 def short_names(sources, fixed=()):
     """{path: {name: its short name}}: what a traceback from the chip has in place of it."""
-    return _short({path: ast.parse(source) for path, source in sources.items()}, fixed)
+    return _short({path: _File(source) for path, source in sources.items()}, fixed)
 
 
-def _short(trees, fixed):
-    private = _private(trees, fixed)
-    known = set().union(*map(_words, trees.values()))
+def _short(files, fixed):
+    private = _private(files, fixed)
+    known = set().union(*(file.words for file in files.values()))
     short = {}
-    for relatives in _families(trees):
+    for relatives in _families(files):
         names = sorted(name for path in relatives for name in private.get(path, ()))
         of = dict(zip(names, _free_names(known)))
         for path in relatives:
@@ -84,86 +83,32 @@ def _short(trees, fixed):
     return short
 
 
-def _private(trees, fixed):
+def _private(files, fixed):
     """{path: the names that nobody but this file knows}."""
-    files_with = Counter(name for tree in trees.values() for name in _words(tree))
+    files_with = Counter(word for file in files.values() for word in file.words)
     return {
         path: {
             name
-            for name in _made(tree) - _said(tree) - _given(tree)
+            for name in file.made - file.said - file.given
             if PRIVATE.fullmatch(name) and files_with[name] == 1
         }
-        for path, tree in trees.items()
+        for path, file in files.items()
         if path not in fixed
     }
 
 
-def _words(tree):
-    """All names of a file, and all words of its texts: an attribute is found by its text, too."""
-    return {word for node in ast.walk(tree) for word in _names(node)} | _said(tree)
-
-
-def _names(node):
-    if isinstance(node, (ast.Global, ast.Nonlocal)):
-        return node.names
-    if isinstance(node, ast.ImportFrom):
-        return WORD.findall(node.module or "")
-    if isinstance(node, ast.alias):
-        return WORD.findall(f"{node.name} {node.asname or ''}")
-    name = getattr(node, FIELD.get(type(node), ""), None)
-    return [name] if name else []
-
-
-def _said(tree):
-    """The words of the texts in a file; a text that stands alone is for the reader."""
-    said = set()
-    alone = {node.value for node in ast.walk(tree) if isinstance(node, ast.Expr)}
-    for node in ast.walk(tree):
-        text = node.value if isinstance(node, ast.Constant) and node not in alone else None
-        if isinstance(text, bytes):
-            text = text.decode("latin-1")
-        if isinstance(text, str):
-            said.update(WORD.findall(text))
-    return said
-
-
-def _made(tree):
-    """Names that the file itself gives; `sys.implementation._machine` it only reads."""
-    return {
-        name
-        for node in ast.walk(tree)
-        if not isinstance(node, (ast.alias, ast.ImportFrom))
-        and not isinstance(getattr(node, "ctx", None), ast.Load)
-        for name in _names(node)
-    }
-
-
-def _given(tree):
-    """Names that an object gets from outside of its class: it may be of another file."""
-    return {
-        node.attr
-        for node in ast.walk(tree)
-        if isinstance(node, ast.Attribute)
-        and isinstance(node.ctx, ast.Store)
-        and not (isinstance(node.value, ast.Name) and node.value.id == "self")
-    }
-
-
-def _families(trees):
+def _families(files):
     """The paths in groups: those whose classes inherit from each other are in one."""
-    group = {path: {path} for path in trees}
+    group = {path: {path} for path in files}
     home = {}
-    for path, tree in trees.items():
-        for node in ast.walk(tree):
-            if isinstance(node, ast.ClassDef):
-                home.setdefault(node.name, []).append(path)
-    for path, tree in trees.items():
-        for node in ast.walk(tree):
-            bases = node.bases if isinstance(node, ast.ClassDef) else ()
-            for name in [name for base in bases for name in _names(base)]:
-                for other in home.get(name, ()):
-                    joined = group[path] | group[other]
-                    group.update(dict.fromkeys(joined, joined))
+    for path, file in files.items():
+        for one in file.classes:
+            home.setdefault(one.name, []).append(path)
+    for path, file in files.items():
+        for name in [name for one in file.classes for base in one.bases for name in _names(base)]:
+            for other in home.get(name, ()):
+                joined = group[path] | group[other]
+                group.update(dict.fromkeys(joined, joined))
     return sorted({min(paths): sorted(paths) for paths in group.values()}.values())
 
 
@@ -175,15 +120,72 @@ def _free_names(known):
         yield from (name for name in map("_".__add__, ends) if name not in known)
 
 
-class _Renaming(ast.NodeTransformer):
-    def __init__(self, short):
-        self.short = short
+class _File:
+    """A source, and its names."""
 
-    def visit(self, node):
-        field = FIELD.get(type(node))
-        if field:
-            name = getattr(node, field)
-            setattr(node, field, self.short.get(name, name))
-        elif isinstance(node, (ast.Global, ast.Nonlocal)):
-            node.names = [self.short.get(name, name) for name in node.names]
-        return self.generic_visit(node)
+    def __init__(self, source):
+        self._tree = ast.parse(source)
+        self._nodes = list(ast.walk(self._tree))  # to walk takes longer than to look
+        self.classes = [node for node in self._nodes if isinstance(node, ast.ClassDef)]
+
+    @cached_property
+    def words(self):
+        """All names, and all words of its texts: an attribute is found by its text, too."""
+        return {word for node in self._nodes for word in _names(node)} | self.said
+
+    @cached_property
+    def said(self):
+        """The words of the texts; a text that stands alone is for the reader."""
+        said = set()
+        alone = {node.value for node in self._nodes if isinstance(node, ast.Expr)}
+        for node in self._nodes:
+            text = node.value if isinstance(node, ast.Constant) and node not in alone else None
+            if isinstance(text, bytes):
+                text = text.decode("latin-1")
+            if isinstance(text, str):
+                said.update(WORD.findall(text))
+        return said
+
+    @property
+    def made(self):
+        """Names that the file itself gives; `sys.implementation._machine` it only reads."""
+        return {
+            name
+            for node in self._nodes
+            if not isinstance(node, (ast.alias, ast.ImportFrom))
+            and not isinstance(getattr(node, "ctx", None), ast.Load)
+            for name in _names(node)
+        }
+
+    @property
+    def given(self):
+        """Names that an object gets from outside of its class: it may be of another file."""
+        return {
+            node.attr
+            for node in self._nodes
+            if isinstance(node, ast.Attribute)
+            and isinstance(node.ctx, ast.Store)
+            and not (isinstance(node.value, ast.Name) and node.value.id == "self")
+        }
+
+    def renamed(self, short):
+        """The source with the short names. What it was before is lost."""
+        for node in self._nodes:
+            field = FIELD.get(type(node))
+            if field:
+                name = getattr(node, field)
+                setattr(node, field, short.get(name, name))
+            elif isinstance(node, (ast.Global, ast.Nonlocal)):
+                node.names = [short.get(name, name) for name in node.names]
+        return source_of(self._tree).encode() + b"\n"
+
+
+def _names(node):
+    if isinstance(node, (ast.Global, ast.Nonlocal)):
+        return node.names
+    if isinstance(node, ast.ImportFrom):
+        return WORD.findall(node.module or "")
+    if isinstance(node, ast.alias):
+        return WORD.findall(f"{node.name} {node.asname or ''}")
+    name = getattr(node, FIELD.get(type(node), ""), None)
+    return [name] if name else []
