@@ -64,9 +64,10 @@ class Tier(NamedTuple):
     twin: str = ""  # the tier that runs on the very same: where that one is, this one is
 
 
-# Alone with the standard library, printing at once, leaving no caches in firmware/, and with
-# tracebacks as short as MicroPython's.
-CPYTHON_OPTIONS = ("-I", "-u", "-B", "-X", "utf8", "-X", "no_debug_ranges")
+# Alone with the standard library, printing at once, keeping what it compiles, though not in
+# firmware/, and with tracebacks as short as MicroPython's.
+CACHES = f"pycache_prefix={TOP}/build/pycache"
+CPYTHON_OPTIONS = ("-I", "-u", "-X", CACHES, "-X", "utf8", "-X", "no_debug_ranges")
 
 
 def _micropython(name: str, heap: str = "16M") -> tuple[str, ...]:

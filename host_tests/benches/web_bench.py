@@ -30,7 +30,7 @@ from tiers import TOP
 NODE = TOP / "build/node/node"
 PACKAGES = TOP / "build/browser"
 DRIVER = TOP / "host_tests/web/driver.mjs"
-# The first of them that is there: one without windows takes three quarters of the processor's time.
+# The first that is there: the one without windows takes three quarters of the processor's time.
 CHROMIUMS = (
     "chromium-headless-shell", "chromium", "chromium-browser", "google-chrome-stable",
     "google-chrome",
