@@ -105,7 +105,7 @@ UNDERSTOOD = (
     ),
     (
         "tools/mutating/",
-        'Import "cosmic_ray',
+        'Import "(cosmic_ray|parso)',
         "fetched where somebody makes mutants",
     ),
     ("tools/mutating/", 'Import "(tiers|line_notes)', "of the tests, which it runs"),
@@ -256,7 +256,9 @@ def mistakes(config, folder):
     pyright = os.path.join(build, "pyright/pyright/dist/index.js")
     if not os.path.exists(pyright) and not strict():
         pytest.skip("no pyright is here: tools/test with USS_STRICT=1 fetches it")
+    # With the packages of this Python, whatever the one of the machine has.
     command = [os.path.join(build, "node/node"), pyright, "--outputjson", "-p", config]
+    command += ["--pythonpath", sys.executable]
     run = subprocess.run(command, cwd=TOP, capture_output=True, text=True, timeout=300)
     told = json.loads(run.stdout)
     assert told["summary"]["filesAnalyzed"], run.stdout + run.stderr
