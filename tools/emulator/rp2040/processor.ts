@@ -114,9 +114,9 @@ kind(79, "11100iiiiiiiiiii"); kind(80, "11110iiiiiiiiiii"); kind(81, "1011011001
   store<i32>(number << 2, value, REGISTERS);
 }
 
-// Loads and stores: the kinds of both, and how many bytes each moves.
+// Loads and stores: the first kinds of both, and how many bytes each kind moves.
 
-const STORES = 34, LOADS = 41, ACCESSES_END = 50;
+const STORES = 34, STORE_AT_SP = 40, LOADS = 41, LOAD_AT_SP = 47, SIGNED = 48, ACCESSES_END = 50;
 const SIZES = memory.data<u8>([4, 2, 1, 4, 2, 1, 4, 4, 2, 1, 4, 2, 1, 4, 2, 1]);
 
 // Whether it is there, and aligned.
@@ -747,7 +747,7 @@ export function stretch(left: i32): i32 {
     const kind = <i32>load<u8>(op >> 6, KINDS);
     why = RARE;
     if (kind >= STORES && kind < ACCESSES_END) {
-      const number = (kind == 40 || kind == 47 ? op >> 8 : op) & 7;
+      const number = (kind == STORE_AT_SP || kind == LOAD_AT_SP ? op >> 8 : op) & 7;
       const bytes = <i32>load<u8>(kind, SIZES - STORES);
       if (isNear(address)) {
         if (kind < LOADS) writeNear(address, get(number));
@@ -763,7 +763,7 @@ export function stretch(left: i32): i32 {
         why = SPENT;
         continue;
       } else {
-        why = kind < 48 ? LOAD : LOAD_SIGNED;
+        why = kind < SIGNED ? LOAD : LOAD_SIGNED;
       }
       store<i32>(ADDRESS, address);
       store<i32>(BYTES, bytes);
