@@ -326,7 +326,7 @@ def bound(at):
 
 
 def test_every_source_file_begins_with_the_licence():
-    marks = {".py": "# ", ".sh": "# ", ".mjs": "// ", ".ts": "// "}
+    marks = {".py": "# ", ".sh": "# ", ".mjs": "// ", ".ts": "// ", ".h": "// "}
     for folder in ("firmware", "boards", "host_tests", "tools", ".ci"):
         for path, _, names in os.walk(os.path.join(TOP, folder)):
             for name in names:
@@ -339,11 +339,14 @@ def test_every_source_file_begins_with_the_licence():
                     assert head[has_shebang] == line.encode(), os.path.join(path, name)
 
 
+SOURCES = (".py", ".sh", ".mjs", ".ts", ".c", ".h")
+
+
 def test_no_folder_has_more_files_than_a_reader_takes_in():
     """Tests are many. The engine's folder has wings, which stand beside it."""
     for folder in ("firmware", "boards", "tools"):
         for path, _, names in os.walk(os.path.join(TOP, folder)):
-            code = [name for name in names if name.endswith((".py", ".sh", ".mjs", ".ts", ".c"))]
+            code = [name for name in names if name.endswith(SOURCES)]
             assert len(code) <= 20, (os.path.relpath(path, TOP), len(code))
 
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The emulated Pico's processor (tools/emulator/rp2040/processor.ts), instruction by instruction
-beside rp2040js, which knows nothing of it; its divider; and the waiting for the flash that it
-leaves out."""
+beside rp2040js, which knows nothing of it; its divider; the waiting for the flash that it leaves
+out; and what it does in this machine's own code (tools/emulator/rp2040/blocks)."""
 
 import json
 import subprocess
@@ -17,6 +17,9 @@ NODE = TOP / "build/node/node"
 WASM = TOP / "build/processor/processor.wasm"
 SCRIPT = TOP / "host_tests/benches/processor_beside_rp2040js.mjs"
 WAITS = TOP / "host_tests/benches/waits_for_flash.mjs"
+DRAWN = TOP / "host_tests/benches/blocks_beside_interpreter.mjs"
+BOTH_WAYS = TOP / "host_tests/benches/panel_beside_itself.mjs"
+BLOCKS = TOP / "build/blocks/panel.node"
 PANEL = TOP / "build/pico/panel.uf2"
 SEED = 2040
 
@@ -45,3 +48,23 @@ def test_what_it_leaves_out_of_the_waiting_for_the_flash_changes_nothing():
     shortly, patiently = map(json.loads, ran)
     assert shortly["was"] == patiently["was"]
     assert 100 < shortly["polls"] < patiently["polls"] / 10
+
+
+def test_every_instruction_does_in_a_block_what_it_does_outside(tmp_path):
+    needs(WASM)
+    run = subprocess.run([NODE, DRAWN, str(SEED), tmp_path], capture_output=True, text=True)
+    print(f"seed {SEED}", run.stdout, run.stderr, sep="\n")
+    assert run.returncode == 0
+    counts = json.loads(run.stdout.splitlines()[-1])
+    assert counts["different"] == 0
+    assert counts["same"] > 10_000 and counts["blocks"] > 5_000
+    assert counts["changed"] > 10  # programs that have overwritten themselves
+    assert counts["staysBesideWriting"] and counts["goesWithWriting"]
+
+
+def test_a_panel_does_with_blocks_what_it_does_without_to_the_nanosecond():
+    needs(BLOCKS)
+    done = subprocess.run([NODE, BOTH_WAYS], capture_output=True, text=True, check=True).stdout
+    with_blocks, without = json.loads(done)
+    assert with_blocks["digest"] == without["digest"]
+    assert with_blocks["runs"] > 10_000 and without["runs"] == 0

@@ -4,8 +4,10 @@
 //     node main.mjs READ WRITE PTY
 //
 // are the numbers of inherited descriptors: two pipes and the master side of a pty for the chip's
-// USB serial port. launch.py starts it. It ends when the pipe that it reads ends.
+// USB serial port. launch.py starts it. It ends when the pipe that it reads ends. With
+// USS_EMULATOR_BLOCKS=PATH in the environment, it then makes blocks of what it has executed often.
 import fs from 'node:fs';
+import { translate } from './rp2040/blocks/translate.mjs';
 import { Fault } from './rp2040/core.mjs';
 import { FLASH_BYTES, layUf2 } from './rp2040/flash.mjs';
 import { Pico } from './rp2040/pico.mjs';
@@ -246,3 +248,4 @@ process.env.TZ = 'UTC'; // the chip's calendar knows no other, and must not know
 console.warn = () => {}; // rp2040js has a logger, and in places forgets it
 const [read, write, pty] = process.argv.slice(2).map(Number);
 new Server(read, write, pty).serve();
+if (process.env.USS_EMULATOR_BLOCKS) translate(process.env.USS_EMULATOR_BLOCKS);

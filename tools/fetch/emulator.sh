@@ -82,5 +82,5 @@ make_processor() {
 compile_processor() (
     cd "$1" && "$build/node/node" "$build/emulator/node_modules/assemblyscript/bin/asc.js" \
         processor.ts --outFile processor.wasm -O3 --runtime stub --noAssert \
-        --memoryBase $((0x20050000)) --initialMemory $((0x2006))
+        --memoryBase $((0x20050000)) --initialMemory $((0x2060))
 )

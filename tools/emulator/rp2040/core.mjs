@@ -5,10 +5,13 @@
 // A stretch of instructions ends at the next alarm of the clock. The clock stands still meanwhile
 // and is put right before anything outside of RAM, flash and ROM is touched, so that each access
 // happens at the very instant at which it would if the clock ticked for each instruction.
+import { blocks } from './blocks/blocks.mjs';
 import { CortexM0Core } from './library.mjs';
-import { flash, ram, registers, rom, state, stretch } from './processor.mjs';
-import { ADDRESS, APSR, BYTES, LOWEST, MISS_CYCLES, NUMBER, PRIMASK, WHY } from './processor.mjs';
-import { LOAD, LOAD_SIGNED, LOST, RARE, STORE, UNMASKED } from './processor.mjs';
+import { flash, interpret, ram, registers, rom, state } from './processor.mjs';
+import {
+  ADDRESS, APSR, BYTES, JUMPED, LINE, LOWEST, MISS_CYCLES, NUMBER, PRIMASK, WHY,
+} from './processor.mjs';
+import { BLOCK, CHANGED, LOAD, LOAD_SIGNED, LOST, RARE, STORE, UNMASKED } from './processor.mjs';
 
 const CYCLE_NANOS = 8;
 const STRETCH_CYCLES = 1 << 24;
@@ -16,7 +19,8 @@ const RAM = 0x20000000;
 const FLASH_MASK = flash.length - 1, ROM_BYTES = 4 * rom.length;
 const FLASH_WINDOWS = 4; // 0x10000000 ... 0x13ffffff: the flash, cached or not; in 64 MiB
 const LOAD_CYCLES = { 0x4: 4, 0xd: 1 }, STORE_CYCLES = { 0x4: 5, 0xd: 1 }; // elsewhere 2
-const NOWHERE = 0xffffffff; // where SP has been, when it has not been anywhere
+const NOWHERE = -1; // where SP has been, when it has not been anywhere
+const NO_LINE = -1;
 
 const hex = (address) => (address >>> 0).toString(16);
 
@@ -31,6 +35,7 @@ export class Core extends CortexM0Core {
     state.fill(0);
     state[LOWEST] = NOWHERE; // SP, in this mode
     state[MISS_CYCLES] = missCycles;
+    blocks.begin();
     this.leave = false; // the stretch is to end: the chip is about to be reset
     this.changed = false; // it is to end, for this or another reason
     this.start = 0; // of the stretch: its instant, and how many cycles it may take
@@ -60,8 +65,8 @@ export class Core extends CortexM0Core {
   }
 
   noteDepth() {
-    const { depths } = this, lowest = state[LOWEST];
-    if (lowest === NOWHERE) return;
+    if (state[LOWEST] === NOWHERE) return;
+    const { depths } = this, lowest = state[LOWEST] >>> 0;
     if (this.IPSR) depths.handlers = Math.max(depths.handlers, this.entered - lowest);
     else depths.program = Math.max(depths.program, RAM + ram.length - lowest);
     state[LOWEST] = NOWHERE;
@@ -94,7 +99,7 @@ export class Core extends CortexM0Core {
   // of the stretch that are not yet spent.
 
   load(left, isSigned) {
-    const address = state[ADDRESS] | 0, bytes = state[BYTES], above = 32 - 8 * bytes;
+    const address = state[ADDRESS], bytes = state[BYTES], above = 32 - 8 * bytes;
     const value = this.read(address, bytes, left);
     registers[state[NUMBER]] = isSigned ? (value << above) >> above : value;
     registers[15] += 2;
@@ -102,7 +107,7 @@ export class Core extends CortexM0Core {
   }
 
   store(left) {
-    const address = state[ADDRESS] | 0;
+    const address = state[ADDRESS];
     this.write(address, state[BYTES], registers[state[NUMBER]], left);
     registers[15] += 2;
     return left - (STORE_CYCLES[address >>> 28] ?? 2);
@@ -161,17 +166,29 @@ export class Core extends CortexM0Core {
     throw new Fault(`the program has run to ${hex(pc)}, where no code is`);
   }
 
+  // Takes the cycles that are left, returns those that remain; `state` tells why.
+  execute(cycles) {
+    state[LINE] = NO_LINE;
+    state[JUMPED] = 0;
+    for (let left = cycles; ;) {
+      left = interpret(left);
+      if (state[WHY] !== BLOCK) return left;
+      left = blocks.run(left);
+    }
+  }
+
   // The stretch, and what it leaves to others. Returns the cycles that remain.
   stretch() {
     let left = this.budget;
     while (!this.changed) {
-      left = stretch(left);
+      left = this.execute(left);
       switch (state[WHY]) {
         case LOAD: left = this.load(left, false); break;
         case LOAD_SIGNED: left = this.load(left, true); break;
         case STORE: left = this.store(left); break;
         case UNMASKED: this.changed = this.waits(); break;
         case LOST: return this.lost(registers[15]);
+        case CHANGED: blocks.changed(); break;
         default: return left;
       }
     }
@@ -186,6 +203,7 @@ export class Core extends CortexM0Core {
     this.start = clock.nanosCounter;
     const cycles = Math.ceil((Math.min(until, clock.dueAt) - this.start) / CYCLE_NANOS);
     if (cycles <= 0) return;
+    if (blocks.waits) blocks.look();
     this.budget = Math.min(cycles, STRETCH_CYCLES);
     this.dueAt = clock.dueAt;
     state[APSR] = this.APSR;

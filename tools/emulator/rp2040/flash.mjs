@@ -4,6 +4,7 @@
 //
 // Erasing and programming take their time. When the power fails meanwhile, what was being written
 // is garbage afterwards; what the reset pin or the watchdog interrupts is finished by the flash.
+import { blocks } from './blocks/blocks.mjs';
 import { BasePeripheral } from './library.mjs';
 import { flash } from './processor.mjs';
 
@@ -77,6 +78,7 @@ export class Flash {
     } else {
       area.fill(0xff);
     }
+    blocks.written(start, size);
     this.writeEnabled = false;
     this.busyUntil = this.clock.nanos + nanos[this.times];
     this.report(reported, nanos[this.times]);

@@ -2,17 +2,21 @@
 // The processor's instructions, in AssemblyScript (assemblyscript.org), which becomes WebAssembly:
 // which takes two thirds of the time of JavaScript. core.mjs is the rest of the processor.
 //
-// `stretch` executes instructions until its cycles are spent. The clock stands still meanwhile. A
+// `interpret` executes instructions until its cycles are spent. The clock stands still meanwhile. A
 // load or store beyond the memories ends it, and so does a rare instruction: those are for core.mjs,
 // which puts the clock right first. So it calls nothing, and most of its variables stay in registers
 // of the host. Cycles are counted as rp2040js does, and besides them those that the processor waits
 // for the flash.
+//
+// What a firmware executes often may be there in the host's own code: blocks (blocks/blocks.mjs). A
+// jump that leads to one ends `interpret` as well.
 
 // The memories lie where they lie on the chip. What is beside them comes behind (see the compiler's
 // options in tools/fetch/emulator.sh); core.mjs and the rest of the chip see it too.
 export const ROM = 0, FLASH = 0x10000000, RAM = 0x20000000;
+const ROM_BYTES: u32 = 16384, RAM_BYTES: u32 = 264 * 1024, FLASH_BYTES: u32 = 2 * 1024 * 1024;
 export const REGISTERS = memory.data(16 * 4, 16);
-export const STATE = memory.data(13 * 4, 16);
+export const STATE = memory.data(17 * 4, 16);
 export const LINES = memory.data(1024 * 2 * 4, 16); // the cache (cache.mjs)
 
 // The words of STATE, and where they are.
@@ -23,14 +27,28 @@ const MISS_CYCLES: usize = STATE + 12; // how long the processor waits for a lin
 const WHY: usize = STATE + 16; // the stretch has ended: one of the reasons below
 const ADDRESS: usize = STATE + 20; // of that load or store,
 const BYTES: usize = STATE + 24; // how many,
-const NUMBER: usize = STATE + 28; // and of which register
+const NUMBER: usize = STATE + 28; // and of which register; or the number of the block
 const DIVIDEND: usize = STATE + 32; // of the divider, see below
 const DIVISOR: usize = STATE + 36;
 const QUOTIENT: usize = STATE + 40;
 const REMAINDER: usize = STATE + 44;
 const DIRTY: usize = STATE + 48;
+const LINE: usize = STATE + 52; // of the cache, from which the last instruction came; -1: from none
+const JUMPED: usize = STATE + 56; // 1: a jump has led to the next instruction
+const CODE: usize = STATE + 60; // where in RAM there are blocks: the first byte, and how many bytes
+const CODE_BYTES: usize = STATE + 64;
 
-// Why a stretch has ended.
+// By halfword of RAM and then of the flash: the number of the block that begins there, or 0, and how
+// many jumps have led to where none is, up to MOST_JUMPS.
+const HALVES: usize = (RAM_BYTES + FLASH_BYTES) / 2;
+const MOST_JUMPS = 65535;
+const CODE_SHIFT = 5; // of an offset in RAM, to its part in CODE_MAP
+const LEAST = 64; // cycles that must be left, so that a block is worth while
+export const BLOCKS: usize = 0x20060000;
+export const JUMPS: usize = BLOCKS + 2 * HALVES;
+export const CODE_MAP: usize = JUMPS + 2 * HALVES; // 1 for each 32 bytes of RAM with code of a block
+
+// Why it has ended.
 const SPENT = 0; // no cycles are left
 const RARE = 1; // the next instruction is one for rp2040js
 const LOAD = 2; // and so are these three, for core.mjs
@@ -38,10 +56,11 @@ const LOAD_SIGNED = 3;
 const STORE = 4;
 const UNMASKED = 5; // interrupts are no longer masked: one may wait
 const LOST = 6; // no code is there
+const CHANGED = 7; // code of a block has been overwritten
+const BLOCK = 8; // a block is to be called: NUMBER
 
 const KINDS = memory.data(1024); // by the first ten bits of an instruction: its case of the switch
 
-const ROM_BYTES: u32 = 16384, RAM_BYTES: u32 = 264 * 1024, FLASH_BYTES: u32 = 2 * 1024 * 1024;
 const LINE_SHIFT = 3; // of an address, to the number of its line
 const SETS_MASK = 1023;
 const EXCEPTION_RETURN = 15; // the first digit of its addresses
@@ -215,15 +234,44 @@ const BEQ_OR_BNE = 0xd000, BEQ_OR_BNE_MASK = 0xfe00, IS_BNE = 0x100, IN_LINE_MAS
   return (rest == 0) == ((branch & IS_BNE) == 0);
 }
 
+// The block that begins where a jump has led, or 0.
+@inline function blockAt(pc: i32): i32 {
+  let half = <u32>(pc - RAM) >> 1;
+  if (half >= RAM_BYTES / 2) {
+    half = <u32>(pc - FLASH) >> 1;
+    if (half >= FLASH_BYTES / 2) return 0;
+    half += RAM_BYTES / 2;
+  }
+  const block = <i32>load<u16>(half << 1, BLOCKS);
+  if (block == 0) {
+    const jumps = load<u16>(half << 1, JUMPS);
+    if (jumps != MOST_JUMPS) store<u16>(half << 1, jumps + 1, JUMPS);
+  }
+  return block;
+}
+
+// Stores to RAM. Whether that has changed the code of a block.
+@inline function put<T>(address: i32, value: i32): bool {
+  if (<u32>(address - load<i32>(CODE)) < load<u32>(CODE_BYTES)) {
+    const changes = load<u8>(<u32>(address - RAM) >> CODE_SHIFT, CODE_MAP) != 0
+      && load<T>(address) != <T>value;
+    store<T>(address, <T>value);
+    return changes;
+  }
+  store<T>(address, <T>value);
+  return false;
+}
+
 @inline function isStack(offset: i32): bool {
   return <u32>offset <= RAM_BYTES - MOST_PUSHED;
 }
 
 // Takes the cycles that are left, returns those that remain (or were taken too many); WHY tells why.
 // One function and long: each call would cost more than the instruction.
-export function stretch(left: i32): i32 {
+export function interpret(left: i32): i32 {
   let pc = get(15) & ~1; // of the next instruction
-  let line = -1; // from which the last instruction came
+  let line = load<i32>(LINE);
+  let jumped = load<i32>(JUMPED);
   const flags = load<i32>(APSR);
   let negative = flags; // below 0: N is set
   let zero = ~flags & 0x40000000; // 0: Z is set
@@ -232,6 +280,15 @@ export function stretch(left: i32): i32 {
   let why = SPENT;
   let address = 0; // of the load or store
   while (left > 0) {
+    if (jumped != 0) {
+      jumped = 0;
+      const block = blockAt(pc);
+      if (block != 0 && left > LEAST) {
+        store<i32>(NUMBER, block);
+        why = BLOCK;
+        break;
+      }
+    }
     if (pc >> LINE_SHIFT != line) {
       line = pc >> LINE_SHIFT;
       if (<u32>(pc - FLASH) < FLASH_BYTES) {
@@ -305,7 +362,7 @@ export function stretch(left: i32): i32 {
           const branch = <i32>load<u16>(pc);
           left -= 1;
           pc += 2;
-          if (isTaken(branch, rest)) { pc += hop(branch); left -= 1; }
+          if (isTaken(branch, rest)) { pc += hop(branch); left -= 1; jumped = 1; }
         }
         continue;
       }
@@ -386,7 +443,7 @@ export function stretch(left: i32): i32 {
           const branch = <i32>load<u16>(pc);
           left -= 1;
           pc += 2;
-          if (isTaken(branch, rest)) { pc += hop(branch); left -= 1; }
+          if (isTaken(branch, rest)) { pc += hop(branch); left -= 1; jumped = 1; }
         }
         continue;
       }
@@ -415,6 +472,7 @@ export function stretch(left: i32): i32 {
         if (to == 15) {
           pc = sum & ~1;
           left -= 1;
+          jumped = 1;
         } else {
           set(to, to == 13 ? sum & ~3 : sum);
         }
@@ -434,6 +492,7 @@ export function stretch(left: i32): i32 {
         if (to == 15) {
           pc = value & ~1;
           left -= 1;
+          jumped = 1;
         } else {
           set(to, to == 13 ? value & ~3 : value);
         }
@@ -444,6 +503,7 @@ export function stretch(left: i32): i32 {
         if ((op & 7) != 0 || target >>> 28 == EXCEPTION_RETURN) break;
         pc = target & ~1;
         left -= 1;
+        jumped = 1;
         continue;
       }
       case 32: { // BLX
@@ -452,6 +512,7 @@ export function stretch(left: i32): i32 {
         set(14, pc | 1);
         pc = target & ~1;
         left -= 1;
+        jumped = 1;
         continue;
       }
       case 33: { // LDR literal
@@ -464,45 +525,52 @@ export function stretch(left: i32): i32 {
       case 34: // STR register
         address = n(op) + m(op);
         if (!inRam<i32>(address)) break;
-        store<i32>(address, d(op));
         left -= 1;
-        continue;
+        if (!put<i32>(address, d(op))) continue;
+        why = CHANGED;
+        break;
       case 35: // STRH register
         address = n(op) + m(op);
         if (!inRam<u16>(address)) break;
-        store<u16>(address, <u16>d(op));
         left -= 1;
-        continue;
+        if (!put<u16>(address, d(op))) continue;
+        why = CHANGED;
+        break;
       case 36: // STRB register
         address = n(op) + m(op);
         if (!inRam<u8>(address)) break;
-        store<u8>(address, <u8>d(op));
         left -= 1;
-        continue;
+        if (!put<u8>(address, d(op))) continue;
+        why = CHANGED;
+        break;
       case 37: // STR immediate
         address = n(op) + ((op >> 4) & 0x7c);
         if (!inRam<i32>(address)) break;
-        store<i32>(address, d(op));
         left -= 1;
-        continue;
+        if (!put<i32>(address, d(op))) continue;
+        why = CHANGED;
+        break;
       case 38: // STRH immediate
         address = n(op) + ((op >> 5) & 0x3e);
         if (!inRam<u16>(address)) break;
-        store<u16>(address, <u16>d(op));
         left -= 1;
-        continue;
+        if (!put<u16>(address, d(op))) continue;
+        why = CHANGED;
+        break;
       case 39: // STRB immediate
         address = n(op) + ((op >> 6) & 31);
         if (!inRam<u8>(address)) break;
-        store<u8>(address, <u8>d(op));
         left -= 1;
-        continue;
+        if (!put<u8>(address, d(op))) continue;
+        why = CHANGED;
+        break;
       case 40: // STR, SP plus immediate
         address = get(13) + ((op & 0xff) << 2);
         if (!inRam<i32>(address)) break;
-        store<i32>(address, d8(op));
         left -= 1;
-        continue;
+        if (!put<i32>(address, d8(op))) continue;
+        why = CHANGED;
+        break;
       case 41: // LDR register
         address = n(op) + m(op);
         if (!inRam<i32>(address)) break;
@@ -583,17 +651,19 @@ export function stretch(left: i32): i32 {
         continue;
       case 58: { // PUSH
         const count = popcnt(op & 0x1ff), bottom = get(13) - 4 * count;
-        let offset = bottom - RAM;
+        let offset = bottom - RAM, changes = false;
         if (!isStack(offset)) break;
         for (let list = op & 0xff; list; list &= list - 1, offset += 4) {
-          store<i32>(offset, get(ctz(list)), RAM);
+          if (put<i32>(RAM + offset, get(ctz(list)))) changes = true;
         }
         const link = (op >> 8) & 1;
-        if (link) store<i32>(offset, get(14), RAM);
+        if (link && put<i32>(RAM + offset, get(14))) changes = true;
         set(13, bottom);
         if (<u32>bottom < load<u32>(LOWEST)) store<i32>(LOWEST, bottom);
         left -= count - link;
-        continue;
+        if (!changes) continue;
+        why = CHANGED;
+        break;
       }
       case 59: { // POP without PC
         let offset = get(13) - RAM;
@@ -616,6 +686,7 @@ export function stretch(left: i32): i32 {
         set(13, RAM + offset + 4);
         pc = target & ~1;
         left -= 2 + count;
+        jumped = 1;
         continue;
       }
       case 61: // REV
@@ -626,14 +697,16 @@ export function stretch(left: i32): i32 {
         continue;
       case 63: { // STMIA
         const to = (op >> 8) & 7;
-        let offset = get(to) - RAM;
+        let offset = get(to) - RAM, changes = false;
         if (!isStack(offset) || (offset & 3) != 0) break;
         for (let list = op & 0xff; list; list &= list - 1, offset += 4) {
-          store<i32>(offset, get(ctz(list)), RAM);
+          if (put<i32>(RAM + offset, get(ctz(list)))) changes = true;
         }
         set(to, RAM + offset);
         left -= popcnt(op & 0xff);
-        continue;
+        if (!changes) continue;
+        why = CHANGED;
+        break;
       }
       case 64: { // LDMIA
         const from = (op >> 8) & 7;
@@ -654,50 +727,51 @@ export function stretch(left: i32): i32 {
         continue;
       }
       case 65: // BEQ
-        if (zero == 0) { pc += hop(op); left -= 1; }
+        if (zero == 0) { pc += hop(op); left -= 1; jumped = 1; }
         continue;
       case 66: // BNE
-        if (zero != 0) { pc += hop(op); left -= 1; }
+        if (zero != 0) { pc += hop(op); left -= 1; jumped = 1; }
         continue;
       case 67: // BCS
-        if (c != 0) { pc += hop(op); left -= 1; }
+        if (c != 0) { pc += hop(op); left -= 1; jumped = 1; }
         continue;
       case 68: // BCC
-        if (c == 0) { pc += hop(op); left -= 1; }
+        if (c == 0) { pc += hop(op); left -= 1; jumped = 1; }
         continue;
       case 69: // BMI
-        if (negative < 0) { pc += hop(op); left -= 1; }
+        if (negative < 0) { pc += hop(op); left -= 1; jumped = 1; }
         continue;
       case 70: // BPL
-        if (negative >= 0) { pc += hop(op); left -= 1; }
+        if (negative >= 0) { pc += hop(op); left -= 1; jumped = 1; }
         continue;
       case 71: // BVS
-        if (v != 0) { pc += hop(op); left -= 1; }
+        if (v != 0) { pc += hop(op); left -= 1; jumped = 1; }
         continue;
       case 72: // BVC
-        if (v == 0) { pc += hop(op); left -= 1; }
+        if (v == 0) { pc += hop(op); left -= 1; jumped = 1; }
         continue;
       case 73: // BHI
-        if (c != 0 && zero != 0) { pc += hop(op); left -= 1; }
+        if (c != 0 && zero != 0) { pc += hop(op); left -= 1; jumped = 1; }
         continue;
       case 74: // BLS
-        if (c == 0 || zero == 0) { pc += hop(op); left -= 1; }
+        if (c == 0 || zero == 0) { pc += hop(op); left -= 1; jumped = 1; }
         continue;
       case 75: // BGE
-        if (negative >>> 31 == v) { pc += hop(op); left -= 1; }
+        if (negative >>> 31 == v) { pc += hop(op); left -= 1; jumped = 1; }
         continue;
       case 76: // BLT
-        if (negative >>> 31 != v) { pc += hop(op); left -= 1; }
+        if (negative >>> 31 != v) { pc += hop(op); left -= 1; jumped = 1; }
         continue;
       case 77: // BGT
-        if (zero != 0 && negative >>> 31 == v) { pc += hop(op); left -= 1; }
+        if (zero != 0 && negative >>> 31 == v) { pc += hop(op); left -= 1; jumped = 1; }
         continue;
       case 78: // BLE
-        if (zero == 0 || negative >>> 31 != v) { pc += hop(op); left -= 1; }
+        if (zero == 0 || negative >>> 31 != v) { pc += hop(op); left -= 1; jumped = 1; }
         continue;
       case 79: // B
         pc += 2 + ((op << 21) >> 20);
         left -= 1;
+        jumped = 1;
         continue;
       case 80: { // the wide ones: BL, MRS and MSR of PRIMASK, barriers
         const second = <i32>load<u16>(pc);
@@ -708,6 +782,7 @@ export function stretch(left: i32): i32 {
           pc += 2 + ((sign << 24) | (i1 << 23) | (i2 << 22) | ((op & 0x3ff) << 12)
             | ((second & 0x7ff) << 1));
           left -= 2;
+          jumped = 1;
           continue;
         }
         if (op == 0xf3ef && (second & 0xf0ff) == (0x8000 | SPECIAL_PRIMASK)) { // MRS
@@ -742,7 +817,7 @@ export function stretch(left: i32): i32 {
         }
         break;
     }
-    if (why == UNMASKED) break;
+    if (why != SPENT) break;
     // What has not gone on by now is a load or store elsewhere, or a rare instruction.
     const kind = <i32>load<u8>(op >> 6, KINDS);
     why = RARE;
@@ -774,6 +849,8 @@ export function stretch(left: i32): i32 {
     break;
   }
   store<i32>(APSR, (negative & <i32>0x80000000) | (i32(zero == 0) << 30) | (c << 29) | (v << 28));
+  store<i32>(LINE, line);
+  store<i32>(JUMPED, jumped);
   store<i32>(WHY, why);
   set(15, pc);
   return left;

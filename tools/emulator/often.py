@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: MIT
+"""Lets a firmware do for some seconds what it usually does, so that the emulator learns what it
+executes often (rp2040/blocks/blocks.mjs).
+
+    USS_EMULATOR_BLOCKS=PATH python3 tools/emulator/launch.py MICROPYTHON PROGRAM NAME
+
+PROGRAM: this file. NAME: a firmware of tools/fetch/pico.sh. Runs on the Unix port, from the top of
+the tree.
+"""
+
+import sys
+
+sys.path[:] = ["", "firmware", ".frozen"]
+
+import tools.emulator.world as emulated  # noqa: E402
+
+HARD = "_hard"
+SECONDS = 5
+KEY_MS = 400  # from key to key
+
+# What plain MicroPython does: its bytecode, compiler, heap, files, timer and UART.
+MAIN = """
+import gc, json, os, struct, sys, time
+from machine import Pin, Timer, UART
+
+SOURCE = '''
+class Counter:
+    def __init__(self, first):
+        self.count, self.seen, self.names = first, {}, []
+    def step(self, value):
+        self.count = (self.count + value * 7) % 1009
+        self.seen[self.count & 31] = value
+        if self.count > 500 and value:
+            self.names.append("A%d" % self.count)
+        return self.count // 3
+def turn(counter, values):
+    total = 0
+    for value in values:
+        try:
+            total += counter.step(value) ^ value << 1
+            if total & 64:
+                raise ValueError(total)
+        except ValueError as error:
+            total -= error.args[0] & 15
+    return [total] + list(values[:3]), (value for value in values if value)
+'''
+ticks = 0
+def tick(timer):
+    global ticks
+    ticks += 1
+timer = Timer(period=2, callback=tick)
+uart = UART(1, 19200, parity=0, tx=Pin(4), rx=Pin(5))
+while True:
+    names = {}
+    exec(SOURCE, names)
+    counter = names["Counter"](3)
+    for length in range(20):
+        row, rest = names["turn"](counter, bytearray(range(length)))
+        text = json.dumps({"row": row, "rest": list(rest), "text": repr(counter.names)})
+        json.loads(text)
+        packed = struct.pack("<HBI", length, 7, counter.count)
+        if sum(packed) != sum(memoryview(packed)[0:7]):
+            sys.exit(1)
+    with open("tried", "wb") as file:
+        file.write(text.encode() * 20)
+    with open("tried", "rb") as file:
+        while file.read(64):
+            pass
+    os.listdir("/")
+    uart.write(packed)
+    uart.read()
+    gc.collect()
+    time.sleep_ms(5)
+"""
+
+
+def let_panel_work(world):
+    """Its drive runs, it shows pages, and its menu."""
+    world.run(3_000)
+    world.press("START")
+    world.run(2_000)
+    for key in ("UP", "NEXT", "PARAM", "PARAM", "DOWN", "EDIT"):
+        world.press(key)
+        world.run(KEY_MS)
+    world.press("PARAM", 1_300)
+    for key in ("DOWN", "SET", "DOWN", "SET"):
+        world.press(key)
+        world.run(KEY_MS)
+    world.press("STOP")
+
+
+def main(name):
+    emulated.build = HARD if name.endswith(HARD) else ""
+    if name.startswith("stock"):
+        world = emulated.PicoWorld("stock", addresses=(), files={"main.py": MAIN.encode()})
+    else:
+        world = emulated.PicoWorld("panel", addresses=(1, 2))
+        let_panel_work(world)
+    world.run(1000 * SECONDS)
+    assert b"Error" not in world.usb, bytes(world.usb)
+
+
+main(sys.argv[1])
