@@ -13,9 +13,11 @@ import sys
 sys.path[:] = ["", "firmware", ".frozen"]
 
 import tools.emulator.world as emulated  # noqa: E402
+from boards.sim.drives.families import g110  # noqa: E402
 
 HARD = "_hard"
-SECONDS = 5
+PROGRAMS_MS = 5_000
+SAVED_MS = 60_000
 KEY_MS = 400  # from key to key
 
 # What plain MicroPython does: its bytecode, compiler, heap, files, timer and UART.
@@ -74,30 +76,49 @@ while True:
 """
 
 
-def let_panel_work(world):
-    """Its drive runs, it shows pages, and its menu."""
+def tap(world, key, ms=100):
+    world.press(key, ms)
+    world.run(KEY_MS)
+
+
+def choose(world, *entries):
+    """From the home page through the menu."""
+    tap(world, "PARAM", 1_300)
+    for entry in entries:
+        for _ in range(20):
+            if world.lcd()[1].startswith(">" + entry):
+                break
+            tap(world, "DOWN")
+        tap(world, "SET")
+
+
+def let_panel_work():
+    """It runs a drive, shows pages, and saves the drive's parameters."""
+    world = emulated.PicoWorld(
+        "panel", baud=57600, kinds={1: {"family": g110}}, settings={"kinds": {"1": "g110"}}
+    )
     world.run(3_000)
-    world.press("START")
-    world.run(2_000)
-    for key in ("UP", "NEXT", "PARAM", "PARAM", "DOWN", "EDIT"):
-        world.press(key)
-        world.run(KEY_MS)
-    world.press("PARAM", 1_300)
-    for key in ("DOWN", "SET", "DOWN", "SET"):
-        world.press(key)
-        world.run(KEY_MS)
-    world.press("STOP")
+    for key in ("START", "UP", "NEXT", "PARAM", "PARAM", "DOWN", "EDIT", "STOP"):
+        tap(world, key)
+    world.reset()
+    world.run(3_000)
+    choose(world, "SETS", "SAVE A1")
+    tap(world, "SET")
+    assert world.run_until(lambda: world.reads("SAVED"), SAVED_MS), world.lcd()
+
+
+def let_programs_work():
+    world = emulated.PicoWorld("stock", addresses=(), files={"main.py": MAIN.encode()})
+    world.run(PROGRAMS_MS)
+    assert b"Error" not in world.usb, bytes(world.usb)
 
 
 def main(name):
     emulated.build = HARD if name.endswith(HARD) else ""
     if name.startswith("stock"):
-        world = emulated.PicoWorld("stock", addresses=(), files={"main.py": MAIN.encode()})
+        let_programs_work()
     else:
-        world = emulated.PicoWorld("panel", addresses=(1, 2))
-        let_panel_work(world)
-    world.run(1000 * SECONDS)
-    assert b"Error" not in world.usb, bytes(world.usb)
+        let_panel_work()
 
 
 main(sys.argv[1])
