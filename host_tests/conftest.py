@@ -15,13 +15,12 @@ module level:
     INTERPRETERS = "pico pico_hard_again"  # each build and each behaviour has its turn
     INTERPRETERS = "host"               # an ordinary pytest file, with fixtures and all
 
-With --coverage the lines of the firmware that run on CPython are noted (cpython/line_notes.py).
-Then some functions run there whose file does not: those of cpython/lines_once.json.
+With --coverage the lines of the firmware that run on CPython are noted (cpython/line_notes.py),
+and what takes long runs once (shares.py).
 -k passes over files that it cannot mean (selection.py).
 """
 
 import ast
-import json
 import os
 import signal
 import time
@@ -39,9 +38,9 @@ from line_coverage import LineCoverage
 from ordinary import OrdinaryRun, Teller
 from runner import COVERAGE
 from selection import Selection, files_of
+from shares import NotHere, shares
 from tiers import ENVIRONMENT, OR, TIERS, TOP, FileRun, Survey, interpreters, survey
 
-LINES_ONCE = Path(__file__).parent / "cpython" / "lines_once.json"  # choose_lines.py writes it
 SURVEY = pytest.StashKey()
 SELECTION = pytest.StashKey()
 POOL = pytest.StashKey()
@@ -54,7 +53,7 @@ def pytest_addoption(parser):
     parser.addini("function_timeout_s", "a test function without a verdict for so long is hung")
     only = "runs this test and tells of it: so the pool runs ordinary files (ordinary.py)"
     parser.addoption("--only", action="append", metavar="NODEID", help=only)
-    lines = "shows which lines of the firmware the tests on CPython ran"
+    lines = "shows which lines of firmware/ ran on CPython; runs once what takes long (shares.py)"
     parser.addoption("--coverage", action="store_true", help=lines)
 
 
@@ -210,28 +209,26 @@ class MicroPythonFile(pytest.File):
 
     def collect(self):
         functions = self.functions()
+        found = dict.fromkeys(self.tiers(), functions)
+        if self.config.option.coverage:
+            here = self.config.stash[SURVEY].versions
+            try:
+                found = shares(self.path, self.tree, functions, found, here)
+            except NotHere as error:
+                raise self.CollectError(str(error)) from None
+        for tier, names in found.items():
+            share = {name: line for name, line in functions.items() if name in names}
+            yield TierOfFile.from_parent(self, name=tier, functions=share)
+
+    def tiers(self):
+        """Those on which it runs, of those that are here."""
         here = self.config.stash[SURVEY].versions
         for word in self.interpreters:
             names = word.split(OR)
             for name in names:
                 if name not in TIERS:
                     raise self.CollectError(f"INTERPRETERS names {name!r}, which is not a tier")
-            for name in [name for name in names if name in here][:1]:
-                yield TierOfFile.from_parent(self, name=name, functions=functions)
-        for_lines = {name: functions[name] for name in self.for_lines(functions)}
-        if for_lines and "cpython" in here:
-            yield TierOfFile.from_parent(self, name="cpython", functions=for_lines)
-
-    def for_lines(self, functions):
-        """The functions that run on CPython as well, because no other runs some line there."""
-        if not self.config.option.coverage or not self.path.is_relative_to(LINES_ONCE.parents[1]):
-            return []
-        path = str(self.path.relative_to(LINES_ONCE.parents[1]))
-        names = json.loads(LINES_ONCE.read_text(encoding="utf-8")).get(path, [])
-        for name in names:
-            if name not in functions:
-                raise self.CollectError(f"{LINES_ONCE.name} names {name}, which is not here")
-        return names
+            yield from [name for name in names if name in here][:1]
 
     def functions(self):
         """Name -> line. What would silently not run as a test is refused."""

@@ -122,10 +122,15 @@ OF_FOLDER = {
 
 def interpreters(tree, path):
     """The words in the INTERPRETERS of a test file; where it has none, those of its folder."""
+    return said(tree) or usual(path)
+
+
+def said(tree):
+    """The words in its INTERPRETERS; none where it leaves that to its folder."""
     for node in tree.body:
         if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "INTERPRETERS":
             return ast.literal_eval(node.value).split()
-    return usual(path)
+    return []
 
 
 def usual(path):
