@@ -12,6 +12,8 @@ from tools.examples.simulation import Stage, names
 from uss import families
 from uss.bus import Master
 
+INTERPRETERS = "unix64|unix32 cpython"  # people run them on both
+
 README = "firmware/uss/README.md"
 QUICK = {2014: 2_000, 1120: 1.0, 1121: 1.0, 1058: 5.0, 1060: 1.0}
 KINDS = {

@@ -13,6 +13,8 @@ from tools.examples import (
 )
 from tools.examples.simulation import DRIVES, Stage, names
 
+INTERPRETERS = "unix64|unix32 cpython"  # people run them on both
+
 EXAMPLES = (
     broadcast_stop, one_drive, own_family, own_program, parameters, plc_br, plc_s7, three_drives,
 )  # fmt: skip
