@@ -108,6 +108,7 @@ def test_the_tables_name_what_is_there():
             assert set(names) <= {getattr(node, "name", "") for node in tree.body}, path
 
 
+ANYBODY = {"CI": "", "USS_STRICT": ""}  # who may lack a tier
 TABLES = """
 import pathlib, shares
 shares.TESTS = pathlib.Path(__file__).parent
@@ -132,7 +133,7 @@ def collected(tmp_path, tables):
             [sys.executable, "-B", "-m", "pytest", "-c", TOP / "host_tests/pytest.ini"]
             + ["--rootdir", tmp_path, "-p", "no:cacheprovider", "-p", "conftest", "-p", "tables"]
             + ["-q", "--collect-only", tmp_path, *arguments],
-            env={**ENVIRONMENT, "PYTHONPATH": f"{TOP / 'host_tests'}:{tmp_path}", "CI": ""},
+            env={**ENVIRONMENT, **ANYBODY, "PYTHONPATH": f"{TOP / 'host_tests'}:{tmp_path}"},
             cwd=tmp_path, capture_output=True, text=True,
         )  # fmt: skip
         return run.stdout
