@@ -16,6 +16,7 @@ from tiers import TOP
 
 INTERPRETERS = "host"
 
+PACKAGED = os.path.join(TOP, "build", "packaged", "micropython")
 FOLDER = os.path.join(TOP, "tools", "examples")
 SCRIPTS = sorted(name for name in os.listdir(FOLDER) if name.endswith(".txt"))
 BY_KEYS = {"press", "hold", "wait", "expect", "lcd"}
@@ -74,6 +75,21 @@ def test_an_operator_does_it_by_keys_alone(name):
     for wanted in MUST_PRINT[name]:
         before, _, printed = printed.partition(wanted)
         assert printed, "%s is missing behind:\n%s" % (wanted, before or ended.stdout)
+
+
+@pytest.mark.skipif(not os.path.exists(PACKAGED), reason="fetched with USS_STRICT=1 tools/test")
+def test_on_the_micropython_of_debian_it_is_the_same():
+    """There unix64 is built here, and those who only want to see the panel have the package."""
+    environment = {**os.environ, "MICROPYPATH": "%s:%s/firmware:.frozen" % (TOP, TOP)}
+    panel = [PACKAGED, "-X", "heapsize=16M", "tools/live/virtual_panel.py"]
+    words = command("parameter.txt")
+    printed = [
+        subprocess.run(
+            [*program, *words[1:]], cwd=TOP, env=environment, capture_output=True, timeout=240
+        ).stdout
+        for program in (panel, words[:1])
+    ]
+    assert printed[0] == printed[1] and b"WRITTEN" in printed[0], printed
 
 
 @pytest.mark.parametrize("name", sorted(MUST_PRINT))

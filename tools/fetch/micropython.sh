@@ -4,6 +4,7 @@
 #
 #   unix64     the one people use: 1.25 or newer, installed, or fetched
 #   unix32     small integers of 31 bits, as on the microcontrollers
+#   packaged   that of Debian, for the test that it runs the panel, where unix64 is built here
 #
 # Each lands in build/NAME/micropython: a link to what is installed, a script that starts unpacked
 # packages, or a program built here.
@@ -36,10 +37,16 @@ make_micropython() {
     return 1
 }
 
+# What is built here takes 0.6 of the time, but it takes a minute or two to build: that is for those
+# who run tests, and not for those who want to see the panel.
+builds_unix64=
+
 ways_to() {
     case $1 in
-        unix64) echo link_installed unpack_packages build_from_source ;;
-        unix32) echo build_from_source unpack_packages ;; # what is built here takes 0.6 of the time
+        unix64) echo link_installed ${builds_unix64:+build_from_source} unpack_packages \
+            build_from_source ;;
+        unix32) echo build_from_source unpack_packages ;;
+        packaged) echo unpack_packages ;;
     esac
 }
 
@@ -97,7 +104,7 @@ unpack_packages() {
 # The architecture of the packages for a build, in Debian's words.
 architecture_of() {
     case $1.$(dpkg --print-architecture) in
-        unix64.*) dpkg --print-architecture ;;
+        unix64.* | packaged.*) dpkg --print-architecture ;;
         unix32.amd64) echo i386 ;;
         unix32.arm64) echo armhf ;;
         unix32.i386 | unix32.armhf) dpkg --print-architecture ;;
@@ -167,25 +174,60 @@ unpack_source() {
 }
 
 compile() {
-    local name=$1 view=$2 folder=$3
+    local name=$1 port=$2/source/ports/unix folder=$3
     say "    compiling it"
-    quietly "$view/log" make_port "$name" "$view/source/ports/unix" &&
-        mv "$view/source/ports/unix/build-$name/micropython" "$folder/micropython"
+    quietly "$2/log" build_port "$name" "$port" &&
+        mv "$port/build-$name/micropython" "$folder/micropython"
+}
+
+# Twice where the compiler can: what first notes what it does most while it simulates a panel is
+# then built to do that fast.
+build_port() {
+    local name=$1 port=$2
+    if learns; then
+        make_port "$name" "$port" -fprofile-generate &&
+            simulate "$port/build-$name/micropython" &&
+            compile_anew "$port/build-$name" &&
+            make_port "$name" "$port" "${as_learnt[@]}" && return
+        rm -rf "$port/build-$name"
+    fi
+    make_port "$name" "$port"
+}
+
+as_learnt=(-flto=auto -fprofile-use -fprofile-partial-training -Wno-missing-profile)
+
+learns() {
+    cc -fprofile-generate "${as_learnt[@]}" -xc -fsyntax-only /dev/null
+}
+
+simulate() {
+    local each
+    for each in simulation codec; do
+        MICROPYPATH=$top:$top/firmware within 120 "$1" -X heapsize=16M \
+            "$top/tools/benching/measurements.py" quick "$each" || return
+    done
+}
+
+compile_anew() {
+    find "$1" -name '*.o' -delete && rm "$1/micropython"
 }
 
 # Nothing is frozen in, so that no cross compiler has to be built first; and what the panel does
 # not use is left out, so that a C library is all that has to be installed. Built for speed, at a
 # fixed address and with a place for each name in the cache of look-ups, the tests take less time
-# on it. git may not look above build/, or it would take the version of this tree for that of
-# MicroPython.
+# on it. Numbers with a fraction are rounded alike with small integers of either size: so does not
+# the unit for them that 32 bits are built for by default. git may not look above build/, or it
+# would take the version of this tree for that of MicroPython.
 make_port() {
-    local name=$1 settings=(
+    local name=$1 port=$2 flags="-O2 -fno-gcse ${*:3}" settings
+    [[ $name == unix32 && $(uname -m) == x86_64 ]] && flags+=" -msse2 -mfpmath=sse"
+    settings=(
         FROZEN_MANIFEST= MICROPY_PY_THREAD=0 MICROPY_PY_FFI=0 MICROPY_PY_BTREE=0
         MICROPY_PY_SSL=0 MICROPY_SSL_MBEDTLS=0
-        "COPT=-O2 -DNDEBUG" LDFLAGS_EXTRA=-no-pie
+        "COPT=$flags -DNDEBUG" "LDFLAGS_EXTRA=-no-pie $flags"
         "CFLAGS_EXTRA=-Wno-error -fno-pie -DMICROPY_OPT_MAP_LOOKUP_CACHE_SIZE=8192"
     )
     [[ $name == unix32 ]] && settings+=(MICROPY_FORCE_32BIT=1)
-    GIT_CEILING_DIRECTORIES=$build make -C "$2" -j"$(nproc)" \
+    GIT_CEILING_DIRECTORIES=$build make -C "$port" -j"$(nproc)" \
         "BUILD=build-$name" "${settings[@]}"
 }
