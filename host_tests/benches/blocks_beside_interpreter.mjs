@@ -12,12 +12,13 @@ import { Blocks, codeAt, firmwaresIn, halfOf } from '../../tools/emulator/rp2040
 import { translate } from '../../tools/emulator/rp2040/blocks/translate.mjs';
 import * as processor from '../../tools/emulator/rp2040/processor.mjs';
 
-const { flash, interpret, jumps, lines, ram, registers, state } = processor;
+const { flash, interpret, jumps, lines, ram, registers, state, times } = processor;
 
 const PROGRAMS = 800, DEALS = 16, LONGEST = 6, SHOWN = 10;
 const RAM = 0x20000000, FLASH = 0x10000000;
 const CODE = 0x4000, SPACE = 64; // where programs begin, bytes for each; in RAM and in the flash
 const DATA = 0x1000, DATA_BYTES = 1024;
+const NEAR = [0xd0000000, 0xd0000060, 0xd0000100, 0x40054024]; // core, divider, locks, timer
 const END = 0xbe00; // a breakpoint, which is a rare instruction
 const SECONDS = [0xd000, 0xf801, 0x8110, 0x8f5f]; // halves: BL, BL, MRS of PRIMASK, DMB
 const WIDE = { 0xd000: 0xf000, 0xf801: 0xf000, 0x8110: 0xf3ef, 0x8f5f: 0xf3bf }; // their first ones
@@ -68,7 +69,7 @@ function value(start) {
     case 1: return FLASH + draw(0x8000);
     case 2: return draw(40);
     case 3: return 0x7ffffff0 + draw(32);
-    case 4: return pick([start, start + 8, 0xd0000000, 0xd0000060, 0xfffffff9]);
+    case 4: return pick([start, start + 8, 0xfffffff9, ...NEAR, ...NEAR]);
   }
   return draw(0x10000) * 0x10000 + draw(0x10000);
 }
@@ -81,10 +82,11 @@ function deal(start) {
   dealt[15] = start;
   return { dealt, flags: draw(16) << 28, masked: draw(2), miss: pick([0, 60]), fetched: draw(2),
     divider: Array.from({ length: 5 }, () => draw(0x10000)),
+    locks: draw(2), began: 1e5 + draw(3) * 2 ** 32 * 999,
     cycles: draw(SHARE_OF_SHORT) ? 400 : 1 + draw(60) };
 }
 
-function begin({ dealt, flags, masked, miss, fetched, divider }) {
+function begin({ dealt, flags, masked, miss, fetched, divider, locks, began, cycles }) {
   ram.set(pristine);
   registers.set(dealt);
   state.fill(0);
@@ -93,6 +95,9 @@ function begin({ dealt, flags, masked, miss, fetched, divider }) {
   state[processor.LOWEST] = -1;
   state[processor.MISS_CYCLES] = miss;
   state.set(divider, 8);
+  state[processor.SPINLOCKS] = locks;
+  state[processor.BUDGET] = cycles + 1000;
+  times.set([began, 12345]);
   lines.fill(-1);
   if (fetched) for (let set = 0; set < 1024; set += 3) lines[2 * set] = (FLASH + CODE >>> 3) + set;
 }
@@ -117,7 +122,7 @@ function run(blocks, cycles) {
 }
 
 function outcome(left) {
-  const words = [...state.subarray(0, processor.LINE)];
+  const words = [...state.subarray(0, processor.LINE), state[processor.SPINLOCKS]];
   if (![processor.LOAD, processor.LOAD_SIGNED, processor.STORE].includes(words[processor.WHY])) {
     words.fill(0, processor.ADDRESS, processor.NUMBER + 1); // left behind
   }

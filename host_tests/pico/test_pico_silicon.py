@@ -49,6 +49,47 @@ if isinstance(rp2.make_timer(), Timer):
 """
 
 
+# 2500 turns of 4 us: looked at after 5 ms, stopped for 20 ms, and looked at as it ends.
+COUNTS = b"""
+import rp2, time
+
+@rp2.asm_pio()
+def counts():
+    pull()
+    mov(x, osr)
+    label("wait")
+    jmp(x_dec, "wait")[3]
+    mov(isr, invert(null))
+    push()
+
+tell = [rp2.asm_pio_encode(text, 0) for text in ("mov(isr, x)", "push()")]
+machine = rp2.StateMachine(0, counts, freq=1_000_000)
+machine.active(1)
+began = time.ticks_us()
+machine.put(2500)
+time.sleep_ms(5)
+for instruction in tell:
+    machine.exec(instruction)
+print("left", machine.get())
+machine.active(0)
+time.sleep_ms(20)
+machine.active(1)
+print("ends", machine.get() == 0xFFFFFFFF, time.ticks_diff(time.ticks_us(), began))
+"""
+
+
+def said(world, word):
+    return [line.split()[1:] for line in bytes(world.usb).decode().splitlines() if word in line][0]
+
+
+def test_a_state_machine_that_counts_down_is_as_far_as_its_time_says():
+    world = PicoWorld("stock", addresses=(), files={"main.py": COUNTS})
+    world.run(2_000)
+    assert 1200 < int(said(world, "left")[0]) <= 1250, bytes(world.usb)  # Python takes its time
+    ends, took_us = said(world, "ends")
+    assert ends == "True" and abs(int(took_us) - 30_000) < 500, took_us
+
+
 def test_the_radio_of_a_pico_w_has_taken_its_part_of_the_chip_first():
     world = panel(files={"boot.py": RADIO})
     start(world)

@@ -7,9 +7,9 @@
 // happens at the very instant at which it would if the clock ticked for each instruction.
 import { blocks } from './blocks/blocks.mjs';
 import { CortexM0Core } from './library.mjs';
-import { flash, interpret, ram, registers, rom, state } from './processor.mjs';
+import { flash, interpret, ram, registers, rom, state, times } from './processor.mjs';
 import {
-  ADDRESS, APSR, BYTES, JUMPED, LINE, LOWEST, MISS_CYCLES, NUMBER, PRIMASK, WHY,
+  ADDRESS, APSR, BUDGET, BYTES, JUMPED, LINE, LOWEST, MISS_CYCLES, NUMBER, PRIMASK, WHY,
 } from './processor.mjs';
 import { BLOCK, CHANGED, LOAD, LOAD_SIGNED, LOST, RARE, STORE, UNMASKED } from './processor.mjs';
 
@@ -204,7 +204,8 @@ export class Core extends CortexM0Core {
     const cycles = Math.ceil((Math.min(until, clock.dueAt) - this.start) / CYCLE_NANOS);
     if (cycles <= 0) return;
     if (blocks.waits) blocks.look();
-    this.budget = Math.min(cycles, STRETCH_CYCLES);
+    this.budget = state[BUDGET] = Math.min(cycles, STRETCH_CYCLES);
+    times[0] = this.start;
     this.dueAt = clock.dueAt;
     state[APSR] = this.APSR;
     state[PRIMASK] = this.PM ? 1 : 0;

@@ -11,7 +11,9 @@ const CYCLE_NANOS = 8;
 const CTRL = 0x000, SM_FIRST = 0x0c8, SM_SIZE = 0x18, SM_LAST = 0x124;
 const CLKDIV = 0x00, INSTR = 0x10;
 const JOIN_RX = 1 << 31, JOIN_TX = 1 << 30;
+const INSTRUCTIONS = 0x048; // from here on, registers tell or change how far a machine is
 const FIFO_WORDS = 4;
+const COUNTED = { 2: 'x', 4: 'y' }; // by the condition of a JMP: the register that it counts down
 const FRACTION = 256;
 
 class TimedMachine extends StateMachine {
@@ -22,6 +24,7 @@ class TimedMachine extends StateMachine {
     this.origin = 0; // the instant of edge 0 of the divided clock
     this.edge = 0; // the number of the edge that the alarm is set to
     this.executing = false;
+    this.spun = null; // { register, turns, cycles of each, edge of the first }
   }
 
   get period() { // in cycles / FRACTION
@@ -30,6 +33,13 @@ class TimedMachine extends StateMachine {
 
   instant(edge) {
     return this.origin + Math.floor((edge * this.period) / FRACTION) * CYCLE_NANOS;
+  }
+
+  get nextEdge() {
+    const { nanos } = this.clock, cycles = (nanos - this.origin) / CYCLE_NANOS;
+    let edge = Math.floor((cycles * FRACTION) / this.period);
+    while (this.instant(edge) <= nanos) edge++;
+    return edge;
   }
 
   clkDivRestart() {
@@ -44,10 +54,7 @@ class TimedMachine extends StateMachine {
       return;
     }
     if (this.executing || this.alarm.scheduled) return;
-    const now = this.clock.nanos;
-    const cycles = (now - this.origin) / CYCLE_NANOS;
-    this.edge = Math.floor((cycles * FRACTION) / this.period);
-    while (this.instant(this.edge) <= now) this.edge++;
+    this.edge = this.nextEdge;
     this.alarm.at(this.instant(this.edge));
   }
 
@@ -58,9 +65,10 @@ class TimedMachine extends StateMachine {
   }
 
   execute() {
+    this.spun = null;
     if (!this.enabled) return;
     this.executing = true;
-    const before = this.cycles;
+    const { pc, cycles: before } = this;
     let spent = 0;
     if (this.waiting) {
       super.checkWait();
@@ -74,6 +82,29 @@ class TimedMachine extends StateMachine {
     this.pio.checkChangedPins();
     if (this.waiting) return;
     this.edge += spent + this.cycles - before;
+    if (this.pc === pc && !spent) this.spin(this.cycles - before);
+    this.alarm.at(this.instant(this.edge));
+  }
+
+  // It has jumped to where it was. If it counts down meanwhile, it waits: all turns but the last are
+  // taken at once.
+  spin(cycles) {
+    const opcode = this.pio.instructions[this.pc], register = COUNTED[(opcode >> 5) & 7];
+    if (opcode >> 13 !== 0 || !register) return;
+    const turns = this[register];
+    this.spun = { register, turns, cycles, edge: this.edge };
+    this[register] = 0;
+    this.edge += turns * cycles;
+  }
+
+  // As far as it is by now.
+  catchUp() {
+    if (this.spun === null) return;
+    const { register, turns, cycles, edge } = this.spun;
+    const done = Math.min(turns, Math.max(0, Math.ceil((this.nextEdge - edge) / cycles)));
+    this.spun = null;
+    this[register] = turns - done;
+    this.edge = edge + done * cycles;
     this.alarm.at(this.instant(this.edge));
   }
 
@@ -105,7 +136,17 @@ export class TimedPio extends RPPIO {
 
   run() {} // never free
 
+  readUint32(offset) {
+    this.catchUp(offset);
+    return super.readUint32(offset);
+  }
+
+  catchUp(offset) {
+    if (offset === CTRL || offset >= INSTRUCTIONS) for (const each of this.machines) each.catchUp();
+  }
+
   writeUint32(offset, value) {
+    this.catchUp(offset);
     const inMachine = offset >= SM_FIRST && offset <= SM_LAST;
     const register = (offset - SM_FIRST) % SM_SIZE;
     const machine = inMachine ? this.machines[Math.floor((offset - SM_FIRST) / SM_SIZE)] : null;

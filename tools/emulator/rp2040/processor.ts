@@ -18,6 +18,7 @@ const ROM_BYTES: u32 = 16384, RAM_BYTES: u32 = 264 * 1024, FLASH_BYTES: u32 = 2 
 export const REGISTERS = memory.data(16 * 4, 16);
 export const STATE = memory.data(17 * 4, 16);
 export const LINES = memory.data(1024 * 2 * 4, 16); // the cache (cache.mjs)
+export const TIMES = memory.data(2 * 8, 16); // when the stretch began, and the timer; nanoseconds
 
 // The words of STATE, and where they are.
 const APSR: usize = STATE; // the flags N, Z, C, V in the uppermost bits
@@ -37,6 +38,8 @@ const LINE: usize = STATE + 52; // of the cache, from which the last instruction
 const JUMPED: usize = STATE + 56; // 1: a jump has led to the next instruction
 const CODE: usize = STATE + 60; // where in RAM there are blocks: the first byte, and how many bytes
 const CODE_BYTES: usize = STATE + 64;
+const BUDGET: usize = STATE + 68; // the cycles of the stretch
+const SPINLOCKS: usize = STATE + 72; // bit n: number n is taken
 
 // By halfword of RAM and then of the flash: the number of the block that begins there, or 0, and how
 // many jumps have led to where none is, up to MOST_JUMPS.
@@ -66,6 +69,7 @@ const SETS_MASK = 1023;
 const EXCEPTION_RETURN = 15; // the first digit of its addresses
 const SPECIAL_PRIMASK = 16; // the number of the special register
 const MOST_PUSHED: u32 = 36; // bytes
+const MOST_LOADED: u32 = 32;
 
 // The kinds of instructions. Letters are bits of operands: i immediate, d m n registers, r a list.
 // The first ten bits tell the kind; what the others must be, its case asks.
@@ -111,6 +115,7 @@ kind(70, "11010101iiiiiiii"); kind(71, "11010110iiiiiiii"); kind(72, "11010111ii
 kind(73, "11011000iiiiiiii"); kind(74, "11011001iiiiiiii"); kind(75, "11011010iiiiiiii");
 kind(76, "11011011iiiiiiii"); kind(77, "11011100iiiiiiii"); kind(78, "11011101iiiiiiii");
 kind(79, "11100iiiiiiiiiii"); kind(80, "11110iiiiiiiiiii"); kind(81, "10110110011s0010");
+kind(82, "1011111101000000");
 
 // The operands of an instruction: registers, by where the bits of their numbers are.
 
@@ -166,16 +171,33 @@ const SIZES = memory.data<u8>([4, 2, 1, 4, 2, 1, 4, 4, 2, 1, 4, 2, 1, 4, 2, 1]);
   return other == line ? 0 : load<i32>(MISS_CYCLES);
 }
 
-// Outside of the memories nothing is accessed as often as the core's number and its divider. That
-// has divided at once (RP2040 data sheet, 2.3.1.1 and 2.3.1.5).
+// Outside of the memories nothing is accessed as often as the core's number, its divider and the
+// locks. The divider has divided at once (RP2040 data sheet, 2.3.1.1, 2.3.1.3 and 2.3.1.5).
 
 const CPUID: i32 = 0xd0000000, DIVIDER: i32 = 0xd0000060, DIVIDER_MASK = ~0x1f;
+const LOCKS: i32 = 0xd0000100, LOCKS_MASK = ~0x7c;
 
 @inline function isNear(address: i32): bool {
-  return (address & DIVIDER_MASK) == DIVIDER || address == CPUID;
+  return (address & DIVIDER_MASK) == DIVIDER || address == CPUID || isLock(address);
+}
+
+@inline function isLock(address: i32): bool {
+  return (address & LOCKS_MASK) == LOCKS;
+}
+
+// 0: it was taken before.
+@inline function take(lock: i32): i32 {
+  const taken = load<i32>(SPINLOCKS), bit = 1 << ((lock >> 2) & 31);
+  store<i32>(SPINLOCKS, taken | bit);
+  return bit & ~taken;
+}
+
+@inline function release(lock: i32): void {
+  store<i32>(SPINLOCKS, load<i32>(SPINLOCKS) & ~(1 << ((lock >> 2) & 31)));
 }
 
 @inline function readNear(address: i32): i32 {
+  if (isLock(address)) return take(address);
   switch (address - DIVIDER) {
     case 0x00: case 0x08: return load<i32>(DIVIDEND);
     case 0x04: case 0x0c: return load<i32>(DIVISOR);
@@ -189,6 +211,7 @@ const CPUID: i32 = 0xd0000000, DIVIDER: i32 = 0xd0000060, DIVIDER_MASK = ~0x1f;
 }
 
 @inline function writeNear(address: i32, value: i32): void {
+  if (isLock(address)) return release(address);
   const register = address - DIVIDER;
   switch (register) {
     case 0x00: case 0x08: store<i32>(DIVIDEND, value); break;
@@ -217,6 +240,22 @@ const CPUID: i32 = 0xd0000000, DIVIDER: i32 = 0xd0000060, DIVIDER_MASK = ~0x1f;
   }
   store<i32>(QUOTIENT, quotient);
   store<i32>(REMAINDER, remainder);
+}
+
+// The timer's count, which whoever waits reads again and again (RP2040 data sheet, 4.6.5). timer.mjs
+// has the rest of it, and counts alike.
+
+const TIMERAWH: i32 = 0x40054024, TIMERAWL: i32 = 0x40054028;
+const CYCLE_NANOS = 8, CLOCK_CYCLES = 4; // to read it takes so many
+
+@inline function isClock(address: i32): bool {
+  return address == TIMERAWL || address == TIMERAWH;
+}
+
+@inline function readClock(address: i32, left: i32): i32 {
+  const now = load<f64>(TIMES) + <f64>((load<i32>(BUDGET) - left) * CYCLE_NANOS);
+  const micros = <u64>((now - load<f64>(TIMES + 8)) / 1000);
+  return <i32>(address == TIMERAWL ? micros : micros >> 32);
 }
 
 @inline function hop(op: i32): i32 { return 2 + ((op << 24) >> 23); }
@@ -711,16 +750,17 @@ export function interpret(left: i32): i32 {
       case 64: { // LDMIA
         const from = (op >> 8) & 7;
         let offset = get(from) - RAM;
-        if (!isStack(offset) || (offset & 3) != 0) {
-          address = get(from);
-          if (<u32>(address - FLASH) >= FLASH_BYTES) break;
-          for (let list = op & 0xff; list; list &= list - 1, address += 4) {
-            left -= wait(address >> LINE_SHIFT);
+        if ((offset & 3) != 0) break;
+        if (isStack(offset)) {
+          for (let list = op & 0xff; list; list &= list - 1, offset += 4) {
+            set(ctz(list), load<i32>(offset, RAM));
           }
-          break;
-        }
-        for (let list = op & 0xff; list; list &= list - 1, offset += 4) {
-          set(ctz(list), load<i32>(offset, RAM));
+        } else {
+          if (<u32>(offset + RAM - FLASH) > FLASH_BYTES - MOST_LOADED) break;
+          for (let list = op & 0xff; list; list &= list - 1, offset += 4) {
+            left -= wait((RAM + offset) >> LINE_SHIFT);
+            set(ctz(list), load<i32>(RAM + offset));
+          }
         }
         if ((op & (1 << from)) == 0) set(from, RAM + offset);
         left -= popcnt(op & 0xff);
@@ -807,6 +847,9 @@ export function interpret(left: i32): i32 {
         }
         break;
       }
+      case 82: // SEV: nobody waits for it
+        if (op != 0xbf40) break;
+        continue;
       case 81: // CPSIE, CPSID
         if (op == 0xb662) {
           store<i32>(PRIMASK, 0);
@@ -827,6 +870,12 @@ export function interpret(left: i32): i32 {
       if (isNear(address)) {
         if (kind < LOADS) writeNear(address, get(number));
         else set(number, extended(kind, readNear(address)));
+        why = SPENT;
+        continue;
+      }
+      if (kind >= LOADS && isClock(address)) {
+        set(number, extended(kind, readClock(address, left + 1)));
+        left -= CLOCK_CYCLES - 1;
         why = SPENT;
         continue;
       }

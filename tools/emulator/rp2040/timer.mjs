@@ -3,6 +3,7 @@
 // alarms go off when it shows their value (there up to a microsecond early, so that the firmware
 // has to set them again).
 import { RPTimer } from './library.mjs';
+import { times } from './processor.mjs';
 
 const TIMEHR = 0x08, TIMELR = 0x0c, ALARM0 = 0x10, ALARM3 = 0x1c;
 const TIMERAWH = 0x24, TIMERAWL = 0x28;
@@ -11,7 +12,7 @@ const HIGH_WORD = 2 ** 32;
 export class ExactTimer extends RPTimer {
   constructor(mcu) {
     super(mcu, 'TIMER');
-    this.origin = this.clock.nanos;
+    this.origin = times[1] = this.clock.nanos;
   }
 
   get micros() {

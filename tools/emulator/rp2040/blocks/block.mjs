@@ -13,6 +13,7 @@ const SP = 13, LR = 14, PC = 15;
 const EXCEPTION_RETURN = 15; // the first digit of its addresses
 const LINE_SHIFT = 3;
 const WORD = 4, HALF = 2, BYTE = 1;
+const CLOCK_CYCLES = 4; // to read the timer's count
 const AT = { [WORD]: 'WORD', [HALF]: 'HALF', [BYTE]: 'BYTE' };
 
 const hex = (value) => `0x${(value >>> 0).toString(16)}u`;
@@ -184,7 +185,10 @@ export class Block {
     const address = this.keep(sum), value = `x${this.variables++}`;
     const content = `${isSigned ? 'SIGNED_' : ''}${AT[bytes]}(${address})`;
     const near = bytes !== WORD ? '' : `if (is_near(${address})) {`
-      + ` R(${register}) = ${value} = load_near(m, ${address}); left += 1; } else`;
+      + ` R(${register}) = ${value} = load_near(m, ${address}); left += 1;`
+      + ` } else if (is_clock(${address})) {`
+      + ` R(${register}) = ${value} = load_clock(m, ${address}, left - ${this.spent});`
+      + ` left -= ${CLOCK_CYCLES - this.cycles}; ${this.leaveIfSpent()} } else`;
     this.emit(
       `word ${value};`,
       `if (is_in(${address}, RAM, RAM_BYTES, ${bytes})) {`,

@@ -104,18 +104,32 @@ static inline word wait(memory m, word line)
     return WORD(LINES + ((line & 1023) << 3)) == line ? 0 : wait_for(m, line);
 }
 
-// The core's number and its divider (processor.ts).
+// The core's number, its divider and the locks (processor.ts).
 
 #define CPUID 0xd0000000u
 #define DIVIDER 0xd0000060u
+#define LOCKS 0xd0000100u
+
+static inline int is_lock(word address)
+{
+    return (address & ~0x7cu) == LOCKS;
+}
 
 static inline int is_near(word address)
 {
-    return (address & ~0x1fu) == DIVIDER || address == CPUID;
+    return (address & ~0x1fu) == DIVIDER || address == CPUID || is_lock(address);
+}
+
+static word take(memory m, word lock)
+{
+    const word taken = WORD(SPINLOCKS), bit = 1u << (lock >> 2 & 31);
+    WORD(SPINLOCKS) = taken | bit;
+    return bit & ~taken;
 }
 
 static word load_near(memory m, word address)
 {
+    if (is_lock(address)) return take(m, address);
     switch (address - DIVIDER) {
     case 0x00: case 0x08: return WORD(DIVIDEND);
     case 0x04: case 0x0c: return WORD(DIVISOR);
@@ -149,6 +163,7 @@ static void divide(memory m, int is_signed)
 static void store_near(memory m, word address, word value)
 {
     const word which = address - DIVIDER;
+    if (is_lock(address)) WORD(SPINLOCKS) &= ~(1u << (address >> 2 & 31));
     switch (which) {
     case 0x00: case 0x08: WORD(DIVIDEND) = value; break;
     case 0x04: case 0x0c: WORD(DIVISOR) = value; break;
@@ -157,6 +172,25 @@ static void store_near(memory m, word address, word value)
     }
     if (which < 0x18) WORD(DIRTY) = 1;
     if (which < 0x10) divide(m, (which & 8) != 0);
+}
+
+// The timer's count (processor.ts).
+
+#define TIMERAWH 0x40054024u
+#define TIMERAWL 0x40054028u
+#define CYCLE_NANOS 8
+
+static inline int is_clock(word address)
+{
+    return address == TIMERAWL || address == TIMERAWH;
+}
+
+static word load_clock(memory m, word address, word left)
+{
+    const double *times = (double *)(m + TIMES);
+    const double now = times[0] + (number)(WORD(BUDGET) - left) * CYCLE_NANOS;
+    const uint64_t micros = (now - times[1]) / 1000;
+    return address == TIMERAWL ? micros : micros >> 32;
 }
 
 // What node calls
