@@ -103,6 +103,9 @@ TIERS = {
 }
 
 
+# Debian's package, where unix64 is built here: with its own modules besides, mip say.
+PACKAGED = TOP / "build" / "packaged" / "micropython"
+
 # What the test files of a folder run on that do not say it themselves, where that is not every
 # tier; of tiers with OR between them, the first one that is here. What only a chip runs is tried
 # with the chip's small integers, and where a PC has no such MicroPython, with the one it has. What

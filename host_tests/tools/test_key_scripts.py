@@ -12,11 +12,10 @@ import subprocess
 
 import pytest
 
-from tiers import TOP
+from tiers import PACKAGED, TOP
 
 INTERPRETERS = "host"
 
-PACKAGED = os.path.join(TOP, "build", "packaged", "micropython")
 FOLDER = os.path.join(TOP, "tools", "examples")
 SCRIPTS = sorted(name for name in os.listdir(FOLDER) if name.endswith(".txt"))
 BY_KEYS = {"press", "hold", "wait", "expect", "lcd"}
@@ -77,7 +76,7 @@ def test_an_operator_does_it_by_keys_alone(name):
         assert printed, "%s is missing behind:\n%s" % (wanted, before or ended.stdout)
 
 
-@pytest.mark.skipif(not os.path.exists(PACKAGED), reason="fetched with USS_STRICT=1 tools/test")
+@pytest.mark.skipif(not PACKAGED.exists(), reason="fetched with USS_STRICT=1 tools/test")
 def test_on_the_micropython_of_debian_it_is_the_same():
     """There unix64 is built here, and those who only want to see the panel have the package."""
     environment = {**os.environ, "MICROPYPATH": "%s:%s/firmware:.frozen" % (TOP, TOP)}

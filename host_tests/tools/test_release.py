@@ -16,7 +16,7 @@ from functools import partial
 import pytest
 
 from conftest import strict
-from tiers import TIERS, TOP
+from tiers import PACKAGED, TIERS, TOP
 from tools.releasing import mip, options, parts
 from tools.releasing.version import changes, version
 from version import VERSION
@@ -142,7 +142,7 @@ def server(tmp_path):
 
 
 def test_the_unix_ports_own_mip_installs_the_library(server, tmp_path):
-    micropython = TIERS["unix64"].command[0]
+    micropython = PACKAGED if PACKAGED.exists() else TIERS["unix64"].command[0]
     install = f"import mip; mip.install('{server}whole.json', target='{tmp_path}/lib')"
     run = subprocess.run([micropython, "-c", install], capture_output=True, text=True, timeout=60)
     if "no module named 'mip'" in run.stderr + run.stdout:
