@@ -78,7 +78,7 @@ def test_an_operator_does_it_by_keys_alone(name):
 
 @pytest.mark.skipif(not PACKAGED.exists(), reason="fetched with USS_STRICT=1 tools/test")
 def test_on_the_micropython_of_debian_it_is_the_same():
-    """There unix64 is built here, and those who only want to see the panel have the package."""
+    """In CI unix64 is built here; those who only want to see the panel have the package."""
     environment = {**os.environ, "MICROPYPATH": "%s:%s/firmware:.frozen" % (TOP, TOP)}
     panel = [PACKAGED, "-X", "heapsize=16M", "tools/live/virtual_panel.py"]
     words = command("parameter.txt")

@@ -37,8 +37,8 @@ make_micropython() {
     return 1
 }
 
-# What is built here takes 0.6 of the time, but it takes a minute or two to build: that is for those
-# who run tests, and not for those who want to see the panel.
+# What is built here takes two thirds of the time, but building takes a minute or two. That is for
+# those who run all tests, and not for those who want to see the panel.
 builds_unix64=
 
 ways_to() {
@@ -215,9 +215,9 @@ compile_anew() {
 # Nothing is frozen in, so that no cross compiler has to be built first; and what the panel does
 # not use is left out, so that a C library is all that has to be installed. Built for speed, at a
 # fixed address and with a place for each name in the cache of look-ups, the tests take less time
-# on it. Numbers with a fraction are rounded alike with small integers of either size: so does not
-# the unit for them that 32 bits are built for by default. git may not look above build/, or it
-# would take the version of this tree for that of MicroPython.
+# on it. Both builds round numbers with a fraction alike: x87, which is usual with 32 bits, keeps
+# more digits than SSE. git may not look above build/, or it would take the version of this tree for
+# that of MicroPython.
 make_port() {
     local name=$1 port=$2 flags="-O2 -fno-gcse ${*:3}" settings
     [[ $name == unix32 && $(uname -m) == x86_64 ]] && flags+=" -msse2 -mfpmath=sse"

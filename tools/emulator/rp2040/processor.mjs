@@ -33,7 +33,7 @@ export const BLOCK = 8;
 
 // The addresses of what blocks use.
 const WORDS = { APSR, PRIMASK, LOWEST, MISS_CYCLES, NUMBER, LINE, JUMPED, CODE, CODE_BYTES,
-  BUDGET, SPINLOCKS,  DIVIDEND: 8, DIVISOR: 9, QUOTIENT: 10, REMAINDER: 11, DIRTY: 12 };
+  BUDGET, SPINLOCKS, DIVIDEND: 8, DIVISOR: 9, QUOTIENT: 10, REMAINDER: 11, DIRTY: 12 };
 export const addresses = {
   ...Object.fromEntries(['REGISTERS', 'LINES', 'TIMES', 'BLOCKS'].map((name) =>
     [name, exports[name].value])),

@@ -16,7 +16,7 @@
 export const ROM = 0, FLASH = 0x10000000, RAM = 0x20000000;
 const ROM_BYTES: u32 = 16384, RAM_BYTES: u32 = 264 * 1024, FLASH_BYTES: u32 = 2 * 1024 * 1024;
 export const REGISTERS = memory.data(16 * 4, 16);
-export const STATE = memory.data(17 * 4, 16);
+export const STATE = memory.data(19 * 4, 16);
 export const LINES = memory.data(1024 * 2 * 4, 16); // the cache (cache.mjs)
 export const TIMES = memory.data(2 * 8, 16); // when the stretch began, and the timer; nanoseconds
 
@@ -847,9 +847,6 @@ export function interpret(left: i32): i32 {
         }
         break;
       }
-      case 82: // SEV: nobody waits for it
-        if (op != 0xbf40) break;
-        continue;
       case 81: // CPSIE, CPSID
         if (op == 0xb662) {
           store<i32>(PRIMASK, 0);
@@ -859,6 +856,9 @@ export function interpret(left: i32): i32 {
           continue;
         }
         break;
+      case 82: // SEV: nobody waits for it
+        if (op != 0xbf40) break;
+        continue;
     }
     if (why != SPENT) break;
     // What has not gone on by now is a load or store elsewhere, or a rare instruction.
