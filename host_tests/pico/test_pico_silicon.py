@@ -72,7 +72,9 @@ for instruction in tell:
     machine.exec(instruction)
 print("left", machine.get())
 machine.active(0)
+stopped = time.ticks_us()
 time.sleep_ms(20)
+began += time.ticks_diff(time.ticks_us(), stopped)
 machine.active(1)
 print("ends", machine.get() == 0xFFFFFFFF, time.ticks_diff(time.ticks_us(), began))
 """
@@ -87,7 +89,7 @@ def test_a_state_machine_that_counts_down_is_as_far_as_its_time_says():
     world.run(2_000)
     assert 1200 < int(said(world, "left")[0]) <= 1250, bytes(world.usb)  # Python takes its time
     ends, took_us = said(world, "ends")
-    assert ends == "True" and abs(int(took_us) - 30_000) < 500, took_us
+    assert ends == "True" and 10_000 < int(took_us) < 10_500, took_us
 
 
 def test_the_radio_of_a_pico_w_has_taken_its_part_of_the_chip_first():
