@@ -83,6 +83,7 @@ def test_a_fault_is_shown_and_acknowledged(page):
     time.sleep(1)  # somebody reads it
     page.press("STOP")
     page.shows("READY")
+    page.shows("ready", STATE)  # the state comes a little after the display
     assert "F0001" not in page.text(STATE)
 
 
