@@ -453,6 +453,15 @@ def test_what_is_no_pypy_or_too_old_is_not_used(machine, answer):
     assert sorted(os.listdir(machine.top / "build")) == ["lock"]
 
 
+def test_what_micropython_does_most_is_seen_from_any_folder(tmp_path):
+    shell = f"top={tiers.TOP}; . $top/tools/fetch/folder.sh; . $top/tools/fetch/micropython.sh;"
+    for name in versions().keys() & {"unix64", "unix32"}:
+        command = ["bash", "-c", f"{shell} simulate {tiers.TIERS[name].command[0]}"]
+        seen = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True)
+        assert seen.returncode == 0, (name, seen.stderr)
+        assert seen.stdout.count('"times"') == 1, (name, seen.stdout)
+
+
 def test_a_starter_finds_loader_and_libraries_wherever_the_folder_is(machine, tmp_path):
     packed = tmp_path / "packed"
     libraries = packed / "usr/lib/some-linux-gnu"
