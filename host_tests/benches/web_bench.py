@@ -38,6 +38,7 @@ CHROMIUMS = (
 PRESS_S = 0.06
 DISPLAY = "#display-text"
 FASTEST, LONG_MS = 20, 30_000
+A_WHILE_MS = 1_000  # nobody looks for what the display showed before that
 SLOWLY_S = 15  # a busy machine passes some seconds more than it was to, and menus close by time
 LONGER = 1.4  # than a key has to be held
 SPEED = 5  # at which scripts are played: the shortest press with the mouse is no longer than a tap
@@ -47,6 +48,16 @@ NOTE_KEYS = """
     new MutationObserver(() => {
       if (!button.classList.contains("down")) window.noted ||= Date.now();
     }).observe(button, { attributes: true });
+"""
+# What the display shows from now on, and what it shows now. At high speed a message stands there
+# for 0.4 s, in which a busy machine may not look.
+NOTE_DISPLAY = """
+    const display = document.querySelector(%s);
+    const note = () => window.seen.push(display.textContent);
+    window.seen = [];
+    note();
+    window.looks ||= new MutationObserver(note);
+    window.looks.observe(display, { characterData: true, childList: true, subtree: true });
 """
 # Opens a connection, and then says what there is to say: [what came, how it was closed].
 HEARD = """
@@ -163,20 +174,36 @@ class Page:
     def plays(self, script):
         """Do what a script of tools/examples does, with the mouse, at high speed."""
         self.choose("#speed", str(SPEED))
+        self._notes_display()
         for line in (TOP / "tools/examples" / script).read_text().splitlines():
             word, _, rest = line.partition("#")[0].strip().partition(" ")
             if word == "press":
+                self._notes_display()
                 self.press(rest, 0)
             elif word == "hold":
+                self._notes_display()
                 key, ms = rest.split()
                 self._holds(key, int(ms))
             elif word == "wait":
                 self._waits(int(rest))
             elif word == "expect":
-                self.shows(rest)
+                self._has_shown(rest)
             elif word not in ("", "lcd", "drive"):
                 self.does(line)
         self.choose("#speed", "1")
+
+    def _has_shown(self, text):
+        """Since the last key, or the last wait that was not a short one."""
+        deadline = time.monotonic() + PATIENCE_S
+        while not any(text in each or text in " ".join(each.split()) for each in self._seen()):
+            assert time.monotonic() < deadline, (text, self._seen())
+            time.sleep(0.05)
+
+    def _notes_display(self):
+        self.run(NOTE_DISPLAY % json.dumps(DISPLAY))
+
+    def _seen(self):
+        return self.run("window.seen")
 
     def _holds(self, key, ms):
         """So long by the panel's clock: on a busy machine its time passes more slowly."""
@@ -188,11 +215,14 @@ class Page:
         """So much of the panel's time; a long one passes faster."""
         if ms < LONG_MS:
             time.sleep(ms / 1000 / SPEED)
+            if ms >= A_WHILE_MS:
+                self._notes_display()
             return
         end_s = self._clock_s() + ms / 1000
         for speed, until_s in ((FASTEST, end_s - SLOWLY_S), (SPEED, end_s)):
             self.choose("#speed", str(speed))
             self._waits_until(until_s)
+        self._notes_display()
 
     def _waits_until(self, clock_s):
         deadline = time.monotonic() + PATIENCE_S
