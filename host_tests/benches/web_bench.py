@@ -179,7 +179,9 @@ class Page:
             word, _, rest = line.partition("#")[0].strip().partition(" ")
             if word == "press":
                 self._notes_display()
+                self.choose("#speed", "1")
                 self.press(rest, 0)
+                self.choose("#speed", str(SPEED))
             elif word == "hold":
                 self._notes_display()
                 key, ms = rest.split()

@@ -117,6 +117,7 @@ def test_a_job():
         jobs[:] = [pkw.read(700), pkw.read(701)]
         for job in jobs:
             bench.drives[1].ask(job)
+        return jobs
 
     for bench, _ in interrupted(standing, ask):
         bench.run(5_000_000)
@@ -131,6 +132,7 @@ def test_a_mirror_telegram():
         telegrams[:] = [Mirror(1), Mirror(3)]
         for telegram in telegrams:
             bench.master.turns.post(telegram)
+        return telegrams
 
     for bench, _ in interrupted(three, post):
         bench.run(300_000)

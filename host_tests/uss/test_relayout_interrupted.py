@@ -6,9 +6,8 @@ As in `test_interrupted` for what the loop does besides.
 
 from test_interrupted import interrupted
 from test_relayout import LAYOUTS, LOST, OLD, bench_of, check_wire, is_whole, relayout
-from test_thrown import Throwing, Thrown
 
-from interruption_bench import again
+from interruption_bench import recovered, thrown
 from round_bench import RUNNING
 from uss import pkw, pzd
 from uss.layout import Layout
@@ -112,33 +111,30 @@ def test_a_drive_that_answers_at_the_last_moment_keeps_its_layout():
 
 def test_no_ctrl_c_has_a_telegram_go_out_that_is_half_old():
     """Where it comes in the middle, nobody asks the drive any more; the others go on."""
-    prepare = again(prepared(Layout(3, 2), 1_000, True))
-    left_out = count = 0
-    while True:
-        count += 1
+    prepare = prepared(Layout(3, 2), 1_000, True)
+
+    def with_a_job():
         bench = prepare()
+        bench.drives[LOST].ask(pkw.read(700))
+        return bench
+
+    left_out = count = 0
+    for bench in thrown(with_a_job, lambda bench: relayout(bench, Layout(3, 2))):
         drive = bench.drives[LOST]
-        job = pkw.read(700)
-        drive.ask(job)
-        try:
-            with Throwing(count):
-                relayout(bench, Layout(3, 2))
-        except Thrown:
-            sent = len(bench.sent)
-            bench.run(3_000_000)
-            asked = [each for each in bench.sent[sent:] if each.address == LOST]
-            left_out += not asked
-            for telegram in asked:
-                assert len(telegram.characters) - 4 == drive.layout.net_count
-                assert telegram.stw() == pzd.OFF1
-            assert bench.nodes[1].zsw == RUNNING and not any(bench.drives[1].counters[1:])
-            bench.drives[1].stop()
-            bench.run(100_000)
-            assert bench.nodes[1].zsw != RUNNING
-            bench.master.turns.remove(drive)
-            continue
-        break
-    assert count > 50 and 0 < left_out < count // 2, (left_out, count)
+        sent = len(bench.sent)
+        bench.run(3_000_000)
+        asked = [each for each in bench.sent[sent:] if each.address == LOST]
+        left_out += not asked
+        count += 1
+        for telegram in asked:
+            assert len(telegram.characters) - 4 == drive.layout.net_count
+            assert telegram.stw() == pzd.OFF1
+        assert bench.nodes[1].zsw == RUNNING and not any(bench.drives[1].counters[1:])
+        bench.drives[1].stop()
+        bench.run(100_000)
+        assert bench.nodes[1].zsw != RUNNING
+        bench.master.turns.remove(drive)
+    assert 0 < left_out < count, (left_out, count)
 
 
 def test_an_exception_in_the_engine_meanwhile():
@@ -151,22 +147,9 @@ def test_an_exception_in_the_engine_meanwhile():
         relayout(bench, Layout(3, 2))
         return bench
 
-    prepare = again(prepare)
-    count = 1
-    while True:
-        bench = prepare()
-        try:
-            with Throwing(count):
-                bench.run(40_000)
-        except Thrown:
-            bench.master.recover(bench.now & bench.mask)
-            bench.due = bench.now
-            sent = len(bench.sent)
-            bench.run(300_000)
-            assert bench.drives[LOST].contact and bench.drives[1].contact
-            for telegram in bench.sent[sent:]:
-                assert telegram.address != LOST or is_whole(telegram, Layout(3, 2))
-            count += 1
-            continue
-        assert count > 50
-        return
+    for bench in recovered(prepare, 40_000):
+        sent = len(bench.sent)
+        bench.run(300_000)
+        assert bench.drives[LOST].contact and bench.drives[1].contact
+        for telegram in bench.sent[sent:]:
+            assert telegram.address != LOST or is_whole(telegram, Layout(3, 2))

@@ -2,66 +2,16 @@
 """An exception at any line of the engine: what waits is not forgotten, and nothing starts by it.
 
 On a chip that is a Ctrl-C while the main loop is inside the engine, or a fault of ours. Here each
-line throws, one after the other, and the engine recovers as `hal.pacer` has it. Beside that, what
-`test_interrupted` does to commands is done here to what the main loop calls all the time.
+line throws, one after the other, and the engine recovers. Beside that, what `test_interrupted`
+does to commands is done here to what the main loop calls all the time.
 """
 
-import sys
-
-from interruption_bench import ROOM, again, interrupted
+from interruption_bench import interrupted, recovered
 from round_bench import Bench, Node
 from uss import pzd
 from uss.outside import DONE, PENDING, Mirror
 
 INTERPRETERS = "cpython"
-
-
-class Thrown(Exception):
-    pass
-
-
-class Throwing:
-    """As a context: the `count`th line of the protocol throws."""
-
-    def __init__(self, count):
-        self._count = count
-
-    def __enter__(self):
-        sys.settrace(self._call)
-
-    def __exit__(self, *_):
-        sys.settrace(None)
-
-    def _call(self, frame, event, argument):
-        return self._line if ROOM in frame.f_code.co_filename else None
-
-    def _line(self, frame, event, argument):
-        if event == "line":
-            self._count -= 1
-            if self._count == 0:
-                sys.settrace(None)
-                raise Thrown
-        return self._line
-
-
-def thrown(prepare, us):
-    """Each line that the protocol comes to in the `us` after `prepare` throws: yields the bench
-    when it has recovered."""
-    prepare = again(prepare)
-    count = 1
-    while True:
-        bench = prepare()
-        try:
-            with Throwing(count):
-                bench.run(us)
-        except Thrown:
-            bench.master.recover(bench.now & bench.mask)
-            bench.due = bench.now
-            yield bench
-            count += 1
-            continue
-        assert count > 100, "nothing was thrown"
-        return
 
 
 def running(count=5):
@@ -84,7 +34,7 @@ def stopping():
 
 
 def test_stops_that_wait_are_in_the_next_telegrams():
-    for bench in thrown(stopping, 90_000):
+    for bench in recovered(stopping, 90_000):
         waiting = {drive.address for drive in bench.master.turns.drives if drive.urgency() > 1}
         sent = len(bench.sent)
         bench.run(300_000)
@@ -93,7 +43,7 @@ def test_stops_that_wait_are_in_the_next_telegrams():
 
 
 def test_all_that_run_are_stopped_and_need_a_new_start():
-    for bench in thrown(running, 60_000):
+    for bench in recovered(running, 60_000):
         sent = len(bench.sent)
         bench.run(300_000)
         stws = bench.stws(2, sent) + bench.stws(4, sent)
@@ -112,7 +62,7 @@ def test_a_telegram_outside_the_list_comes_to_an_end():
         bench.master.turns.post(bench.probe)
         return bench
 
-    for bench in thrown(prepare, 60_000):
+    for bench in recovered(prepare, 60_000):
         bench.run(500_000)
         if bench.probe.state == PENDING:
             assert 0x43 not in bench.addresses()
