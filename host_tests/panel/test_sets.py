@@ -581,7 +581,8 @@ def test_a_link_that_is_cut_leaves_no_half_set_that_counts_as_whole():
 
 
 def test_a_link_that_is_cut_while_a_set_is_saved_leaves_no_file_or_a_whole_one():
-    world = two()
+    world = panel(kinds={1: {"family": mm3}}, settings={"kinds": {"1": "mm3"}})
+    wait_until_known(world)
     sets(world)
     press(world, "SET", "SET")
     began_us = world.clock.now_us

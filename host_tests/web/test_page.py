@@ -219,9 +219,8 @@ def test_a_parameter_is_edited_by_keys(browser, served, size):
     page.close()
 
 
-@pytest.mark.parametrize("size", SIZES)
-def test_a_set_is_copied_from_drive_to_drive(browser, served, size):
-    page = browser.open(served("--drives", "1=mm440,2=mm440").link, size)
+def test_a_set_is_copied_from_drive_to_drive(browser, served):
+    page = browser.open(served("--drives", "1=mm440,2=mm440").link, "phone")
     page.plays("parameter_set.txt")
     page.does("param 2 P1120")
     page.shows("P1120[0]=2.5", "#said")
