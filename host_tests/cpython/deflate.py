@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: MIT
-"""What the firmware takes from MicroPython's module of this name, on CPython and PyPy."""
+"""What the firmware takes from MicroPython's module of this name, on CPython."""
 
 import io
 import zlib

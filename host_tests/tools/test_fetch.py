@@ -434,25 +434,6 @@ def test_what_is_only_called_micropython_is_passed_over(machine, program):
     assert machine.panel().returncode == 3
 
 
-def get_pypy(machine):
-    return machine.shell("get_pypy", ("folder", "packages", "pypy"))
-
-
-def test_an_installed_pypy_is_used(machine):
-    machine.install("pypy3", "#!/bin/sh\necho pypy True\n")
-    run = get_pypy(machine)
-    assert run.returncode == 0 and "PyPy: using" in run.stderr
-    assert (machine.top / "build" / "pypy" / "pypy3").resolve() == machine.programs / "pypy3"
-    assert get_pypy(machine).stderr == ""  # it remembers
-
-
-@pytest.mark.parametrize("answer", ["pypy False", "cpython True", ""])
-def test_what_is_no_pypy_or_too_old_is_not_used(machine, answer):
-    machine.install("pypy3", "#!/bin/sh\necho %s\n" % answer)
-    assert get_pypy(machine).returncode == 1
-    assert sorted(os.listdir(machine.top / "build")) == ["lock"]
-
-
 def test_what_micropython_does_most_is_seen_from_any_folder(tmp_path):
     shell = f"top={tiers.TOP}; . $top/tools/fetch/folder.sh; . $top/tools/fetch/micropython.sh;"
     for name in versions().keys() & {"unix64", "unix32"}:

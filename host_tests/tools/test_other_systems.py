@@ -31,14 +31,14 @@ STRICT = """#!/bin/sh
 case "$1" in -*) echo "{name}: illegal option $1" >&2; exit 1 ;; esac
 exec {path} "$@"
 """
-LACKING = "apt-get apt-cache dpkg dpkg-deb flock timeout nproc sha256sum stat pypy3 node".split()
+LACKING = "apt-get apt-cache dpkg dpkg-deb flock timeout nproc sha256sum stat node".split()
 
 # The scripts that the commands of this file run, and those that they source.
 COMMANDS = "panel drive example uss test soak check-board deploy bringup".split()
 SCRIPTS = [TOP / "tools" / name for name in COMMANDS]
 SCRIPTS += [
     TOP / "tools" / "fetch" / f"{name}.sh"
-    for name in "version folder packages micropython pytest uss mpremote pypy".split()
+    for name in "version folder packages micropython pytest uss mpremote".split()
 ]
 NEWER_THAN_3_2 = {
     "an array of names": r"(declare|local|typeset) -\w*[Ag]",

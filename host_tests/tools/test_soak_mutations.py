@@ -177,12 +177,11 @@ def find_seeds(names):
 
 
 def find_seed(mutation):
-    fast = interpreters.PYPY if interpreters.is_here(interpreters.PYPY) else interpreters.CPYTHON
     with tempfile.TemporaryDirectory() as folder:
         planting = Planting(Path(folder))
         planting.plant(mutation)
         lives = [(seed, MINUTES) for seed in mutation.seeds(SEEDS)]
-        for said in soaked(planting.folder, lives, mutation.roams, fast):
+        for said in soaked(planting.folder, lives, mutation.roams, interpreters.CPYTHON):
             if said["rule"]:
                 print(mutation.name, said["seed"], said["rule"], said["seconds"], flush=True)
             if said["rule"] in mutation.rules:

@@ -24,10 +24,9 @@ sys.path[0] = str(Path(__file__).resolve().parents[2])
 from tools.command_line import Parser, count  # noqa: E402
 from tools.progress import Progress  # noqa: E402
 from tools.soaking import interpreters  # noqa: E402
-from tools.soaking.interpreters import CPYTHON, NAMES, PYPY, TOP  # noqa: E402
+from tools.soaking.interpreters import NAMES, TOP  # noqa: E402
 
 PORTION = 250_000  # bytes for each seed of --fuzz
-PORTION_MINUTES = 1  # of virtual time take about as much work
 BROKEN, MISSING, CRASHED = 1, 3, 4
 SEEDS_MAX = 1_000_000
 MINUTES_MAX = 1_000_000
@@ -61,8 +60,7 @@ def parser():
     add(
         "--interpreter",
         choices=NAMES,
-        help="for all seeds (every tenth seed on MicroPython; the others on CPython, in a long "
-        "run on PyPy where it is to be had)",
+        help="for all seeds (every tenth seed on MicroPython, the others on CPython)",
     )
     add("--firmware", metavar="FOLDER", default=TOP / "firmware", help="another copy of firmware/")
     add("--needs", action="store_true", help=argparse.SUPPRESS)  # what it runs on, for tools/soak
@@ -204,26 +202,21 @@ class Tally:
 
 
 def lived_on(counts):
-    """Such as "PyPy 18, MicroPython 2"."""
+    """Such as "CPython 18, MicroPython 2"."""
     return ", ".join("%s %d" % (NAMES[name], count) for name, count in counts.items()) or "nothing"
 
 
 def lives(wanted):
-    """Each seed with the interpreter that should run it, installed here or not."""
+    """Each seed with the interpreter that should run it, here or not."""
     seeds = -(-wanted.fuzz // PORTION) if wanted.fuzz else wanted.seeds
-    each_minutes = PORTION_MINUTES if wanted.fuzz else wanted.minutes
-    fast = interpreters.fastest(each_minutes * seeds / wanted.jobs)
     for seed in range(wanted.first, wanted.first + seeds):
-        yield seed, wanted.interpreter or interpreters.of_seed(seed, fast)
+        yield seed, wanted.interpreter or interpreters.of_seed(seed)
 
 
 def start(wanted, arguments):
     """The workers, started, and the queue of their answers."""
     waiting = queue.SimpleQueue()
     chosen = list(lives(wanted))
-    if PYPY in dict(chosen).values() and not interpreters.is_here(PYPY):
-        print("tools/soak: no PyPy is here, CPython does it", file=sys.stderr)
-        chosen = [(seed, CPYTHON if name == PYPY else name) for seed, name in chosen]
     for seed_and_name in chosen:
         waiting.put(seed_and_name)
     said = queue.SimpleQueue()

@@ -3,7 +3,8 @@
 
 A seed runs the same on each of them; they differ in speed, and in the errors that they notice.
 Only MicroPython locks its heap in interrupt handlers, so every tenth seed stays there. CPython is
-1.5 times as fast. PyPy is seven times as fast once it is warm, which takes five seconds and more.
+1.5 times as fast. (PyPy is slower than either, also in an hour: the panel throws modules away and
+loads them again, and what was compiled goes with them.)
 """
 
 import os
@@ -14,32 +15,23 @@ TOP = Path(__file__).resolve().parents[2]
 WORKER = "tools/soaking/worker.py"
 CACHES = TOP / "build/pycache"
 KEEPS_NOTHING = "PYTHONDONTWRITEBYTECODE"
-MICROPYTHON, CPYTHON, PYPY = "micropython", "cpython", "pypy"
+MICROPYTHON, CPYTHON = "micropython", "cpython"
 
-PYTHON = ("-u", "-s")  # -u: its output must not be buffered
 COMMANDS = {
     MICROPYTHON: (TOP / "build/unix64/micropython", "-X", "heapsize=96M"),
-    CPYTHON: (sys.executable, *PYTHON),
-    PYPY: (TOP / "build/pypy/pypy3", *PYTHON),
+    CPYTHON: (sys.executable, "-u", "-s"),  # -u: its output must not be buffered
 }
-NAMES = {MICROPYTHON: "MicroPython", CPYTHON: "CPython", PYPY: "PyPy"}
+NAMES = {MICROPYTHON: "MicroPython", CPYTHON: "CPython"}
 
 SHARE = 10  # one of so many seeds runs on MicroPython
-WARM_MINUTES = 30  # of virtual time in a process; beyond that PyPy is faster
 
 
 def is_here(name):
     return os.access(COMMANDS[name][0], os.X_OK)
 
 
-def fastest(minutes):
-    """The best one for a process with so many minutes of virtual time to run, installed or not."""
-    return PYPY if minutes >= WARM_MINUTES else CPYTHON
-
-
-def of_seed(seed, fast):
-    """The interpreter that runs a seed, if `fast` runs most of them."""
-    return fast if seed % SHARE else MICROPYTHON
+def of_seed(seed):
+    return CPYTHON if seed % SHARE else MICROPYTHON
 
 
 def command(name, arguments):
