@@ -248,7 +248,7 @@ MUTATIONS = (
     Mutation(
         "bit 10 dropped",
         "the drive ignores the telegram and goes on as before",
-        ("CONTROL",), 3,
+        ("CONTROL",), 20,
         ("uss/pzd.py", "OFF3 = const(0x047A)", "OFF3 = const(0x007A)"),
     ),
     Mutation(
@@ -260,7 +260,7 @@ MUTATIONS = (
     Mutation(
         "STOP ALL forgets drives",
         "STOP held for 4 s stops only what is shown",
-        ("STOP ALL",), 21,
+        ("STOP ALL",), 15,
         (
             "panel/keys/stop_key.py",
             "            self.left = 2 * len(self._controls)\n",
@@ -270,7 +270,7 @@ MUTATIONS = (
     Mutation(
         "selecting stops",
         "another drive is shown, and the one before is stopped",
-        ("WITHOUT REASON", "ANNOUNCED"), 3,
+        ("WITHOUT REASON", "ANNOUNCED"), 20,
         (
             "panel/panel.py",
             "        self.selected.keep_quiet()\n",
@@ -391,13 +391,13 @@ MUTATIONS = (
     Mutation(
         "all stopped too soon",
         "STOP held for the second stop stops every drive",
-        ("WITHOUT REASON",), 9,
+        ("WITHOUT REASON",), 20,
         ("panel/keys/stop_key.py", "_ALL_MS = const(4_000)", "_ALL_MS = const(1_500)"),
     ),
     Mutation(
         "second stop for all",
         "OFF3 goes to drives that are not shown",
-        ("SECOND STOP",), 3,
+        ("SECOND STOP",), 20,
         (
             "panel/keys/stop_key.py",
             "            self._control.second_stop()\n",
@@ -408,7 +408,7 @@ MUTATIONS = (
     Mutation(
         "second stop given up",
         "OFF3 is sent once, whether or not the drive has heard it",
-        ("SECOND STOP",), 1,
+        ("SECOND STOP",), 20,
         (
             "panel/control.py",
             "        if drive.answered_stw & ~pzd.STW_ACKNOWLEDGE != drive.off:\n"
@@ -429,7 +429,7 @@ MUTATIONS = (
     Mutation(
         "another value written",
         "what is written is not what was confirmed",
-        ("WRITE",), 12,
+        ("WRITE",), 14,
         (
             "panel/writer.py",
             "write.number, write.index, high, low)",
@@ -439,13 +439,13 @@ MUTATIONS = (
     Mutation(
         "silent drives forgotten",
         "a drive that does not answer is not asked again",
-        ("NEGLECTED",), 8,
+        ("NEGLECTED",), 17,
         ("uss/silence.py", "            asked.ask_soon()\n", "            pass\n"),
     ),
     AtHome(
         "a running drive backs off",
         "a drive that runs, and is lost, is asked as seldom as one that stands",
-        ("NEGLECTED",), 16,
+        ("NEGLECTED",), 60,
         (
             "uss/drive.py",
             "return not self.contact and not self.was_running",
@@ -497,7 +497,7 @@ MUTATIONS = (
     Mutation(
         "a question hides a trip",
         "what a drive does is not said as long as a question has the display",
-        ("ANNOUNCED",), 17,
+        ("ANNOUNCED",), 11,
         (
             "panel/view.py",
             "            if panel.announcer.kind != NOTHING:\n"
@@ -508,7 +508,7 @@ MUTATIONS = (
     Mutation(
         "never heard is nothing",
         "nobody is told that a drive that is silent since power-on may be running",
-        ("ANNOUNCED",), 1,
+        ("ANNOUNCED",), 15,
         (
             "panel/control.py",
             "return not self.drive.contacts and self.drive.silent >= _SILENT_MAX",
@@ -558,13 +558,13 @@ MUTATIONS = (
     Mutation(
         "lost a little later",
         "ON goes to a silent drive for a tenth longer than the settings say",
-        ("LOST",), 35,
+        ("LOST",), 89,
         ("app.py", "settings.lost_ms * 1000", "settings.lost_ms * 1100"),
     ),
     Typing(
         "digits take effect without SET",
         "a motor goes faster while somebody still types what it shall turn with",
-        ("RISES",), 57,
+        ("RISES",), 80,
         (
             "panel/pages/digits.py",
             "        self._centihertz += ((digit + direction) % 10 - digit) * worth\n",
@@ -623,7 +623,7 @@ MUTATIONS = (
     Mutation(
         "an exception",
         "a page that fails takes the panel with it",
-        ("EXCEPTION",), 5,
+        ("EXCEPTION",), 8,
         (
             "panel/view.py",
             "        screen.put(0, 10, 6, texts.of(texts.BEYOND_VALUE))\n",
@@ -645,7 +645,7 @@ MUTATIONS = (
     AtHome(
         "MM3 started as an MM4",
         "a MICROMASTER 3 is sent a word without a direction",
-        ("CONTROL",), 11,
+        ("CONTROL",), 25,
         ("uss/families/mm3.py", "    on = 0x0C7F", "    on = 0x047F"),
     ),
     Mutation(
@@ -667,7 +667,7 @@ MUTATIONS = (
     Mutation(
         "percent looks like hertz",
         "a drive that does not tell its reference is shown in hertz",
-        ("SHOWN",), 11,
+        ("SHOWN",), 21,
         ("panel/texts.py", 'ACTUAL_PERCENT = b"%F:"', 'ACTUAL_PERCENT = b" F:"'),
     ),
     AtHome(
@@ -736,7 +736,7 @@ MUTATIONS = (
     AtHome(
         "looked for too soon",
         "a drive that may run is sent other telegrams before its STOP had a chance",
-        ("MIRROR",), 16,
+        ("MIRROR",), 25,
         ("uss/finding/finder.py", "STOPPED_MIN = const(30)", "STOPPED_MIN = const(3)"),
     ),
     Mutation(
@@ -820,7 +820,7 @@ MUTATIONS = (
     Mutation(
         "address key held starts",
         "a key that only looks at addresses starts a motor",
-        ("START",), 3,
+        ("START",), 13,
         (
             "panel/panel.py",
             "            self._open_menu(now_ms, (\"address\", None))\n",
@@ -960,7 +960,7 @@ MUTATIONS = (
     Mutation(
         "looked at and written",
         "a step of commissioning is written when it is shown",
-        ("WRITE",), 24,
+        ("WRITE",), 34,
         (
             "panel/commission/course.py",
             "        elif self._phase == LOOKS and not self.is_searching():\n",
@@ -973,7 +973,7 @@ MUTATIONS = (
     Commissioning(
         "typed and not taken",
         "a step of commissioning is written as it was, not as it was typed",
-        ("WRITE",), 54,
+        ("WRITE",), 170,
         (
             "panel/commission/course.py",
             "                self._bits = form.bits(self._typed)\n",
@@ -1005,7 +1005,7 @@ MUTATIONS = (
     Commissioning(
         "events too young",
         "an event reads as half as old as it is",
-        ("SHOWN",), 101,
+        ("SHOWN",), 238,
         (
             "panel/reports/journal.py",
             "self._counted_at_ms, self._mask) >= 1_000",
@@ -1020,7 +1020,7 @@ MUTATIONS = (
     Commissioning(
         "another drive's event",
         "an event reads as that of the drive that is shown",
-        ("SHOWN",), 296,
+        ("SHOWN",), 11,
         (
             "panel/menu/events.py",
             "        who = _THE_PANEL if address == NOBODY else b\"A%d\" % address\n",
@@ -1041,7 +1041,7 @@ MUTATIONS = (
     Locking(
         "reversed while locked",
         "the lock is closed, and REVERSE turns a motor round",
-        ("LOCK",), 234,
+        ("LOCK",), 252,
         (
             "panel/keys/guard.py",
             "LOCKED_KEYS = (\"REVERSE\", ",
@@ -1101,7 +1101,7 @@ MUTATIONS = (
     Locking(
         "LOCK that closes nothing",
         "the display says that the lock is closed, and it is open",
-        ("LOCK",), 406,
+        ("LOCK",), 536,
         (
             "panel/keys/guard.py",
             "        self.locked = self._settings.lock_code != 0\n",
@@ -1111,7 +1111,7 @@ MUTATIONS = (
     Arranging(
         "an order not kept",
         "the panel begins anew, and the drives stand in the list as before",
-        ("LIST",), 92,
+        ("LIST",), 125,
         (
             "panel/menu/order.py",
             "            panel.settings.change(\"drives\", drives)\n",
@@ -1143,7 +1143,7 @@ MUTATIONS = (
     Arranging(
         "turns for nobody",
         "a drive has as many turns as ever, whatever the settings say",
-        ("LIST",), 109,
+        ("LIST",), 276,
         ("panel/roster.py", "        if repeats:\n", "        if repeats and not controls:\n"),
     ),
     Resetting(
@@ -1162,7 +1162,7 @@ MUTATIONS = (
     Resetting(
         "identified unasked",
         "one SET makes the next ON one that gives the motor current",
-        ("WRITE",), 130,
+        ("WRITE",), 201,
         (
             "panel/commission/course.py",
             "            self._phase = ASKS\n        elif self._phase == TYPES:\n",
@@ -1198,14 +1198,14 @@ MUTATIONS = (
     Mutation(
         "goes on beside bad news",
         "a drive that trips or stops by itself is sent ON once more",
-        ("STOP", "TURNS", "START"), 1,
+        ("STOP", "TURNS", "START"), 16,
         ("uss/going_on/viper.py", "& 0x4C:  # plan.ZSW", "& 0:"),
         ("uss/going_on/python.py", "^ plan[ZSW]) & MOTION:", "^ plan[ZSW]) & 0:"),
     ),
     Mutation(
         "goes on with what was ready before",
         "an entry into the engine leaves the telegram that was made ready",
-        ("STOP", "WATCHDOG"), 3,
+        ("STOP", "WATCHDOG"), 2,
         (
             "uss/going_on/master.py",
             "        self._link.take_back()\n        due_us",
