@@ -46,9 +46,15 @@ CHANGING = (LOCK_CODE, "P2014=0 OK")  # of the settings
 HOME_TRIES = 16
 
 
-class Fingers:
-    """deeds: the last things done, texts with their instants."""
+class TimeIsUp(Exception):
+    """A life ends in the middle of what the hand does."""
 
+
+class Fingers:
+    """deeds: the last things done, texts with their instants. ends_us: when its `TimeIsUp`, or
+    None."""
+
+    ends_us = None
     dip = None  # dip(whose, ms): a supply fails; see `Mischief`
 
     def __init__(self, world, plan, judge, reader, weather):
@@ -82,6 +88,8 @@ class Fingers:
             ms -= SLICE_MS
             self.judge.look()
             self.reader.look()
+            if self.ends_us and world.clock.now_us >= self.ends_us:
+                raise TimeIsUp
             if self.weather.dips:
                 self.dip(*self.weather.dips.pop())
 

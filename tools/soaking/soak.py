@@ -20,6 +20,7 @@ import on_demand
 import tools.soaking.technician  # noqa: F401
 import tools.soaking.worlds  # noqa: F401
 import uss.drive
+from tools.soaking.fingers import TimeIsUp
 from tools.soaking.hand import Hand
 from tools.soaking.judging.judge import Judge
 from tools.soaking.judging.reader import Reader
@@ -64,14 +65,20 @@ class Soak:
         self.weather = judge.witness.weather = weather = Weather(world, plan)
         self.hand = Hand(world, plan, judge, reader, weather)
 
-    def run(self, seconds, progress=None):
-        """Run until `seconds` are over in its world. progress: called with the seconds so far."""
+    def run(self, seconds, progress=None, abruptly=False):
+        """Run until `seconds` are over in its world, and to the end of the hand's turn, or end
+        abruptly. progress: called with the seconds so far.
+        """
+        if abruptly:
+            self.hand.ends_us = seconds * 1_000_000
         try:
             for until_s in range(TOLD_S, seconds, TOLD_S):
                 self.hand.live(until_s)
                 if progress is not None:
                     progress(until_s)
             self.hand.live(seconds)
+        except TimeIsUp:
+            pass
         except Exception as broken:
             self.broken = broken
 

@@ -2,7 +2,7 @@
 """One process of a soak, on MicroPython: takes seeds from standard input, tells how they ended.
 Behind a seed there may be minutes, or a count of bytes, for it alone.
 
-    micropython tools/soaking/worker.py soak MINUTES [DRIVES TROUBLES ROAMS]
+    micropython tools/soaking/worker.py soak MINUTES [DRIVES TROUBLES ROAMS ABRUPTLY]
     micropython tools/soaking/worker.py fuzz BYTES
 
 It answers lines of JSON: {"at": seconds} now and then, {"seed": ...} at the end of each.
@@ -29,9 +29,9 @@ def progress(seconds):
     tell(at=seconds)
 
 
-def soak_seed(seed, minutes, drives="0", troubles="1", roams="1"):
+def soak_seed(seed, minutes, drives="0", troubles="1", roams="1", abruptly="0"):
     soak = Soak(seed, int(drives) or None, int(troubles), roams != "0")
-    soak.run(int(float(minutes) * 60), progress)
+    soak.run(int(float(minutes) * 60), progress, abruptly != "0")
     broken, rule, told = soak.broken, None, []
     if broken is not None:
         rule = broken.args[0] if isinstance(broken, Broken) else "EXCEPTION"
