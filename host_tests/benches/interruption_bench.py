@@ -7,18 +7,19 @@ In use:
     for bench, sent in interrupted(prepare, action):
         ...                                 # for each line before which the engine worked
 
-    for bench in thrown(prepare, action):
+    for bench, lines in thrown(prepare, action):
         ...                                 # for each line that threw an exception
 
-After most lines everything is as it was after another one, and so is what comes of it. That is
-gone through once.
+After most lines the bench is as it is after another line. Then the same would follow, so it is
+yielded once.
 """
 
 import pickle
 import sys
+from collections import Counter
 
 WHILES_US = (0, 1_500, 23_000, 70_000)  # nothing, a part of an exchange, one, several
-STEP_US = 10_000
+STEP_US = 10_000  # of what an exception comes into
 ROOM = "firmware/uss/"
 
 
@@ -26,14 +27,14 @@ class Thrown(Exception):
     pass
 
 
-class Interruption:
-    """As a context: before the `count`th line of the protocol, the engine works for `us`."""
+class AtLine:
+    """As a context: before the `count`th line of the protocol, `do()`. came: whether it came to
+    that."""
 
-    def __init__(self, bench, count, us):
+    def __init__(self, count, do):
         self.came = False
-        self._bench = bench
         self._count = count
-        self._us = us
+        self._do = do
 
     def __enter__(self):
         sys.settrace(self._call)
@@ -46,41 +47,23 @@ class Interruption:
         return self._line if ROOM in frame.f_code.co_filename else None
 
     def _line(self, frame, event, argument):
-        if event != "line":
-            return self._line
-        self._count -= 1
-        if self._count == 0:
-            sys.settrace(None)
-            self.came = True
-            bench = self._bench
-            bench.refreshing = False  # the loop stands still meanwhile
-            bench.run(self._us)
-            bench.refreshing = True
-        return self._line
-
-
-class Throwing:
-    """As a context: the `count`th line of the protocol throws."""
-
-    def __init__(self, count):
-        self._count = count
-
-    def __enter__(self):
-        sys.settrace(self._call)
-
-    def __exit__(self, *_):
-        sys.settrace(None)
-
-    def _call(self, frame, event, argument):
-        return self._line if ROOM in frame.f_code.co_filename else None
-
-    def _line(self, frame, event, argument):
         if event == "line":
             self._count -= 1
             if self._count == 0:
                 sys.settrace(None)
-                raise Thrown
+                self.came = True
+                self._do()
         return self._line
+
+
+def engine_works(bench, us):
+    bench.refreshing = False  # the loop stands still meanwhile
+    bench.run(us)
+    bench.refreshing = True
+
+
+def throw():
+    raise Thrown
 
 
 def again(prepare):
@@ -90,67 +73,58 @@ def again(prepare):
     return lambda: pickle.loads(prepared)
 
 
-class States:
-    """Where nothing differs, nothing will: what comes of a state is looked at once."""
-
-    def __init__(self):
-        self._seen = set()
-
-    def is_new(self, *state):
-        state = pickle.dumps(state)
-        if state in self._seen:
-            return False
-        self._seen.add(state)
-        return True
-
-
 def interrupted(prepare, action):
     """Carries `action(bench)` out with each interruption: yields the bench afterwards, and how
-    many telegrams had been sent before. What the action returns belongs to the state: what the
-    test looks at and the bench may have done with."""
+    many telegrams had been sent before. The action returns what the test looks at besides: that
+    belongs to the state as well."""
     prepare = again(prepare)
-    states = States()
+    seen = set()
     for us in WHILES_US:
         count = 1
         while True:
             bench = prepare()
             sent = len(bench.sent)
-            with Interruption(bench, count, us) as interruption:
+            with AtLine(count, lambda bench=bench, us=us: engine_works(bench, us)) as line:
                 result = action(bench)
-            if not interruption.came:
+            if not line.came:
                 assert count > 3, "nothing was interrupted"
                 break
-            if states.is_new(bench, sent, result):
+            state = pickle.dumps((bench, sent, result))
+            if state not in seen:
+                seen.add(state)
                 yield bench, sent
             count += 1
 
 
 def thrown(prepare, action, after=None):
-    """Carries `action(bench)` out with an exception at each line of the protocol: yields the bench
-    after each, and after `after(bench)`."""
+    """Carries `action(bench)` out with an exception at each line of the protocol, and
+    `after(bench)`: yields the bench then, and how many lines led to that."""
     prepare = again(prepare)
-    states = States()
+    states = Counter()
     count = 1
     while True:
         bench = prepare()
         try:
-            with Throwing(count):
+            with AtLine(count, throw):
                 action(bench)
         except Thrown:
             if after:
                 after(bench)
-            if states.is_new(bench):
-                yield bench
+            states[pickle.dumps(bench)] += 1
             count += 1
             continue
-        assert count > 50, "nothing was thrown"
-        return
+        break
+    assert count > 50, "nothing was thrown"
+    for state, lines in states.items():
+        yield pickle.loads(state), lines
 
 
 def recovered(prepare, us):
     """Each line that the protocol comes to in the `us` after `prepare` throws: yields the bench
-    when the engine has recovered, as `hal.pacer` has it. In steps, for the way to the line is gone
-    again for each."""
+    when the engine has recovered, as `hal.pacer` has it.
+
+    It goes in steps: to throw at a line, all lines of its step before it have to run again.
+    """
 
     def recover(bench):
         bench.master.recover(bench.now & bench.mask)
@@ -158,5 +132,6 @@ def recovered(prepare, us):
 
     bench = prepare()
     for _ in range(0, us, STEP_US):
-        yield from thrown(lambda: bench, lambda bench: bench.run(STEP_US), recover)
+        for after, _ in thrown(lambda: bench, lambda bench: bench.run(STEP_US), recover):
+            yield after
         bench.run(STEP_US)

@@ -103,7 +103,7 @@ def hunted(mutation, plantings):
         planting.plant(mutation)
         lives = [(seed, MINUTES) for seed in (mutation.seed, *mutation.seeds(OTHERS))]
         for said in soaked(planting.folder, lives, mutation.roams):
-            seed, minutes = said["seed"], (said["seconds"] + 2) / 60
+            seed, minutes = said["seed"], (said["seconds"] + 2) / 60  # both are rounded down
             if said["rule"] in mutation.rules:
                 return Hunt(seed, minutes, [])
             told += said["story"][:2]

@@ -3,8 +3,7 @@
 
 A seed runs the same on each of them; they differ in speed, and in the errors that they notice.
 Only MicroPython locks its heap in interrupt handlers, so every tenth seed stays there. CPython is
-1.5 times as fast. (PyPy is slower than either, also in an hour: the panel throws modules away and
-loads them again, and what was compiled goes with them.)
+twice as fast as Debian's. PyPy is not among them: it was slower than CPython, also after an hour.
 """
 
 import os

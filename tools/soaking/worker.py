@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """One process of a soak, on MicroPython: takes seeds from standard input, tells how they ended.
-Behind a seed there may be minutes, or a count of bytes, for it alone.
+Behind a seed there may be minutes, or a count of bytes, for it alone. ABRUPTLY, 1: a life ends
+with its minutes, and not with what the hand is about then.
 
     micropython tools/soaking/worker.py soak MINUTES [DRIVES TROUBLES ROAMS ABRUPTLY]
     micropython tools/soaking/worker.py fuzz BYTES
