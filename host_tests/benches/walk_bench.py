@@ -2,9 +2,17 @@
 """The menu, found by walking it: no list of pages stands here.
 
 The walk begins where a held PARAM leads, and knows what a person sees: an entry behind ">", its
-place in a list (3/7), a question, a parameter. DOWN and SET lead on. Each place is reached anew,
-with the motor running, or, where the panel refuses that, standing.
+place in a list (3/7), a question, a parameter. DOWN and SET lead on. It is walked with the motor
+running, and on where the panel refuses that, standing.
+
+Where ways part, the process forks, and its twin goes one of them: nobody walks a way again from
+the start. So this is for CPython.
 """
+
+import os
+import pickle
+import traceback
+from contextlib import suppress
 
 import main
 from boards.sim.world import World
@@ -136,30 +144,136 @@ def page_of(world):
     return "".join([letter for letter in title if not letter.isdigit()]).strip()
 
 
-def ways(begins=(running, silent, warned)):
-    """Each place once, as (begin, way, place, world that is there). begins: how worlds begin.
+def places(begins, look):
+    """What `look(begin, way, here, world)` returns of each place, once. begins: how worlds begin.
 
-    The world comes back with the menu as it was: so it can walk on.
+    The world is one that has just come there. `look` leaves the menu as it was, for then the walk
+    goes on from there: through one list. Into the next one goes a world that nobody has touched.
     """
-    seen, open_ways = set(), [(begin, ()) for begin in begins]
-    while open_ways:
-        begin, way = open_ways.pop(0)
-        world = go(begin, way)
-        while True:
-            here = place(world)
-            if here is None and begin in (running, warned):  # refused, perhaps since it runs
-                open_ways.append((standing, way))
-            if here is None or here in seen:
-                break
-            seen.add(here)
-            yield begin, way, here, world
-            assert len(way) < DEEP, way
-            count, row = here
-            if not row.startswith(">"):
-                break
-            if "/" not in row or way[-1:] == ("SET",):  # of many that only tell, the first one
-                open_ways.append((begin, way + ("SET",)))
-            if not count and way[-1:] != ("SET",):  # a value is changed once
-                break
-            way += ("DOWN",)
-            walk(world, "DOWN")
+    seen, found, refused = set(), [], []
+    for begin in begins:
+        found += _walk_on(begin, (), go(begin, ()), look, seen, refused)
+    for way in refused:  # perhaps since it runs
+        found += _walk_on(standing, way, go(standing, way), look, seen, [])
+    return found
+
+
+def _walk_on(begin, way, world, look, seen, refused):
+    """What `look` returns of the places from here on that nobody has seen. As `places`.
+
+    seen: takes these places. refused: takes the ways that led to none.
+    """
+    passed, is_end = twin(_walk_down, begin, way, world, look, seen)
+    seen.update(here for here, _, _ in passed)
+    found = [result for _, _, result in passed]
+    if is_end and begin in (running, warned):
+        refused.append(way + ("DOWN",) * len(passed))
+    for _, opens, _ in passed:
+        if opens:
+            below, seen_there, refused_there = twin(_walk_in, begin, way, world, look, seen)
+            found += below
+            seen.update(seen_there)
+            refused += refused_there
+        way += ("DOWN",)
+        walk(world, "DOWN")
+    return found
+
+
+def _walk_in(begin, way, world, look, seen):
+    refused = []
+    walk(world, "SET")
+    world.run(100)
+    return _walk_on(begin, way + ("SET",), world, look, seen, refused), seen, refused
+
+
+def _walk_down(begin, way, world, look, seen):
+    """([(place, whether SET leads on, what `look` returns)], whether DOWN led to no place)."""
+    passed = []
+    while True:
+        here = place(world)
+        if here is None or here in seen:
+            return passed, here is None
+        seen.add(here)
+        assert len(way) < DEEP, way
+        count, row = here
+        is_list = row.startswith(">")
+        # Of many that only tell, the first one.
+        opens = is_list and ("/" not in row or way[-1:] == ("SET",))
+        passed.append((here, opens, look(begin, way, here, world)))
+        if not is_list or not count and way[-1:] != ("SET",):  # a value is changed once
+            return passed, False
+        way += ("DOWN",)
+        walk(world, "DOWN")
+
+
+def visit(begin, ways, do):
+    """`do(world, way)` with a panel that has walked the way, for each of them."""
+    _visit(go(begin, ()), (), set(ways), do)
+
+
+def _visit(world, way, ways, do):
+    if way in ways:
+        twin(_do, world, way, do)
+    longer = [each for each in ways if len(each) > len(way) and each[: len(way)] == way]
+    keys = sorted({each[len(way)] for each in longer})
+    for key in keys[:-1]:
+        twin(_visit_on, world, way + (key,), ways, do)
+    for key in keys[-1:]:
+        _visit_on(world, way + (key,), ways, do)
+
+
+def _visit_on(world, way, ways, do):
+    walk(world, way[-1])
+    _visit(world, way, ways, do)
+
+
+def _do(world, way, do):
+    world.run(100)
+    do(world, way)
+
+
+class TwinFailed(AssertionError):
+    """The text is the traceback of what a twin has raised."""
+
+
+def twin(function, *arguments):
+    """What the function returns, done by a copy of this process: nothing changes here."""
+    positions = _positions()
+    reading, writing = os.pipe()
+    child = os.fork()
+    if not child:
+        with open(writing, "wb") as file:
+            file.write(pickle.dumps(_outcome(function, arguments)))
+        os._exit(0)
+    os.close(writing)
+    with open(reading, "rb") as file:
+        outcome = file.read()
+    os.waitpid(child, 0)
+    for number, position in positions:
+        os.lseek(number, position, os.SEEK_SET)
+    if not outcome:
+        raise TwinFailed("a copy of the process has died")
+    is_good, result = pickle.loads(outcome)
+    if not is_good:
+        raise TwinFailed(result)
+    return result
+
+
+def _outcome(function, arguments):
+    """(True, what it returns) or (False, a traceback). Whatever it raises, a twin ends here."""
+    try:
+        return True, function(*arguments)
+    except TwinFailed as error:  # a twin of this twin has
+        return False, str(error)
+    except BaseException:
+        return False, traceback.format_exc()
+
+
+def _positions():
+    """[(number of an open file, where it is read next)]: a process and its twin share that."""
+    found = []
+    for number in map(int, os.listdir("/proc/self/fd")):
+        if number > 2:
+            with suppress(OSError):  # a pipe, or what listed them
+                found.append((number, os.lseek(number, 0, os.SEEK_CUR)))
+    return found

@@ -7,6 +7,7 @@ that is shown. What a key does on a page is told by the test of that page.
 """
 
 import os
+from collections import Counter, namedtuple
 
 import on_demand
 from panel_bench import OFF1, row_1, row_2, settled, starts, telegrams
@@ -15,23 +16,26 @@ from walk_bench import (
     go,
     is_parameter,
     page_of,
+    places,
     running,
     running_compact,
     silent,
     standing,
     standing_compact,
+    visit,
     wait_until_it_runs,
     walk,
     warned,
-    ways,
 )  # fmt: skip
+
+INTERPRETERS = "cpython"  # it forks
 
 MOTION_KEYS = ("START", "REVERSE", "JOG_RIGHT", "JOG_LEFT")
 # Those that lead away come last.
 OTHER_KEYS = (
     "UP", "DOWN", "NEXT", "PREVIOUS", "EDIT", "ADDRESS_UP", "ADDRESS_DOWN", "SET", "PARAM",
 )  # fmt: skip
-PAGES = 25  # there are at the least
+PAGES = 50  # there are at the least
 PLACES_OF_A_PAGE = 2  # in which every key is tried
 NO_LISTS = ("__init__", "engine", "words", "diagnosis")  # modules of the menu
 LISTS_BESIDE = (
@@ -92,87 +96,76 @@ def press_stop(world, where):
     world.check()
 
 
-def noting(loaded):
-    """`on_demand.load`, which notes what it loads."""
-    load = on_demand.load
-
-    def load_and_note(name):
-        loaded.add(name)
-        return load(name)
-
-    return load_and_note
-
-
-class Walk:
-    """What a walk through the menu has found; it takes a while, and is done once."""
-
-    def __init__(self):
-        self.places = {running: 0, standing: 0, silent: 0, warned: 0}
-        self.parameters = 0
-        self.counts = {}  # page -> places of it, with a motor that can run
-        self.tried = []  # (begin, way, place) of some of each page
-
-    def note(self, begin, way, here, world):
-        self.places[begin] += 1
-        self.parameters += is_parameter(here[1])
-        if begin not in (running, warned):
-            return
-        page = page_of(world)
-        self.counts[page] = self.counts.get(page, 0) + 1
-        if self.counts[page] <= PLACES_OF_A_PAGE:
-            self.tried.append((begin, way, here))
-            if begin is running:
-                self.tried.append((standing, way, here))
-
-
+# begin, way, here: as in `walk_bench.places`. page: of the menu. loaded: modules, so far.
+Place = namedtuple("Place", "begin way here page loaded")
 done = []
+loaded = set()
+load = on_demand.load
 
 
 def walked():
+    """The places of the menu. To go through them takes a while, and is done once."""
     if not done:
-        walk_through()
-    return done[0]
+        on_demand.load = load_and_note
+        try:
+            done.extend(places((running, silent, warned), look))
+        finally:
+            on_demand.load = load
+    return done
 
 
-def walk_through():
-    """Through all of the menu; in each place STOP acts, and no motion key does."""
-    found = Walk()
-    for begin, way, here, world in ways():
-        found.note(begin, way, here, world)
-        is_line_left = has_left(world)
-        if begin in (running, warned):
-            run(world)
-        if here[1].startswith(">"):  # any key answers a question
-            press_motion_keys(world, (way, here))
-        if begin is not silent and not is_line_left:
-            run(world)
-        press_stop(world, (way, here))
-    done.append(found)
+def load_and_note(name):
+    loaded.add(name)
+    return load(name)
+
+
+def look(begin, way, here, world):
+    """In this place STOP acts, and no motion key does."""
+    found = Place(begin, way, here, page_of(world), set(loaded))
+    is_line_left = has_left(world)
+    if begin in (running, warned):
+        run(world)
+    if here[1].startswith(">"):  # any key answers a question
+        press_motion_keys(world, (way, here))
+    if begin is not silent and not is_line_left:
+        run(world)
+    press_stop(world, (way, here))
+    return found
+
+
+def tried():
+    """Some places of each page, with a motor that runs."""
+    counts = Counter()
+    for found in walked():
+        if found.begin is running:
+            counts[found.page] += 1
+            if counts[found.page] <= PLACES_OF_A_PAGE:
+                yield found
 
 
 def test_stop_acts_in_every_place_of_the_menu_and_nothing_starts_there():
-    loaded, load = set(), on_demand.load
-    on_demand.load = noting(loaded)
-    try:
-        walk_through()
-    finally:
-        on_demand.load = load
-    places = walked().places
-    assert places[running] > 70 and places[standing] > 2 and places[silent] > 3, places
-    assert places[warned] > 5 and walked().parameters > 1, (places, walked().parameters)
+    counts = Counter(found.begin for found in walked())
+    parameters = sum(is_parameter(found.here[1]) for found in walked())
+    assert counts[running] > 70 and counts[standing] > 2 and counts[silent] > 3, counts
+    assert counts[warned] > 5 and parameters > 1, (counts, parameters)
+
+
+def test_a_walk_comes_to_every_list():
+    on_the_ways = set().union(*[found.loaded for found in walked()])
     for folder in ("", "/diagnosis"):
         for name in os.listdir("firmware/panel/menu" + folder):
             name = name.split(".")[0]
             if name not in NO_LISTS and not name.startswith("__"):
                 module = "panel.menu" + folder.replace("/", ".") + "." + name
-                assert module in loaded, "nobody gets to the list %s" % name
+                assert module in on_the_ways, "nobody gets to the list %s" % name
     for name in LISTS_BESIDE:
-        assert "panel." + name in loaded, "nobody gets to the list %s" % name
+        assert "panel." + name in on_the_ways, "nobody gets to the list %s" % name
 
 
 def test_a_walk_finds_the_pages():
-    assert len(walked().counts) >= PAGES, sorted(walked().counts)
-    assert len(walked().tried) > 60
+    pages = {found.page for found in tried()}
+    assert len(pages) >= PAGES, sorted(pages)
+    assert len(list(tried())) > 80
 
 
 def stops_what_is_shown(world, where):
@@ -198,8 +191,17 @@ def starts_of(world):
     return [starts(world, address) for address in sorted(world.drives)]
 
 
-def press_every_key(begin, way, here):
-    world = go(begin, way)
+def press_every_key_everywhere(begin):
+    """In the places that the walk came to, with a panel that begins so."""
+    heres = {found.way: found.here for found in tried()}
+
+    def press(world, way):
+        press_every_key(world, begin, way, heres[way])
+
+    visit(begin, heres, press)
+
+
+def press_every_key(world, begin, way, here):
     runs = world.drives[1].state == "running"
     before = starts_of(world)
     keys = OTHER_KEYS
@@ -216,28 +218,20 @@ def press_every_key(begin, way, here):
     world.check()
 
 
-def press_every_key_everywhere(begin, really):
-    """In the places where a panel came to that began so; really: how this one begins."""
-    places = [(way, here) for one, way, here in walked().tried if one is begin]
-    assert len(places) > 30, len(places)
-    for way, here in places:
-        press_every_key(really, way, here)
-
-
 def test_no_key_in_any_list_moves_a_motor_that_stands():
-    press_every_key_everywhere(standing, standing)
+    press_every_key_everywhere(standing)
 
 
 def test_no_key_in_any_list_but_stop_does_anything_to_a_motor_that_runs():
-    press_every_key_everywhere(running, running)
+    press_every_key_everywhere(running)
 
 
 def test_so_it_is_with_eight_keys_while_the_motor_stands():
-    press_every_key_everywhere(standing, standing_compact)
+    press_every_key_everywhere(standing_compact)
 
 
 def test_so_it_is_with_eight_keys_while_the_motor_runs():
-    press_every_key_everywhere(running, running_compact)
+    press_every_key_everywhere(running_compact)
 
 
 def test_the_keys_of_a_list():
