@@ -1,16 +1,18 @@
 # SPDX-License-Identifier: MIT
 """What the tests of parameter sets share: hands that save and write them, files made elsewhere."""
 
+import json
 from binascii import crc32
 
 import catalogue
 from boards.sim.drives import parameters
-from boards.sim.drives.families import mm440
+from boards.sim.drives.families import mm3, mm440
 from panel.sets import work
-from panel_bench import panel, row_2, settled, wait_until_known
+from panel_bench import panel, row_2, said, settled, starts, wait_until_known
 
 BAUD = 57600  # for the tests' sake: a set takes a minute at 19200
 ENDING = ".set"
+ROWS = [(1080, 1, b"Float", b"40A00000"), (1120, 0, b"Float", b"40200000")]
 
 TYPES = {b"U16": "U16", b"I16": "I16", b"Float": "F"}  # of the catalogue; the others are U32
 LIMITS = {"U16": (0, 65535), "I16": (-32768, 32767), "F": (-1e9, 1e9), "U32": (0, 0xFFFFFFFF)}
@@ -24,6 +26,13 @@ def two(**options):
     settings = {"kinds": {"1": "mm440", "2": "mm440"}}
     settings.update(options.pop("settings", {}))
     world = panel(addresses=(1, 2), baud=BAUD, kinds=kinds, settings=settings, **options)
+    wait_until_known(world)
+    return world
+
+
+def small():
+    """A panel with a MICROMASTER 3, whose set is saved in a tenth of the time."""
+    world = panel(kinds={1: {"family": mm3}}, settings={"kinds": {"1": "mm3"}})
     wait_until_known(world)
     return world
 
@@ -135,6 +144,29 @@ def files(world):
     return sorted([name for name in world.flash.files if name.endswith(ENDING)])
 
 
+def marks(world):
+    """What the panel would find in its flash if it restarted now."""
+    found = json.loads(world.flash.files["settings.json"]).get("half_written", {})
+    return sorted([int(address) for address in found])
+
+
+def refuses_to_move(world):
+    """START and JOG of drive 2 say why not."""
+    show(world, 2)
+    world.run(2000)
+    before = starts(world, 2)
+    for key in ("START", "JOG_RIGHT", "JOG_LEFT"):
+        world.down(key)
+        world.run(400)
+        assert "NO: HALF A SET" in said(world, 400), (key, world.lcd())
+        world.up(key)
+        world.run(200)
+    world.run(3000)
+    if world.drives[2].state != "fault":
+        assert settled(world)[1] == "HALF A SET   A2 ", world.lcd()
+    assert starts(world, 2) == before and world.drives[2].hz() == 0
+
+
 def made(rows, family=b"mm440", address=1, name=b"MADE", ratings=()):
     """A file as a program on a PC would make it. rows: (number, index, type, value in hex)."""
     text = bytearray(b"USS SET 1\nfamily %s\naddress %d\nname %s\n" % (family, address, name))
@@ -208,3 +240,9 @@ def has(drive, row, value):
     kind = drive.parameters.rows[number][parameters.TYPE]
     words = parameters.words_of(kind, drive.parameters.get(number, index))
     return value == "".join(["%04X" % word for word in words])
+
+
+def put(world, *rows, name="1.set", name_inside=b"MADE", **options):
+    """A file that was copied onto the panel while it was off."""
+    options["name"] = name_inside
+    world.flash.files[name] = made(sorted(rows or ROWS), **options)

@@ -11,8 +11,6 @@ from panel.sets import saving, set_file, work, writing
 from sets_bench import made
 from uss import families
 
-NOT_TRACED = "test_ten_sets_of_an_mm440_with_all_that_it_has_fit test_the_values_are_counted"
-
 FILE_SYSTEM_BYTES = 1408 * 1024  # of a Pico with the firmware file: nothing else is in it
 SECTOR_BYTES = 4096
 WORDS = (b"U16", b"I16")

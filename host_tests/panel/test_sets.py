@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: MIT
-"""The operator's manual, parameter sets: saved, compared, written back, into another drive."""
+"""The operator's manual, parameter sets: saved, compared, written back, into another drive.
 
-import json
-import random
+What is cut off in the middle is tried in test_sets_cut_off.py.
+"""
 
 from boards.sim.drives.families import mm3
 from panel.sets.writing import BUS_AND_SOURCES
 from panel_bench import panel, row_1, row_2, said, settled, starts, wait_until_known
 from sets_bench import (
+    ROWS,
     begin,
     catalogued,
     complete_mm440,
@@ -17,47 +18,23 @@ from sets_bench import (
     home,
     made,
     make_each_value_another,
+    marks,
     open_set,
     press,
+    put,
+    refuses_to_move,
     rows_of,
     save,
     sets,
     show,
+    small,
     two,
     wait,
     walk_to,
     write,
 )  # fmt: skip
 
-NOT_TRACED = """
-    test_a_link_that_is_cut_leaves_no_half_set_that_counts_as_whole
-    test_power_cut_at_any_step_of_saving_leaves_no_set_or_a_whole_one
-    test_power_cut_at_any_step_of_the_mark_starts_no_motor
-"""
-
-SEED = 17
-CUTS = 20
-ROWS = [(1080, 1, b"Float", b"40A00000"), (1120, 0, b"Float", b"40200000")]
 OTHER_RATING = [(206, b"41700000"), (207, b"42000000"), (208, b"000001F4")]
-
-
-def marks(world):
-    """What the panel would find in its flash if it restarted now."""
-    found = json.loads(world.flash.files["settings.json"]).get("half_written", {})
-    return sorted([int(address) for address in found])
-
-
-def put(world, *rows, name="1.set", name_inside=b"MADE", **options):
-    """A file that was copied onto the panel while it was off."""
-    options["name"] = name_inside
-    world.flash.files[name] = made(sorted(rows or ROWS), **options)
-
-
-def small():
-    """A panel with a MICROMASTER 3, whose set is saved in a tenth of the time."""
-    world = panel(kinds={1: {"family": mm3}}, settings={"kinds": {"1": "mm3"}})
-    wait_until_known(world)
-    return world
 
 
 def half_way(world, rows=ROWS):
@@ -72,23 +49,6 @@ def half_way(world, rows=ROWS):
     home(world)
     world.run(3000)
     assert marks(world) == [2]
-
-
-def refuses_to_move(world):
-    """START and JOG of drive 2 say why not."""
-    show(world, 2)
-    world.run(2000)
-    before = starts(world, 2)
-    for key in ("START", "JOG_RIGHT", "JOG_LEFT"):
-        world.down(key)
-        world.run(400)
-        assert "NO: HALF A SET" in said(world, 400), (key, world.lcd())
-        world.up(key)
-        world.run(200)
-    world.run(3000)
-    if world.drives[2].state != "fault":
-        assert settled(world)[1] == "HALF A SET   A2 ", world.lcd()
-    assert starts(world, 2) == before and world.drives[2].hz() == 0
 
 
 def is_of_the_bus(number):
@@ -538,136 +498,6 @@ def test_a_mark_follows_the_drive_to_another_address():
 
 
 # --- trouble ------------------------------------------------------------------------------------
-
-
-def test_a_link_that_is_cut_leaves_no_half_set_that_counts_as_whole():
-    world = two()
-    drive = world.drives[2]
-    save(world)
-    whole = world.flash.files["1.set"]
-    rows = [
-        (number, index, b"Float", b"40A00000")
-        for number, index in sorted(rows_of(whole))
-        if 1001 <= number <= 1015 or 1080 <= number <= 1092 and number != 1082
-    ]
-    rows = [row for row in rows if len(rows_of(whole)[row[:2]]) == 8]
-    assert len(rows) > 40
-    random.seed(SEED)
-    print("seed %d" % SEED)
-    world.flash.files["1.set"] = made(rows)
-    begin(world, "A1 MADE", "INTO A2 RAM")
-    wait(world, "SET=WRITE A2")
-    began_us = world.clock.now_us
-    assert finish(world) == "WRITTEN, EQUAL"
-    lasts_ms = (world.clock.now_us - began_us) // 1000
-    home(world)
-    half = 0
-    for cut in range(CUTS):  # one in each twentieth of the time that it takes
-        for number, index, _, _ in rows:
-            drive.write(number, index, 1.0)
-        begin(world, "A1 MADE", "INTO A2 RAM")
-        wait(world, "SET=WRITE A2")
-        world.down("SET")
-        world.run(100)
-        world.up("SET")
-        world.run((cut * lasts_ms + random.randrange(lasts_ms)) // CUTS)
-        drive.unplug()
-        world.run(random.choice((60, 300, 1500, 3000)))
-        drive.plug()
-        finish(world)
-        home(world)
-        world.run(2000)
-        written = [row for row in rows if drive.read(row[0], row[1]) == 5.0]
-        if marks(world):
-            half += 1
-            refuses_to_move(world)
-        else:
-            assert len(written) == len(rows)
-    assert 5 <= half < CUTS, half
-    world.check()
-
-
-def test_a_link_that_is_cut_while_a_set_is_saved_leaves_no_file_or_a_whole_one():
-    world = small()
-    sets(world)
-    press(world, "SET", "SET")
-    began_us = world.clock.now_us
-    wait(world, "SAVED:")
-    lasts_ms = (world.clock.now_us - began_us) // 1000
-    home(world)
-    whole = rows_of(world.flash.files["1.set"])
-    random.seed(SEED)
-    print("seed %d" % SEED)
-    unsaved = 0
-    for cut in range(CUTS):  # one in each twentieth of the time that it takes
-        sets(world)
-        press(world, "SET", "SET")
-        world.run((cut * lasts_ms + random.randrange(lasts_ms)) // CUTS)
-        world.drives[1].unplug()
-        world.run(random.choice((60, 300, 1500, 3000)))
-        world.drives[1].plug()
-        wait(world, "SAVED:", "NO CONTACT", "NO ANSWER")
-        home(world)
-        unsaved += len(files(world)) == 1
-        for name in files(world)[1:]:
-            assert rows_of(world.flash.files[name]) == whole
-            del world.flash.files[name]
-        world.run(2000)
-    assert 5 <= unsaved < CUTS, unsaved
-
-
-def test_power_cut_at_any_step_of_saving_leaves_no_set_or_a_whole_one():
-    world = small()
-    before = world.flash.steps
-    save(world)
-    whole = world.flash.files["1.set"]
-    steps = world.flash.steps - before
-    assert steps > 8, steps
-    for step in range(steps):
-        world.flash.files.pop("1.set", None)
-        world.flash.cut_at = world.flash.steps + step
-        resets = world.resets
-        sets(world)
-        press(world, "SET", "SET")
-        for _ in range(600):
-            world.run(100)
-            if world.resets > resets:
-                break
-        world.run(3000)
-        if world.resets == resets:  # what an earlier cut left has saved a step
-            assert step == steps - 1 and world.flash.files["1.set"] == whole
-        assert world.flash.files.get("1.set") in (None, whole), step
-        assert row_2(world).startswith("READY"), world.lcd()
-
-
-def test_power_cut_at_any_step_of_the_mark_starts_no_motor():
-    """Each single step of the file system from the yes to the end of the writing: the mark is set
-    before the first value, and taken away behind the last one.
-    """
-    step, is_cut, kinds = 0, True, set()
-    while is_cut:
-        world = two()
-        put(world)
-        begin(world, "A1 MADE", "INTO A2 RAM")
-        wait(world, "SET=WRITE")
-        world.flash.cut_at = world.flash.steps + step
-        resets = world.resets
-        press(world, "SET")
-        world.run(6000)
-        is_cut = world.resets > resets
-        has_some = world.drives[2].read(1120) != 10.0 or world.drives[2].read(1080, 1) != 0
-        has_all = world.drives[2].read(1120) == 2.5 and world.drives[2].read(1080, 1) == 5.0
-        kinds.add((has_some, has_all, bool(marks(world))))
-        if marks(world):
-            home(world)
-            refuses_to_move(world)
-        else:  # nothing was written yet, or all of it
-            assert has_all or not has_some, step
-        world.check()
-        step += 1
-    assert step > 8, step
-    # Nothing written; written, and the mark is still there; written and settled.
-    assert kinds == {(False, False, False), (True, True, True), (True, True, False)}, kinds
 
 
 def test_a_full_flash_is_said_and_leaves_the_other_sets():
