@@ -321,7 +321,8 @@ class Failure:
 # ---- running them ---------------------------------------------------------------------------
 
 ORDINARY = "host"  # what an ordinary file has in place of a tier
-LASTED = "uss/seconds_a_test"  # in pytest's cache: a job -> how long it took for each of its tests
+# In pytest's cache: a job -> how long each of its tests took, what part of that it computed.
+LASTED, BUSY = "uss/seconds_a_test", "uss/busy"
 USUAL_S, USUAL_BESIDE_A_CHIP_S = 0.1, 5  # of one that never ran
 
 
@@ -356,9 +357,10 @@ class Pool:
 
     Of the files that only compute as many run at a time as there are processors, and half as many
     ordinary ones beside them. An ordinary file often waits: for a page, a terminal, a serial port.
-    The others stand back (tiers.py) for what has to be in time. Of either kind the longest come
-    first, as far as the last run can tell, and when the others are done, more ordinary ones run at
-    a time, so that all processors are busy to the end.
+    The others stand back (tiers.py) for what has to be in time. When they are done, more ordinary
+    ones run at a time: so those that wait most of their time come first, and those that compute
+    keep all processors busy to the end. Else the longest come first, as far as the last run can
+    tell.
     """
 
     def __init__(self, config):
@@ -370,19 +372,21 @@ class Pool:
         self.others = ThreadPoolExecutor(processors)
         self.verdicts = {}  # item -> future of its Verdict, of an ordinary test: of what was Told
         self.runs = []
-        self.lasted_s = {}
+        self.lasted_s, self.busy = {}, {}
 
     def sort(self, items):
         """Job after job, in the order in which they are to run."""
         jobs = jobs_of(items)
-        self.lasted_s = self._cached()
+        self.lasted_s, self.busy = self._cached(LASTED), self._cached(BUSY)
 
         def rank(job):
             is_ordinary = job.tier == ORDINARY
             usual_s = (
                 USUAL_S if is_ordinary or TIERS[job.tier].everywhere else USUAL_BESIDE_A_CHIP_S
             )
-            return not is_ordinary, -len(jobs[job]) * self.lasted_s.get(str(job), usual_s)
+            computes = self.busy.get(str(job), 0) > 0.5
+            lasts_s = len(jobs[job]) * self.lasted_s.get(str(job), usual_s)
+            return not is_ordinary, computes, -lasts_s
 
         items[:] = [item for job in sorted(jobs, key=rank) for item in jobs[job]]
 
@@ -423,9 +427,10 @@ class Pool:
             run.wait()
         if hasattr(self.config, "cache"):
             self.config.cache.set(LASTED, self.lasted_s)
+            self.config.cache.set(BUSY, self.busy)
 
-    def _cached(self):
-        return self.config.cache.get(LASTED, {}) if hasattr(self.config, "cache") else {}
+    def _cached(self, what):
+        return self.config.cache.get(what, {}) if hasattr(self.config, "cache") else {}
 
     def _runs_ordinary_files(self):
         """Not where it was started to run them, or where somebody wants to have a hand in it."""
@@ -442,7 +447,10 @@ class Pool:
             began = time.monotonic()
             try:
                 run.run()
-                self.lasted_s[str(job)] = (time.monotonic() - began) / len(futures)
+                lasted_s = time.monotonic() - began
+                self.lasted_s[str(job)] = lasted_s / len(futures)
+                if job.tier == ORDINARY:
+                    self.busy[str(job)] = run.busy_s / lasted_s
             except BaseException as error:  # pytest would wait for ever
                 for future in futures.values():
                     if not future.done():

@@ -9,13 +9,14 @@ what ended.
 
 import ast
 import os
+import resource
 import signal
 import subprocess
 import sys
 from typing import NamedTuple
 
 from runner import MARK
-from tiers import reports, start
+from tiers import CACHES, reports, start
 
 # That pytest gives its tests up after the time limit; when it does not, it has hung itself.
 GRACE_S = 30
@@ -34,12 +35,12 @@ class OrdinaryRun:
     """The run of tests of one file: in one process or, after a crash, in more.
 
     `publish(nodeid, told)` is called once for every test. `run` is for a thread; `stop` and then
-    `wait` may come from another.
+    `wait` may come from another. busy_s: of a processor, which it has taken.
     """
 
     def __init__(self, config, path, nodeids, timeout_s, publish):
         option = config.option
-        self.command = [sys.executable, "-B", "-m", "pytest", "-q", "--no-header"]
+        self.command = [sys.executable, "-X", CACHES, "-m", "pytest", "-q", "--no-header"]
         self.command += ["-c", config.inipath, "--rootdir", config.rootpath, path]
         self.command += ["--tb", option.tbstyle, *(["--showlocals"] if option.showlocals else [])]
         for name in option.plugins or ():
@@ -54,6 +55,7 @@ class OrdinaryRun:
         self.publish = publish
         self.process = None
         self.stopped = False
+        self.busy_s = 0.0
 
     def run(self):
         while self.left and not self.stopped:
@@ -89,6 +91,8 @@ class OrdinaryRun:
                 nodeid, told = argument, []
             elif word == "report":
                 told.append(ast.literal_eval(argument))
+            elif word == "busy":
+                self.busy_s += float(argument)
             elif word == "ended" and not self.stopped:
                 self._conclude_process(nodeid, told, text, argument)
         _kill_all(self.process)
@@ -133,6 +137,11 @@ class Teller:
         hook = self.config.hook
         data = hook.pytest_report_to_serializable(config=self.config, report=report)
         self._tell("report", repr(data))  # as a text a tuple is still a tuple
+
+    def pytest_sessionfinish(self):
+        both = (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)
+        used = [seconds for who in both for seconds in resource.getrusage(who)[:2]]
+        self._tell("busy", sum(used))
 
     def _tell(self, word, argument):
         print(f"{MARK}{word} {argument}", flush=True)

@@ -16,9 +16,11 @@ import sys
 import tarfile
 from functools import cache
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
+import conftest
 import line_coverage
 import tiers
 from version import VERSION
@@ -324,6 +326,19 @@ def test_the_table_names_lines_that_nothing_ran(tmp_path):
     rows = [row.split(maxsplit=4)[1:] for row in coverage.report()]
     assert ["4", "2", "50%", "4-5"] in rows and ["1", "1", "0%", "1"] in rows, rows
     assert rows[-1] == ["5", "3", "40%"]
+
+
+def test_of_ordinary_files_those_that_wait_come_first_and_then_the_longest():
+    last_run = {
+        conftest.LASTED: {"long::host": 9, "short::host": 1, "computes::host": 20},
+        conftest.BUSY: {"long::host": 0.1, "short::host": 0.4, "computes::host": 0.9},
+    }
+    config = SimpleNamespace(
+        getini=lambda _: 0, cache=SimpleNamespace(get=lambda name, _: last_run[name])
+    )
+    items = [SimpleNamespace(path=name) for name in ("computes", "short", "long")]
+    conftest.Pool(config).sort(items)
+    assert [item.path for item in items] == ["long", "short", "computes"]
 
 
 def test_the_lines_that_the_tests_of_a_file_ran_are_noted(run_pytest):
