@@ -92,7 +92,7 @@ MUTATIONS = (
     Mutation(
         "both jog keys",
         "two jog keys at once are one",
-        ("JOG",), 9,
+        ("JOG",), 219,
         (
             "panel/keys/jog_keys.py",
             "if down != self._key or control is not",
@@ -113,7 +113,7 @@ MUTATIONS = (
     Mutation(
         "ON kept over a loss",
         "a drive that comes back into contact starts by itself",
-        ("START", "LOST"), 5,
+        ("START", "LOST"), 89,
         (
             "uss/drive.py",
             "            self.was_running = self._may_run or not self.tells_status\n"
@@ -139,7 +139,7 @@ MUTATIONS = (
     Mutation(
         "stale PKW accepted",
         "an old answer is taken for that of another parameter",
-        ("SETPOINT", "SHOWN", "RECOVERS"), 16,
+        ("SETPOINT", "SHOWN", "RECOVERS"), 63,
         (
             "uss/pkw.py",
             "reply = reply_about(net, at, self.words)",
@@ -159,7 +159,7 @@ MUTATIONS = (
     AtHome(
         "dead man removed",
         "ON goes on while the panel hangs",
-        ("DEAD MAN",), 5,
+        ("DEAD MAN",), 60,
         ("uss/master.py", "DEAD_MAN_US = const(300_000)", "DEAD_MAN_US = const(3_000_000)"),
     ),
     Mutation(
@@ -195,7 +195,7 @@ MUTATIONS = (
     Mutation(
         "started after a reset",
         "a motor that turns when the panel has restarted is sent ON",
-        ("START",), 15,
+        ("START",), 32,
         (
             "panel/control.py",
             "            self._contact = drive.contact\n",
@@ -222,7 +222,7 @@ MUTATIONS = (
     Mutation(
         "EEPROM without asking",
         "every write wears the EEPROM",
-        ("EEPROM",), 26,
+        ("EEPROM",), 201,
         (
             "panel/writer.py",
             "pkw.WRITE_WORD_EEPROM if write.eeprom else pkw.WRITE_WORD",
@@ -248,7 +248,7 @@ MUTATIONS = (
     Mutation(
         "bit 10 dropped",
         "the drive ignores the telegram and goes on as before",
-        ("CONTROL",), 20,
+        ("CONTROL",), 276,
         ("uss/pzd.py", "OFF3 = const(0x047A)", "OFF3 = const(0x007A)"),
     ),
     Mutation(
@@ -280,7 +280,7 @@ MUTATIONS = (
     Mutation(
         "watchdog fed always",
         "a bus that stands is not restarted",
-        ("WATCHDOG",), 45,
+        ("WATCHDOG",), 55,
         ("app.py", "if stands_ms * 1000 < self.bus.patience_us():", "if stands_ms >= 0:"),
     ),
     Mutation(
@@ -303,7 +303,7 @@ MUTATIONS = (
     Mutation(
         "lost drive forgotten",
         "a drive that ran and is lost is just NO CONTACT",
-        ("MAY RUN",), 5,
+        ("MAY RUN",), 89,
         (
             "panel/control.py",
             "is_lost_running = drive.was_running and not drive.contact",
@@ -343,7 +343,7 @@ MUTATIONS = (
     Mutation(
         "start interval halved",
         "the drives miss telegrams that come too soon",
-        ("LINE",), 1,
+        ("LINE",), 4,
         ("uss/timing.py", "START_INTERVAL_CHARACTERS = 2", "START_INTERVAL_CHARACTERS = 1"),
     ),
     AtHome(
@@ -397,7 +397,7 @@ MUTATIONS = (
     Mutation(
         "second stop for all",
         "OFF3 goes to drives that are not shown",
-        ("SECOND STOP",), 20,
+        ("SECOND STOP",), 179,
         (
             "panel/keys/stop_key.py",
             "            self._control.second_stop()\n",
@@ -518,7 +518,7 @@ MUTATIONS = (
     Mutation(
         "trips unseen",
         "a drive that is not shown trips, and nobody is told",
-        ("ANNOUNCED",), 7,
+        ("ANNOUNCED",), 11,
         (
             "panel/announcer.py",
             "        if control.fault.active:\n            return TRIPPED\n",
@@ -661,13 +661,13 @@ MUTATIONS = (
     Mutation(
         "percent sent as hertz",
         "10.0% goes out as 10 Hz of 50 Hz",
-        ("SHOWN", "SETPOINT"), 15,
+        ("SHOWN", "SETPOINT"), 252,
         ("uss/survey.py", "_HUNDRED_PERCENT = const(10_000)", "_HUNDRED_PERCENT = const(5_000)"),
     ),
     Mutation(
         "percent looks like hertz",
         "a drive that does not tell its reference is shown in hertz",
-        ("SHOWN",), 21,
+        ("SHOWN",), 186,
         ("panel/texts.py", 'ACTUAL_PERCENT = b"%F:"', 'ACTUAL_PERCENT = b" F:"'),
     ),
     AtHome(
@@ -736,7 +736,7 @@ MUTATIONS = (
     AtHome(
         "looked for too soon",
         "a drive that may run is sent other telegrams before its STOP had a chance",
-        ("MIRROR",), 25,
+        ("MIRROR",), 87,
         ("uss/finding/finder.py", "STOPPED_MIN = const(30)", "STOPPED_MIN = const(3)"),
     ),
     Mutation(
@@ -752,7 +752,7 @@ MUTATIONS = (
     Mutation(
         "mirrors have no share",
         "looking for layouts takes the line from the drives that run",
-        ("NEGLECTED",), 14,
+        ("NEGLECTED",), 40,
         (
             "uss/finding/finder.py",
             "        if self._turns.has_command() or silence.shared_us != silence.charged_us:\n"
@@ -786,7 +786,7 @@ MUTATIONS = (
     Mutation(
         "STOP dead in the menu",
         "whoever reads a list cannot stop the motor",
-        ("STOP",), 6,
+        ("STOP",), 238,
         (
             "panel/panel.py",
             "        if down & self._stop_bit:\n",
@@ -820,7 +820,7 @@ MUTATIONS = (
     Mutation(
         "address key held starts",
         "a key that only looks at addresses starts a motor",
-        ("START",), 13,
+        ("START",), 38,
         (
             "panel/panel.py",
             "            self._open_menu(now_ms, (\"address\", None))\n",
@@ -831,7 +831,7 @@ MUTATIONS = (
     Mutation(
         "looked for before it is stopped",
         "a drive that may run is sent mirror telegrams in place of its STOP",
-        ("MIRROR",), 25,
+        ("MIRROR",), 89,
         (
             "uss/finding/finder.py",
             "(drive.silent < STOPPED_MIN or drive.is_told_in_vain())",
@@ -841,7 +841,7 @@ MUTATIONS = (
     Mutation(
         "search without a question",
         "the panel leaves its drives for others, and nobody has said yes",
-        ("SEARCH",), 7,
+        ("SEARCH",), 28,
         (
             "panel/panel.py",
             "            return\n"
@@ -973,7 +973,7 @@ MUTATIONS = (
     Commissioning(
         "typed and not taken",
         "a step of commissioning is written as it was, not as it was typed",
-        ("WRITE",), 170,
+        ("WRITE",), 228,
         (
             "panel/commission/course.py",
             "                self._bits = form.bits(self._typed)\n",
@@ -1131,7 +1131,7 @@ MUTATIONS = (
     Arranging(
         "turns of another drive",
         "SET gives other turns to a drive than to that which the display names",
-        ("LIST",), 216,
+        ("LIST",), 276,
         (
             "panel/menu/turns.py",
             "        address = panel.controls[position].drive.address\n"
