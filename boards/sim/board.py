@@ -48,7 +48,8 @@ WIRINGS = {
 KEYPADS = {wiring: (KEYS, matrix) for wiring, matrix in WIRINGS.items()}
 KEYPADS["compact"] = (COMPACT_KEYS, ())
 
-LOOP_US = 2_000  # the longest step of the main loop on the chip
+# Steps of the main loop: the usual one of the simulation, and the longest ones on the chip.
+LOOP_US, LONG_LOOP_US = 2_000, 4_000
 WATCHDOG_MS = 2_000
 
 

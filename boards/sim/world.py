@@ -157,9 +157,9 @@ class World(Surroundings):
     """start: makes the firmware. polled: no receive interrupt. ticks_start, ticks_mask: of the
     chip's clock; or give a `clock` instead. store: keeps the panel's settings in place of the
     flash; what it has already is not touched. unset: the panel has no settings file yet, as at its
-    first power-on. The others are those of `Surroundings`. In the plain
-    world every step of the loop takes 2 ms; with a seed each step takes its own time. With an odd
-    seed the UART's receive time-out comes again while characters are left (`Chip`).
+    first power-on. loop_us: how long each step of the main loop takes in the plain world; with a
+    seed each takes its own time. The others are those of `Surroundings`. With an odd seed the
+    UART's receive time-out comes again while characters are left (`Chip`).
     """
 
     def __init__(
@@ -178,6 +178,7 @@ class World(Surroundings):
         kinds=None,
         clock=None,
         unset=False,
+        loop_us=LOOP_US,
     ):
         clock = clock or Clock(ticks_start, ticks_mask)
         Surroundings.__init__(
@@ -196,6 +197,7 @@ class World(Surroundings):
         self.app = None
         self.start = start
         self._polled = polled
+        self._loop_us = loop_us
         self._bitten = False
         self._dipped = False
         self.chips = []  # each life of the chip, the last one is `chip`
@@ -275,7 +277,7 @@ class World(Surroundings):
         self.chip.on_bite = self._bite
         self.chips.append(self.chip)
         self.clock.advance(BOOT_US)
-        loop_us = self._uneven_loop_us if self.seed else None
+        loop_us = self._uneven_loop_us if self.seed else self._even_loop_us
         self.app = self.start(self.make_board(loop_us, cause))
 
     def make_chip(self):
@@ -309,6 +311,9 @@ class World(Surroundings):
         self._bitten = True
         self.lcd_chip.let_go()
         self.chip.reset()
+
+    def _even_loop_us(self):
+        return self._loop_us
 
     def _uneven_loop_us(self):
         return self.random(LOOP_US // 4, LOOP_US * 2)
