@@ -9,8 +9,11 @@ So a test that does many things to a world in one state brings it there once:
 
 import os
 import pickle
+import sys
 import traceback
 from contextlib import suppress
+
+NOTES = "line_notes"  # this module notes the lines that run, if anybody wants to know them
 
 
 class TwinFailed(AssertionError):
@@ -24,7 +27,7 @@ def twin(function, *arguments):
     child = os.fork()
     if not child:
         with open(writing, "wb") as file:
-            file.write(pickle.dumps(_outcome(function, arguments)))
+            file.write(pickle.dumps((*_outcome(function, arguments), _lines())))
         os._exit(0)
     os.close(writing)
     with open(reading, "rb") as file:
@@ -34,7 +37,9 @@ def twin(function, *arguments):
         os.lseek(number, position, os.SEEK_SET)
     if not outcome:
         raise TwinFailed("a copy of the process has died")
-    is_good, result = pickle.loads(outcome)
+    is_good, result, lines = pickle.loads(outcome)
+    if lines:
+        sys.modules[NOTES].add(lines)
     if not is_good:
         raise TwinFailed(result)
     return result
@@ -50,10 +55,15 @@ def _outcome(function, arguments):
         return False, traceback.format_exc()
 
 
+def _lines():
+    """Those that have run, where they are noted."""
+    return list(sys.modules[NOTES].seen()) if NOTES in sys.modules else None
+
+
 def _positions():
     """[(number of an open file, where it is read next)]: a process and its twin share that."""
     found = []
-    for number in map(int, os.listdir("/proc/self/fd")):
+    for number in map(int, os.listdir("/dev/fd")):
         if number > 2:
             with suppress(OSError):  # a pipe, or what listed them
                 found.append((number, os.lseek(number, 0, os.SEEK_CUR)))

@@ -7,6 +7,7 @@ is. In use:
 
     begin()  # before any of the firmware is imported
     for path, numbers in seen(): ...
+    add(notes)  # what `seen` has said in a copy of this process
 """
 
 import ast
@@ -27,7 +28,9 @@ KEPT = abspath("build/noted")  # to compile with notes takes each process 0.2 s:
 # The statements find the notes among the builtins, so that no module has a name more than it has
 # on the chip. A list for each file, for in nothing else is an entry set as quickly.
 NOTES = "__lines_of_{}__"
-_noted = {}  # path -> whether each note was made, and the number of its line
+# By paths from the top of the tree.
+_noted = {}  # whether each note was made, and the number of its line
+_added = {}  # numbers of lines
 
 
 def begin():
@@ -37,9 +40,16 @@ def begin():
 
 def seen():
     """Each file of which lines ran, from the top of the tree, and their numbers."""
+    notes = {path: set(numbers) for path, numbers in _added.items()}
     for path, (made, numbers) in _noted.items():
         if any(made):
-            yield relpath(path), set(compress(numbers, made))
+            notes.setdefault(path, set()).update(compress(numbers, made))
+    return notes.items()
+
+
+def add(notes):
+    for path, numbers in notes:
+        _added.setdefault(path, set()).update(numbers)
 
 
 def _finder(folder):
@@ -70,7 +80,7 @@ def _compiled(path):
         code, numbers = _compile(path, content, notes)
         _keep(place, (made_of, notes, numbers, code))
     made = [False] * len(numbers)
-    _noted[path] = made, numbers
+    _noted[relpath(path)] = made, numbers
     setattr(builtins, notes, made)
     return code
 

@@ -191,3 +191,27 @@ def test_a_module_is_the_same_with_notes_and_is_noted_each_time(tmp_path):
     command = [sys.executable, "-B", "-c", AGAIN, TOP / "host_tests" / "cpython"]
     told = subprocess.check_output(command, cwd=tmp_path, text=True)
     assert told == "('firmware/it.py', {2, 3, 4, 5, 7})\n1 / 0\n"
+
+
+# A copy of the process runs what this one does not.
+IN_A_TWIN = """
+import sys
+sys.path[:0] = ["firmware", *sys.argv[1:]]
+import line_notes
+line_notes.begin()
+from twin import twin
+import it
+twin(it.run, 0)
+print(*line_notes.seen())
+"""
+
+
+def test_what_a_twin_runs_is_noted(tmp_path):
+    (tmp_path / "firmware").mkdir()
+    (tmp_path / "firmware" / "it.py").write_text(
+        "def run(n):\n if n == 0:\n  return 1\n return 2\n"
+    )
+    places = [TOP / "host_tests" / name for name in ("cpython", "benches")]
+    command = [sys.executable, "-B", "-c", IN_A_TWIN, *places]
+    told = subprocess.check_output(command, cwd=tmp_path, text=True)
+    assert told == "('firmware/it.py', {1, 2, 3})\n"
