@@ -81,6 +81,19 @@ def wait_until_known(world, ms=20_000):
     raise AssertionError(world.lcd())
 
 
+def wait_until(world, condition, ms):
+    """Let time pass until it is so, `ms` at most."""
+    until_us = world.clock.now_us + ms * 1000
+    while not condition() and world.clock.now_us < until_us:
+        world.run(50)
+
+
+def comes_to(world, text, ms=8_000):
+    """Whether row 2 reads so, within this time."""
+    wait_until(world, lambda: row_2(world) == text, ms)
+    return row_2(world) == text
+
+
 def all_running(addresses):
     """A panel whose drives have all been started and have reached their setpoints."""
     world = panel(addresses=addresses)

@@ -7,7 +7,7 @@ import main
 from boards.sim.clock import Event
 from boards.sim.line.intruder import Intruder
 from boards.sim.world import World
-from panel_bench import panel, unsupervised
+from panel_bench import panel, unsupervised, wait_until
 
 
 class Switch:
@@ -216,9 +216,10 @@ def test_closing_waits_until_every_drive_of_a_long_list_was_sent_off():
     world = panel(baud=1200, **unsupervised(1, 2, 3, 4, 5, 6, 7, 8))
     world.run(30_000)
     for address in range(1, 9):
-        while world.drives[address].state != "running":
+        drive = world.drives[address]
+        while drive.state != "running":
             world.press("START")  # again where this line takes too long to read all settings
-            world.run(20_000)
+            wait_until(world, lambda: drive.state == "running", 20_000)
             assert world.clock.now_us < 1_500_000_000, world.lcd()
         world.press("ADDRESS_UP")
     world.app.close()

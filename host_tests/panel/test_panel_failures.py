@@ -9,6 +9,7 @@ from panel_bench import (
     OFF1,
     ON,
     all_running,
+    comes_to,
     panel,
     row_1,
     row_2,
@@ -390,7 +391,8 @@ def test_a_reset_in_the_middle_of_a_telegram_blocks_nothing():
         world = running()
         world.clock.advance(offset_us)
         world.reset()
-        world.run(8000)
+        assert comes_to(world, "READY        A1")
+        world.run(1000)
         assert row_2(world) == "READY        A1" and starts(world) == 1
         cut = [text for text in world.wire.violations() if "driver" not in text]
         assert not cut, cut

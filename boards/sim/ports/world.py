@@ -19,7 +19,7 @@ from boards.sim.ports.esp32_uart import RS485_CONF
 from boards.sim.ports.loading import chip_of, load
 from boards.sim.ports.machine import Port
 from boards.sim.ports.soft import COLLECTION_EVERY_US, COLLECTION_US, SoftChip
-from boards.sim.world import LOOP_US, World
+from boards.sim.world import World
 
 FREEZE_SLICE_US = 1_000
 
@@ -69,7 +69,7 @@ class PortWorld(World):
         port = self.port = Port(self._model, self.chip)
         port.backpack = self.backpack
         port.reset_word = port.WDT_RESET if cause else port.PWRON_RESET
-        self._loop_us = loop_us
+        self._step_us = loop_us
         port.sleep_loop = self._sleep
         port.make_uart_line = self._wire_uart
         board = self.board = load(self._path, port)
@@ -99,7 +99,7 @@ class PortWorld(World):
 
     def _sleep(self):
         clock = self.clock
-        clock.advance(self._loop_us() if self._loop_us else LOOP_US)
+        clock.advance(self._step_us())
         if clock.now_us >= self._next_collection_us and not self._bitten:
             self._next_collection_us = clock.now_us + COLLECTION_EVERY_US
             self.chip.hold()
