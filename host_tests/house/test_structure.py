@@ -11,7 +11,7 @@ import sys
 import pytest
 
 import text_bench
-from conftest import strict
+from pyrefly_bench import errors
 from tiers import TOP
 
 INTERPRETERS = "host"
@@ -246,57 +246,63 @@ def test_ruff_finds_nothing(command):
     assert run.returncode == 0, run.stdout + run.stderr
 
 
-def mistakes(config, folder):
-    """What pyrefly finds by this file, beside what is understood: places in `folder`, texts."""
-    # With the packages of this Python, whatever the one of the machine has.
-    command = [pyrefly(), "check", "--config", config, "--output-format", "json"]
-    command += ["--python-interpreter-path", sys.executable]
-    run = subprocess.run(command, cwd=TOP, capture_output=True, text=True, timeout=60)
-    assert run.stdout, run.stderr
-    for one in json.loads(run.stdout)["errors"]:
-        path, text = os.path.relpath(os.path.join(TOP, one["path"]), folder), one["description"]
+SETTINGS = TOP / "tools/pyrefly.toml"
+# What runs on an ESP32 alone is judged by what the modules of its port offer.
+ON_ESP32 = (
+    "boards/chips/esp32.py",
+    *python_files("boards/esp32"),
+    *python_files("boards/esp32s3"),
+)
+SEARCHED_ON_ESP32 = ("build/pyrefly/esp32", "firmware", "", "boards")
+
+
+def mistakes(*files, settings=SETTINGS, below=TOP):
+    """What pyrefly finds, beside what is understood: places, texts. Without files it looks at what
+    the settings name."""
+    for one in errors("--config", settings, *files):
+        path, text = os.path.relpath(TOP / one["path"], below), one["description"]
         if not any(
             path.startswith(place) and re.search(words, text) for place, words, _ in UNDERSTOOD
         ):
             yield "%s:%d: %s" % (path, one["line"], text)
 
 
-def pyrefly():
-    path = os.path.join(TOP, "build/pyrefly/bin/pyrefly")
-    if not os.path.exists(path) and not strict():
-        pytest.skip("no pyrefly is here: tools/test with USS_STRICT=1 fetches it")
-    return path
+@pytest.fixture
+def on_esp32(tmp_path):
+    """The settings, with the stubs of the ESP32's port."""
+    folders = json.dumps([str(TOP / folder) for folder in SEARCHED_ON_ESP32])
+    text, count = re.subn(
+        "(?m)^search-path = .*$", "search-path = " + folders, SETTINGS.read_text()
+    )
+    assert count == 1
+    (tmp_path / "pyrefly.toml").write_text(text)
+    return tmp_path / "pyrefly.toml"
 
 
-@pytest.mark.parametrize("config", ("pyrefly.toml", "pyrefly_esp32.toml"))
-def test_pyrefly_finds_nothing(config):
-    """tools/pyrefly.toml says what it looks for, with the stubs of the RP2040's port; the other
-    file is for what runs on an ESP32 alone."""
-    found = list(mistakes("tools/" + config, TOP))
+def test_pyrefly_finds_nothing():
+    """tools/pyrefly.toml says what it looks for, with the stubs of the RP2040's port."""
+    found = list(mistakes())
     assert not found, "\n".join(found)
 
 
-def planted(text, config, folder):
-    """The lines in which pyrefly finds mistakes, and those that are marked."""
-    with open(os.path.join(TOP, "tools", config), encoding="utf-8") as source:
-        own = re.sub(r'"\.\.(?=[/"])', '"' + TOP.as_posix(), source.read())
-    own = re.sub(r"^project-.*\n", "", own, flags=re.MULTILINE)
-    own = own.replace('"pc"', '"%s/tools/pc"' % TOP)
-    (folder / config).write_text('project-includes = ["*.py"]\n' + own)
+def test_pyrefly_finds_nothing_in_what_an_esp32_runs(on_esp32):
+    found = list(mistakes(*ON_ESP32, settings=on_esp32))
+    assert not found, "\n".join(found)
+
+
+def finds_what_is_planted(text, folder, settings=SETTINGS):
     (folder / "planted.py").write_text(text)
-    found = list(mistakes(str(folder / config), folder))
-    marked = [number for number, line in enumerate(text.splitlines(), 1) if "# !" in line]
-    return [int(one.split(":")[1]) for one in found], marked, found
+    found = list(mistakes(folder / "planted.py", settings=settings, below=folder))
+    lines = [number for number, line in enumerate(text.splitlines(), 1) if "# !" in line]
+    assert [int(one.split(":")[1]) for one in found] == lines, found
 
 
-def test_pyrefly_would_notice_what_an_esp32_has_not(tmp_path):
-    lines, marked, found = planted(PLANTED_ON_ESP32, "pyrefly_esp32.toml", tmp_path)
-    assert lines == marked, found
+def test_pyrefly_would_notice_what_an_esp32_has_not(tmp_path, on_esp32):
+    finds_what_is_planted(PLANTED_ON_ESP32, tmp_path, on_esp32)
 
 
 def test_pyrefly_would_notice(tmp_path):
-    lines, marked, found = planted(PLANTED, "pyrefly.toml", tmp_path)
-    assert lines == marked, found
+    finds_what_is_planted(PLANTED, tmp_path)
 
 
 PLANTED_ON_ESP32 = """

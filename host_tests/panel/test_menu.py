@@ -515,10 +515,6 @@ def test_an_alarm_closes_it_also_while_a_picture_of_it_is_drawn():
         world.drives[1].unplug()
         world.run(2500)
         assert world.reads("MAY RUN") and not world.reads("DRIVES"), world.lcd()
-        world.drives[1].plug()
-        for _ in range(2):  # to its alarm, and to its fault
-            world.press("STOP")
-            world.run(500)
         world.check()
 
 

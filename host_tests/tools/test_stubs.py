@@ -3,14 +3,12 @@
 `help()` of the bus tells every verb."""
 
 import ast
-import json
 import os
-import subprocess
 
 import pytest
 
 import uss.bus
-from conftest import strict
+from pyrefly_bench import errors
 from tiers import TOP
 from uss.bus import verbs
 
@@ -158,18 +156,11 @@ with Master(SerialLink("/dev/ttyUSB0", 19200), baud=19200) as bus:
 
 
 def test_pyrefly_goes_by_the_stubs(tmp_path):
-    pyrefly = TOP / "build/pyrefly/bin/pyrefly"
-    if not pyrefly.exists() and not strict():
-        pytest.skip("no pyrefly is here: tools/test with USS_STRICT=1 fetches it")
     config = 'project-includes = ["program.py", "stubs/**/*.pyi"]\nsearch-path = ["stubs"]\n'
     os.symlink(STUBS, tmp_path / "stubs")
     (tmp_path / "pyrefly.toml").write_text(config)
     (tmp_path / "program.py").write_text(PROGRAM)
-    run = subprocess.run(
-        [pyrefly, "check", "--output-format", "json"],
-        cwd=tmp_path, capture_output=True, text=True, timeout=60,
-    )  # fmt: skip
-    told = json.loads(run.stdout)["errors"]
+    told = errors(folder=tmp_path)
     lines = [number for number, line in enumerate(PROGRAM.splitlines(), 1) if "# !" in line]
     found = [(os.path.basename(one["path"]), one["line"]) for one in told]
     assert sorted({*found}) == [("program.py", line) for line in lines], told
