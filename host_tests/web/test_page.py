@@ -16,6 +16,18 @@ chromium = pytest.fixture(scope="module")(browsers)
 browser = pytest.fixture(swept)
 SIZES = ("desktop", "phone")
 STATE = ".drive .state"
+# Of the shaft of the first motor, in degrees: each time that it stands elsewhere, for a while.
+ANGLES = """
+    new Promise((resolve) => {
+      const shaft = document.querySelector(".shaft");
+      const seen = [];
+      new MutationObserver(() => {
+        const angle = parseFloat(shaft.getAttribute("transform").slice("rotate(".length));
+        if (angle !== seen.at(-1)) seen.push(angle);
+        if (seen.length === 20) resolve(seen);
+      }).observe(shaft, { attributes: true });
+    })
+"""
 
 
 @pytest.fixture(scope="module")
@@ -24,15 +36,27 @@ def panel(shared):
 
 
 @pytest.fixture
-def page(panel, browser, request):
-    """At the size that the test asks for. It must not have complained when the test is over."""
-    page = browser.open(panel.link, getattr(request, "param", "desktop"))
-    page.shows("READY")
-    yield page
-    complaints = page.complaints()
-    page.press("STOP")
-    page.close()
-    assert not complaints
+def opens(panel, browser):
+    """Opens pages. When the test is over, none may have complained; and the motor is stopped."""
+    pages = []
+
+    def open_one(*how):
+        pages.append(browser.open(panel.link, *how))
+        pages[-1].shows("READY")
+        return pages[-1]
+
+    yield open_one
+    complaints = [page.complaints() for page in pages]
+    for page in pages:
+        page.press("STOP")
+        page.close()
+    assert not any(complaints)
+
+
+@pytest.fixture
+def page(opens, request):
+    """At the size that the test asks for."""
+    return opens(getattr(request, "param", "desktop"))
 
 
 at_every_size = pytest.mark.parametrize("page", SIZES, indirect=True)
@@ -56,21 +80,13 @@ def test_a_motor_is_started_set_and_stopped(page):
     page.shows("ready · 0.00 Hz", STATE)
 
 
-def test_a_motor_turns_to_its_side(panel, browser):
-    page = browser.open(panel.link, "desktop", None)
-    page.shows("READY")
+def test_a_motor_turns_to_its_side(opens):
+    page = opens("desktop", None)
     page.press("START")
     page.shows("RUNNING")
-    angle = "parseFloat(document.querySelector('.shaft').getAttribute('transform')?.slice(7) ?? 0)"
-    seen = []
-    for _ in range(4):
-        time.sleep(0.1)
-        seen.append(page.run(angle))
+    seen = page.run(ANGLES)
     steps = [(later - before) % 360 for before, later in zip(seen, seen[1:], strict=False)]
     assert all(0 < step < 180 for step in steps), seen
-    page.press("STOP")
-    page.shows("READY")
-    page.close()
 
 
 @at_every_size
@@ -198,16 +214,14 @@ def test_time_stands_and_goes_on(page):
     page.shows("true x 1.0", "#true-speed")
 
 
-def test_two_fingers_hold_two_keys(panel, browser):
-    page = browser.open(panel.link, "phone")
-    page.shows("READY")
+def test_two_fingers_hold_two_keys(opens):
+    page = opens("phone")
     page.touch("#keys [data-key=JOG_RIGHT]")
     page.shows("running", STATE)
     page.touch("#keys [data-key=JOG_RIGHT]", "#stop")
     page.shows("STOP", "#keys .down")
     page.shows("ready", STATE)
     page.touch()
-    page.close()
 
 
 @pytest.mark.parametrize("size", SIZES)
