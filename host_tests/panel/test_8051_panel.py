@@ -8,7 +8,19 @@ display: 1 to 6, 11 to 15, 18 and 19. Those of the line are in test_8051_line.py
 
 import main
 from boards.sim.world import World
-from panel_bench import OFF1, ON, page_back, panel, row_1, row_2, running, said, starts, telegrams
+from panel_bench import (
+    LOOP_US,
+    OFF1,
+    ON,
+    page_back,
+    panel,
+    row_1,
+    row_2,
+    running,
+    said,
+    starts,
+    telegrams,
+)  # fmt: skip
 
 ON_REVERSE = 0x0C7F
 JOG_RIGHT, JOG_LEFT = 0x057E, 0x067E
@@ -62,7 +74,7 @@ def tap(world, key, times):
 def test_a_jog_ends_when_its_key_is_let_go():
     """Defect 1: the motor went on jogging after the key was released."""
     for key, stw, text in RIGHT_AND_LEFT:
-        world = panel()
+        world = panel(loop_us=LOOP_US)
         world.down(key)
         world.run(2000)
         assert row_2(world) == text + " " * (13 - len(text)) + "A1"
@@ -240,7 +252,7 @@ def test_a_frequency_to_the_left_is_negative_however_high_it_is():
 
 def test_a_drive_that_falls_silent_is_told_of_within_three_failures():
     """Defect 18: the last frequency stayed on the display for ever."""
-    world = running()
+    world = running(loop_us=LOOP_US)
     assert row_1(world) == "S: 10.0 F: 10.00"
     world.drives[1].unplug()
     unplugged_us = world.clock.now_us

@@ -7,7 +7,7 @@ FN gives the next key its second function, FN twice its third; ^ or ^^ on the di
 from boards.sim.board import COMPACT_KEYS
 from panel.keys import NAMES, Keys, keys_of, unknown
 from panel.keys.compact import FUNCTIONS
-from panel_bench import OFF1, ON, panel, row_1, row_2, starts, telegrams, wait_until_known
+from panel_bench import LOOP_US, OFF1, ON, panel, row_1, row_2, starts, telegrams, wait_until_known
 
 MASK = 0x3FFFFFFF
 JOG_RIGHT, JOG_LEFT = 0x057E, 0x067E
@@ -98,7 +98,7 @@ def test_the_setpoint_goes_up_and_down_and_repeats():
 
 
 def test_jog_turns_to_the_side_that_reverse_has_chosen_while_it_is_held():
-    world = ready()
+    world = ready(loop_us=LOOP_US)
     for function, stw, sign in (("JOG_RIGHT", JOG_RIGHT, 1), ("JOG_LEFT", JOG_LEFT, -1)):
         for key in WAYS[function][:-1]:
             world.press(key)
@@ -115,7 +115,7 @@ def test_jog_turns_to_the_side_that_reverse_has_chosen_while_it_is_held():
 
 
 def test_a_jog_that_is_held_does_not_change_its_side():
-    world = ready()
+    world = ready(loop_us=LOOP_US)
     world.down("JOG")
     world.run(1000)
     world.press("REVERSE")
@@ -129,7 +129,7 @@ def test_a_jog_that_is_held_does_not_change_its_side():
 
 
 def test_a_jog_is_stopped_by_stop():
-    world = ready()
+    world = ready(loop_us=LOOP_US)
     world.down("JOG")
     world.run(1500)
     assert world.drives[1].hz() > 0

@@ -5,7 +5,17 @@ NEW 010.00Hz A1: NEXT and PREVIOUS go to another digit, which blinks; UP and DOW
 SET puts it into force.
 """
 
-from panel_bench import OFF1, panel, row_1, row_2, running, starts, telegrams, wait_until_known
+from panel_bench import (
+    LOOP_US,
+    OFF1,
+    panel,
+    row_1,
+    row_2,
+    running,
+    starts,
+    telegrams,
+    wait_until_known,
+)  # fmt: skip
 
 LEFT_ALONE = ("EDIT", "PARAM", "STOP", "ADDRESS_UP", "ADDRESS_DOWN")
 REFUSED = ("START", "REVERSE", "JOG_RIGHT", "JOG_LEFT")
@@ -102,7 +112,7 @@ def test_a_running_motor_follows_at_set_and_not_before():
 
 def test_whatever_else_ends_it_leaves_the_setpoint_as_it_was():
     for key in LEFT_ALONE:
-        world = editing(ready(addresses=(1, 2)))
+        world = editing(ready(addresses=(1, 2), loop_us=LOOP_US))
         press(world, "UP", key)
         world.run(500)
         other = key.startswith("ADDRESS")
@@ -178,7 +188,7 @@ def test_nothing_starts_jogs_or_reverses_while_a_setpoint_is_not_settled():
 
 
 def test_a_jog_that_is_held_ends():
-    world = ready()
+    world = ready(loop_us=LOOP_US)
     world.down("JOG_RIGHT")
     world.run(1500)
     assert world.drives[1].hz() > 0

@@ -8,7 +8,7 @@ chips.
 
 from micropython import heap_lock, heap_unlock
 
-from panel_bench import panel, row_1, row_2, running
+from panel_bench import LOOP_US, panel, row_1, row_2, running
 
 MINUTES = 10
 
@@ -48,7 +48,7 @@ def test_ten_minutes_of_the_home_page_take_no_memory():
 
 
 def test_nor_do_frequencies_that_change_or_three_drives_of_which_one_is_announced():
-    world = panel(addresses=(1, 2, 3), keys="matrix")
+    world = panel(addresses=(1, 2, 3), keys="matrix", loop_us=LOOP_US)
     world.run(2000)  # what is read for the first time takes memory
     world.press("START")
     world.press("ADDRESS_UP")

@@ -29,7 +29,7 @@ from panel.menu.diagnosis import words as diagnosis_words
 from panel.menu.sets import words as set_words
 from panel.pages import digits, parameter_words, set_up, splash, writing
 from panel.screen import GLYPHS, Screen
-from panel_bench import panel, row_1, row_2, running, said, starts, unsupervised
+from panel_bench import LOOP_US, panel, row_1, row_2, running, said, starts, unsupervised
 from search import words as search_words
 from text_bench import columns, named, parts, rows
 from tools.live.plain import in_ascii
@@ -609,7 +609,7 @@ def test_the_home_page_takes_no_memory_in_german_either():
 def test_english_loads_nothing_of_that():
     world = german()
     assert "panel.languages" in sys.modules
-    world = panel()
+    world = panel(loop_us=LOOP_US)
     assert row_2(world) == "READY        A1", world.lcd()
     assert "panel.languages" not in sys.modules
 

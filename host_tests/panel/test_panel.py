@@ -9,7 +9,18 @@ import main
 import settings_file as settings
 from boards.sim.world import World
 from panel.pages import splash
-from panel_bench import OFF1, ON, comes_to, panel, row_1, row_2, running, starts, telegrams
+from panel_bench import (
+    LOOP_US,
+    OFF1,
+    ON,
+    comes_to,
+    panel,
+    row_1,
+    row_2,
+    running,
+    starts,
+    telegrams,
+)  # fmt: skip
 from version import VERSION
 
 # --- switching on --------------------------------------------------------------------------------
@@ -23,7 +34,7 @@ def test_after_power_on_the_panel_says_what_it_is_not():
 
 
 def test_a_second_later_it_shows_setpoint_frequency_state_and_address():
-    world = panel()
+    world = panel(loop_us=LOOP_US)
     assert world.lcd() == ("S: 10.0 F:  0.00", "READY        A1 ")
     world.check()
 
@@ -169,7 +180,7 @@ def test_start_while_the_motor_runs_down_lets_it_run_up_again():
 
 
 def test_stop_beats_start():
-    world = panel()
+    world = panel(loop_us=LOOP_US)
     world.down("STOP")
     world.run(100)
     world.press("START")
@@ -189,7 +200,7 @@ def test_stop_beats_start():
 
 def test_stop_is_in_the_next_telegram_but_one_at_the_latest():
     """STOP pressed to OFF on the line: debounce and two exchanges, with 31 drives in the list."""
-    world = panel(addresses=tuple(range(1, 32)))
+    world = panel(addresses=tuple(range(1, 32)), loop_us=LOOP_US)
     world.run(8000)
     exchange_us = 2 * 9167 + 2 * 1719
     for offset_ms in range(0, 44, 4):

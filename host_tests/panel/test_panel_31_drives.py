@@ -6,7 +6,16 @@ Every drive is on the line and answers; the master's list has each of them once.
 
 import main
 from panel.control import Control
-from panel_bench import SlowWorld, panel, row_2, starts, telegrams, unsupervised, wait_until_known
+from panel_bench import (
+    LOOP_US,
+    SlowWorld,
+    panel,
+    row_2,
+    starts,
+    telegrams,
+    unsupervised,
+    wait_until_known,
+)  # fmt: skip
 
 ADDRESSES = tuple(range(1, 32))
 SETTLE_MS = 10_000  # each has told its settings by then
@@ -45,7 +54,7 @@ class Counted:
 
 
 def settled():
-    world = panel(baud=115200, **unsupervised(*ADDRESSES))
+    world = panel(baud=115200, loop_us=LOOP_US, **unsupervised(*ADDRESSES))
     world.run(SETTLE_MS)
     return world
 

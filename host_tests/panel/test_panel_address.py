@@ -1,7 +1,17 @@
 # SPDX-License-Identifier: MIT
 """The operator's manual: a drive is given another address, and the panel follows it."""
 
-from panel_bench import OFF1, page_back, panel, row_2, running, starts, telegrams
+from panel_bench import (
+    LOOP_US,
+    OFF1,
+    page_back,
+    panel,
+    row_2,
+    running,
+    starts,
+    telegrams,
+    unsupervised,
+)
 from parameter_bench import (
     ASKED,
     edit,
@@ -18,7 +28,7 @@ from parameter_bench import (
 
 
 def test_a_drive_is_followed_to_its_new_address():
-    world = parameter("P2011", addresses=(1, 2))
+    world = parameter("P2011", addresses=(1, 2), loop_us=LOOP_US)
     write(world, 5)
     world.run(400)
     assert row_2(world) == "WRITTEN (EEPROM)"  # always: where would it be after its power-up?
@@ -97,7 +107,7 @@ def test_the_address_that_it_has_may_be_written_into_the_eeprom():
 
 
 def test_an_address_of_another_drive_is_refused():
-    world = edit(parameter("P2011", addresses=(1, 2)), 2)
+    world = edit(parameter("P2011", addresses=(1, 2), loop_us=LOOP_US), 2)
     world.press("SET")
     assert row_2(world) == "ADDRESS IS TAKEN"
     world.press("ADDRESS_UP")
@@ -117,7 +127,7 @@ def test_an_address_of_another_drive_is_refused():
 
 
 def test_an_address_is_not_changed_while_the_drive_runs():
-    world = show(panel(), "P2011")
+    world = show(panel(loop_us=LOOP_US), "P2011")
     edit(world, 4)
     world.press("START", 40)
     for _ in range(2):  # it starts; it runs
@@ -197,7 +207,7 @@ def test_a_drive_whose_answer_was_lost_is_found_at_its_new_address():
 
 
 def test_a_drive_that_fell_silent_is_spoken_to_at_either_address_three_times_in_turn():
-    world = edit(parameter("P2011", parameters={2014: 20_000}), 5)
+    world = edit(parameter("P2011", parameters={2014: 20_000}, loop_us=LOOP_US), 5)
     world.press("SET")
     since_us = world.clock.now_us
     lose_answer(world, 2011, 5, 1500)
@@ -227,7 +237,7 @@ def test_a_long_list_gets_time_to_find_the_drive_as_well():
 
 
 def test_a_drive_that_did_not_hear_is_taken_again_at_its_old_address():
-    world = parameter("P2011", addresses=(1, 2), parameters={2014: 20_000})
+    world = parameter("P2011", addresses=(1, 2), parameters={2014: 20_000}, loop_us=LOOP_US)
     edit(world, 5)
     world.press("SET")
     world.drives[1].unplug()
@@ -318,7 +328,7 @@ def full(world):
 
 def lost_running():
     """Drive 1 was running when its connector was pulled; STOP has acknowledged it."""
-    world = running(addresses=(1, 2), parameters={2014: 0}, settings={"unsupervised": [1, 2]})
+    world = running(loop_us=LOOP_US, **unsupervised(1, 2))
     world.drives[1].unplug()
     world.run(2000)
     assert world.reads("NO CONTACT, MAY RUN")
@@ -367,7 +377,7 @@ def test_a_drive_that_was_taken_away_for_good_is_forgotten_by_a_restart():
 
 
 def test_start_and_jog_wait_until_the_address_is_written():
-    world = edit(parameter("P2011"), 5)
+    world = edit(parameter("P2011", loop_us=LOOP_US), 5)
     world.press("SET")
     world.press("SET", 40)
     world.press("START", 40)
@@ -404,7 +414,7 @@ def test_a_drive_whose_new_address_was_saved_does_not_wait_for_other_settings():
 
 
 def test_an_address_is_not_changed_while_another_drive_may_run_out_of_contact():
-    world = running(addresses=(1, 2), parameters={2014: 0}, settings={"unsupervised": [1, 2]})
+    world = running(loop_us=LOOP_US, **unsupervised(1, 2))
     world.drives[1].unplug()
     world.run(2000)
     world.press("ADDRESS_UP")
@@ -416,7 +426,7 @@ def test_an_address_is_not_changed_while_another_drive_may_run_out_of_contact():
 
 def test_an_address_is_not_changed_while_another_drive_is_sent_on():
     """It does not run yet, but may in the next moment."""
-    world = panel(addresses=(1, 2))
+    world = panel(addresses=(1, 2), loop_us=LOOP_US)
     world.drives[1].write(10, 0, 1)
     world.run(300)
     world.press("START")

@@ -9,6 +9,7 @@ import main
 from boards.sim.world import World
 from panel.pages.home import Home
 from panel_bench import (
+    LOOP_US,
     SlowWorld,
     all_running,
     panel,
@@ -20,7 +21,7 @@ from panel_bench import (
     starts,
     unsupervised,
     wait_until_known,
-)
+)  # fmt: skip
 
 ASKED = "SET=FIX START=GO"
 
@@ -37,7 +38,7 @@ def silent(addresses, plugged, **options):
 
 def all_started(addresses):
     """A panel whose drives run all, however many."""
-    world = panel(addresses=addresses)
+    world = panel(addresses=addresses, loop_us=LOOP_US)
     world.run(3_000)
     for address in addresses:
         show(world, address)
@@ -112,7 +113,7 @@ def test_an_alarm_hides_no_drive_that_runs_trips_or_was_taken_back():
 
 def test_of_two_drives_that_are_lost_stopping_one_hides_none():
     """STOP cannot be heard: nobody knows whether either of them stands."""
-    world = all_running((1, 2, 3))
+    world = all_running((1, 2, 3), loop_us=LOOP_US)
     world.drives[1].unplug()
     world.drives[2].unplug()
     show(world, 3)
@@ -258,7 +259,7 @@ def test_a_jog_acknowledges_nothing():
 
 def test_a_drive_that_would_run_on_too_long_by_now_is_said_to():
     """Somebody has changed P2014 while it runs, and it is not shown."""
-    world = panel(addresses=(1, 2), parameters={2014: 1_000})
+    world = panel(addresses=(1, 2), parameters={2014: 1_000}, loop_us=LOOP_US)
     world.run(3_000)
     start(world, 2)
     show(world, 1)
@@ -414,7 +415,7 @@ def test_stop_acknowledges_a_drive_that_was_never_heard():
 
 
 def test_stop_never_ends_what_is_said_of_a_motor_that_was_heard_running_last():
-    world = all_running((1, 2))
+    world = all_running((1, 2), loop_us=LOOP_US)
     world.drives[1].unplug()
     show(world, 1)
     world.run(1_500)
@@ -481,7 +482,7 @@ def test_nor_does_a_stop_that_is_held():
 
 
 def test_a_question_hides_no_trip_of_the_drive_that_it_is_about():
-    world = panel(parameters={2014: 0})
+    world = panel(parameters={2014: 0}, loop_us=LOOP_US)
     world.press("START")
     world.run(1_500)
     assert row_2(world) == ASKED

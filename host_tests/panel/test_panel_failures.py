@@ -6,6 +6,7 @@ from boards.sim.chip.machine import Timer
 from boards.sim.world import World
 from panel_bench import (
     ERROR,
+    LOOP_US,
     OFF1,
     ON,
     all_running,
@@ -18,7 +19,7 @@ from panel_bench import (
     starts,
     telegrams,
     unsupervised,
-)
+)  # fmt: skip
 
 # --- when the drive stops by itself --------------------------------------------------------------
 
@@ -206,7 +207,7 @@ def test_after_a_hang_the_panel_says_so_and_waits_for_start():
 
 
 def test_every_drive_is_stopped_when_the_loop_hangs():
-    world = all_running((1, 2, 3))
+    world = all_running((1, 2, 3), loop_us=LOOP_US)
     hung_us = world.clock.now_us
     world.hang(1000)
     for address in (1, 2, 3):
@@ -467,7 +468,9 @@ def test_ticks_that_wrap_in_the_middle_of_an_exchange_disturb_nothing():
     for bits in (24, 30):
         mask = (1 << bits) - 1
         for offset_us in range(0, 24_000, 2_400):
-            world = running(ticks_start=mask - 5_250_000 - offset_us, ticks_mask=mask)
+            world = running(
+                ticks_start=mask - 5_250_000 - offset_us, ticks_mask=mask, loop_us=LOOP_US
+            )
             wrapped_us = 5_250_000 + offset_us
             assert world.clock.now_us < wrapped_us
             world.run(300)

@@ -3,6 +3,7 @@
 
 from panel.reports.fault import Fault
 from panel_bench import (
+    LOOP_US,
     all_running,
     panel,
     row_1,
@@ -11,7 +12,7 @@ from panel_bench import (
     starts,
     telegrams,
     unsupervised,
-)
+)  # fmt: skip
 from uss import pkw
 from uss.drive import Drive
 from uss.families import MM4
@@ -38,7 +39,7 @@ def test_jog_turns_while_the_key_is_held_and_no_longer():
         ("JOG_RIGHT", JOG_RIGHT, 1, "JOG RIGHT    A1"),
         ("JOG_LEFT", JOG_LEFT, -1, "JOG LEFT     A1"),
     ):
-        world = panel()
+        world = panel(loop_us=LOOP_US)
         began_us = world.clock.now_us
         world.down(key)
         world.run(2000)
@@ -66,7 +67,7 @@ def test_the_release_of_jog_is_in_the_next_telegram_of_the_line():
 
 
 def test_two_jog_keys_at_once_mean_none_until_one_is_pressed_anew():
-    world = panel()
+    world = panel(loop_us=LOOP_US)
     world.down("JOG_RIGHT")
     world.run(1000)
     world.down("JOG_LEFT")
@@ -91,7 +92,7 @@ def test_two_jog_keys_at_once_mean_none_until_one_is_pressed_anew():
 
 
 def test_the_other_jog_key_may_follow_while_the_first_jog_ramps_down():
-    world = panel()
+    world = panel(loop_us=LOOP_US)
     began_us = world.clock.now_us
     world.press("JOG_RIGHT", 1500)
     world.down("JOG_LEFT")
@@ -148,7 +149,7 @@ def test_jog_needs_no_setpoint_from_the_bus():
 
 
 def test_stop_beats_jog_and_the_key_must_go_up_first():
-    world = panel()
+    world = panel(loop_us=LOOP_US)
     world.down("JOG_RIGHT")
     world.run(1000)
     world.press("STOP")
@@ -165,7 +166,7 @@ def test_stop_beats_jog_and_the_key_must_go_up_first():
 
 
 def test_start_while_jog_is_held_is_refused():
-    world = panel()
+    world = panel(loop_us=LOOP_US)
     world.down("JOG_RIGHT")
     world.run(500)
     world.press("START")
@@ -191,7 +192,7 @@ def test_a_jog_ends_when_another_drive_is_shown():
 
 def test_a_loop_that_hangs_while_jogging_stops_the_motor_within_400_ms():
     for polled in (False, True):
-        world = panel(polled=polled)
+        world = panel(polled=polled, loop_us=LOOP_US)
         world.down("JOG_LEFT")
         world.run(1500)
         hung_us = world.clock.now_us
@@ -208,7 +209,7 @@ def test_a_loop_that_hangs_while_jogging_stops_the_motor_within_400_ms():
 
 
 def test_a_jog_does_not_come_back_with_the_line():
-    world = panel(**unsupervised())
+    world = panel(**unsupervised(), loop_us=LOOP_US)
     world.down("JOG_LEFT")
     world.run(1500)
     world.drives[1].unplug()
@@ -232,7 +233,7 @@ def test_a_jog_key_that_is_jammed_at_power_on_turns_nothing():
 
 def test_a_jog_that_a_matrix_could_not_tell_for_a_moment_does_not_come_back():
     """Three keys at corners of a rectangle look like four."""
-    world = panel(keys="matrix")
+    world = panel(keys="matrix", loop_us=LOOP_US)
     world.down("JOG_RIGHT")
     world.down("DOWN")
     world.run(1000)
@@ -468,7 +469,7 @@ def test_a_fault_whose_cause_stays_comes_back():
 
 
 def test_a_jog_that_follows_a_slow_ramp_is_no_stop_that_failed():
-    world = panel()
+    world = panel(loop_us=LOOP_US)
     world.drives[1].write(1061, 0, 650.0)
     world.press("JOG_RIGHT", 2000)
     world.run(60)
@@ -483,7 +484,7 @@ def test_a_jog_that_follows_a_slow_ramp_is_no_stop_that_failed():
 
 def test_jog_does_not_weaken_a_second_stop():
     """Not even while what ramps down is a jog."""
-    world = panel()
+    world = panel(loop_us=LOOP_US)
     world.drives[1].write(1061, 0, 650.0)
     world.drives[1].write(1135, 0, 60.0)
     world.press("JOG_RIGHT", 2000)

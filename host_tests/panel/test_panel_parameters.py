@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The operator's manual, parameter mode: look at parameters and change them."""
 
-from panel_bench import OFF1, page_back, panel, row_1, row_2, running, starts, telegrams
+from panel_bench import LOOP_US, OFF1, page_back, panel, row_1, row_2, running, starts, telegrams
 from parameter_bench import (
     ASKED,
     WRITES,
@@ -24,7 +24,7 @@ KEYS = ("START", "REVERSE", "JOG_RIGHT", "JOG_LEFT", "UP", "DOWN", "ADDRESS_UP",
 
 
 def test_param_goes_to_parameter_mode_and_back():
-    world = panel()
+    world = panel(loop_us=LOOP_US)
     home = world.lcd()
     world.press("PARAM")
     world.run(200)
@@ -129,7 +129,7 @@ def test_the_telegrams_that_the_drive_counts_are_shown():
 
 
 def test_a_value_is_that_of_the_drive_shown():
-    world = panel(addresses=(1, 2, 31))
+    world = panel(addresses=(1, 2, 31), loop_us=LOOP_US)
     for address, value in ((1, 1), (2, 2), (31, 3)):
         world.drives[address].write(1000, 0, value)
     show(world, "P1000")
@@ -233,7 +233,7 @@ def test_an_edited_value_stays_within_its_range():
 
 
 def test_a_small_range_is_walked_by_ones():
-    world = parameter("P1000")
+    world = parameter("P1000", loop_us=LOOP_US)
     world.press("EDIT")
     world.down("UP")
     last = 5
@@ -466,7 +466,7 @@ def test_a_set_that_goes_on_after_the_line_failed_makes_nothing_permanent():
 
 def test_any_other_key_cancels_and_does_nothing_else():
     for key in KEYS:
-        world = edit(parameter("P1000", addresses=(1, 2)), 3)
+        world = edit(parameter("P1000", addresses=(1, 2), loop_us=LOOP_US), 3)
         world.press("SET")
         row = row_1(world)
         world.press(key)
@@ -609,7 +609,7 @@ def test_the_end_of_a_write_is_told_though_another_drive_is_shown():
 
 
 def test_a_write_goes_on_when_parameter_mode_is_left():
-    world = edit(parameter("P1000"), 3)
+    world = edit(parameter("P1000", loop_us=LOOP_US), 3)
     world.drives[1].stale_replies = 20
     world.press("SET")
     world.down("SET")
@@ -627,7 +627,7 @@ def test_a_write_goes_on_when_parameter_mode_is_left():
 
 
 def test_what_was_written_counts_for_the_next_start():
-    world = parameter("P0700")
+    world = parameter("P0700", loop_us=LOOP_US)
     write(world, 2)
     world.run(300)
     world.press("START")
@@ -737,7 +737,7 @@ def test_a_fault_whose_number_is_not_told_is_seen_in_parameter_mode_too():
 
 
 def test_another_drive_that_runs_is_announced_in_parameter_mode():
-    world = running(addresses=(1, 2))
+    world = running(addresses=(1, 2), loop_us=LOOP_US)
     world.press("ADDRESS_UP")
     show(world, "P1000")
     assert rows_in_turn(world) == {"A1 RUN,HOLD=ALL", "P1000:     5 A2"}

@@ -4,6 +4,7 @@
 import main
 from boards.sim.world import World
 from panel_bench import (
+    LOOP_US,
     OFF1,
     ON,
     panel,
@@ -16,7 +17,7 @@ from panel_bench import (
     telegrams,
     unsupervised,
     wait_until_known,
-)
+)  # fmt: skip
 from uss import pkw
 
 
@@ -61,7 +62,7 @@ def test_start_of_a_drive_that_takes_its_setpoint_elsewhere_is_refused():
 
 
 def test_start_of_a_drive_whose_scaling_is_still_unknown_is_refused():
-    world = panel(baud=2400)  # a slow line: reading the settings takes a second
+    world = panel(baud=2400, loop_us=LOOP_US)  # a slow line: reading the settings takes a second
     assert row_2(world) == "CHECKING     A1"
     refused(world, "NO: STILL CHECKS")
 
@@ -278,7 +279,7 @@ def test_the_setpoint_stays_within_the_limits_of_the_settings():
 
 def test_the_setpoint_does_not_move_while_it_cannot_be_sent():
     """A drive that stops telling its settings while it runs: what is shown is what is sent."""
-    world = running()
+    world = running(loop_us=LOOP_US)
     parameters = world.drives[1].parameters
     parameters.rows = {row: parameters.rows[row] for row in parameters.rows if row != 1080}
     world.run(3000)
@@ -339,7 +340,7 @@ def test_other_parameter_jobs_do_not_disturb_the_panel():
 
 def test_stop_takes_back_a_start_whose_drive_is_still_being_asked():
     for baud in (2400, 9600):
-        world = panel(baud=baud)
+        world = panel(baud=baud, loop_us=LOOP_US)
         world.run(4000)
         world.press("START", 40)
         assert row_2(world) == "STARTING     A1"

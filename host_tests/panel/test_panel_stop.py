@@ -4,6 +4,7 @@
 import main
 from boards.sim.world import World
 from panel_bench import (
+    LOOP_US,
     OFF1,
     all_running,
     panel,
@@ -15,7 +16,7 @@ from panel_bench import (
     starts,
     telegrams,
     wait_until_known,
-)
+)  # fmt: skip
 
 
 def test_a_stop_that_nobody_confirms_is_an_alarm():
@@ -181,7 +182,7 @@ def test_stop_is_repeated_until_the_drive_hears_it():
 
 
 def test_stop_held_for_four_seconds_stops_all_drives():
-    world = all_running((1, 2, 3))
+    world = all_running((1, 2, 3), loop_us=LOOP_US)
     world.press("STOP", 3900)
     assert [world.drives[address].hz() > 9 for address in (1, 2, 3)] == [False, True, True]
     world.run(100)

@@ -7,6 +7,7 @@ import json
 
 from panel.supervision import off_time_ms
 from panel_bench import (
+    LOOP_US,
     ON,
     page_back,
     panel,
@@ -18,7 +19,7 @@ from panel_bench import (
     telegrams,
     unsupervised,
     wait_until_known,
-)
+)  # fmt: skip
 
 OFF3 = 0x047A
 ASKED = "SET=FIX START=GO"
@@ -89,7 +90,7 @@ def test_a_supervised_drive_is_started_without_a_question():
 
 
 def test_start_asks_in_parameter_mode_too():
-    world = unset()
+    world = unset(loop_us=LOOP_US)
     world.press("PARAM")
     world.press("START")
     wait_for(world, ASKED, 1000)
@@ -203,7 +204,7 @@ def test_what_was_accepted_is_not_asked_again():
 
 
 def test_what_was_accepted_counts_for_that_drive_only():
-    world = asked(addresses=(1, 2))
+    world = asked(addresses=(1, 2), loop_us=LOOP_US)
     world.press("START")
     world.run(3000)
     assert [starts(world, address) for address in (1, 2)] == [1, 0]
@@ -219,7 +220,7 @@ def test_what_was_accepted_counts_for_that_drive_only():
 
 
 def test_what_was_accepted_before_stays_accepted():
-    world = panel(**unsupervised(1, 2))
+    world = panel(**unsupervised(1, 2), loop_us=LOOP_US)
     world.drives[1].write(2014, 0, 0)
     world.press("START")
     world.run(3000)
@@ -244,7 +245,7 @@ def test_what_was_accepted_stays_with_a_drive_that_moves():
 
 def test_any_other_key_does_nothing_and_start_asks_again():
     for key in OTHER_KEYS:
-        world = asked(addresses=(1, 2))
+        world = asked(addresses=(1, 2), loop_us=LOOP_US)
         world.press(key)
         world.run(2000)
         assert row_1(world) == "S: 10.0 F:  0.00", (key, world.lcd())
@@ -575,7 +576,7 @@ def test_a_time_that_changes_while_it_runs_is_said():
 
 def test_a_drive_that_has_just_been_selected_is_jogged_once_it_has_told_its_p2014():
     """What the panel knew of it may be old: the key has to be pressed again."""
-    world = panel(addresses=(1, 2))
+    world = panel(addresses=(1, 2), loop_us=LOOP_US)
     world.run(40_000)
     world.drives[2].write(2014, 0, 0)
     world.run(10_000)

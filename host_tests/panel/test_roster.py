@@ -6,7 +6,7 @@ import json
 import main
 from boards.sim.drives.kinds import expected, listed_drives, simulated
 from boards.sim.world import World
-from panel_bench import all_running, panel, row_2, starts, wait_until_known
+from panel_bench import LOOP_US, all_running, panel, row_2, starts, wait_until_known
 
 
 def panel_of(text, drives):
@@ -118,7 +118,7 @@ def test_an_address_that_is_taken_or_none_is_refused_and_changes_nothing():
 
 
 def test_what_there_is_to_say_of_the_others_is_said_on():
-    world = all_running((1, 2, 3))
+    world = all_running((1, 2, 3), loop_us=LOOP_US)
     world.drives[1].fault(1)
     world.run(500)
     world.press("STOP")  # of drive 1, which is shown
