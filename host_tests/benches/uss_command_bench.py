@@ -18,10 +18,10 @@ import threading
 import tty
 
 from program_bench import as_in_a_terminal
-from tiers import TOP
+from tiers import CACHES, TOP
 from tools.port.serial_port import Pty
 
-COMMAND = (sys.executable, "-B", os.path.join(TOP, "tools", "uss_command"))
+COMMAND = (sys.executable, "-X", CACHES, os.path.join(TOP, "tools", "uss_command"))
 PATIENCE_S = 60
 ENVIRONMENT = {key: value for key, value in os.environ.items() if not key.startswith("USS_")}
 

@@ -279,5 +279,5 @@ def test_every_script_finds_its_tree_in_the_same_words():
     for path in (TOP / "tools").iterdir():
         if path.is_file() and os.access(path, os.X_OK):
             text = path.read_text()
-            heads.add(text[text.index("self=") : text.index('. "$top/tools/fetch/version.sh"')])
+            heads.add(text[text.index("self=") : text.index('. "$top/tools/fetch/begin.sh"')])
     assert len(heads) == 1

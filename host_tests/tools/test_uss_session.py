@@ -5,7 +5,6 @@ import json
 import os
 import signal
 import subprocess
-import sys
 import time
 
 import pytest
@@ -13,7 +12,7 @@ import pytest
 from conftest import strict
 from program_bench import Drives, programs
 from tiers import TOP
-from uss_command_bench import ENVIRONMENT, hubs, start, telegram, told, uss
+from uss_command_bench import COMMAND, ENVIRONMENT, hubs, start, telegram, told, uss
 from uss_virtual_bench import World
 
 INTERPRETERS = "host"
@@ -204,7 +203,7 @@ def test_a_drive_is_commissioned_by_the_steps_of_the_catalogue(program):
 def test_settings_come_from_options_the_environment_or_a_file(program, tmp_path):
     drives = program(Drives, *FAST, "--address", "7")
     (tmp_path / "uss.toml").write_text('port = "%s"\naddress = 7\nbaud = 115200\n' % drives.path)
-    command = [sys.executable, "-B", os.path.join(TOP, "tools/uss_command"), "--json", "mirror"]
+    command = [*COMMAND, "--json", "mirror"]
 
     def run(**environment):
         return subprocess.run(command, cwd=tmp_path, env={**ENVIRONMENT, **environment},

@@ -224,9 +224,8 @@ def test_two_fingers_hold_two_keys(opens):
     page.touch()
 
 
-@pytest.mark.parametrize("size", SIZES)
-def test_a_parameter_is_edited_by_keys(browser, served, size):
-    page = browser.open(served("--drives", "1,2").link, size)
+def test_a_parameter_is_edited_by_keys(browser, served):
+    page = browser.open(served("--drives", "1,2").link)
     page.plays("parameter.txt")
     page.does("param 1 P1120")
     page.shows("P1120[0]=2.5", "#said")

@@ -2,7 +2,7 @@
 # The firmware for the Raspberry Pi Pico: build/pico/panel.uf2, with everything of ours frozen in,
 # and build/pico/stock.uf2, plain MicroPython; build/pico/pico2.uf2 is the panel for a Pico 2. For
 # the tests alone, panel_hard.uf2 and stock_hard.uf2 are the first two on a later MicroPython, whose
-# timers have hard callbacks. To be sourced after version.sh, folder.sh, packages.sh and pytest.sh.
+# timers have hard callbacks. To be sourced after begin.sh, folder.sh, packages.sh and pytest.sh.
 #
 # What the machine has installed takes no part, but for python3 and apt: the versions are named
 # here, and the same sources give the same bytes. The first firmware takes a minute or two, the
