@@ -588,7 +588,7 @@ def test_an_old_node_or_one_without_npm_is_not_used(machine, installed):
 
 # ---- the firmware for the Pico --------------------------------------------------------------
 
-PICO_FILES = ("version", "folder", "packages", "pytest", "pico")
+PICO_FILES = ("begin", "folder", "packages", "pytest", "pico")
 
 # Stands in for the compilers: what it "compiles" is the manifest and one Python file.
 PICO_STAND_IN = r"""

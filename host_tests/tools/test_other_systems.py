@@ -38,7 +38,7 @@ COMMANDS = "panel drive example uss test soak check-board deploy bringup".split(
 SCRIPTS = [TOP / "tools" / name for name in COMMANDS]
 SCRIPTS += [
     TOP / "tools" / "fetch" / f"{name}.sh"
-    for name in "version folder packages micropython pytest uss mpremote".split()
+    for name in "begin folder packages micropython pytest uss mpremote".split()
 ]
 NEWER_THAN_3_2 = {
     "an array of names": r"(declare|local|typeset) -\w*[Ag]",

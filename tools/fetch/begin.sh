@@ -13,5 +13,8 @@ if [[ $# == 1 && $1 == --version ]]; then
     exit
 fi
 
-# For Python: what it compiles is kept there, and not beside the sources.
-caches=(-X "pycache_prefix=$top/build/pycache")
+# For Python: what it compiles is kept in build/, once that is there, and never beside the sources.
+caches=(-B)
+if [[ -d $top/build ]]; then
+    caches=(-X "pycache_prefix=$top/build/pycache")
+fi
