@@ -35,16 +35,22 @@ MODES = (CURSOR, WRAPS, SECOND, BRACKETS, *MOUSE, FOCUS, "2026")
 
 class Screen:
     """What a terminal shows and answers: as much of ECMA-48 and of xterm as the panel uses.
-    Anything else is an error. answer(bytes): to the program; silent: it answers nothing.
+    Anything else is an error. answer(bytes): to the program; silent: it answers nothing. before:
+    the same one when it had another size, for which a program that is slow may still write.
     """
 
-    def __init__(self, rows, columns, answer=None):
+    def __init__(self, rows, columns, answer=None, before=None):
         self.rows, self.columns = rows, columns
+        self.room = rows, columns  # in which the program may place its cursor
         self.normal = []  # what was printed on the normal screen
         self.modes = {CURSOR, WRAPS}
         self.answer = answer
         self.clear()
         self._pending = b""
+        if before:
+            self.room = max(rows, before.rows), max(columns, before.columns)
+            self.modes = before.modes
+            self._pending = before._pending
 
     second = property(lambda self: SECOND in self.modes)
     cursor = property(lambda self: CURSOR in self.modes)
@@ -104,7 +110,8 @@ class Screen:
             self._answer("\x1b[%d;%dR" % (self.row + 1, self.column + 1))
         elif final == "H":
             row, column = (int(number) for number in (parameters or "1;1").split(";"))
-            assert 1 <= row <= self.rows and 1 <= column <= self.columns + 1, parameters
+            rows, columns = self.room
+            assert 1 <= row <= rows and 1 <= column <= columns + 1, parameters
             self.row, self.column = row - 1, column - 1
         elif final == "J":
             self.clear()
@@ -146,10 +153,7 @@ class Terminal:
         )  # fmt: skip
 
     def resize(self, rows, columns):
-        before = getattr(self, "screen", None)
-        self.screen = Screen(rows, columns, self._answer)
-        if before:
-            self.screen.modes = before.modes
+        self.screen = Screen(rows, columns, self._answer, getattr(self, "screen", None))
         fcntl.ioctl(self.slave, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
 
     def _answer(self, data):

@@ -11,7 +11,7 @@ import time
 
 import pytest
 
-from terminal_bench import PANEL, PATIENCE_S, Terminal, terminals
+from terminal_bench import PANEL, PATIENCE_S, Screen, Terminal, terminals
 from tiers import TOP
 
 INTERPRETERS = "host"
@@ -168,6 +168,12 @@ def test_words_that_are_pasted_or_typed_after_a_command_start_no_motor(terminal,
     panel.commands("wait 500", "drive 1")
     panel.shows("state=ready")
     panel.shows("starts=0")
+
+
+def test_what_is_still_written_for_the_larger_terminal_is_cut_off():
+    screen = Screen(24, 18, before=Screen(24, 80))
+    screen.write(b"\x1b[?1049h\x1b[5;20Hx\x1b[5;18Hy")
+    assert screen.lines()[4] == 17 * " " + "y"
 
 
 def test_start_in_a_terminal_that_hides_the_display_is_refused(terminal):
