@@ -26,8 +26,10 @@ def twin(function, *arguments):
     reading, writing = os.pipe()
     child = os.fork()
     if not child:
+        before = _notes() and _notes().state()
+        outcome = _outcome(function, arguments)
         with open(writing, "wb") as file:
-            file.write(pickle.dumps((*_outcome(function, arguments), _lines())))
+            file.write(pickle.dumps((*outcome, _notes() and list(_notes().seen(before)))))
         os._exit(0)
     os.close(writing)
     with open(reading, "rb") as file:
@@ -39,7 +41,7 @@ def twin(function, *arguments):
         raise TwinFailed("a copy of the process has died")
     is_good, result, lines = pickle.loads(outcome)
     if lines:
-        sys.modules[NOTES].add(lines)
+        _notes().add(lines)
     if not is_good:
         raise TwinFailed(result)
     return result
@@ -55,9 +57,9 @@ def _outcome(function, arguments):
         return False, traceback.format_exc()
 
 
-def _lines():
-    """Those that have run, where they are noted."""
-    return list(sys.modules[NOTES].seen()) if NOTES in sys.modules else None
+def _notes():
+    """The module by which the lines that run are noted, if anybody does."""
+    return sys.modules.get(NOTES)
 
 
 def _positions():

@@ -1,13 +1,17 @@
 # SPDX-License-Identifier: MIT
 """Notes which lines of the firmware run, on CPython, for a small part of what tracing costs.
 
-Every statement of the firmware is compiled with another one before it, which notes that its line
-runs. That one stands on the same line, so that tracebacks and trace functions see the source as it
-is. In use:
+A statement of the firmware is compiled with another one before it, which notes that its line runs,
+and the lines that surely run with it. That one stands on the same line, so that tracebacks and
+trace functions see the source as it is. In use:
 
     begin()  # before any of the firmware is imported
     for path, numbers in seen(): ...
-    add(notes)  # what `seen` has said in a copy of this process
+
+In a copy of this process:
+
+    before = state()
+    notes = list(seen(before))  # which this process takes: add(notes)
 """
 
 import ast
@@ -29,7 +33,7 @@ KEPT = abspath("build/noted")  # to compile with notes takes each process 0.2 s:
 # on the chip. A list for each file, for in nothing else is an entry set as quickly.
 NOTES = "__lines_of_{}__"
 # By paths from the top of the tree.
-_noted = {}  # whether each note was made, and the number of its line
+_noted = {}  # whether each note was made, and the numbers of its lines
 _added = {}  # numbers of lines
 
 
@@ -38,13 +42,32 @@ def begin():
     sys.path_importer_cache.clear()
 
 
-def seen():
-    """Each file of which lines ran, from the top of the tree, and their numbers."""
-    notes = {path: set(numbers) for path, numbers in _added.items()}
-    for path, (made, numbers) in _noted.items():
-        if any(made):
-            notes.setdefault(path, set()).update(compress(numbers, made))
-    return notes.items()
+# What can end a statement before the next one runs, or take it elsewhere. That a name or an
+# attribute is not there would be a defect.
+NOT_SURE = (
+    ast.Call, ast.Subscript, ast.Await, ast.Yield, ast.YieldFrom, ast.Div, ast.FloorDiv, ast.Mod,
+    ast.Starred, ast.List, ast.Tuple, ast.comprehension, ast.NamedExpr,
+)  # fmt: skip
+MAY_BE_SURE = (ast.Assign, ast.AugAssign, ast.AnnAssign, ast.Pass, ast.Global, ast.Nonlocal)
+
+
+def state():
+    """How much was noted of each file: for `seen`."""
+    added = {path: len(numbers) for path, numbers in _added.items()}
+    return {path: (bytes(made), added.get(path)) for path, (made, _) in _noted.items()}
+
+
+def seen(before=None):
+    """Each file of which lines ran, from the top of the tree, and their numbers. before: what
+    `state` has said: leaves out those of which no more ran since."""
+    now = state() if before else {}
+    for path in _noted.keys() | _added.keys():
+        if before and path in now and now[path] == before.get(path):
+            continue
+        made, numbers = _noted.get(path, ((), ()))
+        ran = _added.get(path, set()).union(*compress(numbers, made))
+        if ran:
+            yield path, ran
 
 
 def add(notes):
@@ -87,9 +110,8 @@ def _compiled(path):
 
 def _compile(path, content, notes):
     places = []
-    tree = Noting(path, places, notes).visit(ast.parse(content, path))
-    code = compile(tree, path, "exec", dont_inherit=True)
-    return code, [number for _, number in places]
+    tree = Noting(places, notes).visit(ast.parse(content, path))
+    return compile(tree, path, "exec", dont_inherit=True), places
 
 
 def _keep(place, what):
@@ -105,14 +127,13 @@ def _keep(place, what):
 
 
 class Noting(ast.NodeTransformer):
-    """Puts before every statement of a file one that notes its line: `notes[number] = True`.
+    """Puts before the statements of a file some that note their lines: `notes[number] = True`.
 
-    places: takes path and line number of each note, which is its place there. notes: the name of
-    the list.
+    places: takes the line numbers of each note, which is its place there. notes: the name of the
+    list.
     """
 
-    def __init__(self, path, places, notes):
-        self.path = path
+    def __init__(self, places, notes):
         self.places = places
         self.notes = notes
 
@@ -135,17 +156,31 @@ class Noting(ast.NodeTransformer):
         return node
 
     def _noted(self, statements):
+        lines = None  # of the note before, as long as the next statement surely runs as well
         for statement in statements:
             if not (statement is statements[0] and _is_text(statement)):
                 for each in (*getattr(statement, "decorator_list", ()), statement):
-                    yield self.noting("{}[{}] = True", each.lineno)
+                    if lines is None:
+                        yield self.noting("{}[{}] = True", each.lineno)
+                        lines = self.places[-1]
+                    elif each.lineno not in lines:
+                        lines.append(each.lineno)
+                if not _is_sure(statement):
+                    lines = None
             yield statement
 
     def noting(self, text, number):
         """A statement on that line, with a note of its own."""
         (statement,) = ast.parse(text.format(self.notes, len(self.places))).body
-        self.places.append((self.path, number))
+        self.places.append([number])
         return ast.increment_lineno(statement, number - statement.lineno)
+
+
+def _is_sure(statement):
+    """Whether the statement behind it runs whenever it does."""
+    return isinstance(statement, MAY_BE_SURE) and not any(
+        isinstance(each, NOT_SURE) for each in ast.walk(statement)
+    )
 
 
 def _is_text(statement):
