@@ -46,11 +46,11 @@ class Screen:
         self.modes = {CURSOR, WRAPS}
         self.answer = answer
         self.clear()
-        self._pending = b""
+        self.pending = b""  # of a sequence whose rest is still to come
         if before:
             self.room = max(rows, before.rows), max(columns, before.columns)
             self.modes = before.modes
-            self._pending = before._pending
+            self.pending = before.pending
 
     second = property(lambda self: SECOND in self.modes)
     cursor = property(lambda self: CURSOR in self.modes)
@@ -76,7 +76,7 @@ class Screen:
         raise AssertionError("%s is not on the screen:\n%s" % (text, self.text()))
 
     def write(self, data):
-        data = self._pending + data
+        data = self.pending + data
         at = 0
         while at < len(data):
             if data[at] == 0x1B:
@@ -93,7 +93,7 @@ class Screen:
                 break
             self._put(data[at : at + size].decode())
             at += size
-        self._pending = data[at:]
+        self.pending = data[at:]
 
     def _obey(self, private, parameters, between, final):
         if private == "?" and final in "hl":

@@ -110,8 +110,9 @@ def _compiled(path):
 
 def _compile(path, content, notes):
     places = []
-    tree = Noting(places, notes).visit(ast.parse(content, path))
-    return compile(tree, path, "exec", dont_inherit=True), places
+    tree = Noting(path, places, notes).visit(ast.parse(content, path))
+    code = compile(tree, path, "exec", dont_inherit=True)
+    return code, [lines for _, lines in places]
 
 
 def _keep(place, what):
@@ -129,11 +130,12 @@ def _keep(place, what):
 class Noting(ast.NodeTransformer):
     """Puts before the statements of a file some that note their lines: `notes[number] = True`.
 
-    places: takes the line numbers of each note, which is its place there. notes: the name of the
-    list.
+    places: takes path and line numbers of each note, which is its place there. notes: the name of
+    the list.
     """
 
-    def __init__(self, places, notes):
+    def __init__(self, path, places, notes):
+        self.path = path
         self.places = places
         self.notes = notes
 
@@ -162,7 +164,7 @@ class Noting(ast.NodeTransformer):
                 for each in (*getattr(statement, "decorator_list", ()), statement):
                     if lines is None:
                         yield self.noting("{}[{}] = True", each.lineno)
-                        lines = self.places[-1]
+                        _, lines = self.places[-1]
                     elif each.lineno not in lines:
                         lines.append(each.lineno)
                 if not _is_sure(statement):
@@ -172,7 +174,7 @@ class Noting(ast.NodeTransformer):
     def noting(self, text, number):
         """A statement on that line, with a note of its own."""
         (statement,) = ast.parse(text.format(self.notes, len(self.places))).body
-        self.places.append([number])
+        self.places.append((self.path, [number]))
         return ast.increment_lineno(statement, number - statement.lineno)
 
 

@@ -26,7 +26,10 @@ from tools.deploying.names import source_of
 from tools.mutating.noting import MARK, NOTES
 from tools.mutating.scratch import scratch
 
-GROUND = ("firmware", "boards", "host_tests/benches", "host_tests/runner.py")
+GROUND = (
+    "firmware", "boards", "host_tests/benches", "host_tests/runner.py",
+    "host_tests/cpython/line_notes.py",
+)  # fmt: skip
 TIERS_TRIED = ("unix64", "cpython")  # a test file runs on the first of these that it has
 NOTING = Path(__file__).parent / "noting.py"
 COMMANDS = {  # by the first of these tiers that a file has; noting.py finds the modules
@@ -65,7 +68,7 @@ class Reach:
         self.tree = tree
         self.room = room
         self.kept = room / "reach"  # a file for each test file
-        self.places = []  # path, line number: of each note
+        self.places = []  # path, line numbers: of each note
         self.noted = {}  # path -> syntax tree, with notes
         self._in_file = {}  # path -> its statements, as bits
         for path in sorted((tree / "firmware").rglob("*.py")):
@@ -76,7 +79,7 @@ class Reach:
         self.ground = digest(tree, [file for one in GROUND for file in _files(tree / one)])
         self.known = {}  # path of a test file -> {function: (seconds, passed, statements as bits)}
         inside = set(self._inside())
-        self._outside = self._bits(lambda place: place not in inside)
+        self._outside = self._bits(lambda path, lines: (path, lines[0]) not in inside)
 
     def files(self):
         """The test files that this is about, from the top of the tree."""
@@ -136,7 +139,8 @@ class Reach:
             if isinstance(node, ast.stmt) and node.lineno <= line <= node.end_lineno
         ]
         for node in sorted(around, key=lambda node: node.lineno, reverse=True):
-            bits = self._bits(lambda place, at=(path, node.lineno): place == at)
+            at = path, node.lineno
+            bits = self._bits(lambda path, lines, at=at: at[0] == path and at[1] in lines)
             if bits:
                 return bits, node.lineno == max(one.lineno for one in around)
         return 0, True
@@ -159,7 +163,7 @@ class Reach:
 
     def _bits(self, is_wanted):
         """The statements at certain places, as bits."""
-        return int("".join("01"[is_wanted(place)] for place in reversed(self.places)) or "0", 2)
+        return int("".join("01"[is_wanted(*place)] for place in reversed(self.places)) or "0", 2)
 
     def _inside(self):
         """The places within functions."""
