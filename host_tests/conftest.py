@@ -21,6 +21,7 @@ and what takes long runs once (shares.py).
 """
 
 import ast
+import gc
 import os
 import signal
 import time
@@ -58,6 +59,7 @@ def pytest_addoption(parser):
 
 
 def pytest_configure(config):
+    gc.disable()  # while tests are collected: they stay to the end
     only = config.option.only
     if only:
         config.pluginmanager.register(Teller(config, only))
@@ -118,6 +120,8 @@ def pytest_pycollect_makemodule(module_path, parent):
 
 @pytest.hookimpl(trylast=True)  # after -k and the like have taken their pick
 def pytest_collection_modifyitems(session, items):
+    gc.freeze()  # pytest looks through all that is left for what was forgotten, ten times
+    gc.enable()
     session.config.stash[POOL].sort(items)
     if strict():
         for tier, reason in session.config.stash[SURVEY].missing.items():
