@@ -120,7 +120,7 @@ def pytest_pycollect_makemodule(module_path, parent):
 
 @pytest.hookimpl(trylast=True)  # after -k and the like have taken their pick
 def pytest_collection_modifyitems(session, items):
-    gc.freeze()  # pytest looks through all that is left for what was forgotten, ten times
+    gc.freeze()  # at its end pytest has all that is left looked through, twice
     gc.enable()
     session.config.stash[POOL].sort(items)
     if strict():

@@ -7,7 +7,7 @@ The same firmware as on the chip, in virtual time.
 import main
 import on_demand
 import panel.panel
-from boards.sim.board import LONG_LOOP_US, LOOP_US  # noqa: F401
+from boards.sim.board import LONG_LOOP_US, LOOP_US  # noqa: F401 - for the tests
 from boards.sim.clock import Clock
 from boards.sim.world import World
 from panel.at_hand import NAMES
@@ -59,8 +59,8 @@ class SlowClock(Clock):
 def panel(**options):
     """A panel that was switched on a second ago.
 
-    Its main loop takes steps as long as the longest on the chip, for then a test takes four fifths
-    of the time. One that looks sooner than such steps can show says loop_us=LOOP_US.
+    Its main loop takes steps as long as the longest on the chip, for so the tests of the panel
+    take an eighth less. One that looks sooner than such steps can show says loop_us=LOOP_US.
     """
     options.setdefault("loop_us", LONG_LOOP_US)
     world = World(main.start, **options)

@@ -227,7 +227,7 @@ class Page:
         self._notes_display()
 
     def _waits_until(self, clock_s, speed=SPEED):
-        """To look at the clock takes more of a processor than the panel itself."""
+        """Looks at the clock when it may be time, for each look keeps the whole browser busy."""
         deadline = time.monotonic() + PATIENCE_S
         while (left_s := clock_s - self._clock_s()) > 0:
             assert time.monotonic() < deadline, self.text("#clock")
