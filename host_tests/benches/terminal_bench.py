@@ -20,6 +20,7 @@ import struct
 import subprocess
 import termios
 import time
+from contextlib import suppress
 
 from tiers import TOP
 
@@ -226,6 +227,23 @@ class Terminal:
         assert self.screen.cursor and self.screen.wraps
         assert not (self.screen.second or self.screen.brackets or self.screen.mouse)
         return True
+
+    def freeze(self):
+        """It is full and read no more: wait until the program stands still, as it cannot write."""
+        full = os.open(os.ttyname(self.slave), os.O_WRONLY | os.O_NONBLOCK | os.O_NOCTTY)
+        with suppress(BlockingIOError):
+            while True:
+                os.write(full, bytes(1000))
+        os.close(full)
+        used, since = None, time.monotonic()
+        deadline = since + PATIENCE_S
+        while time.monotonic() - since < 0.5:  # the picture is drawn ten times as often
+            assert time.monotonic() < deadline, "the program goes on without a terminal"
+            time.sleep(0.05)
+            with open("/proc/%d/stat" % self.process.pid) as file:
+                now = file.read().rsplit(")", 1)[1].split()[11:13]  # its time of processor
+            if now != used:
+                used, since = now, time.monotonic()
 
     def program(self):
         """The process id of the panel behind the picture."""

@@ -236,10 +236,13 @@ def test_who_is_asked_to_end_ends_its_program(terminal):
     assert not os.path.exists("/proc/%d" % program)
 
 
-def test_a_terminal_that_is_closed_ends_it():
+@pytest.mark.parametrize("has_frozen", [False, True])
+def test_a_terminal_that_is_closed_ends_it(has_frozen):
     panel = Terminal()
     panel.shows("READY")
     program = panel.program()
+    if has_frozen:  # it takes nothing any more, and what is still to be written waits
+        panel.freeze()
     os.close(panel.slave)
     os.close(panel.master)
     panel.process.wait(PATIENCE_S)

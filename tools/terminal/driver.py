@@ -20,6 +20,7 @@ import selectors
 import signal
 import sys
 import time
+from contextlib import suppress
 
 from textual import events, messages
 from textual._ansi_sequences import ANSI_SEQUENCES_KEYS
@@ -58,10 +59,31 @@ class Gone(Message, bubble=False):
     """The terminal is no more."""
 
 
+class Screen:
+    """What is drawn on. Where the terminal has gone, it takes all and shows nothing.
+
+    An error would end Textual's thread that writes; the program would wait for it without an end.
+    """
+
+    def __init__(self, file):
+        self._file = file
+
+    def write(self, text):
+        with suppress(OSError):
+            self._file.write(text)
+
+    def flush(self):
+        with suppress(OSError):
+            self._file.flush()
+
+    def fileno(self):
+        return self._file.fileno()
+
+
 class TerminalDriver(LinuxDriver):
     def __init__(self, app, **others):
         super().__init__(app, **others)
-        self._file = sys.__stdout__
+        self._file = Screen(sys.__stdout__)
         self._is_plain = not understands_utf_8(os.environ.get)
         self._mouse_parser = XTermParser()
         signal.signal(signal.SIGTSTP, signal.SIG_IGN)
