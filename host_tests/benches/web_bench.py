@@ -68,7 +68,9 @@ HEARD = """
       const closed = new Promise((resolve) => {
         socket.onclose = (event) => resolve(event.code);
       });
-      socket.onmessage = ({ data }) => heard.push(JSON.parse(data));
+      socket.onmessage = ({ data }) => {
+        data.split("\\n").forEach((line) => heard.push(JSON.parse(line)));
+      };
       await new Promise((resolve) => { socket.onopen = socket.onerror = resolve; });
       if (socket.readyState === WebSocket.OPEN) says.forEach((one) => socket.send(one));
       const late = new Promise((resolve) => setTimeout(resolve, 1500, 0));

@@ -3,11 +3,13 @@
 
 import ipaddress
 import json
+import subprocess
 import time
 from urllib import error, parse, request
 
 import pytest
 
+from tiers import TOP
 from web_bench import Cable, browsers, servers, swept
 
 INTERPRETERS = "host"
@@ -16,6 +18,7 @@ shared = pytest.fixture(scope="module")(servers)
 served = pytest.fixture(servers)
 chromium = pytest.fixture(scope="module")(browsers)
 browser = pytest.fixture(swept)
+SERVER = TOP / "build/server/bin/python"
 STATE = ".drive .state"
 JOG = "#keys [data-key=JOG_RIGHT]"
 JOG_ENDS_S = 0.4
@@ -166,6 +169,26 @@ def test_an_answer_goes_to_the_page_that_asked(browser, panel, watcher):
     page.shows("P1120[0]", "#said")
     assert "P1120[0]" not in (watcher.text("#said") or "")
     page.close()
+
+
+# What waits for a page that has not read for a while, in which another one has come.
+WAITING = """
+import asyncio
+from tools.web.server import Outbox
+
+async def main():
+    outbox = Outbox()
+    for kind in ("drives", "done", "hello", "state", "drives"):
+        outbox.put({"t": kind})
+    print(*(message["t"] for message in await outbox.get()))
+
+asyncio.run(main())
+"""
+
+
+def test_a_page_hears_which_drives_there_are_before_how_they_are(panel):
+    told = subprocess.check_output([SERVER, "-B", "-c", WAITING], cwd=TOP, text=True)
+    assert told.split() == ["hello", "state", "drives", "done"]
 
 
 # --- who is let in ------------------------------------------------------------------------------

@@ -89,10 +89,11 @@ async def hear(connection):
     async for message in connection:
         if message.type is not aiohttp.WSMsgType.TEXT:
             return
-        told = json.loads(message.data)
-        if told["t"] == "hello":
-            told["joined"] = 1
-        sys.stdout.write(json.dumps(told) + "\n")
+        for line in message.data.split("\n"):
+            told = json.loads(line)
+            if told["t"] == "hello":
+                told["joined"] = 1
+            sys.stdout.write(json.dumps(told) + "\n")
         sys.stdout.flush()
 
 

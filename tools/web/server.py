@@ -3,10 +3,12 @@
 
     status = await serve(chosen, ["tools/panel", "--lines"])
 
-A page has a WebSocket, on which it and the panel say what tools/live/README.md lists, a message
-each. Who has not got the token of the link, or comes from another site, is not let in. Whatever
-else a page does, the panel and the other pages go on: messages are short, a page that does not
-read hears less, and one that talks too much is thrown out.
+A page has a WebSocket, on which it and the panel say what tools/live/README.md lists. What the
+page says is a message each; what the panel says comes in lines, for a page takes one message with
+many of them sooner than many messages. Who has not got the token of the link, or comes from
+another site, is not let in. Whatever else a page does, the panel and the other pages go on:
+messages are short, a page that does not read hears less, and one that talks too much is thrown
+out.
 """
 
 import asyncio
@@ -30,6 +32,7 @@ from tools.web.files import PAGE, TYPES, served
 TOKEN_BYTES = 16
 PAGES_MAX = 16
 MESSAGES_A_SECOND = 200
+TOGETHER_S = 0.02  # what the panel says within this time goes together; a key does not wait
 HEARTBEAT_S = 5  # keys have a lease of their own: this finds connections that are dead
 EVENTS_MAX = 256  # telegrams and answers that wait for a page that does not read
 # Kinds of which only the newest counts.
@@ -58,8 +61,10 @@ class Outbox:
         self._filled = asyncio.Event()
 
     def put(self, message):
-        if message["t"] in PICTURES:
-            self._pictures[message["t"]] = message
+        kind = message["t"]
+        if kind in PICTURES:
+            self._pictures[kind] = message
+            self._pictures.move_to_end(kind)
         else:
             self._events.append(message)
         self._filled.set()
@@ -176,8 +181,8 @@ class Server:
     async def _send(self, connection, outbox):
         try:
             while True:
-                for message in await outbox.get():
-                    await connection.send_str(json.dumps(message))
+                await connection.send_str("\n".join(map(json.dumps, await outbox.get())))
+                await asyncio.sleep(TOGETHER_S)
         except (ConnectionError, RuntimeError):
             pass  # it is gone
 

@@ -70,7 +70,9 @@ class SocketWay {
       this.handlers.tell(TEXTS.connected, "good");
       this.opened();
     };
-    socket.onmessage = (event) => this.handlers.take(JSON.parse(event.data));
+    socket.onmessage = (event) => {
+      event.data.split("\n").forEach((line) => this.handlers.take(JSON.parse(line)));
+    };
     socket.onclose = (event) => this.closed(event);
     this.socket = socket;
   }
