@@ -416,9 +416,17 @@ class Pin:
         """Return the level, or set it. Setting the level of an input changes nothing."""
         if level is None:
             return self._level
-        level = 1 if level else 0
-        if level != self.output and self._settable:
-            self._put(level)
+        output = level = 1 if level else 0
+        if output == self.output or not self._settable:
+            return
+        self.output = output
+        if output and self.mode != _OUT:  # it lets go
+            level = self._let_go
+        if level != self._level:
+            self._level = level
+            self._chip.levels ^= self.mask
+        if self.on_change is not None:
+            self.on_change(output)
 
     __call__ = value
 
@@ -438,12 +446,6 @@ class Pin:
         self.value(1 if self.mode == self.OPEN_DRAIN else 0)
         self._settable = False
         self.mask = 0
-
-    def _put(self, output):
-        self.output = output
-        self._settle()
-        if self.on_change is not None:
-            self.on_change(output)
 
     def _settle(self):
         level = self.output
