@@ -361,10 +361,10 @@ class Pool:
 
     Of the files that only compute as many run at a time as there are processors, and half as many
     ordinary ones beside them. An ordinary file often waits: for a page, a terminal, a serial port.
-    The others stand back (tiers.py) for what has to be in time. When they are done, more ordinary
-    ones run at a time: so those that wait most of their time come first, and those that compute
-    keep all processors busy to the end. Else the longest come first, as far as the last run can
-    tell.
+    Those that wait most of their time come first; the others stand back (tiers.py) for what has to
+    be in time. When these are done, more ordinary ones run at a time, and now those first that
+    compute: so all processors are busy to the end. Else the longest come first, as far as the last
+    run can tell.
     """
 
     def __init__(self, config):
@@ -388,23 +388,27 @@ class Pool:
             usual_s = (
                 USUAL_S if is_ordinary or TIERS[job.tier].everywhere else USUAL_BESIDE_A_CHIP_S
             )
-            computes = self.busy.get(str(job), 0) > 0.5
             lasts_s = len(jobs[job]) * self.lasted_s.get(str(job), usual_s)
-            return not is_ordinary, computes, -lasts_s
+            return not is_ordinary, self._computes(job), -lasts_s
 
         items[:] = [item for job in sorted(jobs, key=rank) for item in jobs[job]]
 
+    def _computes(self, job):
+        """An ordinary one, most of its time."""
+        return self.busy.get(str(job), 0) > 0.5
+
     def start(self, items):
-        beside = []
+        computing, waiting = [], []
         for job, chosen in jobs_of(items).items():
             if job.tier != ORDINARY:
                 work = self._work(job, {item.name: item for item in chosen}, self._on_tier)
                 self.others.submit(work)
             elif self._runs_ordinary_files():
                 work = self._work(job, {item.nodeid: item for item in chosen}, self._in_a_pytest)
-                beside.append(once(work))
-                self.ordinary.submit(beside[-1])
-        for work in beside:  # who has done all the others takes from these
+                work = once(work)
+                (computing if self._computes(job) else waiting).append(work)
+                self.ordinary.submit(work)
+        for work in computing + waiting:  # who has done all the others takes from these
             self.others.submit(work)
 
     def verdict(self, item):

@@ -25,6 +25,7 @@ from typing import NamedTuple
 
 import pytest
 
+from tiers import STANDS_BACK
 from tools.soaking import interpreters
 from tools.soaking.interpreters import TOP
 from tools.soaking.mutations import MUTATIONS
@@ -48,11 +49,9 @@ def soaked(folder, lives, roams, abruptly=False):
     """What the soak says of each life, a seed and its minutes, with the firmware in
     folder/firmware. abruptly: it ends with its minutes, not with what the hand is about."""
     caches = interpreters.CACHES if folder == TOP else folder / "pycache"
+    arguments = ["soak", MINUTES, ANY_DRIVES, ONE_TROUBLE, int(roams), int(abruptly)]
     done = subprocess.Popen(
-        interpreters.command(
-            interpreters.CPYTHON,
-            ["soak", MINUTES, ANY_DRIVES, ONE_TROUBLE, int(roams), int(abruptly)],
-        ),
+        [*STANDS_BACK, *interpreters.command(interpreters.CPYTHON, arguments)],
         cwd=TOP,
         env=interpreters.environment(interpreters.CPYTHON, folder / "firmware", caches),
         stdin=subprocess.PIPE,
@@ -113,28 +112,54 @@ def hunted(mutation, plantings):
     return Hunt(seed, minutes, told or ["every rule held"])
 
 
+class Pool(ThreadPoolExecutor):
+    """As many lives at a time as there are processors. plantings: a queue of those free."""
+
+    def __init__(self, make_folder):
+        at_once = os.cpu_count() or 1
+        super().__init__(at_once)
+        self.plantings = queue.SimpleQueue()
+        for _ in range(at_once):
+            self.plantings.put(Planting(make_folder("planting")))
+
+
 @pytest.fixture(scope="module")
-def hunts(request, tmp_path_factory):
-    """By name, a future of each planted bug that is to be tested: a hunt takes one processor, and
-    tests of other files run beside this one."""
+def pool(tmp_path_factory):
+    with Pool(tmp_path_factory.mktemp) as pool:
+        yield pool
+        pool.shutdown(cancel_futures=True)
+
+
+@pytest.fixture(scope="module")
+def hunts(request, pool):
+    """By name, a future of each planted bug that is to be tested."""
     wanted = [
         item.callspec.params["mutation"]
         for item in request.session.items
         if getattr(item, "function", None) is test_a_planted_bug_is_found
     ]
-    at_once = max(1, os.cpu_count() // 2)
-    plantings = queue.SimpleQueue()
-    for _ in range(at_once):
-        plantings.put(Planting(tmp_path_factory.mktemp("planting")))
-    pool = ThreadPoolExecutor(at_once)
-    yield {mutation.name: pool.submit(hunted, mutation, plantings) for mutation in wanted}
-    pool.shutdown(cancel_futures=True)
+    return {one.name: pool.submit(hunted, one, pool.plantings) for one in wanted}
 
 
 @pytest.mark.parametrize("mutation", MUTATIONS, ids=lambda mutation: mutation.name)
 def test_a_planted_bug_is_found(mutation, hunts):
     told = hunts[mutation.name].result().told
     assert not told, "\n".join(told)
+
+
+@pytest.fixture(scope="module")
+def controls(pool, hunts):
+    """By roams and part, a future of what broke a rule without a bug."""
+    every = itertools.product((True, False), range(PARTS))
+    return {chosen: pool.submit(lived, *chosen, hunts) for chosen in every}
+
+
+def lived(roams, part, hunts):
+    """Stories of those of the same lives that broke a rule in the firmware as it is."""
+    lives = lives_of((one for one in MUTATIONS if one.roams == roams), hunts)[part::PARTS]
+    assert lives
+    said = soaked(TOP, lives, roams, abruptly=True)
+    return [one["story"] for one in said if one["rule"]]
 
 
 def lives_of(mutations, hunts):
@@ -150,11 +175,9 @@ def lives_of(mutations, hunts):
 
 @pytest.mark.parametrize("part", range(PARTS))
 @pytest.mark.parametrize("roams", [True, False])
-def test_the_same_lives_find_nothing_in_the_firmware_as_it_is(roams, part, hunts):
-    lives = lives_of((one for one in MUTATIONS if one.roams == roams), hunts)[part::PARTS]
-    said = soaked(TOP, lives, roams, abruptly=True)
-    stories = [one["story"] for one in said if one["rule"]]
-    assert lives and not stories, "\n".join(map("\n".join, stories))
+def test_the_same_lives_find_nothing_in_the_firmware_as_it_is(roams, part, controls):
+    stories = controls[roams, part].result()
+    assert not stories, "\n".join(map("\n".join, stories))
 
 
 def test_the_manual_says_how_many_they_are():
