@@ -179,7 +179,7 @@ class Grid:
 
     def __init__(self, clock, rows, columns):
         self._joined = [0] * rows  # for each row the columns that contacts join it to, as bits
-        self._driven = [False] * rows  # by the chip, to ground
+        self._rows = ()  # the chip's pins, which drive them to ground
         self._grounded = 0  # columns, as bits
         self._columns = [Column(clock) for _ in range(columns)]
 
@@ -192,16 +192,18 @@ class Grid:
                 self._joined[row] |= bit
             else:
                 self._joined[row] &= ~bit
+            self._watch(row)
             self._settle()
 
         return change
 
     def connect(self, rows, columns):
-        for row, pin in enumerate(rows):
+        for pin in rows:
             if pin.mode != pin.OPEN_DRAIN:
                 raise ValueError("two rows that are not open-drain short each other out")
-            pin.on_change = self._row(row)
-            self._driven[row] = not pin.output
+        self._rows = rows
+        for row in range(len(rows)):
+            self._watch(row)
         self._settle()
         for column, pin in zip(self._columns, columns):
             column.connect(pin)
@@ -210,20 +212,20 @@ class Grid:
         self._grounded |= 1 << column
         self._settle()
 
-    def _row(self, row):
-        def change(level):
-            self._driven[row] = not level
-            if self._joined[row]:
-                self._settle()
+    def _watch(self, row):
+        """A row that is joined to nothing makes no difference, and is set all the time."""
+        if self._rows:
+            self._rows[row].on_change = self._row_changed if self._joined[row] else None
 
-        return change
+    def _row_changed(self, _level):
+        self._settle()
 
     def _settle(self):
         joined = self._joined
         low = self._grounded
-        for row in range(len(joined)):
-            if self._driven[row]:
-                low |= joined[row]
+        for pin, columns in zip(self._rows, joined):
+            if not pin.output:
+                low |= columns
         before = -1
         while low != before:  # backwards through a column that is low to the rows joined to it
             before = low
