@@ -65,6 +65,8 @@ def pytest_configure(config):
         config.pluginmanager.register(Teller(config, only))
     if config.option.coverage:
         ENVIRONMENT[COVERAGE] = "1"  # of the processes that run the tests
+    if not config.pluginmanager.list_plugin_distinfo():  # to look for plugins takes long
+        ENVIRONMENT["PYTEST_DISABLE_PLUGIN_AUTOLOAD"] = "1"
     config.stash[SELECTION] = selection(config)
     config.stash[SURVEY] = Survey({}, {}) if only else survey(tiers_that_may_run(config))
     use_compiled(config.stash[SURVEY].versions)
@@ -389,7 +391,7 @@ class Pool:
                 USUAL_S if is_ordinary or TIERS[job.tier].everywhere else USUAL_BESIDE_A_CHIP_S
             )
             lasts_s = len(jobs[job]) * self.lasted_s.get(str(job), usual_s)
-            return not is_ordinary, self._computes(job), -lasts_s
+            return is_ordinary, self._computes(job), -lasts_s
 
         items[:] = [item for job in sorted(jobs, key=rank) for item in jobs[job]]
 
