@@ -82,7 +82,7 @@ MUTATIONS = (
     Mutation(
         "jog bit kept",
         "a jog goes on when its key is let go",
-        ("JOG",), 17,
+        ("JOG",), 741,
         (
             "panel/keys/jog_keys.py",
             "if down != self._key or control is not",
@@ -92,7 +92,7 @@ MUTATIONS = (
     Mutation(
         "both jog keys",
         "two jog keys at once are one",
-        ("JOG",), 219,
+        ("JOG",), 782,
         (
             "panel/keys/jog_keys.py",
             "if down != self._key or control is not",
@@ -102,7 +102,7 @@ MUTATIONS = (
     AtHome(
         "BCC unchecked",
         "a spoilt reply counts",
-        ("WITHOUT REASON", "SHOWN", "LOST", "START"), 65,
+        ("WITHOUT REASON", "SHOWN", "LOST", "START"), 743,
         (
             "uss/telegram.py",
             "    if exclusive_or(buffer, count):\n        return BAD_BCC\n",
@@ -113,7 +113,7 @@ MUTATIONS = (
     Mutation(
         "ON kept over a loss",
         "a drive that comes back into contact starts by itself",
-        ("START", "LOST"), 89,
+        ("START", "LOST"), 700,
         (
             "uss/drive.py",
             "            self.was_running = self._may_run or not self.tells_status\n"
@@ -159,7 +159,7 @@ MUTATIONS = (
     AtHome(
         "dead man removed",
         "ON goes on while the panel hangs",
-        ("DEAD MAN",), 60,
+        ("DEAD MAN",), 791,
         ("uss/master.py", "DEAD_MAN_US = const(300_000)", "DEAD_MAN_US = const(3_000_000)"),
     ),
     Mutation(
@@ -195,7 +195,7 @@ MUTATIONS = (
     Mutation(
         "started after a reset",
         "a motor that turns when the panel has restarted is sent ON",
-        ("START",), 32,
+        ("START",), 761,
         (
             "panel/control.py",
             "            self._contact = drive.contact\n",
@@ -222,7 +222,7 @@ MUTATIONS = (
     Mutation(
         "EEPROM without asking",
         "every write wears the EEPROM",
-        ("EEPROM",), 201,
+        ("EEPROM",), 724,
         (
             "panel/writer.py",
             "pkw.WRITE_WORD_EEPROM if write.eeprom else pkw.WRITE_WORD",
@@ -280,7 +280,7 @@ MUTATIONS = (
     Mutation(
         "watchdog fed always",
         "a bus that stands is not restarted",
-        ("WATCHDOG",), 55,
+        ("WATCHDOG",), 702,
         ("app.py", "if stands_ms * 1000 < self.bus.patience_us():", "if stands_ms >= 0:"),
     ),
     Mutation(
@@ -303,7 +303,7 @@ MUTATIONS = (
     Mutation(
         "lost drive forgotten",
         "a drive that ran and is lost is just NO CONTACT",
-        ("MAY RUN",), 89,
+        ("MAY RUN",), 700,
         (
             "panel/control.py",
             "is_lost_running = drive.was_running and not drive.contact",
@@ -319,7 +319,7 @@ MUTATIONS = (
     Mutation(
         "faults acknowledged by themselves",
         "a tripped drive is reset though nobody has seen it",
-        ("ACKNOWLEDGE",), 11,
+        ("ACKNOWLEDGE",), 740,
         (
             "panel/reports/fault.py",
             "            self._shown_ms += passed_ms\n",
@@ -343,13 +343,13 @@ MUTATIONS = (
     Mutation(
         "start interval halved",
         "the drives miss telegrams that come too soon",
-        ("LINE",), 4,
+        ("LINE",), 34,
         ("uss/timing.py", "START_INTERVAL_CHARACTERS = 2", "START_INTERVAL_CHARACTERS = 1"),
     ),
     AtHome(
         "faults started",
         "START is obeyed by a drive that has tripped",
-        ("REFUSED",), 87,
+        ("REFUSED",), 778,
         (
             "panel/permits.py",
             "    if state == pzd.FAULT:\n        return texts.REFUSED_FAULT\n",
@@ -359,7 +359,7 @@ MUTATIONS = (
     Mutation(
         "foreign commands ignored",
         "START is obeyed though the drive takes its commands elsewhere",
-        ("REFUSED",), 63,
+        ("REFUSED",), 765,
         (
             "panel/permits.py",
             "    return survey.wrong[rows.COMMAND] != rows.RIGHT\n",
@@ -391,7 +391,7 @@ MUTATIONS = (
     Mutation(
         "all stopped too soon",
         "STOP held for the second stop stops every drive",
-        ("WITHOUT REASON",), 20,
+        ("WITHOUT REASON",), 748,
         ("panel/keys/stop_key.py", "_ALL_MS = const(4_000)", "_ALL_MS = const(1_500)"),
     ),
     Mutation(
@@ -408,7 +408,7 @@ MUTATIONS = (
     Mutation(
         "second stop given up",
         "OFF3 is sent once, whether or not the drive has heard it",
-        ("SECOND STOP",), 20,
+        ("SECOND STOP",), 750,
         (
             "panel/control.py",
             "        if drive.answered_stw & ~pzd.STW_ACKNOWLEDGE != drive.off:\n"
@@ -497,7 +497,7 @@ MUTATIONS = (
     Mutation(
         "a question hides a trip",
         "what a drive does is not said as long as a question has the display",
-        ("ANNOUNCED",), 11,
+        ("ANNOUNCED",), 716,
         (
             "panel/view.py",
             "            if panel.announcer.kind != NOTHING:\n"
@@ -558,13 +558,13 @@ MUTATIONS = (
     Mutation(
         "lost a little later",
         "ON goes to a silent drive for a tenth longer than the settings say",
-        ("LOST",), 89,
+        ("LOST",), 700,
         ("app.py", "settings.lost_ms * 1000", "settings.lost_ms * 1100"),
     ),
     Typing(
         "digits take effect without SET",
         "a motor goes faster while somebody still types what it shall turn with",
-        ("RISES",), 80,
+        ("RISES",), 706,
         (
             "panel/pages/digits.py",
             "        self._centihertz += ((digit + direction) % 10 - digit) * worth\n",
@@ -602,7 +602,7 @@ MUTATIONS = (
     Mutation(
         "runs on longer, unsaid",
         "somebody takes the supervision of a motor that runs away, and nobody is told",
-        ("SHOWN", "ANNOUNCED"), 219,
+        ("SHOWN", "ANNOUNCED"), 784,
         (
             "panel/control.py",
             "        if risks.exposure_ms(self) > self._command.exposure_ms:\n",
@@ -736,7 +736,7 @@ MUTATIONS = (
     AtHome(
         "looked for too soon",
         "a drive that may run is sent other telegrams before its STOP had a chance",
-        ("MIRROR",), 87,
+        ("MIRROR",), 700,
         ("uss/finding/finder.py", "STOPPED_MIN = const(30)", "STOPPED_MIN = const(3)"),
     ),
     Mutation(
@@ -752,7 +752,7 @@ MUTATIONS = (
     Mutation(
         "mirrors have no share",
         "looking for layouts takes the line from the drives that run",
-        ("NEGLECTED",), 40,
+        ("NEGLECTED",), 94,
         (
             "uss/finding/finder.py",
             "        if self._turns.has_command() or silence.shared_us != silence.charged_us:\n"
@@ -820,7 +820,7 @@ MUTATIONS = (
     Mutation(
         "address key held starts",
         "a key that only looks at addresses starts a motor",
-        ("START",), 38,
+        ("START",), 732,
         (
             "panel/panel.py",
             "            self._open_menu(now_ms, (\"address\", None))\n",
@@ -831,7 +831,7 @@ MUTATIONS = (
     Mutation(
         "looked for before it is stopped",
         "a drive that may run is sent mirror telegrams in place of its STOP",
-        ("MIRROR",), 89,
+        ("MIRROR",), 700,
         (
             "uss/finding/finder.py",
             "(drive.silent < STOPPED_MIN or drive.is_told_in_vain())",
@@ -873,7 +873,7 @@ MUTATIONS = (
     Mutation(
         "saved wrong",
         "a set has not what the drive has",
-        ("SET",), 257,
+        ("SET",), 783,
         (
             "panel/sets/saving.py",
             "set_file.row_line(number, index, kind, job.high, job.low)",
@@ -1031,7 +1031,7 @@ MUTATIONS = (
     Locking(
         "jog while locked",
         "the lock is closed, and the jog keys turn a motor",
-        ("LOCK",), 40,
+        ("LOCK",), 762,
         (
             "panel/panel.py",
             "                allowed = False\n            self._jog_keys",
@@ -1061,7 +1061,7 @@ MUTATIONS = (
     Locking(
         "any code opens",
         "the lock opens by whatever code",
-        ("LOCK",), 32,
+        ("LOCK",), 758,
         (
             "panel/menu/code.py",
             "        if code != panel.settings.lock_code:\n",
@@ -1175,7 +1175,7 @@ MUTATIONS = (
     Mutation(
         "goes on though somebody calls",
         "the telegram that was made ready goes out though the program has taken ON back",
-        ("STOP", "TURNS", "START"), 38,
+        ("STOP", "TURNS", "START"), 741,
         ("uss/going_on/viper.py", "    return attention[96] == 0  # ANY\n", "    return True\n"),
         ("uss/going_on/python.py", "    return attention[ANY] == 0\n", "    return True\n"),
     ),
@@ -1198,7 +1198,7 @@ MUTATIONS = (
     Mutation(
         "goes on beside bad news",
         "a drive that trips or stops by itself is sent ON once more",
-        ("STOP", "TURNS", "START"), 16,
+        ("STOP", "TURNS", "START"), 761,
         ("uss/going_on/viper.py", "& 0x4C:  # plan.ZSW", "& 0:"),
         ("uss/going_on/python.py", "^ plan[ZSW]) & MOTION:", "^ plan[ZSW]) & 0:"),
     ),
