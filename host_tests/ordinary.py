@@ -42,7 +42,6 @@ class OrdinaryRun:
         option = config.option
         self.command = [sys.executable, "-X", CACHES, "-m", "pytest", "-q", "--no-header"]
         self.command += ["-c", config.inipath, "--rootdir", config.rootpath, path]
-        self.command += ["-p", "no:cacheprovider"]  # what is kept there is for the whole run
         self.command += ["--tb", option.tbstyle, *(["--showlocals"] if option.showlocals else [])]
         for name in option.plugins or ():
             self.command += ["-p", name]

@@ -223,9 +223,11 @@ class Grid:
     def _settle(self):
         joined = self._joined
         low = self._grounded
-        for pin, columns in zip(self._rows, joined):
+        row = 0
+        for pin in self._rows:
             if not pin.output:
-                low |= columns
+                low |= joined[row]
+            row += 1
         before = -1
         while low != before:  # backwards through a column that is low to the rows joined to it
             before = low
