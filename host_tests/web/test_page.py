@@ -15,7 +15,7 @@ served = pytest.fixture(servers)
 chromium = pytest.fixture(scope="module")(browsers)
 browser = pytest.fixture(swept)
 SIZES = ("desktop", "phone")
-STATE = ".drive .state"
+STATE = "[aria-label='Drive A1'] .state"
 # Of the shaft of the first motor, in degrees: each time that it stands elsewhere, for a while.
 ANGLES = """
     new Promise((resolve) => {

@@ -19,7 +19,7 @@ served = pytest.fixture(servers)
 chromium = pytest.fixture(scope="module")(browsers)
 browser = pytest.fixture(swept)
 SERVER = TOP / "build/server/bin/python"
-STATE = ".drive .state"
+STATE = "[aria-label='Drive A1'] .state"
 JOG = "#keys [data-key=JOG_RIGHT]"
 JOG_ENDS_S = 0.4
 # What the watching page takes to hear of it, on a machine that does other things as well.
