@@ -238,7 +238,7 @@ MUTATIONS = (
     Mutation(
         "setpoint limit dropped",
         "the limits of the drive are not kept",
-        ("SETPOINT",), 5,
+        ("SETPOINT",), 872,
         (
             "panel/setpoint.py",
             "            highest = min(highest, survey.highest())\n",
@@ -343,7 +343,7 @@ MUTATIONS = (
     Mutation(
         "start interval halved",
         "the drives miss telegrams that come too soon",
-        ("LINE",), 34,
+        ("LINE",), 179,
         ("uss/timing.py", "START_INTERVAL_CHARACTERS = 2", "START_INTERVAL_CHARACTERS = 1"),
     ),
     AtHome(
@@ -391,7 +391,7 @@ MUTATIONS = (
     Mutation(
         "all stopped too soon",
         "STOP held for the second stop stops every drive",
-        ("WITHOUT REASON",), 748,
+        ("WITHOUT REASON",), 808,
         ("panel/keys/stop_key.py", "_ALL_MS = const(4_000)", "_ALL_MS = const(1_500)"),
     ),
     Mutation(
@@ -419,7 +419,7 @@ MUTATIONS = (
     Mutation(
         "written elsewhere",
         "a parameter is written into the first drive, whichever is shown",
-        ("WRITE",), 12,
+        ("WRITE",), 874,
         (
             "panel/writer.py",
             "        drive = write.control.drive\n        if drive.channel.is_full():",
@@ -518,7 +518,7 @@ MUTATIONS = (
     Mutation(
         "trips unseen",
         "a drive that is not shown trips, and nobody is told",
-        ("ANNOUNCED",), 11,
+        ("ANNOUNCED",), 893,
         (
             "panel/announcer.py",
             "        if control.fault.active:\n            return TRIPPED\n",
@@ -528,7 +528,7 @@ MUTATIONS = (
     Mutation(
         "a warning without its number",
         "what a drive warns of is not shown",
-        ("SHOWN",), 42,
+        ("SHOWN",), 863,
         (
             "panel/pages/warning.py",
             "report.active and panel.announcer.page_turns & 1",
@@ -612,7 +612,7 @@ MUTATIONS = (
     Mutation(
         "a silence for all",
         "one drive that may run and is silent takes the turns of those that rest",
-        ("NEGLECTED",), 94,
+        ("NEGLECTED",), 867,
         (
             "uss/silence.py",
             "        if drive.outside or not drive.was_running:\n"
@@ -661,7 +661,7 @@ MUTATIONS = (
     Mutation(
         "percent sent as hertz",
         "10.0% goes out as 10 Hz of 50 Hz",
-        ("SHOWN", "SETPOINT"), 252,
+        ("SHOWN", "SETPOINT"), 836,
         ("uss/survey.py", "_HUNDRED_PERCENT = const(10_000)", "_HUNDRED_PERCENT = const(5_000)"),
     ),
     Mutation(
@@ -709,7 +709,7 @@ MUTATIONS = (
     Mutation(
         "jogs without a jog",
         "a drive whose family has no jog is sent that of another",
-        ("CONTROL",), 15,
+        ("CONTROL",), 868,
         (
             "panel/permits.py",
             "    if not control.survey.family.jog_right:\n"
@@ -752,7 +752,7 @@ MUTATIONS = (
     Mutation(
         "mirrors have no share",
         "looking for layouts takes the line from the drives that run",
-        ("NEGLECTED",), 94,
+        ("NEGLECTED",), 872,
         (
             "uss/finding/finder.py",
             "        if self._turns.has_command() or silence.shared_us != silence.charged_us:\n"
@@ -810,7 +810,7 @@ MUTATIONS = (
     Mutation(
         "jog keys act in the menu",
         "a motor jogs that nobody has on the display",
-        ("JOG",), 16,
+        ("JOG",), 876,
         (
             "panel/panel.py",
             "            allowed = page.obeys and not self.stop_key.is_down\n",
@@ -873,7 +873,7 @@ MUTATIONS = (
     Mutation(
         "saved wrong",
         "a set has not what the drive has",
-        ("SET",), 783,
+        ("SET",), 905,
         (
             "panel/sets/saving.py",
             "set_file.row_line(number, index, kind, job.high, job.low)",
@@ -950,7 +950,7 @@ MUTATIONS = (
     Commissioning(
         "a step unasked",
         "SET writes a step of commissioning at once, and nobody has seen what",
-        ("WRITE",), 228,
+        ("WRITE",), 849,
         (
             "panel/commission/course.py",
             "            self._phase = ASKS\n        elif self._phase == TYPES:\n",
@@ -973,7 +973,7 @@ MUTATIONS = (
     Commissioning(
         "typed and not taken",
         "a step of commissioning is written as it was, not as it was typed",
-        ("WRITE",), 228,
+        ("WRITE",), 849,
         (
             "panel/commission/course.py",
             "                self._bits = form.bits(self._typed)\n",
@@ -1061,7 +1061,7 @@ MUTATIONS = (
     Locking(
         "any code opens",
         "the lock opens by whatever code",
-        ("LOCK",), 758,
+        ("LOCK",), 872,
         (
             "panel/menu/code.py",
             "        if code != panel.settings.lock_code:\n",
@@ -1111,7 +1111,7 @@ MUTATIONS = (
     Arranging(
         "an order not kept",
         "the panel begins anew, and the drives stand in the list as before",
-        ("LIST",), 125,
+        ("LIST",), 882,
         (
             "panel/menu/order.py",
             "            panel.settings.change(\"drives\", drives)\n",
@@ -1182,7 +1182,7 @@ MUTATIONS = (
     Mutation(
         "goes on without a check",
         "the next telegram follows what is no reply",
-        ("WITHOUT REASON", "SHOWN", "LOST", "START", "STOP"), 55,
+        ("WITHOUT REASON", "SHOWN", "LOST", "START", "STOP"), 893,
         (
             "uss/going_on/viper.py",
             "    if check != 0 or differs == 0:\n        return False\n",
