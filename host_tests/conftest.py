@@ -65,7 +65,7 @@ def pytest_configure(config):
         config.pluginmanager.register(Teller(config, only))
     if config.option.coverage:
         ENVIRONMENT[COVERAGE] = "1"  # of the processes that run the tests
-    if not config.pluginmanager.list_plugin_distinfo():  # to look for plugins takes long
+    if not config.pluginmanager.list_plugin_distinfo():  # none: no other pytest has to look again
         ENVIRONMENT["PYTEST_DISABLE_PLUGIN_AUTOLOAD"] = "1"
     config.stash[SELECTION] = selection(config)
     config.stash[SURVEY] = Survey({}, {}) if only else survey(tiers_that_may_run(config))
@@ -361,12 +361,13 @@ def once(work):
 class Pool:
     """Runs the files ahead of pytest, which asks for verdict after verdict in the same order.
 
-    Of the files that only compute as many run at a time as there are processors, and half as many
-    ordinary ones beside them. An ordinary file often waits: for a page, a terminal, a serial port.
-    Those that wait most of their time come first; the others stand back (tiers.py) for what has to
-    be in time. When these are done, more ordinary ones run at a time, and now those first that
-    compute: so all processors are busy to the end. Else the longest come first, as far as the last
-    run can tell.
+    Of the files that only compute as many run at a time as there are processors. They stand back
+    (tiers.py) for what has to be in time: half as many ordinary files run beside them, those first
+    that wait most of their time, for a page, a terminal, a serial port. When the files that only
+    compute are done, more ordinary ones run at a time, now those first that compute: so all
+    processors are busy to the end. Else the longest come first, as far as the last run can tell.
+
+    Ordinary files end last, so pytest asks for them last: else it had all others to report then.
     """
 
     def __init__(self, config):

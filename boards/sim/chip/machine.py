@@ -420,7 +420,7 @@ class Pin:
         if output == self.output or not self._settable:
             return
         self.output = output
-        if output and self.mode != _OUT:  # it lets go
+        if output and self.mode != _OUT:  # as in `_settle`, without a call
             level = self._let_go
         if level != self._level:
             self._level = level
