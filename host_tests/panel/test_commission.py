@@ -202,7 +202,7 @@ def test_nothing_is_written_while_the_motor_runs():
     world.check()
 
 
-def test_what_is_beyond_a_drives_limits_is_refused_and_stays_undone():
+def test_what_the_drive_refuses_stays_undone():
     world = world_of("mm420")
     begin(world, "THE MOTOR")
     go_to_step(world, 304)
@@ -212,6 +212,29 @@ def test_what_is_beyond_a_drives_limits_is_refused_and_stays_undone():
     press(world, "SET")
     world.run(1000)
     assert not is_done(world), "P0010 is not 1 yet"
+    world.check()
+
+
+def test_what_no_word_can_say_is_refused_and_can_be_typed_again():
+    world = world_of("mm420")
+    drive = world.drives[1]
+    begin(world, "THE MOTOR")
+    do(world, 10)
+    go_to_step(world, 311)
+    had = drive.parameters.get(311)
+    press(world, "SET")
+    world.run(300)
+    type_over(world, "99999")
+    world.press("SET")
+    assert settled_row_2(world) == "BEYOND LIMITS", world.lcd()
+    world.run(3000)
+    assert drive.parameters.get(311) == had and settled_row_2(world) == ">9999[9]", world.lcd()
+    for _ in range(4):
+        press(world, "PREVIOUS")
+    type_over(world, "01380")
+    press(world, "SET")
+    world.run(1000)
+    assert is_done(world) and drive.parameters.get(311) == 1380, world.lcd()
     world.check()
 
 

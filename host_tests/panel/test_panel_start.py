@@ -308,6 +308,16 @@ def test_start_in_the_splash_is_told_that_it_does_not_count():
     assert starts(world) == 0
 
 
+def test_another_key_ends_the_splash_and_refuses_nothing():
+    world = World(main.start)
+    world.run(300)
+    splash = world.lcd()
+    world.press("UP")
+    assert world.lcd() != splash and not row_2(world).startswith("NO:"), world.lcd()
+    world.run(3000)
+    assert row_1(world) == "S: 10.0 F:  0.00" and row_2(world) == "READY        A1"
+
+
 def test_the_time_after_which_a_drive_is_lost_is_that_of_the_settings():
     for lost_ms in (300, 3000):
         world = panel(settings={"lost_ms": lost_ms})

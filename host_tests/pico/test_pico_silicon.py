@@ -79,9 +79,43 @@ machine.active(1)
 print("ends", machine.get() == 0xFFFFFFFF, time.ticks_diff(time.ticks_us(), began))
 """
 
+# A telegram at each rate, and what the link says of it while it is on the line.
+SENDS = b"""
+import time
+from chips import rp2
+
+clock = rp2.Clock()
+said = open("said.txt", "w")
+for baud in (1_200, 9_600, 187_500):
+    driver = rp2.low(6)
+    link = rp2.make_link(4, 5, driver, clock, baud)
+    early = clock.ticks_us()
+    link.send(bytes(14), 14)
+    left = [link.sending_us(early)]
+    while driver.value():
+        left.append(link.sending_us(clock.ticks_us()))
+    off_at = clock.ticks_us()
+    falls = all([one >= other for one, other in zip(left, left[1:])])
+    late = time.ticks_diff(off_at, link.sent_at)
+    print(baud, len(left), left[0], falls, left[-2], link.sending_us(off_at), late, file=said)
+    link.close()
+said.close()
+"""
+
 
 def said(world, word):
     return [line.split()[1:] for line in bytes(world.usb).decode().splitlines() if word in line][0]
+
+
+def test_the_link_says_how_long_it_sends_and_when_the_driver_is_off():
+    world = panel(files={"boot.py": SENDS})
+    for line in world.read_file("said.txt").decode().splitlines():
+        baud, looks, left_us, falls, last_us, over_us, late_us = line.split()
+        bit_us = 1_000_000 // int(baud)
+        telegram_us = 14 * 11 * 1_000_000 // int(baud)
+        assert telegram_us <= int(left_us) <= telegram_us + bit_us + 2, line
+        assert int(looks) > 10 and falls == "True" and int(last_us) >= 1 and over_us == "0", line
+        assert -1 <= int(late_us) <= bit_us // 4 + 100, line  # the program sees it a little later
 
 
 def test_a_state_machine_that_counts_down_is_as_far_as_its_time_says():
