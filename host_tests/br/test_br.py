@@ -188,7 +188,8 @@ def test_stop_stops_the_motors_and_leaves_the_line_and_start_takes_it_again():
     plc.controller.Cmd.Stop = False
     plc.controller.Cmd.Start = True
     plc.run(1_000)
-    assert plc.status.Busy and plc.told(1).Status.Receive and plc.drives[1].starts == 1
+    assert plc.status.Busy and not plc.status.Ready and not plc.status.Done
+    assert plc.told(1).Status.Receive and plc.drives[1].starts == 1
     plc.wanted(1).Run = False
     plc.run(10)
     plc.start(1)

@@ -228,7 +228,7 @@ def test_it_is_read_about_three_times_a_second():
     world = show(runs("mm440"), "A")
     since_us = world.clock.now_us
     world.run(3000)
-    assert 5 <= asked(world, since_us, 27) <= 40
+    assert 7 <= asked(world, since_us, 27) <= 11
     while " F:" not in row_1(world):
         world.press("NEXT")
     since_us = world.clock.now_us

@@ -79,6 +79,42 @@ def test_a_page_that_finds_no_memory_is_not_shown():
     assert row_2(world) == "RUNNING      A1"
 
 
+def test_a_list_of_the_menu_that_finds_no_memory_is_not_shown():
+    world = panel()
+    world.press("PARAM", 1500)
+    world.run(1000)
+    assert row_2(world) == ">DRIVES", world.lcd()
+    load = on_demand.load
+
+    def fail(name):
+        raise MemoryError("no memory")
+
+    on_demand.load = fail
+    try:
+        world.press("SET")
+        world.run(300)
+        assert row_2(world) == "NO MEMORY LEFT", world.lcd()
+    finally:
+        on_demand.load = load
+    world.run(3000)
+    assert row_2(world) == ">DRIVES", world.lcd()
+    world.press("SET")
+    world.run(1000)
+    assert row_2(world) == ">A1  READY", world.lcd()
+
+
+def test_what_takes_long_waits_for_the_line_and_the_step_and_not_without_an_end():
+    """The line: a moment in which no telegram interrupts it. The step: one that has just begun."""
+    front = panel().app.panel
+    for undisturbed, late, turns in (
+        (True, False, 1), (True, True, 1), (False, False, 8), (False, True, 16)
+    ):  # fmt: skip
+        front.is_undisturbed = lambda for_us: undisturbed
+        front.has_taken = lambda us: late
+        answers = [front.has_time() for _ in range(turns)]
+        assert answers == [False] * (turns - 1) + [True], (undisturbed, late, answers)
+
+
 def test_a_question_of_start_is_asked_all_the_same():
     world = cramped()
     world.drives[1].write(2014, 0, 0)

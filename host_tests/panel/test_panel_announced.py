@@ -323,6 +323,20 @@ def test_more_than_four_of_a_kind_share_a_text():
         world.check()
 
 
+def test_many_that_share_a_text_put_off_none_of_another_kind():
+    addresses = (1, 2, 3, 4, 5, 6, 7)
+    world = panel(addresses=addresses, baud=57600)
+    start(world, 6)
+    for address in addresses[:5]:
+        world.drives[address].fault(address)
+    show(world, 7)
+    world.run(4_000)
+    rows = said(world, 10_000)
+    assert set(rows) == {"DRIVES FAULT: 5", "A6 RUN,HOLD=ALL", "READY        A7"}, rows
+    assert rows["A6 RUN,HOLD=ALL"] >= 2_000, rows
+    world.check()
+
+
 def test_of_many_that_share_a_text_the_one_shown_is_said_by_itself_where_its_page_does_not():
     """STOP acknowledges what has been on the display; so the number is to be there."""
     addresses = (1, 2, 3, 4, 5, 6)

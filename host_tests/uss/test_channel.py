@@ -340,6 +340,20 @@ def test_the_time_of_a_job_begins_when_it_is_its_turn():
     assert second.state == pkw.TIMED_OUT
 
 
+def test_what_may_be_too_old_by_then_is_not_foreseen():
+    """A link may send the telegram that is foreseen much later, without anyone looking at it."""
+    line = Line()
+    job = line.ask(pkw.read(1000))
+    for _ in range(5):
+        words = line.channel.foresee(False)
+        assert words == job.words
+        line.channel.sent(words, 0, line.now)
+        line.answer(0x12BC, 0, 0, 5)  # still what was asked before
+    assert line.channel.foresee(False) is None and job.state == pkw.PENDING
+    line.send(us=2_000_000)
+    assert job.state == pkw.TIMED_OUT
+
+
 def test_a_drive_that_lags_three_telegrams_is_read_however_slow_the_round_is():
     line = Line()
     job = line.ask(pkw.read(1000))
