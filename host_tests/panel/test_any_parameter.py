@@ -4,6 +4,7 @@
 import json
 import sys
 
+import catalogue
 from lookup_bench import (
     choose,
     forget_modules,
@@ -18,7 +19,9 @@ from lookup_bench import (
     wait_for_value,
     world_of,
 )
+from panel.lookup import name_of as table_of
 from panel_bench import row_1, row_2, starts
+from uss import families
 
 YES_OR_NO = "SET=DO  PARAM=NO"
 
@@ -248,6 +251,17 @@ def test_a_choice_by_its_text_asks_first_where_it_is_risky():
     wait(world, "WRITTEN (RAM)")
     assert drive.read(700) == 2
     world.check()
+
+
+def test_what_is_risky_by_the_catalogue_is_asked_first_in_every_family_that_has_its_table():
+    everyone = list(families.FAMILIES)
+    everyone += [families.on_bop(family) for family in everyone if family.has_bop_link]
+    tables = [(family, table_of(family)) for family in everyone]
+    assert [family for family, table in tables if not table] == [families.GENERIC], tables
+    for family, table in tables:
+        for row in catalogue.rows(table) if table else ():
+            number = catalogue.number(row)
+            assert not row[catalogue.ASKS] or number in family.ask_first, (family.name, number)
 
 
 def test_edit_again_types_a_choice_that_has_no_text():

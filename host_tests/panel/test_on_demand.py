@@ -58,23 +58,29 @@ def test_what_is_kept_is_loaded_at_once():
     assert PAGE in sys.modules
 
 
-def test_a_page_that_finds_no_memory_is_not_shown():
-    world = cramped()
-    load = on_demand.load
+class NoMemory:
+    """No module can be loaded meanwhile."""
 
-    def fail(name):
+    def __enter__(self):
+        self._load = on_demand.load
+        on_demand.load = self._fail
+
+    def __exit__(self, *_):
+        on_demand.load = self._load
+
+    def _fail(self, name):
         raise MemoryError("no memory")
 
-    on_demand.load = fail
-    try:
+
+def test_a_page_that_finds_no_memory_is_not_shown():
+    world = cramped()
+    with NoMemory():
         world.press("PARAM")
         world.run(300)
         assert row_2(world) == "NO MEMORY LEFT", world.lcd()
         world.press("START")
         world.run(3000)
         assert starts(world) == 1
-    finally:
-        on_demand.load = load
     world.run(3000)
     assert row_2(world) == "RUNNING      A1"
 
@@ -84,18 +90,10 @@ def test_a_list_of_the_menu_that_finds_no_memory_is_not_shown():
     world.press("PARAM", 1500)
     world.run(1000)
     assert row_2(world) == ">DRIVES", world.lcd()
-    load = on_demand.load
-
-    def fail(name):
-        raise MemoryError("no memory")
-
-    on_demand.load = fail
-    try:
+    with NoMemory():
         world.press("SET")
         world.run(300)
         assert row_2(world) == "NO MEMORY LEFT", world.lcd()
-    finally:
-        on_demand.load = load
     world.run(3000)
     assert row_2(world) == ">DRIVES", world.lcd()
     world.press("SET")

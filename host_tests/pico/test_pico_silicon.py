@@ -109,7 +109,9 @@ def said(world, word):
 
 def test_the_link_says_how_long_it_sends_and_when_the_driver_is_off():
     world = panel(files={"boot.py": SENDS})
-    for line in world.read_file("said.txt").decode().splitlines():
+    lines = world.read_file("said.txt").decode().splitlines()
+    assert len(lines) == 3, lines
+    for line in lines:
         baud, looks, left_us, falls, last_us, over_us, late_us = line.split()
         bit_us = 1_000_000 // int(baud)
         telegram_us = 14 * 11 * 1_000_000 // int(baud)
