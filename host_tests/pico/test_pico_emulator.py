@@ -380,6 +380,22 @@ def test_a_chip_that_stops_seldom_hears_the_same_while_it_talks_into_what_others
     assert seldom == often
 
 
+def test_a_character_that_would_begin_when_its_talker_is_cut_is_not_heard():
+    for is_often in (False, True):
+        for ahead_us in (1_000, 1):  # before the others that come at that instant, and after them
+            world = stock()
+            stops(world, is_often)
+            talker = Talker(world)
+            talker.say(b"0123456789")
+            end_us = world.clock.now_us + 5 * 11_000_000 // BAUD
+            cut = Event(lambda talker=talker: talker.world.wire.silence(talker))
+            at_us = end_us - ahead_us
+            sets = Event(lambda w=world, cut=cut, at=end_us: w.clock.schedule(cut, at))
+            world.clock.schedule(sets, at_us)
+            world.run(20)
+            assert does(world, "print(uart.read())") == "b'01234'", (is_often, ahead_us)
+
+
 def test_characters_of_another_rate_are_garbage_with_framing_errors():
     world = stock(SET_UP + "machine.mem32[0x40038038] = 0\n")  # no interrupt empties the FIFO
     sent = b"\x02\x0a\x01"

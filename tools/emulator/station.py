@@ -234,10 +234,9 @@ class Station:
         if goes_through or not self._deaf(burst, at, last):
             for one in range(at, last):
                 self._tell(burst, one)
-        if goes_through:
             self._told = self._state(burst)
             self._told_ends = burst.ends
-        elif last < count:
+        if last < count:
             self._clock.schedule(self._next, burst.start_us + burst.ends[at])
 
     def _tell(self, burst, at):
@@ -294,10 +293,13 @@ class Station:
         )  # fmt: skip
 
     def _begun_by(self, elapsed_us):
-        """How many of the characters that were told have begun so long after the first one."""
+        """How many of the characters that were told have begun so long after the first one.
+
+        One that would begin at this very instant has not.
+        """
         ends = self._told_ends
         begun = 1
-        while ends[begun - 1] <= elapsed_us:
+        while ends[begun - 1] < elapsed_us:
             begun += 1
         return begun
 
