@@ -17,11 +17,9 @@ from panel.lookup.answers import FAVOURITES, Answers
 from panel.lookup.editing import Editing
 from panel.pages import parameter_words
 from uss import pkw
-from uss.families.generic import CUTS_OFF, RESCALES
 
 _ELSEWHERE = ("START", "REVERSE", "JOG_RIGHT", "JOG_LEFT")  # keys that wait while one types
 _TOO_LOW = const(200)  # an error of `parameter_words`
-_RISKS = {b"C": CUTS_OFF, b"R": RESCALES}
 
 
 class Inspection(Answers):
@@ -95,8 +93,6 @@ class Inspection(Answers):
             self.panel.say(now_ms, parameter_words.REFUSALS[_TOO_LOW])
             return
         risk = family.ask_first.get(number)
-        if risk is None and self.row:
-            risk = _RISKS.get(self.row[catalogue.ASKS])
         what = (self._control, number, self.index, bits, self.form.width)
         new = self.form.words(bits >> 16, bits & 0xFFFF)
         values = (self._control.drive.address, number, self.index, new)
