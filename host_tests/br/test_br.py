@@ -211,6 +211,23 @@ def test_a_drive_that_stands_in_the_sequence_twice_is_asked_twice_as_often():
     assert plc.controller.DriveSequence.ADDR in (1, 2)
 
 
+def test_the_address_told_is_that_of_the_drive_that_has_answered():
+    plc = Plc((1, 2))
+    plc.run(500)
+    told = set()
+    for _ in range(50):
+        plc.run(4)
+        told.add(plc.controller.DriveSequence.ADDR)
+    assert told == {1, 2}
+    plc.drives[1].unplug()
+    plc.run(100)
+    told.clear()
+    for _ in range(50):
+        plc.run(4)
+        told.add(plc.controller.DriveSequence.ADDR)
+    assert told == {2}
+
+
 def test_a_drive_that_leaves_the_sequence_is_stopped_first():
     plc = Plc((1, 2))
     plc.start(1)

@@ -65,6 +65,28 @@ def test_a_sound_board_starts():
     world.check()
 
 
+def test_it_leaves_the_registers_of_the_uart_as_they_were():
+    """The LED goes on if the divisors, the format and the interrupts are the same afterwards."""
+    looks = b"""
+from machine import Pin, mem32
+from chips import rp2
+find_defect, led = rp2.find_defect, Pin(25, Pin.OUT, value=0)
+
+def registers():
+    return [mem32[rp2.UART_REGISTERS + place] for place in (0x24, 0x28, 0x2C, 0x30, 0x38)]
+
+def watched(*arguments):
+    before = registers()
+    defect = find_defect(*arguments)
+    led(before == registers() and before[4] != 0)
+    return defect
+
+rp2.find_defect = watched
+"""
+    world = switched_on(files={"boot.py": looks})
+    assert world.run_until(lambda: world.led and world.led[-1][1], BOOT_MS), world.led
+
+
 def test_nothing_of_it_is_on_the_line():
     world = switched_on()
     world.run(BOOT_MS)

@@ -240,6 +240,20 @@ def test_another_master_that_comes_later_is_noticed():
     assert all(drive.contact for drive in bench.master.turns.drives)
 
 
+def test_the_head_of_a_request_tells_another_master():
+    """STX, LGE and ADR are enough, and less is not."""
+    bench = Bench(nodes(2))
+    bench.master.turns.cycle_us = 200_000
+    bench.contact()
+    for count, foreign in ((2, 0), (3, 1)):
+        sent = len(bench.sent)
+        bench.run_until(lambda sent=sent: len(bench.sent) == sent + 2)
+        bench.run(60_000)  # the replies are in, and the next round has not begun
+        bench.talk(FOREIGN[:count])
+        bench.run(60_000)
+        assert bench.master.foreign == foreign, count
+
+
 def test_a_bus_of_its_own_is_not_taken_for_another_masters():
     bench = Bench(nodes(5), echo=True)
     bench.contact()

@@ -205,6 +205,7 @@ def test_a_broadcast_to_drives_of_several_layouts_is_refused_and_they_are_stoppe
 
 def test_what_would_start_a_motor_or_is_no_telegram_is_refused():
     refused(Broadcast, (pzd.ON, 0x1000), {1: 0xFFFF, 2: 0xFFFF})
+    refused(Broadcast, (pzd.ON,), {1: 0x0001})
     refused(Broadcast, (0x0000, 0), {2: 0xFFFF})  # gives up control
     refused(Broadcast, (pzd.OFF1, 0), {2: 0x00FF})  # a setpoint is taken as a whole
     refused(Broadcast, (pzd.OFF1,) * 16, {16: 0xFFFF})  # PZD16 never
