@@ -145,13 +145,6 @@ class Reach:
                 return bits, node.lineno == max(one.lineno for one in around)
         return 0, True
 
-    def is_reached(self, path):
-        """Whether any test on this interpreter runs anything of that file."""
-        mask = self._in_file.get(path, 0)
-        return any(
-            bits & mask for functions in self.known.values() for _, _, bits in functions.values()
-        )
-
     def failing(self):
         """(file, function) that failed while their lines were noted."""
         return [

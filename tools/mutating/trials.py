@@ -4,7 +4,7 @@
     trials = Trials(tree, reach, folder, patience_s)      # folder: for a copy of the tree
     verdict = trials.of(mutant)
 
-What runs on the chip alone is tried with the tests of the emulated Pico, on a firmware that is
+What no other test runs is tried with the tests of the emulated Pico, on a firmware that is
 built with the mutant in it.
 """
 
@@ -53,14 +53,12 @@ class Trials:
         source = read(path)
         path.write_text(mutant.applied(source), encoding="utf-8")
         try:
-            if self.reach.is_reached(mutant.path):
-                return self._on_unix(mutant)
-            return self._on_chip(mutant)
+            functions = self.reach.functions(mutant.path, mutant.line)
+            return self._on_unix(functions) if functions else self._on_chip(mutant)
         finally:
             path.write_text(source, encoding="utf-8")
 
-    def _on_unix(self, mutant):
-        functions = self.reach.functions(mutant.path, mutant.line)
+    def _on_unix(self, functions):
         for path, some in in_turns(functions):
             longest_s = max(function.seconds for function in some)
             names = [function.name for function in some]
