@@ -145,6 +145,10 @@ class Reach:
                 return bits, node.lineno == max(one.lineno for one in around)
         return 0, True
 
+    def longest_s(self, path):
+        """How long the longest function of a test file takes."""
+        return max(seconds for seconds, _, _ in self.known[path].values())
+
     def failing(self):
         """(file, function) that failed while their lines were noted."""
         return [

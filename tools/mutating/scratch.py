@@ -10,7 +10,7 @@ OWN = ("build", ".git")
 PYTHON_LEFT = shutil.ignore_patterns("__pycache__", "*.egg-info", ".pytest_cache")
 # The Pico's firmware is built anew from the copy, and the compilation is a place of its own. What
 # the tests of the tree import, compiled, is not what is in the copy.
-BUILT_THERE = ("pico", "pico_make", "compiled", "mutants", "lock", "fetched.log")
+BUILT_THERE = ("pico", "pico_make", "blocks", "compiled", "mutants", "lock", "fetched.log")
 
 
 def scratch(tree, folder):

@@ -19,16 +19,20 @@ from tools.mutating.scratch import scratch
 
 PICO = "pico"
 FIRST_OF_A_FILE = 3  # so many of each test file run before the rest of any
-TIMES = 8  # a function may take so many times as long as without the mutant: others are busy too
+# A function may take so many times as long as the longest of its file does without the mutant:
+# others are busy too, and it may be the first of several that share what takes long.
+TIMES = 8
 PICO_TIMEOUT_S = 120  # as host_tests/pytest.ini has it
 BUILD_TIMEOUT_S = 600
 
-# Builds the panel's firmware from a copy, in the copy's own build/, and plain MicroPython, which
-# some tests want: once, as no mutant is in that.
+# Builds the panel's firmware from a copy, in the copy's own build/, with its blocks; and plain
+# MicroPython, which some tests want: once, as no mutant is in that.
 BUILD = """
 top=$PWD
-for part in version folder packages pytest pico; do . tools/fetch/$part.sh; done
-get_pico_firmware stock && get_pico_firmware panel
+for part in begin folder packages micropython pytest emulator pico blocks; do
+    . tools/fetch/$part.sh
+done
+get_pico_firmware stock && get_pico_firmware panel && get_blocks stock panel
 """
 
 
@@ -60,7 +64,7 @@ class Trials:
 
     def _on_unix(self, functions):
         for path, some in in_turns(functions):
-            longest_s = max(function.seconds for function in some)
+            longest_s = self.reach.longest_s(path)
             names = [function.name for function in some]
             tier = tier_of(self.tree / path, TIERS_TRIED)
             found = self._failure(tier, path, names, TIMES * longest_s + self.patience_s)
