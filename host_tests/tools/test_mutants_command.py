@@ -49,6 +49,31 @@ def test_a_valve_goes_on_in_whole_steps():
     assert steps(95) == 100
 """
 
+SHARED = """
+
+known = []
+
+
+def known_steps():
+    if not known:
+        for _ in range(30_000_000):  # more than a second
+            pass
+        known.append(steps(95))
+    return known[0]
+
+
+def test_a_valve_comes_to_an_end():
+    assert known_steps() > 0
+""" + "".join(
+    """
+
+def test_a_valve_goes_beyond_%d():
+    assert known_steps() > steps(%d)
+"""
+    % (percent, percent)
+    for percent in (55, 65, 75)
+)
+
 OPENS_AT_THE_HALF = "firmware/valve.py:6:19:ReplaceComparisonOperator_Gt_GtE:0"
 ONE_STEP_MORE = "firmware/valve.py:11:13:ReplaceComparisonOperator_Lt_LtE:0"
 STANDS_STILL = "firmware/valve.py:12:8:RemoveStatement:0"
@@ -109,6 +134,15 @@ def test_a_mutant_that_no_test_finds_survives_and_the_command_tries_it_again(tre
 def test_a_mutant_that_hangs_is_found(tree):
     status, told, _ = of(tree, STANDS_STILL)
     assert status == 0 and "the interpreter hung and was killed after 1 s" in told, told
+
+
+@needs_cosmic_ray
+def test_a_test_that_waits_for_what_its_file_shares_does_not_hang(tree):
+    """One function does the work for all, and the others, which seem quick, are tried first."""
+    with open(tree / "host_tests/valve/test_valve.py", "a") as tests:
+        tests.write(SHARED)
+    status, told, _ = of(tree, ONE_STEP_MORE)
+    assert status == 1 and "SURVIVED, tests that run it: 5" in told, told
 
 
 @needs_cosmic_ray

@@ -10,7 +10,8 @@ OWN = ("build", ".git")
 PYTHON_LEFT = shutil.ignore_patterns("__pycache__", "*.egg-info", ".pytest_cache")
 # The Pico's firmware is built anew from the copy, and the compilation is a place of its own. What
 # the tests of the tree import, compiled, is not what is in the copy.
-BUILT_THERE = ("pico", "pico_make", "blocks", "compiled", "mutants", "lock", "fetched.log")
+BUILT_THERE = ("pico_make", "compiled", "mutants", "lock", "fetched.log")
+BUILT_ON = ("pico", "blocks")  # what is there is good until the firmware is another one
 
 
 def scratch(tree, folder):
@@ -29,7 +30,11 @@ def scratch(tree, folder):
     (folder / "build").mkdir(exist_ok=True)
     for path in (tree / "build").iterdir():
         link = folder / "build" / path.name
-        if path.name not in BUILT_THERE and not link.is_symlink():
+        if path.name in BUILT_ON:
+            if link.exists():
+                remove(link)
+            shutil.copytree(path, link)
+        elif path.name not in BUILT_THERE and not link.is_symlink():
             link.symlink_to(path)
     return folder
 

@@ -23,10 +23,10 @@ FIRST_OF_A_FILE = 3  # so many of each test file run before the rest of any
 # others are busy too, and it may be the first of several that share what takes long.
 TIMES = 8
 PICO_TIMEOUT_S = 120  # as host_tests/pytest.ini has it
-BUILD_TIMEOUT_S = 600
+BUILD_TIMEOUT_S = 1800
 
-# Builds the panel's firmware from a copy, in the copy's own build/, with its blocks; and plain
-# MicroPython, which some tests want: once, as no mutant is in that.
+# Builds the panel's firmware from a copy, in the copy's own build/, with its blocks. Some tests
+# want plain MicroPython: no mutant is in that.
 BUILD = """
 top=$PWD
 for part in begin folder packages micropython pytest emulator pico blocks; do
