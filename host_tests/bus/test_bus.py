@@ -14,6 +14,7 @@ from uss.families.rows import WORD
 from uss.finding.scan import Scan
 from uss.layout import VARIABLE, Layout
 from uss.master import CLOSED, OFF
+from uss.outside import Mirror
 from uss.scaling import Scale
 
 
@@ -89,8 +90,10 @@ def test_a_speed_beyond_the_limits_of_the_drive_is_refused():
     assert "P1080[0] = 5.00 Hz" in refusal(ValueError, bench.drive.run, 2.0)
     assert "P1082" in refusal(ValueError, bench.drive.run, percent=-90)
     bench.drive.run(40.0)
-    for speed in (45.0, 1e9, float("inf"), float("nan")):
+    for speed in (45.0, 1e9):
         refusal(ValueError, bench.drive.run, speed)
+    for speed in (float("inf"), float("-inf"), float("nan")):
+        assert refusal(ValueError, bench.drive.run, speed) == "a speed of %r" % speed
     refusal(ValueError, bench.drive.run, percent=201)
     refusal(TypeError, bench.drive.run, "fast")
     bench.bus.wait(1)
@@ -165,6 +168,24 @@ def test_stop_is_in_the_next_telegram():
     bench.bus.wait(0.05)
     sent = [row for row in bench.wire.log.last(20) if row[0] >= since_us and row[1]]
     assert sent[0][2][2] == 2 and bench.stws(2, since_us)[0] == pzd.OFF1
+    bench.end()
+
+
+def test_a_program_sets_the_bits_of_the_control_word_that_the_bus_has_no_use_for():
+    bench = Bench()
+    drive = bench.drive
+    bench.bus.wait(0.5)
+    for bits_of_stw, on, word in (
+        (0x2000, True, 0x247E),
+        (0x0028, False, 0x2456),
+        (0x0008, True, 0x245E),
+        (0x2000, False, 0x045E),
+    ):
+        drive.control(bits_of_stw, on)
+        bench.bus.wait(0.1)
+        assert bench.stws(1)[-1] == word
+    text = refusal(ValueError, drive.control, 0x2801, True)
+    assert text == "STW bits 0801h are no matter of control()"
     bench.end()
 
 
@@ -470,7 +491,19 @@ def test_another_master_on_the_line_is_left_alone():
     talk()
     assert refusal(NoContact, bench.drive.run, 10.0) == "another master is on the line"
     assert refusal(NoContact, bench.bus.mirror, 1) == "another master is on the line"
-    assert bench.stws(1) == []
+    assert bench.stws(1) == [] and bench.bus.is_line_in_use() and bench.bus.foreign > 5
+    bench = Bench()
+    bench.bus.wait(0.5)
+    assert bench.drive.contact and not bench.bus.is_line_in_use() and bench.bus.foreign == 0
+
+
+def test_a_line_that_echoes_what_is_sent_is_known_by_that():
+    for echo in (True, False):
+        bench = Bench()
+        bench.wire.echo = echo
+        bench.bus.wait(0.5)
+        assert bench.drive.contact and bench.bus.has_echo() is echo
+        bench.bus.close()
 
 
 def test_bus_off_gives_the_line_away_and_on_takes_it_back():
@@ -512,6 +545,7 @@ def test_nobody_waits_for_a_bus_that_is_off_or_closed_or_a_drive_that_was_remove
             assert bench.clock.now_us == since_us
         if reason.startswith("the bus"):
             assert refusal(NoContact, bench.bus.mirror, 1) == reason
+            assert refusal(NoContact, bench.bus.post, Mirror(1)) == reason
             scan = Scan(bench.bus, bench.clock.ticks_mask)
             assert refusal(NoContact, scan.step, bench.clock.ticks_us()) == reason
     bench.end()
@@ -719,6 +753,13 @@ def test_where_the_family_does_not_say_what_a_double_word_is_the_drive_does():
     bench = of_family(GENERIC, generic, {}, unsupervised=True)
     drive = bench.drive
     assert drive.read(1082) == 50.0 and drive.read(2019, index=1) == 0x340000
+    text = refusal(ValueError, drive.read, 2019, 1, float)
+    assert text == "P2019[1] of drive 1 is an integer, not of kind float: leave kind= out"
+    bench.bus.wait(0.1)
+    since_us = bench.clock.now_us
+    assert drive.read(1082) == 50.0  # it has said what this is
+    rows = bench.wire.log.last(1000)
+    assert {row[2][3] >> 4 for row in rows if row[1] and row[0] >= since_us} == {pkw.READ}
     assert "is a float, not of kind int" in refusal(ValueError, drive.write, 1082, 40, kind=int)
     assert drive.write(1082, 45) == 45.0 and bench.motor().read(1082) == 45.0
     bench.end()
@@ -1038,6 +1079,7 @@ def test_the_list_is_edited_while_the_bus_runs():
     assert "may be running" in refusal(ValueError, bench.bus.remove, one)
     bench.bus.remove(three)
     assert bench.bus.drives == [one, two]
+    assert refusal(ValueError, bench.bus.remove, three) == "drive 3 is not on this bus"
     since_us = bench.clock.now_us
     bench.bus.wait(0.5)
     assert bench.stws(3, since_us) == []
@@ -1196,6 +1238,7 @@ def test_a_scan_says_what_it_has_found_in_a_form_that_add_takes():
         node = scan.nodes[address]
         told = (node.layout.pkw_words, node.layout.pzd_words)
         assert (node.family, told) == (family, layout), (address, node)
+        assert repr(node) == "<%s %r>" % (family.name, node.layout)
         bus.add(address, node.family, node.layout)
     assert sorted(scan.nodes) == sorted(wanted)
     assert bus.wait(3, lambda: all([drive.contact for drive in bus.drives]))
@@ -1324,4 +1367,4 @@ def test_each_trouble_has_an_exception_that_says_so():
         try:
             bench.drive.read(700)
         except NoContact as reason:
-            assert reason.trouble == trouble
+            assert reason.trouble == bench.drive.trouble == trouble

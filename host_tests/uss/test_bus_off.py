@@ -3,7 +3,7 @@
 
 from round_bench import Bench, Node, framed
 from uss import pkw, pzd
-from uss.master import DEAD_MAN_US, LISTEN_US, LISTENING, OFF
+from uss.master import CLOSED, DEAD_MAN_US, LISTEN_US, LISTENING, OFF
 
 FOREIGN = framed(7, bytes(12))  # somebody else's request
 
@@ -96,6 +96,23 @@ def test_another_tool_may_have_the_line_meanwhile():
         bench.talk(FOREIGN)
         bench.run(30_000)
     assert len(bench.sent) == sent and not any(bench.drives[1].counters[1:])
+
+
+def test_a_bus_that_is_given_up_waits_for_no_drive_any_more():
+    bench = Bench(nodes(2))
+    bench.contact()
+    bench.drives[2].start(0x1000)
+    bench.run(300_000)
+    bench.nodes[2].plugged = False
+    bench.master.close()
+    bench.run(500_000)
+    assert bench.master.phase != CLOSED and bench.stws(2)[-1] == pzd.OFF1
+    bench.run_until(lambda: bench.sent[-1].address == 1)
+    good, sent = bench.drives[1].counters[0], len(bench.sent)
+    bench.master.give_up()
+    bench.run(50_000)
+    assert bench.master.phase == CLOSED and len(bench.sent) == sent
+    assert bench.drives[1].counters[0] == good + 1  # the exchange was not cut off
 
 
 # --- on -----------------------------------------------------------------------------------------

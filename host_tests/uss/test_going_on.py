@@ -438,6 +438,33 @@ def test_a_drive_that_is_removed_moved_or_divided_anew_gets_no_old_telegram():
     at_every_instant(prepare, divide, divide_check, 4_000)
 
 
+def test_a_drive_that_is_divided_anew_when_the_link_has_gone_on_has_missed_its_telegram():
+    """Its reply is in, but the engine has not looked at it."""
+    bench = going([Node(1), Node(2)])
+    drive, node = bench.drives[2], bench.nodes[2]
+    drive.doubt()
+    send = bench.send
+    good, missed = drive.counters[0], sum(drive.counters[1:])
+
+    def divide(buffer, count):
+        send(buffer, count)
+        if buffer[2] == 1 and bench.master.is_under_way(drive):
+            bench.send = send
+            node.pkw_words = 3
+            bench.master.turns.relayout(drive, Layout(3, 2), True)
+
+    bench.run_until(lambda: bench.sent[-1].address == 1)
+    bench.run_until(lambda: bench.sent[-1].address == 2)
+    good = drive.counters[0]
+    bench.send = divide
+    bench.run_until(lambda: bench.sent[-1].address == 1)
+    bench.run(1_000)
+    assert drive.layout.pkw_words == 3 and not drive.contact
+    assert drive.counters[0] == good and sum(drive.counters[1:]) == missed + 1
+    bench.run(200_000)
+    assert drive.contact and drive.zsw == READY and sum(drive.counters[1:]) == missed + 1
+
+
 def test_a_telegram_outside_the_list_is_the_next_but_one_at_the_latest():
     bench = going([Node(1), Node(2)])
     begin_of_a_telegram(bench)
@@ -515,4 +542,32 @@ def test_an_exception_in_the_engine_takes_on_back_though_the_link_has_gone_on():
     count = len(bench.sent)
     bench.run(300_000)
     assert bench.sent[count].stw() == pzd.OFF1 and not node.stw & 1
+    assert bench.master.foreign == 0
+
+
+def test_an_exception_before_the_engine_has_looked_gives_nobody_a_second_turn():
+    """The drive that the link has gone on to has had its own, and what comes is its reply."""
+    bench = going([Node(address) for address in (1, 2, 3, 4)])
+    begin_of_a_telegram(bench)
+    take_back = bench.take_back
+    went_on, address = bench.went_on, bench.sent[-1].address
+
+    def fail():
+        take_back()
+        if bench.went_on > went_on:
+            bench.take_back = take_back
+            raise KeyboardInterrupt
+
+    bench.take_back = fail
+    try:
+        bench.run(200_000)
+    except KeyboardInterrupt:
+        bench.master.recover(bench.now)
+        bench.due = bench.now
+    else:
+        raise AssertionError("it did not fail")
+    assert bench.sent[-1].address == address % 4 + 1
+    count = len(bench.sent)
+    bench.run(300_000)
+    assert bench.addresses(count)[:5] == [(address + step) % 4 + 1 for step in range(1, 6)]
     assert bench.master.foreign == 0

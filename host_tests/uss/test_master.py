@@ -11,6 +11,7 @@ from uss.master import (
     DEAD_MAN_US,
     LISTENING,
     LOST_US,
+    OFF,
     RESTING,
     SENDING,
     Master,
@@ -68,6 +69,8 @@ def test_a_silent_drive_is_counted_and_stays_in_the_list():
     bus.run(3_000_000)
     one, two = bus.drives
     assert two in bus.master.turns.list
+    assert repr(two) == "<drive 2 ZSW 0000 HIW 0000>"
+    assert repr(one) == "<drive 1 ZSW FB31 HIW 0000>"
     assert two.counters[5] >= 4 and two.counters[0] == 0 and not two.contact
     assert one.counters[0] > 20 and one.contact
 
@@ -98,6 +101,20 @@ def test_a_closed_bus_ends_after_the_exchange_that_goes_on():
     sent = len(bus.sent)
     bus.run(1_000_000)
     assert len(bus.sent) == sent
+
+
+def test_a_bus_that_is_off_is_closed_at_once():
+    bus = Bus()
+    bus.run(200_000)
+    bus.master.off()
+    bus.run(50_000)
+    sent = len(bus.sent)
+    assert bus.master.phase == OFF
+    bus.master.close()
+    assert bus.master.phase == CLOSED
+    bus.master.on()
+    bus.run(500_000)
+    assert bus.master.phase == CLOSED and len(bus.sent) == sent
 
 
 def test_a_bus_that_is_closed_again_and_again_is_closed_all_the_same():
@@ -360,6 +377,15 @@ def test_65536_starts_later_a_void_ticket_is_still_void():
     for _ in range(0x10003):
         drive.start(0)
         assert drive.is_on() and drive.ticket != drive.void
+    drive.ticket = 0xFFFF
+    drive.start(0)
+    drive.revoke()
+    assert drive.void == 0  # it is passed over as well
+    drive.fill(0)
+    drive.ticket = 0xFFFD
+    for _ in range(4):
+        drive.start(0)
+        assert drive.is_on()
 
 
 # --- parameter jobs -----------------------------------------------------------------------------
@@ -619,7 +645,7 @@ def test_a_pause_that_nobody_ends_ends_after_a_second():
     sent = len(bus.sent)
     bus.run(900_000)
     assert bus.master.paused and len(bus.sent) == sent
-    bus.run(200_000)
+    bus.run(100_000)
     assert not bus.master.paused and len(bus.sent) > sent
     bus.master.resume()  # too late, and no harm
     bus.run(100_000)

@@ -3,6 +3,7 @@
 
 from round_bench import MIRROR, Bench, Node, framed
 from uss import pkw, pzd
+from uss.finding.mirror import OutsideTelegram
 from uss.outside import NEW, PENDING, TIMED_OUT, Broadcast, Mirror, Special, stop_all
 from uss.receiver import SILENT
 from uss.telegram import BAD_BCC
@@ -125,6 +126,16 @@ def test_a_special_telegram_brings_what_its_node_answers():
     assert bytes(special.reply[: special.reply_count]) == b"hello"
 
 
+def test_an_ordinary_telegram_outside_the_list_is_done_when_its_node_has_answered():
+    bench = Bench(nodes(2))
+    bench.contact()
+    there, nobody = OutsideTelegram(2, NET), OutsideTelegram(9, NET)
+    through(bench, there)
+    through(bench, nobody)
+    assert there.state == pkw.DONE and bench.nodes[2].mirrored == 0
+    assert nobody.state == TIMED_OUT and nobody.finding == SILENT
+
+
 def test_they_take_every_second_telegram_at_the_most():
     bench = Bench(nodes(2))
     bench.contact()
@@ -144,10 +155,14 @@ def test_eight_may_wait_and_each_once():
     singles = [Mirror(1, NET) for _ in range(9)]
     for single in singles[:8]:
         bench.master.turns.post(single)
-    for single in (singles[8], singles[0]):
+    for single, reason in (
+        (singles[8], "8 telegrams wait already"),
+        (singles[0], "<Mirror to ADR 41> is pending already"),
+    ):
         try:
             bench.master.turns.post(single)
-        except RuntimeError:
+        except RuntimeError as error:
+            assert str(error) == reason
             continue
         raise AssertionError("taken")
     bench.run(3_000_000)
@@ -180,6 +195,26 @@ def test_the_broadcast_that_stops_goes_before_everything():
     assert net == b"\x00\x03\x03\x01\x00\x00\x00\x00\x04\x7e\x00\x00", net  # ON and both jogs
     assert set(bench.addresses(sent)[1:3]) == {2, 3}  # and each by a telegram of its own
     assert {bench.stws(address)[-1] for address in range(1, 7)} == {pzd.OFF1}
+
+
+def test_only_one_telegram_goes_ahead_of_all_others():
+    bench = Bench(nodes(2))
+    bench.contact()
+    first, second = [Broadcast((pzd.OFF1, 0), {2: 0xFFFF}) for _ in range(2)]
+    first.ahead = second.ahead = True
+    bench.master.turns.post(first)
+    try:
+        bench.master.turns.post(second)
+    except RuntimeError as error:
+        assert "ahead of everything already" in str(error)
+    else:
+        raise AssertionError("taken")
+    sent = len(bench.sent)
+    stop_all(bench.master)  # its broadcast is not sent either, but each drive is told to stop
+    bench.run(500_000)
+    assert first.state == pkw.DONE and second.state == NEW
+    assert bench.addresses(sent).count(0x20) == 1 and set(bench.addresses(sent)[1:3]) == {1, 2}
+    assert len(through(bench, second)) == 1
 
 
 def test_a_broadcast_says_bit_by_bit_what_is_taken_of_pzd_1_4_and_5():

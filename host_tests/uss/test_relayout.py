@@ -249,6 +249,21 @@ def test_counters_go_on_and_an_exchange_under_way_is_a_miss():
             assert drive.trouble == OTHER_LENGTH or drive.silent > 3
 
 
+def test_an_exception_behind_it_makes_the_exchange_under_way_a_miss_as_well():
+    """And the reply that may still come has the length that the request had."""
+    bench = bench_of(Layout(4, 8))
+    drive = bench.drives[LOST]
+    bench.run_until(lambda: bench.sent[-1].address == LOST)
+    missed, count = sum(drive.counters[1:]), len(bench.sent)
+    relayout(bench, Layout(0, 2))
+    began = bench.now
+    bench.master.recover(bench.now)
+    bench.due = bench.now
+    assert sum(drive.counters[1:]) == missed + 1
+    bench.run_until(lambda: len(bench.sent) > count)
+    assert bench.now - began >= bench.timing.reply_timeout_us + bench.timing.telegram_us(12 + 16)
+
+
 def test_an_answer_that_equals_the_request_is_no_echo_for_that():
     """Without PZD words it may, and the link cannot tell how long the pause before it was."""
     bench = Bench([Node(1), Node(LOST, 4, 0, 1_000)], idle_us=800)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Who is on the line, and at which rate: by mirror telegrams, which nobody acts on."""
 
-from round_bench import MASK, MIRROR, Bench, Node, framed
+from round_bench import MASK, MIRROR, READY, RUNNING, Bench, Node, framed
 from uss.errors import UssError
 from uss.finding import scan as scanning
 from uss.finding.scan import EVERY_NET_COUNT, NET_COUNTS, RATES, TRIES, RateScan, Scan
@@ -95,6 +95,11 @@ def test_whoever_takes_any_length_is_said_to():
     assert scan.variable == {5, 6}
 
 
+def test_a_drive_without_process_data_that_answers_alike_makes_no_line_with_an_echo():
+    bench, scan = found_on([Node(5, 4, 0)], interrupts=False)
+    assert scan.found == {5: 8} and not bench.master.has_echo()
+
+
 def test_two_nodes_of_one_address_are_told_from_none():
     """Their replies lie on top of each other."""
     bench = Bench([Node(3)], listed=False)
@@ -150,6 +155,12 @@ def test_it_waits_behind_other_telegrams_outside_the_list():
     bench.run_until(lambda: scan.step(bench.now), 60_000_000)
     assert scan.found == {1: 12} and all([other.state == DONE for other in others])
     assert scan.step(bench.now)  # it stays over
+    for other in others:
+        bench.master.turns.post(other)
+    scan = Scan(bench.master, MASK, range(3))
+    assert not scan.step(bench.now) and scan.asked == 0  # there is no room for one more
+    bench.run_until(lambda: scan.step(bench.now), 60_000_000)
+    assert scan.found == {1: 12} and all([other.state == DONE for other in others])
 
 
 # --- beside drives that are controlled ----------------------------------------------------------
@@ -227,14 +238,45 @@ def test_a_stop_does_not_wait_for_the_scan_and_ends_it():
 
 
 def test_the_program_may_end_it():
+    for when in ("found", "nodes"):  # before and while the node is asked what it is
+        bench = Bench([Node(3)], listed=False)
+        scan = Scan(bench.master, MASK)
+
+        def is_time(bench=bench, scan=scan, when=when):
+            return scan.step(bench.now) or getattr(scan, when)
+
+        bench.run_until(is_time, 60_000_000)
+        scan.end()
+        bench.run(100_000)
+        sent = len(bench.sent)
+        bench.run(1_000_000)
+        assert scan.step(bench.now) and scan.stopped and len(bench.sent) == sent
+        assert scan.will_trip == {3: None}
+
+
+def test_a_node_that_was_added_is_asked_by_the_list_and_the_others_by_the_scan():
+    for added in (1, 2):
+        bench = Bench([Node(1), Node(2)], listed=False)
+        scan = Scan(bench.master, MASK, (1, 2), (12,))
+        bench.run_until(lambda bench=bench, scan=scan: scan.step(bench.now), 60_000_000)
+        bench.master.turns.add(added)
+        sent = len(bench.sent)
+        bench.loop = lambda bench=bench, scan=scan: scan.keep(bench.now)
+        bench.run(1_000_000)
+        assert set(bench.addresses(sent)) == {1, 2}, added
+
+
+def test_a_scan_that_is_to_look_no_further_asks_what_it_has_found_not_for_long():
+    """One that tells nothing would be asked a hundred questions."""
     bench = Bench([Node(3)], listed=False)
     scan = Scan(bench.master, MASK)
-    bench.run_until(lambda: scan.step(bench.now) or scan.found, 60_000_000)
-    scan.end()
-    bench.run(100_000)
-    sent = len(bench.sent)
-    bench.run(1_000_000)
-    assert scan.step(bench.now) and scan.stopped and len(bench.sent) == sent
+    bench.run_until(lambda: scan.step(bench.now) or scan.nodes, 60_000_000)
+    scan.finish()
+    bench.run_until(lambda: scan.step(bench.now))
+    questions = [each for each in bench.sent if each.address == 3]
+    # And the one that had been posted, and OFF1 in its usual form.
+    assert len(questions) == 1 + scanning.LAST_QUESTIONS + 1, len(questions)
+    assert not questions[-1].task() and questions[-1].stw() == 0x047E
     assert scan.will_trip == {3: None}
 
 
@@ -326,6 +368,22 @@ def test_no_rate_is_tried_unless_every_drive_of_the_list_is_seen_to_stand():
 
     bench = Bench([Node(1), Node(2)])
     bench.contact()
+    bench.nodes[2].follows = False
+    for is_told, zsw in ((True, READY), (False, RUNNING)):  # it may start soon, or runs by itself
+        if is_told:
+            bench.drives[2].start(0x1000)
+        bench.nodes[2].zsw = zsw
+        bench.run(100_000)
+        scan, opened = left(bench)
+        try:
+            scan.step(bench.now)
+        except UssError as error:
+            assert "drive 2 is not seen to stand" in str(error), error
+        else:
+            raise AssertionError(is_told)
+        bench.drives[2].stop()
+        bench.run(100_000)
+    bench.nodes[2].follows = True
     bench.drives[2].start(0x1000)
     bench.run(100_000)
     scan, opened = left(bench)
@@ -344,10 +402,10 @@ def test_no_rate_is_tried_unless_every_drive_of_the_list_is_seen_to_stand():
         bench.run(30_000)
         bench.nodes[1].plugged = True
     bench.run_until(lambda: not bench.master.is_line_shared(), 60_000_000)
-    for _ in range(10):
+    for _ in range(100):
         assert not scan.step(bench.now)
         assert not opened or bench.master.phase == OFF
-        bench.run(50_000)
+        bench.run(5_000)
     assert opened == [9600] and bench.nodes[1].stw == 0x047E
     try:
         left(bench)[0].step(bench.now)  # a bus that is off sees nobody
@@ -416,6 +474,20 @@ def test_a_master_that_is_heard_later_ends_it():
     assert lines.benches[0].master.phase == OFF, "the line is left to the other one"
 
 
+def test_the_program_may_end_the_search_for_the_rate():
+    lines = Lines(9600, [Node(3)])
+    scan = RateScan(lines.open, MASK, nothing_runs=True)
+    scan.end()
+    lines.carry_out(scan)
+    assert lines.opened == [] and scan.baud is None and scan.found == {}
+    scan = RateScan(lines.open, MASK, nothing_runs=True)
+    lines.carry_out(scan, lambda bench: scan.found and scan.end())
+    sent = len(lines.benches[0].sent)
+    lines.benches[0].run(1_000_000)
+    assert lines.opened == [9600] and len(lines.benches[0].sent) == sent
+    assert scan.found == {3: 12} and scan.will_trip == {3: None} and scan.scan.stopped
+
+
 def test_a_bus_with_drives_is_not_taken():
     bench = Bench([Node(1)])
     scan = RateScan(lambda baud: bench.master, MASK, nothing_runs=True)
@@ -440,4 +512,6 @@ def test_how_long_it_takes_is_said_beforehand():
     scan = RateScan(None, MASK, nothing_runs=True)
     slow = RateScan(None, MASK, nothing_runs=True, rates=(300,))
     assert 60_000 < slow.longest_ms < scan.longest_ms < 600_000
+    usual = RateScan(None, MASK, nothing_runs=True, rates=(19200,))
+    assert usual.longest_ms == Scan(Bench([], listed=False).master, MASK).longest_ms
     assert scanning.NET_COUNTS[0] == 12

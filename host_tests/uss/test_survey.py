@@ -7,13 +7,14 @@ from boards.sim.dice import Dice
 from uss.drive import Drive
 from uss.families import MM4
 from uss.receiver import SILENCE
-from uss.survey import Survey, centihertz, spare_jobs
+from uss.survey import Survey, centihertz, rpm, spare_jobs
 
 MASK = (1 << 30) - 1
 ROWS = len(MM4.survey)
 US = 20_000  # an exchange
 LOST_US = 1_000_000
-R2024 = b"\x10\x18\x80\x00"  # PKE and IND of the task that reads it
+R2024 = b"\x10\x18\x80\x00"  # PKE and IND of the task that reads it,
+P1080, P1082 = b"\x14\x38\x00\x00", b"\x14\x3a\x00\x00"
 SEEDS = range(1, 5)
 
 
@@ -28,6 +29,9 @@ class Line:
         self.questions = [0] * len(self.drives)
         self.counts = {}  # by place: r2024, and by how much it grows with each telegram
         self.silent = set()
+        self.odd = 0  # so many of the next answers make no sense
+        self.without = None  # PKE and IND of what they lack
+        self.asked = []  # PKE and IND of each question
 
     def exchange(self, place):
         """A reply comes, and the next telegram goes out before the panel has looked at it."""
@@ -40,6 +44,7 @@ class Line:
         drive.fill(self.now)
         if drive.request[3] >> 4:
             self.questions[place] += 1
+            self.asked.append(bytes(drive.request[3:7]))
 
     def _reply(self, drive, place):
         count, step = self.counts.get(place, (0x4248, 0))
@@ -52,6 +57,12 @@ class Line:
             net[3] |= drive.request[3] & 0x07
             if bytes(drive.request[3:7]) == R2024:
                 net[7:11] = struct.pack(">HH", 0, count)
+            if self.odd:
+                self.odd -= 1
+                net[3] ^= 0x30  # a word, and there is something in front of it
+            if bytes(drive.request[3:7]) == self.without:
+                net[3] |= 0x70
+                net[7:11] = bytes(4)  # refused, error 0: no such parameter
         drive.take(net, 16, self.now)
 
 
@@ -74,6 +85,16 @@ def test_what_is_no_frequency_of_a_drive_is_unknown():
         assert centihertz(high, low) == -1, (high, low)
     assert centihertz(0x8000, 0) == 0  # minus nothing
     assert centihertz(0, 1) == centihertz(*words(1e-30)) == 0
+
+
+def test_speeds_are_what_a_floating_point_number_says():
+    for speed in (0.0, 0.25, 0.5, 1.0, 1.49, 1.5, 1395.6, 3000.0, 65_535.5, 200_000.5, 210_000.0):
+        high, low = words(speed)
+        assert rpm(high, low) == int(single(high, low) + 0.5), speed
+    assert rpm(0x8000, 0) == 0  # minus nothing
+    nothing = ((0x7FC0, 0), (0x7F80, 0), (0xFF80, 0), (0x8000, 1), (0x8001, 0), words(-0.5))
+    for high, low in nothing + (words(-3000.0), words(210_001.0), words(262_144.0), words(1e30)):
+        assert rpm(high, low) == -1, (high, low)
 
 
 def words(hertz):
@@ -142,6 +163,17 @@ def test_those_that_fall_silent_give_the_spare_jobs_back():
     ask_everything(line, last)
 
 
+def test_one_answer_that_makes_no_sense_is_an_accident_and_two_in_a_row_are_doubted():
+    for odd in (1, 2):
+        line = Line((1,))
+        line.exchange(0)
+        for _ in range(3):
+            line.surveys[0].step(line.now)
+        line.odd = odd
+        let_pass(line, 8)
+        assert line.odd == 0 and line.drives[0].doubted is (odd == 2)
+
+
 # --- the telegrams that a drive has counted since its power-up, r2024 ---------------------------
 
 
@@ -190,3 +222,17 @@ def test_who_asks_anew_does_not_hide_that_the_counter_went_back():
     line.surveys[0].recheck()
     let_pass(line, 100)
     assert line.surveys[0].count.restarted
+
+
+def test_a_drive_that_has_no_counter_is_not_asked_for_it_again_and_again_while_it_runs():
+    """In its place the limits are read, every second question, by turns."""
+    line = runs(0x4248, 0)
+    line.without = R2024
+    let_pass(line, 100)
+    line.asked.clear()
+    let_pass(line, 200)
+    asked = [b for a, b in zip(line.asked, line.asked[1:]) if a != b]  # each for some telegrams
+    limits = [each for each in asked if each in (P1080, P1082)]
+    assert R2024 not in asked and len(asked) > 20
+    assert limits in (asked[0::2], asked[1::2]), asked
+    assert {P1080, P1082} == set(limits[:2]) and limits[2:] == limits[:-2], limits

@@ -44,6 +44,14 @@ def test_an_exchange_is_interval_request_delay_reply():
     assert line.exchange_us(12, 1719) == 1146 + 9167 + 1719 + 9167
 
 
+def test_a_round_waits_for_the_reply_that_does_not_come():
+    """As behind a broadcast, and where a drive is off: until no reply can begin any more."""
+    line = Timing(19200)
+    answered_us, silent_us = 1146 + 9167 + 1719 + 9167, 9167 + 1146 + 20_000 + 573
+    assert line.cycle_us(()) == 0 and line.cycle_us(((12, 0, None),)) == silent_us
+    assert line.cycle_us(((12, 12, 1719), (12, 0, None))) == answered_us + silent_us
+
+
 def test_only_the_rates_of_uss_are_taken():
     for baud in BAUD_RATES:
         Timing(baud)
