@@ -95,7 +95,7 @@ def test_a_speed_beyond_the_limits_of_the_drive_is_refused():
     for speed in (float("inf"), float("-inf"), float("nan")):
         assert refusal(ValueError, bench.drive.run, speed) == "a speed of %r" % speed
     refusal(ValueError, bench.drive.run, percent=201)
-    refusal(TypeError, bench.drive.run, "fast")
+    assert refusal(TypeError, bench.drive.run, "fast") == "a speed is a number, not 'fast'"
     bench.bus.wait(1)
     assert bench.drive.is_on()  # a wrong speed changes nothing
     bench.end()
@@ -394,6 +394,9 @@ def test_stop_beats_a_start_that_still_waits():
         assert "told to stop meanwhile" in refusal(NotStarted, bench.drive.run, 10.0)
     bench.bus.wait(1)
     assert not bench.drive.is_running
+    bench.motor().write(10, 0, 1)  # it takes its time to start
+    bench.at(1.5, bench.drive.stop)
+    assert "told to stop meanwhile" in refusal(NotStarted, bench.drive.run, 10.0)
     bench.end()
 
 
@@ -697,6 +700,9 @@ def test_a_g120_counts_in_revolutions_and_does_not_jog():
     assert refusal(NotStarted, drive.jog_right) == "a SINAMICS G120 has no jog"
     drive.run(rpm=150)
     assert bench.bus.wait(5, lambda: drive.rpm > 145)
+    bench.bus.wait(1)
+    near(drive.percent, 10.0, 0.1)
+    near(bench.motor().hz(), 5.0, 0.1)
     drive.run(rpm=-150)
     assert bench.bus.wait(9, lambda: drive.rpm < -145)
     text = refusal(ValueError, drive.run, rpm=100_000 / 60)

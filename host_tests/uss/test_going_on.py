@@ -148,6 +148,18 @@ def test_a_silent_drive_is_waited_for_and_the_others_go_on():
 # --- what the reply says -------------------------------------------------------------------------
 
 
+def test_a_telegram_that_is_to_be_repeated_goes_before_the_list_behind_a_stop():
+    bench = going([Node(1), Node(2), Node(3)])
+    bench.master.retries = 1
+    bench.nodes[2].plugged = False
+    bench.run_until(lambda: bench.sent[-1].address == 1)
+    bench.run_until(lambda: bench.sent[-1].address == 2)
+    count = len(bench.sent)
+    bench.drives[1].stop()
+    bench.run(150_000)
+    assert bench.addresses(count)[:4] == [1, 2, 3, 1], bench.sent[count:]
+
+
 def test_a_drive_that_trips_inhibits_or_stops_gets_no_second_telegram_with_on():
     for zsw in (RUNNING | FAULT, RUNNING | INHIBIT, READY):
         node = Node(1)
@@ -394,6 +406,12 @@ def test_a_stop_is_in_the_next_telegram_whenever_it_comes():
         return bench
 
     at_every_instant(prepare, lambda bench: bench.drives[1].stop(), check)
+
+    def stop_and_enter(bench):
+        bench.drives[1].stop()
+        bench.due = bench.now  # the engine is entered once more before the reply is there
+
+    at_every_instant(prepare, stop_and_enter, check)
 
 
 def test_a_drive_that_is_removed_moved_or_divided_anew_gets_no_old_telegram():
