@@ -282,6 +282,12 @@ def test_what_stopped_by_itself_or_was_lost_wants_a_stop_before_it_runs_again():
     bench.drive.run(10.0)
     bench.bus.wait(1)
     assert bench.drive.is_running
+    drive = bench.drive
+    bench.motor().fault(1)
+    bench.bus.wait(2)
+    assert "stop() says that you know" in refusal(NotStarted, drive.run, 10.0)
+    bench.bus.remove(drive)
+    assert refusal(NoContact, drive.run, 10.0) == "drive 1 is not on the bus"
     bench.end()
 
 
@@ -680,6 +686,18 @@ def test_an_mm3_turns_left_by_a_bit_and_has_no_sign():
     assert bench.stws(1)[-1] == 0x0C7F
     near(bench.drive.rpm, 300, 2)
     assert bench.drive.read(91) == 1
+    bench.end()
+
+
+def test_an_mm3_may_count_its_frequencies_in_hundredths_of_a_hertz():
+    bench = of_family(MM3, mm3, {93: 2, 2: 10, 3: 10, 95: 1})
+    for number in (13, 81, 94):
+        bench.drive.write(number, 5000, sure=True)
+    assert "P0013[0] = 50.00 Hz" in refusal(ValueError, bench.drive.run, 60.0)
+    bench.drive.run(rpm=600)
+    bench.bus.wait(3)
+    near(bench.drive.hertz, 20.0, 0.05)
+    near(bench.motor().hz(), 20.0, 0.05)
     bench.end()
 
 
