@@ -57,7 +57,14 @@ def test_an_empty_line_takes_as_long_as_was_said():
     promised_ms = scan.longest_ms
     bench.run_until(lambda: scan.step(bench.now) or bench.sent, 200_000)
     began = bench.now
-    bench.run_until(lambda: scan.step(bench.now), 60_000_000)
+    parts = []
+
+    def step():
+        parts.append(scan.progress(14))
+        return scan.step(bench.now)
+
+    bench.run_until(step, 60_000_000)
+    assert parts == sorted(parts) and set(parts) == set(range(14)) and scan.progress(14) == 14
     assert scan.found == {} and scan.asked == 32 * len(NET_COUNTS) == len(bench.sent)
     assert 0.8 * promised_ms <= (bench.now - began) / 1000 <= promised_ms
     assert 6_000 < promised_ms < 9_000
@@ -277,6 +284,8 @@ def test_a_scan_that_is_to_look_no_further_asks_what_it_has_found_not_for_long()
     # And the one that had been posted, and OFF1 in its usual form.
     assert len(questions) == 1 + scanning.LAST_QUESTIONS + 1, len(questions)
     assert not questions[-1].task() and questions[-1].stw() == 0x047E
+    # The questions keep it from tripping: mirror telegrams are not needed for that.
+    assert bench.addresses().count(MIRROR | 3) == 2
     assert scan.will_trip == {3: None}
 
 
@@ -462,6 +471,22 @@ def test_where_somebody_talks_nothing_is_sent():
     for bench in lines.benches:
         bench.run(3_000_000)
         assert bench.sent == [] and bench.master.phase == OFF
+
+
+def test_what_the_bus_has_heard_before_it_sends_ends_nothing():
+    """A spike, and a loop that came round when the line had been silent for long enough."""
+    lines = Lines(9600, [Node(1)])
+
+    def open_late(baud):
+        master = lines.open(baud)
+        lines.benches[-1].talk(b"\x00")
+        lines.benches[-1].run(250_000)
+        return master
+
+    scan = RateScan(open_late, MASK, nothing_runs=True)
+    lines.carry_out(scan)
+    assert lines.benches[0].master.foreign == 1
+    assert (scan.baud, scan.found) == (9600, {1: 12}) and not scan.line_in_use
 
 
 def test_a_master_that_is_heard_later_ends_it():
