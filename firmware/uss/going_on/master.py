@@ -83,13 +83,14 @@ class GoingOnMaster(Master):
             self._replace()
         drive = self._drive
         size = drive.size
-        receiver.accept(size, link.received_at)
-        drive.take(receiver.buffer, size, now)
-        self._conclude(telegram.GOOD)
-        # The link has gone on by itself.
-        self._drive = drive = self._following
-        self._following = None
-        turns.pass_on()
+        try:
+            receiver.accept(size, link.received_at)
+            drive.take(receiver.buffer, size, now)
+            self._conclude(telegram.GOOD)
+        finally:  # whatever happens here, the link has gone on
+            self._drive = drive = self._following
+            self._following = None
+            turns.pass_on()
         if self._sent is not drive.request:
             drive.follow(self._sent, now)
         if not self._foreseen:
