@@ -5,8 +5,18 @@ import main
 from boards.sim.drives.kinds import listed_drives, simulated
 from boards.sim.world import World
 from panel_bench import OFF1, panel, row_2, running, said, settled, starts, telegrams
+from spoilt_bench import (
+    cut_off,
+    garbled,
+    longer,
+    of_another_address,
+    silent,
+    spoil,
+    with_a_wrong_check,
+)
 from uss import pkw
 from uss.master import LISTENING, OFF
+from uss.tasks.descriptions import NAME, read_description
 
 FOUR = (1, 2, 3, 4)
 
@@ -55,6 +65,7 @@ def test_stop_is_for_the_drive_that_is_shown_and_for_the_one_that_is_looked_at()
     for shown, entries, is_open, stopped in (
         (1, ("A3",), False, (1, 3)),
         (3, ("A1",), False, (3, 1)),
+        (1, ("A3", "COUNTERS"), False, (1, 3)),
         (1, ("A3", "COUNTERS"), True, (1, 3)),
         (1, ("A3", "TIMES"), True, (1, 3)),
         (1, ("A3", "TELEGRAMS"), True, (1, 3)),
@@ -153,6 +164,17 @@ def test_the_times_are_those_of_the_line():
     world.check()
 
 
+def test_a_time_of_a_second_and_more_has_no_decimals():
+    """Four drives at 1200 bit/s: an exchange takes a quarter of a second."""
+    world = panel(addresses=FOUR, baud=1200)
+    open_menu(world, "DIAGNOSIS", "BUS TIMES")
+    world.run(8_000)
+    shown = read(world, "BUS CYCLE")
+    least, most = [int(ms) for ms in shown[:-3].split("-")]
+    assert shown.endswith(" ms") and 340 <= least <= 360 and 1_370 <= most <= 1_410, shown
+    world.check()
+
+
 def test_a_start_delay_behind_a_drive_that_does_not_answer_is_not_measured():
     """Nobody has seen the end of a reply there."""
     world = panel(addresses=(1, 2))
@@ -217,6 +239,68 @@ def test_a_parameter_task_is_told_with_its_number_and_index_on_every_page():
         else:
             raise AssertionError("never said: " + told)
     world.check()
+
+
+def comes_up(world, job, told):
+    """Whether row 2 tells it while drive 1 is given this task again and again."""
+    drive = world.app.bus.turns.at(1)
+    for _ in range(100):
+        if job.state != pkw.PENDING:
+            drive.ask(job)
+        world.run(30)
+        if row_2(world)[1:] == told:
+            return True
+    return False
+
+
+def test_a_task_and_what_the_drive_says_to_it_are_told_in_words():
+    """At a rate that leaves time to read: each telegram is shown for as long as it takes."""
+    world = panel(baud=4800)
+    open_menu(world, "DIAGNOSIS", "A1", "TELEGRAMS")
+    tasks = (
+        (pkw.read(1000), "READ P1000[0]", "IS P1000[0]"),
+        (pkw.write_word(1000, 5), "WRITE P1000[0]", "IS P1000[0]"),
+        (pkw.write_double(1120, 0, 1), "WRITE P1120[1]", "ERROR 3"),
+        (pkw.write_word(1000, 5, eeprom=True), "STORE P1000[0]", "IS P1000[0]"),
+        (pkw.write_double(1120, 0, 1, eeprom=True), "STORE P1120[1]", "ERROR 3"),
+        (pkw.Job(pkw.COUNT_ELEMENTS, 1120), "READ P1120[0]", "IS P1120[0]"),
+    )
+    for job, sent, _ in tasks:
+        assert comes_up(world, job, sent), (sent, world.lcd())
+    read(world, "A1 HEARD")
+    world.press("DOWN", 40)  # behind the finding
+    for job, sent, heard in tasks:
+        assert comes_up(world, job, heard), (sent, heard, world.lcd())
+    world.drives[1].write(927, 0, 7)
+    assert comes_up(world, pkw.write_word(1000, 5), "NO RIGHTS"), world.lcd()
+    world.check()
+
+
+def test_behind_a_long_answer_there_is_no_room_for_the_status_word():
+    """42 characters are kept: those of a parameter's name are few enough, not its description."""
+    kind = "generic/127"
+    world = panel(kinds=simulated(listed_drives("1=" + kind)), settings={"kinds": {"1": kind}})
+    open_menu(world, "DIAGNOSIS", "A1", "TELEGRAMS")
+    read(world, "A1 HEARD")
+    for _ in range(3):
+        world.press("DOWN", 40)
+    assert row_2(world)[1:].startswith("ZSW "), world.lcd()
+    assert not comes_up(world, read_description(2010, NAME), "..."), world.lcd()
+    assert comes_up(world, read_description(2010), "..."), world.lcd()
+    world.check()
+
+
+def test_what_the_receiver_makes_of_a_reply_stands_behind_the_task():
+    found = {
+        silent: "NO REPLY", garbled: "NO TELEGRAM", cut_off: "CUT OFF", longer: "20 CHARACTERS",
+        of_another_address: "OTHER ADDRESS", with_a_wrong_check: "WRONG BCC",
+    }  # fmt: skip
+    for how, told in found.items():
+        world = panel()
+        open_menu(world, "DIAGNOSIS", "A1", "TELEGRAMS")
+        spoil(world.wire, world.drives[1], how)
+        world.run(300)
+        assert read(world, "A1 HEARD") == told, (how.__name__, world.lcd())
 
 
 def test_the_mirror_test_counts_what_comes_back():

@@ -399,6 +399,28 @@ def test_turns_follow_a_drive_that_comes_goes_or_gets_another_address():
     world.check()
 
 
+def test_who_is_asked_more_often_waits_until_it_is_known_how_soon_each_drive_trips():
+    """Drive 2 has just been switched on again."""
+    world = panel(addresses=(1, 2))
+    wait_until_known(world)
+    world.drives[2].power_off()
+    lists(world, "TURNS")
+    press(world, "SET", "UP")
+    world.run(2000)
+    world.drives[2].power_on()
+    while not world.app.bus.turns.at(2).contact:
+        world.run(20)
+    world.press("SET")
+    world.run(200)
+    assert row_2(world) == "NO: STILL CHECKS", world.lcd()
+    assert not kept(world).get("repeats")
+    world.run(8000)
+    press(world, "SET", "UP", "SET")
+    world.run(3000)
+    assert kept(world)["repeats"] == {"1": 2}, world.lcd()
+    world.check()
+
+
 def test_nobody_is_asked_so_often_that_another_one_trips():
     world = World(
         main.start, (1, 2, 3, 4), kinds={3: {"parameters": {2014: 600}}}, parameters={2014: 5000}
@@ -426,6 +448,44 @@ def test_order_and_turns_are_not_changed_while_a_motor_runs():
         assert world.reads("STOP ALL FIRST"), (name, world.lcd())
         assert world.drives[1].state == "running"
         world.check()
+
+
+def test_a_value_that_was_not_changed_is_left_alone_and_no_panel_begins_anew():
+    """Not even beside a motor that runs: there is nothing to stop for."""
+    world = running()
+    setting(world, "BAUD")
+    press(world, "UP", "DOWN", "SET")
+    assert row_2(world) == ">BAUD 19200" and row_1(world).startswith("SETTINGS"), world.lcd()
+    assert world.drives[1].state == "running" and starts(world) == 1
+    world.check()
+
+
+def test_a_drive_without_pkw_words_has_no_parameters_in_the_menu():
+    world = World(
+        main.start, (1, 2), kinds=simulated(listed_drives("1=mm420/0,2")),
+        settings={"kinds": {"1": "mm420/0"}},
+    )  # fmt: skip
+    world.run(3000)
+    for key, has in ((None, False), ("ADDRESS_UP", True)):
+        if key:
+            press(world, key)
+            wait_until_known(world)
+        menu(world)
+        shown = entries(world)
+        for name in ("PARAMETERS", "COMMISSION", "FAULT MEMORY"):
+            assert (name in shown) == has, (key, shown)
+        assert "EVENTS" in shown and "DIAGNOSIS" in shown, shown
+        press(world, "PARAM")
+
+
+def test_set_on_the_speed_of_a_drive_leads_nowhere():
+    world = panel(addresses=(1, 2))
+    wait_until_known(world)
+    menu(world)
+    press(world, "SET", "DOWN", "SET", "UP")
+    assert world.lcd() == ("A2           7/7", ">0.00 Hz        "), world.lcd()
+    press(world, "SET")
+    assert world.lcd() == ("A2           7/7", ">0.00 Hz        "), world.lcd()
 
 
 def test_an_alarm_closes_it():
@@ -847,6 +907,33 @@ def test_stop_is_for_the_drive_that_is_shown_and_for_the_one_in_row_2():
     world.run(4000)
     assert world.drives[1].state == world.drives[3].state == "ready"
     world.check()
+
+
+def test_stop_is_for_the_drive_in_row_2_in_each_list_of_drives():
+    for way, second in (
+        (("SET", "UP", "SET"), "SHOW IT"),
+        (("SET", "UP", "SET", "DOWN", "DOWN", "SET"), "FAMILY MM420"),
+        ("ORDER", "A3"),
+        ("TURNS", "A3  x1"),
+    ):
+        world = panel(addresses=(1, 2, 3))
+        wait_until_known(world)
+        press(world, "START", "ADDRESS_DOWN")
+        wait_until_known(world)
+        press(world, "START", "ADDRESS_UP")
+        world.run(3000)
+        if type(way) is str:
+            lists(world, way)
+            press(world, "UP")
+        else:
+            menu(world)
+            press(world, *way)
+        assert row_2(world) == ">" + second, (way, world.lcd())
+        press(world, "STOP")
+        assert row_2(world) == ">A1 A3: STOP", (way, world.lcd())
+        world.run(4000)
+        assert world.drives[1].state == world.drives[3].state == "ready", way
+        world.check()
 
 
 def test_stop_names_the_drive_that_an_address_key_has_shown_on_its_way_to_any_address():

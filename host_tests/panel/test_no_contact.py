@@ -3,7 +3,9 @@
 
 import json
 
+import main
 from boards.sim.drives.families import generic
+from boards.sim.world import World
 from panel_bench import panel, row_1, row_2, settled, telegrams, wait_until_known
 from spoilt_bench import TROUBLES, spoil
 
@@ -112,6 +114,41 @@ def test_what_is_heard_in_place_of_answers_says_what_to_check_first():
         world.run(2500)
         heard, steps = why(world)
         assert (heard, steps[0]) == first[words], how.__name__
+
+
+def test_where_another_master_talks_that_is_the_reason():
+    """As long as it talks, row 2 tells nothing else."""
+
+    class OtherMaster:
+        def hear(self, burst):
+            pass
+
+    world = World(main.start, (1,))
+    other = OtherMaster()
+    world.wire.attach(other)
+
+    def beside(ms):
+        for _ in range(ms // 50):
+            world.wire.talk(other, b"\x02\x06\x05\x04\x7e\x00\x00\x7b", 8)
+            world.run(50)
+
+    shown = []
+    beside(1000)
+    for key, ms in (("PARAM", 1500), ("SET", 100), ("UP", 100)):
+        world.down(key)
+        beside(ms)
+        world.up(key)
+        beside(500)
+        shown.append(world.lcd())
+    assert shown[1:] == [
+        ("A1 HEARD     1/3", "LINE IN USE     "), ("CHECK        3/3", "LINE IN USE     "),
+    ], shown  # fmt: skip
+    assert telegrams(world, 0) == []
+    world.run(1500)  # it falls silent
+    assert row_2(world) == ">NO OTHER MASTER", world.lcd()
+    press(world, "DOWN")
+    assert row_2(world) == ">IT ANSWERS NOW", world.lcd()
+    world.check()
 
 
 def test_the_rate_can_be_changed_from_there():

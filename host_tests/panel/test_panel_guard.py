@@ -357,6 +357,16 @@ def test_what_was_accepted_is_taken_back_by_key():
     assert starts(world) == 0
 
 
+def test_when_nothing_is_accepted_any_more_the_list_says_so_and_set_does_nothing():
+    world = accepted(1)
+    press(world, "SET")
+    assert row_2(world) == "KEPT", world.lcd()
+    world.run(3500)
+    for _ in range(2):
+        assert row_2(world) == ">NO DRIVE" and kept(world)["unsupervised"] == [], world.lcd()
+        press(world, "SET")
+
+
 def test_when_the_last_of_a_list_is_taken_back_the_one_before_is_shown():
     world = accepted(1, 2, 3)
     press(world, "UP")
