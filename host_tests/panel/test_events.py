@@ -4,7 +4,7 @@
 from lookup_bench import entries, go_to, press, settled_heading, wait, world_of
 from panel.menu.events import age
 from panel.reports.journal import EVENTS, NOBODY, Journal
-from panel_bench import row_2
+from panel_bench import row_1, row_2
 
 
 def run_motor(world):
@@ -45,6 +45,7 @@ def test_nothing_has_happened_yet():
     world = world_of("mm420")
     go_to(world, "EVENTS")
     world.run(500)
+    assert row_1(world).startswith("EVENTS ")
     assert row_2(world).rstrip() == ">NONE YET", world.lcd()
     press(world, "SET")
     assert row_2(world).rstrip() == ">NONE YET", world.lcd()
@@ -79,6 +80,30 @@ def test_set_tells_what_a_fault_means():
     go_to(world, "EVENTS", "FAULT F0001")
     world.run(800)
     assert "Overcurrent" in row_2(world), world.lcd()
+    world.check()
+
+
+def test_set_tells_nothing_of_a_drive_that_is_not_shown_nor_of_the_panel():
+    """Another family may have another meaning for the number."""
+    world = world_of("mm420", addresses=(1, 2))
+    world.hang(2600)
+    world.run(6000)
+    run_motor(world)
+    world.drives[1].fault(1)
+    wait(world, "FAULT F0001")
+    world.run(1500)
+    press(world, "STOP", "ADDRESS_UP")
+    world.run(1500)
+    for event in ("FAULT F0001", "WATCHDOG"):
+        go_to(world, "EVENTS")
+        world.run(500)
+        while not row_2(world).startswith(">" + event):
+            press(world, "DOWN")
+        before = row_2(world)
+        press(world, "SET")
+        world.run(800)
+        assert row_2(world) == before, (event, world.lcd())
+        press(world, "PARAM", "PARAM")
     world.check()
 
 

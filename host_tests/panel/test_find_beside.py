@@ -170,6 +170,25 @@ def test_what_is_not_taken_does_not_trip_while_the_list_is_shown():
     world.check()
 
 
+def test_the_first_one_for_which_there_is_no_room_is_named():
+    """A panel has 31 drives at the most; while the others were looked for, 28 have come."""
+    world = line_of("1,3=g110,5", (1,))
+    opened(world)
+    searched(world)
+    for address in range(32):
+        if address not in (1, 3, 5, 31):
+            world.app.settings.add(address, "mm420")
+    assert row_2(world) == ">TAKE ALL 2", world.lcd()
+    world.app.settings.add(31, "mm420")
+    press(world, "SET")
+    assert row_2(world) == "A5 NOT ADDED", world.lcd()
+    drives = [drive.address for drive in world.app.bus.turns.drives]
+    assert drives == [1, 3] and world.app.settings.drives[-1] == 3, drives
+    world.run(4000)
+    assert row_2(world) == "READY        A1", world.lcd()
+    world.check()
+
+
 def test_where_nobody_else_is_it_says_so_and_a_minute_without_a_key_closes_it():
     world = line_of("1,2", (1, 2), baud=9600)
     opened(world)

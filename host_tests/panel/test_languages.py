@@ -9,7 +9,9 @@ narrower than a row, how wide that is, and if numbers belong into it, the widest
 import gc
 import json
 import sys
+from binascii import crc32
 from io import BytesIO
+from struct import pack
 
 from micropython import heap_lock, heap_unlock
 
@@ -352,6 +354,35 @@ def test_without_the_table_all_is_in_english():
         assert module.Language("de").get(b"RUNNING", b"") == b"RUNNING"
     del module.open
     assert module.Language("de").get(b"RUNNING", b"") == b"L\xc4UFT"
+
+
+class Packed:
+    """A language as a firmware file has it: the check sum of `B` stands astride those of two
+    texts before it."""
+
+    _sum = pack("<I", crc32(b"B"))
+    KEYS = pack("<I", crc32(b"A")) + b"xx" + _sum + b"xx" + _sum
+    PLACES = pack("<HHHHH", 0, 4, 6, 7, 12)
+    WORDS = b"an Axxyfor B"
+
+
+def test_a_language_is_read_from_a_module_where_there_is_no_table():
+    module = on_demand.load("panel.languages")
+
+    def missing(path, mode):
+        raise OSError(2)
+
+    sys.modules["panel.languages.words_xx"] = Packed
+    module.open = missing
+    try:
+        language = module.Language("xx")
+        assert language.get(b"A", b"") == b"an A", language.get(b"A", b"")
+        assert language.get(b"B", b"") == b"for B", language.get(b"B", b"")
+        assert language.get(b"C", b"") == b"C"
+    finally:
+        del module.open
+        on_demand.drop("panel.languages.words_xx")
+        on_demand.flush()
 
 
 def test_what_was_found_is_kept_and_takes_no_memory():

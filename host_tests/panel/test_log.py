@@ -105,6 +105,16 @@ def walk_to_the_log(world):
             world.press("SET")
 
 
+def test_a_board_without_a_serial_port_has_no_log_whatever_its_settings_say():
+    """They may have come from another board."""
+    world = panel()
+    world.app.board.serial = None
+    world.app.settings.change("log", "JSON")
+    world.run(1000)
+    assert world.app.settings.log == "none" and row_2(world) == "READY        A1", world.lcd()
+    world.check()
+
+
 def test_a_port_that_is_open_and_never_read_holds_nobody_up():
     world = running(settings=LOG)
     world.usb.is_read = False

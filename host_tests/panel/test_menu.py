@@ -268,6 +268,8 @@ def test_no_setting_is_changed_while_a_motor_runs():
     menu(world)
     press(world, "DOWN", "DOWN", "DOWN", "SET", "SET", "UP", "SET")
     assert row_2(world) == "STOP ALL FIRST", world.lcd()
+    world.run(4000)
+    assert row_2(world) == ">BAUD 38400" and world.app.settings.baud == 19200, world.lcd()
     assert world.drives[1].state == "running"
 
 
@@ -317,6 +319,16 @@ def lists(world, name):
     press(world, "SET")
 
 
+def test_no_panel_begins_anew_beside_a_motor_that_runs():
+    world = running()
+    app_before = world.app
+    world.app.panel.wants = "app"
+    world.run(1000)
+    assert world.app is app_before and row_2(world) == "RUNNING      A1", world.lcd()
+    assert world.drives[1].state == "running"
+    world.check()
+
+
 def test_the_order_of_the_drives_is_that_of_the_address_keys():
     world = panel(addresses=(1, 2, 3))
     lists(world, "ORDER")
@@ -334,6 +346,11 @@ def test_the_order_of_the_drives_is_that_of_the_address_keys():
         seen.append(row_2(world)[-2:])
         press(world, "ADDRESS_UP")
     assert seen == ["A1", "A3", "A2", "A1"] and kept(world)["drives"] == [1, 3, 2]
+    press(world, "ADDRESS_DOWN")
+    lists(world, "ORDER")
+    press(world, "UP", "SET", "UP", "SET", "PARAM")  # and back
+    world.run(3000)
+    assert kept(world)["drives"] == [1, 2, 3]
     assert max(starts(world, address) for address in (1, 2, 3)) == 0
     world.check()
 
@@ -421,6 +438,41 @@ def test_who_is_asked_more_often_waits_until_it_is_known_how_soon_each_drive_tri
     world.check()
 
 
+def turns_taken(off_ms):
+    """What is said when drive 1 of four is to be asked twice as often, and drive 3 trips then."""
+    world = World(
+        main.start, (1, 2, 3, 4), kinds={3: {"parameters": {2014: off_ms}}},
+        parameters={2014: 5000}, settings={"unsupervised": [3]},
+    )  # fmt: skip
+    world.run(8_000)
+    lists(world, "TURNS")
+    press(world, "SET", "UP", "SET")
+    return world, row_2(world)
+
+
+def test_three_rounds_of_late_answers_have_room_in_the_telegram_off_time_of_each_drive():
+    world = panel()
+    turns = world.app.bus.turns
+    needed_ms = 3 * (turns.longest_cycle_us(5 * [turns.at(1)]) // 1000 + 1)
+    for off_ms, told in ((needed_ms - 1, "A3: P2014 SHORT"), (needed_ms, ""), (0, "")):
+        world, row = turns_taken(off_ms)
+        assert row == told or not told and "SHORT" not in row, (off_ms, world.lcd())
+        world.run(4000)
+        assert kept(world).get("repeats", {}) == ({} if told else {"1": 2}), off_ms
+
+
+def test_a_round_that_becomes_shorter_is_taken_though_it_is_too_long_still():
+    world = World(
+        main.start, (1, 2, 3, 4), kinds={3: {"parameters": {2014: 300}}},
+        parameters={2014: 5000}, settings={"repeats": {"1": 4}},
+    )  # fmt: skip
+    world.run(15_000)
+    lists(world, "TURNS")
+    press(world, "SET", "DOWN", "SET")
+    world.run(3000)
+    assert kept(world)["repeats"] == {"1": 3}, world.lcd()
+
+
 def test_nobody_is_asked_so_often_that_another_one_trips():
     world = World(
         main.start, (1, 2, 3, 4), kinds={3: {"parameters": {2014: 600}}}, parameters={2014: 5000}
@@ -433,6 +485,21 @@ def test_nobody_is_asked_so_often_that_another_one_trips():
     world.run(4000)
     assert not kept(world).get("repeats") and row_2(world) == ">A1  x1", world.lcd()
     world.check()
+
+
+def test_an_order_is_not_kept_while_a_motor_runs_that_somebody_has_started_at_the_drive():
+    world = panel(addresses=(1, 2))
+    wait_until_known(world)
+    world.run(3000)
+    lists(world, "ORDER")
+    press(world, "SET", "DOWN", "SET")
+    world.drives[2].write(700, 0, 2)
+    world.drives[2].process.zsw = lambda: 0xFB34
+    world.run(1000)
+    press(world, "PARAM")
+    assert row_2(world) == "STOP ALL FIRST", world.lcd()
+    world.run(3000)
+    assert world.app.settings.drives == (1, 2) and row_2(world) == ">ORDER", world.lcd()
 
 
 def test_order_and_turns_are_not_changed_while_a_motor_runs():
@@ -735,7 +802,8 @@ def test_each_choice_is_one_that_the_family_has():
             press(world, "SET")
             assert row_2(world) == as_it_is, (kind, what, world.lcd())  # where the list begins
             assert len(entries(world)) == count, (kind, what, entries(world))
-            press(world, "PARAM")
+            press(world, "SET")  # it is that already
+            assert row_2(world) == as_it_is and row_1(world).startswith("A1"), (kind, what)
 
 
 def test_what_a_drive_is_does_not_change_while_a_motor_runs():
@@ -793,6 +861,22 @@ def test_a_panel_that_nobody_has_set_up_offers_to_find_drives():
     assert row_2(world) == "READY        A1", world.lcd()
     world.run(5000)
     assert row_2(world) == "READY        A1", world.lcd()
+
+
+def test_the_panel_does_not_leave_a_motor_that_was_started_while_it_asked_about_the_search():
+    """At its terminals: SET is refused then."""
+    world = panel()
+    wait_until_known(world)
+    lists(world, "FIND DRIVES")
+    press(world, "DOWN", "SET")
+    assert row_2(world) == "SET=DO  PARAM=NO", world.lcd()
+    world.drives[1].write(700, 0, 2)
+    world.drives[1].process.zsw = lambda: 0xFB34
+    world.run(200)
+    press(world, "SET")
+    assert row_2(world) == "STOP ALL FIRST", world.lcd()
+    world.run(1000)
+    assert world.app.panel.wants is None and telegrams(world, world.clock.now_us - 100_000)
 
 
 # --- the panel begins anew -----------------------------------------------------------------------

@@ -78,6 +78,8 @@ def test_a_step_stays_where_it_is_read_though_something_else_is_heard_by_now():
     press(world, "UP", "UP")
     world.run(500)
     assert row_2(world) == ">NOTHING", world.lcd()
+    press(world, "DOWN", "DOWN")
+    assert row_2(world) == ">DRIVE HAS MAINS", world.lcd()
 
 
 def test_of_a_drive_whose_parameters_nobody_knows_the_values_are_named():

@@ -59,7 +59,10 @@ def test_what_is_kept_is_loaded_at_once():
 
 
 class NoMemory:
-    """No module can be loaded meanwhile."""
+    """No module can be loaded meanwhile, or none of these."""
+
+    def __init__(self, *names):
+        self._names = names
 
     def __enter__(self):
         self._load = on_demand.load
@@ -69,6 +72,8 @@ class NoMemory:
         on_demand.load = self._load
 
     def _fail(self, name):
+        if self._names and name not in self._names:
+            return self._load(name)
         raise MemoryError("no memory")
 
 
@@ -101,6 +106,116 @@ def test_a_list_of_the_menu_that_finds_no_memory_is_not_shown():
     assert row_2(world) == ">A1  READY", world.lcd()
 
 
+def modules():
+    """What belongs to a menu, of what is in memory."""
+    return {name for name in sys.modules if name.startswith(("panel.menu.", "uss.finding"))}
+
+
+def test_a_menu_that_finds_no_memory_is_not_opened():
+    """Neither the menu itself nor its first list, and what had come of it leaves again."""
+    for name in ("panel.menu.engine", "panel.menu.main"):
+        world = cramped()
+        for module in modules():
+            on_demand.drop(module)
+        with NoMemory(name):
+            world.press("PARAM", 1100)
+            world.run(300)
+            assert row_2(world) == "NO MEMORY LEFT", (name, world.lcd())
+            world.run(3500)
+            assert row_2(world) == "READY        A1", (name, world.lcd())
+            world.press("DOWN")
+            assert world.lcd()[0].startswith("S:  9.9"), (name, world.lcd())
+        assert modules() == set(), (name, modules())
+        world.press("PARAM", 1500)
+        world.run(1000)
+        assert row_2(world) == ">DRIVES", (name, world.lcd())
+        world.check()
+
+
+def test_a_list_that_finds_no_memory_leaves_nothing_of_what_had_come_for_it():
+    world = cramped()
+    world.press("PARAM", 1500)
+    world.run(1000)
+    before = modules()
+    for _ in range(2):
+        world.press("UP")  # ABOUT, and then EVENTS
+    world.press("UP")
+    assert row_2(world) == ">FAULT MEMORY", world.lcd()
+    kept = set(sys.modules)
+    with NoMemory("panel.lookup.memory"):
+        world.press("SET")
+        world.run(1000)
+        assert row_2(world) == "NO MEMORY LEFT", world.lcd()
+    assert modules() == before and set(sys.modules) == kept, set(sys.modules) - kept
+
+
+def test_a_menu_that_closes_while_it_is_coming_does_not_come():
+    world = cramped()
+    for module in modules():
+        on_demand.drop(module)
+    front = world.app.panel
+    for entries in (0, 1):
+        world.press("PARAM", 1100)
+        if entries:
+            world.run(1000)
+            assert row_2(world) == ">DRIVES", world.lcd()
+        has_time = front.has_time
+        front.has_time = lambda: False
+        if entries:
+            world.press("SET")
+        else:
+            world.run(100)
+        front.close_menu()
+        front.has_time = has_time
+        world.run(1000)
+        assert row_2(world) == "READY        A1" and modules() == set(), (entries, modules())
+    world.check()
+
+
+def test_a_search_that_finds_no_memory_says_so_and_may_be_tried_again():
+    world = panel(addresses=(1, 2), settings={"drives": [1]})
+    world.press("PARAM", 1500)
+    world.run(1000)
+    for wanted in (">FIND DRIVES", ">AT THIS RATE"):
+        while row_2(world) != wanted:
+            world.press("DOWN")
+            world.run(200)
+        world.press("SET")
+        world.run(300)
+    with NoMemory("uss.finding.scan"):
+        world.press("SET")
+        world.run(300)
+        assert row_2(world) == "NO MEMORY LEFT", world.lcd()
+    world.run(3000)
+    assert world.lcd() == ("STOPS FOUND     ", ">SET=BEGIN      "), world.lcd()
+    world.press("SET")
+    world.run(1000)
+    assert world.lcd()[0].startswith("SEARCH "), world.lcd()
+    world.check()
+
+
+def test_a_log_that_finds_no_memory_is_switched_off_and_says_so():
+    world = panel()
+    with NoMemory("log"):
+        world.app.settings.change("log", "JSON")
+        world.run(500)
+        assert row_2(world) == "NO MEMORY LEFT" and world.app.settings.log == "none", world.lcd()
+        world.run(3500)
+    assert row_2(world) == "READY        A1" and not world.usb.heard, world.lcd()
+    world.app.settings.change("log", "JSON")
+    world.run(3000)
+    assert world.usb.heard
+    world.check()
+
+
+def test_a_log_that_is_switched_off_leaves_the_memory():
+    world = cramped()
+    for log in ("JSON", "none"):
+        world.app.settings.change("log", log)
+        world.run(1000)
+        assert ("log" in sys.modules) == (log == "JSON"), log
+
+
 def test_what_takes_long_waits_for_the_line_and_the_step_and_not_without_an_end():
     """The line: a moment in which no telegram interrupts it. The step: one that has just begun."""
     front = panel().app.panel
@@ -111,6 +226,14 @@ def test_what_takes_long_waits_for_the_line_and_the_step_and_not_without_an_end(
         front.has_taken = lambda us: late
         answers = [front.has_time() for _ in range(turns)]
         assert answers == [False] * (turns - 1) + [True], (undisturbed, late, answers)
+
+
+def test_a_step_that_was_interrupted_is_too_late_for_what_takes_long():
+    front = panel().app.panel
+    front.bus.is_undisturbed = lambda until_us: True
+    for late in (False, True):
+        front.has_taken = lambda us: late
+        assert front.is_undisturbed() == (not late)
 
 
 def test_a_question_of_start_is_asked_all_the_same():

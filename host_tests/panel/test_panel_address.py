@@ -190,8 +190,26 @@ def test_two_drives_never_get_the_same_address():
         world.check()
 
 
+def test_an_address_that_is_being_given_to_one_drive_is_taken_for_all_others():
+    world = edit(parameter("P2011", addresses=(1, 2), parameters={2014: 20_000}), 4)
+    world.press("SET")
+    world.drives[1].unplug()  # nobody knows for a while whether it has heard that
+    world.press("SET")
+    world.press("ADDRESS_UP")
+    wait_for(world, "P2011:     2 A2")
+    edit(world, 4)
+    world.press("SET")
+    wait_for(world, "ADDRESS IS TAKEN")
+    world.press("UP")
+    world.press("SET")
+    wait_for(world, ASKED)  # 5 is free
+    world.press("PARAM")
+    assert world.drives[2].address == 2
+    world.check()
+
+
 def test_a_drive_whose_answer_was_lost_is_found_at_its_new_address():
-    for silent_ms in (50, 1500, 3000):
+    for silent_ms in (50, 1500, 3000, 6000):  # the last: it is only looked for by then
         options = {"parameters": {2014: 20_000}, "settings": {"unsupervised": [1]}}
         world = edit(parameter("P2011", **options), 5)
         world.press("SET")
@@ -234,6 +252,24 @@ def test_a_long_list_gets_time_to_find_the_drive_as_well():
     assert world.drives[1].address == 0
     world.run(60_000)
     assert row_2(world) == "P2011:     0 A0"
+
+
+def test_on_a_slow_line_a_drive_is_looked_for_during_three_rounds():
+    """With eight drives at 2400 baud they take 5 s: from 6 s to 11 s after its last answer."""
+    for silent_ms, address in ((9_000, 0), (13_000, 1)):
+        world = panel(addresses=tuple(range(1, 9)), baud=2400, parameters={2014: 60_000})
+        world.run(6000)
+        show(world, "P2011")
+        wait_for(world, "P2011:     1 A1", 60_000)
+        edit(world, 0)
+        world.press("SET")
+        lose_answer(world, 2011, 0, 50)
+        world.drives[1].unplug()
+        world.run(silent_ms)
+        world.drives[1].plug()
+        world.run(5_000)
+        assert row_2(world)[13:] == "A%d" % address, (silent_ms, world.lcd())
+        assert stored(world)["drives"][0] == address, silent_ms
 
 
 def test_a_drive_that_did_not_hear_is_taken_again_at_its_old_address():
@@ -313,6 +349,26 @@ def test_a_drive_whose_new_address_cannot_be_saved_is_not_started():
     world.press("START")
     world.run(2000)
     assert starts(world) == 1
+    world.check()
+
+
+def test_settings_that_cannot_be_saved_are_tried_again_after_ten_seconds():
+    """And each time the display says so."""
+    world = panel()
+    tried_us = []
+
+    def replace(data):
+        tried_us.append(world.clock.now_us)
+        raise OSError(28)
+
+    world.app.board.store.replace = replace
+    world.app.settings.change("setpoint_step_centihertz", 20)
+    for count in (1, 2, 3):
+        wait_for(world, "SETTINGS UNSAVED", 11_000)
+        assert len(tried_us) == count, tried_us
+        wait_for(world, "READY        A1")
+    waits = [(after - before) // 1000 for before, after in zip(tried_us, tried_us[1:])]
+    assert all([10_000 <= ms < 10_500 for ms in waits]), waits
     world.check()
 
 

@@ -7,6 +7,7 @@ each of them is said for a second and more in every 2 n s.
 
 import main
 from boards.sim.world import World
+from panel.neighbours import Neighbours
 from panel.pages.home import Home
 from panel_bench import (
     LOOP_US,
@@ -593,6 +594,54 @@ def test_with_one_drive_more_they_are_said_together_at_once():
         world.check()
 
 
+class Neighbour:
+    """A drive that is not shown and does not stand quietly; it has nothing to tell."""
+
+    def __init__(self):
+        self.watched = 0
+
+    def ask(self, now_us, reread_us):
+        return False
+
+    def is_quiet(self):
+        return False
+
+    def watch(self, now_us):
+        self.watched += 1
+
+    def keep_quiet(self):
+        pass
+
+    def is_active(self):
+        return False
+
+
+class Observed:
+    """Stands for the panel and its announcer. slow: each step has taken long already."""
+
+    def __init__(self, slow):
+        self.slow = slow
+        self.looked_at = []
+
+    def has_taken(self, us):
+        return self.slow
+
+    def look(self, place):
+        self.looked_at.append(place)
+
+
+def test_a_drive_that_took_a_whole_step_to_watch_is_announced_in_the_next():
+    for slow, steps in ((False, 2), (True, 3)):
+        controls, observed = [Neighbour() for _ in range(3)], Observed(slow)
+        neighbours = Neighbours(controls, observed, observed)
+        neighbours.show(0)
+        for step in range(1, 4 * steps + 1):
+            neighbours.step(0)
+            assert len(observed.looked_at) == step // steps, (slow, step, observed.looked_at)
+        assert sorted(observed.looked_at) == [1, 1, 2, 2], (slow, observed.looked_at)
+        assert [control.watched for control in controls] == [0, 2, 2], slow
+
+
 # --- warnings ------------------------------------------------------------------------------------
 
 
@@ -623,7 +672,11 @@ def test_the_number_of_a_warning_that_is_followed_by_another_is_that_of_the_one_
     world.run(1_000)
     assert set(said(world, 4_000)) == {"READY        A1", "WARN A0502   A1"}
     show(world, 2)
-    world.run(1_000)
+    seen = set()
+    for _ in range(150):
+        world.run(20)
+        seen.add(row_2(world))
+    assert "WARN A0504   A2" in seen and "WARN A0502   A2" not in seen, seen
     assert set(said(world, 4_000)) == {"READY        A2", "WARN A0504   A2"}
     world.check()
 

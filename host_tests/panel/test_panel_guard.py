@@ -174,6 +174,10 @@ def test_a_code_is_set_by_key_and_the_menu_closes_the_lock():
     assert row_2(world) == ">LOCK", world.lcd()
     press(world, "SET")
     assert row_2(world) == LOCKED, world.lcd()
+    world.run(3500)
+    assert row_2(world) == "READY        A1", world.lcd()
+    press(world, "PARAM")
+    assert row_2(world) == LOCKED, world.lcd()
     world.reset()  # so it is after power-on
     world.run(3000)
     hold(world, "PARAM")

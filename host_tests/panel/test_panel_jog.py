@@ -482,6 +482,22 @@ def test_a_jog_that_follows_a_slow_ramp_is_no_stop_that_failed():
     world.check()
 
 
+def test_start_takes_over_from_a_jog_that_ramps_down():
+    """From then on it runs by START, and no jog key stops it any more."""
+    world = panel()
+    world.drives[1].write(1061, 0, 650.0)
+    world.press("JOG_RIGHT", 2000)
+    world.run(60)
+    world.press("START")
+    world.run(3000)
+    assert row_2(world) == "RUNNING      A1", world.lcd()
+    world.press("JOG_LEFT", 400)
+    assert row_2(world) == "NO JOG: IT RUNS", world.lcd()
+    world.run(4000)
+    assert row_2(world) == "RUNNING      A1" and world.drives[1].state == "running"
+    world.check()
+
+
 def test_jog_does_not_weaken_a_second_stop():
     """Not even while what ramps down is a jog."""
     world = panel(loop_us=LOOP_US)

@@ -1,7 +1,19 @@
 # SPDX-License-Identifier: MIT
 """The operator's manual, parameter mode: look at parameters and change them."""
 
-from panel_bench import LOOP_US, OFF1, page_back, panel, row_1, row_2, running, starts, telegrams
+from boards.sim.drives.kinds import listed_drives, simulated
+from panel_bench import (
+    LOOP_US,
+    OFF1,
+    page_back,
+    panel,
+    row_1,
+    row_2,
+    running,
+    starts,
+    telegrams,
+    wait_until_known,
+)
 from parameter_bench import (
     ASKED,
     WRITES,
@@ -15,6 +27,7 @@ from parameter_bench import (
     write_eeprom,
     writes,
 )
+from uss import pkw
 
 KEYS = ("START", "REVERSE", "JOG_RIGHT", "JOG_LEFT", "UP", "DOWN", "ADDRESS_UP", "ADDRESS_DOWN",
         "PARAM", "NEXT", "PREVIOUS", "EDIT")  # fmt: skip
@@ -581,6 +594,68 @@ def test_a_stale_answer_is_not_taken_for_a_confirmation():
         if row_2(world) == "NOT THIS VALUE":
             break
     assert row_2(world) == "NOT THIS VALUE"
+    world.check()
+
+
+def test_a_drive_that_keeps_another_value_than_it_was_told_is_asked_four_times_in_all():
+    world = panel()
+    channel = world.drives[1].channel
+    accept = channel.accept
+
+    def accept_another(words, layout):
+        accept(list(words[:3]) + [2] if words[0] >> 12 in WRITES else words, layout)
+
+    show(world, "P1000")
+    channel.accept = accept_another
+    write(world, 3)
+    wait_for(world, "NOT WRITTEN")
+    assert world.drives[1].read(1000) == 2
+    tasks = [characters[3] >> 4 for _, sent, characters in world.wire.log.last(1000) if sent]
+    times = [task in WRITES and before not in WRITES for before, task in zip(tasks, tasks[1:])]
+    assert times.count(True) == 4, tasks
+    world.check()
+
+
+def test_a_write_waits_for_room_in_the_parameter_channel():
+    world = panel()
+    wait_until_known(world)
+    control = world.app.panel.controls[0]
+    channel, jobs = control.drive.channel, []
+    write = world.app.panel.write(0, control, 1000, 0, 3)
+    while not channel.is_full():
+        jobs.append(pkw.read(1082))
+        control.drive.ask(jobs[-1])
+    world.run(60)
+    assert write.outcome is None and not writes(world), write.outcome
+    wait_for(world, "WRITTEN (RAM)")
+    assert world.drives[1].read(1000) == 3
+    assert [job.state for job in jobs] == [pkw.DONE] * len(jobs)
+    world.check()
+
+
+def test_an_element_is_written_by_the_tasks_for_arrays_where_the_family_has_those():
+    """A V20: a word and a double word, each into RAM and into the EEPROM."""
+    world = panel(kinds=simulated(listed_drives("1=v20")), settings={"kinds": {"1": "v20"}})
+    wait_until_known(world)
+    drive, front = world.drives[1], world.app.panel
+    value = 0x41480000  # 12.5
+    for number, bits, width, eeprom, task, reads in (
+        (5, 25, pkw.WORD, False, 7, 25),
+        (5, 27, pkw.WORD, True, 12, 27),
+        (1120, value, pkw.DOUBLE, False, 8, 12.5),
+        (1120, value + 0x80000, pkw.DOUBLE, True, 11, 13),
+    ):
+        for index, its_task in ((1, task), (0, {7: 2, 12: 14, 8: 3, 11: 13}[task])):
+            since_us = world.clock.now_us
+            front.write(0, front.selected, number, index, bits, eeprom, width)
+            world.run(1000)
+            assert drive.read(number, index) == reads, (number, index, world.lcd())
+            asked = [
+                characters[3] >> 4
+                for at_us, from_panel, characters in world.wire.log.last(200)
+                if from_panel and at_us > since_us
+            ]
+            assert its_task in asked, (number, index, asked)
     world.check()
 
 

@@ -135,6 +135,19 @@ def test_what_there_is_to_say_of_the_others_is_said_on():
     world.check()
 
 
+def test_a_drive_that_is_asked_twice_in_a_round_is_asked_half_a_round_later_again():
+    for repeats, asked in (
+        ({}, [1, 2, 3, 4]),
+        ({"4": 2}, [1, 2, 4, 3, 4]),
+        ({"1": 2}, [1, 2, 1, 3, 4]),
+        ({"2": 3}, [1, 2, 3, 2, 4, 2]),
+        ({"1": 2, "3": 2}, [1, 3, 2, 1, 3, 4]),
+    ):
+        world = panel(addresses=(1, 2, 3, 4), settings={"repeats": repeats})
+        in_turn = [drive.address for drive in world.app.bus.turns.list]
+        assert in_turn == asked, (repeats, in_turn)
+
+
 def test_drives_come_and_go_31_times():
     world = World(main.start, tuple(range(31)), settings={"drives": [0]})
     world.run(2000)

@@ -37,6 +37,7 @@ def test_a_value_that_needs_more_room_gives_up_decimals():
     assert shown(5, -10000, 1) == " -100"
     assert shown(5, -65000, 1) == " -650"
     assert shown(3, 65000, 2) == "650"
+    assert shown(3, 5, 2) == "0.1" and shown(2, 50, 1) == " 1"  # no point without a digit
 
 
 def test_a_value_that_never_fits_is_not_shown_as_a_small_one():
