@@ -137,9 +137,8 @@ def test_a_list_that_finds_no_memory_leaves_nothing_of_what_had_come_for_it():
     world.press("PARAM", 1500)
     world.run(1000)
     before = modules()
-    for _ in range(2):
-        world.press("UP")  # ABOUT, and then EVENTS
-    world.press("UP")
+    for _ in range(3):  # over ABOUT and EVENTS
+        world.press("UP")
     assert row_2(world) == ">FAULT MEMORY", world.lcd()
     kept = set(sys.modules)
     with NoMemory("panel.lookup.memory"):

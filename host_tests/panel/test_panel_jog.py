@@ -484,10 +484,11 @@ def test_a_jog_that_follows_a_slow_ramp_is_no_stop_that_failed():
 
 def test_start_takes_over_from_a_jog_that_ramps_down():
     """From then on it runs by START, and no jog key stops it any more."""
-    world = panel()
+    world = panel(loop_us=LOOP_US)
     world.drives[1].write(1061, 0, 650.0)
     world.press("JOG_RIGHT", 2000)
     world.run(60)
+    assert row_2(world) == "STOPPING     A1", world.lcd()
     world.press("START")
     world.run(3000)
     assert row_2(world) == "RUNNING      A1", world.lcd()

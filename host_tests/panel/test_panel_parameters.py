@@ -639,13 +639,13 @@ def test_an_element_is_written_by_the_tasks_for_arrays_where_the_family_has_thos
     wait_until_known(world)
     drive, front = world.drives[1], world.app.panel
     value = 0x41480000  # 12.5
-    for number, bits, width, eeprom, task, reads in (
-        (5, 25, pkw.WORD, False, 7, 25),
-        (5, 27, pkw.WORD, True, 12, 27),
-        (1120, value, pkw.DOUBLE, False, 8, 12.5),
-        (1120, value + 0x80000, pkw.DOUBLE, True, 11, 13),
+    for number, bits, width, eeprom, tasks, reads in (  # tasks: of a value, of an element
+        (5, 25, pkw.WORD, False, (2, 7), 25),
+        (5, 27, pkw.WORD, True, (14, 12), 27),
+        (1120, value, pkw.DOUBLE, False, (3, 8), 12.5),
+        (1120, value + 0x80000, pkw.DOUBLE, True, (13, 11), 13),
     ):
-        for index, its_task in ((1, task), (0, {7: 2, 12: 14, 8: 3, 11: 13}[task])):
+        for index, task in enumerate(tasks):
             since_us = world.clock.now_us
             front.write(0, front.selected, number, index, bits, eeprom, width)
             world.run(1000)
@@ -655,7 +655,7 @@ def test_an_element_is_written_by_the_tasks_for_arrays_where_the_family_has_thos
                 for at_us, from_panel, characters in world.wire.log.last(200)
                 if from_panel and at_us > since_us
             ]
-            assert its_task in asked, (number, index, asked)
+            assert task in asked, (number, index, asked)
     world.check()
 
 
