@@ -404,6 +404,20 @@ def test_the_full_keypad_loads_nothing_of_this():
     assert "panel.keys.compact" in sys.modules
 
 
+def test_a_key_that_is_withheld_repeats_nothing_any_more():
+    for others in (False, True):
+        keys = keys_of(COMPACT_KEYS, MASK, (), None)
+        up, now_ms = keys.bit("UP"), 0
+        for down_ms, raw in ((100, 0), (600, 1 << COMPACT_KEYS.index("UP"))):
+            for _ in range(down_ms):
+                if not keys.repeated:
+                    keys.update(raw, now_ms)
+                    now_ms += 1
+        assert keys.repeated == up
+        keys.withhold(~up if others else up)
+        assert keys.repeated == (up if others else 0), others
+
+
 def test_in_the_dark_fn_only_makes_light():
     world = ready(settings={"light_minutes": 1})
     world.run(62_000)

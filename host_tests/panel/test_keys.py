@@ -187,6 +187,17 @@ def test_a_key_that_cannot_be_told_repeats_nothing():
         hand.at_ms += 1
 
 
+def test_a_key_that_is_withheld_repeats_nothing_any_more_and_the_others_do():
+    for withheld, repeats in ((UP, False), (~STOP, False), (START | STOP, True), (~UP, True)):
+        hand = Hand()
+        while not hand.keys.repeated:
+            hand.hold(UP, 1)
+        hand.keys.withhold(withheld)
+        assert hand.keys.repeated == (UP if repeats else 0), withheld
+        hand.hold(UP, 500)
+        assert (len(hand.repeated) > 1) == repeats, (withheld, hand.repeated)
+
+
 def test_keys_at_rest_are_all_up_and_were_all_seen_up():
     hand = Hand()
     assert hand.keys.at_rest

@@ -196,6 +196,20 @@ def test_a_code_is_set_by_key_and_the_menu_closes_the_lock():
     world.check()
 
 
+def test_the_least_code_locks_like_any_other():
+    world = locked(code=1)
+    hold(world, "PARAM")
+    enter(world, "0001")
+    hold(world, "PARAM")
+    press(world, "UP")
+    assert row_2(world) == ">LOCK", world.lcd()
+    press(world, "SET")
+    world.run(3500)
+    press(world, "PARAM")
+    assert row_2(world) == LOCKED, world.lcd()
+    world.check()
+
+
 def test_a_question_takes_start_and_stop_while_the_lock_is_closed_and_writes_nothing():
     world = World(main.start, (1,), parameters={2014: 0}, settings={"lock_code": 5})
     world.run(1500)
