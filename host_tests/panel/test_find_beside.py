@@ -170,6 +170,18 @@ def test_what_is_not_taken_does_not_trip_while_the_list_is_shown():
     world.check()
 
 
+def test_the_last_of_three_that_were_found_is_taken_alone():
+    world = line_of("1,3=g110,5,6=mm3", (1,))
+    opened(world)
+    searched(world)
+    press(world, "UP")
+    assert title(world).startswith("A6 READY"), world.lcd()
+    press(world, "SET")
+    assert row_2(world) == "A6 ADDED", world.lcd()
+    assert [drive.address for drive in world.app.bus.turns.drives] == [1, 6]
+    world.check()
+
+
 def test_the_first_one_for_which_there_is_no_room_is_named():
     """A panel has 31 drives at the most; while the others were looked for, 28 have come."""
     world = line_of("1,3=g110,5", (1,))

@@ -198,6 +198,14 @@ def test_a_key_that_is_withheld_repeats_nothing_any_more_and_the_others_do():
         assert (len(hand.repeated) > 1) == repeats, (withheld, hand.repeated)
 
 
+def test_of_keys_that_were_pressed_together_only_those_are_withheld_that_are_meant():
+    hand = Hand()
+    while not hand.keys.pressed:
+        hand.hold(START | UP, 1)
+    hand.keys.withhold(~UP)
+    assert hand.keys.pressed == UP
+
+
 def test_keys_at_rest_are_all_up_and_were_all_seen_up():
     hand = Hand()
     assert hand.keys.at_rest

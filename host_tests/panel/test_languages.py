@@ -357,13 +357,13 @@ def test_without_the_table_all_is_in_english():
 
 
 class Packed:
-    """A language as a firmware file has it: the check sum of `B` stands astride those of two
-    texts before it."""
+    """A language as a firmware file has it: twice the check sum of `B` stands astride those of two
+    texts before its own, behind which the words are found."""
 
-    _sum = pack("<I", crc32(b"B"))
-    KEYS = pack("<I", crc32(b"A")) + b"xx" + _sum + b"xx" + _sum
-    PLACES = pack("<HHHHH", 0, 4, 6, 7, 12)
-    WORDS = b"an Axxyfor B"
+    _astride = b"x" + pack("<I", crc32(b"B")) + b"xxx"
+    KEYS = _astride + pack("<I", crc32(b"A")) + _astride + pack("<I", crc32(b"B"))
+    PLACES = pack("<HHHHHHH", 0, 1, 2, 6, 7, 8, 13)
+    WORDS = b"xyan Axyfor B"
 
 
 def test_a_language_is_read_from_a_module_where_there_is_no_table():

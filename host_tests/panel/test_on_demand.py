@@ -171,6 +171,26 @@ def test_a_menu_that_closes_while_it_is_coming_does_not_come():
     world.check()
 
 
+def test_of_a_list_that_was_coming_when_the_menu_closed_nothing_stays_in_memory():
+    world = cramped()
+    world.press("PARAM", 1500)
+    world.run(1000)
+    for _ in range(3):
+        world.press("UP")
+    assert row_2(world) == ">FAULT MEMORY", world.lcd()
+    front, before = world.app.panel, set(sys.modules)
+    has_time, turns = front.has_time, [True, True]
+    front.has_time = lambda: bool(turns) and turns.pop()
+    world.press("SET")
+    world.run(200)
+    assert set(sys.modules) - before, "none of its modules has come"
+    front.close_menu()
+    front.has_time = has_time
+    world.run(1000)
+    assert row_2(world) == "READY        A1", world.lcd()
+    assert not set(sys.modules) - before, set(sys.modules) - before
+
+
 def test_a_search_that_finds_no_memory_says_so_and_may_be_tried_again():
     world = panel(addresses=(1, 2), settings={"drives": [1]})
     world.press("PARAM", 1500)

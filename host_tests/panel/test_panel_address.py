@@ -202,7 +202,12 @@ def test_an_address_that_is_being_given_to_one_drive_is_taken_for_all_others():
     wait_for(world, "ADDRESS IS TAKEN")
     world.press("UP")
     world.press("SET")
-    wait_for(world, ASKED)  # 5 is free
+    wait_for(world, ASKED)  # 5 is free, and so is 3
+    world.press("PARAM")
+    world.press("DOWN")
+    world.press("DOWN")
+    world.press("SET")
+    wait_for(world, ASKED)
     world.press("PARAM")
     assert world.drives[2].address == 2
     world.check()
