@@ -418,6 +418,17 @@ def test_a_key_that_is_withheld_repeats_nothing_any_more():
         assert keys.repeated == (up if others else 0), others
 
 
+def test_of_keys_that_were_pressed_together_only_those_are_withheld_that_are_meant():
+    keys = keys_of(COMPACT_KEYS, MASK, (), None)
+    both = sum([1 << COMPACT_KEYS.index(name) for name in ("START", "UP")])
+    for now_ms in range(200):
+        if not keys.pressed:
+            keys.update(both if now_ms >= 100 else 0, now_ms)
+    assert keys.pressed == keys.bits(("START", "UP"))
+    keys.withhold(~keys.bit("UP"))
+    assert keys.pressed == keys.bit("UP")
+
+
 def test_in_the_dark_fn_only_makes_light():
     world = ready(settings={"light_minutes": 1})
     world.run(62_000)
