@@ -2,6 +2,7 @@
 """Diagnosis by keys: the pages of the menu, and why drive 4 does not answer."""
 
 import main
+from boards.sim.drives.families import mm440
 from boards.sim.drives.kinds import listed_drives, simulated
 from boards.sim.world import World
 from panel_bench import OFF1, panel, row_2, running, said, settled, starts, telegrams
@@ -280,6 +281,37 @@ def test_a_task_and_what_the_drive_says_to_it_are_told_in_words():
         assert comes_up(world, job, heard), (sent, heard, world.lcd())
     world.drives[1].write(927, 0, 7)
     assert comes_up(world, pkw.write_word(1000, 5), "NO RIGHTS"), world.lcd()
+    world.check()
+
+
+def test_the_words_of_a_task_are_where_the_drive_has_them():
+    for words in (3, 4, 127):
+        kind = "mm440/%d" % words
+        world = panel(
+            baud=4800, kinds=simulated(listed_drives("1=" + kind)), settings={"kinds": {"1": kind}}
+        )
+        open_menu(world, "DIAGNOSIS", "A1", "TELEGRAMS")
+        read(world, "A1 HEARD")
+        world.press("DOWN", 40)
+        assert comes_up(world, pkw.write_word(1000, 9999), "ERROR 2"), (words, world.lcd())
+        world.press("DOWN", 40)
+        told = "PWE 0000 0041" if words == 4 else "PWE 0041 0000"
+        assert comes_up(world, pkw.write_word(1000, 65), told), (words, world.lcd())
+        world.check()
+
+
+def test_a_telegram_without_a_parameter_channel_has_no_task():
+    kinds = {1: {"family": mm440, "parameters": {2013: 127, 2014: 2_000}}}
+    world = panel(kinds=kinds, settings={"kinds": {"1": "mm440/127s"}})
+    open_menu(world, "DIAGNOSIS", "A1", "TELEGRAMS")
+    read(world, "A1 HEARD")
+    for _ in range(2):  # the task and its value
+        world.press("DOWN", 40)
+        told = set()
+        for _ in range(200):
+            world.run(15)
+            told.add(row_2(world)[1:])
+        assert "NO TASK" in told, told
     world.check()
 
 

@@ -87,13 +87,16 @@ class List(Entries):
 
     def _word(self, data, count, is_reply, word):
         """A part of a telegram in words."""
-        if word == _PKE:
-            return _task(get_word(data, NET), get_word(data, NET + 2), data, is_reply)
-        if word == _PWE:
-            high = get_word(data, NET + 4)
-            low = get_word(data, NET + 6) if self.argument.drive.layout.pkw_words != 3 else 0
-            return texts.of(words.PWE, high, low)
-        at = count - 1 - self.argument.drive.layout.pzd_count
+        layout = self.argument.drive.layout
+        at = count - 1 - layout.pzd_count
+        if word == _PKE or word == _PWE:
+            if at == NET:  # a short telegram
+                return texts.of(words.NO_TASK)
+            first, second = get_word(data, NET + 4), get_word(data, NET + 6)
+            if word == _PWE:
+                return texts.of(words.PWE, first, second if at >= NET + 8 else 0)
+            error = second if layout.pkw_words == 4 else first
+            return _task(get_word(data, NET), get_word(data, NET + 2), error, is_reply)
         if at + 4 > KEPT:  # a long text goes before it
             return b"..."
         if word == _CONTROL:
@@ -110,13 +113,12 @@ class List(Entries):
         return texts.of(words.HIW if is_reply else words.HSW, value, percent)
 
 
-def _task(pke, ind, data, is_reply):
-    """A task or a reply, and its parameter."""
+def _task(pke, ind, error, is_reply):
+    """A task or a reply, and its parameter. error: the number, if it is an error."""
     code = pke >> 12
     if not code:
         return texts.of(words.NO_TASK)
     if is_reply and code == _REFUSED:
-        error = get_word(data, NET + 6)
         return texts.of(words.REFUSES, error)
     if is_reply and code == _NO_RIGHTS:
         return texts.of(words.NO_RIGHTS)
