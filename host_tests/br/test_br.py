@@ -344,6 +344,23 @@ def test_wrong_lengths_and_addresses_are_told():
         assert plc.told().Status.Receive  # as it was before
 
 
+def test_a_drive_whose_lengths_are_wrong_is_not_taken_into_the_sequence():
+    plc = Plc((1, 2))
+    plc.sequence(1)
+    plc.run(500)
+    plc.lengths(2).PKW_lengh = 5
+    plc.sequence(1, 2)
+    plc.run(500)
+    assert (plc.status.Error, plc.status.ErrorID) == (True, codes.PKW_LENGTH)
+    assert plc.controller.bus.turns.at(2) is None and not plc.told(2).Status.Receive
+    assert plc.told(1).Status.Receive
+    plc.lengths(2).PKW_lengh = 0
+    plc.acknowledge_errors()
+    plc.run(500)
+    assert plc.told(2).Status.Receive and not plc.status.Error
+    plc.check()
+
+
 def test_a_telegram_of_no_words_is_told():
     plc = Plc()
     plc.lengths().PKW_lengh = plc.lengths().PZD_lengh = 0
@@ -375,6 +392,28 @@ def test_a_port_that_fails_is_told_and_stops_the_motor():
     plc.run(2_000)
     assert plc.status.ErrorID == codes.READ_FAILED
     assert plc.drives[1].hz() == 0 and plc.drives[1].starts == 1
+
+
+def test_ctrl_c_in_the_middle_of_a_scan_ends_the_program_and_leaves_no_motor_running():
+    plc = Plc()
+    plc.start()
+
+    def interrupted(buffer, at):
+        raise KeyboardInterrupt
+
+    receive = plc.link.receive
+    plc.link.receive = interrupted
+    try:
+        plc.run(20)
+    except KeyboardInterrupt:
+        plc.link.receive = receive
+    else:
+        raise AssertionError("Ctrl-C is lost")
+    assert plc.controller.bus.failures == 1
+    plc.run(2_000)  # somebody goes on all the same
+    assert plc.drives[1].hz() == 0 and plc.drives[1].starts == 1
+    assert plc.status.ErrorID == codes.READ_FAILED
+    plc.check()
 
 
 def test_every_code_has_a_text():

@@ -2,7 +2,7 @@
 """The blocks that make and read telegrams, held against the telegrams that the source prints."""
 
 from uss.br import codes
-from uss.br.blocks import RxCreatePZD, RxDecompose, TxCompose, TxCreatePZD
+from uss.br.blocks import Block, RxCreatePZD, RxDecompose, TxCompose, TxCreatePZD
 from uss.br.structures import BUFFER, RxPZD, Telegram, TxPZD
 
 
@@ -137,9 +137,11 @@ def test_what_comes_back_wrong():
     bench = Bench()
     bench.received.Par.RefFreq = 0
     assert bench.carry_out(bench.read) == 400
-    bench = Bench()
-    bench.received.Body.PZD[2] = 0x10000
-    assert bench.carry_out(bench.read) == 401
+    for place in (1, 2):
+        for wrong in (0x10000, -1, None):
+            bench = Bench()
+            bench.received.Body.PZD[place] = wrong
+            assert bench.carry_out(bench.read) == 401, (place, wrong)
 
 
 def test_with_variable_length_a_reply_may_be_longer_than_its_request():
@@ -155,6 +157,13 @@ def test_with_variable_length_a_reply_may_be_longer_than_its_request():
     fixed = Bench(pkw_words=3, address=3)
     fixed.send()
     assert fixed.receive(request.tx_buffer[:16]) == 302
+
+
+def test_a_block_of_your_own_that_has_nothing_to_do_is_done():
+    block = Block()
+    block.Cmd.Create = True
+    block()
+    assert block.Status.Done and not block.Status.Ready and not block.Status.Error
 
 
 def test_a_block_works_by_its_edge_and_an_error_stays_until_it_is_acknowledged():

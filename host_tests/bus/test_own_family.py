@@ -172,6 +172,18 @@ def test_parameters_are_read_and_written_without_control():
     )
 
 
+def test_a_drive_of_the_specification_may_be_without_control_as_well():
+    world = Bench()
+    world.bus.remove(world.drive)
+    world.bus.wait(0.3)
+    since_us = world.clock.now_us
+    drive = world.bus.add(1, MM420, control=False)
+    assert drive.read(1120) == 1.0
+    assert set(world.stws(1, since_us)) == {0x0000}
+    assert refusal(NotStarted, drive.run, 10.0) == "drive 1 was added without control"
+    world.end()
+
+
 def test_a_motor_that_runs_by_its_terminals_is_left_alone_and_goes_on():
     world = without_control()
     drive = world.bus.drives[0]

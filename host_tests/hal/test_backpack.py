@@ -4,9 +4,10 @@
 import random
 
 from boards.sim.chip.machine import heap_lock, heap_unlock
+from boards.sim.clock import Clock
 from hal.display.backpack import AGAIN_US
 from hal.display.character_display import REFRESH_US
-from hal.display.probe import answers
+from hal.display.probe import answers, free
 from lcd_bench import HOURGLASS, LOOP_US, READY, RUNNING, UP_AND_DOWN, BackpackBench
 
 REFRESH_MS = REFRESH_US // 1000
@@ -48,6 +49,37 @@ def test_looking_for_it_lights_it_and_writes_nothing():
     assert bench.chip_of_backpack.lit and bench.written() == 0
 
 
+class HeldLine:
+    """SDA, which a backpack holds low until it has had so many clocks; and SCL."""
+
+    def __init__(self, clocks):
+        self.clocks = clocks
+        self.clock = Clock()
+        self.changes = []  # of SCL: (when, level)
+        self.data, self.pulse = Wire(self.level), Wire(self.put)
+
+    def level(self):
+        return sum(level for _, level in self.changes) >= self.clocks
+
+    def put(self, level):
+        self.changes.append((self.clock.now_us, level))
+
+
+class Wire:
+    def __init__(self, value):
+        self.value = value
+
+
+def test_a_backpack_that_holds_the_wires_is_clocked_until_it_lets_go():
+    """Nine clocks are all that a transfer can wait for; 5 us each way make 100 kHz."""
+    for held, clocks in ((0, 0), (1, 1), (5, 5), (9, 9), (1000, 9)):
+        line = HeldLine(held)
+        free(line.data, line.pulse, line.clock.sleep_us)
+        assert [level for _, level in line.changes] == [0, 1] * clocks, held
+        instants = [at_us for at_us, _ in line.changes]
+        assert instants == [5 * place for place in range(1, 2 * clocks + 1)], held
+
+
 def test_the_light_goes_off_and_on_and_the_picture_stays():
     bench = running(HOURGLASS)
     chip, display = bench.chip_of_backpack, bench.display
@@ -60,6 +92,20 @@ def test_the_light_goes_off_and_on_and_the_picture_stays():
     display.backlight(True)
     assert chip.lit and bench.text() == shown(READY)
     bench.check()
+
+
+def test_the_light_may_change_between_two_characters_that_stand_side_by_side():
+    """The byte for the light tells the controller that a command follows, and none does."""
+    for lit in (False, True):
+        bench = running()
+        picture = bytearray(RUNNING)
+        picture[3] = ord("#")
+        assert bench.run(picture, 30)
+        bench.display.backlight(lit)
+        picture[4] = ord("#")
+        assert bench.run(picture, 30) and bench.text() == shown(picture)
+        assert bench.chip_of_backpack.lit == lit
+        bench.check()
 
 
 def test_a_backpack_that_is_away_when_the_light_goes_off_comes_back_dark():

@@ -5,7 +5,8 @@ from boards.sim.board import HardTimer, clear_fifo
 from boards.sim.chip.machine import UART, Chip, Pin
 from boards.sim.clock import Clock
 from boards.sim.line.wire import Transceiver, Wire
-from hal.link.rs485 import Rs485Link
+from hal.link.rs485 import RELEASES_MAX, Rs485Link
+from hal.link.self_directed import SelfDirectedLink
 
 COMING = -1
 RATES = (300, 600, 1200, 2400, 4800, 9600, 19200, 38400, 57600, 76800, 93750, 115200, 187500)
@@ -88,6 +89,13 @@ def test_sending_us_counts_down_to_zero():
         bench.clock.advance(1_000)
     assert left[0] == 9167 and left == sorted(left, reverse=True) and left[-1] == 0
     bench.check()
+
+
+def test_whoever_looked_at_the_clock_before_the_sending_began_has_all_of_it_before_him():
+    bench = Bench()
+    before_us = bench.clock.ticks_us() - 50
+    bench.link.send(REQUEST, len(REQUEST))
+    assert bench.link.sending_us(before_us) == 9167
 
 
 def test_a_burst_is_announced_and_its_end_known():
@@ -221,7 +229,11 @@ def test_a_transmitter_that_never_ends_does_not_keep_the_line():
     bench = Bench()
     bench.uart.txdone = lambda: False
     bench.link.send(REQUEST, len(REQUEST))
-    bench.clock.advance(20_000)
+    look_us = bench.wire.character_us // 4 + 1
+    bench.clock.advance(9167 + RELEASES_MAX * look_us - 10)
+    assert bench.driver_enable.value() == 1
+    assert bench.link.late_releases == 0
+    bench.clock.advance(20)
     assert bench.driver_enable.value() == 0
     assert bench.link.late_releases == 1
     assert bench.link.sending_us(bench.clock.ticks_us()) == 0
@@ -268,3 +280,65 @@ def test_a_closed_link_is_quiet():
     bench.clock.advance(50_000)
     assert len(bench.activities) == activities and bench.driver_enable.value() == 0
     bench.check()
+
+
+# --- a transceiver that finds its direction ------------------------------------------------------
+
+
+class SelfDirectedUart:
+    """What a link without a driver enable asks of the UART. done: whether the last stop bit has
+    left."""
+
+    IRQ_RXIDLE = 1
+
+    def __init__(self):
+        self.sent = []
+        self.done = False
+        self.handler = None
+        self.is_on = True
+
+    def irq(self, handler, trigger, hard=False):
+        assert not hard
+        self.handler = handler if trigger else None
+
+    def write(self, buffer, count):
+        self.sent.append(bytes(buffer[:count]))
+
+    def txdone(self):
+        return self.done
+
+    def deinit(self):
+        self.is_on = False
+
+
+def self_directed(ticks_start=0):
+    clock = Clock(ticks_start)
+    uart = SelfDirectedUart()
+    return SelfDirectedLink(uart, clock, 19200, 1_250, 14_000), uart, clock
+
+
+def test_a_line_that_finds_its_direction_is_busy_until_the_last_stop_bit():
+    """Also where the counter of the clock begins anew; the UART may be a little slow."""
+    for ticks_start in (0, -4_000):
+        link, uart, clock = self_directed(ticks_start)
+        assert link.sending_us(clock.ticks_us()) == 0
+        link.send(REQUEST + bytes(9), len(REQUEST))
+        assert uart.sent == [REQUEST]
+        before_us = clock.ticks_us() - 50 & clock.ticks_mask
+        assert link.sending_us(before_us) == 9167
+        for passed_us, left_us in ((0, 9167), (5_000, 4167), (9_166, 1), (9_167, 1), (9_500, 1)):
+            clock.advance(passed_us - clock.now_us)
+            assert link.sending_us(clock.ticks_us()) == left_us, (ticks_start, passed_us)
+        uart.done = True
+        assert link.sending_us(clock.ticks_us()) == 0
+        clock.advance(600_000_000)  # the counter goes round
+        assert link.sending_us(clock.ticks_us()) == 0
+
+
+def test_a_line_that_finds_its_direction_is_let_go_of_as_a_whole():
+    link, uart, clock = self_directed()
+    assert uart.handler
+    link.send(REQUEST, len(REQUEST))
+    link.close()
+    assert uart.handler is None and not uart.is_on
+    assert link.sending_us(clock.ticks_us()) == 0

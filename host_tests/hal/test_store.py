@@ -144,6 +144,15 @@ def test_a_file_that_cannot_be_read_is_moved_aside_and_gives_room_for_another():
     assert store.read() == NEW and flash.files["s.bad"] == OLD
 
 
+def test_a_file_that_cannot_be_read_is_written_anew():
+    flash = flash_with(OLD)
+    flash.unreadable = ("s",)
+    store_on(flash).replace(OLD)
+    assert flash.steps and flash.files == {"s": OLD}
+    flash.unreadable = ()
+    assert store_on(flash).read() == OLD
+
+
 # --- a full flash -------------------------------------------------------------------------------
 
 

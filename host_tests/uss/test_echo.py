@@ -6,8 +6,10 @@ comes back looks just the same.
 """
 
 from round_bench import Bench, Node
-from uss import pkw
-from uss.outside import Mirror
+from uss import pkw, pzd
+from uss.families import GENERIC, drive_maker
+from uss.layout import Layout
+from uss.outside import Broadcast, Mirror
 from uss.receiver import SILENT
 
 IDLE_BITS = 32  # after so many bit times without a character an RP2040 reports a burst
@@ -149,6 +151,40 @@ def test_without_the_echo_a_mirror_telegram_is_still_known_by_its_time():
     bench.run(50_000)
     assert mirrored(bench, 5, bytes(12)).state == pkw.DONE
     assert mirrored(bench, 9, bytes(12)).state == pkw.TIMED_OUT
+
+
+class Alike(Node):
+    """A device whose status word may have any bits: it answers with the very telegram."""
+
+    def answer(self, characters):
+        return characters
+
+
+class Pump(GENERIC):
+    zsw_says = ((0x0400, 0x0400, pzd.ZSW_READY),)
+
+
+def test_only_a_drive_with_a_status_word_of_its_own_may_answer_with_the_request():
+    """A link that announces what it has heard does not know the pause before that exactly."""
+    for family, has_contact in ((Pump, True), (GENERIC, False)):
+        bench = bench_of([Alike(1)], IDLE_BITS, echo=False, listed=False)
+        drive = bench.master.turns.add(1, Layout(4, 2), drive_maker(family))
+        bench.run(1_000_000)
+        assert drive.contact == has_contact, (family.__name__, drive.counters)
+        assert (drive.counters[0] > 3) == has_contact, drive.counters
+
+
+def test_the_echo_of_a_broadcast_is_known_by_the_first_one():
+    """The drives have their time to take it: it is not cut short as by a reply. At the higher
+    rate a link that has to be looked at cannot tell whether the echo came after a pause."""
+    for baud in (19_200, 115_200):
+        for bits in LINKS:
+            bench = bench_of([], bits, baud)
+            broadcast = Broadcast((pzd.OFF1, 0x1000), {2: 0xFFFF})
+            bench.master.turns.post(broadcast)
+            bench.run_until(lambda: broadcast.state != pkw.PENDING)
+            passed_us = bench.now - bench.sent[0].at - bench.timing.telegram_us(12)
+            assert broadcast.state == pkw.DONE and passed_us >= 20_000, (baud, bits, passed_us)
 
 
 def test_an_echo_that_is_spoilt_is_no_reply():

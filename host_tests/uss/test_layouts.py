@@ -451,6 +451,20 @@ def test_a_layout_that_is_none_is_refused():
         raise AssertionError("%r + %r words were accepted" % (pkw_words, pzd_words))
 
 
+def test_the_longest_request_is_a_task_at_least_and_a_telegram_at_the_most():
+    for pzd_words, longest in ((2, 3), (2, 124), (0, 126), (16, 110)):
+        layout = Layout(VARIABLE, pzd_words, longest)
+        assert layout.longest == longest and layout.net_max == 2 * (longest + pzd_words)
+    for pzd_words, longest in ((2, 2), (2, 0), (2, 125), (0, 127), (16, 111)):
+        try:
+            Layout(VARIABLE, pzd_words, longest)
+        except ValueError as error:
+            assert str(error) == "%d PKW words and %d PZD words" % (longest, pzd_words)
+            continue
+        raise AssertionError("%r + %r words were accepted" % (longest, pzd_words))
+    assert Layout(4, 2, 200).longest == 4  # what has a fixed length needs no other
+
+
 def test_a_short_telegram_has_no_pkw_words_unless_there_is_a_task():
     """STX LGE ADR STW HSW BCC both ways; a task and its answer have as many words as ever."""
     seeded()

@@ -6,7 +6,7 @@ from uss import pkw, pzd
 from uss.finding.mirror import OutsideTelegram
 from uss.outside import NEW, PENDING, TIMED_OUT, Broadcast, Mirror, Special, stop_all
 from uss.receiver import SILENT
-from uss.telegram import BAD_BCC
+from uss.telegram import BAD_BCC, BAD_LENGTH
 
 NET = b"\x12\x34\x56\x78\x9a\xbc\xde\xf0\x00\x00\x00\x00"
 TOGETHER = Broadcast((pzd.OFF1, 0x1000), {2: 0xFFFF}).request  # a setpoint for all
@@ -31,8 +31,8 @@ def through(bench, single):
 def refused(what, *arguments):
     try:
         what(*arguments)
-    except ValueError:
-        return
+    except ValueError as error:
+        return str(error)
     raise AssertionError("taken: %r" % (arguments,))
 
 
@@ -106,24 +106,58 @@ def test_after_a_broadcast_the_drives_have_time_to_take_it():
     assert not any([any(drive.counters[1:]) for drive in bench.master.turns.drives])
 
 
-def test_a_special_telegram_brings_what_its_node_answers():
-    bench = Bench(nodes(1) + [Node(9)])
-    bench.contact()
-    seen = []
-    bench.nodes[9].answer = lambda characters: None
-    special = Special(9, b"\x01\x02\x03", 5, lambda net, count: seen.append(bytes(net[:count])))
+def answers(bench, address, net):
+    """Somebody answers telegrams to this ADR with these net data."""
     send = bench.send
 
     def answering(buffer, count):
         send(buffer, count)
-        if buffer[2] == 0x89:
+        if buffer[2] == address:
             end = bench.now + bench.timing.telegram_us(count - 4)
-            bench.talk(framed(0x89, b"hello"), end + 3_000)
+            bench.talk(framed(address, net), end + 3_000)
 
     bench.send = answering
+
+
+def test_a_special_telegram_brings_what_its_node_answers():
+    """Of the length that was agreed, or of any."""
+    for reply_count, net in ((5, b"hello"), (None, b"hello"), (None, b"x"), (None, bytes(252))):
+        bench = Bench(nodes(1))
+        bench.contact()
+        seen = []
+        special = Special(
+            9, b"\x01\x02\x03", reply_count, lambda net, count: seen.append(bytes(net[:count]))
+        )
+        answers(bench, 0x89, net)
+        through(bench, special)
+        assert special.state == pkw.DONE and seen == [net], (reply_count, net)
+        assert bytes(special.reply[: special.reply_count]) == net
+
+
+def test_a_special_telegram_is_not_answered_by_one_of_another_length():
+    bench = Bench(nodes(1))
+    bench.contact()
+    seen = []
+    special = Special(9, b"\x01\x02\x03", 5, lambda net, count: seen.append(net))
+    answers(bench, 0x89, b"hell")
     through(bench, special)
-    assert special.state == pkw.DONE and seen == [b"hello"]
-    assert bytes(special.reply[: special.reply_count]) == b"hello"
+    assert special.state == TIMED_OUT and special.finding == BAD_LENGTH
+    assert not seen and not special.reply_count
+
+
+def test_what_comes_after_a_telegram_to_all_is_nobodys_answer():
+    """Even if it has the ADR and the length of one."""
+    bench = Bench(nodes(1))
+    bench.contact()
+    seen = []
+    answers(bench, 0xA0, b"who")
+    for net in (b"\x01\x02\x03", b"\x01\x02"):
+        for reply_count in (None, 3):
+            special = Special(None, net, reply_count, lambda net, count: seen.append(count))
+            through(bench, special)
+            assert special.state == pkw.DONE and not seen and not special.reply_count
+    broadcast = Broadcast((pzd.OFF1, 0x1000), {2: 0xFFFF})
+    assert not any([broadcast.fits(net_count) for net_count in range(253)])
 
 
 def test_an_ordinary_telegram_outside_the_list_is_done_when_its_node_has_answered():
@@ -233,15 +267,18 @@ def test_a_broadcast_to_drives_of_several_layouts_is_refused_and_they_are_stoppe
     bench.contact()
     bench.drives[2].start(0x1000)
     bench.run(300_000)
-    refused(stop_all, bench.master)
+    text = "Layout(3, 2) beside Layout(4, 2): no common broadcast"
+    assert refused(stop_all, bench.master) == text
     bench.run(300_000)
     assert 0x20 not in bench.addresses() and bench.nodes[2].zsw == 0xFB31
 
 
 def test_what_would_start_a_motor_or_is_no_telegram_is_refused():
-    refused(Broadcast, (pzd.ON, 0x1000), {1: 0xFFFF, 2: 0xFFFF})
+    starts = refused(Broadcast, (pzd.ON, 0x1000), {1: 0xFFFF, 2: 0xFFFF})
+    assert starts == "a broadcast starts no motors: STW 047Fh"
     refused(Broadcast, (pzd.ON,), {1: 0x0001})
-    refused(Broadcast, (0x0000, 0), {2: 0xFFFF})  # gives up control
+    gives_up = refused(Broadcast, (0x0000, 0x1000), {2: 0xFFFF})
+    assert gives_up == "STW 0000h gives up control"
     refused(Broadcast, (pzd.OFF1, 0), {2: 0x00FF})  # a setpoint is taken as a whole
     refused(Broadcast, (pzd.OFF1,) * 16, {16: 0xFFFF})  # PZD16 never
     refused(Broadcast, (pzd.OFF1,) * 17, {2: 0xFFFF})
