@@ -392,6 +392,9 @@ def test_a_port_that_fails_is_told_and_stops_the_motor():
     plc.run(2_000)
     assert plc.status.ErrorID == codes.READ_FAILED
     assert plc.drives[1].hz() == 0 and plc.drives[1].starts == 1
+    plc.acknowledge_errors()
+    plc.run(100)
+    assert not plc.status.Error and plc.status.ErrorID == codes.NO_ERROR  # it was told once
 
 
 def test_ctrl_c_in_the_middle_of_a_scan_ends_the_program_and_leaves_no_motor_running():

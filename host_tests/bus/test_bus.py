@@ -1345,6 +1345,22 @@ def test_an_exception_and_ctrl_c_stop_them_too_wherever_they_strike():
         assert not bench.wire.violations()
 
 
+def test_a_drive_that_counts_as_lost_late_does_not_keep_the_program_for_so_long():
+    """Ten seconds without a reply, and it still counts as in contact."""
+    bench = Bench((1, 2))
+    bench.bus.engine.turns.lost_us = 10_000_000
+    bench.drive.run(10.0)
+    bench.bus.wait(0.5)
+    bench.motor().unplug()
+    since_us = bench.clock.now_us
+    bench.bus.close()
+    assert 900_000 < bench.clock.now_us - since_us < 1_400_000
+    assert bench.bus.engine.phase == CLOSED and bench.stws(1)[-1] == pzd.OFF1
+    sent = bench.bus.engine.turns.exchanges
+    bench.clock.advance(1_000_000)
+    assert bench.bus.engine.turns.exchanges == sent
+
+
 def test_a_drive_that_does_not_answer_its_off_does_not_keep_the_program():
     bench = Bench((1, 2))
     bench.drive.run(10.0)

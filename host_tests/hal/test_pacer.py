@@ -464,6 +464,31 @@ def test_an_exception_is_kept_in_and_the_engine_begins_anew():
     assert bench.engine.entries == 3
 
 
+def test_where_it_cannot_even_begin_anew_that_is_kept_and_the_main_loop_tries_again():
+    for thrown in (ValueError, KeyboardInterrupt):
+        bench = Bench()
+
+        def fail(thrown=thrown):
+            raise thrown("on purpose")
+
+        def fail_again(now):
+            raise OSError("nor this")
+
+        recover = bench.engine.recover
+        bench.engine.meanwhile, bench.engine.recover = fail, fail_again
+        bench.pacer.run()
+        assert str(bench.pacer.failure) == "nor this"
+        bench.engine.meanwhile, bench.engine.recover = None, recover
+        recover(bench.clock.now)
+        entries = bench.engine.entries
+        bench.clock.now += 2 * OVERDUE_US
+        try:
+            bench.pacer.tend()
+        except KeyboardInterrupt:
+            assert thrown is KeyboardInterrupt
+        assert bench.engine.entries == entries + 1
+
+
 def test_a_timer_that_never_comes_is_noticed_by_the_main_loop():
     bench = Bench()
     bench.clock.now += 700 + OVERDUE_US - 1

@@ -733,6 +733,27 @@ def test_ctrl_c_in_the_middle_of_a_polled_scan_stops_the_motor_too():
     assert plc.drive().state == "stopping"
 
 
+def test_a_motor_does_not_run_on_where_scans_go_on_after_ctrl_c():
+    plc = Plc()
+    plc.start()
+
+    take = plc.port.drives[1].take
+
+    def press(*_):
+        plc.port.drives[1].take = take
+        raise KeyboardInterrupt
+
+    plc.port.drives[1].take = press
+    try:
+        plc.run(1_000)
+        raise AssertionError("nobody pressed")
+    except KeyboardInterrupt:
+        pass
+    plc.run(2_000)
+    assert plc.motor().RUN and plc.drive().state == "ready" and plc.outputs().RUN_VOID
+    plc.check()
+
+
 def test_a_port_that_is_not_set_up_or_closed_is_closed_at_once():
     port = Port(None, Clock())
     port.close()

@@ -58,10 +58,11 @@ LINK = (
 
 
 def refused(work, *arguments):
+    """What it says to that; False if it does not refuse."""
     try:
         work(*arguments)
-    except ValueError:
-        return True
+    except ValueError as error:
+        return str(error)
     return False
 
 
@@ -285,6 +286,9 @@ def test_a_kind_says_which_link_it_is_on():
         found = understood(word)
         assert found[0] is family and found[1].is_like(layout), word
         assert text(*found) == word
+    for word in ("mm440/", "mm440/+4", "mm440/4+", "mm440/ 4", "mm440/4+ 2", "mm440/four"):
+        text_of_it = "%s is no layout such as /4, or /4+6" % word[len("mm440") :]
+        assert refused(understood, word) == text_of_it, word
     for word in ("v20-bop", "-bop", "mm440-bop-bop", "bop", "mm440-com", "mm420-bop/4+5"):
         assert refused(understood, word), word
 

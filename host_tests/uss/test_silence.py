@@ -232,6 +232,17 @@ def test_a_silence_that_would_be_longer_than_that_is_not_risked():
     bench.run_until(lambda: bench.drives[31].contact, 5 * 29 * silence_us(bench))
 
 
+def test_who_never_trips_is_late_beside_nobody():
+    bench = bench_of(500)
+    deadlines, drives = bench.master.deadlines, bench.drives
+    started(bench, 2, 0)
+    bench.run(1_000_000)
+    assert deadlines.gap_us(drives[1]) > bench.master.turns.lost_us // 3
+    assert deadlines.first_late(drives[1]) is None
+    deadlines.supervise(drives[1], 1_000)
+    assert deadlines.first_late(drives[1]) is drives[1]
+
+
 def test_one_that_never_trips_may_be_late_now_and_then_for_their_sake():
     """It is lost after 0.3 s, and is to be asked three times in that; a silence takes longer."""
     bench = bench_of(90, listed=6)
