@@ -78,6 +78,8 @@ def test_a_backpack_that_holds_the_wires_is_clocked_until_it_lets_go():
         assert [level for _, level in line.changes] == [0, 1] * clocks, held
         instants = [at_us for at_us, _ in line.changes]
         assert instants == [5 * place for place in range(1, 2 * clocks + 1)], held
+        # One look more finds that it has let go, and nobody waits after that.
+        assert line.clock.now_us == (10 * clocks + 5 if held < 9 else 90), held
 
 
 def test_the_light_goes_off_and_on_and_the_picture_stays():

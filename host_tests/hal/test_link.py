@@ -248,17 +248,23 @@ def test_the_driver_is_off_before_anything_is_sent():
 
 
 def test_a_burst_that_somebody_drained_does_not_date_the_next_one():
-    bench = Bench()
-    bench.wire.talk(bench.neighbour, REQUEST, len(REQUEST))
-    bench.clock.advance(20_000)
-    bench.uart.readinto(bytearray(32))
-    assert bench.link.receive(bytearray(260), 0) == 0
-    burst = bench.wire.talk(bench.neighbour, REQUEST, len(REQUEST))
-    bench.clock.advance(9_300)  # before the interrupt that ends it
-    assert bench.link.receive(bytearray(260), 0) == COMING
-    bench.clock.advance(2_000)
-    assert bench.link.receive(bytearray(260), 0) == 16
-    assert 0 <= bench.link.received_at - burst.end_us <= 2
+    """Whether somebody looks meanwhile, or a request is sent."""
+    for sends in (False, True):
+        bench = Bench()
+        bench.wire.talk(bench.neighbour, REQUEST, len(REQUEST))
+        bench.clock.advance(20_000)
+        bench.uart.readinto(bytearray(32))
+        if sends:
+            bench.link.send(REQUEST, len(REQUEST))
+            bench.clock.advance(12_000)
+        else:
+            assert bench.link.receive(bytearray(260), 0) == 0
+        burst = bench.wire.talk(bench.neighbour, REQUEST, len(REQUEST))
+        bench.clock.advance(9_300)  # before the interrupt that ends it
+        assert bench.link.receive(bytearray(260), 0) == COMING
+        bench.clock.advance(2_000)
+        assert bench.link.receive(bytearray(260), 0) == 16
+        assert 0 <= bench.link.received_at - burst.end_us <= 2
 
 
 def test_the_longest_telegram_is_delivered_whole():
@@ -293,6 +299,7 @@ class SelfDirectedUart:
 
     def __init__(self):
         self.sent = []
+        self.heard = b""
         self.done = False
         self.handler = None
         self.is_on = True
@@ -306,6 +313,14 @@ class SelfDirectedUart:
 
     def txdone(self):
         return self.done
+
+    def any(self):
+        return len(self.heard)
+
+    def readinto(self, buffer, count):
+        buffer[:count] = self.heard[:count]
+        self.heard = self.heard[count:]
+        return count
 
     def deinit(self):
         self.is_on = False
@@ -324,6 +339,7 @@ def test_a_line_that_finds_its_direction_is_busy_until_the_last_stop_bit():
         assert link.sending_us(clock.ticks_us()) == 0
         link.send(REQUEST + bytes(9), len(REQUEST))
         assert uart.sent == [REQUEST]
+        assert link.sent_at == clock.ticks_us() + 9167 & clock.ticks_mask
         before_us = clock.ticks_us() - 50 & clock.ticks_mask
         assert link.sending_us(before_us) == 9167
         for passed_us, left_us in ((0, 9167), (5_000, 4167), (9_166, 1), (9_167, 1), (9_500, 1)):
@@ -333,6 +349,19 @@ def test_a_line_that_finds_its_direction_is_busy_until_the_last_stop_bit():
         assert link.sending_us(clock.ticks_us()) == 0
         clock.advance(600_000_000)  # the counter goes round
         assert link.sending_us(clock.ticks_us()) == 0
+
+
+def test_what_was_heard_before_a_request_does_not_date_the_reply():
+    link, uart, clock = self_directed()
+    clock.advance(100_000)
+    uart.handler(uart)  # of noise, which somebody has taken
+    clock.advance(5_000)
+    link.send(REQUEST, len(REQUEST))
+    clock.advance(20_000)
+    uart.heard = REQUEST  # it has come, and is not announced yet
+    buffer = bytearray(260)
+    assert link.receive(buffer, 0) == 16 and bytes(buffer[:16]) == REQUEST
+    assert link.received_at == clock.ticks_us()
 
 
 def test_a_line_that_finds_its_direction_is_let_go_of_as_a_whole():
