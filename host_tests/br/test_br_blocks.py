@@ -51,6 +51,8 @@ def test_the_telegrams_of_the_source():
     assert bench.send() == bytes.fromhex("020600047e00007e")
     bench.tx_pzd.Par.Run = True
     assert bench.send() == bytes.fromhex("020600047f00007f")
+    frame = bench.sent.Frame
+    assert (frame.STX, frame.LGE, frame.ADR, frame.BCC) == (0x02, 0x06, 0x00, 0x7F)
 
 
 def test_each_member_sets_its_bit():
@@ -68,7 +70,8 @@ def test_each_member_sets_its_bit():
 def test_the_setpoint_is_a_fraction_of_the_reference():
     for freq, reference, word in (
         (50.0, 50.0, 0x4000), (25.0, 50.0, 0x2000), (-50.0, 50.0, 0xC000), (-100.0, 50.0, 0x8000),
-        (99.997, 50.0, 0x7FFF), (1.0, 650.0, 0x0019), (0, 1, 0),
+        (99.997, 50.0, 0x7FFF), (1.0, 650.0, 0x0019), (0, 1, 0), (10.0, 50.0, 0x0CCD),
+        (-10.0, 50.0, 0xF333),
     ):  # fmt: skip
         bench = Bench()
         bench.tx_pzd.Par.Freq, bench.tx_pzd.Par.RefFreq = freq, reference
@@ -80,7 +83,7 @@ def test_the_setpoint_is_a_fraction_of_the_reference():
 def test_wrong_frequencies():
     for freq, reference, code in (
         (0.0, 0.9, 101), (0.0, 651, 101), (0.0, None, 101), (0.0, "50", 101), (100.0, 50.0, 102),
-        (-100.1, 50.0, 102), (None, 50.0, 102), (float("inf"), 50.0, 102),
+        (-100.1, 50.0, 102), (None, 50.0, 102), (float("inf"), 50.0, 102), (99.9988, 50.0, 102),
     ):  # fmt: skip
         bench = Bench()
         bench.tx_pzd.Par.Freq, bench.tx_pzd.Par.RefFreq = freq, reference
@@ -90,6 +93,7 @@ def test_wrong_frequencies():
 def test_what_cannot_be_composed():
     for change, code in (
         (lambda one: setattr(one.Frame, "STX", 3), 200),
+        (lambda one: setattr(one.Frame, "STX", 1), 200),
         (lambda one: setattr(one.Par, "PKW_lengh", 2), 201),
         (lambda one: setattr(one.Par, "PZD_lengh", 17), 202),
         (lambda one: (setattr(one.Par, "PKW_lengh", 0), setattr(one.Par, "PZD_lengh", 0)), 203),
@@ -105,6 +109,38 @@ def test_what_cannot_be_composed():
         assert codes.text(code)
 
 
+def test_the_largest_words_and_the_highest_address_are_sent():
+    """Also where both areas are equally long."""
+    for pkw_words, pzd_words in ((4, 16), (4, 4), (3, 3), (0, 1), (4, 0)):
+        bench = Bench(pkw_words, pzd_words, 31)
+        for words, count in (
+            (bench.sent.Body.PKW, pkw_words),
+            (bench.sent.Body.PZD, pzd_words),
+        ):
+            words[1 : count + 1] = [0xFFFF] * count
+        assert bench.carry_out(bench.compose) == 0, (pkw_words, pzd_words)
+        count = 2 * (pkw_words + pzd_words)
+        wanted = bytes((2, count + 2, 31)) + b"\xff" * count + bytes((2 ^ count + 2 ^ 31,))
+        assert bytes(bench.tx_buffer[: count + 4]) == wanted
+        assert bench.receive(wanted) == 0
+        assert bench.received.Body.PZD[1 : pzd_words + 1] == [0xFFFF] * pzd_words
+        assert pzd_words < 2 or bench.carry_out(bench.read) == 0
+
+
+def test_of_several_things_that_are_wrong_the_first_is_told():
+    bench = Bench()
+    for part, name, wrong, code in (
+        (bench.sent.Par, "ADR", 32, 204),
+        (bench.sent.Frame, "STX", 3, 200),
+        (bench.sent.Par, "PKW_lengh", 2, 201),
+    ):
+        setattr(part, name, wrong)
+        assert bench.carry_out(bench.compose) == code, name
+        bench.compose.Cmd.ErrorAcknowledge = True
+        bench.compose()
+        bench.compose.Cmd.ErrorAcknowledge = False
+
+
 def test_a_reply_is_taken_apart():
     bench = Bench()
     bench.send()
@@ -116,13 +152,23 @@ def test_a_reply_is_taken_apart():
     status, actual = bench.rx_pzd.StatusWord, bench.rx_pzd.ActualValue
     assert status.DriveRunning and status.MotorRunsRight and not status.DriveReady
     assert (actual.HEX, actual.Percent, actual.Freq) == (0x2000, 50.0, 25.0)
+    for hiw, percent, hertz in ((0x1111, 26.666, 13.333), (0xEEEF, -26.666, -13.333)):
+        bench.received.Body.PZD[2] = hiw
+        assert bench.carry_out(bench.read) == 0 and actual.HEX == hiw
+        assert abs(actual.Percent - percent) < 0.01 and abs(actual.Freq - hertz) < 0.01
 
 
 def test_what_comes_back_wrong():
     for text, code in (
         ("0306 00 fb34 2000 ea", 300),
+        ("0106 00 fb34 2000 e8", 300),
         ("0202 00 fb34 2000 ef", 301),
+        ("02ff 00 fb34 2000 12", 301),
+        ("0203 00 fb34 2000 ee", 302),
+        ("0204 00 fb34 2000 e9", 302),
         ("0208 00 fb34 2000 e5", 302),
+        ("0280 00 fb34 2000 6d", 302),
+        ("02fe 00 fb34 2000 13", 302),
         ("0206 20 fb34 2000 cb", 303),
         ("0206 00 fb34 2000 ec", 308),
         ("0206 01 fb34 2000 ea", 310),
@@ -142,6 +188,33 @@ def test_what_comes_back_wrong():
             bench = Bench()
             bench.received.Body.PZD[place] = wrong
             assert bench.carry_out(bench.read) == 401, (place, wrong)
+
+
+def test_a_reply_is_from_the_drive_that_was_asked():
+    for address in (0, 1, 30, 31):
+        bench = Bench(address=address)
+        bench.send()
+        for answers in (0, 1, 30, 31):
+            reply = bytearray((0x02, 0x06, answers, 0xFB, 0x31, 0x00, 0x00, 0xCE ^ answers))
+            assert bench.receive(reply) == (0 if answers == address else 310), (address, answers)
+
+
+def test_with_variable_length_a_reply_has_a_task_at_least_and_whole_words():
+    """It may be shorter than its request, if that was made by hand."""
+    bench = Bench(pkw_words=127, address=3)
+    bench.send()
+    bench.sent.Frame.LGE = 20
+    for words, code in ((2, 302), (3, 0), (4, 0), (12, 0)):
+        reply = bytearray((0x02, 2 + 2 * (words + 2), 3)) + bytes(range(1, 2 * words + 1))
+        reply += bytes((0xFB, 0x31, 0x20, 0x00))
+        check = 0
+        for character in reply:
+            check ^= character
+        assert bench.receive(reply + bytes((check,))) == code, words
+        if not code:
+            assert bench.received.Body.PKW[words] == (2 * words - 1) << 8 | 2 * words
+            assert bench.received.Body.PZD[1:3] == [0xFB31, 0x2000]
+    assert bench.receive(bytes((0x02, 13, 3)) + bytes(11) + bytes((0x02 ^ 13 ^ 3,))) == 302
 
 
 def test_with_variable_length_a_reply_may_be_longer_than_its_request():
@@ -187,7 +260,10 @@ def test_a_block_works_by_its_edge_and_an_error_stays_until_it_is_acknowledged()
     create()
     create.Cmd.Create = True
     create()
-    assert status.Done
+    assert status.Done and bench.sent.Body.PZD[2] == 0
+    bench.tx_pzd.Par.Freq = 25.0
+    create()
+    assert bench.sent.Body.PZD[2] == 0  # it is still the same edge
     create.Cmd.Reset = True
     create()
     assert status.Ready and not status.Done

@@ -364,6 +364,21 @@ def test_what_was_heard_before_a_request_does_not_date_the_reply():
     assert link.received_at == clock.ticks_us()
 
 
+def test_a_line_that_finds_its_direction_takes_the_longest_telegram_both_ways():
+    """What comes may be taken in pieces. When it will have sent all of it is known beforehand."""
+    longest = bytes(range(256))
+    link, uart, clock = self_directed()
+    link.send(longest, 256)
+    assert link.foreseen and link.sent_at == 146_667 and uart.sent == [longest]
+    buffer = bytearray(260)
+    at = 0
+    for count in (1, 6, 200, 49):
+        uart.heard = longest[at : at + count]
+        assert link.receive(buffer, at) == count
+        at += count
+    assert bytes(buffer[:256]) == longest and link.receive(buffer, at) == 0
+
+
 def test_a_line_that_finds_its_direction_is_let_go_of_as_a_whole():
     link, uart, clock = self_directed()
     assert uart.handler
