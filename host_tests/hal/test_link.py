@@ -5,7 +5,7 @@ from boards.sim.board import HardTimer, clear_fifo
 from boards.sim.chip.machine import UART, Chip, Pin
 from boards.sim.clock import Clock
 from boards.sim.line.wire import Transceiver, Wire
-from hal.link.rs485 import RELEASES_MAX, Rs485Link
+from hal.link.rs485 import Rs485Link
 from hal.link.self_directed import SelfDirectedLink
 
 COMING = -1
@@ -30,8 +30,8 @@ class Neighbour:
 class Bench:
     """A link on a chip, and a neighbour on the line."""
 
-    def __init__(self, baud=19200, interrupts=True, timeout_again=False):
-        self.clock = Clock()
+    def __init__(self, baud=19200, interrupts=True, timeout_again=False, ticks_start=0):
+        self.clock = Clock(ticks_start)
         self.wire = Wire(self.clock, baud)
         self.chip = Chip(self.clock, self.wire, timeout_again)
         self.driver_enable = Pin(self.chip)
@@ -80,15 +80,17 @@ def test_only_the_first_characters_of_a_longer_buffer_are_sent():
 
 
 def test_sending_us_counts_down_to_zero():
-    bench = Bench()
-    assert bench.link.sending_us(bench.clock.ticks_us()) == 0
-    bench.link.send(REQUEST, len(REQUEST))
-    left = []
-    for _ in range(12):
-        left.append(bench.link.sending_us(bench.clock.ticks_us()))
-        bench.clock.advance(1_000)
-    assert left[0] == 9167 and left == sorted(left, reverse=True) and left[-1] == 0
-    bench.check()
+    """Also where the counter of the clock begins anew meanwhile."""
+    for ticks_start in (0, -104_500):
+        bench = Bench(ticks_start=ticks_start)
+        assert bench.link.sending_us(bench.clock.ticks_us()) == 0
+        bench.link.send(REQUEST, len(REQUEST))
+        left = []
+        for _ in range(12):
+            left.append(bench.link.sending_us(bench.clock.ticks_us()))
+            bench.clock.advance(1_000)
+        assert left == list(range(9167, 0, -1_000)) + [0, 0]
+        bench.check()
 
 
 def test_whoever_looked_at_the_clock_before_the_sending_began_has_all_of_it_before_him():
@@ -214,15 +216,23 @@ def test_the_panel_does_not_hear_itself():
 
 
 def test_a_transmitter_that_is_a_little_slow_is_waited_for():
-    """A quarter of a character at a time: the last stop bit is never cut."""
-    bench = Bench()
-    answers = [False, False, True]
-    bench.uart.txdone = lambda: answers.pop(0)
-    bench.link.send(REQUEST, len(REQUEST))
-    bench.clock.advance(9167 + bench.wire.character_us * 3 // 4 + 4)
-    assert bench.driver_enable.value() == 0 and answers == []
-    assert bench.link.late_releases == 0
-    bench.check()
+    """A quarter of a character at a time: the last stop bit is never cut. Also after one that
+    was given up."""
+    for given_up in (False, True):
+        bench = Bench()
+        if given_up:
+            bench.uart.txdone = lambda: False
+            bench.link.send(REQUEST, len(REQUEST))
+            bench.clock.advance(30_000)
+        answers = [False, False, True]
+        bench.uart.txdone = lambda answers=answers: answers.pop(0)
+        bench.link.send(REQUEST, len(REQUEST))
+        bench.clock.advance(9167 + 10)
+        assert bench.driver_enable.value() == 1
+        assert bench.link.sending_us(bench.clock.ticks_us()) == 1
+        bench.clock.advance(bench.wire.character_us * 3 // 4)
+        assert bench.driver_enable.value() == 0 and answers == []
+        assert bench.link.late_releases == given_up
 
 
 def test_a_transmitter_that_never_ends_does_not_keep_the_line():
@@ -230,13 +240,28 @@ def test_a_transmitter_that_never_ends_does_not_keep_the_line():
     bench.uart.txdone = lambda: False
     bench.link.send(REQUEST, len(REQUEST))
     look_us = bench.wire.character_us // 4 + 1
-    bench.clock.advance(9167 + RELEASES_MAX * look_us - 10)
+    bench.clock.advance(9167 + 16 * look_us - 10)  # four characters more
     assert bench.driver_enable.value() == 1
     assert bench.link.late_releases == 0
     bench.clock.advance(20)
     assert bench.driver_enable.value() == 0
     assert bench.link.late_releases == 1
     assert bench.link.sending_us(bench.clock.ticks_us()) == 0
+    for before, after in ((1, 2), (0xFFFE, 0xFFFF), (0xFFFF, 0)):
+        bench.link.late_releases = before
+        bench.link.send(REQUEST, len(REQUEST))
+        bench.clock.advance(20_000)
+        assert bench.link.late_releases == after
+
+
+def test_the_end_of_a_burst_is_a_hard_interrupt_where_the_port_has_those():
+    for options, wanted in (({}, [True]), ({"hard": False}, [False]), ({"interrupts": False}, [])):
+        bench = Bench()
+        asked = []
+        bench.uart.irq = lambda handler, trigger, hard: asked.append(hard)
+        timer = HardTimer(bench.chip)
+        Rs485Link(bench.uart, bench.driver_enable, timer, bench.clock, 19200, **options)
+        assert asked == wanted, options
 
 
 def test_the_driver_is_off_before_anything_is_sent():
@@ -285,6 +310,35 @@ def test_a_closed_link_is_quiet():
     activities = len(bench.activities)
     bench.clock.advance(50_000)
     assert len(bench.activities) == activities and bench.driver_enable.value() == 0
+    bench.check()
+
+
+def test_a_link_that_is_closed_while_it_sends_lets_go_at_once():
+    for interrupts in (True, False):
+        bench = Bench(interrupts=interrupts)
+        calls = []
+        bench.uart.irq = lambda handler, trigger, calls=calls: calls.append((handler, trigger))
+        bench.link.send(REQUEST, len(REQUEST))
+        bench.clock.advance(3_000)
+        assert bench.driver_enable.value() == 1
+        bench.link.close()
+        assert bench.driver_enable.value() == 0
+        assert bench.link.sending_us(bench.clock.ticks_us()) == 0
+        assert calls == ([(None, 0)] if interrupts else [])
+        assert bench.uart.write(REQUEST, 16) is None  # it is off
+        bench.clock.advance(50_000)
+        assert bench.activities == [] and bench.link.sent_at == 0  # no timer comes
+
+
+def test_the_longest_telegram_is_sent_whole():
+    bench = Bench()
+    bench.link.send(bytes(range(256)), 256)
+    assert bench.link.sending_us(bench.clock.ticks_us()) == 146_667
+    bench.clock.advance(146_600)
+    assert bench.driver_enable.value() == 1
+    bench.clock.advance(5_000)
+    assert bench.driver_enable.value() == 0
+    assert bench.neighbour.heard[0][2] == bytes(range(256))
     bench.check()
 
 

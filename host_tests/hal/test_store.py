@@ -127,6 +127,24 @@ def test_what_is_set_aside_stays_until_the_next_is():
     assert flash.files == {"s": NEW, "s.bad": NEW}
 
 
+def test_a_file_that_is_too_big_to_be_copied_is_moved_aside():
+    for count, is_copied in ((255, True), (256, True), (4096, True), (4097, False)):
+        data = bytes(range(256)) * 17
+        data = data[:count]
+        flash = flash_with(data, blocks=200)
+        store_on(flash).set_aside()
+        assert flash.files.get("s.bad") == data, count
+        assert flash.files.get("s") == (data if is_copied else None), count
+
+
+def test_no_more_is_read_than_is_wanted():
+    data = bytes(range(256)) * 3
+    store = store_on(flash_with(data))
+    for most in (0, 1, 255, 256, 257, 511, 512, 767, 768, 769, 5000):
+        assert store.read(most) == data[:most], most
+    assert store.read() == data
+
+
 def test_without_a_file_nothing_is_set_aside():
     flash = flash_with()
     store_on(flash).set_aside()

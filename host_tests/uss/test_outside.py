@@ -135,14 +135,15 @@ def test_a_special_telegram_brings_what_its_node_answers():
 
 
 def test_a_special_telegram_is_not_answered_by_one_of_another_length():
-    bench = Bench(nodes(1))
-    bench.contact()
-    seen = []
-    special = Special(9, b"\x01\x02\x03", 5, lambda net, count: seen.append(net))
-    answers(bench, 0x89, b"hell")
-    through(bench, special)
-    assert special.state == TIMED_OUT and special.finding == BAD_LENGTH
-    assert not seen and not special.reply_count
+    for net in (b"hell", b"hello!"):
+        bench = Bench(nodes(1))
+        bench.contact()
+        seen = []
+        special = Special(9, b"\x01\x02\x03", 5, lambda net, count: seen.append(net))
+        answers(bench, 0x89, net)
+        through(bench, special)
+        assert special.state == TIMED_OUT and special.finding == BAD_LENGTH
+        assert not seen and not special.reply_count
 
 
 def test_what_comes_after_a_telegram_to_all_is_nobodys_answer():
@@ -263,14 +264,32 @@ def test_a_broadcast_says_bit_by_bit_what_is_taken_of_pzd_1_4_and_5():
 
 
 def test_a_broadcast_to_drives_of_several_layouts_is_refused_and_they_are_stopped():
-    bench = Bench([Node(1), Node(2, 3, 2)])
-    bench.contact()
-    bench.drives[2].start(0x1000)
+    for first, second in (((4, 2), (3, 2)), ((4, 2), (4, 4)), ((4, 4), (4, 2))):
+        bench = Bench([Node(1, *first), Node(2, *second)])
+        bench.contact()
+        bench.drives[2].start(0x1000)
+        bench.run(300_000)
+        text = "Layout(%d, %d) beside Layout(%d, %d): no common broadcast" % (second + first)
+        assert refused(stop_all, bench.master) == text
+        bench.run(300_000)
+        assert 0x20 not in bench.addresses() and bench.nodes[2].zsw == 0xFB31
+
+
+def test_the_broadcast_that_stops_has_the_words_of_the_drives():
+    """Of the only one, too; and where there is none, none is sent."""
+    for node in (Node(1), Node(1, 4, 4)):
+        bench = Bench([node])
+        bench.contact()
+        bench.drives[1].start(0x1000)
+        bench.run(300_000)
+        stop_all(bench.master)
+        bench.run(300_000)
+        (broadcast,) = [sent for sent in bench.sent if sent.address == 0x20]
+        assert len(broadcast.characters) == 12 + 2 * node.pzd_words and node.zsw == 0xFB31
+    bench = Bench([])
+    stop_all(bench.master)
     bench.run(300_000)
-    text = "Layout(3, 2) beside Layout(4, 2): no common broadcast"
-    assert refused(stop_all, bench.master) == text
-    bench.run(300_000)
-    assert 0x20 not in bench.addresses() and bench.nodes[2].zsw == 0xFB31
+    assert not bench.sent
 
 
 def test_what_would_start_a_motor_or_is_no_telegram_is_refused():
@@ -279,10 +298,30 @@ def test_what_would_start_a_motor_or_is_no_telegram_is_refused():
     refused(Broadcast, (pzd.ON,), {1: 0x0001})
     gives_up = refused(Broadcast, (0x0000, 0x1000), {2: 0xFFFF})
     assert gives_up == "STW 0000h gives up control"
+    refused(Broadcast, (0x007E, 0x1000), {2: 0xFFFF})
+    for jog in (0x057E, 0x067E):
+        refused(Broadcast, (jog, 0), {1: 0x0300})
     refused(Broadcast, (pzd.OFF1, 0), {2: 0x00FF})  # a setpoint is taken as a whole
     refused(Broadcast, (pzd.OFF1,) * 16, {16: 0xFFFF})  # PZD16 never
     refused(Broadcast, (pzd.OFF1,) * 17, {2: 0xFFFF})
+    refused(Broadcast, (), {})
+    refused(Broadcast, (pzd.OFF1, 0), {0: 0xFFFF})
+    refused(Broadcast, (pzd.OFF1, 0), {2: 0x1FFFF})
+    refused(Broadcast, (pzd.OFF1, 0), {3: 0xFFFF})  # beyond its words
     refused(Mirror, 32)
     refused(Special, 40, b"\x00")
     refused(Special, -1, b"\x00")
     refused(Mirror, 1, bytes(253))
+
+
+def test_what_just_is_a_telegram_is_taken():
+    """A word that no drive takes over starts nothing; and bit 10 alone keeps control."""
+    assert (
+        Broadcast((0x0400,), {1: 0x0001}).request[3:]
+        == framed(0x20, b"\x00\x03\x00\x01\x00\x00\x00\x00\x04\x00")[3:]
+    )
+    assert Broadcast((pzd.ON, 0x1000), {2: 0xFFFF}).request[4] == 0x05
+    assert Broadcast((pzd.OFF1,) * 16, {15: 0xFFFF}).request[3:5] == b"\x80\x01"
+    for node in (0, 31):
+        assert Special(node, b"\x55").request == framed(0x80 | node, b"\x55")
+    assert Special(None, b"\x55").request == framed(0xA0, b"\x55")
