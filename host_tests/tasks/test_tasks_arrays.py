@@ -62,6 +62,8 @@ def test_all_elements_are_read():
     assert job.float_values() == [0.15625, 50.125] and (job.high, job.low) == (0x3E20, 0)
     assert answered(job, (0x5130, 0xFF, 0x4248, 0, 0xC120, 0), VARIABLE)
     assert job.signed_values() == [0x42480000, 0xC1200000 - (1 << 32)]
+    assert answered(job, (0x5130, 0xFF, 1, 2, 0xFFFF, 0xFFFE), VARIABLE)
+    assert job.integer_values() == [0x00010002, 0xFFFFFFFE] and job.signed_values() == [65538, -2]
     assert answered(job, (0x4130, 0xFF, 7), VARIABLE)
     assert job.integer_values() == [7] and (job.high, job.low) == (0, 7)
     assert answered(job, (0x4130, 0xFF, 7, 8), VARIABLE) and (job.high, job.low) == (7, 8)
@@ -91,6 +93,7 @@ def test_all_elements_are_written():
         (arrays.write_all_words(304, (9,)), [0x7130, 0xFF, 9]),
         (arrays.write_all_words(304, (8, 9), True), [0xC130, 0xFF, 8, 9]),
         (arrays.write_all_doubles(304, (1, -1)), [0x8130, 0xFF, 0, 1, 0xFFFF, 0xFFFF]),
+        (arrays.write_all_floats(304, (50.0, -10.0)), [0x8130, 0xFF, 0x4248, 0, 0xC120, 0]),
         (arrays.write_all_floats(304, (50.0,), True), [0xB130, 0xFF, 0x4248, 0]),
     ):
         assert sent(job) == words, job

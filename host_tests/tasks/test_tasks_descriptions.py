@@ -9,16 +9,29 @@ from uss.tasks.descriptions import (
     ACCESS,
     ARRAY,
     CHANGED,
+    DEFAULT,
     DESCRIPTION,
     ELEMENTS,
     EXTENSION,
     FACTOR,
+    FLOAT,
+    HAS_TEXTS,
+    I16,
+    I32,
     IDENTIFIER,
     LOWER_LIMIT,
     NAME,
+    ONLY_RESETTABLE,
     QUANTITY,
+    STRING,
+    U8,
+    U16,
+    U32,
     UPPER_LIMIT,
+    WRITE_PROTECTED,
+    is_size,
     read_description,
+    typed,
     write_description,
 )
 
@@ -97,6 +110,41 @@ def test_the_whole_description():
         assert description.default is None
     assert description.identifier & CHANGED and description.identifier & ARRAY
     assert not answered(job, complete(3, (1, 2), (3,)), VARIABLE)
+
+
+def test_the_bits_of_an_identifier():
+    """As SIDOOR and TR have them."""
+    assert (WRITE_PROTECTED, HAS_TEXTS, CHANGED) == (0x0200, 0x0400, 0x1000)
+    assert (ONLY_RESETTABLE, ARRAY) == (0x2000, 0x4000)
+    assert (I16, I32, U8, U16, U32, FLOAT, STRING) == (3, 4, 5, 6, 7, 8, 9)
+    for kind, words, limit in (
+        (I16, (0, 0xFFFF), -1), (I16, (0, 0x8000), -32768), (I16, (0, 0x7FFF), 32767),
+        (U16, (0, 0xFFFF), 0xFFFF), (U8, (0, 0xFF), 0xFF), (I32, (0xFFFF, 0xFFFF), -1),
+        (I32, (0x8000, 0), -1 << 31), (U32, (0xFFFF, 0xFFFF), 0xFFFFFFFF),
+        (FLOAT, (0x4248, 0), 50), (FLOAT, (0x4249, 0x8000), 50.375),
+        (STRING, (0xFFFF, 0xFFFF), 0xFFFFFFFF),
+    ):  # fmt: skip
+        wide = kind in (I32, U32, FLOAT, STRING)
+        value = words[0] << 16 | words[1]
+        assert typed(value, 4 if wide else 2, kind) == limit, kind
+    assert typed(0x4248, 2, FLOAT) == 0x4248  # a word is no floating-point number
+    job = read_description(2010, IDENTIFIER)
+    assert answered(job, (0x300A, 0x8000 | IDENTIFIER, 0x50C8), VARIABLE)
+    assert job.description().data_type() == 0xC8
+
+
+def test_a_default_is_an_element_of_its_own_and_of_no_whole_description():
+    """It has the width of the value, a word or a double word."""
+    for words, form, value in (
+        ((7,), VARIABLE, 7),
+        ((0, 7), FOUR, 7),
+        ((1, 2), VARIABLE, 0x10002),
+    ):
+        job = read_description(2010, DEFAULT)
+        assert answered(job, (0x300A, 0x8000 | DEFAULT) + words, form)
+        assert job.description().default == value
+    for size, takes in ((1, False), (2, True), (3, False), (4, True), (5, False)):
+        assert is_size(DEFAULT, size) == takes, size
 
 
 def test_a_description_is_written():
