@@ -122,7 +122,8 @@ def test_the_largest_words_and_the_highest_address_are_sent():
         count = 2 * (pkw_words + pzd_words)
         wanted = bytes((2, count + 2, 31)) + b"\xff" * count + bytes((2 ^ count + 2 ^ 31,))
         assert bytes(bench.tx_buffer[: count + 4]) == wanted
-        assert bench.receive(wanted) == 0
+        assert (bench.sent.Frame.ADR, bench.sent.Frame.BCC) == (31, wanted[-1])
+        assert bench.receive(wanted) == 0 and bench.received.Frame.BCC == wanted[-1]
         assert bench.received.Body.PZD[1 : pzd_words + 1] == [0xFFFF] * pzd_words
         assert pzd_words < 2 or bench.carry_out(bench.read) == 0
 

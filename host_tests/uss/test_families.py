@@ -289,6 +289,9 @@ def test_a_kind_says_which_link_it_is_on():
     for word in ("mm440/", "mm440/+4", "mm440/4+", "mm440/ 4", "mm440/4+ 2", "mm440/four"):
         text_of_it = "%s is no layout such as /4, or /4+6" % word[len("mm440") :]
         assert refused(understood, word) == text_of_it, word
+    for word in ("generic/4+0", "generic/4+1", "mm440/4+1"):
+        text_of_it = "a drive without PZD1 and PZD2 takes no commands"
+        assert refused(understood, word) == text_of_it, word
     for word in ("v20-bop", "-bop", "mm440-bop-bop", "bop", "mm440-com", "mm420-bop/4+5"):
         assert refused(understood, word), word
 
