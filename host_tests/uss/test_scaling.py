@@ -49,6 +49,8 @@ def test_frequencies_are_parts_of_p2000():
         assert scale.from_hertz(hertz) == word, hertz
         assert close(scale.hertz(word), hertz, 0.0031), hertz
     assert Scale(reference_hertz=60.0).from_hertz(30) == 0x2000
+    for reference_hertz in (0.5, 1, 1.0):
+        assert Scale(reference_hertz).from_hertz(reference_hertz / 2) == 0x2000
 
 
 def test_p2009_makes_it_hundredths_of_a_hertz():
@@ -59,6 +61,7 @@ def test_p2009_makes_it_hundredths_of_a_hertz():
     assert scale.from_percent(20) == 0x03E8
     assert close(scale.percent(0x03E8), 20, 0.001)
     assert Scale(absolute=True).from_hertz(327.67) == 0x7FFF  # needs no reference
+    assert close(Scale(absolute=True).hertz(0x7FFF), 327.67, 0.001)
     assert refused(Scale(absolute=True).from_hertz, 330)
 
 
@@ -67,6 +70,7 @@ def test_a_speed_needs_the_pole_pairs_of_the_motor():
     assert scale.from_rpm(1500) == 0x4000
     assert scale.from_rpm(-750) == 0xE000
     assert close(scale.rpm(0x2000), 750, 0.1)
+    assert close(Scale(50.0, pole_pairs=7).rpm(0x4000), 428.571, 0.001)
     absolute = Scale(reference_hertz=50.0, pole_pairs=2, absolute=True)
     assert absolute.from_rpm(300) == 0x03E8
     assert close(absolute.rpm(0x03E8), 300, 0.01)
@@ -79,6 +83,7 @@ def test_the_reference_of_a_g120_is_a_speed():
     scale = Scale(reference_rpm=1500.0, pole_pairs=2)
     assert scale.from_hertz(25) == 0x2000
     assert close(scale.hertz(0xC000), -50, 0.001)
+    assert close(Scale(reference_rpm=1395.0, pole_pairs=2).hertz(0x4000), 46.5, 0.001)
 
 
 def test_what_is_not_known_is_refused():
@@ -141,6 +146,7 @@ def test_an_mm3_has_a_bit_for_each_direction_and_no_sign():
     assert run_words(MM3, 0xE000, reverse=True) == (0x0C7F, 0x2000)
     assert run_words(MM3, 0x8000) == (0x147F, 0x7FFF)
     assert run_words(MM3, 0) == (0x0C7F, 0)
+    assert run_words(MM3, 1) == (0x0C7F, 1) and run_words(MM3, 0xFFFF) == (0x147F, 1)
 
 
 def test_a_drive_by_the_specification_reverses_by_sign_alone():
@@ -175,5 +181,7 @@ def test_pole_pairs_of_a_motor():
         (33.3, 999, 2), (33.3, 1000, 2), (33.3, 2000, 1),  # synchronous, and rounded
     ):  # fmt: skip
         assert pole_pairs(hertz, rpm) == pairs, (hertz, rpm)
-    assert refused(pole_pairs, 50, 0)
-    assert refused(pole_pairs, 50, 3600)
+    assert pole_pairs(50, 1) == 3000
+    assert refused(pole_pairs, 50, 0) and refused(pole_pairs, 50, -1395)
+    assert refused(pole_pairs, 50, 3600) and refused(pole_pairs, 50, 3031)
+    assert pole_pairs(50, 3029) == 1
