@@ -93,18 +93,24 @@ def test_a_report_names_any_number():
 
 
 def test_a_report_that_nobody_has_room_for_is_not_acknowledged():
-    """The drive repeats it, and nothing is lost. Meanwhile it answers no task."""
-    line = Line()
-    reports = Reports(line.channel)
-    for number in range(20):
-        line.send()
-        line.answer(0x9000 | (number & 1) << 11 | number, 0, 0, number)
-        bit = (min(number, REPORTS_MAX - 1) & 1) << 11
-        assert line.send()[0] == bit, number
-    taken = [reports.get().number for _ in range(REPORTS_MAX)]
-    assert taken == list(range(REPORTS_MAX)) and reports.get() is None
-    line.answer(0x9008, 0, 0, 8)
-    assert reports.get().number == 8
+    """The drive repeats it, and nothing is lost, however many were taken before. Meanwhile it
+    answers no task."""
+    for before in range(2 * REPORTS_MAX):
+        line = Line()
+        reports = Reports(line.channel)
+        for number in range(before + 20):
+            bit = (number & 1) << 11
+            line.send()
+            line.answer(0x9100 | bit | number, 0, 0, number)
+            if number < before:
+                assert reports.get().number == 0x100 | number
+            last = min(number, before + REPORTS_MAX - 1)
+            assert line.send()[0] == (last & 1) << 11, (before, number)
+        taken = [reports.get().integer_value() for _ in range(REPORTS_MAX)]
+        following = before + REPORTS_MAX
+        assert taken == list(range(before, following)) and reports.get() is None
+        line.answer(0x9100 | (following & 1) << 11 | following, 0, 0, following)
+        assert reports.get().number == 0x100 | following
 
 
 def test_reports_come_for_ever():
