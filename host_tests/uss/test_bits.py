@@ -71,6 +71,34 @@ def test_the_second_words_in_names():
     assert names(0, STW2_BITS) == ["EXTERNAL_FAULT"]  # 1 is no fault
 
 
+def test_the_bits_above_those_of_the_specification():
+    """Each has its place, and the word in which it alone is remarkable."""
+    for table, word, said in (
+        (STW_BITS, 0xE400, ["CONTROL", "MOP_UP", "MOP_DOWN", "REMOTE"]),
+        (STW_BITS, 0x1000, []),
+        (bits.STW_BITS_MM3, 0x7C00, ["CONTROL", "RUN_RIGHT", "RUN_LEFT", "MOP_UP", "MOP_DOWN"]),
+        (bits.STW_BITS_MM3, 0x8000, []),
+        (bits.STW_BITS_MM3, 0x0000, []),
+        (bits.STW_BITS_G120, 0x0F80, ["ACKNOWLEDGE", "CONTROL", "REVERSE"]),
+        (bits.STW_BITS_G120, 0xE000, ["MOP_UP", "MOP_DOWN", "DATA_SET_BIT_0"]),
+        (bits.STW_BITS_G120, 0x1000, []),
+        (bits.STW_BITS_G120, 0x0000, []),
+        (bits.ZSW_BITS_MM3, 0x4530, ["MAXIMUM_REACHED", "RUNS_RIGHT"]),
+        (bits.ZSW_BITS_MM3, 0x0130, []),
+    ):
+        assert names(word, table) == said, (said, names(word, table))
+    for name, place in (
+        ("DRIVE_DATA_SET_BIT_0", 4), ("DRIVE_DATA_SET_BIT_1", 5), ("DC_BRAKE", 9), ("DROOP", 11),
+        ("TORQUE_CONTROL", 12), ("EXTERNAL_FAULT", 13), ("COMMAND_DATA_SET_BIT_1", 15),
+    ):  # fmt: skip
+        assert bit(name, STW2_BITS) == 1 << place, name
+    for name, place in (
+        ("PID_AT_MINIMUM", 10), ("PID_AT_MAXIMUM", 11), ("LOADS_DATA_SET_0", 14),
+        ("LOADS_DATA_SET_1", 15),
+    ):  # fmt: skip
+        assert bit(name, ZSW2_BITS) == 1 << place, name
+
+
 def test_an_idle_g120_reports_nothing_wrong():
     said = names(0xEB31, bits.ZSW_BITS_G120)
     assert said == ["READY_TO_SWITCH_ON", "CONTROL_REQUESTED", "RUNS_RIGHT"]
