@@ -258,6 +258,15 @@ def test_the_bop_link_of_a_micromaster_4_has_words_and_indices_of_its_own():
         assert bop.__name__ == family.__name__ + "-BOP" and issubclass(bop, family)
         assert (family.link_index, bop.link_index) == (0, 1)
         assert (family.off_time_fault, bop.off_time_fault) == (72, 71)
+        of_the_link = {
+            family.baud_number,
+            family.address_number,
+            family.pzd_words_number,
+            family.pkw_words_number,
+            family.off_time_number,
+        }
+        # and what normalises the setpoint, and the counters of good and of bad telegrams
+        assert set(bop.linked) == of_the_link | {2009, 2024, 2025}
         for row in range(rows.COUNT_OF_ROWS):
             com, own = family.survey[row], bop.survey[row]
             if row in (rows.ABSOLUTE, rows.SUPERVISION, rows.COUNTER):
