@@ -3,8 +3,12 @@
 step, until its motor turns.
 """
 
+import catalogue
 from lookup_bench import choose, go_to, press, settled_heading, speak, world_of
-from panel_bench import row_1, settled_row_2, wait_until_known
+from panel.commission.step import Step
+from panel.lookup.value import Form
+from panel_bench import row_1, row_2, settled_row_2, wait_until_known
+from uss import pkw
 
 PLATE = (  # of the motor: number, what is typed over what is there, what is read then
     (304, "400", 400),
@@ -160,7 +164,9 @@ def test_what_a_setpoint_means_is_asked_before_it_changes():
     type_over(world, "6000")
     press(world, "SET")
     world.run(300)
-    assert any(["60.00" in line and "SET=YES" in line for line in lines(world)]), world.lcd()
+    said = lines(world)
+    assert any(["60.00" in line and "SET=YES" in line for line in said]), said
+    assert "RESCALES SPEED" in said, said
     assert world.drives[1].parameters.get(2000) == 50
     press(world, "SET")
     world.run(1000)
@@ -199,6 +205,11 @@ def test_nothing_is_written_while_the_motor_runs():
     world.run(300)
     assert settled_row_2(world).startswith("STOP A1 FIRST"), world.lcd()
     assert world.drives[1].parameters.get(10) == 0 and world.drives[1].state == "running"
+    press(world, "PARAM", "STOP")
+    assert row_1(world).startswith("COMMISSION"), world.lcd()
+    assert settled_row_2(world) == ">A1: STOP", world.lcd()
+    world.run(8000)
+    assert world.drives[1].state == "ready", world.drives[1].report()
     world.check()
 
 
@@ -260,6 +271,81 @@ def test_each_family_has_its_steps():
         assert is_done(world), (kind, world.lcd())
         assert leave(world).endswith("LEFT"), kind
         world.check()
+
+
+def test_a_procedure_that_is_gone_through_says_so():
+    world = world_of("mm420")
+    begin(world, "FOR EXPERTS")
+    do(world, 1910)
+    press(world, "DOWN")
+    assert settled_heading(world)[0] == "A1" and lines(world) == {"ALL DONE"}, world.lcd()
+    assert leave(world) == "A1: ALL DONE", world.lcd()
+    world.check()
+
+
+def test_a_step_whose_value_is_there_asks_nothing():
+    world = world_of("mm420")
+    writes = world.drives[1].eeprom_writes
+    begin(world, "FOR USS")
+    for number in (2010, 2011, 700):  # the rate and the address stay whatever they are
+        go_to_step(world, number)
+        assert is_done(world), world.lcd()
+        press(world, "SET")
+        assert settled_row_2(world) == "IT IS RIGHT", world.lcd()
+        world.run(3000)
+        press(world, "SET")
+        world.run(1000)
+    assert world.drives[1].eeprom_writes == writes
+    world.check()
+
+
+def test_a_drive_on_the_bop_link_obeys_that_link():
+    world = world_of("mm440-bop")
+    drive = world.drives[1]
+    for number in (700, 1000):
+        drive.parameters.set(number, 0, 2)
+    begin(world, "FOR USS")
+    for number in (700, 1000):
+        do(world, number)
+        assert drive.parameters.get(number) == 4, world.lcd()
+    world.check()
+
+
+def test_the_length_of_the_parameter_channel_is_that_of_the_list():
+    """It was set at the drive's keypad, and acts from the next power-up on."""
+    world = world_of("mm420")
+    world.drives[1].parameters.set(2013, 0, 3)
+    begin(world, "FOR USS")
+    go_to_step(world, 2013)
+    assert "3 NEEDS 4" in lines(world), world.lcd()
+    do(world, 2013)
+    assert world.drives[1].parameters.get(2013) == 4
+    world.check()
+
+
+def test_a_step_may_need_a_number_with_a_point():
+    """None of the catalogue does so far, but a table may be written anew."""
+    world = world_of("mm420")
+    row = [b"S101", b"Ramp", b"Rampe", b"1120", b"0", b"7.5", b"", b"", b"", b"GK"]
+    step = Step(row, world.app.panel.selected, False)
+    form = Form(catalogue.find("mm420", 1120), pkw.DOUBLE)
+    bits = step.needed(form, 0)
+    assert form.words(bits >> 16, bits & 0xFFFF) == b"7.50"
+    job = pkw.read(1120)
+    job.width, job.high, job.low = pkw.DOUBLE, bits >> 16, bits & 0xFFFF
+    assert step.is_right(job)
+    job.low += 1
+    assert not step.is_right(job)
+
+
+def test_a_family_without_a_table_has_no_steps():
+    world = world_of("generic")
+    go_to(world, "COMMISSION")
+    world.run(1000)
+    assert settled_row_2(world) == ">NO STEPS FOR IT", world.lcd()
+    press(world, "SET")
+    assert row_1(world).startswith("COMMISSION") and row_2(world) == ">NO STEPS FOR IT"
+    world.check()
 
 
 def test_in_german():

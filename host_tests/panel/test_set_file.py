@@ -58,6 +58,28 @@ def test_what_was_written_is_read():
     assert head.ratings == {206: (0x3F40, 0)}
 
 
+def test_a_head_is_to_the_letter_too():
+    """Its check was made anew each time: whoever wrote it meant what stands there."""
+    rows, ratings = [(3, 0, b"U16", b"0003")], [(206, b"3F400000")]
+    for name in (b"A", b"0123456789", b" PUMP \xb0C"):
+        for address in (0, 31):
+            data = made(rows, address=address, name=name, ratings=ratings)
+            head = set_file.read_head(store_with(one=data), "one.set")
+            assert (head.address, head.name) == (address, name)
+    for options in (
+        {"address": -1},
+        {"address": 32},
+        {"name": b""},
+        {"name": b"01234567890"},
+        {"name": b"PUMP\x1f1"},
+        {"ratings": [(206, b"3f400000")]},
+        {"ratings": [(206, b"3F40000")]},
+        {"ratings": [(206, b"3F400000 ")]},
+        {"ratings": [(206, b"3F40000G")]},
+    ):
+        assert error_of(made(rows, **options)) == words.DAMAGED, options
+
+
 class Store:
     """Counts the files that are open."""
 
@@ -110,7 +132,10 @@ def test_remarks_count_as_nothing():
         [line + b"\t # 20 \xc2\xb0C, " + 500 * b"x#" + b"\n" for line in others[:-1]]
     )
     all_lines = first + b"#\n# of the pump in the cellar\n" + all_lines + b"  # whole\n"
-    for text in (aligned, all_lines, all_lines.replace(b"\n", b"\r\n"), all_lines[:-1]):
+    long_ones = first + b"\n" + 500 * b"#xy" + b"\n" + b"\n".join(others)
+    for text in (
+        aligned, all_lines, all_lines.replace(b"\n", b"\r\n"), all_lines[:-1], long_ones
+    ):  # fmt: skip
         assert error_of(text) == error_of(bare), text
         head = set_file.read_head(store_with(one=text), "one.set")
         assert (head.family, head.name, head.ratings) == ("mm440", b"MADE", {206: (0x3F40, 0)})

@@ -4,10 +4,16 @@
 What is cut off in the middle is tried in test_sets_cut_off.py.
 """
 
-from boards.sim.drives.families import mm3
-from panel.sets.writing import BUS_AND_SOURCES
-from panel_bench import panel, row_1, row_2, said, settled, starts, wait_until_known
+import catalogue
+from boards.sim.drives.families import g110, mm3
+from boards.sim.drives.parameters import rows_like
+from lookup_bench import world_of
+from panel.menu.sets import words
+from panel.menu.sets.write import value
+from panel.sets.writing import BUS_AND_SOURCES, Write
+from panel_bench import LOOP_US, panel, row_1, row_2, said, settled, starts, wait_until_known
 from sets_bench import (
+    BAUD,
     ROWS,
     begin,
     catalogued,
@@ -49,6 +55,44 @@ def half_way(world, rows=ROWS):
     home(world)
     world.run(3000)
     assert marks(world) == [2]
+
+
+def like(family, *rows):
+    """A family for the simulation that has some rows of its own."""
+
+    class Own:
+        pass
+
+    for name in dir(family):
+        if name[:2] != "__":
+            setattr(Own, name, getattr(family, name))
+    Own.ROWS = rows_like(family.ROWS, rows)
+    return Own
+
+
+def one_g110(family=g110):
+    """A panel with a SINAMICS G110, which has a fifth of the values of an MM440."""
+    world = panel(baud=BAUD, kinds={1: {"family": family}}, settings={"kinds": {"1": "g110"}})
+    wait_until_known(world)
+    return world
+
+
+def answers_late(drive, times, *numbers):
+    """So often a question about each of these gets the answer to the one before, until nobody
+    waits any more.
+    """
+    accept, tries, last = drive.channel.accept, {}, [None]
+
+    def accept_late(words, layout):
+        number = words[0] & 0x7FF
+        if words[0] != last[0]:
+            last[0] = words[0]
+            tries[number] = tries.get(number, 0) + 1
+        is_late = number in numbers and tries[number] <= times
+        drive.stale_replies = 10_000 if is_late else 0
+        accept(words, layout)
+
+    drive.channel.accept = accept_late
 
 
 def is_of_the_bus(number):
@@ -118,6 +162,58 @@ def test_a_set_has_all_parameters_of_an_mm440_and_all_their_indices():
     world.check()
 
 
+def test_what_a_drive_does_not_tell_at_once_is_asked_again():
+    world = one_g110()
+    answers_late(world.drives[1], 3, 206, 1120)
+    text = world.flash.files[save(world)]
+    assert b"rating 206 " in text and rows_of(text)[1120, 0] == "41200000", text
+    world.check()
+
+
+def test_what_a_drive_does_not_tell_at_all_is_left_out_and_counted():
+    world = one_g110()
+    answers_late(world.drives[1], 4, 1120, 1121)
+    sets(world)
+    press(world, "SET", "SET")
+    assert wait(world, "SAVED", "BUT") == ">BUT 2 UNTOLD", world.lcd()
+    rows = rows_of(world.flash.files["1.set"])
+    assert (1120, 0) not in rows and (1121, 0) not in rows and (1082, 0) in rows
+    world.check()
+
+
+def test_a_value_is_as_wide_as_the_drive_has_it():
+    """Another version of a drive may have another type than the catalogue knows."""
+    family = like(
+        g110,
+        (1120, "a word", "U16", "", 1, 0, 650, 10, "CUT", 1, ""),
+        (1800, "a double word", "U32", "", 1, 0, 99999, 70000, "CUT", 1, ""),
+    )
+    world = one_g110(family)
+    lines = world.flash.files[save(world)].split(b"\n")
+    assert b"P1120 0 U16 000A" in lines and b"P1800 0 U32 00011170" in lines, lines
+    assert b"P1121 0 Float 41200000" in lines
+    world.check()
+
+
+def test_no_set_is_saved_where_the_drive_hides_some_of_it():
+    world = one_g110()
+    world.drives[1].switches.level_for_reading = True
+    world.drives[1].write(3, 0, 1)
+    sets(world)
+    press(world, "SET", "SET")
+    assert wait(world, "SAVED", "BUT", "P0003") == ">P0003 TOO LOW", world.lcd()
+    home(world)
+    assert files(world) == []
+    family = like(mm3, (5, "a double word", "U32", "", 1, 0, 99999, 0, "CUT", 0, ""))
+    world = panel(kinds={1: {"family": family}}, settings={"kinds": {"1": "mm3"}})
+    wait_until_known(world)
+    sets(world)
+    press(world, "SET", "SET")
+    assert wait(world, "SAVED", "BUT", "REPLY") == ">REPLY TOO LONG", world.lcd()
+    home(world)
+    assert files(world) == []
+
+
 def test_how_saving_has_ended_is_told_until_set_goes_back_to_the_sets():
     world = two()
     sets(world)
@@ -150,6 +246,24 @@ def test_a_name_is_given_letter_by_letter():
     press(world, "SET")
     assert world.lcd() == ("PFT 1        1/4", ">COMPARE A1     "), world.lcd()
     world.check()
+
+
+def test_a_name_needs_a_letter():
+    world = small()
+    sets(world)
+    press(world, "SET")
+    for key, times in (("DOWN", 19), ("DOWN", 5), ("UP", 18), ("UP", 0), ("UP", 10)):
+        for _ in range(times):  # to the blank in front of the A
+            world.press(key, 60)
+            world.run(60)
+        press(world, "NEXT")
+    assert row_2(world) == ">     [ ]", world.lcd()
+    press(world, "SET")
+    assert settled(world) == ("NAME, SET=SAVE  ", "NAME, SET=SAVE  "), world.lcd()
+    world.run(3000)
+    press(world, "UP", "SET")
+    wait(world, "SAVED")
+    assert b"\nname      A\n" in world.flash.files["1.set"]
 
 
 def test_a_set_goes_back_to_its_drive_with_what_cuts_the_panel_off_last():
@@ -225,6 +339,57 @@ def test_compare_shows_what_differs_and_writes_nothing():
     assert finish(world) == "ALL EQUAL", world.lcd()
 
 
+def test_a_value_reads_as_people_write_it():
+    for kind, high, low, text in (
+        (b"U16", 0, 0xFFFF, b"65535"),
+        (b"I16", 0, 0x7FFF, b"32767"),
+        (b"I16", 0, 0x8000, b"-32768"),
+        (b"I16", 0, 0xFFFF, b"-1"),
+        (b"U32", 0xFFFF, 0xFFFE, b"4294967294"),
+        (b"U32", 1, 0x8000, b"98304"),
+        (b"I32", 0x7FFF, 0xFFFF, b"2147483647"),
+        (b"I32", 0x8000, 0, b"-2147483648"),
+        (b"I32", 0xFFFF, 0xFFFE, b"-2"),
+        (b"I32", 0, 0x9000, b"36864"),
+        (b"Float", 0xC020, 0, b"-2.5"),
+        (b"BICO", 52, 3, b"52:3"),
+        (b"BI", 722, 0, b"722:0"),
+    ):
+        assert value(kind, high, low) == text, (kind, high, low)
+    world = two()
+    put(world, (731, 0, b"BICO", b"00340007"))
+    begin(world, "A1 MADE", "COMPARE A2")
+    assert wait(world, "DIFFER") == ">DIFFER: 1", world.lcd()
+    press(world, "DOWN")
+    assert row_1(world).startswith("P0731[0]") and row_2(world) == ">52:3>52:7", world.lcd()
+
+
+def test_what_the_drive_lacks_or_does_not_answer_to_differs():
+    for is_silent in (False, True):
+        world = two()
+        world.drives[2].switches.silent_refusals = is_silent
+        put(world, (1199, 0, b"U16", b"0005"), *ROWS)
+        begin(world, "A1 MADE", "COMPARE A2")
+        assert wait(world, "DIFFER") == ">DIFFER: 3", world.lcd()
+        press(world, "UP")
+        assert row_1(world).startswith("P1199[0]") and row_2(world) == ">--->5", world.lcd()
+
+
+def test_a_comparison_that_cannot_be_made_says_why():
+    for times, outcome in ((3, "DIFFER: 2"), (4, "NO ANSWER")):
+        world = two()
+        put(world)
+        answers_late(world.drives[2], times, 1120)
+        begin(world, "A1 MADE", "COMPARE A2")
+        assert finish(world) == outcome, (times, world.lcd())
+    world = two()
+    put(world, (1130, 0, b"Float", b"40000000"))  # needs level 2
+    world.drives[2].write(3, 0, 1)
+    world.drives[2].switches.level_for_reading = True
+    begin(world, "A1 MADE", "COMPARE A2")
+    assert finish(world) == "P0003 TOO LOW", world.lcd()
+
+
 def test_a_comparison_tells_how_far_it_is():
     world = two()
     numbers, indices = range(1001, 1016), range(3)  # fixed frequencies
@@ -256,13 +421,93 @@ def test_nothing_is_written_without_a_yes():
 
 def test_a_low_access_level_is_opened_after_a_question_and_closed_again():
     world = two()
-    put(world)
+    put(world, (1130, 0, b"Float", b"40000000"), *ROWS)  # which needs level 2
     world.drives[2].write(3, 0, 1)
     begin(world, "A1 MADE", "INTO A2 RAM")
     wait(world, "SET=WRITE A2")
     assert ">P0003=3 FOR IT" in said(world, 6000)
     assert finish(world) == "WRITTEN, EQUAL", world.lcd()
     assert world.drives[2].read(1120) == 2.5 and world.drives[2].read(3) == 1
+    assert world.drives[2].read(1130) == 2.0
+    world = small()
+    put(world, (13, 0, b"U16", b"0190"), family=b"mm3")
+    world.drives[1].write(9, 0, 1)
+    begin(world, "A1 MADE", "INTO A1", 1)
+    wait(world, "SET=WRITE A1", ">P0009")
+    assert ">P0009=3 FOR IT" in said(world, 6000)
+    assert finish(world) == "WRITTEN, EQUAL", world.lcd()
+    assert world.drives[1].read(13) == 400 and world.drives[1].read(9) == 1
+
+
+def test_a_drive_that_is_not_opened_says_why_and_has_half_a_set():
+    world = two()
+    put(world)
+    world.drives[2].write(3, 0, 1)
+    world.drives[2].write(927, 0, 7)  # all but USS may change it
+    world.drives[2].switches.no_rights_error = 7
+    begin(world, "A1 MADE", "INTO A2 RAM")
+    assert finish(world) == "NOT CHANGEABLE", world.lcd()
+    assert world.drives[2].read(1120) == 10.0 and marks(world) == [2]
+
+
+def test_the_access_level_of_the_set_comes_last_and_opens_again_for_a_second_round():
+    """P1000 sets P1070, which was equal before: it is put right in the second round."""
+    rows = (
+        (3, 0, b"U16", b"0002"),
+        (1000, 0, b"U16", b"0005"),
+        (1070, 0, b"BICO", b"02F30000"),
+        (1120, 0, b"Float", b"40200000"),
+    )
+    for answer, values in (("PARAM", (3, 2, 2.5)), ("SET", (2, 5, 2.5))):
+        world = two()
+        drive = world.drives[2]
+        put(world, *rows, address=2)
+        drive.write(1000, 0, 2)
+        drive.write(1070, 0, 755 << 16)
+        begin(world, "A2 MADE", "INTO A2 RAM")
+        wait(world, "SET=WRITE A2")
+        press(world, "SET")
+        wait(world, "SET=DO")
+        assert row_1(world).startswith("2 MAY CUT"), world.lcd()
+        press(world, answer)
+        assert finish(world) == "WRITTEN, EQUAL", world.lcd()
+        assert (drive.read(3), drive.read(1000), drive.read(1120)) == values, answer
+        assert drive.read(1070) == 755 << 16
+
+
+def test_a_set_that_was_made_elsewhere_resets_nothing():
+    world = two()
+    drive = world.drives[2]
+    drive.write(1082, 0, 40.0)
+    operations = [(10, 0, b"U16", b"001E"), (970, 0, b"U16", b"0001"), (971, 0, b"U16", b"0001")]
+    put(world, *operations + ROWS, address=2)
+    begin(world, "A2 MADE", "INTO A2 RAM")
+    wait(world, "SET=WRITE A2")
+    assert row_1(world).startswith("2 DIFFER"), world.lcd()
+    saved = drive.eeprom_writes
+    assert finish(world) == "WRITTEN, EQUAL", world.lcd()
+    world.run(3000)
+    assert (drive.read(10), drive.read(1082), drive.read(1120)) == (0, 40.0, 2.5)
+    assert drive.eeprom_writes == saved
+
+
+def test_a_program_that_is_told_no_writes_nothing():
+    """At the buttons PARAM leaves the page instead."""
+    world = two()
+    put(world)
+    show(world, 2)
+    world.run(1000)
+    work = Write(world.app.panel, world.app.panel.selected, "1.set", False)
+    for now_ms in range(2000):
+        if work.outcome:
+            break
+        if work.asks:
+            work.answer = False
+        work.step(now_ms)
+        work.search()
+        world.run(5)
+    assert work.outcome == (words.NOTHING_WRITTEN,) and marks(world) == []
+    assert world.drives[2].read(1120) == 10.0
 
 
 def test_a_set_is_deleted_after_a_question():
@@ -276,7 +521,23 @@ def test_a_set_is_deleted_after_a_question():
         press(world, answer)
         world.run(500)
         assert files(world) == left
+        assert settled(world)[1] == ">DELETE IT      ", world.lcd()
+        press(world, "PARAM")
+        world.run(500)
+        assert row_1(world).rstrip().endswith("/%d" % (1 + len(left))) == bool(left), world.lcd()
         home(world)
+
+
+def test_a_set_that_has_gone_already_is_deleted_all_the_same():
+    world = two()
+    put(world)
+    open_set(world, "A1 MADE")
+    walk_to(world, "DELETE IT")
+    world.flash.files.pop("1.set")
+    press(world, "SET", "SET", "PARAM")
+    world.run(500)
+    assert settled(world) == ("SETS            ", ">SAVE A2        "), world.lcd()
+    world.check()
 
 
 # --- rule 13 ------------------------------------------------------------------------------------
@@ -463,6 +724,7 @@ def test_stop_acts_while_a_set_is_written_and_nothing_starts():
     press(world, "SET")
     assert settled(world)[1].rstrip() == "STOP ALL FIRST", world.lcd()
     world.run(3000)
+    assert row_2(world) == ">SAVE A2", world.lcd()
     home(world)
     show(world, 1)
     press(world, "STOP")
@@ -476,6 +738,21 @@ def test_stop_acts_while_a_set_is_written_and_nothing_starts():
     assert world.app.panel.selected.drive.stops == stops + 1
     assert finish(world) == "WRITTEN, EQUAL"
     assert starts(world, 2) == 0
+
+
+def test_nothing_is_done_with_a_set_while_any_drive_runs():
+    world = two()
+    put(world)
+    assert runs(world, 1)
+    open_set(world, "A1 MADE")
+    for what in ("COMPARE A2", "INTO A2 RAM", "INTO A2 EEPROM", "DELETE IT"):
+        walk_to(world, what)
+        press(world, "SET")
+        assert settled(world)[1] == "STOP ALL FIRST  ", (what, world.lcd())
+        world.run(3000)
+        assert row_2(world) == ">" + what, world.lcd()
+    assert files(world) == ["1.set"]
+    world.check()
 
 
 def test_no_set_goes_into_a_drive_that_runs():
@@ -510,6 +787,117 @@ def test_a_full_flash_is_said_and_leaves_the_other_sets():
     wait(world, "FLASH IS FULL")
     home(world)
     assert files(world) == ["1.set"] and world.flash.files["1.set"] == whole
+
+
+def test_param_in_front_of_the_flash_gives_up_saving_and_the_line_goes_on():
+    """On a slow line that is seen: the flash waits until an exchange is over."""
+    world = panel(
+        baud=1200, kinds={1: {"family": mm3}}, settings={"kinds": {"1": "mm3"}}, loop_us=LOOP_US
+    )
+    wait_until_known(world)
+    sets(world)
+    press(world, "SET")
+    world.press("SET")
+    for _ in range(1000):
+        if world.app.panel.errand:
+            break
+        world.run(5)
+    press(world, "PARAM")
+    assert settled(world)[1] == ">SAVE A1        ", world.lcd()
+    home(world)
+    world.run(1000)
+    assert list(world.flash.files) == ["settings.json"]
+    assert runs(world, 1), world.lcd()
+    world.check()
+
+
+def test_saving_is_given_up_where_the_flash_has_no_turn():
+    """The flash has its turn when no motor runs. No key starts one here, a terminal may."""
+    world = two()
+    show(world, 1)
+    sets(world)
+    press(world, "SET")
+    world.app.panel.controls[1].start()
+    world.run(4000)
+    assert world.drives[2].state == "running"
+    press(world, "SET")
+    world.run(14_000)
+    assert row_2(world) == ">...", world.lcd()
+    world.run(2000)
+    assert settled(world)[1] == ">NO ANSWER      ", world.lcd()
+    home(world)
+    world.app.panel.controls[1].stop()
+    world.run(5000)
+    assert list(world.flash.files) == ["settings.json"]
+    world.check()
+
+
+def test_no_set_is_saved_while_its_own_motor_runs():
+    world = small()
+    sets(world)
+    press(world, "SET", "SET")
+    world.run(500)
+    world.app.panel.selected.start()
+    assert wait(world, "SAVED", "STOP ALL") == ">STOP ALL FIRST", world.lcd()
+    home(world)
+    assert files(world) == []
+
+
+def test_memory_that_runs_out_while_a_set_is_saved_is_said():
+    def starving(family, **options):
+        for row in rows(family, **options):
+            if row and row[catalogue.KEY] == b"P0031":
+                raise MemoryError
+            yield row
+
+    world = small()
+    sets(world)
+    press(world, "SET")
+    rows, catalogue.rows = catalogue.rows, starving
+    try:
+        press(world, "SET")
+        assert wait(world, "SAVED", "NO ") == ">NO MEMORY LEFT", world.lcd()
+    finally:
+        catalogue.rows = rows
+    home(world)
+    assert files(world) == []
+    save(world)
+    world.check()
+
+
+def test_a_flash_that_tells_no_names_has_no_sets():
+    def broken(folder):
+        raise OSError(5)
+
+    world = small()
+    put(world)
+    world.flash.listdir = broken
+    sets(world)
+    assert settled(world) == ("SETS            ", ">SAVE A1        "), world.lcd()
+    world.check()
+
+
+def test_twenty_sets_are_kept_and_the_next_one_has_the_first_number_that_is_free():
+    world = small()
+    for number in range(1, 21):
+        if number != 3:
+            put(world, name="%d.set" % number)
+    assert save(world) == "3.set" and len(files(world)) == 20
+    sets(world)
+    press(world, "SET", "SET")
+    assert settled(world)[1] == "20 SETS, DELETE ", world.lcd()
+    world.run(3000)
+    assert settled(world) == ("NAME, SET=SAVE  ", ">[S]ET 1        "), world.lcd()
+    assert len(files(world)) == 20
+
+
+def test_no_set_is_saved_of_a_drive_without_a_table_or_without_parameters():
+    for kind in ("generic", "g110/0"):
+        world = world_of(kind)
+        sets(world)
+        press(world, "SET", "SET")
+        assert settled(world)[1] == "NO TABLE OF IT  ", (kind, world.lcd())
+        assert files(world) == []
 
 
 def test_a_bad_file_is_told_by_what_is_wrong_and_changes_nothing():
@@ -549,6 +937,11 @@ def test_a_bad_file_is_told_by_what_is_wrong_and_changes_nothing():
         assert finish(world) == text, (data[:80], world.lcd())
         home(world)
         assert marks(world) == [] and world.drives[2].read(1120) == 10.0
+    world.flash.files = {"a-pump-or-a-fan.set": b"hello"}
+    sets(world)
+    press(world, "DOWN")
+    world.run(500)
+    assert row_2(world) == ">? a-pump-or-a-f", world.lcd()
     world.check()
 
 
