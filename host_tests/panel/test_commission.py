@@ -323,19 +323,21 @@ def test_the_length_of_the_parameter_channel_is_that_of_the_list():
     world.check()
 
 
-def test_a_step_may_need_a_number_with_a_point():
-    """None of the catalogue does so far, but a table may be written anew."""
+def test_a_step_may_need_a_number_with_a_point_or_what_is_there():
+    """None of the catalogue needs such a number so far, but a table may be written anew."""
     world = world_of("mm420")
-    row = [b"S101", b"Ramp", b"Rampe", b"1120", b"0", b"7.5", b"", b"", b"", b"GK"]
+    row = [b"S101", b"Ramp", b"Rampe", b"1120", b"0", b"4097.5", b"", b"", b"", b"GK"]
     step = Step(row, world.app.panel.selected, False)
     form = Form(catalogue.find("mm420", 1120), pkw.DOUBLE)
     bits = step.needed(form, 0)
-    assert form.words(bits >> 16, bits & 0xFFFF) == b"7.50"
+    assert form.words(bits >> 16, bits & 0xFFFF) == b"4097.50"
     job = pkw.read(1120)
     job.width, job.high, job.low = pkw.DOUBLE, bits >> 16, bits & 0xFFFF
     assert step.is_right(job)
     job.low += 1
     assert not step.is_right(job)
+    stays = Step(row[:5] + [b"@address"] + row[6:], world.app.panel.selected, False)
+    assert stays.needed(form, bits) == bits and stays.is_right(job)
 
 
 def test_a_family_without_a_table_has_no_steps():

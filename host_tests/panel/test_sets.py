@@ -802,11 +802,15 @@ def test_param_in_front_of_the_flash_gives_up_saving_and_the_line_goes_on():
         if world.app.panel.errand:
             break
         world.run(5)
+    world.run(50)
     press(world, "PARAM")
     assert settled(world)[1] == ">SAVE A1        ", world.lcd()
     home(world)
     world.run(1000)
     assert list(world.flash.files) == ["settings.json"]
+    sent_us = [at_us for at_us, from_panel, _ in world.wire.log.last(20) if from_panel]
+    gaps_us = [late - early for early, late in zip(sent_us, sent_us[1:])]
+    assert len(gaps_us) > 5 and max(gaps_us) < 500_000, gaps_us
     assert runs(world, 1), world.lcd()
     world.check()
 
