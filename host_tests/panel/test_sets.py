@@ -77,6 +77,15 @@ def one_g110(family=g110):
     return world
 
 
+def slow_line():
+    """A panel with a MICROMASTER 3 at 1200 baud, where an exchange takes a third of a second."""
+    world = panel(
+        baud=1200, kinds={1: {"family": mm3}}, settings={"kinds": {"1": "mm3"}}, loop_us=LOOP_US
+    )
+    wait_until_known(world)
+    return world
+
+
 def answers_late(drive, times, *numbers):
     """So often a question about each of these gets the answer to the one before, until nobody
     waits any more.
@@ -160,6 +169,25 @@ def test_a_set_has_all_parameters_of_an_mm440_and_all_their_indices():
     kept = [row for row in rows if not has(other, row, rows[row])]
     assert (2011, 0) in kept and all([is_of_the_bus(number) for number, _ in kept]), kept
     world.check()
+
+
+def test_saving_tells_how_far_it_is_and_how_long_it_still_takes():
+    world = slow_line()
+    sets(world)
+    press(world, "SET", "SET")
+    told = []
+    while not row_2(world).startswith(">SAVED"):
+        world.run(500)
+        percent, left = row_1(world).split()[2], row_2(world)
+        if left.endswith(" LEFT"):
+            minutes, seconds = left[1:-5].split(":")
+            assert len(seconds) == 2, left
+            told.append((world.clock.now_us, int(percent[:-1]), int(minutes) * 60 + int(seconds)))
+    assert told[0][1] < 5 and told[0][2] > 60, told[0]
+    began_us, ended_us = told[0][0], world.clock.now_us
+    for at_us, percent, left_s in told:
+        assert abs(percent - 100 * (at_us - began_us) / (ended_us - began_us)) < 5
+        assert percent < 50 or abs(left_s - (ended_us - at_us) / 1e6) < 2, (percent, left_s)
 
 
 def test_what_a_drive_does_not_tell_at_once_is_asked_again():
@@ -791,10 +819,7 @@ def test_a_full_flash_is_said_and_leaves_the_other_sets():
 
 def test_param_in_front_of_the_flash_gives_up_saving_and_the_line_goes_on():
     """On a slow line that is seen: the flash waits until an exchange is over."""
-    world = panel(
-        baud=1200, kinds={1: {"family": mm3}}, settings={"kinds": {"1": "mm3"}}, loop_us=LOOP_US
-    )
-    wait_until_known(world)
+    world = slow_line()
     sets(world)
     press(world, "SET")
     world.press("SET")
