@@ -307,7 +307,7 @@ def test_a_set_goes_back_to_its_drive_with_what_cuts_the_panel_off_last():
     wait(world, "SET=WRITE A2")
     press(world, "SET")
     wait(world, "SET=DO")
-    assert row_1(world).startswith("4 MAY CUT"), world.lcd()  # P1000 has set P1070
+    assert row_1(world) == "4 MAY CUT    1/5", world.lcd()  # P1000 has set P1070
     assert drive.read(1120) == 10.0 and drive.read(1000) == 2 and marks(world) == [2]
     assert {"THE BUS OFF, OR", "CHANGE THE Hz:"} <= {row[1:] for row in said(world, 9000)}
     press(world, "DOWN")
@@ -385,11 +385,13 @@ def test_a_value_reads_as_people_write_it():
     ):
         assert value(kind, high, low) == text, (kind, high, low)
     world = two()
-    put(world, (731, 0, b"BICO", b"00340007"))
+    put(world, (731, 0, b"BICO", b"00340007"), (731, 1, b"BICO", b"FFFFFFFF"))
     begin(world, "A1 MADE", "COMPARE A2")
-    assert wait(world, "DIFFER") == ">DIFFER: 1", world.lcd()
+    assert wait(world, "DIFFER") == ">DIFFER: 2", world.lcd()
     press(world, "DOWN")
     assert row_1(world).startswith("P0731[0]") and row_2(world) == ">52:3>52:7", world.lcd()
+    press(world, "DOWN")  # as much as there is room for
+    assert row_1(world).startswith("P0731[1]") and row_2(world) == ">52:3>65535:6553"
 
 
 def test_what_the_drive_lacks_or_does_not_answer_to_differs():
