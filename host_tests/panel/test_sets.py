@@ -456,7 +456,17 @@ def test_a_low_access_level_is_opened_after_a_question_and_closed_again():
     begin(world, "A1 MADE", "INTO A2 RAM")
     wait(world, "SET=WRITE A2")
     assert ">P0003=3 FOR IT" in said(world, 6000)
+    channel, written = world.drives[2].channel, []
+    accept = channel.accept
+
+    def accept_and_note(net, layout):
+        if net[0] == 0x2003 and net not in written[-1:]:
+            written.append(net)
+        accept(net, layout)
+
+    channel.accept = accept_and_note
     assert finish(world) == "WRITTEN, EQUAL", world.lcd()
+    assert written == [[0x2003, 0, 0, 3], [0x2003, 0, 0, 1]], written
     assert world.drives[2].read(1120) == 2.5 and world.drives[2].read(3) == 1
     assert world.drives[2].read(1130) == 2.0
     world = small()
