@@ -20,10 +20,28 @@ from lookup_bench import (
     world_of,
 )
 from panel.lookup import name_of as table_of
-from panel_bench import row_1, row_2, starts
-from uss import families
+from panel.lookup import value
+from panel.lookup.answers import FIRST
+from panel.lookup.parameter import Parameter
+from panel.screen import Screen
+from panel_bench import row_1, row_2, running, starts
+from uss import families, pkw
 
 YES_OR_NO = "SET=DO  PARAM=NO"
+
+
+def keep(world, number, value):
+    """The drive has this value under a number, whatever its limits are."""
+    world.drives[1].parameters.store(number, 0, value, False)
+    world.run(800)
+
+
+def drawn(page):
+    """Both rows of a page, on a display of its own."""
+    screen = Screen("A00")
+    page.draw(screen, 0)
+    page.draw_row_2(screen, 0)
+    return tuple([row.rstrip() for row in screen.rows()])
 
 
 # --- looking -------------------------------------------------------------------------------------
@@ -101,6 +119,33 @@ def test_a_group_is_walked_both_ways_and_round():
         world.run(1500)
         back.append(row_2(world)[:5])
     assert back == there[::-1], (there, back)
+    world.check()
+
+
+def test_while_the_first_one_of_a_group_is_looked_for_there_are_dots():
+    panel = world_of().app.panel
+    panel.remembered["panel.lookup.parameter"] = b"1120-1124", FIRST
+    page = Parameter(panel)
+    assert drawn(page) == ("", "")
+    seen = []
+    while page.is_coming():
+        page.work(0)
+        seen.append(drawn(page))
+    assert len(seen) > 3 and set(seen[:-1]) == {("...", "")}, seen
+    assert seen[-1] == ("Ramp-up time", "P1120[0]       ?"), seen
+
+
+def test_a_long_value_gives_up_decimals_and_then_its_index():
+    world = world_of()
+    look_up(world, 1120)
+    for number, row in (
+        (12345.67, "P1120[0] 12345.7"),
+        (123456.7, "P1120[0]  123457"),
+        (12345678.0, "P1120[0]12345678"),
+        (123456792.0, "P1120  123456792"),
+    ):
+        keep(world, 1120, number)
+        assert row_2(world) == row, world.lcd()
     world.check()
 
 
@@ -276,6 +321,30 @@ def test_edit_again_types_a_choice_that_has_no_text():
     world.check()
 
 
+def test_the_texts_are_walked_from_their_ends_where_the_value_has_none():
+    """And only once all of them are there; UP and DOWN walk them, no other key."""
+    world = world_of()
+    look_up(world, 1300)
+    world.app.panel.has_taken = lambda us: True  # so each step looks for one piece
+    for key, rows in (
+        ("UP", ("V/f linear", "NEW            0")),
+        ("DOWN", ("Torque + encoder", "NEW           23")),
+    ):
+        keep(world, 1300, 18)
+        world.press("EDIT", 40)
+        for _ in range(30):
+            world.press(key, 30)
+            if row_2(world)[13:] != " 18":
+                break
+        assert (row_1(world).rstrip(), row_2(world)) == rows, world.lcd()
+        press(world, "PARAM", "EDIT")
+        world.run(1000)
+        press(world, "NEXT")
+        assert world.lcd() == (" " * 16, "NEW           18"), world.lcd()
+        press(world, "PARAM")
+    world.check()
+
+
 def test_edit_pressed_twice_does_not_wait_for_the_texts():
     world = world_of()
     look_up(world, 700)
@@ -299,17 +368,151 @@ def test_bits_are_read_and_changed_one_by_one():
         names.append(row_1(world).rstrip())
         press(world, "NEXT")
     assert names[:3] == ["Ready to start", "Ready", "Running"] and names[14] == "Runs right"
-    press(world, "UP")
-    assert row_2(world) == "READ ONLY"
+    for key in ("UP", "SET"):
+        press(world, key)
+        assert row_2(world) == "READ ONLY"
+        press(world, "NEXT")  # takes that away
     press(world, "PARAM")
     look_up(world, 927)
     before = world.drives[1].read(927)
-    press(world, "EDIT", "NEXT", "DOWN" if before & 2 else "UP", "SET")
-    assert row_2(world) == YES_OR_NO
+    assert before == 0b1111
+    for key, wanted in (("DOWN", 0b1101), ("UP", 0b1111)):
+        press(world, "EDIT", "NEXT", key, "SET")
+        assert row_2(world) == YES_OR_NO
+        press(world, "SET")
+        wait(world, "WRITTEN (RAM)")
+        assert world.drives[1].read(927) == wanted
+        wait(world, "P0927")
+    world.check()
+
+
+def test_a_bit_without_a_text_has_an_empty_row():
+    world = world_of()
+    look_up(world, 927)
+    press(world, "EDIT", "NEXT", "NEXT", "NEXT")
+    world.run(500)
+    assert world.lcd() == ("USS on COM link ", "P0927.03       1")
+    press(world, "NEXT")
+    world.run(500)
+    assert world.lcd() == (" " * 16, "P0927.04       0")
+    world.check()
+
+
+def test_a_double_word_has_thirty_two_bits():
+    """How wide a value is the drive says."""
+    world = world_of()
+    parameters = world.drives[1].parameters
+    row = parameters.rows[927]
+    parameters.rows[927] = row[:2] + ("U32", "", 1, 0, 0xFFFFFFFF) + row[7:]
+    look_up(world, 927)
+    keep(world, 927, 0x8001000F)
+    assert row_2(world) == "P0927  8001000Fh"
+    press(world, "EDIT")
+    shown = []
+    for _ in range(33):
+        shown.append((row_2(world)[6:8], row_2(world)[-1]))
+        press(world, "PREVIOUS")
+    bits = [0] + list(range(31, -1, -1))
+    assert shown == [("%02d" % bit, str(0x8001000F >> bit & 1)) for bit in bits], shown
+    assert row_2(world)[5:8] == ".31"
+    press(world, "PREVIOUS", "UP", "SET", "SET")
+    wait(world, "WRITTEN (RAM)")
+    assert parameters.get(927) == 0xC001000F
+    world.check()
+
+
+def test_a_value_is_typed_in_hexadecimal():
+    world = world_of()
+    look_up(world, 1120)
+    press(world, "EDIT", "EDIT")
+    wait(world, "NEW 41200000")
+    press(world, "DOWN")
+    wait(world, "NEW 4120000F")
+    press(world, "UP", *("PREVIOUS",) * 5)
+    press(world, "UP")
+    wait(world, "NEW 41300000")
     press(world, "SET")
     wait(world, "WRITTEN (RAM)")
-    assert world.drives[1].read(927) == before ^ 2
+    assert world.drives[1].read(1120) == 11
     world.check()
+
+
+def test_what_has_too_many_digits_is_typed_in_hexadecimal_at_once():
+    world = world_of()
+    look_up(world, 1120)
+    for number, row in (
+        (999_999_936.0, "NEW 999999936.00"), (1_000_000_000.0, "NEW 4E6E6B28"),
+        (1e10, "NEW 501502F9"),
+    ):  # fmt: skip
+        keep(world, 1120, number)
+        press(world, "EDIT")
+        wait(world, row)
+        press(world, "PARAM")
+        press(world, "NEXT", "PREVIOUS")
+    world.check()
+
+
+def test_a_whole_number_is_typed_with_the_places_and_the_sign_of_its_type():
+    word, double = pkw.WORD, pkw.DOUBLE
+    for family, number, width, bits, typed in (
+        ("mm440", 2014, word, 2000, b"02000"),  # U16
+        ("mm440", 208, double, 230, b"0000000230"),  # U32
+        ("mm440", 208, double, 0xFFFFFFFF, b"4294967295"),
+        ("g120", 300, word, 5, b"+00005"),  # I16
+        ("g120", 300, word, 0xFFFF, b"-00001"),
+        ("g120", 300, word, 0x8000, b"-32768"),
+        ("g120", 1240, word, 3, b"+3"),  # 0...3
+        ("g120", 2124, double, 7, b"+0000000007"),  # I32
+        ("g120", 2124, double, 0xFFFF0000, b"-0000065536"),
+    ):
+        form = value.Form(catalogue.find(family, number), width)
+        shown, place = form.typed(bits >> 16, bits & 0xFFFF)
+        assert (bytes(shown), place) == (typed, len(typed) - 1), (family, number, shown, place)
+        assert form.bits(shown) == bits, (family, number, shown)
+
+
+def test_a_number_beyond_its_type_is_refused():
+    word, double = pkw.WORD, pkw.DOUBLE
+    for family, number, width, last, beyond in (
+        ("mm440", 2014, word, b"65535", b"65536"),
+        ("mm440", 2014, word, b"00000", b"-0001"),
+        ("mm440", 208, double, b"4294967295", b"4294967296"),
+        ("g120", 300, word, b"+32767", b"+32768"),
+        ("g120", 300, word, b"-32768", b"-32769"),
+        ("g120", 2124, double, b"+2147483647", b"+2147483648"),
+    ):
+        form = value.Form(catalogue.find(family, number), width)
+        form.bits(last)
+        try:
+            bits = form.bits(beyond)
+        except ValueError:
+            continue
+        raise AssertionError("%s P%04d: %r is %X" % (family, number, beyond, bits))
+    world = world_of()
+    look_up(world, 2014)
+    before = world.wire.log.count
+    press(world, "EDIT", *("PREVIOUS",) * 4)
+    type_digits(world, "9")
+    wait(world, "NEW 92000")
+    press(world, "SET")
+    assert row_2(world) == "BEYOND LIMITS", world.lcd()
+    sent = world.wire.log.last(world.wire.log.count - before)
+    assert not [row for row in sent if row[1] and row[2][3] >> 4 not in (0, 1)]  # only reads
+    world.check()
+
+
+def test_a_floating_point_number_is_typed_with_as_many_decimals_as_there_is_room_for():
+    """Of an unknown drive it has three, and a sign."""
+    form = value.Form(None, pkw.DOUBLE)
+    for number, typed, place in (
+        (0.5, b"+000000.500", 6),
+        (-1234567.0, b"-1234567.000", 7),
+        (123456792.0, b"+123456792.00", 9),
+        (-999999936.0, b"-999999936.00", 9),
+    ):
+        shown = form.typed(*pkw.float_to_words(number))
+        assert (bytes(shown[0]), shown[1]) == (typed, place), shown
+        assert len(typed) <= value.TYPED_MAX
 
 
 def test_a_connector_is_typed_as_number_and_index():
@@ -452,6 +655,37 @@ def test_a_drive_that_is_lost_tells_nothing_and_ends_the_typing():
     assert row_2(world) == "P1120[0]       ?", world.lcd()
     world.drives[1].plug()
     wait(world, "P1120[0]  10.00s")
+    world.check()
+
+
+def test_an_alarm_has_both_rows_and_what_it_leaves_is_not_read_as_the_parameter():
+    world = running()
+    look_up(world, 1120)
+    page = Parameter(world.app.panel)
+    assert page.whole
+    world.drives[1].unplug()
+    world.run(1500)
+    assert world.lcd() == ("NO CONTACT,     ", "MAY RUN      A1 ")
+    assert not page.whole
+    screen = Screen("A00")
+    screen.put(0, 0, 16, b"NO CONTACT,")
+    screen.put(1, 0, 16, b"MAY RUN      A1")
+    page.draw(screen, 0)
+    assert tuple(screen.rows()) == ("NO CONTACT,     ", "             A1 "), screen.rows()
+
+
+def test_a_drive_turned_to_while_the_panel_hangs_is_the_one_that_is_read():
+    """The hang has taken the key away from the page, which finds the drive all the same."""
+    world = world_of(addresses=(1, 2))
+    world.drives[2].write(1120, 0, 7)
+    look_up(world, 1120)
+    world.down("ADDRESS_UP")
+    while world.selected() != 2:
+        world.app.step()
+    world.hang(400)
+    world.up("ADDRESS_UP")
+    wait(world, "PANEL HUNG")
+    wait(world, "P1120[0]   7.00s")
     world.check()
 
 
