@@ -5,6 +5,7 @@ import json
 import sys
 
 import catalogue
+import on_demand
 from lookup_bench import (
     choose,
     forget_modules,
@@ -129,7 +130,7 @@ def test_while_the_first_one_of_a_group_is_looked_for_there_are_dots():
     assert drawn(page) == ("", "")
     seen = []
     while page.is_coming():
-        page.work(0)
+        page.step(None, 0)
         seen.append(drawn(page))
     assert len(seen) > 3 and set(seen[:-1]) == {("...", "")}, seen
     assert seen[-1] == ("Ramp-up time", "P1120[0]       ?"), seen
@@ -274,6 +275,10 @@ def test_no_telegram_off_time_is_written_with_which_the_drive_would_trip():
     press(world, "SET")
     assert row_2(world) == "BELOW LIMIT NOW", world.lcd()
     assert world.drives[1].read(2014) == before
+    press(world, "DOWN")
+    wait(world, "NEW 00000")
+    press(world, "SET")  # 0 trips nothing: the motor runs on for ever, so it asks
+    assert row_2(world) == YES_OR_NO, world.lcd()
     world.check()
 
 
@@ -359,6 +364,7 @@ def test_bits_are_read_and_changed_one_by_one():
     world = world_of()
     look_up(world, 52)
     bits = int(row_2(world)[5:].strip("h "), 16)
+    assert row_2(world) == "r0052      %04Xh" % bits
     press(world, "EDIT")
     world.run(500)
     names = []
@@ -372,12 +378,19 @@ def test_bits_are_read_and_changed_one_by_one():
         press(world, key)
         assert row_2(world) == "READ ONLY"
         press(world, "NEXT")  # takes that away
+    press(world, *("NEXT",) * 5)
+    assert row_2(world) == "r0052.07       0", world.lcd()
+    world.drives[1].warn(600)
+    wait(world, "r0052.07       1")  # nobody changes it, so it is what it is now
     press(world, "PARAM")
     look_up(world, 927)
     before = world.drives[1].read(927)
     assert before == 0b1111
     for key, wanted in (("DOWN", 0b1101), ("UP", 0b1111)):
-        press(world, "EDIT", "NEXT", key, "SET")
+        press(world, "EDIT", "NEXT", key)
+        assert row_2(world) == "P0927.01       %d" % (wanted >> 1 & 1)
+        wait(world, "P0927.01-------")  # it blinks: not in force yet
+        press(world, "SET")
         assert row_2(world) == YES_OR_NO
         press(world, "SET")
         wait(world, "WRITTEN (RAM)")
@@ -405,8 +418,9 @@ def test_a_double_word_has_thirty_two_bits():
     row = parameters.rows[927]
     parameters.rows[927] = row[:2] + ("U32", "", 1, 0, 0xFFFFFFFF) + row[7:]
     look_up(world, 927)
-    keep(world, 927, 0x8001000F)
-    assert row_2(world) == "P0927  8001000Fh"
+    for bits in (0xF, 0x8001000F):
+        keep(world, 927, bits)
+        assert row_2(world) == "P0927  %08Xh" % bits
     press(world, "EDIT")
     shown = []
     for _ in range(33):
@@ -537,8 +551,10 @@ def test_a_sign_is_a_place_as_well():
     press(world, "EDIT")
     wait(world, "NEW +000.00Hz")
     type_digits(world, "7")
-    press(world, "PREVIOUS", "PREVIOUS", "PREVIOUS", "UP")
-    wait(world, "NEW -007.00Hz")
+    press(world, "PREVIOUS", "PREVIOUS", "PREVIOUS")
+    for row in ("NEW -007.00Hz", "NEW +007.00Hz", "NEW -007.00Hz"):
+        press(world, "UP")
+        wait(world, row)
     press(world, "SET")
     wait(world, "P1001[0] -7.00Hz")
     assert world.drives[1].read(1001) == -7
@@ -602,6 +618,10 @@ def test_of_an_unknown_family_every_number_is_read_and_written():
     wait(world, "NEW 41300000")
     press(world, "PARAM", "PREVIOUS")
     wait(world, "P1119")
+    look_up(world, 1)
+    for _ in range(2):
+        press(world, "PREVIOUS")
+        wait(world, "P0000")  # nothing is before it
     look_up(world, 304)
     press(world, "EDIT", "UP")
     wait(world, "NEW 00231")
@@ -643,6 +663,13 @@ def test_another_drive_has_another_value():
     press(world, "ADDRESS_UP")
     wait(world, "P1120[0]   7.00s")
     assert "A2 0...650s" in lines(world)
+    for key in ("ADDRESS_UP", "NEXT"):  # in one moment: both do what they do
+        world.down(key)
+    world.run(100)
+    for key in ("ADDRESS_UP", "NEXT"):
+        world.up(key)
+    wait(world, "P1121[0]  10.00s")
+    assert "A1 0...650s" in lines(world)
     world.check()
 
 
@@ -737,8 +764,19 @@ def test_favourites_begin_as_parameter_mode_and_set_held_adds_and_removes():
     world.run(2000)
     stored = json.loads(world.flash.files["settings.json"])
     assert stored["favourites"] == {"mm440": [700, 1000, 2011, 2024, 2025]}
+    press(world, "NEXT")  # from one that is none any more
+    wait(world, "P0700")
     press(world, "PARAM", "PARAM")
     wait(world, "P0700:     5 A1")  # parameter mode is what it was
+    world.check()
+
+
+def test_where_there_are_no_favourites_it_begins_with_the_first_number():
+    world = world_of(settings={"favourites": {"mm440": []}})
+    go_to(world, "PARAMETERS", "FAVOURITES")
+    wait(world, "r0000")
+    press(world, "NEXT")
+    wait(world, "r0000")
     world.check()
 
 
@@ -758,6 +796,10 @@ def test_the_page_leaves_the_memory():
     forget_modules()
     look_up(world, 1120)
     assert "panel.lookup.inspection" in sys.modules and "catalogue" in sys.modules
+    on_demand.drop("settings_file")  # a test before this one may have left it as well
+    hold(world, "SET", 1800)
+    assert row_2(world) == "FAVOURITE" and "settings_file" not in sys.modules
+    world.run(3000)
     press(world, "PARAM")
     world.run(3000)
     left = {name for name in sys.modules if name.startswith(("panel.lookup", "catalogue"))}

@@ -127,6 +127,21 @@ def test_whatever_else_ends_it_leaves_the_setpoint_as_it_was():
         world.check()
 
 
+def test_an_address_key_leads_to_the_next_drive_round_and_held_to_no_further_one():
+    for first, key, then in (
+        (1, "ADDRESS_UP", 2), (3, "ADDRESS_UP", 1), (1, "ADDRESS_DOWN", 3), (3, "ADDRESS_DOWN", 2),
+    ):  # fmt: skip
+        world = ready(addresses=(1, 2, 3))
+        if first == 3:
+            press(world, "ADDRESS_DOWN")
+            wait_until_known(world)
+        editing(world)
+        world.press(key, 900)
+        world.run(500)
+        assert row_2(world) == "READY        A%d" % then, (first, key, world.lcd())
+        world.check()
+
+
 def test_half_a_minute_without_a_key_ends_it():
     world = editing(ready())
     press(world, "UP")

@@ -6,7 +6,18 @@ Percent of the reference, and what the drive tells by parameters: Hz, 1/min, A, 
 
 import sys
 
-from panel_bench import OFF1, late, panel, row_1, row_2, running, telegrams, wait_until_known
+from panel_bench import (
+    LOOP_US,
+    OFF1,
+    late,
+    panel,
+    row_1,
+    row_2,
+    running,
+    telegrams,
+    wait_until,
+    wait_until_known,
+)
 
 
 def runs(kind="mm420", **more):
@@ -150,6 +161,22 @@ def test_percent_beyond_what_a_word_can_say():
     assert drawn(world, values_shown) == "  >>>>>%  "
 
 
+def test_a_value_of_the_drive_shown_before_is_not_drawn_for_another():
+    from panel.pages.values import Values
+
+    world = panel(addresses=(1, 2))
+    wait_until_known(world)
+    values_shown = Values(world.app.panel)
+    for _ in range(3):
+        values_shown.turn(1)
+    assert drawn(world, values_shown).strip() == "?rpm"
+    world.press("ADDRESS_UP")
+    screen = world.app.panel.screen
+    screen.put(0, 0, 16, b"")
+    assert not values_shown.draw(screen) and screen.rows()[0] == " " * 16
+    assert values_shown.step(0) and drawn(world, values_shown).strip() == "?rpm"
+
+
 def tells(world, number, value):
     """From now on the drive has this value under a number."""
     readings = world.drives[1].readings
@@ -237,15 +264,22 @@ def test_it_is_read_about_three_times_a_second():
 
 
 def test_another_page_and_back_reads_it_anew():
-    world = show(runs("mm440"), "Vdc")
+    world = show(runs("mm440", loop_us=LOOP_US), "Vdc")
+    before = shown(world)
     world.press("PARAM")
     world.run(500)
     assert " F:" in row_1(world), world.lcd()  # parameter mode has the frequency
     since_us = world.clock.now_us
     world.run(2000)
     assert asked(world, since_us, 26) == 0
-    world.press("PARAM")
-    assert shown(world).strip().endswith("Vdc")
+    tells(world, 26, 321.0)
+    world.down("PARAM")
+    seen = set()
+    for _ in range(100):
+        world.run(5)
+        seen.add(row_1(world)[7:])
+    world.up("PARAM")
+    assert "   321Vdc" in seen and before not in seen, (before, seen)
     world.check()
 
 
@@ -263,6 +297,13 @@ def test_the_value_stays_selected_while_other_drives_are_shown():
     world.press("ADDRESS_UP")
     world.run(1500)
     assert shown(world) == "  0.00kW " and row_2(world).endswith("A3"), world.lcd()
+    show(world, "%")
+    world.press("ADDRESS_DOWN")  # this one is shown in percent anyway
+    world.run(1500)
+    assert row_1(world) == "S: 10.0%F:  0.00" and row_2(world).endswith("A2"), world.lcd()
+    world.press("ADDRESS_UP")
+    world.run(1500)
+    assert row_1(world) == "S: 10.0   0.0%  " and row_2(world).endswith("A3"), world.lcd()
     world.check()
 
 
@@ -293,9 +334,15 @@ def test_without_contact_it_is_dashes():
     world.press("NEXT")
     world.run(500)
     assert row_1(world)[7:] == " -----Vdc", world.lcd()
+    world.run(5000)  # nor is it asked for meanwhile, and found not to be told
     world.drives[1].plug()
-    world.run(3000)
-    assert shown(world).endswith("Vdc") and "-" not in shown(world), world.lcd()
+    drive = world.app.panel.selected.drive
+    wait_until(world, lambda: drive.contact, 8_000)
+    world.run(100)
+    for _ in range(300):
+        assert "-" not in row_1(world), world.lcd()
+        world.run(10)
+    assert shown(world).endswith("Vdc"), world.lcd()
     world.check()
 
 
@@ -317,6 +364,45 @@ def test_a_value_that_is_late_is_not_shown_as_if_it_were_new():
         raise AssertionError(world.lcd())
     world.run(4000)
     assert "-----" not in row_1(world), world.lcd()
+
+
+def test_a_value_that_is_not_told_any_more_is_not_shown_after_three_seconds():
+    """The drive goes on with the answer to an old question, whatever it is asked."""
+    world = show(runs("mm440"), "A")
+    world.run(500)
+    world.drives[1].stale_replies = 1_000_000
+    before = row_1(world)
+    world.run(2_600)
+    assert row_1(world) == before, world.lcd()
+    world.run(700)
+    assert row_1(world)[7:] == "     ?A  ", world.lcd()
+    world.run(2_000)  # the question is given up
+    assert row_1(world)[7:] == " -----A  ", world.lcd()
+    world.check()
+
+
+def test_a_value_in_a_form_that_nobody_expects_is_dashes():
+    """The current as a word, where all others of its family tell a floating-point number."""
+    world = runs("mm440")
+    rows = world.drives[1].parameters.rows
+    rows[27] = rows[27][:2] + ("U16",) + rows[27][3:]
+    tells(world, 27, 5)
+    show(world, "A")
+    world.run(500)
+    assert row_1(world)[7:] == " -----A  ", world.lcd()
+    world.check()
+
+
+def test_refused_values_are_left_out_in_both_directions():
+    world = runs("mm440")
+    rows = world.drives[1].parameters.rows
+    for number in (27, 25):
+        del rows[number]
+    there = ["%", "Hz", "rpm", "Vdc", "kW", "C M", "C I", "F:"]
+    for _ in range(2):
+        assert units(values(world)) == there
+        assert units(values(world, "PREVIOUS")) == there[-2::-1] + there[-1:]
+    world.check()
 
 
 def test_a_refused_value_is_left_out_and_not_asked_for_again():
@@ -356,4 +442,8 @@ def test_it_leaves_the_memory_with_the_frequency():
     world.press("NEXT")
     world.run(700)
     assert " F:" in row_1(world) and "panel.pages.values" not in sys.modules
+    world = show(runs("g120"), "C M")
+    world.press("NEXT")  # to one that is refused, and on to the frequency
+    world.run(700)
+    assert "F:" in row_1(world) and "panel.pages.values" not in sys.modules
     world.check()

@@ -4,6 +4,7 @@
 import sys
 
 import on_demand
+from lookup_bench import go_to
 from panel_bench import panel, row_2, starts, wait_until_known
 
 PAGE, WRITER, QUESTION = "panel.pages.parameters", "panel.writer", "panel.pages.question"
@@ -59,14 +60,16 @@ def test_what_is_kept_is_loaded_at_once():
 
 
 class NoMemory:
-    """No module can be loaded meanwhile, or none of these."""
+    """No module can be loaded meanwhile, or none of these. tries: how often one was asked for."""
 
     def __init__(self, *names):
         self._names = names
+        self.tries = 0
 
     def __enter__(self):
         self._load = on_demand.load
         on_demand.load = self._fail
+        return self
 
     def __exit__(self, *_):
         on_demand.load = self._load
@@ -74,6 +77,7 @@ class NoMemory:
     def _fail(self, name):
         if self._names and name not in self._names:
             return self._load(name)
+        self.tries += 1
         raise MemoryError("no memory")
 
 
@@ -233,6 +237,30 @@ def test_a_log_that_is_switched_off_leaves_the_memory():
         world.app.settings.change("log", log)
         world.run(1000)
         assert ("log" in sys.modules) == (log == "JSON"), log
+
+
+def test_the_list_of_groups_that_finds_no_memory_for_its_page_is_a_list_all_the_same():
+    """It tries once to have the page at hand; whoever goes there is told."""
+    world = panel()
+    wait_until_known(world)
+    go_to(world)
+    for _ in range(40):
+        if row_2(world) == ">PARAMETERS":
+            break
+        world.press("DOWN")
+        world.run(200)
+    world.press("SET", 40)
+    for _ in range(400):
+        if row_2(world).startswith(">BY NUM"):
+            break
+        world.run(5)
+    with NoMemory() as memory:
+        world.run(2000)
+        assert memory.tries == 1 and world.lcd()[1] == ">BY NUMBER      ", world.lcd()
+    world.press("SET")
+    world.run(1000)
+    assert row_2(world).startswith("P0"), world.lcd()
+    world.check()
 
 
 def test_what_takes_long_waits_for_the_line_and_the_step_and_not_without_an_end():

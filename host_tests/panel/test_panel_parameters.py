@@ -183,6 +183,24 @@ def test_a_parameter_that_the_drive_does_not_have_is_told():
     world.check()
 
 
+def test_a_refusal_that_no_manual_explains_is_told_by_its_number():
+    world = panel()
+    channel = world.drives[1].channel
+    reply = channel.reply
+
+    def refuse(layout, pzd_words=2):
+        words = reply(layout, pzd_words)
+        is_asked = words[0] & 0x7FF == 2011 - 2000 and words[1] & 0x8000
+        return [0x700B, words[1], 0, 99] if is_asked else words
+
+    channel.reply = refuse
+    show(world, "P2011")
+    assert row_2(world) == "REFUSED: 99", world.lcd()
+    world.run(3200)
+    assert row_2(world) == "P2011: ----- A1"
+    world.check()
+
+
 def test_the_value_of_a_silent_drive_is_not_shown():
     """Not even the last one, as soon as it is out of contact; and it comes back with it."""
     world = parameter("P1000")

@@ -361,6 +361,23 @@ def test_nothing_is_accepted_while_stop_is_down():
     world.check()
 
 
+def test_a_start_beside_a_stop_that_a_hang_has_swallowed_accepts_nothing():
+    """STOP has not taken the question away yet when START is seen."""
+    world = asked()
+    world.down("STOP")
+    while not world.app.panel.stop_key.is_down:
+        world.app.step()
+    world.down("START")
+    world.hang(400)
+    world.run(100)
+    world.up("STOP")
+    world.run(200)
+    assert row_2(world) == "NO: STOP IS DOWN", world.lcd()
+    world.run(1000)
+    assert starts(world) == 0 and accepted(world) == []
+    world.check()
+
+
 def test_a_drive_that_was_started_after_another_is_the_one_that_is_asked_about():
     world = unset(addresses=(1, 2))
     world.run(2000)

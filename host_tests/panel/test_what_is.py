@@ -110,7 +110,11 @@ def test_the_fault_memory_has_the_last_faults_with_their_texts():
         drive.clear_cause()
         press(world, "STOP")
         world.run(1000)
+    drive.stale_replies = 100_000  # it does not tell them yet
     go_to(world, "FAULT MEMORY")
+    press(world, "SET")
+    assert world.lcd()[1] == ">...            ", world.lcd()
+    drive.stale_replies = 0
     world.run(1500)
     there = entries(world)
     told = [drive.read(947, index) for index in range(8)]
@@ -133,6 +137,8 @@ def test_the_fault_memory_of_a_drive_without_indices_has_one_entry():
     world = world_of("mm3")
     go_to(world, "FAULT MEMORY")
     world.run(1000)
+    assert world.lcd()[0] == "A1 FAULTS       " and row_2(world) == ">NO FAULT", world.lcd()
+    press(world, "SET")  # it means nothing
     assert world.lcd()[0] == "A1 FAULTS       " and row_2(world) == ">NO FAULT", world.lcd()
     world.check()
 
