@@ -364,10 +364,11 @@ def test_nothing_is_accepted_while_stop_is_down():
 def test_a_start_beside_a_stop_that_a_hang_has_swallowed_accepts_nothing():
     """STOP has not taken the question away yet when START is seen."""
     world = asked()
+    world.down("START")
+    world.app.step()
     world.down("STOP")
     while not world.app.panel.stop_key.is_down:
         world.app.step()
-    world.down("START")
     world.hang(400)
     world.run(100)
     world.up("STOP")
