@@ -709,8 +709,8 @@ def test_a_drive_turned_to_while_the_panel_hangs_is_the_one_that_is_read():
     world.down("ADDRESS_UP")
     while world.selected() != 2:
         world.app.step()
-    world.hang(400)
     world.up("ADDRESS_UP")
+    world.hang(330)  # shorter than until a key repeats
     wait(world, "PANEL HUNG")
     wait(world, "P1120[0]   7.00s")
     world.check()
