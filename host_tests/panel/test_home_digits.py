@@ -127,7 +127,7 @@ def test_whatever_else_ends_it_leaves_the_setpoint_as_it_was():
         world.check()
 
 
-def test_an_address_key_leads_to_the_next_drive_round_and_held_to_no_further_one():
+def test_an_address_key_leads_to_the_next_drive_round_and_held_into_no_menu():
     for first, key, then in (
         (1, "ADDRESS_UP", 2), (3, "ADDRESS_UP", 1), (1, "ADDRESS_DOWN", 3), (3, "ADDRESS_DOWN", 2),
     ):  # fmt: skip
@@ -136,7 +136,7 @@ def test_an_address_key_leads_to_the_next_drive_round_and_held_to_no_further_one
             press(world, "ADDRESS_DOWN")
             wait_until_known(world)
         editing(world)
-        world.press(key, 900)
+        world.press(key, 2000)
         world.run(500)
         assert row_2(world) == "READY        A%d" % then, (first, key, world.lcd())
         world.check()
