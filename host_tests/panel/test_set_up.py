@@ -117,6 +117,8 @@ def test_a_value_that_the_access_level_forbids_is_offered_again_after_p0003():
     assert found >= {"A1: P0003=3", "PANEL MAY WRITE", "MORE THEN"}, found
     press(world, "SET")
     world.run(3500)
+    drive = world.drives[1]
+    assert drive.read(3) == 3 and drive.eeprom_writes == 0  # until it is switched off
     press(world, "START")
     world.run(1500)
     press(world, "SET")
