@@ -224,19 +224,20 @@ def test_a_start_before_edit_runs_with_what_was_shown():
 
 
 def test_a_value_beyond_a_limit_becomes_the_limit_and_that_is_said():
-    world = editing(ready(parameters={2014: 2000, 1080: 5.0, 1082: 40.0}))
+    world = editing(ready(parameters={2014: 2000, 1080: 5.25, 1082: 40.0}))
     type_in(world, "060.00")
     press(world, "SET")
     assert row_2(world) == "LIMIT: 40.00" and row_1(world) == "S: 40.0 F:  0.00"
     editing(world)
     type_in(world, "002.00")
     press(world, "SET")
-    assert row_2(world) == "LIMIT: 5.00" and row_1(world) == "S:  5.0 F:  0.00"
+    assert row_2(world) == "LIMIT: 5.25", world.lcd()
+    assert row_1(world) == "S:  5.3 F:  0.00", world.lcd()
     world.check()
 
 
 def test_the_limits_of_the_settings_count_too():
-    settings = {"highest_centihertz": 3000, "lowest_centihertz": 500}
+    settings = {"highest_centihertz": 3000, "lowest_centihertz": 575}
     world = editing(ready(settings=settings))
     type_in(world, "999.99")
     press(world, "SET")
@@ -244,7 +245,8 @@ def test_the_limits_of_the_settings_count_too():
     editing(world)
     type_in(world, "000.00")
     press(world, "SET")
-    assert row_2(world) == "LIMIT: 5.00" and row_1(world) == "S:  5.0 F:  0.00"
+    assert row_2(world) == "LIMIT: 5.75", world.lcd()
+    assert row_1(world) == "S:  5.8 F:  0.00", world.lcd()
 
 
 def test_set_with_the_value_in_force_raises_nothing():

@@ -80,6 +80,21 @@ def test_a_start_that_a_fault_refuses_says_that_alone():
     world.check()
 
 
+def test_the_access_level_of_a_micromaster_3_is_p009():
+    kinds = {1: {"family": mm3, "parameters": {910: 1, 93: 2, 9: 0}}}
+    world = panel(kinds=kinds, settings={"kinds": {"1": "mm3"}})
+    world.run(3000)
+    press(world, "PARAM", "NEXT")
+    world.run(1000)
+    press(world, "EDIT", "UP", "SET", "SET")  # another address
+    world.run(3500)
+    assert asked(world) == {"A1: P0009=3", "PANEL MAY WRITE", "MORE THEN"}
+    press(world, "SET")
+    world.run(3500)
+    assert world.drives[1].read(9) == 3 and world.drives[1].read(91) == 1
+    world.check()
+
+
 def test_a_micromaster_3_is_told_by_p910():
     kinds = {1: {"family": mm3, "parameters": {910: 0, 93: 2}}}
     world = panel(kinds=kinds, settings={"kinds": {"1": "mm3"}})

@@ -128,8 +128,9 @@ def test_the_fault_memory_has_the_last_faults_with_their_texts():
     press(world, "PARAM")
     world.run(300)
     assert row_1(world).startswith("A1 FAULTS"), world.lcd()
-    press(world, "DOWN")  # the catalogue is still there for the list below
-    world.run(300)
+    choose(world, "F0001")  # the catalogue is still there for the list below
+    world.run(500)
+    assert text_of(world)["F0001"] == "Overcurrent"
     world.check()
 
 
