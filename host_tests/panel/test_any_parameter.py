@@ -25,7 +25,7 @@ from panel.lookup import value
 from panel.lookup.answers import FIRST
 from panel.lookup.parameter import Parameter
 from panel.screen import Screen
-from panel_bench import row_1, row_2, running, starts
+from panel_bench import row_1, row_2, running, settled_row_2, starts
 from uss import families, pkw
 
 YES_OR_NO = "SET=DO  PARAM=NO"
@@ -35,6 +35,15 @@ def keep(world, number, value):
     """The drive has this value under a number, whatever its limits are."""
     world.drives[1].parameters.store(number, 0, value, False)
     world.run(800)
+
+
+def step_until(world, condition):
+    """The main loop goes on until it is so, and not one step further."""
+    for _ in range(1000):
+        if condition():
+            return
+        world.app.step()
+    raise AssertionError(world.lcd())
 
 
 def drawn(page):
@@ -129,7 +138,9 @@ def test_while_the_first_one_of_a_group_is_looked_for_there_are_dots():
     page = Parameter(panel)
     assert drawn(page) == ("", "")
     seen = []
-    while page.is_coming():
+    for _ in range(1000):
+        if not page.is_coming():
+            break
         page.step(None, 0)
         seen.append(drawn(page))
     assert len(seen) > 3 and set(seen[:-1]) == {("...", "")}, seen
@@ -229,6 +240,23 @@ def test_the_ramp_is_set_to_2_5_seconds_in_the_eeprom():
     drive.power_on()
     world.run(3000)
     assert drive.read(1120) == 2.5
+    world.check()
+
+
+def test_the_digit_that_would_change_blinks():
+    world = world_of()
+    look_up(world, 1120)
+    press(world, "EDIT")
+    for key, rows in (
+        ("UP", ("NEW 011.00s", "NEW 01_.00s")), ("NEXT", ("NEW 011.00s", "NEW 011._0s")),
+    ):  # fmt: skip
+        press(world, key)
+        seen = {}
+        for _ in range(80):  # twice on and off
+            row = settled_row_2(world)
+            seen[row] = seen.get(row, 0) + 1
+            world.run(10)
+        assert set(seen) == set(rows) and seen[rows[0]] > seen[rows[1]], seen
     world.check()
 
 
@@ -353,6 +381,7 @@ def test_the_texts_are_walked_from_their_ends_where_the_value_has_none():
 def test_edit_pressed_twice_does_not_wait_for_the_texts():
     world = world_of()
     look_up(world, 700)
+    world.app.panel.has_taken = lambda us: True  # so each step looks for one piece
     world.press("EDIT", 40)
     world.press("EDIT", 40)
     wait(world, "NEW 5")
@@ -707,8 +736,7 @@ def test_a_drive_turned_to_while_the_panel_hangs_is_the_one_that_is_read():
     world.drives[2].write(1120, 0, 7)
     look_up(world, 1120)
     world.down("ADDRESS_UP")
-    while world.selected() != 2:
-        world.app.step()
+    step_until(world, lambda: world.selected() == 2)
     world.up("ADDRESS_UP")
     world.hang(330)  # shorter than until a key repeats
     wait(world, "PANEL HUNG")

@@ -367,7 +367,9 @@ def test_a_start_beside_a_stop_that_a_hang_has_swallowed_accepts_nothing():
     world.down("START")
     world.app.step()
     world.down("STOP")
-    while not world.app.panel.stop_key.is_down:
+    for _ in range(100):
+        if world.app.panel.stop_key.is_down:
+            break
         world.app.step()
     world.hang(400)
     world.run(100)
