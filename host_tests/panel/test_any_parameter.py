@@ -245,12 +245,19 @@ def test_the_ramp_is_set_to_2_5_seconds_in_the_eeprom():
 
 def test_the_digit_that_would_change_blinks():
     world = world_of()
-    look_up(world, 1120)
-    press(world, "EDIT")
-    for key, rows in (
-        ("UP", ("NEW 011.00s", "NEW 01_.00s")), ("NEXT", ("NEW 011.00s", "NEW 011._0s")),
-    ):  # fmt: skip
-        press(world, key)
+    go_to(world, "PARAMETERS", "BY NUMBER")
+    wait(world, "P0")
+    for keys, rows in (
+        (("UP",), ("P01000", "P0_000")),
+        (("NEXT", "NEXT", "NEXT"), ("P01000", "P0100_")),
+        (("NEXT",), ("P01000", "P_1000")),  # round
+        (("NEXT", "NEXT", "UP", "NEXT", "UP", "UP"), ("P01120", "P011_0")),
+        (("SET", "EDIT", "UP"), ("NEW 011.00s", "NEW 01_.00s")),
+        (("NEXT",), ("NEW 011.00s", "NEW 011._0s")),
+    ):
+        for key in keys:
+            press(world, key)
+            world.run(700 if key == "SET" else 0)
         seen = {}
         for _ in range(80):  # twice on and off
             row = settled_row_2(world)
@@ -270,6 +277,23 @@ def test_set_pressed_shortly_writes_into_the_ram_alone():
     wait(world, "P1121[1]  11.00s")
     drive = world.drives[1]
     assert (drive.read(1121, 0), drive.read(1121, 1)) == (10, 11) and drive.eeprom_writes == 0
+    world.check()
+
+
+def test_another_key_beside_a_held_set_makes_nothing_permanent_and_no_favourite():
+    world = world_of()
+    look_up(world, 1120)
+    for keys in ((), ("EDIT", "UP")):
+        press(world, *keys)
+        world.down("SET")
+        world.run(400)
+        press(world, "STOP")
+        world.run(3000)
+        world.up("SET")
+        assert "FAVOURITE" not in row_2(world) and "EEPROM" not in row_2(world), world.lcd()
+        world.run(3500)
+    assert "favourites" not in json.loads(world.flash.files["settings.json"])
+    assert world.drives[1].read(1120) == 11 and world.drives[1].eeprom_writes == 0
     world.check()
 
 
