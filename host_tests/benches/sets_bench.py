@@ -197,7 +197,7 @@ def catalogued():
     found = {}
     for row in catalogue.rows("mm440"):
         number = catalogue.number(row)
-        if row[catalogue.KEY][:1] == b"P" and number not in work.NEVER:
+        if row[catalogue.KEY][:1] == b"P" and number not in work.USUAL_NEVER:
             for index in range(catalogue.indices(row)):
                 found[number, index] = TYPES.get(row[catalogue.TYPE], "U32")
     return found

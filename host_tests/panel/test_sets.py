@@ -633,6 +633,35 @@ def test_a_set_of_another_family_is_refused():
     assert world.drives[2].read(1120) == 10.0 and marks(world) == []
 
 
+def test_the_least_frequency_of_a_micromaster_3_is_one_of_its_values():
+    """P0012 locks the list of parameters elsewhere, and is in no set there."""
+    world = small()
+    drive = world.drives[1]
+    drive.write(12, 0, 50)
+    rows = rows_of(world.flash.files[save(world)])
+    assert rows[12, 0] == "0032" and (944, 0) not in rows and (971, 0) not in rows, rows
+    drive.write(12, 0, 0)
+    begin(world, "A1 SET 1", "INTO A1", 1)
+    assert finish(world) == "WRITTEN, EQUAL", world.lcd()
+    assert drive.read(12) == 50
+
+
+def test_a_directory_that_cannot_be_read_is_a_flash_that_keeps_nothing():
+    world = small()
+    sets(world)
+    names = world.flash.listdir
+
+    def fails(*arguments):
+        raise OSError(5)
+
+    world.flash.listdir = fails
+    press(world, "SET", "SET")
+    wait(world, "FLASH IS FULL")
+    world.flash.listdir = names
+    home(world)
+    assert files(world) == [] and runs(world, 1)
+
+
 def test_a_family_without_eeprom_tasks_and_with_three_words():
     kinds = {1: {"family": mm3}}
     world = panel(kinds=kinds, settings={"kinds": {"1": "mm3"}})

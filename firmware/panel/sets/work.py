@@ -26,7 +26,8 @@ RATINGS = {"mm3": (111, 112)}
 USUAL_RATINGS = (206, 207, 208)
 
 # Operations and passwords: no values that belong to a drive.
-NEVER = (10, 11, 12, 40, 340, 944, 952, 970, 971, 1900, 1910, 1960, 2111, 3900)
+NEVER = {"mm3": (944, 971)}
+USUAL_NEVER = (10, 11, 12, 40, 340, 952, 970, 971, 1900, 1910, 1960, 2111, 3900)
 
 
 def catalogue_of(family):
@@ -37,6 +38,7 @@ def catalogue_of(family):
 class Work:
     """panel: the `Panel`. control: the `Control` of the drive.
 
+    never: parameters that are none of the drive's values.
     done, total: values so far and at the end, as far as it is known; left_s: seconds that it still
     takes, None while nobody knows.
     """
@@ -46,6 +48,7 @@ class Work:
         self.control = control
         self.drive = control.drive
         self.family = control.survey.family
+        self.never = NEVER.get(catalogue_of(self.family), USUAL_NEVER)
         self.outcome = None
         self.asks = False  # somebody has to answer first
         self.done = 0

@@ -20,7 +20,7 @@ from micropython import const
 from panel.menu.sets import words
 from panel.pages.parameter_words import NO_ANSWER, failure
 from panel.sets import pump, set_file
-from panel.sets.work import NEVER, Work, catalogue_of
+from panel.sets.work import Work, catalogue_of
 from uss import pkw
 from uss.families import rows as survey_rows
 
@@ -246,7 +246,7 @@ class Write(Work):
     # --- which values ---------------------------------------------------------------------------
 
     def _is_left_out(self, number):
-        if number in NEVER:
+        if number in self.never:
             return True
         asks = number in self.family.ask_first
         if asks and self._declined:
