@@ -198,6 +198,15 @@ def test_a_number_that_the_drive_lacks():
     world.check()
 
 
+def test_a_value_that_is_refused_later_is_not_shown_any_more():
+    world = world_of()
+    look_up(world, 27)
+    assert row_2(world) == "r0027      0.00A", world.lcd()
+    del world.drives[1].parameters.rows[27]
+    wait(world, "NO SUCH PARAM.")
+    wait(world, "r0027      -----")
+
+
 def test_param_leaves_a_number_that_is_typed_and_stop_stops():
     world = world_of()
     press(world, "START")

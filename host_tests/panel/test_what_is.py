@@ -144,6 +144,14 @@ def test_the_fault_memory_of_a_drive_without_indices_has_one_entry():
     world.check()
 
 
+def test_a_fault_memory_that_is_not_told_is_dashes():
+    world = world_of()
+    del world.drives[1].parameters.rows[947]
+    go_to(world, "FAULT MEMORY")
+    world.run(1500)
+    assert row_2(world) == ">-----", world.lcd()
+
+
 def test_the_elements_of_a_g120_are_asked_for_by_their_tasks():
     world = world_of("g120")
     go_to(world, "FAULT MEMORY")
