@@ -793,7 +793,7 @@ def test_what_is_typed_stays_when_the_drive_falls_silent_on_the_number():
     press(world, "EDIT", "NEXT", "UP")
     typed = row_2(world)
     world.drives[1].slave.hear = hear_selectively
-    wait(world, "NO REPLY TO THIS")
+    wait(world, "NO REPLY TO IT")
     world.run(5_000)
     assert row_2(world)[:4] == typed[:4], world.lcd()
     world.drives[1].slave.hear = hear

@@ -84,7 +84,7 @@ def test_a_parameter_on_which_the_drive_falls_silent_stops_no_motor():
 
     drive.slave.hear = hear_selectively
     show(world, "r2025")
-    wait_for(world, "NO REPLY TO THIS")
+    wait_for(world, "NO REPLY TO IT")
     assert len(silent_on) == 3
     wait_for(world, "r2025: -----")
     world.run(5000)
@@ -105,7 +105,7 @@ def test_a_write_on_which_the_drive_falls_silent_says_so():
 
     drive.slave.hear = hear_selectively
     write(world, 6)
-    wait_for(world, "NO REPLY TO THIS", 900)
+    wait_for(world, "NO REPLY TO IT", 900)
     assert drive.read(1000) == 5
     wait_for(world, "P1000:     6")  # still being edited: SET would try again
     world.check()
@@ -376,7 +376,7 @@ def test_set_does_not_answer_a_question_that_a_message_hides():
 
     drive.slave.hear = hear_selectively
     world.press("SET")
-    wait_for(world, "NO REPLY TO THIS")
+    wait_for(world, "NO REPLY TO IT")
     assert row_1(world).startswith("A1: P0700=6")
     world.press("SET")
     world.run(1000)
@@ -547,7 +547,7 @@ def test_a_refusal_is_told_in_words():
     for name, value, before, text in (
         ("P1000", 7, None, "NOT THIS VALUE"),
         ("P0700", 3, None, "NOT THIS VALUE"),
-        ("P1000", 3, (927, 7), "NO CHANGE RIGHTS"),
+        ("P1000", 3, (927, 7), "NO WRITE RIGHTS"),
         ("P2011", 3, (3, 1), "P0003 TOO LOW"),
     ):
         world = panel()
@@ -575,7 +575,7 @@ def test_the_source_of_commands_is_not_changed_while_the_drive_runs():
     world = show(running(), "P0700")
     write(world, 2)
     world.run(200)
-    assert row_2(world) == "NOT IN THIS MODE"
+    assert row_2(world) == "MODE FORBIDS IT"
     world.run(1000)
     assert world.drives[1].state == "running" and world.drives[1].read(700) == 5
     world.check()

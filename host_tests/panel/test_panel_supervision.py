@@ -159,7 +159,7 @@ def test_a_drive_that_was_set_stops_when_the_panel_dies():
 
 
 def test_a_refusal_of_the_drive_is_told():
-    for number, value, text in ((927, 7, "NO CHANGE RIGHTS"), (3, 2, "P0003 TOO LOW")):
+    for number, value, text in ((927, 7, "NO WRITE RIGHTS"), (3, 2, "P0003 TOO LOW")):
         world = asked()
         world.drives[1].write(number, 0, value)
         world.press("SET")

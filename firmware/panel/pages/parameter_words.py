@@ -21,7 +21,7 @@ ADDRESS_TAKEN = b"ADDRESS IS TAKEN"  # by another drive of this panel
 WRITTEN = b"WRITTEN (RAM)"
 WRITTEN_EEPROM = b"WRITTEN (EEPROM)"
 NO_ANSWER = b"NO ANSWER"
-NO_REPLY_TO_THIS = b"NO REPLY TO THIS"  # the drive answers, but falls silent on this task
+NO_REPLY_TO_THIS = b"NO REPLY TO IT"  # the drive answers, but falls silent on this task
 NOT_WRITTEN = b"NOT WRITTEN"
 
 # What became of a write to a drive that is not shown any more.
@@ -30,7 +30,7 @@ OTHER_NOT_WRITTEN = b"A%d: NOT WRITTEN"
 
 # Why a drive refused a parameter task, by the error number of its reply (specification table 4.9,
 # and what drives add to it). NO_RIGHTS is reply 8, which carries no number.
-NO_RIGHTS = b"NO CHANGE RIGHTS"
+NO_RIGHTS = b"NO WRITE RIGHTS"
 REFUSALS = {
     0: b"NO SUCH PARAM.",
     1: b"READ ONLY",
@@ -41,13 +41,13 @@ REFUSALS = {
     6: b"MAY ONLY BE 0",
     7: b"NOT CHANGEABLE",
     11: NO_RIGHTS,
-    12: b"KEY WORD MISSING",
-    17: b"NOT IN THIS MODE",  # most often: not while it runs
-    18: b"DRIVE SAYS ERROR",
+    12: b"KEYWORD MISSING",
+    17: b"MODE FORBIDS IT",  # most often: not while it runs
+    18: b"DRIVE ERROR",
     20: b"ILLEGAL VALUE",
     101: b"INACTIVE NOW",
     102: b"REPLY TOO LONG",
-    103: b"WRONG PKW LENGTH",
+    103: b"BAD PKW LENGTH",
     104: b"NOT THIS VALUE",
     105: b"IS AN ARRAY",
     106: b"TASK UNKNOWN",
