@@ -147,6 +147,17 @@ def test_while_the_first_one_of_a_group_is_looked_for_there_are_dots():
     assert seen[-1] == ("Ramp-up time", "P1120[0]       ?"), seen
 
 
+def test_a_number_with_more_digits_than_places_has_an_exponent():
+    world = world_of()
+    look_up(world, 1120)
+    for number, row in (
+        (9_999_998_976.0, "P1120 9999998976"), (-1e11, "P1120     -1e+11"),
+        (-1.2341e12, "P1120 -1.234e+12"),
+    ):  # fmt: skip
+        keep(world, 1120, number)
+        assert row_2(world) == row, world.lcd()
+
+
 def test_a_long_value_gives_up_decimals_and_then_its_index():
     world = world_of()
     look_up(world, 1120)

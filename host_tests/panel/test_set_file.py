@@ -27,7 +27,8 @@ def all_of(family):
     """A row for each value that the catalogue has of a family."""
     for row in catalogue.rows(family):
         number = catalogue.number(row)
-        if row[catalogue.KEY][:1] == b"P" and number not in work.NEVER.get(family, work.USUAL_NEVER):
+        never = work.NEVER.get(family, work.USUAL_NEVER)
+        if row[catalogue.KEY][:1] == b"P" and number not in never:
             kind = row[catalogue.TYPE]
             for index in range(catalogue.indices(row)):
                 yield number, index, kind, b"1A2B" if kind in WORDS else b"1A2B3C4D"

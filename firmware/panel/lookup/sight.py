@@ -108,4 +108,6 @@ class Sight:
             if len(words_of_value) > width:
                 label = self.label()
                 width = texts.ROW_WIDTH - len(label)
+            if len(words_of_value) > width:
+                words_of_value = self.form.roughly(self.high, self.low)
         return label + b" " * (width - len(words_of_value)) + words_of_value[:width]

@@ -73,6 +73,12 @@ class Form:
             words = self.words(high, low, decimals)
         return words
 
+    def roughly(self, high, low):
+        """A number that has no room in any other way."""
+        bits = self._joined(high, low)
+        is_float = self.kind == FLOAT
+        return b"%.4g" % (pkw.words_to_float(high, low) if is_float else self._signed(bits))
+
     def typed(self, high, low):
         """A value with all its places, and the place of its ones."""
         bits = self._joined(high, low)
