@@ -15,6 +15,16 @@ def text_of(world):
     return said
 
 
+def asks_for(world, number, since_us):
+    """Telegrams of the panel with a task for this parameter, since an instant."""
+    return [
+        characters
+        for at_us, from_panel, characters in world.wire.log.last(1000)
+        if from_panel and at_us >= since_us and characters[3] >> 4
+        and (characters[3] & 7) << 8 | characters[4] == number
+    ]  # fmt: skip
+
+
 def test_a_fault_is_read_understood_and_cleared():
     world = world_of()
     drive = world.drives[1]
@@ -116,7 +126,9 @@ def test_the_fault_memory_has_the_last_faults_with_their_texts():
     assert world.lcd()[1] == ">...            ", world.lcd()
     drive.stale_replies = 0
     world.run(1500)
+    told_us = world.clock.now_us
     there = entries(world)
+    assert not asks_for(world, 947, told_us), "each is asked for once"
     told = [drive.read(947, index) for index in range(8)]
     assert told[0] == told[1] == 0 and {1, 11} < set(told), told
     there = [row for _, row in there]
