@@ -513,6 +513,7 @@ def test_a_value_is_typed_in_hexadecimal():
     look_up(world, 1120)
     press(world, "EDIT", "EDIT")
     wait(world, "NEW 41200000")
+    assert row_2(world) == "NEW 41200000", "without its unit"
     press(world, "DOWN")
     wait(world, "NEW 4120000F")
     press(world, "UP", *("PREVIOUS",) * 5)
@@ -532,10 +533,12 @@ def test_what_has_too_many_digits_is_typed_in_hexadecimal_at_once():
         (1e10, "NEW 501502F9"),
     ):  # fmt: skip
         keep(world, 1120, number)
+        shown = row_2(world)
         press(world, "EDIT")
         wait(world, row)
         press(world, "PARAM")
-        press(world, "NEXT", "PREVIOUS")
+        world.run(100)
+        assert row_2(world) == shown and shown[-1] != "h", world.lcd()
     world.check()
 
 

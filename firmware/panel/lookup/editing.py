@@ -42,6 +42,9 @@ class Editing:
         self._bits = shown.high << 16 | shown.low
         self._is_changed = False
         self._form = form = shown.form
+        if way == DIGITS and not form.can_be_typed(shown.high, shown.low):
+            self.next_way()
+            return
         if way == HEX:
             self._form = form = value.Form(None, form.width, is_hex=True)
         if way == HEX or way == DIGITS:
@@ -122,7 +125,7 @@ class Editing:
         if is_away:
             typed = typed[: self._place] + b"_" + typed[self._place + 1 :]
         row = texts.of(words.NEW_VALUE) + (b" " if len(typed) < value.TYPED_MAX else b"") + typed
-        unit = shown.unit()
+        unit = self._form.unit
         return row + unit if len(row) + len(unit) <= texts.ROW_WIDTH else row
 
     def _choose(self, direction):

@@ -69,10 +69,6 @@ class Sight:
         """P1120."""
         return (b"r%04d" if self.is_reading() else b"P%04d") % self.number
 
-    def unit(self):
-        """Of its value."""
-        return self.form.unit if self.form else texts.NOTHING
-
     def _lines(self):
         """What row 1 says in turn."""
         if self.row is None:

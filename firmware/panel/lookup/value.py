@@ -79,15 +79,16 @@ class Form:
         is_float = self.kind == FLOAT
         return b"%.4g" % (pkw.words_to_float(high, low) if is_float else self._signed(bits))
 
+    def can_be_typed(self, high, low):
+        """Whether the digits of a value can be typed one by one."""
+        return self.kind != FLOAT or abs(pkw.words_to_float(high, low)) <= _FLOAT_MAX
+
     def typed(self, high, low):
         """A value with all its places, and the place of its ones."""
         bits = self._joined(high, low)
         kind = self.kind
         if kind == FLOAT:
-            value = pkw.words_to_float(high, low)
-            if -_FLOAT_MAX <= value <= _FLOAT_MAX:
-                return self._typed_float(value)
-            kind = self.kind = HEX
+            return self._typed_float(pkw.words_to_float(high, low))
         if kind == HEX:
             text = b"%0*X" % (4 * self.width, bits)
         elif kind == CONNECTOR:
