@@ -16,6 +16,7 @@ from spoilt_bench import (
     with_a_wrong_check,
 )
 from uss import pkw
+from uss.finding.witness import CYCLE
 from uss.master import LISTENING, OFF
 from uss.tasks.descriptions import NAME, read_description
 
@@ -176,6 +177,11 @@ def test_a_time_of_a_second_and_more_has_no_decimals():
     shown = read(world, "BUS CYCLE")
     least, most = [int(ms) for ms in shown[:-3].split("-")]
     assert shown.endswith(" ms") and 340 <= least <= 360 and 1_370 <= most <= 1_410, shown
+    for most_us, told in ((999_949, "999.9 ms"), (999_951, "1000 ms")):
+        times = world.app.bus.witness.times
+        times[CYCLE] = times[CYCLE + 1] = most_us
+        world.run(100)
+        assert row_2(world)[1:].endswith("-" + told), world.lcd()
     world.check()
 
 

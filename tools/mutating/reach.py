@@ -130,6 +130,10 @@ class Reach:
                     found.append(Function(test, name, seconds, nearness))
         return sorted(found, key=lambda one: (one.seconds + 0.05) / one.nearness)
 
+    def is_machine_code(self, path, line):
+        """Whether nobody knows which tests run that line: it notes nothing."""
+        return not self._statement(path, line)[1]
+
     def _statement(self, path, line):
         """The innermost noted statement with that line, as bits; whether it is the innermost."""
         tree = ast.parse((self.tree / path).read_bytes())

@@ -58,7 +58,10 @@ class Trials:
         path.write_text(mutant.applied(source), encoding="utf-8")
         try:
             functions = self.reach.functions(mutant.path, mutant.line)
-            return self._on_unix(functions) if functions else self._on_chip(mutant)
+            verdict = self._on_unix(functions)
+            if verdict.by or functions and not self.reach.is_machine_code(*mutant[:2]):
+                return verdict
+            return self._on_chip(mutant)
         finally:
             path.write_text(source, encoding="utf-8")
 
