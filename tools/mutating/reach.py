@@ -130,9 +130,15 @@ class Reach:
                     found.append(Function(test, name, seconds, nearness))
         return sorted(found, key=lambda one: (one.seconds + 0.05) / one.nearness)
 
-    def is_machine_code(self, path, line):
-        """Whether nobody knows which tests run that line: it notes nothing."""
-        return not self._statement(path, line)[1]
+    def is_for_the_chip(self, path, line):
+        """Whether no test here runs that line; a file whose functions do not run is only imported.
+        Machine code notes nothing, so that nobody knows."""
+        wanted, is_noted = self._statement(path, line)
+        ran = 0
+        for functions in self.known.values():
+            for _, _, bits in functions.values():
+                ran |= bits
+        return not (is_noted and ran & wanted and ran & self._in_file[path] & ~self._outside)
 
     def _statement(self, path, line):
         """The innermost noted statement with that line, as bits; whether it is the innermost."""

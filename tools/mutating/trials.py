@@ -4,7 +4,7 @@
     trials = Trials(tree, reach, folder, patience_s)      # folder: for a copy of the tree
     verdict = trials.of(mutant)
 
-What no other test runs is tried with the tests of the emulated Pico, on a firmware that is
+What the chip alone runs is tried with the tests of the emulated Pico, on a firmware that is
 built with the mutant in it.
 """
 
@@ -59,9 +59,9 @@ class Trials:
         try:
             functions = self.reach.functions(mutant.path, mutant.line)
             verdict = self._on_unix(functions)
-            if verdict.by or functions and not self.reach.is_machine_code(*mutant[:2]):
-                return verdict
-            return self._on_chip(mutant)
+            if not verdict.by and self.reach.is_for_the_chip(mutant.path, mutant.line):
+                verdict = self._on_chip(mutant)
+            return verdict
         finally:
             path.write_text(source, encoding="utf-8")
 
