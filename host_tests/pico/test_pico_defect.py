@@ -114,6 +114,12 @@ def test_a_line_that_is_low_is_said_until_a_drive_answers():
     start(world)
 
 
+def test_a_line_of_1200_baud_that_is_low_is_said_as_well():
+    """A character takes 10 ms there: no other rate of these drives is watched for so long."""
+    world = switched_on(RECEIVES, LOW, baud=1_200)
+    assert world.run_until(lambda: world.reads("LINE IS LOW"), BOOT_MS), world.lcd()
+
+
 def test_a_uart_that_does_not_hear_itself_is_said_and_nothing_starts():
     # The program that looks is broken here, so that its loopback is none.
     broken = b"""
