@@ -256,7 +256,7 @@ def test_both_twins_say_the_same_of_anything():
         if not dice.getrandbits(2):
             answer[dice.getrandbits(2)] ^= 1 << dice.getrandbits(3)
         zsw = RUNNING ^ (1 << dice.getrandbits(3))
-        hiw = bytes((0 if dice.getrandbits(1) else 0x20, dice.getrandbits(8)))
+        hiw = bytes((dice.choice((0x00, 0x20, 0x7F, 0x80, 0xFF)), dice.getrandbits(8)))
         reply = framed(1, bytes(answer) + bytes((zsw >> 8, zsw & 0xFF)) + hiw)
         plan = plan_of(dice.getrandbits(4), RUNNING, dice.getrandbits(1) * 326)
         attention = bytearray(ATTENTION)
