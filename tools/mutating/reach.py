@@ -111,9 +111,11 @@ class Reach:
 
     def functions(self, path, line):
         """The test functions that run a line, the best first: those that take little time, and
-        most of it with this file. Machine code notes nothing: there the test files of the same
-        name take part, and all that import it."""
+        most of it with this file. Where nobody is known to run it, the test files of the same name
+        take part as well: machine code notes nothing, and other code may run on MicroPython than
+        on CPython."""
         wanted, is_noted = self._statement(path, line)
+        is_known = is_noted and self._ran() & wanted
         names = {"test_%s.py" % word for word in path.removesuffix(".py").split("/")[-2:]}
         found = []
         for test, functions in self.known.items():
@@ -121,7 +123,7 @@ class Reach:
             # A module is imported by the first function that wants it, for all of its file.
             for _, _, bits in functions.values():
                 once |= bits & self._outside
-            is_namesake = not is_noted and test.rpartition("/")[2] in names
+            is_namesake = not is_known and test.rpartition("/")[2] in names
             for name, (seconds, _, bits) in functions.items():
                 bits |= once
                 if name != "import" and (bits & wanted or is_namesake):
@@ -134,11 +136,16 @@ class Reach:
         """Whether no test here runs that line; a file whose functions do not run is only imported.
         Machine code notes nothing, so that nobody knows."""
         wanted, is_noted = self._statement(path, line)
+        ran = self._ran()
+        return not (is_noted and ran & wanted and ran & self._in_file[path] & ~self._outside)
+
+    def _ran(self):
+        """All that any function runs."""
         ran = 0
         for functions in self.known.values():
             for _, _, bits in functions.values():
                 ran |= bits
-        return not (is_noted and ran & wanted and ran & self._in_file[path] & ~self._outside)
+        return ran
 
     def _statement(self, path, line):
         """The innermost noted statement with that line, as bits; whether it is the innermost."""
