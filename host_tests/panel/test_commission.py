@@ -159,6 +159,7 @@ def test_what_a_setpoint_means_is_asked_before_it_changes():
     world = world_of("mm420")
     begin(world, "FOR USS")
     go_to_step(world, 2000)
+    assert "IS 50.00Hz" in lines(world), world.lcd()
     press(world, "SET")
     world.run(300)
     type_over(world, "6000")

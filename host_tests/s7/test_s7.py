@@ -567,12 +567,13 @@ def test_the_active_drives_may_change_while_others_run():
 
 
 def test_no_drive_at_all_may_be_active():
-    plc = Plc((1,))
-    plc.run(300)
-    give(plc.init, MODE=1, BAUD=BAUD, ACTIVE=0)
-    assert (plc.init.DONE, plc.init.ERROR) == (True, 0)
-    plc.run(100)
-    assert plc.outputs(1).ERROR == codes.NOT_ACTIVE
+    for active in ({"ACTIVE": 0}, {}):
+        plc = Plc((1,))
+        plc.run(300)
+        give(plc.init, MODE=1, BAUD=BAUD, **active)
+        assert (plc.init.DONE, plc.init.ERROR) == (True, 0)
+        plc.run(100)
+        assert plc.outputs(1).ERROR == codes.NOT_ACTIVE
 
 
 def test_a_drive_that_runs_cannot_be_dropped():
