@@ -220,6 +220,24 @@ def test_off_while_it_listens():
     assert bench.drives[1].contact
 
 
+def test_bus_on_ends_neither_a_pause_nor_leaving_for_good():
+    bench = Bench(nodes(2))
+    bench.contact()
+    bench.master.pause()
+    bench.run_until(lambda: bench.master.paused)
+    sent = len(bench.sent)
+    bench.master.on()
+    bench.run(300_000)
+    assert bench.master.paused and len(bench.sent) == sent
+    bench.master.resume()
+    bench.master.close()
+    bench.master.on()
+    bench.run_until(lambda: bench.master.phase == CLOSED, 6_000_000)
+    sent = len(bench.sent)
+    bench.run(1_000_000)
+    assert len(bench.sent) == sent
+
+
 # --- another master -----------------------------------------------------------------------------
 
 
