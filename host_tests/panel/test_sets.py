@@ -338,10 +338,13 @@ def test_what_cuts_the_panel_off_may_be_left_as_it_is():
 
 
 def test_ram_or_eeprom_is_what_was_chosen():
-    for where, kept in (("RAM", 10.0), ("EEPROM", 2.5)):
+    """An EEPROM wears: each value that differs is written once."""
+    for where, kept, worn in (("RAM", 10.0, 0), ("EEPROM", 2.5, len(ROWS))):
         world = two()
         put(world)
+        writes = world.drives[2].eeprom_writes
         assert write(world, "A1 MADE", where=where) == "WRITTEN, EQUAL"
+        assert world.drives[2].eeprom_writes - writes == worn, where
         world.drives[2].power_off()
         world.run(200)
         world.drives[2].power_on()
