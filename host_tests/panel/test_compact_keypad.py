@@ -404,6 +404,17 @@ def test_the_full_keypad_loads_nothing_of_this():
     assert "panel.keys.compact" in sys.modules
 
 
+def test_a_key_that_has_just_moved_is_unsettled_and_one_that_rests_is_not():
+    keys = keys_of(COMPACT_KEYS, MASK, (), None)
+    now_ms = 0
+    for raw in (0, 1 << COMPACT_KEYS.index("UP")):
+        keys.update(raw, now_ms)
+        assert keys.unsettled, raw
+        for now_ms in range(now_ms, now_ms + 100):
+            keys.update(raw, now_ms)
+        assert not keys.unsettled, raw
+
+
 def test_a_key_that_is_withheld_repeats_nothing_any_more():
     for others in (False, True):
         keys = keys_of(COMPACT_KEYS, MASK, (), None)
