@@ -410,7 +410,8 @@ def test_a_key_that_has_just_moved_is_unsettled_and_one_that_rests_is_not():
     for raw in (0, 1 << COMPACT_KEYS.index("UP")):
         keys.update(raw, now_ms)
         assert keys.unsettled, raw
-        for now_ms in range(now_ms, now_ms + 100):
+        for _ in range(100):
+            now_ms += 1
             keys.update(raw, now_ms)
         assert not keys.unsettled, raw
 

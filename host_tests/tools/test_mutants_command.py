@@ -179,6 +179,23 @@ def test_what_is_no_change_is_no_mutant(tree):
     assert "VALVES = 4" in told or "VALVES = 2" in told
 
 
+@needs_cosmic_ray
+def test_to_return_nothing_at_the_end_is_to_return_nothing(tree):
+    """A mutant without that would be the same program; one without it in the middle is not."""
+    (tree / "firmware/valve.py").write_text(
+        """def name(open, shut):
+    if open:
+        return None
+    if shut:
+        print(shut)
+    return None
+"""
+    )
+    (tree / "host_tests/valve/test_valve.py").write_text("import valve\n")
+    told = mutants("--tree", tree, "--only", "firmware", "--count", 50)[1]
+    assert "valve.py:3:8:RemoveStatement" in told and "valve.py:6:4:" not in told, told
+
+
 def test_what_cannot_be_understood_is_refused_before_anything_is_fetched():
     for wrong in (
         ["--count", "0"], ["--jobs", "many"], ["--seed", "-1"], ["--sneeze"], ["--only", "tools"],

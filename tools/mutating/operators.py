@@ -43,7 +43,8 @@ class RemoveStatement(Operator):
     """A statement of a function is not there.
 
     Bare keywords, imports and docstrings stay. So does what makes a variable: without it the
-    function only fails, as it does at once without what `__init__` sets.
+    function only fails, as it does at once without what `__init__` sets. And so does `return None`
+    at the end, where nothing else happens without it.
     """
 
     def mutation_positions(self, node):
@@ -51,6 +52,9 @@ class RemoveStatement(Operator):
         if line is None or line.type != "simple_stmt" or node.type in KEPT:
             return
         function = line.search_ancestor("funcdef")
+        if function and line is function.children[-1].children[-1]:
+            if node.get_code(include_prefix=False) == "return None":
+                return
         if function and not (node.type == "expr_stmt" and self._makes(node, function)):
             yield node.start_pos, node.end_pos
 
