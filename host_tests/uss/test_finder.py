@@ -527,6 +527,15 @@ def test_one_that_no_telegram_reaches_whole_is_left_for_this_time():
     bench.until_found(2)
 
 
+def test_each_length_that_a_drive_takes_is_tried_three_times():
+    bench = Search({2: (127, 2)})
+    bench.nodes[2].spoil = 1_000
+    bench.run_until(lambda: len(bench.mirrors(2)) > 2 * finding.TRIES, 20_000_000)
+    first, second = bench.mirrors(2)[: finding.TRIES], bench.mirrors(2)[finding.TRIES :]
+    assert len(set(first)) == 1 and len(set(second[: finding.TRIES])) == 1, bench.mirrors(2)
+    assert first[0] != second[0] != second[finding.TRIES], bench.mirrors(2)
+
+
 def test_a_telegram_that_is_lost_makes_no_fixed_length_of_a_variable_one():
     bench = Search({2: (127, 2)})
     node, answer = bench.nodes[2], bench.nodes[2].answer
