@@ -483,14 +483,14 @@ class Master:
             return receiver.due_us(self._link, now)
         else:
             self._miss(finding, now)
-        self._conclude(finding)
+        self._conclude(self._drive, finding)
         return 0
 
-    def _conclude(self, finding):
-        """The exchange is over."""
+    def _conclude(self, drive, finding):
+        """The exchange with the drive is over."""
         receiver = self._receiver
         if self.witness is not None:
-            self.witness.note(self._drive, finding, receiver)
+            self.witness.note(drive, finding, receiver)
         self._failures_in_row = 0
         self.progress = (self.progress + 1) & 0xFFFF
         self._quiet_since = receiver.heard_at

@@ -148,7 +148,7 @@ def test_power_that_goes_while_a_set_is_saved_leaves_none_or_a_whole_one():
     world, before = saving_mm3()
     wait(world, "SAVED")
     whole = world.read_file("1.set")
-    assert whole.split(b"\n")[-2].startswith(b"end 25 "), whole[-80:]
+    assert whole.split(b"\n")[-2].startswith(b"end 26 "), whole[-80:]
     operations = world.flash_log[before:]
     assert len(operations) >= CUTS
     kept = []

@@ -81,16 +81,14 @@ class GoingOnMaster(Master):
             return self._take(now) or self._go_on_at_once(now)
         if self._abandoned is not None:
             self._replace()
-        drive = self._drive
-        size = drive.size
-        try:
-            receiver.accept(size, link.received_at)
-            drive.take(receiver.buffer, size, now)
-            self._conclude(telegram.GOOD)
-        finally:  # whatever happens here, the link has gone on
-            self._drive = drive = self._following
-            self._following = None
-            turns.pass_on()
+        answered, size = self._drive, self._drive.size
+        # The link has gone on by itself, whatever happens here.
+        self._drive = drive = self._following
+        self._following = None
+        turns.pass_on()
+        receiver.accept(size, link.received_at)
+        answered.take(receiver.buffer, size, now)
+        self._conclude(answered, telegram.GOOD)
         if self._sent is not drive.request:
             drive.follow(self._sent, now)
         if not self._foreseen:
