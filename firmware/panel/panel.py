@@ -306,10 +306,6 @@ class Panel:
         return False
 
     def _follow(self, now_ms, now_us):
-        cover = self._cover
-        if cover is not None and cover.is_coming():
-            cover.step(self._keys, now_ms)
-            return False
         if self._writer:
             self._writer.step(now_us)
         self.selected.ask_on(now_us)
