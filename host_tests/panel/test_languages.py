@@ -76,7 +76,7 @@ NARROW = {  # by module: names, place
         ("PARAMETER READ_PARAMETER", parameter_words.PARAMETER_WIDTH),
         ("REFUSED_VALUE", texts.VALUE_WIDTH),
         ("NO_PARAMETERS", ROW - len("A31")),
-        ("NO_ANSWER NO_REPLY_TO_THIS NO_RIGHTS REFUSALS OTHER_REFUSAL", ENTRY),  # a list has them
+        ("NO_ANSWER NO_REPLY_TO_IT NO_RIGHTS REFUSALS OTHER_REFUSAL", ENTRY),  # a list has them
     ),
     menu_words: (
         ("MENU ANY_ADDRESS MENU_SETTINGS MENU_ORDER MENU_TURNS MENU_ABOUT ACCEPTED", TITLE),

@@ -715,9 +715,7 @@ def test_ctrl_c_does_not_cut_close_short():
     assert plc.drive().state == "stopping" and plc.port.bus is None
 
 
-def test_ctrl_c_in_the_middle_of_a_polled_scan_stops_the_motor_too():
-    plc = Plc()
-    plc.start()
+def press_ctrl_c_at_the_next_reply(plc):
     take = plc.port.drives[1].take
 
     def press(*_):
@@ -725,6 +723,12 @@ def test_ctrl_c_in_the_middle_of_a_polled_scan_stops_the_motor_too():
         raise KeyboardInterrupt
 
     plc.port.drives[1].take = press
+
+
+def test_ctrl_c_in_the_middle_of_a_polled_scan_stops_the_motor_too():
+    plc = Plc()
+    plc.start()
+    press_ctrl_c_at_the_next_reply(plc)
     try:
         with plc.port:
             plc.run(1_000)
@@ -737,14 +741,7 @@ def test_ctrl_c_in_the_middle_of_a_polled_scan_stops_the_motor_too():
 def test_a_motor_does_not_run_on_where_scans_go_on_after_ctrl_c():
     plc = Plc()
     plc.start()
-
-    take = plc.port.drives[1].take
-
-    def press(*_):
-        plc.port.drives[1].take = take
-        raise KeyboardInterrupt
-
-    plc.port.drives[1].take = press
+    press_ctrl_c_at_the_next_reply(plc)
     try:
         plc.run(1_000)
         raise AssertionError("nobody pressed")

@@ -21,7 +21,7 @@ ADDRESS_TAKEN = b"ADDRESS IS TAKEN"  # by another drive of this panel
 WRITTEN = b"WRITTEN (RAM)"
 WRITTEN_EEPROM = b"WRITTEN (EEPROM)"
 NO_ANSWER = b"NO ANSWER"
-NO_REPLY_TO_THIS = b"NO REPLY TO IT"  # the drive answers, but falls silent on this task
+NO_REPLY_TO_IT = b"NO REPLY TO IT"  # the drive answers, but falls silent on this task
 NOT_WRITTEN = b"NOT WRITTEN"
 
 # What became of a write to a drive that is not shown any more.
@@ -62,7 +62,7 @@ OTHER_REFUSAL = b"REFUSED: %d"
 def failure(job):
     """Why a job was not done: a text and the values in it."""
     if job.state == pkw.UNANSWERED:
-        return (NO_REPLY_TO_THIS,)
+        return (NO_REPLY_TO_IT,)
     if job.state != pkw.REFUSED:
         return (NO_ANSWER,)
     if job.error == pkw.NO_CHANGE_RIGHTS:
