@@ -39,6 +39,7 @@ from sets_bench import (
     walk_to,
     write,
 )  # fmt: skip
+from uss import pkw
 
 OTHER_RATING = [(206, b"41700000"), (207, b"42000000"), (208, b"000001F4")]
 
@@ -102,6 +103,20 @@ def answers_late(drive, times, *numbers):
         accept(words, layout)
 
     drive.channel.accept = accept_late
+
+
+def tasks_of(drive):
+    """A list: the drive notes there each task that comes, as (task, number)."""
+    accept, heard = drive.channel.accept, []
+
+    def accept_and_note(words, layout):
+        came = words[0] >> 12, words[0] & 0x7FF
+        if came[0] and [came] != heard[-1:]:
+            heard.append(came)
+        accept(words, layout)
+
+    drive.channel.accept = accept_and_note
+    return heard
 
 
 def is_of_the_bus(number):
@@ -759,6 +774,21 @@ def test_it_starts_again_when_it_is_given_up_by_a_question():
             refuses_to_move(world)
     world.run(3000)
     assert marks(world) == [] and runs(world)
+
+
+def test_what_is_written_already_is_not_written_again_in_commissioning():
+    """An EEPROM wears. The motor's rating (P304) waits until all else is written."""
+    world = two()
+    drive = world.drives[2]
+    save(world, 2)
+    drive.write(304, 0, 400)
+    drive.write(1120, 0, 2.5)
+    heard = tasks_of(drive)
+    begin(world, "A2 SET 1", "INTO A2 EEPROM")
+    assert finish(world) == "WRITTEN, EQUAL", world.lcd()
+    writes = [number for task, number in heard if task >= pkw.WRITE_ELEMENT_DOUBLE_EEPROM]
+    assert writes == [304, 1120, 304], writes
+    world.check()
 
 
 def test_what_a_drive_refuses_leaves_the_set_half_written():
