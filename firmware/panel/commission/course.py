@@ -216,8 +216,6 @@ class List(Entries):
             self._note = broken(text(row, catalogue.STEP_NOTE), _WIDTH)
         elif row:
             self._row = row
-        elif self._search.rows is None and not self._lines:
-            self._lines = [texts.NOTHING]
 
     def _break_on(self):
         """The next line of what there is to know about the step; after it comes its parameter."""

@@ -160,7 +160,6 @@ class Answers(Sight):
         if self._search.rows is not None:
             row = self._search.step()
             if row and self._is_moving:
-                self._search.begin(None)
                 self._found = row
             elif row:
                 self.row = row

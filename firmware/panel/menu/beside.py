@@ -106,15 +106,16 @@ class List(Entries):
         """Into the list of the panel. The drive that is shown stays the same."""
         panel = self.panel
         shown = panel.selected
-        address = nodes[0][0]
-        try:
-            for address, node in nodes:
-                kind = on_demand.call("uss.families.kinds", "text", node.family, node.layout)
+        for address, node in nodes:
+            kind = on_demand.call("uss.families.kinds", "text", node.family, node.layout)
+            try:
                 panel.add(address, kind)
+            except ValueError:  # there are 31
+                panel.say(now_ms, words.NOT_ADDED, address)
+                break
+        else:
             if len(nodes) == 1:  # row 1 speaks of the next one already
-                panel.say(now_ms, words.ADDED, address)
+                panel.say(now_ms, words.ADDED, nodes[0][0])
             else:
                 panel.say(now_ms, words.ALL_ADDED, len(nodes))
-        except ValueError:  # there are 31
-            panel.say(now_ms, words.NOT_ADDED, address)
         panel.show(shown)

@@ -66,7 +66,7 @@ class Drive:
     `engine` is the `drive.Drive` behind it.
     """
 
-    def __init__(self, bus, engine, family, scale, unsupervised, control=True):
+    def __init__(self, bus, engine, family, scale, unsupervised, control):
         self.bus = bus
         self.has_control = control
         self.left_alone = False  # it ran, although this bus has no control of it
