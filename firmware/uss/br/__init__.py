@@ -129,7 +129,6 @@ class DriveController:
         if self.bus is None or self.bus.phase == CLOSED:
             self.bus = self._open_bus()
             self._motors = {}
-            self._arranged = None
             self._failures = 0
             self._go_on()
         else:
@@ -210,7 +209,6 @@ class DriveController:
                 turns.remove(drive)
                 del self._motors[address]
                 self.DriveData[address].Status.Receive = False
-                self._arranged = None
         for address in self._sequence:
             if address not in self._motors:
                 self._add(address)

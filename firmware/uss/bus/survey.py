@@ -136,7 +136,7 @@ class Survey:
 
     def known_scale(self):
         """The scale; asks the drive if need be. ValueError if the drive cannot tell it."""
-        if self._contact is None or self._contact != self._drive.engine.contacts:
+        if self._contact != self._drive.engine.contacts:
             self.ask()
         if self.scale is None:
             raise ValueError("drive %d cannot tell what 100 %% is" % self._drive.address)

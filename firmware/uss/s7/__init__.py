@@ -198,7 +198,6 @@ class Port:
         leave(bus, self._clock, self._rest)
         for address in range(NODE_MAX + 1):
             self.drives[address] = self.controls[address] = None
-        self._baud = 0
         self._leaving = self.bus = self.job = None
 
     def _set_type(self, address, type_number):
