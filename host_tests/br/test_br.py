@@ -170,6 +170,17 @@ def test_leaving_with_stops_the_motor_whatever_happens():
     assert plc.drives[1].hz() == 0 and plc.status.Ready and not plc.told().Status.Receive
 
 
+def test_a_controller_that_was_never_started_leaves_at_once():
+    plc = Plc()
+    plc.run(100)
+    sent = len(plc.wire.log.last(1000))
+    before_us = plc.clock.now_us
+    with DriveController(plc.open_bus, plc.clock) as other:
+        other()
+    assert other.bus is None and other.Status.Ready
+    assert plc.clock.now_us == before_us and len(plc.wire.log.last(1000)) == sent
+
+
 # --- stop and start -----------------------------------------------------------------------------
 
 

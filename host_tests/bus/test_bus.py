@@ -352,6 +352,17 @@ def test_so_does_one_that_cannot_be_asked_when_its_owner_says_so():
     bench.bus.wait(2)
     assert drive.is_running
     bench.end()
+    mute = {2014: 2_000, 1120: 1.0, 2013: 0}
+    bench = Bench(twelve, baud=9600, kinds={1: {"parameters": mute}})
+    bench.bus.remove(bench.drive)
+    drive = bench.bus.add(1, G110, Layout(0, 2))
+    bench.bus.supervise(drive, 2_000)
+    drive.run(percent=20)
+    bench.motor().write(2014, 0, 400)  # by its keypad
+    bench.bus.supervise(drive, 400)  # it counts from now on, also of a drive that runs
+    bench.bus.wait(2)
+    assert drive.is_running
+    bench.end()
 
 
 def test_one_that_would_run_on_is_started_when_its_owner_says_that_it_may():
@@ -476,17 +487,30 @@ def test_the_telegram_off_time_is_told_in_seconds_and_within_reason():
     assert bench.motor().read(2014) == 2_000
     bench.drive.supervise(0)
     assert bench.motor().read(2014) == 0
+    for seconds, within_us in ((0.3, 100_000), (0.6, 200_000), (65.0, 21_666_666)):
+        bench.drive.supervise(seconds)
+        assert bench.motor().read(2014) == seconds * 1000
+        assert sent_within_us(bench) == within_us  # at once, also if the motor runs
     bench.bus.cycle_us = 500_000
     assert "1.5...65" in refusal(ValueError, bench.drive.supervise, 1.0)
-    for off_time_ms in (-1, 2.0, 70_000):
+    for off_time_ms in (-1, 2.0, 65_001, 70_000):
         assert "in ms" in refusal(ValueError, bench.bus.supervise, bench.drive, off_time_ms)
+    bench.bus.supervise(bench.drive, 65_000)
+    bench.bus.supervise(bench.drive, 0)
     bench.end()
+
+
+def sent_within_us(bench):
+    """In so long a drive of the bus gets its next telegram while its motor may run."""
+    return bench.bus.engine.deadlines.bound_us(bench.drive.engine)
 
 
 def test_a_family_that_counts_in_seconds_is_not_told_never_by_rounding():
     bench = of_family(MM3, mm3, {93: 2, 2: 10, 3: 10})
     bench.drive.supervise(0.4)
     assert bench.drive.read(93) == 1
+    bench.drive.supervise(6)
+    assert bench.drive.read(93) == 6 and sent_within_us(bench) == 2_000_000
     bench.end()
 
 
@@ -583,6 +607,21 @@ def test_who_waits_while_somebody_puts_the_bus_off_or_takes_the_drive_away_hears
         assert not bench.drive.is_on()
         bench.bus.close()
         bench.check()
+
+
+def test_a_start_that_waits_while_idle_closes_the_bus_says_that_it_is_closed():
+    stage = Stage((1,), parameters={2014: 2_000, 10: 1})  # it does not start
+
+    def idle():
+        stage.clock.advance(900)
+        if drive.engine.wanted:
+            bus.close()
+
+    bus = Master(stage.board.make_link(stage.wire.baud), baud=stage.wire.baud, idle=idle)
+    drive = bus.add(1, MM420)
+    assert refusal(NoContact, drive.run, 10.0) == "the bus is closed"
+    assert bus.engine.phase == CLOSED and stage.drives[1].starts == 0
+    stage.check()
 
 
 # --- what it does -------------------------------------------------------------------------------
@@ -686,6 +725,20 @@ def test_an_mm3_turns_left_by_a_bit_and_has_no_sign():
     assert bench.stws(1)[-1] == 0x0C7F
     near(bench.drive.rpm, 300, 2)
     assert bench.drive.read(91) == 1
+    bench.end()
+
+
+def test_an_mm3_that_turns_left_may_stand_still_meanwhile():
+    """Its actual value has no sign, so nobody can tell from it that it has stopped by itself."""
+    bench = of_family(MM3, mm3, {93: 2, 2: 10, 3: 10})
+    bench.drive.run(-10.0)
+    bench.bus.wait(1)
+    for most_steps, hertz in ((0, 0.0), (500, -10.0)):
+        bench.motor().write(13, 0, most_steps)  # the highest frequency
+        bench.bus.wait(1)
+        near(bench.drive.hertz, hertz, 0.05)
+        assert bench.drive.is_running and bench.drive.is_on()
+    assert bench.motor().starts == 1
     bench.end()
 
 
@@ -1198,6 +1251,9 @@ def test_mirror_tells_who_is_there():
     bench = Bench((1, 7))
     bench.bus.remove(bench.bus.drives[1])
     assert [node for node in (1, 3, 7) if bench.bus.mirror(node)] == [1, 7]
+    bench.end()
+    bench = of_family(MM3, mm3, {})
+    assert bench.bus.mirror(1)  # in telegrams as long as its own
     bench.end()
 
 
