@@ -207,6 +207,31 @@ def test_stop_stops_the_motors_and_leaves_the_line_and_start_takes_it_again():
     plc.check()
 
 
+def test_what_was_switched_on_while_the_line_was_left_has_no_edge():
+    plc = Plc()
+    plc.start()
+    for way_out in ("Stop", "close"):
+        if way_out == "Stop":
+            plc.controller.Cmd.Stop = True
+        else:
+            plc.controller.close()
+        plc.run(1_500)
+        plc.controller.Cmd.Stop = False
+        plc.wanted().Run = plc.wanted().FaultAcknowledge = True
+        plc.drives[1].fault(1)
+        plc.controller.Cmd.Start = True
+        plc.run(1_000)
+        assert plc.drives[1].state == "fault" and plc.told().StatusWord.DriveFault, way_out
+        plc.controller.Cmd.Start = False
+        plc.wanted().Run = plc.wanted().FaultAcknowledge = False
+        plc.run(10)
+        plc.wanted().FaultAcknowledge = True
+        plc.run(500)
+        assert plc.drives[1].state == "ready" and plc.drives[1].starts == 1, way_out
+        plc.wanted().FaultAcknowledge = False
+    plc.check()
+
+
 # --- the sequence and the lengths ---------------------------------------------------------------
 
 
@@ -387,6 +412,8 @@ def test_the_codes_of_what_comes_back_spoilt_are_told_for_the_drive():
         assert codes.of_reply(after, counters) == code
     assert codes.of_reply([0, 0, 0, 1, 0, 1, 0], counters) == codes.BCC_RECEIVED
     assert codes.of_reply([9, 0, 0, 0, 0, 1, 0], counters) == codes.NO_MESSAGE
+    wraps = [0, 0, 0, 0xFFFF, 0, 0, 0]
+    assert codes.of_reply(counters, wraps) == codes.BCC_RECEIVED
 
 
 def test_a_port_that_fails_is_told_and_stops_the_motor():

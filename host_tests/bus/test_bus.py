@@ -1220,6 +1220,9 @@ def test_a_bus_takes_only_what_it_can_keep():
     for cycle_us in (-1, 0.5, "2", None):
         refusal(ValueError, setattr, bench.bus, "cycle_us", cycle_us)
     assert bench.bus.retries == 0 and bench.bus.cycle_us == 0
+    for retries in (255, 0):
+        bench.bus.retries = retries
+        assert bench.bus.retries == retries
     bench.end()
 
 

@@ -127,6 +127,8 @@ def test_the_bits_of_an_identifier():
         wide = kind in (I32, U32, FLOAT, STRING)
         value = words[0] << 16 | words[1]
         assert typed(value, 4 if wide else 2, kind) == limit, kind
+    pi = 0x40490FDB
+    assert typed(pi, 4, FLOAT) == pkw.words_to_float(0x4049, 0x0FDB)
     assert typed(0x4248, 2, FLOAT) == 0x4248  # a word is no floating-point number
     job = read_description(2010, IDENTIFIER)
     assert answered(job, (0x300A, 0x8000 | IDENTIFIER, 0x50C8), VARIABLE)
