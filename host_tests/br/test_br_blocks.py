@@ -3,7 +3,7 @@
 
 from uss.br import codes
 from uss.br.blocks import Block, RxCreatePZD, RxDecompose, TxCompose, TxCreatePZD
-from uss.br.structures import BUFFER, RxPZD, Telegram, TxPZD
+from uss.br.structures import BUFFER, STATUS_WORD, DriveData, RxPZD, Telegram, TxPZD
 
 
 class Bench:
@@ -53,6 +53,23 @@ def test_the_telegrams_of_the_source():
     assert bench.send() == bytes.fromhex("020600047f00007f")
     frame = bench.sent.Frame
     assert (frame.STX, frame.LGE, frame.ADR, frame.BCC) == (0x02, 0x06, 0x00, 0x7F)
+
+
+def test_a_telegram_is_at_first_that_of_a_drive_of_the_source_and_empty():
+    telegram, wanted, data = Telegram(), TxPZD(), DriveData()
+    frame, setup = telegram.Frame, telegram.Par
+    assert (frame.STX, frame.LGE, frame.BCC, frame.ADR) == (0x02, 0, 0, 0)
+    assert (setup.PKW_lengh, setup.PZD_lengh, setup.ADR, setup.RefFreq) == (127, 2, 0, 50.0)
+    assert telegram.Body.PKW == [0] * 127 and telegram.Body.PZD == [0] * 17
+    assert (wanted.ControlWord, wanted.MainSetpoint.Percent, wanted.Par.Freq) == (0, 0.0, 0.0)
+    assert wanted.Par.RefFreq == 50.0 and not any(
+        [wanted.Par.Run, wanted.Par.FaultAcknowledge, wanted.Par.Reverse]
+        + [wanted.Par.JOGRight, wanted.Par.JOGLeft]
+    )
+    actual = data.ActualValue
+    assert (actual.HEX, actual.Percent, actual.Freq) == (0, 0.0, 0.0)
+    assert (data.Status.Receive, data.Status.ErrorID) == (False, 0)
+    assert not any([getattr(data.StatusWord, name) for name in STATUS_WORD])
 
 
 def test_each_member_sets_its_bit():

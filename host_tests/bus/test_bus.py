@@ -692,6 +692,12 @@ def test_a_g110_without_parameters_needs_no_scale_for_percent():
     bench.bus.wait(1)
     near(bench.drive.percent, 20.0)
     assert "not known" in refusal(ValueError, getattr, bench.drive, "hertz")
+    bench.motor().fault(1)
+    bench.bus.wait(0.2)
+    bench.drive.stop()
+    bench.drive.acknowledge()
+    bench.drive.run(percent=20)  # nothing is read meanwhile: it waits for the end of the fault
+    assert bench.drive.is_running
     bench.end()
 
 

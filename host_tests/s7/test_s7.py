@@ -238,6 +238,23 @@ def test_a_uss_ctrl_that_is_not_called_stops_its_motor_and_no_other():
     assert plc.drive(1).state == "ready" and control.RUN_VOID
 
 
+def test_for_a_uss_ctrl_that_is_called_again_what_is_on_has_no_edge():
+    for has_tripped in (False, True):
+        plc = Plc()
+        plc.run(300)
+        control = plc.controls.pop(1)
+        plc.run(400)
+        plc.motor().RUN = plc.motor().F_ACK = True
+        if has_tripped:
+            plc.drive().fault(1)
+        plc.controls[1] = control
+        plc.run(500)
+        assert control.RUN_VOID and plc.drive().starts == 0 and control.FAULT == has_tripped
+        second = USS_CTRL(plc.port)
+        second(DRIVE=1)
+        assert second.ERROR == codes.INTERFERENCE  # the drive is the first one's again
+
+
 def test_en_off_stops_the_motor_after_300_ms():
     plc = Plc()
     plc.start()

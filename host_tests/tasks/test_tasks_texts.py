@@ -22,8 +22,9 @@ def test_the_texts_of_examples_7_and_8():
         assert line.send() == head + (tuple(text_words(text)) if is_write else (0,)), job
         line.answer(head[0], head[1] ^ 0x0200, *text_words(text))  # of the other field
         assert job.state == pkw.PENDING
-        line.answer(head[0], head[1], *text_words(text)[:7])
-        assert job.state == pkw.PENDING
+        for words in (text_words(text)[:7], text_words(text) + [0x2020]):
+            line.answer(head[0], head[1], *words)
+            assert job.state == pkw.PENDING
         line.answer(*(head + tuple(text_words(text))))
         assert job.state == pkw.DONE and job.text() == text.rstrip(" "), job
 
