@@ -176,8 +176,9 @@ def test_a_controller_that_was_never_started_leaves_at_once():
     sent = len(plc.wire.log.last(1000))
     before_us = plc.clock.now_us
     with DriveController(plc.open_bus, plc.clock) as other:
-        other()
-    assert other.bus is None and other.Status.Ready
+        for other.Cmd.Stop in (False, True):  # and there is nothing to stop
+            other()
+    assert other.bus is None and other.Status.Ready and not other.Status.Done
     assert plc.clock.now_us == before_us and len(plc.wire.log.last(1000)) == sent
 
 

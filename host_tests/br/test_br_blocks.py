@@ -215,6 +215,9 @@ def test_a_reply_is_from_the_drive_that_was_asked():
         for answers in (0, 1, 30, 31):
             reply = bytearray((0x02, 0x06, answers, 0xFB, 0x31, 0x00, 0x00, 0xCE ^ answers))
             assert bench.receive(reply) == (0 if answers == address else 310), (address, answers)
+        bench.sent.Par.ADR = 7  # of the next telegram
+        reply = bytes((0x02, 0x06, address, 0xFB, 0x31, 0x00, 0x00, 0xCE ^ address))
+        assert bench.receive(reply) == 0
 
 
 def test_with_variable_length_a_reply_has_a_task_at_least_and_whole_words():
@@ -270,7 +273,8 @@ def test_a_block_works_by_its_edge_and_an_error_stays_until_it_is_acknowledged()
     for level in (True, False, True):
         create.Cmd.Create = level
         create()
-        assert status.Error and status.ErrorID == 101
+        assert status.Error and status.ErrorID == 101 and not status.Done
+        assert bench.sent.Body.PZD[1] == 0  # it does nothing meanwhile
     create.Cmd.ErrorAcknowledge = True
     create()
     assert not status.Error and status.Ready and not status.Done
@@ -280,8 +284,34 @@ def test_a_block_works_by_its_edge_and_an_error_stays_until_it_is_acknowledged()
     create()
     assert status.Done and bench.sent.Body.PZD[2] == 0
     bench.tx_pzd.Par.Freq = 25.0
+    for _ in range(3):
+        create()
+        assert bench.sent.Body.PZD[2] == 0  # it is still the same edge
+    create.Cmd.ErrorAcknowledge = True
     create()
-    assert bench.sent.Body.PZD[2] == 0  # it is still the same edge
+    assert status.Done  # there was no error
+    create.Cmd.Create = False
+    create()
+    create.Cmd.Create = True
+    create()
+    assert status.Done and bench.sent.Body.PZD[2] == 0x2000
     create.Cmd.Reset = True
     create()
     assert status.Ready and not status.Done
+
+
+def test_reset_takes_an_error_back_and_uses_up_the_edge():
+    bench = Bench()
+    create, status = bench.create, bench.create.Status
+    bench.tx_pzd.Par.RefFreq = 0
+    assert bench.carry_out(create) == 101
+    create.Cmd.Reset = True
+    create()
+    assert (status.Ready, status.Error, status.ErrorID) == (True, False, 0)
+    bench.tx_pzd.Par.RefFreq = 50.0
+    for level in (False, True):
+        create.Cmd.Create = level
+        create()
+    create.Cmd.Reset = False
+    create()
+    assert status.Ready and not status.Done and bench.sent.Body.PZD[1] == 0

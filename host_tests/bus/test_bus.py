@@ -812,7 +812,15 @@ def test_read_brings_words_as_integers_and_double_words_as_floats():
     assert bench.drive.read(700) == 5
     near(bench.drive.read(1082), 50.0, 0)
     assert bench.drive.read(2010, index=1) == bench.motor().read(2010, 1)
+    assert bench.drive.read(2019) == 52 << 16
+    assert tasks_sent(bench) == {pkw.READ}  # no description: of this family it is known
     bench.end()
+
+
+def tasks_sent(bench, since_us=0):
+    """The AKs that the bus has sent since then, NO_TASK besides."""
+    sent = [row[2] for row in bench.wire.log.last(1000) if row[1] and row[0] >= since_us]
+    return {characters[3] >> 4 for characters in sent} - {pkw.NO_TASK}
 
 
 def test_a_parameter_is_not_read_or_written_as_what_it_is_not():
@@ -904,8 +912,7 @@ def test_an_element_of_an_array_goes_by_the_tasks_for_arrays_where_no_others_tak
             value = drive.read(2010, index=index) ^ 1
             assert drive.write(2010, value, index=index, eeprom=eeprom, sure=True) == value
             assert bench.motor().read(2010, 1) == value
-        sent = [row[2] for row in bench.wire.log.last(1000) if row[1] and row[0] > before_us]
-        assert {characters[3] >> 4 for characters in sent} - {0} == tasks, family
+        assert tasks_sent(bench, before_us + 1) == tasks, family
         if family is GENERIC:
             refused = refusal(Refused, drive.do, pkw.read(2010, index))
             assert "no such index" in refused
