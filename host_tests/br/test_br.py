@@ -15,8 +15,10 @@ from uss.master import OFF
 
 def test_run_makes_the_motor_run_at_the_frequency_and_its_end_stops_it():
     plc = Plc()
-    plc.run(500)
     told = plc.told()
+    plc.run(10)
+    assert not told.Status.Receive  # it listens first
+    plc.run(490)
     assert told.Status.Receive and told.StatusWord.DriveReady and not told.StatusWord.DriveRunning
     plc.wanted().Run = True
     plc.run(2_000)
@@ -121,27 +123,37 @@ def test_a_start_that_is_on_from_the_first_call_starts_nothing():
     assert other.Status.Ready and not other.Status.Busy and other.bus is None
 
 
-def test_after_a_fault_run_wants_a_new_edge():
-    plc = Plc()
-    plc.start()
-    plc.drives[1].fault(1)
-    plc.run(500)
-    assert plc.told().StatusWord.DriveFault and not plc.told().StatusWord.DriveRunning
-    plc.wanted().FaultAcknowledge = True
-    plc.run(1_000)
-    assert not plc.told().StatusWord.DriveFault and plc.drives[1].state == "ready"
-    assert plc.drives[1].starts == 1
-    plc.wanted().Run = False
-    plc.run(10)
-    plc.start()
+def test_after_a_fault_run_and_each_jog_want_a_new_edge():
+    for member in ("Run", "JOGRight", "JOGLeft"):
+        plc = Plc()
+        plc.run(500)
+        setattr(plc.wanted(), member, True)
+        plc.run(500)
+        assert plc.told().StatusWord.DriveRunning
+        plc.drives[1].fault(1)
+        plc.run(500)
+        assert plc.told().StatusWord.DriveFault and not plc.told().StatusWord.DriveRunning
+        setattr(plc.wanted(), member, False)
+        plc.run(10)
+        setattr(plc.wanted(), member, True)
+        plc.controller()
+        assert not plc.controller.bus.turns.at(1).wanted  # an edge while it cannot run is no use
+        plc.wanted().FaultAcknowledge = True
+        plc.run(1_000)
+        assert not plc.told().StatusWord.DriveFault and plc.drives[1].state == "ready"
+        assert plc.drives[1].starts == 1, member
+        setattr(plc.wanted(), member, False)
+        plc.run(10)
+        plc.start()
 
 
 def test_a_drive_that_was_lost_and_comes_back_does_not_run():
     plc = Plc()
     plc.start()
     plc.drives[1].unplug()
-    plc.run(1_500)
-    assert not plc.told().Status.Receive and plc.told().Status.ErrorID == codes.NO_MESSAGE
+    for ms in (200, 1_300):  # it counts as lost after a second
+        plc.run(ms)
+        assert not plc.told().Status.Receive and plc.told().Status.ErrorID == codes.NO_MESSAGE
     plc.drives[1].plug()
     plc.run(3_000)
     assert plc.told().Status.Receive and plc.told().Status.ErrorID == codes.NO_ERROR
@@ -206,6 +218,28 @@ def test_stop_stops_the_motors_and_leaves_the_line_and_start_takes_it_again():
     plc.run(10)
     plc.start(1)
     plc.check()
+
+
+def test_start_counts_only_when_it_may_be_started():
+    plc = Plc()
+    plc.start()
+    plc.controller.Cmd.Start = True  # it is at work
+    plc.run(500)
+    assert plc.drives[1].state == "running" and plc.drives[1].starts == 1
+    plc.controller.Cmd.Start = False
+    plc.controller.Cmd.Stop = True
+    plc.controller()
+    plc.controller.Cmd.Stop = False
+    plc.controller.Cmd.Start = True  # it is on its way out
+    plc.run(300)
+    assert plc.status.Done and plc.controller.bus.phase == OFF
+    plc.controller.Cmd.Start = False
+    plc.run(10)
+    plc.controller.Cmd.Start = plc.controller.Cmd.Stop = True  # Stop goes first
+    plc.run(10)
+    plc.controller.Cmd.Stop = False
+    plc.run(300)
+    assert plc.status.Done and plc.controller.bus.phase == OFF
 
 
 def test_what_was_switched_on_while_the_line_was_left_has_no_edge():
@@ -288,6 +322,38 @@ def test_lengths_may_change_while_the_bus_works_and_stop_the_motor():
     plc.lengths().PZD_lengh = 4
     plc.run(2_000)
     assert plc.drives[1].hz() == 0 and plc.controller.bus.turns.at(1).layout.pzd_words == 4
+
+
+def test_the_sequence_has_255_places():
+    plc = Plc((1, 2))
+    plc.sequence(*[1] * 254 + [2])
+    plc.run(500)
+    assert len(plc.controller.bus.turns.list) == 255
+    assert plc.controller.bus.turns.list[-1].address == 2
+
+
+def test_a_drive_that_is_on_its_way_out_of_the_sequence_is_not_started():
+    plc = Plc((1, 2))
+    plc.start(1)
+    plc.sequence(2)
+    plc.run(100)
+    assert plc.drives[1].state == "stopping"
+    for plc.wanted(1).Run in (False, True):
+        plc.controller()
+        assert not plc.controller.bus.turns.at(1).wanted
+    plc.run(1_000)
+    assert plc.drives[1].starts == 1 and plc.controller.bus.turns.at(1) is None
+    plc.check()
+
+
+def test_a_drive_whose_telegrams_have_no_control_word_is_not_started():
+    plc = Plc(kinds={1: {"family": mm440, "parameters": {2012: 0}}})
+    plc.lengths().PKW_lengh, plc.lengths().PZD_lengh = 4, 0
+    plc.run(500)
+    assert plc.told().Status.Receive and not plc.told().StatusWord.DriveReady
+    plc.wanted().Run = True
+    plc.run(500)
+    assert plc.drives[1].starts == 0 and not plc.status.Error
 
 
 def test_the_empty_sequence_asks_nobody():
@@ -381,6 +447,30 @@ def test_wrong_lengths_and_addresses_are_told():
         assert plc.told().Status.Receive  # as it was before
 
 
+def test_with_a_wrong_address_the_sequence_before_stays():
+    plc = Plc((1, 2))
+    plc.run(500)
+    plc.sequence(1, 32)
+    plc.run(500)
+    assert plc.status.ErrorID == codes.ADDRESS and plc.told(2).Status.Receive
+    assert [drive.address for drive in plc.controller.bus.turns.list] == [1, 2]
+
+
+def test_wrong_lengths_stop_the_motor():
+    plc = Plc()
+    plc.start()
+    plc.lengths().PZD_lengh = 17
+    plc.run(1_500)
+    assert plc.status.ErrorID == codes.PZD_LENGTH and plc.drives[1].hz() == 0
+    plc.lengths().PZD_lengh = 2
+    plc.acknowledge_errors()
+    plc.run(500)
+    assert plc.drives[1].starts == 1 and plc.told().Status.Receive
+    plc.wanted().Run = False
+    plc.run(10)
+    plc.start()
+
+
 def test_a_drive_whose_lengths_are_wrong_is_not_taken_into_the_sequence():
     plc = Plc((1, 2))
     plc.sequence(1)
@@ -434,6 +524,10 @@ def test_a_port_that_fails_is_told_and_stops_the_motor():
     plc.acknowledge_errors()
     plc.run(100)
     assert not plc.status.Error and plc.status.ErrorID == codes.NO_ERROR  # it was told once
+    plc.controller.close()
+    plc.controller.Cmd.Start = True
+    plc.run(300)
+    assert plc.told().Status.Receive and not plc.status.Error  # the port that is opened anew
 
 
 def test_ctrl_c_in_the_middle_of_a_scan_ends_the_program_and_leaves_no_motor_running():

@@ -4,6 +4,7 @@
 from boards.sim.drives.bop_link import on_bop as on_bop_link
 from boards.sim.drives.families import g110, g120, generic, mm3, mm420, mm440, v20
 from bus_bench import QUICK, Bench, refusal
+from hal.pacer import Pacer
 from spoilt_bench import TROUBLES, spoil
 from tools.examples.simulation import Stage
 from uss import bits, pkw, pzd
@@ -1126,10 +1127,34 @@ def test_the_same_calls_work_by_interrupts():
 
 
 def test_a_board_without_receive_interrupt_will_do():
-    bench = Bench((1, 2), polled=True)
+    """Nor is a timer needed: each step does what is due."""
+    for has_pacer in (False, True):
+        bench = Bench((1, 2), polled=True)
+        if has_pacer:
+            bench.bus.pace(Pacer, None)
+        bench.drive.run(10.0)
+        bench.bus.wait(1)
+        near(bench.drive.hertz, 10.0)
+        bench.end()
+
+
+def test_ctrl_c_that_strikes_in_an_interrupt_ends_the_program_all_the_same():
+    bench = Bench(paced=True)
     bench.drive.run(10.0)
-    bench.bus.wait(1)
-    near(bench.drive.hertz, 10.0)
+    engine = bench.drive.engine
+    take, ctrl_c = engine.take, KeyboardInterrupt()
+
+    def pressed(buffer, count, now):  # in an interrupt nothing may allocate
+        raise ctrl_c
+
+    engine.take = pressed
+    try:
+        bench.bus.wait(1)
+    except KeyboardInterrupt:
+        engine.take = take
+    else:
+        raise AssertionError("Ctrl-C is lost")
+    assert not bench.drive.is_on()
     bench.end()
 
 

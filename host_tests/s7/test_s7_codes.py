@@ -365,7 +365,9 @@ def test_code_20_the_drive_refuses():
 def test_code_20_the_drive_answers_something_else_for_good():
     plant = Plant()
     plant.reply_pkw = lambda pkw: [0, 0, 0, 0]
-    assert plant.until_done(USS_RPM_W(plant.port), DRIVE=NODE, PARAM=700) == 20
+    read = USS_RPM_W(plant.port)
+    assert plant.until_done(read, DRIVE=NODE, PARAM=700) == 20
+    assert read.PKW_ERROR is None  # it has not refused
 
 
 def test_code_21_a_double_word_instead_of_a_word():
@@ -404,7 +406,7 @@ def test_a_parameter_block_says_why_nothing_came():
         plant.line.answer = spoilt(change)
         read = USS_RPM_W(plant.port)
         assert plant.until_done(read, DRIVE=NODE, PARAM=700) == code, code
-        assert read.STATUS_WORD == codes.word(code)
+        assert read.STATUS_WORD == codes.word(code) and read.PKW_ERROR is None
 
 
 def test_every_code_is_provoked_or_cannot_occur():

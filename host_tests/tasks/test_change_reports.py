@@ -81,6 +81,7 @@ def test_what_a_report_says_in_every_layout():
         report = reports.get()
         assert (report.number, report.index, report.width) == (1120, index, width), reply
         assert value is None or report.signed_value() == value, reply
+        assert width == pkw.DOUBLE or report.high == 0, reply
 
 
 def test_a_report_names_any_number():
