@@ -426,6 +426,17 @@ def test_en_off_while_it_goes_on_keeps_the_result_for_later():
     assert read.DONE and read.VALUE == 5
 
 
+def test_a_request_is_made_when_en_becomes_on_as_well():
+    plc = Plc()
+    plc.run(300)
+    read = USS_RPM_W(plc.port)
+    read(EN=False, XMT_REQ=True, DRIVE=1, PARAM=700)
+    plc.run(200)
+    assert not plc.port.is_busy()
+    until_done(plc, read, DRIVE=1, PARAM=700)
+    assert (read.ERROR, read.VALUE) == (0, 5)
+
+
 def test_one_parameter_block_at_a_time():
     plc = Plc((1, 2))
     plc.run(300)
@@ -610,7 +621,7 @@ def test_a_drive_that_runs_cannot_be_dropped():
 def test_mode_0_leaves_the_line_and_mode_1_takes_it_again():
     plc = Plc()
     plc.run(300)
-    give(plc.init, MODE=0)
+    give(plc.init, MODE=0, BAUD=None, ACTIVE=-1)  # with MODE 0 the others do not matter
     for _ in range(50):
         plc.run(2)
         plc.init(EN=False)
@@ -786,14 +797,15 @@ def test_a_port_that_is_not_set_up_or_closed_is_closed_at_once():
 
 
 def test_a_closed_port_is_set_up_again_by_uss_init_and_starts_nothing():
-    plc = Plc()
+    plc = Plc((0, 1, 31))
     plc.start()
     plc.port.close()
-    give(plc.init, MODE=1, BAUD=BAUD, ACTIVE=0b10)
+    give(plc.init, MODE=1, BAUD=BAUD, ACTIVE=plc.active)
     assert plc.init.DONE and plc.init.ERROR == 0
     plc.run(2_000)
     assert plc.outputs().ERROR == 0 and plc.outputs().RUN_VOID
     assert plc.drive().state == "ready" and plc.drive().starts == 1
+    assert plc.port.drives[0].contact and plc.port.drives[31].contact
 
 
 def test_a_parameter_block_that_close_has_overtaken_says_so():

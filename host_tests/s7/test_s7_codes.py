@@ -22,6 +22,7 @@ from uss.s7 import (
     Port,
     codes,
 )
+from uss.s7.parameters import FLOAT_MAX
 
 NODE = 3
 READY, RUNNING = 0xFB31, 0xFB34
@@ -306,10 +307,13 @@ def test_code_13_another_drive_answers():
 
 
 def test_code_15_a_parameter_that_cannot_exist():
-    for number, index in ((-1, 0), (128_000, 0), (700, 256), (700, -1)):
+    for number, index, code in (
+        (-1, 0, 15), (128_000, 0, 15), (700, 255, 15), (700, 256, 15), (700, -1, 15),
+        (0, 0, 20), (127_999, 0, 20), (700, 254, 20),  # these the drive itself refuses
+    ):  # fmt: skip
         plant = Plant()
         read = USS_RPM_W(plant.port)
-        assert plant.until_done(read, DRIVE=NODE, PARAM=number, INDEX=index) == 15, number
+        assert plant.until_done(read, DRIVE=NODE, PARAM=number, INDEX=index) == code, number
 
 
 def test_code_16_a_mode_that_there_is_not():
@@ -501,6 +505,20 @@ def test_a_value_that_is_none_is_code_5():
             block = kind(plant.port)
             assert outcome(block, DRIVE=NODE, PARAM=700, VALUE=value) == 5, (kind, value)
             assert block.DONE and block.STATUS_WORD == 0x8181, (kind, value)
+
+
+def test_the_largest_values_are_written():
+    for kind, value, words in (
+        (USS_WPM_W, 65535, (1, 0, 65535)), (USS_WPM_W, -32768, (1, 0, 0x8000)),
+        (USS_WPM_D, 0xFFFFFFFF, (2, 0xFFFF, 0xFFFF)), (USS_WPM_D, -(1 << 31), (2, 0x8000, 0)),
+        (USS_WPM_R, FLOAT_MAX, (2, 0x7F7F, 0xFFFF)), (USS_WPM_R, -FLOAT_MAX, (2, 0xFF7F, 0xFFFF)),
+    ):  # fmt: skip
+        plant = Plant()
+        plant.parameters[700] = words
+        write = kind(plant.port)
+        assert plant.until_done(write, DRIVE=NODE, PARAM=700, VALUE=value) == 0, (kind, value)
+        asked = [words_of(request)[:4] for request in plant.line.requests]
+        assert list(words[1:]) in [pkw[2:] for pkw in asked if pkw[0]], (kind, value)
 
 
 def test_a_bit_may_be_anything():
