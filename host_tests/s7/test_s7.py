@@ -800,6 +800,7 @@ def test_a_closed_port_is_set_up_again_by_uss_init_and_starts_nothing():
     plc = Plc((0, 1, 31))
     plc.start()
     plc.port.close()
+    assert plc.port.drives == plc.port.controls == [None] * 32
     give(plc.init, MODE=1, BAUD=BAUD, ACTIVE=plc.active)
     assert plc.init.DONE and plc.init.ERROR == 0
     plc.run(2_000)

@@ -84,6 +84,17 @@ def test_what_a_report_says_in_every_layout():
         assert width == pkw.DOUBLE or report.high == 0, reply
 
 
+def test_no_other_reply_is_a_report():
+    for reply in (0, 1, 2, 3, 4, 5, 6, 7, 8, 13, 14, 15):
+        line = Line()
+        reports = Reports(line.channel)
+        for bit in (0x0800, 0, 0x0800):
+            line.send()
+            line.answer(reply << 12 | bit | 700, 0, 0, 5)
+            assert reports.get() is None, reply
+            assert line.send()[0] == bit, reply
+
+
 def test_a_report_names_any_number():
     for number in (0, 1999, 2010, 8820, 64001, 127999):
         line = Line()

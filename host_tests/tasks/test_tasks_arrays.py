@@ -5,8 +5,10 @@ from pkw_bench import FOUR, THREE, VARIABLE, answered, asked, refused
 from uss import pkw
 from uss.bus import pkw_errors
 from uss.channel import Channel
+from uss.families import GENERIC, MM420
 from uss.layout import VARIABLE as VARIABLE_WORDS
 from uss.tasks import arrays
+from uss.tasks.descriptions import LOWER_LIMIT, read_description
 
 MASK = (1 << 30) - 1
 
@@ -31,6 +33,16 @@ def test_one_element():
     assert asked(arrays.write_element_double(731, 0, 1, True)) == (0xB2DB, 0, 0, 1)
     assert asked(arrays.write_element_float(1120, 1, 50.0)) == (0x8460, 1, 0x4248, 0)
     assert asked(arrays.write_element_float(1120, 1, 50.0, True)) == (0xB460, 1, 0x4248, 0)
+
+
+def test_an_index_goes_with_the_task_for_an_element_if_the_family_takes_it_by_that():
+    for family, index, task in (
+        (MM420, 1, pkw.READ), (GENERIC, 1, pkw.READ_ELEMENT), (GENERIC, 0, pkw.READ),
+    ):  # fmt: skip
+        job = pkw.read(2010, index)
+        assert arrays.with_array_task(job, family) is job and job.task == task
+    job = read_description(2010, LOWER_LIMIT)  # this is no index
+    assert arrays.with_array_task(job, GENERIC).task == pkw.READ_DESCRIPTION
 
 
 def test_its_answer_has_the_width_of_its_value():

@@ -59,6 +59,7 @@ def test_each_element():
     for element, variable, four, field, value in (
         (IDENTIFIER, (0x5008,), (0, 0x5008), "identifier", 0x5008),
         (ELEMENTS, (3,), (0, 3), "elements", 3),
+        (ELEMENTS, (3,), (0xFFFF, 3), "elements", 3),  # PWE1 is no part of a word
         (FACTOR, (0x3F80, 0), (0x3F80, 0), "factor", 1.0),
         (QUANTITY, (0x04FD,), (0, 0x04FD), "quantity", 0x04FD),
         (ACCESS, (0x0102, 0x0304), (0x0102, 0x0304), "access", b"\x01\x02\x03\x04"),
@@ -129,7 +130,8 @@ def test_the_bits_of_an_identifier():
         assert typed(value, 4 if wide else 2, kind) == limit, kind
     pi = 0x40490FDB
     assert typed(pi, 4, FLOAT) == pkw.words_to_float(0x4049, 0x0FDB)
-    assert typed(0x4248, 2, FLOAT) == 0x4248  # a word is no floating-point number
+    for word in (0x4248, 0xC248):  # a word is no floating-point number
+        assert typed(word, 2, FLOAT) == word
     job = read_description(2010, IDENTIFIER)
     assert answered(job, (0x300A, 0x8000 | IDENTIFIER, 0x50C8), VARIABLE)
     assert job.description().data_type() == 0xC8

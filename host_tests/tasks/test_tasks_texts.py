@@ -29,6 +29,34 @@ def test_the_texts_of_examples_7_and_8():
         assert job.state == pkw.DONE and job.text() == text.rstrip(" "), job
 
 
+def test_what_fills_a_text_up_is_no_part_of_it():
+    for filled, text in (
+        ("RAMP TIME\0\0\0\0\0\0\0", "RAMP TIME"), ("  RAMP TIME \0 \0 ", "  RAMP TIME"),
+    ):  # fmt: skip
+        line = Line(VARIABLE_WORDS)
+        job = line.ask(texts.read_text(7, 3))
+        line.send()
+        line.answer(0xF007, 3, *text_words(filled))
+        assert job.text() == text
+
+
+def test_a_text_of_the_second_field_is_asked_for_right_after_the_value():
+    """Their answers cannot be mistaken for one another: no telegram without a task is between."""
+    line = Line(VARIABLE_WORDS)
+    line.ask(pkw.read(9, 2))
+    line.ask(texts.read_text(9, 2, field=2))
+    assert line.send() == (0x1009, 0x0002, 0)
+    line.answer(0x1009, 0x0002, 5)
+    assert line.send() == (0xF009, 0x0202, 0)
+
+
+def test_a_text_that_the_telegram_has_no_room_for_is_not_sent():
+    for longest, state in ((9, pkw.REFUSED), (10, pkw.PENDING)):
+        line = Line(VARIABLE_WORDS, longest)
+        assert line.ask(texts.write_text(9, 2, "BAUDRATE FOR SS2")).state == state
+        assert line.ask(texts.read_text(9, 2)).state == pkw.PENDING
+
+
 def test_a_drive_refuses_a_text():
     for words, error in (((0x7007, 3, 15), 15), ((0x8007, 3, 0), pkw.NO_CHANGE_RIGHTS)):
         line = Line(VARIABLE_WORDS)
@@ -58,9 +86,10 @@ def test_a_text_that_cannot_be_is_refused_at_once():
     for act, arguments in (
         (texts.read_text, (7, 0)),
         (texts.read_text, (7, 255)),
+        (texts.read_text, (7, 1, 0)),
         (texts.read_text, (7, 1, 3)),
         (texts.write_text, (7, 1, "seventeen letters")),
         (texts.write_text, (7, 1, "\u0394")),
     ):
         assert refused(ValueError, act, *arguments), arguments
-    assert bytes(texts.write_text(7, 1, "\xd6").words[4:6]) == b"\xd6 "
+    assert bytes(texts.write_text(7, 254, "\xd6").words[4:6]) == b"\xd6 "
