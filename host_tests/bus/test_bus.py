@@ -3,6 +3,7 @@
 
 from boards.sim.drives.bop_link import on_bop as on_bop_link
 from boards.sim.drives.families import g110, g120, generic, mm3, mm420, mm440, v20
+from boards.sim.drives.families.texts import DATA_TYPES
 from bus_bench import QUICK, Bench, refusal
 from hal.pacer import Pacer
 from spoilt_bench import TROUBLES, spoil
@@ -17,6 +18,7 @@ from uss.layout import VARIABLE, Layout
 from uss.master import CLOSED, OFF
 from uss.outside import Mirror
 from uss.scaling import Scale
+from uss.tasks import descriptions
 
 
 def near(value, wanted, within=0.02):
@@ -107,6 +109,8 @@ def test_jog_turns_until_stop():
     drive = bench.drive
     drive.jog_right()
     bench.bus.wait(1)
+    near(drive.hertz, 4.0)
+    drive.jog_right()  # this changes nothing
     near(drive.hertz, 4.0)
     drive.stop()
     bench.bus.wait(1)
@@ -426,6 +430,9 @@ def test_a_start_wants_room_in_the_telegrams():
     assert bench.drive.is_running
     assert "PZD2" in refusal(ValueError, getattr, bench.drive, "percent")
     bench.end()
+    bench = Bench(parameters={2014: 2_000, 2012: 0}, layout=Layout(4, 0))
+    assert "Layout(4, 0)" in refusal(NotStarted, bench.drive.jog_right)
+    bench.end()
 
 
 def test_without_a_step_for_300_ms_every_motor_is_stopped():
@@ -498,6 +505,14 @@ def test_the_telegram_off_time_is_told_in_seconds_and_within_reason():
         assert "in ms" in refusal(ValueError, bench.bus.supervise, bench.drive, off_time_ms)
     bench.bus.supervise(bench.drive, 65_000)
     bench.bus.supervise(bench.drive, 0)
+    bench.end()
+
+
+def test_the_telegram_off_time_is_that_of_the_link_that_the_bus_is_on():
+    bench = of_family(on_bop(MM420), on_bop_link(mm420), {})
+    before = bench.motor().read(2014, 0)
+    bench.drive.supervise(1.5)
+    assert bench.motor().read(2014, 1) == 1500 and bench.motor().read(2014, 0) == before
     bench.end()
 
 
@@ -852,6 +867,13 @@ def test_where_the_family_does_not_say_what_a_double_word_is_the_drive_does():
     assert drive.read(1082) == 50.0  # it has said what this is
     rows = bench.wire.log.last(1000)
     assert {row[2][3] >> 4 for row in rows if row[1] and row[0] >= since_us} == {pkw.READ}
+    bench.motor().unplug()
+    bench.bus.wait(2)
+    bench.motor().plug()
+    bench.bus.wait(2)
+    since_us = bench.clock.now_us
+    assert drive.read(1082) == 50.0  # it may be another one
+    assert tasks_sent(bench, since_us) == {pkw.READ, pkw.READ_DESCRIPTION}
     assert "is a float, not of kind int" in refusal(ValueError, drive.write, 1082, 40, kind=int)
     assert drive.write(1082, 45) == 45.0 and bench.motor().read(1082) == 45.0
     bench.end()
@@ -860,6 +882,16 @@ def test_where_the_family_does_not_say_what_a_double_word_is_the_drive_does():
     assert bench.drive.read(1082, kind=float) == 50.0
     assert bench.drive.write(1082, 45, kind=float) == 45.0
     bench.end()
+
+
+def test_a_double_word_with_a_sign_is_an_integer_as_well():
+    drive = of_family(GENERIC, generic, {}, unsupervised=True).drive
+    told = DATA_TYPES["U32"]
+    DATA_TYPES["U32"] = descriptions.I32
+    try:
+        assert "is an integer" in refusal(ValueError, drive.read, 2019, 1, float)
+    finally:
+        DATA_TYPES["U32"] = told
 
 
 def terse():
@@ -1039,8 +1071,21 @@ def test_a_drive_that_was_away_is_asked_anew():
     refusal(NoContact, drive.read, 1082)
     sent = drive.silent
     assert refusal(NoContact, drive.read, 1082) == "drive 1 does not answer"
-    assert drive.silent >= sent + 3
+    assert drive.silent == sent + 3
     bench.end()
+
+
+def test_one_of_many_silent_drives_is_asked_at_once_when_somebody_waits_for_it():
+    bench = Bench(tuple(range(1, 31)))
+    bench.bus.wait(1)
+    for motor in bench.drives.values():
+        motor.unplug()
+    bench.bus.wait(4)
+    for address in (17, 29, 5):
+        bench.motor(address).plug()
+        since_us = bench.clock.now_us
+        assert bench.bus.drives[address - 1].read(700) == 5
+        assert bench.clock.now_us - since_us < 300_000
 
 
 def test_a_drive_that_is_lost_in_between_does_not_answer():
@@ -1093,6 +1138,10 @@ def test_a_motor_that_may_run_keeps_its_address():
     bench.drive.run(10.0)
     text = refusal(UssError, bench.drive.write, 2011, 5, sure=True)
     assert text.startswith("drive 1 may be running") and bench.motor().read(2011) == 1
+    bench.motor().unplug()
+    bench.bus.wait(2)  # it is lost, and may run still
+    assert refusal(UssError, bench.drive.write, 2011, 5, sure=True) == text
+    bench.motor().plug()
     bench.drive.stop()
     bench.bus.wait(2)
     assert bench.drive.write(2011, 5, sure=True) == 5
@@ -1165,6 +1214,17 @@ def test_a_drive_that_stands_in_the_list_twice_is_asked_twice_as_often():
     assert [drive.address for drive in bench.bus.engine.turns.list] == [1, 2, 1]
     bench.bus.wait(2)
     near(one.counters[0] / bench.bus.drives[1].counters[0], 2.0, 0.1)
+    bench.end()
+
+
+def test_a_drive_that_was_read_has_no_more_turns_than_the_others_afterwards():
+    bench = Bench((1, 2, 3))
+    bench.drive.read(700)
+    refusal(Refused, bench.drive.read, 1999)
+    before = [drive.counters[0] for drive in bench.bus.drives]
+    bench.bus.wait(2)
+    turns = [drive.counters[0] - count for drive, count in zip(bench.bus.drives, before)]
+    assert max(turns) - min(turns) <= 2, turns
     bench.end()
 
 
@@ -1481,6 +1541,19 @@ def test_a_failure_in_the_engine_is_not_hidden_and_takes_every_on_back():
     else:
         raise AssertionError("swallowed")
     assert bench.bus.engine.failures == 1 and not bench.drive.is_on()
+
+
+def test_how_long_a_reply_may_take_and_a_silence_last_is_up_to_the_program():
+    for options, answers, silent_s in (({}, False, 1.0), ({"reply_timeout_ms": 50}, True, 1.0),
+                                       ({"lost_ms": 400}, False, 0.4)):  # fmt: skip
+        stage = Stage((1,))
+        bus = Master(stage.board.make_link(19200), 19200, **options)
+        drive = bus.add(1, MM420)
+        assert bus.wait(2, lambda drive=drive: drive.contact)
+        stage.drives[1].reply_delay_us = 40_000
+        assert not bus.wait(silent_s - 0.1, lambda drive=drive: not drive.contact)
+        assert bus.wait(0.3, lambda drive=drive: not drive.contact) != answers, options
+        bus.close()
 
 
 def test_the_link_has_a_clock_and_the_rate_is_one_of_uss():
