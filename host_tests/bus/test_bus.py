@@ -76,6 +76,9 @@ def test_with_p2009_the_words_are_in_hundredths_of_a_hertz():
     bench.bus.wait(2)
     near(bench.drive.hertz, 12.34, 0.005)
     near(bench.drive.percent, 24.68)
+    assert bench.drive.engine.near == 100  # 2 % of 5000, by which a standstill is noticed
+    near(bench.drive.rpm, 60 / 2 * 12.34, 0.5)
+    near(bench.drive.hertz, 12.34, 0.005)  # as before it was asked for its motor
     bench.end()
 
 
@@ -101,6 +104,15 @@ def test_a_speed_beyond_the_limits_of_the_drive_is_refused():
     assert refusal(TypeError, bench.drive.run, "fast") == "a speed is a number, not 'fast'"
     bench.bus.wait(1)
     assert bench.drive.is_on()  # a wrong speed changes nothing
+    bench.end()
+
+
+def test_the_limits_themselves_are_no_speeds_beyond_them():
+    """Also where the nearest word of PZD2 is a little beyond."""
+    bench = Bench(parameters={2014: 2_000, 1080: 3.3, 1082: 33.3})
+    for hertz, count in ((3.3, 1081), (33.3, 10912)):
+        bench.drive.run(hertz)
+        assert bench.drive.engine.hsw == count
     bench.end()
 
 

@@ -4,10 +4,11 @@
 Parameters are changed behind the bus's back, as somebody at the drive does.
 """
 
-from boards.sim.drives.families import mm440
+from boards.sim.drives.families import g120, mm440
 from bus_bench import QUICK, Bench, refusal
-from uss.bus import NotStarted, TimedOut
-from uss.families import MM440
+from uss.bus import NotStarted, Refused, TimedOut
+from uss.families import G120, MM420, MM440
+from uss.families.rows import COMMAND_SOURCE, DRIVE_SET, SUPERVISION, WORD
 from uss.scaling import Scale
 
 USS = "is not under USS control: "
@@ -48,6 +49,10 @@ def test_what_the_drive_tells_goes_before_the_scale_that_was_told():
     bench.drive.run(25.0)
     bench.bus.wait(1)
     assert 24.9 < bench.motor().hz() < 25.1 and 24.9 < bench.drive.hertz < 25.1
+    bench.end()
+    kind = {"family": g120, "parameters": None}
+    bench = Bench(family=G120, kinds={1: kind}, scale=Scale(reference_rpm=1000.0))
+    assert bench.drive.survey.known_scale().reference_rpm == 1500.0
     bench.end()
 
 
@@ -119,7 +124,38 @@ def test_an_actual_value_that_is_no_frequency_is_told_as_none():
         assert text == "drive 1 does not send its actual speed: P2019[1] = 27:0, not 21:0"
     bench.bus.wait(3)
     assert bench.drive.is_running and bench.drive.hiw is not None
+    assert bench.drive.engine.near == 0  # no standstill is read out of it
     bench.end()
+
+
+def test_a_row_without_its_index_has_the_value_of_a_drive_that_lacks_it_or_refuses_a_start():
+    """For the active data set such a value is known; for P0700 it is not."""
+    bench = Bench(family=with_row(DRIVE_SET, (700, 9, WORD, 0)))
+    bench.drive.run(10.0)
+    assert bench.drive.survey.values[DRIVE_SET] == 0
+    bench.end()
+    bench = Bench(family=with_row(COMMAND_SOURCE, (700, 9, WORD, None)))
+    text = refusal(Refused, bench.drive.run, 10.0)
+    assert text == "drive 1 refuses P0700[9]: no such index" and not bench.motor().starts
+    bench.end()
+
+
+def test_a_telegram_off_time_that_the_drive_lacks_is_told_by_the_program():
+    bench = Bench(family=with_row(SUPERVISION, (1999, 0, WORD, 0)))
+    text = refusal(NotStarted, bench.drive.run, 10.0)
+    assert "does not tell its telegram-off time" in text
+    bench.bus.supervise(bench.drive, 2_000)
+    bench.drive.run(10.0)
+    bench.end()
+
+
+def with_row(row, asked):
+    """A MICROMASTER 420 in which this is asked for a row of the survey."""
+
+    class Odd(MM420):
+        survey = MM420.survey[:row] + (asked,) + MM420.survey[row + 1 :]
+
+    return Odd
 
 
 def test_a_drive_that_falls_silent_on_what_it_lacks_is_started_all_the_same():
