@@ -232,6 +232,19 @@ def test_after_off2_or_off3_a_drive_runs_again_once_it_stands():
     bench.end()
 
 
+def test_stop_all_sends_each_drive_its_own_off1():
+    bench = Bench((1, 2, 3))
+    for drive in bench.bus.drives:
+        drive.run(10.0)
+    bench.bus.wait(1)
+    since_us = bench.clock.now_us
+    bench.bus.stop_all()
+    bench.bus.wait(0.1)
+    for drive in bench.bus.drives:
+        assert bench.stws(drive.address, since_us + 20_000)[0] == pzd.OFF1 and not drive.is_on()
+    bench.end()
+
+
 def test_a_broadcast_stops_all_at_once():
     bench = Bench((1, 2, 3))
     for drive in bench.bus.drives:

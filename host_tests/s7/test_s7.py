@@ -131,6 +131,9 @@ def test_f_ack_acknowledges_by_its_edge_only():
     plc.motor().F_ACK = True
     plc.run(500)
     assert not plc.outputs().FAULT
+    plc.drive().fault(1)
+    plc.run(500)
+    assert plc.outputs().FAULT
 
 
 def test_a_line_that_comes_back_starts_nothing():
@@ -266,6 +269,16 @@ def test_en_off_stops_the_motor_after_300_ms():
     plc.motor().EN = True
     plc.run(2_000)
     assert plc.drive().starts == 1 and plc.outputs().RUN_VOID
+
+
+def test_a_drive_that_off2_holds_is_held_without_en_as_well():
+    plc = Plc()
+    plc.run(300)
+    plc.motor().OFF2 = True
+    plc.run(100)
+    plc.motor().EN = False
+    plc.run(500)
+    assert plc.drive().stw == 0x047C
 
 
 def test_another_drive_at_the_input_stops_the_one_before():
@@ -424,6 +437,17 @@ def test_en_off_while_it_goes_on_keeps_the_result_for_later():
     assert not read.DONE
     read(EN=True, XMT_REQ=False)
     assert read.DONE and read.VALUE == 5
+
+
+def test_another_edge_while_a_request_goes_on_makes_none():
+    plc = Plc()
+    plc.run(300)
+    read = USS_RPM_W(plc.port)
+    for request in (True, False, True):
+        read(XMT_REQ=request, DRIVE=1, PARAM=700)
+        assert not read.DONE
+    until_done(plc, read, DRIVE=1, PARAM=700)
+    assert (read.ERROR, read.VALUE) == (0, 5)
 
 
 def test_a_request_is_made_when_en_becomes_on_as_well():
@@ -611,6 +635,7 @@ def test_a_drive_that_runs_cannot_be_dropped():
         for inputs in (
             {"MODE": 1, "BAUD": BAUD, "ACTIVE": 0b0100}, {"MODE": 0},
             {"MODE": 1, "BAUD": 9600, "ACTIVE": 0b0100 | 1 << node},
+            {"MODE": 0, "BAUD": BAUD, "ACTIVE": 0b0100 | 1 << node},
         ):  # fmt: skip
             give(plc.init, **inputs)
             assert plc.init.DONE and plc.init.ERROR == codes.CHANGE_NOT_ALLOWED, inputs
@@ -648,6 +673,8 @@ def test_another_rate_opens_the_line_anew():
     plc.open_bus = note
     give(plc.init, MODE=1, BAUD=38400, ACTIVE=0b10)
     assert not plc.init.DONE  # an exchange is under way
+    second = give(USS_INIT(plc.port), MODE=1, BAUD=BAUD, ACTIVE=0b10)
+    assert second.DONE and second.ERROR == codes.PORT_BUSY and not opened
     plc.run(10)
     plc.init(EN=True)
     assert plc.outputs().ERROR == codes.PORT_NOT_USS

@@ -372,6 +372,16 @@ def test_code_20_the_drive_answers_something_else_for_good():
     read = USS_RPM_W(plant.port)
     assert plant.until_done(read, DRIVE=NODE, PARAM=700) == 20
     assert read.PKW_ERROR is None  # it has not refused
+    plant, times = Plant(), []
+
+    def answer(request):
+        times.append(plant.line.now)
+        return None if len(times) == 20 else plant.well(request)
+
+    plant.reply_pkw = lambda pkw: [0, 0, 0, 0]
+    plant.line.answer = answer  # that one reply is lost meanwhile is not why
+    assert plant.until_done(USS_RPM_W(plant.port), DRIVE=NODE, PARAM=700) == 20
+    assert len(times) > 30
 
 
 def test_code_21_a_double_word_instead_of_a_word():
