@@ -587,6 +587,7 @@ def test_bus_off_gives_the_line_away_and_on_takes_it_back():
     bench.bus.off()
     assert bench.bus.wait(1, bench.bus.is_silent) and bench.bus.engine.phase == OFF
     assert bench.stws(1)[-1] == pzd.OFF1
+    assert bench.motor().state == "stopping" and not bench.drive.is_running  # nobody says so
     assert refusal(NoContact, bench.drive.read, 700) == "the bus is off"
     bench.bus.on()
     assert bench.drive.read(700) == 5
@@ -606,6 +607,7 @@ def test_nobody_waits_for_a_bus_that_is_off_or_closed_or_a_drive_that_was_remove
         if reason == "the bus is off":
             assert bench.bus.wait(1, bench.bus.is_silent)
         assert drive.state == NO_CONTACT and not drive.contact and not drive.is_running
+        assert drive.zsw is None and drive.hiw is None
         for action in (
             lambda drive=drive: drive.read(700),
             lambda drive=drive: drive.run(10.0),

@@ -188,6 +188,7 @@ def test_a_motor_that_runs_by_its_terminals_is_left_alone_and_goes_on():
     world = without_control()
     drive = world.bus.drives[0]
     drive.read(18)
+    other = world.bus.add(2)  # under control, and not there: it changes nothing
     let_run(world)
     world.bus.wait(0.5)
     heard = world.motor().slave.counters()[0]
@@ -195,7 +196,7 @@ def test_a_motor_that_runs_by_its_terminals_is_left_alone_and_goes_on():
     assert world.motor().state == "running" and world.motor().slave.counters()[0] == heard
     text = "drive 1 runs, and this bus has no control of it: it is left alone"
     assert refusal(NoContact, drive.read, 18) == text
-    assert drive.state == "no contact, may run" and not world.bus.drives
+    assert drive.state == "no contact, may run" and world.bus.drives == [other]
     world.end()
     assert world.motor().state == "running"
 

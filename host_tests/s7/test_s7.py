@@ -74,6 +74,19 @@ def test_resp_r_is_on_for_one_scan_with_each_reply():
         plc.run(2)
         responses += plc.outputs().RESP_R
     assert responses == plc.port.drives[1].counters[0] - before > 20
+    for name, value in (("EN", False), ("DRIVE", 7)):
+        while not plc.outputs().RESP_R:
+            plc.run(2)
+        right = getattr(plc.motor(), name)
+        setattr(plc.motor(), name, value)
+        plc.scan()
+        assert not plc.outputs().RESP_R, name
+        setattr(plc.motor(), name, right)
+    plc.controls.clear()
+    plc.run(400)
+    new = USS_CTRL(plc.port)
+    new(DRIVE=1)
+    assert new.ERROR == 0 and not new.RESP_R  # what came before is not for it
 
 
 def test_run_that_is_on_when_power_comes_starts_nothing():
