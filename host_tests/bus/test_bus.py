@@ -1504,6 +1504,7 @@ def test_leaving_the_bus_stops_every_drive():
             drive.run(10.0)
         bench.bus.wait(1)
     assert bench.bus.engine.phase == CLOSED
+    assert not any([drive.is_running for drive in bench.bus.drives])  # nobody says so any more
     for address in (1, 2):
         assert bench.stws(address)[-1] == pzd.OFF1
     sent = bench.bus.engine.turns.exchanges
