@@ -124,7 +124,7 @@ def test_a_start_that_is_on_from_the_first_call_starts_nothing():
 
 
 def test_after_a_fault_run_and_each_jog_want_a_new_edge():
-    for member in ("Run", "JOGRight", "JOGLeft"):
+    for member, has_edge in (("Run", False), ("Run", True), ("JOGRight", True), ("JOGLeft", True)):
         plc = Plc()
         plc.run(500)
         setattr(plc.wanted(), member, True)
@@ -133,11 +133,12 @@ def test_after_a_fault_run_and_each_jog_want_a_new_edge():
         plc.drives[1].fault(1)
         plc.run(500)
         assert plc.told().StatusWord.DriveFault and not plc.told().StatusWord.DriveRunning
-        setattr(plc.wanted(), member, False)
-        plc.run(10)
-        setattr(plc.wanted(), member, True)
-        plc.controller()
-        assert not plc.controller.bus.turns.at(1).wanted  # an edge while it cannot run is no use
+        if has_edge:  # while it cannot run that is no use
+            setattr(plc.wanted(), member, False)
+            plc.run(10)
+            setattr(plc.wanted(), member, True)
+            plc.controller()
+            assert not plc.controller.bus.turns.at(1).wanted
         plc.wanted().FaultAcknowledge = True
         plc.run(1_000)
         assert not plc.told().StatusWord.DriveFault and plc.drives[1].state == "ready"
