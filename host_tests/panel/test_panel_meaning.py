@@ -267,11 +267,16 @@ def test_a_drive_that_falls_silent_on_what_it_lacks_is_known_all_the_same():
     """An MM420 has no r0050 and no r0051; this one does not even refuse them."""
     world = panel(kinds={1: {"switches": {"silent_refusals": True}}})
     wait_until_known(world, 40_000)
+    known_us = world.clock.now_us
+    world.run(10_000)
+    assert questions(world, 50, 51, since_us=known_us) == 0, "its silence would slow the others"
     world.press("START")
     world.run(5000)
     assert world.drives[1].state == "running", world.lcd()
+    running_us = world.clock.now_us
     world.run(10_000)
     assert row_2(world) == "RUNNING      A1" and starts(world) == 1
+    assert questions(world, 50, 51, since_us=running_us) == 0
     world.check()
 
 

@@ -5,6 +5,7 @@ What is cut off in the middle is tried in test_sets_cut_off.py.
 """
 
 import catalogue
+from boards.sim.drives import parameters
 from boards.sim.drives.families import g110, mm3
 from boards.sim.drives.parameters import rows_like
 from lookup_bench import world_of
@@ -327,7 +328,9 @@ def test_a_set_goes_back_to_its_drive_with_what_cuts_the_panel_off_last():
     assert {"THE BUS OFF, OR", "CHANGE THE Hz:"} <= {row[1:] for row in said(world, 9000)}
     press(world, "DOWN")
     assert settled(world)[1].rstrip() == ">2>5", world.lcd()
-    press(world, "UP", "SET")
+    press(world, "UP")
+    world.press("SET")
+    assert settled(world)[0].startswith("A2 WRITE"), world.lcd()
     assert finish(world) == "WRITTEN, EQUAL", world.lcd()
     assert drive.parameters.ram == before
     assert runs(world) if home(world) is None else False
@@ -800,6 +803,19 @@ def test_what_a_drive_refuses_leaves_the_set_half_written():
     assert row_1(world).startswith("P1082[0]") and row_2(world) == ">50>inf", world.lcd()
     home(world)
     refuses_to_move(world)
+
+
+def test_what_wants_commissioning_is_written_in_it_whatever_else_the_drive_refuses():
+    """P0304 is refused outside commissioning; P0290 and P1082 are beyond their limits."""
+    world = two()
+    drive, table = world.drives[2], world.drives[2].parameters
+    kinds = [(number, table.rows[number][parameters.TYPE]) for number in (206, 207, 208)]
+    words_of = {number: parameters.words_of(kind, drive.read(number)) for number, kind in kinds}
+    ratings = [(number, b"%04X%04X" % tuple(words_of[number])) for number, _ in kinds]
+    wrong = [(290, 0, b"U16", b"0009"), (1082, 0, b"Float", b"7F800000")]
+    put(world, (304, 0, b"U16", b"0190"), *ROWS + wrong, ratings=ratings)
+    assert write(world, "A1 MADE") == "HALF, DIFFER 2", world.lcd()
+    assert drive.read(304) == 400 and drive.read(1120) == 2.5 and drive.read(10) == 0
 
 
 def test_leaving_the_page_in_the_middle_leaves_it_half_written():

@@ -411,9 +411,10 @@ def test_a_task_that_silences_the_drive_is_withdrawn_after_three_telegrams():
         assert line.send() == NO_TASK
         line.answer(*NO_TASK)
         assert job.state == pkw.UNANSWERED, job
-        while line.send() == NO_TASK:
+        if job.writes():  # its answer may come late
+            assert line.send() == NO_TASK
             line.answer(*NO_TASK)
-        assert line.sent[-1] == (0x12BC, 0, 0, 0)
+        assert line.send() == (0x12BC, 0, 0, 0)
         line.answer(0x12BC, 0, 0, 5)
         assert following.state == pkw.DONE and following.low == 5
         assert [task for task in tasks(line) if task == job.task][3:] == [1] * (job.task == 1)
@@ -443,8 +444,14 @@ def test_a_write_that_was_interrupted_so_is_not_sent_again():
     line.send()
     line.channel.miss(line.now, 4)
     line.send()
+    following = line.ask(pkw.read(1000))
     line.answer(*NO_TASK)
     assert job.state == pkw.TIMED_OUT
+    assert line.send() == NO_TASK  # its answer may come late
+    line.answer(*NO_TASK)
+    assert line.send() == (0x13E8, 0, 0, 0)
+    line.answer(0x13E8, 0, 0, 5)
+    assert following.state == pkw.DONE
     for _ in range(10):
         assert line.send() == NO_TASK
         line.answer(*NO_TASK)

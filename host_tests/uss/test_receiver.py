@@ -29,15 +29,47 @@ def test_a_reply_that_comes_too_early_is_none():
     assert line.silence(25_000) == BAD_START
 
 
+def echo_of(line):
+    """What the line brings back of the request."""
+    return bytes(line.drive.request[: line.drive.size])
+
+
+def come_with_the_echo(line, characters, pause_us):
+    """The echo of the request, a pause, and these characters: all of it in one burst."""
+    echo = echo_of(line)
+    return line.come(echo + characters, pause_us - len(echo) * TCH)
+
+
 def test_a_reply_in_one_burst_with_the_echo_needs_its_start_interval_as_well():
     for pause_us, finding in (
         (LINE.start_interval_us, GOOD),
         (LINE.start_interval_us * 95 // 100, WAITING),
     ):
         line = Line()
-        echo = bytes(line.drive.request[: line.drive.size])
-        assert line.come(echo + REPLY, pause_us - len(echo) * TCH) == finding, pause_us
+        assert come_with_the_echo(line, REPLY, pause_us) == finding, pause_us
+        assert finding != GOOD or bytes(line.receiver.buffer[: line.receiver.count]) == REPLY
     assert line.silence(25_000) == BAD_START
+
+
+def test_a_link_that_looks_late_is_believed_about_a_reply_behind_the_echo_too():
+    for pause_us, finding in (
+        (LINE.start_interval_us - TCH // 4, GOOD),
+        (LINE.start_interval_us - TCH, WAITING),
+    ):
+        assert come_with_the_echo(Line(polled_us=TCH // 2), REPLY, pause_us) == finding, pause_us
+
+
+def test_a_reply_that_begins_in_one_burst_with_the_echo_is_put_together():
+    """And it has its residual run time from its own first character on."""
+    for cut in range(1, 16):
+        line = Line()
+        assert come_with_the_echo(line, REPLY[:cut], 3 * TCH) == WAITING
+        assert line.come(REPLY[cut:], 0) == GOOD, cut
+        assert bytes(line.receiver.buffer[: line.receiver.count]) == REPLY, cut
+    for gap_us, finding in ((15 * TCH // 2 - TCH, GOOD), (15 * TCH // 2 + TCH, CUT_OFF)):
+        line = Line()
+        come_with_the_echo(line, REPLY[:7], 3 * TCH)
+        assert line.come(REPLY[7:], gap_us) == finding, gap_us
 
 
 def test_silence_is_noticed_when_the_response_delay_is_over():
@@ -170,6 +202,8 @@ def test_the_counter_may_wrap_anywhere_in_an_exchange():
         for before_us in range(0, 12_000, 97):
             line = Line(mask, mask - before_us)
             assert line.come(REPLY, 3 * TCH) == GOOD, before_us
+            line = Line(mask, mask - before_us)
+            assert come_with_the_echo(line, REPLY, 3 * TCH) == GOOD, before_us
             line = Line(mask, mask - before_us)
             assert line.silence(20_000) == WAITING
             assert line.silence(21_000) == SILENT

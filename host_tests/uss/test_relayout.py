@@ -280,18 +280,30 @@ def test_an_answer_that_equals_the_request_is_no_echo_for_that():
     assert not bench.master.has_echo()
 
 
+class Talkative(Node):
+    """It has something to say in its last two PZD words."""
+
+    def answer(self, characters):
+        reply = Node.answer(self, characters)
+        return reply and framed(reply[2], reply[3:-5] + b"\x55\x55\x77\x77")
+
+
 def test_further_words_that_both_layouts_have_are_kept():
-    bench = Bench([Node(1), Node(LOST, 3, 6)])
-    turns = bench.master.turns
-    turns.remove(bench.drives[LOST])
-    drive = bench.drives[LOST] = turns.add(LOST, Layout(4, 4))
-    bench.run_until(lambda: bench.drives[1].contact)
+    """And no word that the drive has said is said to it."""
+    bench = Bench([Node(1), Talkative(LOST, 4, 4)])
+    node, drive = bench.nodes[LOST], bench.drives[LOST]
+    bench.contact()
     drive.put(3, 0x1111)
     drive.put(4, 0x2222)
+    bench.run(200_000)
+    assert drive.word(4) == 0x7777
+    node.plugged = False
+    bench.run_until(lambda: not drive.contact)
+    node.plugged, node.pkw_words, node.pzd_words = True, 3, 6
     relayout(bench, Layout(3, 6))
     drive.put(6, 0x6666)
     bench.run(1_000_000)
-    assert drive.contact and drive.word(6) == 0
+    assert drive.contact and (drive.word(4), drive.word(6)) == (0, 0x7777)
     sent = [telegram for telegram in bench.sent if telegram.address == LOST][-1]
     assert sent.characters[13:-1] == b"\x11\x11\x22\x22\x00\x00\x66\x66"
 

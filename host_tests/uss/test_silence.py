@@ -7,6 +7,8 @@ to one of them are less than a third of its telegram-off time apart.
 """
 
 from round_bench import Bench, Node
+from uss import pkw
+from uss.outside import Mirror
 from uss.timing import Timing
 
 TIMEOUTS_MS = (20, 60, 500)
@@ -200,6 +202,30 @@ def test_what_waits_for_a_drive_that_is_gone_gives_it_no_more_turns():
     bench.run(20_000_000)
     spent, total_us = spent_us(bench, since)
     assert spent < total_us // 5 + 2 * silence_us(bench)
+
+
+def test_a_drive_that_was_removed_holds_up_nobody_any_more():
+    """Not in the middle of its turn either; and who asks addresses that are not listed waits for
+    their share, not for its next turn."""
+    bench = bench_of(20, present=1, listed=3)
+    bench.run(5_000_000)
+    bench.run_until(lambda: bench.addresses()[-1] == 2)
+    bench.master.turns.remove(bench.drives[2])
+    since = len(bench.sent)
+    bench.run(5_000_000)
+    assert bench.addresses(since).count(3) > 5 and bench.addresses(since)[2:].count(2) == 0
+    bench.run_until(lambda: bench.addresses()[-1] == 3)
+    bench.run(1_000_000)
+    bench.master.turns.remove(bench.drives[3])
+    waits = []
+    for address in (7, 8, 9):
+        mirror = Mirror(address, bytes(12))
+        bench.master.turns.post(mirror)
+        bench.run_until(lambda: mirror.state == pkw.TIMED_OUT)
+        bench.run(50_000)
+        waits.append(bench.master.deadlines.silence_wait_us())
+        bench.run(1_000_000)
+    assert 0 < max(waits) < 10 * silence_us(bench), waits
 
 
 # --- drives that run ----------------------------------------------------------------------------
