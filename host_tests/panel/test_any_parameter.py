@@ -24,9 +24,11 @@ from panel.lookup import name_of as table_of
 from panel.lookup import value
 from panel.lookup.answers import FIRST
 from panel.lookup.parameter import Parameter
+from panel.reading import Reading
 from panel.screen import Screen
 from panel_bench import row_1, row_2, running, settled_row_2, starts
 from uss import families, pkw
+from uss.drive import Drive
 
 YES_OR_NO = "SET=DO  PARAM=NO"
 
@@ -864,6 +866,16 @@ def test_there_is_room_for_thirty_two_favourites():
     assert row_2(world) == "FAVOURITES FULL", world.lcd()
     assert "settings_file" not in sys.modules
     world.check()
+
+
+def test_a_question_that_finds_no_room_is_not_on_its_way():
+    """Others have asked the drive as much as it can keep: who knows that asks again later."""
+    reading, drive = Reading(), Drive(1, (1 << 30) - 1)
+    assert reading.ask(drive, 700) and reading.asked
+    reading.drop()
+    while not drive.channel.is_full():
+        drive.ask(pkw.read(1000))
+    assert not reading.ask(drive, 700) and not reading.asked and reading.take() is None
 
 
 # --- memory --------------------------------------------------------------------------------------

@@ -13,6 +13,7 @@ from panel_bench import (
     LOOP_US,
     SlowWorld,
     all_running,
+    page_back,
     panel,
     row_1,
     row_2,
@@ -351,11 +352,36 @@ def test_of_many_that_share_a_text_the_one_shown_is_said_by_itself_where_its_pag
         own = {"DRIVES FAULT: %d" % (7 - address), "A%d FAULT F%04d" % (address, address)}
         assert set(rows) == own | {"P0700:     5 A%d" % address}, rows
         assert rows["A%d FAULT F%04d" % (address, address)] >= 2_000, rows
+        while not row_2(world).startswith("A%d FAULT" % address):
+            world.run(40)
         world.press("STOP")
-        world.run(1_000)
+        world.run(500)  # what is not true any more is not said to its end
+        assert not settled(world)[1].startswith("A%d FAULT" % address), world.lcd()
+        world.run(500)
         assert world.drives[address].state == "ready"
         world.press("ADDRESS_UP")
         world.run(4_000)
+    world.check()
+
+
+def test_where_many_are_not_so_many_any_more_each_is_said_from_where_that_was_left():
+    """The home page tells that drive 1 has tripped, so there they are four."""
+    world = panel(addresses=(1, 2, 3, 4, 5))
+    world.press("PARAM")
+    page_back(world)  # its modules are there from now on
+    for address in (1, 2, 3, 4, 5):
+        world.drives[address].fault(11)
+    for said_last, following in ((3, "A4 FAULT F0011"), (4, "A5 FAULT F0011")):
+        world.run(4_000)
+        while not row_2(world).startswith("A%d FAULT" % said_last):
+            world.run(40)
+        world.press("PARAM")
+        while row_2(world) != "DRIVES FAULT: 5":
+            world.run(40)
+        page_back(world)
+        while not settled(world)[1].startswith("A"):
+            world.run(40)
+        assert row_2(world) == following, (said_last, world.lcd())
     world.check()
 
 

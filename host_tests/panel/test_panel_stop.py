@@ -270,6 +270,18 @@ def test_a_drive_that_sends_no_status_word_confirms_no_stop():
         world.check()
 
 
+def test_a_drive_that_has_told_for_long_that_it_stands_is_not_doubted_later():
+    """In forty seconds what each drive sends has been read again: until then it is doubted."""
+    for rest_ms, is_doubted in ((5_000, True), (42_000, False)):
+        world = running(parameters={2014: 2000})
+        world.press("STOP")
+        world.run(rest_ms)
+        world.drives[1].write(2019, 0, NOTHING)
+        rows = said(world, 5000)
+        assert "P2019[0] ??? A1" in rows and ("STOP UNCONFIRMED" in rows) == is_doubted, rows
+        world.check()
+
+
 def test_a_drive_that_sends_no_status_word_may_run_when_it_is_lost():
     for source in (NOTHING, SPEED):
         world = panel()

@@ -6,6 +6,8 @@ Specification A-5.1.2 (start interval), A-5.2.1.1 (response delay), A-6.3 (resid
 
 from receiver_bench import LINE, MASK, REPLY, SENT_AT, TCH, Line, Link
 from uss import receiver, telegram
+from uss.drive import Drive
+from uss.layout import Layout
 from uss.receiver import CUT_OFF, GARBLED, SILENT, WAITING
 from uss.telegram import BAD_ADDRESS, BAD_BCC, BAD_LENGTH, BAD_START, GOOD
 
@@ -51,6 +53,15 @@ def test_a_reply_in_one_burst_with_the_echo_needs_its_start_interval_as_well():
     assert line.silence(25_000) == BAD_START
 
 
+def test_a_start_interval_is_long_enough_to_the_microsecond():
+    """No reply is refused because two instants and the time of a character were rounded."""
+    rounded_us = len(REPLY) * TCH - Line().receiver.sixteen_us + receiver.ROUNDING_US
+    least_us = LINE.start_interval_us - rounded_us
+    for pause_us, finding in ((least_us, GOOD), (least_us - 1, WAITING)):
+        assert Line().come(REPLY, pause_us) == finding, pause_us
+        assert come_with_the_echo(Line(), REPLY, pause_us) == finding, pause_us
+
+
 def test_a_link_that_looks_late_is_believed_about_a_reply_behind_the_echo_too():
     for pause_us, finding in (
         (LINE.start_interval_us - TCH // 4, GOOD),
@@ -66,6 +77,15 @@ def test_a_reply_that_begins_in_one_burst_with_the_echo_is_put_together():
         assert come_with_the_echo(line, REPLY[:cut], 3 * TCH) == WAITING
         assert line.come(REPLY[cut:], 0) == GOOD, cut
         assert bytes(line.receiver.buffer[: line.receiver.count]) == REPLY, cut
+    line = Line()
+    line.drive = Drive(1, MASK, layout=Layout(3, 2))
+    line.drive.fill(0)
+    telegram.seal(line.drive.request, 1, 10)
+    line.receiver.open(line.drive, SENT_AT)
+    reply = bytearray(REPLY[:3] + REPLY[5:])  # of another length as well
+    reply[1], reply[-1] = 12, reply[-1] ^ 14 ^ 12
+    assert come_with_the_echo(line, bytes(reply), 3 * TCH) == GOOD
+    assert line.receiver.buffer[: line.receiver.count] == reply
     for gap_us, finding in ((15 * TCH // 2 - TCH, GOOD), (15 * TCH // 2 + TCH, CUT_OFF)):
         line = Line()
         come_with_the_echo(line, REPLY[:7], 3 * TCH)

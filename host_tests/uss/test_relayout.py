@@ -56,9 +56,9 @@ def relayout(bench, layout):
     bench.master.turns.relayout(bench.drives[LOST], layout)
 
 
-def refused(bench, layout, address=LOST):
+def refused(bench, layout, address=LOST, doubted=False):
     try:
-        bench.master.turns.relayout(bench.drives[address], layout)
+        bench.master.turns.relayout(bench.drives[address], layout, doubted)
     except ValueError as reason:
         return str(reason)
     raise AssertionError("it was not refused")
@@ -161,6 +161,23 @@ def test_only_a_drive_without_contact():
     assert pzd.ON not in bench.stws(LOST, sent)
     bench.master.turns.remove(bench.drives[3])
     assert "not on this bus" in refused(bench, Layout(3, 2), 3)
+
+
+def test_a_doubted_drive_that_stands_may_be_in_contact_and_has_none_in_the_new_layout_yet():
+    bench = Bench([Node(1), Node(LOST), Node(3)])
+    bench.contact()
+    turns, drive, layout = bench.master.turns, bench.drives[LOST], Layout(3, 2)
+    drive.doubted, contacts = True, drive.contacts
+    drive.start(0x1000)
+    bench.run(100_000)
+    assert "contact" in refused(bench, layout, doubted=True) and drive.is_on()
+    drive.stop()
+    bench.run(100_000)
+    turns.relayout(drive, layout, True)
+    assert drive.layout is layout and not drive.doubted and not drive.contact
+    bench.nodes[LOST].pkw_words = layout.pkw_words
+    bench.run(100_000)
+    assert drive.contact and drive.contacts == contacts + 1
 
 
 def test_one_that_answers_at_the_last_moment_keeps_its_layout_and_its_turns():

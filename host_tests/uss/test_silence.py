@@ -295,6 +295,28 @@ def test_where_they_are_too_many_for_their_bound_the_silent_ones_are_still_asked
     bench.run_until(lambda: bench.drives[31].contact, 5_000_000)
 
 
+def test_drives_at_rest_go_behind_those_that_run_while_silent_ones_are_told_to_stop():
+    """Those would trip as well, and are late; but theirs is only a fault to acknowledge."""
+    bench = bench_of(20, present=27)
+    for address in range(1, 28):
+        bench.master.deadlines.supervise(bench.drives[address], 800 if address < 4 else 1_000)
+    bench.run(2_000_000)
+    for address in (1, 2, 3):
+        bench.drives[address].start(0x1000)
+    bench.run(1_000_000)
+    since = len(bench.sent)
+    silent = range(23, 32)
+    for address in silent:
+        bench.nodes[address].plugged = False
+    for _ in range(6):  # somebody stops them again and again
+        for address in silent:
+            bench.drives[address].stop()
+        bench.run(300_000)
+    longest_us = [max(gaps(bench, address, since) or [bench.now]) for address in (1, 2, 3)]
+    assert max(longest_us) < 800_000, longest_us
+    assert all([bench.drives[address].is_on() for address in (1, 2, 3)])
+
+
 # --- what is promised ---------------------------------------------------------------------------
 
 
