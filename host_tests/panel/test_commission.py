@@ -284,6 +284,20 @@ def test_a_procedure_that_is_gone_through_says_so():
     world.check()
 
 
+def test_a_factory_reset_is_done_although_what_started_it_reads_nothing_again():
+    world = world_of("mm420")
+    drive = world.drives[1]
+    drive.parameters.set(1120, 0, 3.0)
+    begin(world, "FACTORY RESET")
+    do(world, 10)
+    do(world, 970)
+    world.run(12_000)
+    assert drive.parameters.get(970) == 0 and drive.parameters.get(1120) == 10.0
+    assert settled_heading(world)[0] == "P0970*", world.lcd()
+    assert leave(world) == "A1: ALL DONE"
+    world.check()
+
+
 def test_a_step_whose_value_is_there_asks_nothing():
     world = world_of("mm420")
     writes = world.drives[1].eeprom_writes

@@ -58,6 +58,15 @@ def show(world, address):
         world.run(60)
 
 
+def wait_for(world, text):
+    """Until row 2 begins with a text."""
+    for _ in range(500):
+        if settled(world)[1].startswith(text):
+            return
+        world.run(40)
+    raise AssertionError("%r does not come: %r" % (text, world.lcd()))
+
+
 def start(world, address):
     show(world, address)
     wait_until_known(world)
@@ -352,8 +361,7 @@ def test_of_many_that_share_a_text_the_one_shown_is_said_by_itself_where_its_pag
         own = {"DRIVES FAULT: %d" % (7 - address), "A%d FAULT F%04d" % (address, address)}
         assert set(rows) == own | {"P0700:     5 A%d" % address}, rows
         assert rows["A%d FAULT F%04d" % (address, address)] >= 2_000, rows
-        while not row_2(world).startswith("A%d FAULT" % address):
-            world.run(40)
+        wait_for(world, "A%d FAULT" % address)
         world.press("STOP")
         world.run(500)  # what is not true any more is not said to its end
         assert not settled(world)[1].startswith("A%d FAULT" % address), world.lcd()
@@ -373,14 +381,11 @@ def test_where_many_are_not_so_many_any_more_each_is_said_from_where_that_was_le
         world.drives[address].fault(11)
     for said_last, following in ((3, "A4 FAULT F0011"), (4, "A5 FAULT F0011")):
         world.run(4_000)
-        while not row_2(world).startswith("A%d FAULT" % said_last):
-            world.run(40)
+        wait_for(world, "A%d FAULT" % said_last)
         world.press("PARAM")
-        while row_2(world) != "DRIVES FAULT: 5":
-            world.run(40)
+        wait_for(world, "DRIVES FAULT: 5")
         page_back(world)
-        while not settled(world)[1].startswith("A"):
-            world.run(40)
+        wait_for(world, "A")
         assert row_2(world) == following, (said_last, world.lcd())
     world.check()
 
