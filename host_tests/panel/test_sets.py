@@ -458,6 +458,25 @@ def test_a_comparison_tells_how_far_it_is():
     assert told == sorted(told) and told[0] < 20 and 80 < told[-1] <= 100, told
 
 
+def test_writing_tells_how_far_it_is_to_the_end_of_the_comparison_behind_it():
+    world = slow_line()
+    put(world, (2, 0, b"U16", b"0064"), (3, 0, b"U16", b"0065"), family=b"mm3")
+    for number in (2, 3):
+        world.drives[1].write(number, 0, 330)
+    begin(world, "A1 MADE", "INTO A1", 1)
+    wait(world, "SET=WRITE A1")
+    world.press("SET")
+    told = []
+    for _ in range(400):
+        heading, row = [text.rstrip() for text in settled(world)]
+        if row == ">WRITTEN, EQUAL":
+            break
+        if heading not in told[-1:]:
+            told.append(heading)
+        world.run(50)
+    assert told[-4:] == ["A1 WRITE 0%", "A1 WRITE 25%", "A1 COMPARE 50%", "A1 COMPARE 75%"], told
+
+
 def test_nothing_is_written_without_a_yes():
     world = two()
     put(world)

@@ -264,8 +264,10 @@ def test_who_never_trips_is_late_beside_nobody():
     started(bench, 2, 0)
     bench.run(1_000_000)
     assert deadlines.gap_us(drives[1]) > bench.master.turns.lost_us // 3
+    assert deadlines.bound_us(drives[1]) == bench.master.turns.lost_us // 3
     assert deadlines.first_late(drives[1]) is None
     deadlines.supervise(drives[1], 1_000)
+    assert deadlines.bound_us(drives[1]) == 1_000_000 // 3
     assert deadlines.first_late(drives[1]) is drives[1]
 
 
