@@ -4,7 +4,7 @@ step, until its motor turns.
 """
 
 import catalogue
-from lookup_bench import choose, go_to, press, settled_heading, speak, world_of
+from lookup_bench import choose, go_to, press, settled_heading, speak, wait, world_of
 from panel.commission.step import Step
 from panel.lookup.value import Form
 from panel_bench import row_1, row_2, settled_row_2, wait_until_known
@@ -135,6 +135,52 @@ def lines(world):
     return found
 
 
+def in_turn(world, ms=12_000):
+    """What row 2 says one after the other, without the mark of the menu."""
+    found = []
+    for _ in range(ms // 50):
+        world.run(50)
+        row = settled_row_2(world)[1:].rstrip()
+        if row not in found[-1:] + ["..."]:
+            found.append(row)
+    return found
+
+
+def test_a_step_says_in_turn_its_name_what_the_drive_has_and_what_to_know_about_it():
+    world = world_of("mm420", known="mm440")  # an MM420 has no P0205
+    begin(world, "THE MOTOR")
+    rows = catalogue.steps("mm440", 3)
+    steps = {catalogue.value(row[catalogue.STEP_NUMBER]): row for row in rows}
+    for number, downs, has in ((10, 1, "0 NEEDS 1"), (205, 2, "NO SUCH PARAM.")):
+        for _ in range(downs):
+            world.press("DOWN")
+        rows = in_turn(world)
+        assert settled_heading(world)[0] == "P%04d" % number
+        name, note = steps[number][1].decode(), steps[number][catalogue.STEP_NOTE].decode()
+        rows = rows[: rows.index(rows[0], 1)]  # all of them once
+        first = rows.index(name)
+        rows = rows[first:] + rows[:first]
+        assert rows[:2] == [name, has] and " ".join(rows[2:]) == note, (rows, note)
+    press(world, "SET")
+    assert settled_heading(world)[0] == "P0205" and "SET=YES" not in row_2(world), world.lcd()
+    world.check()
+
+
+def test_after_each_write_all_steps_are_asked_again():
+    """To write one parameter may change others."""
+    world = world_of("mm420")
+    drive = world.drives[1]
+    drive.parameters.set(700, 0, 2)
+    begin(world, "FOR USS")
+    go_to_step(world, 2014)
+    assert is_done(world)
+    go_to_step(world, 700)
+    drive.parameters.set(2014, 0, 0)
+    do(world, 700)
+    assert leave(world) == "A1: 3 LEFT", world.lcd()
+    world.check()
+
+
 def test_a_drive_that_obeys_its_terminals_is_made_ready_for_uss():
     world = world_of("mm420")
     drive = world.drives[1]
@@ -166,8 +212,7 @@ def test_what_a_setpoint_means_is_asked_before_it_changes():
     press(world, "SET")
     world.run(300)
     said = lines(world)
-    assert any(["60.00" in line and "SET=YES" in line for line in said]), said
-    assert "RESCALES SPEED" in said, said
+    assert said == {"60.00Hz SET=YES", "RESCALES SPEED"}, said
     assert world.drives[1].parameters.get(2000) == 50
     press(world, "SET")
     world.run(1000)
@@ -311,6 +356,27 @@ def test_a_step_whose_value_is_there_asks_nothing():
         press(world, "SET")
         world.run(1000)
     assert world.drives[1].eeprom_writes == writes
+    world.check()
+
+
+def test_what_is_written_says_so_until_it_is_and_tells_where_to():
+    """What acts from the next power-up on goes into the EEPROM, all else into RAM."""
+    world = world_of("mm420")
+    drive = world.drives[1]
+    drive.parameters.set(2013, 0, 3)
+    drive.parameters.set(700, 0, 2)
+    begin(world, "FOR USS")
+    for number, where in ((2013, "EEPROM"), (700, "RAM")):
+        go_to_step(world, number)
+        press(world, "SET")
+        drive.stale_replies = 40
+        for _ in range(2):  # the second one does nothing
+            press(world, "SET")
+            assert row_2(world).rstrip() == ">WRITING ...", world.lcd()
+        drive.stale_replies = 0  # from the next task on
+        wait(world, "WRITTEN (%s)" % where)
+        world.run(3000)
+        assert is_done(world) and "WRIT" not in row_2(world), world.lcd()
     world.check()
 
 
