@@ -288,10 +288,11 @@ def test_what_no_word_can_say_is_refused_and_can_be_typed_again():
     assert drive.parameters.get(311) == had and settled_row_2(world) == ">9999[9]", world.lcd()
     for _ in range(4):
         press(world, "PREVIOUS")
-    type_over(world, "01380")
+    type_over(world, "40000")
     press(world, "SET")
     world.run(1000)
-    assert is_done(world) and drive.parameters.get(311) == 1380, world.lcd()
+    assert is_done(world) and drive.parameters.get(311) == 40_000, world.lcd()
+    assert "IS 40000" in lines(world)
     world.check()
 
 

@@ -429,6 +429,14 @@ def test_drives_that_were_never_heard_share_one_text_and_are_no_alarm_each():
     world.check()
 
 
+def test_how_many_they_are_has_one_digit_or_two():
+    for count in (9, 10):
+        world = silent(tuple(range(1, count + 2)), (1,), baud=115200)
+        rows = said(world, 5_000)
+        assert set(rows) == {"MAY RUN: %d" % count, "READY        A1"}, rows
+        world.check()
+
+
 def test_a_drive_that_was_not_heard_since_a_reset_may_run():
     world = panel(addresses=(1, 2), parameters={2014: 0}, settings={"unsupervised": [2]})
     start(world, 2)

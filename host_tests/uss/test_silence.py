@@ -204,6 +204,23 @@ def test_what_waits_for_a_drive_that_is_gone_gives_it_no_more_turns():
     assert spent < total_us // 5 + 2 * silence_us(bench)
 
 
+def test_a_drive_that_the_list_spares_keeps_no_turn_from_the_silent_ones_and_comes_back_at_once():
+    """It answers; but somebody else asks it just now."""
+    bench = bench_of(20, listed=4)
+    bench.run(3_000_000)
+    silence, drive = bench.master.deadlines.silence, bench.drives[2]
+    silence.spare(drive)
+    since = len(bench.sent)
+    bench.run(5_000_000)
+    asked = bench.addresses(since)
+    assert asked[1:].count(2) == 0 and asked.count(3) > 5 and asked.count(4) > 5
+    assert silence.rests[2]
+    silence.spare(None)
+    assert not silence.rests[2]
+    bench.run(50_000)
+    assert 2 in bench.addresses()[-3:]
+
+
 def test_a_drive_that_was_removed_holds_up_nobody_any_more():
     """Not in the middle of its turn either; and who asks addresses that are not listed waits for
     their share, not for its next turn."""
