@@ -107,6 +107,22 @@ def test_a_motor_is_commissioned_and_turns():
     world.check()
 
 
+def test_while_its_steps_are_looked_for_nothing_is_said_of_a_procedure():
+    world = world_of("mm420")
+    go_to(world, "COMMISSION")
+    wait(world, ">FOR USS")
+    world.run(1000)
+    world.press("SET", 50)
+    rows = set()
+    for _ in range(200):
+        rows.add(settled_row_2(world).rstrip())
+        if row_1(world).startswith("P0"):
+            break
+        world.run(10)
+    assert row_1(world).startswith("P0") and rows <= {">FOR USS", ">..."}, (rows, world.lcd())
+    world.check()
+
+
 def test_whoever_stops_in_the_middle_reads_what_is_left_and_goes_on():
     world = world_of("mm420")
     begin(world, "THE MOTOR")
