@@ -228,6 +228,17 @@ def test_a_drive_that_counts_from_the_beginning_was_without_power():
         assert line.surveys[0].count.restarted, (before, after)
 
 
+def test_a_drive_that_was_without_power_while_it_stood_has_not_been_without_it_while_it_ran():
+    line = runs(5000, 1)
+    survey = line.surveys[0]
+    let_pass(line, 60)
+    line.drives[0].stop()
+    line.counts[0] = (0, 1)
+    survey.recheck()  # which asks a drive that stands for its count as well
+    let_pass(line, 100)
+    assert not survey.unchecked and not survey.has_restarted()
+
+
 def test_a_counter_that_goes_on_or_wraps_is_no_reset():
     for step in (1, 2, 3, 31, 0):  # that of each telegram; with those to others; none at all
         line = runs(0xF000, step)
