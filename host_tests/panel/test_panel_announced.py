@@ -361,6 +361,7 @@ def test_of_many_that_share_a_text_the_one_shown_is_said_by_itself_where_its_pag
         own = {"DRIVES FAULT: %d" % (7 - address), "A%d FAULT F%04d" % (address, address)}
         assert set(rows) == own | {"P0700:     5 A%d" % address}, rows
         assert rows["A%d FAULT F%04d" % (address, address)] >= 2_000, rows
+        assert own <= set(said(world, 6_000)), "again and again"
         wait_for(world, "A%d FAULT" % address)
         world.press("STOP")
         world.run(500)  # what is not true any more is not said to its end
