@@ -257,6 +257,19 @@ def test_param_and_stop_write_nothing():
         world.check()
 
 
+def test_typing_begins_with_what_the_drive_has():
+    world = world_of("mm420")
+    begin(world, "THE MOTOR")
+    for number in (305, 311, 1120):
+        go_to_step(world, number)
+        press(world, "SET")
+        typed = settled_row_2(world)[1:].replace("[", "").replace("]", "")
+        has = world.drives[1].parameters.get(number)
+        assert abs(float(typed) - has) < 0.001, (number, has, world.lcd())
+        press(world, "PARAM")
+    world.check()
+
+
 def test_nothing_is_written_while_the_motor_runs():
     world = world_of("mm420")
     press(world, "START")

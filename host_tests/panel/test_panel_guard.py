@@ -289,7 +289,7 @@ def test_an_alarm_makes_light_whichever_drive_is_shown():
 
 
 def test_a_motor_that_may_run_unheard_makes_light_though_another_drive_is_shown():
-    world = panel((1, 2), light_minutes=1)
+    world = panel((1, 2, 3), light_minutes=1)
     press(world, "ADDRESS_UP")
     wait_until_known(world)
     press(world, "START", "ADDRESS_DOWN")
@@ -300,6 +300,9 @@ def test_a_motor_that_may_run_unheard_makes_light_though_another_drive_is_shown(
     assert world.lcd_chip.lit, world.lcd()
     world.run(65_000)
     assert world.lcd_chip.lit, world.lcd()  # as long as nobody knows what the motor does
+    world.drives[3].fault(11)  # another alarm on top of it
+    world.run(65_000)
+    assert world.lcd_chip.lit, world.lcd()
     hold(world, "STOP", 4500)  # of all drives, which this one does not confirm
     world.run(65_000)
     assert world.lcd_chip.lit, world.lcd()
