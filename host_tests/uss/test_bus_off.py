@@ -276,17 +276,25 @@ def test_another_master_that_comes_later_is_noticed():
 
 
 def test_the_head_of_a_request_tells_another_master():
-    """STX, LGE and ADR are enough, and less is not."""
+    """STX, LGE and ADR are enough; less is not, nor is what begins no telegram."""
     bench = Bench(nodes(2))
     bench.master.turns.cycle_us = 200_000
     bench.contact()
-    for count, foreign in ((2, 0), (3, 1)):
+    for head, foreign in (
+        (FOREIGN[:2], 0),
+        (FOREIGN[:3], 1),
+        (b"\x03" + FOREIGN[1:3], 1),
+        (b"\x02\x0f\x09", 1),
+        (b"\x02\x02\x09", 1),
+        (b"\x02\x04\x09", 2),
+        (b"\x02\xfe\x09", 3),
+    ):
         sent = len(bench.sent)
         bench.run_until(lambda sent=sent: len(bench.sent) == sent + 2)
         bench.run(60_000)  # the replies are in, and the next round has not begun
-        bench.talk(FOREIGN[:count])
+        bench.talk(head)
         bench.run(60_000)
-        assert bench.master.foreign == foreign, count
+        assert bench.master.foreign == foreign, head
 
 
 def test_a_bus_of_its_own_is_not_taken_for_another_masters():
