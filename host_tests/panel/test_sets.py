@@ -52,7 +52,7 @@ def half_way(world, rows=ROWS):
     wait(world, "SET=WRITE")
     world.drives[2].unplug()
     press(world, "SET")
-    wait(world, "NO CONTACT")
+    wait(world, "NO CONTACT", ms=3000)  # as soon as the bus has lost it
     world.drives[2].plug()
     home(world)
     world.run(3000)
