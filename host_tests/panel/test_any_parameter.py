@@ -20,8 +20,8 @@ from lookup_bench import (
     wait_for_value,
     world_of,
 )
+from panel.lookup import Search, value
 from panel.lookup import name_of as table_of
-from panel.lookup import value
 from panel.lookup.answers import FIRST
 from panel.lookup.parameter import Parameter
 from panel.reading import Reading
@@ -149,6 +149,31 @@ def test_while_the_first_one_of_a_group_is_looked_for_there_are_dots():
     assert seen[-1] == ("Ramp-up time", "P1120[0]       ?"), seen
 
 
+def test_a_step_looks_for_six_pieces_at_the_most_and_for_none_when_it_turns_to_another():
+    """To begin, or to turn to what was found, takes as long as a step may take."""
+    look = Search.step
+    for has_taken, most in ((False, 6), (True, 1)):
+        panel = world_of().app.panel
+        panel.has_taken = lambda us, it_has=has_taken: it_has
+        panel.remembered["panel.lookup.parameter"] = b"1120-1124", FIRST
+        page = Parameter(panel)
+        looks = []
+
+        def count(search, looks=looks):
+            looks[-1] += 1
+            return look(search)
+
+        Search.step = count
+        try:
+            while page.is_coming():
+                looks.append(0)
+                page.step(None, 0)
+        finally:
+            Search.step = look
+        assert looks[:2] == [0, 0] and looks[-1] == 0, looks
+        assert max(looks) == most and min(looks[2:-1]) >= 1, looks
+
+
 def test_a_number_with_more_digits_than_places_has_an_exponent():
     world = world_of()
     look_up(world, 1120)
@@ -197,6 +222,10 @@ def test_up_and_down_go_to_another_index():
     look_up(world, 1910)
     press(world, "UP")
     assert row_2(world) == "NOT AN ARRAY", world.lcd()
+    look_up(world, 207)  # of this one the number is not sure: the drive decides
+    press(world, "UP")
+    assert row_2(world) == "NO SUCH INDEX", world.lcd()
+    wait(world, "r0207[1]   -----")
     world.check()
 
 
@@ -694,7 +723,11 @@ def test_of_an_unknown_family_every_number_is_read_and_written():
     wait(world, "P1120[0]  11.000")
     press(world, "EDIT", "EDIT")
     wait(world, "NEW 41300000")
-    press(world, "PARAM", "PREVIOUS")
+    press(world, "PARAM", "DOWN")
+    wait(world, "P1120[254] -----")  # nobody knows how many there are
+    press(world, "UP")
+    wait(world, "P1120[0]  11.000")
+    press(world, "PREVIOUS")
     wait(world, "P1119")
     look_up(world, 1)
     for _ in range(2):
@@ -858,13 +891,21 @@ def test_where_there_are_no_favourites_it_begins_with_the_first_number():
 
 
 def test_there_is_room_for_thirty_two_favourites():
-    world = world_of(settings={"favourites": {"mm440": list(range(32))}})
-    look_up(world, 1120)
+    """Those of all families together."""
+    others = {"g120": [3, 4], "mm420": [5]}
+    world = world_of(settings={"favourites": dict(others, mm440=list(range(28)))})
     on_demand.keep()
     on_demand.drop("settings_file")  # a test before this one may have left it
-    hold(world, "SET", 1800)
-    assert row_2(world) == "FAVOURITES FULL", world.lcd()
-    assert "settings_file" not in sys.modules
+    look_up(world, 1120)
+    for said in ("FAVOURITE", "FAVOURITES FULL"):
+        hold(world, "SET", 1800)
+        assert row_2(world) == said, world.lcd()
+        assert "settings_file" not in sys.modules
+        press(world, "NEXT")
+        wait(world, "P112")
+    world.run(2000)
+    kept = json.loads(world.flash.files["settings.json"])["favourites"]
+    assert kept == dict(others, mm440=list(range(28)) + [1120]), kept
     world.check()
 
 

@@ -122,8 +122,9 @@ def test_the_fault_memory_has_the_last_faults_with_their_texts():
         world.run(1000)
     drive.stale_replies = 100_000  # it does not tell them yet
     go_to(world, "FAULT MEMORY")
-    press(world, "SET")
-    assert world.lcd()[1] == ">...            ", world.lcd()
+    for key, place in (("SET", "1/8"), ("UP", "8/8"), ("SET", "8/8"), ("DOWN", "1/8")):
+        press(world, key)
+        assert world.lcd() == ("A1 FAULTS    %s" % place, ">...            "), world.lcd()
     drive.stale_replies = 0
     world.run(1500)
     told_us = world.clock.now_us
@@ -165,11 +166,17 @@ def test_a_fault_memory_that_is_not_told_is_dashes():
 
 
 def test_the_elements_of_a_g120_are_asked_for_by_their_tasks():
-    world = world_of("g120")
-    go_to(world, "FAULT MEMORY")
-    world.run(2000)
-    assert {row for _, row in entries(world)} == {"NO FAULT"}
-    world.check()
+    """But for the first, which is asked for like any value; other drives tell all of them so."""
+    for kind, task in (("g120", 6), ("mm440", 1)):
+        world = world_of(kind)
+        since_us = world.clock.now_us
+        go_to(world, "FAULT MEMORY")
+        world.run(2000)
+        assert {row for _, row in entries(world)} == {"NO FAULT"}
+        number = world.app.panel.selected.survey.family.fault_number
+        tasks = {(sent[6], sent[3] >> 4) for sent in asks_for(world, number, since_us)}
+        assert tasks == {(0, 1)} | {(index, task) for index in range(1, 8)}, tasks
+        world.check()
 
 
 def test_stop_acts_while_the_text_is_read():
