@@ -204,8 +204,24 @@ def test_what_a_value_is_called_and_its_limits_take_turns_with_the_name():
     look_up(world, 700)
     assert row_2(world) == "P0700[0]       5"
     assert lines(world) == {"Command source", "USS on COM link", "A1 0...6"}
+    look_up(world, 1300)
+    for number, said in ((0, {"V/f linear"}), (18, set()), (23, {"Torque + encoder"})):
+        keep(world, 1300, number)
+        found = lines(world)
+        assert said < found and len(found) == len(said) + 2, (number, found)
     look_up(world, 1120)
     assert lines(world) == {"Ramp-up time", "A1 0...650s"}
+    world.check()
+
+
+def test_the_name_is_the_first_of_what_takes_turns():
+    world = world_of()
+    look_up(world, 1120)
+    for _ in range(2):
+        while row_1(world).rstrip() != "A1 0...650s":
+            world.run(50)
+        press(world, "UP")
+        assert row_1(world).rstrip() == "Ramp-up time", world.lcd()
     world.check()
 
 
@@ -345,6 +361,22 @@ def test_another_key_beside_a_held_set_makes_nothing_permanent_and_no_favourite(
         world.run(3500)
     assert "favourites" not in json.loads(world.flash.files["settings.json"])
     assert world.drives[1].read(1120) == 11 and world.drives[1].eeprom_writes == 0
+    world.check()
+
+
+def test_a_held_set_makes_nothing_permanent_once_the_line_has_failed():
+    world = world_of()
+    look_up(world, 1120)
+    press(world, "EDIT", "UP")
+    world.down("SET")
+    wait(world, "WRITTEN (RAM)")
+    drive = world.app.panel.selected.drive
+    world.drives[1].unplug()
+    step_until(world, lambda: not drive.contact)
+    world.drives[1].plug()
+    step_until(world, lambda: drive.contact)
+    world.run(3000)
+    assert row_2(world) != "WRITTEN (EEPROM)" and world.drives[1].eeprom_writes == 0
     world.check()
 
 
@@ -536,6 +568,18 @@ def test_a_double_word_has_thirty_two_bits():
     press(world, "PREVIOUS", "UP", "SET", "SET")
     wait(world, "WRITTEN (RAM)")
     assert parameters.get(927) == 0xC001000F
+    world.check()
+
+
+def test_what_is_typed_is_dropped_when_the_drive_tells_the_value_in_another_width():
+    world = world_of()
+    parameters = world.drives[1].parameters
+    row = parameters.rows[927]
+    look_up(world, 927)
+    press(world, "EDIT", "EDIT")
+    assert row_2(world) == "NEW 000F", world.lcd()
+    parameters.rows[927] = row[:2] + ("U32", "", 1, 0, 0xFFFFFFFF) + row[7:]
+    wait(world, "P0927  0000000Fh")
     world.check()
 
 
@@ -748,6 +792,14 @@ def test_a_micromaster_3_has_no_indices():
     assert row_2(world).startswith("P0012  "), world.lcd()
     press(world, "UP")
     assert row_2(world) == "NOT AN ARRAY"
+    world.check()
+
+
+def test_on_the_bop_link_a_parameter_of_the_link_begins_with_the_index_of_that_link():
+    world = world_of("mm440-bop")
+    for number, row in ((2010, "P2010[1] "), (1120, "P1120[0] ")):
+        look_up(world, number)
+        assert row_2(world).startswith(row), world.lcd()
     world.check()
 
 

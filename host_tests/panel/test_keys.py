@@ -179,12 +179,17 @@ def test_a_key_that_could_not_be_told_for_a_moment_must_be_seen_up_before_it_cou
 
 
 def test_a_key_that_cannot_be_told_repeats_nothing():
-    hand = Hand().hold(UP, 538)  # two milliseconds before it repeats again
-    assert len(hand.repeated) == 1
-    for _ in range(300):
-        hand.keys.update(UP, hand.at_ms, UP)
-        assert not hand.keys.repeated and not hand.keys.down
-        hand.at_ms += 1
+    """The others do, whatever cannot be told of this one."""
+    for unclear, repeats in ((UP, 0), (STOP, 3), (UP | STOP, 0)):
+        hand = Hand().hold(UP, 538)  # two milliseconds before it repeats again
+        assert len(hand.repeated) == 1
+        repeated = []
+        for _ in range(300):
+            hand.keys.update(UP, hand.at_ms, unclear)
+            assert hand.keys.down == UP & ~unclear
+            repeated += [hand.keys.repeated] if hand.keys.repeated else []
+            hand.at_ms += 1
+        assert repeated == [UP] * repeats, (unclear, repeated)
 
 
 def test_a_key_that_is_withheld_repeats_nothing_any_more_and_the_others_do():
