@@ -20,10 +20,13 @@ from lookup_bench import (
     wait_for_value,
     world_of,
 )
-from panel.lookup import Search, value
+from panel.keys import Keys
+from panel.lookup import Search, groups, memory, value, what
 from panel.lookup import name_of as table_of
 from panel.lookup.answers import FIRST
+from panel.lookup.editing import Editing
 from panel.lookup.parameter import Parameter
+from panel.lookup.sight import Sight
 from panel.reading import Reading
 from panel.screen import Screen
 from panel_bench import row_1, row_2, running, settled_row_2, starts
@@ -172,6 +175,53 @@ def test_a_step_looks_for_six_pieces_at_the_most_and_for_none_when_it_turns_to_a
             Search.step = look
         assert looks[:2] == [0, 0] and looks[-1] == 0, looks
         assert max(looks) == most and min(looks[2:-1]) >= 1, looks
+
+
+def test_whatever_is_looked_for_is_looked_for_in_pieces():
+    """A step of the loop has no time for a whole search."""
+    world = world_of()
+    panel, keys, rows = world.app.panel, Keys(("SET",), 0x3FFFFFFF), catalogue.rows
+    world.drives[1].fault(1)
+    world.run(3000)
+    pieces = set()
+
+    def note(family, numbers=catalogue.ALL, kind="P", paced=False):
+        pieces.add((kind, paced))
+        return rows(family, numbers, kind, paced)
+
+    def wait_for_a_search(kind, step):
+        for _ in range(200):
+            if pieces:
+                break
+            step()
+            world.run(20)
+        assert pieces == {(kind, True)}, (kind, pieces)
+        pieces.clear()
+
+    catalogue.rows = note
+    try:
+        wait_for_a_search("G", lambda: groups.List(panel, None))
+        wait_for_a_search("F", lambda: what.List(panel, ("F", 1, b"F0001")))
+        faults = memory.List(panel, None)
+        wait_for_a_search("F", lambda: faults.step(0, 0))
+        panel.remembered["panel.lookup.parameter"] = catalogue.ALL, 700
+        page = Parameter(panel)
+
+        def step():
+            page.step(keys, 0)
+            page.work(0)
+
+        wait_for_a_search("P", step)
+        wait_for_a_search("V", step)  # for what the value is called
+        shown = Sight(panel)
+        shown.table = "mm440"
+        for number in (700, 52):
+            shown.row = catalogue.find("mm440", number)
+            shown.form = value.Form(shown.row, pkw.WORD)
+            pieces.clear()
+            wait_for_a_search("V", lambda: Editing(shown))
+    finally:
+        catalogue.rows = rows
 
 
 def test_a_number_with_more_digits_than_places_has_an_exponent():

@@ -5,9 +5,13 @@ import json
 
 import main
 from boards.sim.world import World
+from panel.keys import Acts, Keys
+from panel.keys.guard import Guard
+from panel.pages import Page
 from panel_bench import OFF1, row_1, row_2, starts, telegrams, wait_until_known
 
 LOCKED = "LOCK: HOLD PARAM"
+MASK = 0x3FFFFFFF
 BAUD = 4_800  # minutes pass in these tests, and the fewer telegrams in them the sooner
 
 
@@ -104,6 +108,21 @@ def test_a_closed_lock_refuses_everything_else_and_says_so():
         press(world, key)
     assert row_1(world).startswith("S: 10.0") and starts(world) == 0
     world.check()
+
+
+def test_what_the_lock_refuses_is_taken_away_whether_it_was_pressed_or_repeats():
+    names = ("PARAM", "STOP", "SET", "REVERSE", "UP", "JOG_LEFT", "START", "JOG_RIGHT")
+    keys = Keys(names, MASK)
+    guard = Guard(panel(lock_code=7).app.panel.settings, keys, MASK, None, True)
+    left = ("STOP", "UP", "START")
+    for obeys, others in ((True, left + ("SET",)), (False, left)):
+        page = Page(None)
+        page.obeys = obeys
+        for refused in (names, others):
+            acts = Acts(keys)
+            acts.pressed = acts.repeated = keys.bits(refused)
+            assert guard.holds_back(acts, page) == (refused is names)
+            assert acts.pressed == acts.repeated == keys.bits(others), obeys
 
 
 def test_a_jog_key_that_opens_no_jog_opens_none_when_the_lock_opens():
@@ -320,6 +339,33 @@ def test_a_board_that_cannot_switch_its_light_has_no_such_setting():
             found.append(row_2(world))
             press(world, "DOWN")
         assert (">LIGHT STAYS ON" in found) == has, found
+
+
+def test_the_light_and_the_lock_keep_their_own_time_and_neither_needs_the_other():
+    """A minute and five, from the last key on; an alarm is as good as a key for the light alone.
+    The clock may begin anew meanwhile."""
+    for code, minutes, wrap_at_ms in ((0, 1, 400_000), (7, 0, 30_000), (7, 1, 200_000)):
+        settings = panel(lock_code=code, light_minutes=minutes).app.panel.settings
+        keys, lit = Keys(("STOP", "SET", "UP"), MASK), []
+        begin_ms = MASK + 1 - wrap_at_ms
+        guard = Guard(settings, keys, MASK, lit.append, False)
+        closed = []
+        for at_ms in range(0, 420_000, 500):
+            now_ms = begin_ms + at_ms & MASK
+            if at_ms == 50_000:
+                guard.note_keys(now_ms)
+            if guard.step(now_ms, at_ms in (80_000, 300_000)):
+                closed.append(at_ms)
+            is_dark = 140_000 <= at_ms < 300_000 or at_ms >= 360_000
+            assert guard.dark == (minutes > 0 and is_dark), at_ms
+            assert guard.locked == (code > 0 and at_ms >= 350_000), at_ms
+        assert closed == ([350_000] if code else []), closed
+        assert lit == ([False, True, False] if minutes else []), lit
+        guard.unlock()
+        assert not guard.locked
+        guard.lock()
+        assert guard.locked == (code > 0)
+        assert Guard(settings, keys, MASK, lit.append, True).locked == (code > 0)
 
 
 # --- the keys ------------------------------------------------------------------------------------
