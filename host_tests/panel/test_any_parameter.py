@@ -791,6 +791,59 @@ def test_stop_while_a_value_is_typed_stops_at_once_and_writes_nothing():
     world.check()
 
 
+def test_param_that_ends_the_typing_and_is_held_opens_no_menu():
+    world = world_of()
+    look_up(world, 1120)
+    press(world, "EDIT", "UP")
+    hold(world, "PARAM", 1400)
+    assert row_2(world) == "P1120[0]  10.00s", world.lcd()
+    world.check()
+
+
+def test_set_together_with_another_key_is_no_clear_wish():
+    world = world_of()
+    look_up(world, 1120)
+    press(world, "EDIT", "UP")
+    for key in ("NEXT", "EDIT"):
+        for down in ("SET", key):
+            world.down(down)
+        world.run(200)
+        for down in ("SET", key):
+            world.up(down)
+        world.run(1000)
+        wait(world, "NEW 011.00s")  # the other key does nothing either
+    assert world.drives[1].read(1120) == 10
+    world.check()
+
+
+def test_what_is_still_looked_for_can_neither_be_edited_nor_walked_from():
+    world = world_of()
+    look_up(world, 1120)
+    world.app.panel.has_taken = lambda us: True  # so each step looks for one piece
+    for key in ("NEXT", "PREVIOUS", "EDIT"):
+        world.press(key, 30)
+    wait(world, "NOT READ YET")
+    wait(world, "P1121[0]  10.00s")  # one further, and nothing is edited
+    world.check()
+
+
+def test_a_value_of_which_the_list_has_not_told_yet_what_it_is_cannot_be_edited():
+    world = world_of(addresses=(1, 2))
+    look_up(world, 1120)
+    search = sys.modules["panel.lookup"].Search
+    look, search.step = search.step, lambda search: None  # that takes for ever
+    try:
+        press(world, "ADDRESS_UP")
+        wait(world, "P1120[0]  10.000")
+        assert lines(world, 3000) == {"...", "A2"}
+        press(world, "EDIT")
+        assert row_2(world) == "NOT READ YET", world.lcd()
+    finally:
+        search.step = look
+    wait(world, "P1120[0]  10.00s")
+    world.check()
+
+
 def test_no_motor_starts_while_a_value_is_typed():
     world = world_of()
     look_up(world, 1120)
@@ -854,18 +907,23 @@ def test_on_the_bop_link_a_parameter_of_the_link_begins_with_the_index_of_that_l
 
 
 def test_the_elements_of_a_g120_go_with_the_tasks_for_arrays():
-    world = world_of("g120")
-    look_up(world, 945)
-    press(world, "UP")
-    wait_for_value(world)
-    assert row_2(world).startswith("r0945[1] "), world.lcd()
-    tasks = {
-        characters[3] >> 4
-        for _, from_panel, characters in world.wire.log.last(40)
-        if from_panel and characters[6] == 1
-    }
-    assert tasks == {6}, tasks
-    world.check()
+    """But for the first; those of a MICROMASTER go like any value."""
+    for kind, number, of_the_second in (("g120", 945, {6}), ("mm440", 947, {1})):
+        world = world_of(kind)
+        look_up(world, number)
+        for index, wanted in enumerate(({1}, of_the_second)):
+            if index:
+                press(world, "UP")
+            wait_for_value(world)
+            assert row_2(world).startswith("r%04d[%d] " % (number, index)), world.lcd()
+            tasks = {
+                sent[3] >> 4
+                for _, from_panel, sent in world.wire.log.last(40)
+                if from_panel and sent[3] & 7 == number >> 8
+                and sent[4] == number & 0xFF and sent[6] == index
+            }  # fmt: skip
+            assert tasks == wanted, (kind, index, tasks)
+        world.check()
 
 
 def test_another_drive_has_another_value():
