@@ -728,6 +728,13 @@ def test_a_floating_point_number_is_typed_with_as_many_decimals_as_there_is_room
         shown = form.typed(*pkw.float_to_words(number))
         assert (bytes(shown[0]), shown[1]) == (typed, place), shown
         assert len(typed) <= value.TYPED_MAX
+    form = value.Form(catalogue.find("mm440", 1120), pkw.DOUBLE)  # 0...650, two decimals
+    for number, typed, place in (
+        (10.0, b"010.00", 2), (650.0, b"650.00", 2), (12345.678, b"12345.68", 4),
+        (-5.0, b"-005.00", 3),  # whatever the drive tells
+    ):  # fmt: skip
+        shown = form.typed(*pkw.float_to_words(number))
+        assert (bytes(shown[0]), shown[1]) == (typed, place), shown
 
 
 def test_a_connector_is_typed_as_number_and_index():

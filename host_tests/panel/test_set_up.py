@@ -119,6 +119,21 @@ def test_a_motor_that_runs_on_other_commands_is_not_taken_over():
     assert row_2(world) == "RUNS LOCALLY A1", world.lcd()
 
 
+def test_a_motor_that_has_begun_to_run_on_other_commands_is_not_taken_over_by_set():
+    world = panel(parameters=LOCAL)
+    world.run(3000)
+    press(world, "START")
+    world.run(3500)
+    assert row_2(world) == "SET=DO  PARAM=NO", world.lcd()
+    world.drives[1].process.words = lambda count: [0xFB34, 0x0CCD]
+    world.run(300)
+    press(world, "SET")
+    world.run(4000)
+    assert row_2(world) == "RUNS LOCALLY A1", world.lcd()
+    assert world.drives[1].parameters.ram[700][0] == 2
+    world.check()
+
+
 def test_a_value_that_the_access_level_forbids_is_offered_again_after_p0003():
     world = panel(parameters={2014: 0, 3: 1})
     wait_until_known(world)

@@ -4,6 +4,7 @@
 import sys
 
 from lookup_bench import choose, entries, forget_modules, go_to, hold, press, speak, wait, world_of
+from panel.lookup import broken
 from panel_bench import OFF1, row_1, row_2, telegrams
 
 
@@ -50,6 +51,20 @@ def test_a_fault_is_read_understood_and_cleared():
     world.run(1000)
     assert row_2(world) == "READY        A1", world.lcd()
     world.check()
+
+
+def test_a_text_is_broken_between_words_as_far_as_they_fit():
+    for whole, lines in (
+        (b"", []),
+        (b"Current limit", [b"Current limit"]),
+        (b"The motor is on", [b"The motor is on"]),  # 15
+        (b"The motor is off", [b"The motor is", b"off"]),
+        (b"The motor is on again.", [b"The motor is on", b"again."]),
+        (b"Check the|fan, the|filter", [b"Check the fan,", b"the filter"]),
+        (b"Auto-identification of it", [b"Auto-identifica", b"tion of it"]),
+        (b"of auto-identification", [b"of", b"auto-identifica", b"tion"]),
+    ):
+        assert list(broken(whole, 15)) == lines, list(broken(whole, 15))
 
 
 def test_what_a_warning_means_and_how_it_is_cured():
