@@ -27,6 +27,7 @@ from panel.lookup.answers import FIRST
 from panel.lookup.editing import Editing
 from panel.lookup.parameter import Parameter
 from panel.lookup.sight import Sight
+from panel.pages.table import PAGES, PARAMETER
 from panel.reading import Reading
 from panel.screen import Screen
 from panel_bench import row_1, row_2, running, settled_row_2, starts
@@ -485,6 +486,33 @@ def test_a_choice_by_its_text_asks_first_where_it_is_risky():
     press(world, "SET", "SET")
     wait(world, "WRITTEN (RAM)")
     assert drive.read(700) == 2
+    world.check()
+
+
+def test_the_question_about_a_value_of_two_words_names_the_whole_value():
+    world = world_of()
+    look_up(world, 2000)
+    press(world, "EDIT", "UP", "SET")
+    assert row_2(world) == YES_OR_NO, world.lcd()
+    asked = {"A1: P2000[0]", "= 51.00", "SETPOINTS MAY", "CHANGE THEIR HZ"}
+    assert lines(world) == asked
+    press(world, "SET")
+    wait(world, "WRITTEN (RAM)")
+    assert world.drives[1].read(2000) == 51
+    world.check()
+
+
+def test_edit_right_after_a_write_begins_with_what_was_written():
+    world = world_of()
+    look_up(world, 1120)
+    press(world, "EDIT", "UP")
+    log = world.wire.log
+    step_until(world, lambda: bytes(log.last(1)[0][2][3:5]) == b"\x14\x60")  # P1120 is asked for,
+    world.run(30)  # and then not for half a second
+    world.press("SET")
+    world.press("EDIT")
+    wait(world, "NEW 011.00s")
+    assert world.drives[1].read(1120) == 11
     world.check()
 
 
@@ -1089,12 +1117,44 @@ def test_a_question_that_finds_no_room_is_not_on_its_way():
 # --- memory --------------------------------------------------------------------------------------
 
 
+def test_what_the_page_wants_comes_while_one_chooses_a_module_in_a_step_that_has_time():
+    panel = world_of().app.panel
+    has_time, load, loaded = [], on_demand.load, []
+    panel.has_time = lambda: bool(has_time)
+
+    def fail(name):
+        raise MemoryError
+
+    try:
+        for on_demand.load, count in ((loaded.append, len(PAGES[PARAMETER][2])), (fail, 1)):
+            has_time.clear()
+            shown = groups.List(panel, None)
+            for _ in range(1000):  # the groups themselves do not wait
+                shown.search()
+            assert not loaded and shown.count() > 10 and shown.is_searching()
+            has_time.append(True)
+            for step in range(count):
+                assert shown.is_searching(), step
+                shown.search()
+            assert not shown.is_searching()  # without memory the page says so
+            assert loaded == list(PAGES[PARAMETER][2][: len(loaded)])
+            loaded.clear()
+    finally:
+        on_demand.load = load
+
+
 def test_the_page_leaves_the_memory():
     world = world_of()
     forget_modules()
-    look_up(world, 1120)
+    go_to(world, "PARAMETERS")
+    world.run(2000)
+    assert set(PAGES[PARAMETER][2]) <= set(sys.modules)  # they come while one chooses
+    press(world, "PARAM", "PARAM")
+    look_up(world, 700)
     assert "panel.lookup.inspection" in sys.modules and "catalogue" in sys.modules
-    press(world, "PARAM")
+    press(world, "EDIT", "DOWN", "SET")
+    assert row_2(world) == YES_OR_NO, world.lcd()
+    press(world, "PARAM", "PARAM", "PARAM")
     world.run(3000)
     left = {name for name in sys.modules if name.startswith(("panel.lookup", "catalogue"))}
     assert left == set(), left

@@ -238,3 +238,15 @@ def test_what_was_pressed_can_be_taken_up_later():
     acts.note()
     assert acts.pressed == 0 and acts.repeated == UP and acts.repeats == 9
     assert acts.pace() == 10 and acts.pace(1) == 1
+
+
+def test_a_value_moves_the_faster_the_longer_its_key_is_held_up_to_the_pace_that_it_bears():
+    hand = Hand().hold(UP, 21)
+    acts = Acts(hand.keys)
+    paces = []
+    for repeats in range(20):
+        acts.note()
+        assert acts.repeats == repeats and (acts.repeated == UP) == (repeats > 0)
+        paces.append((acts.pace(1), acts.pace(), acts.pace(100)))
+        hand.hold(UP, 120 if repeats else 400)
+    assert paces == [(1, 1, 1)] * 9 + [(1, 10, 10)] * 8 + [(1, 10, 100)] * 3, paces

@@ -10,6 +10,7 @@ from panel_bench import (
     row_1,
     row_2,
     running,
+    said,
     starts,
     telegrams,
     wait_until_known,
@@ -249,6 +250,15 @@ def test_edit_freezes_the_value_and_lets_it_go():
     world.press("EDIT")
     assert row_2(world) == "P1000:     2↕A1"
     assert not writes(world)
+    world.check()
+
+
+def test_a_warning_takes_turns_with_a_value_that_is_edited_and_has_the_whole_row():
+    world = parameter("P1000")
+    world.press("EDIT")
+    world.drives[1].warn(501)
+    world.run(1000)
+    assert set(said(world, 6000)) == {"P1000:     5↕A1", "WARN A0501   A1"}
     world.check()
 
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The operator's manual, a drive that obeys somebody else: START offers to set it up."""
 
-from boards.sim.drives.families import mm3
+from boards.sim.drives.families import mm3, mm440
 from panel_bench import panel, row_2, settled, starts, wait_until_known
 
 LOCAL = {700: 2, 1000: 2, 2014: 1000}  # as delivered, but for the line
@@ -50,6 +50,37 @@ def test_a_drive_is_set_up_with_start_and_set_alone():
     world.drives[1].power_on()
     world.run(3000)
     press(world, "STOP")
+    wait_until_known(world)
+    world.check()
+
+
+def test_p0719_that_overrides_both_sources_is_set_to_zero():
+    world = panel(parameters={719: 12, 2014: 1000})
+    world.run(3000)
+    press(world, "START")
+    world.run(3500)
+    assert "A1: P0719=0" in asked(world)
+    press(world, "SET")
+    world.run(4000)
+    assert world.drives[1].parameters.ram[719][0] == 0
+    wait_until_known(world)
+    world.check()
+
+
+def test_what_is_set_up_is_the_data_set_that_is_active():
+    world = panel(kinds={1: {"family": mm440}})
+    wait_until_known(world)
+    drive = world.drives[1]
+    readings = drive.readings.value
+    drive.parameters.reading = lambda *place: 1 if place[0] == 50 else readings(*place)
+    drive.write(700, 1, 2)
+    world.run(5000)
+    press(world, "START")
+    world.run(3500)
+    assert "A1: P0700=5" in asked(world)
+    press(world, "SET")
+    world.run(4000)
+    assert (drive.read(700, 0), drive.read(700, 1)) == (5, 5)
     wait_until_known(world)
     world.check()
 
