@@ -323,7 +323,10 @@ def test_param_leaves_a_number_that_is_typed_and_stop_stops():
     go_to(world, "PARAMETERS", "BY NUMBER")
     wait(world, "P0")
     assert "NUMBER  SET=SHOW" in lines(world)
-    press(world, "UP", "START")
+    for key, row in (("DOWN", "P09000"), ("UP", "P00000"), ("UP", "P01000")):
+        press(world, key)
+        wait(world, row)
+    press(world, "START")
     assert row_2(world) == "NO: SET OR PARAM"
     press(world, "STOP")
     world.run(2000)
@@ -434,7 +437,11 @@ def test_a_held_set_makes_nothing_permanent_once_the_line_has_failed():
 def test_the_drive_decides_about_limits():
     world = world_of()
     look_up(world, 1120)
-    press(world, "EDIT", "PREVIOUS", "PREVIOUS")
+    press(world, "EDIT")
+    for key, row in (("DOWN", "NEW 019.00s"), ("UP", "NEW 010.00s")):  # the others stay
+        press(world, key)
+        wait(world, row)
+    press(world, "PREVIOUS", "PREVIOUS")
     type_digits(world, "9")
     wait(world, "NEW 910.00s")
     press(world, "SET")
@@ -712,6 +719,17 @@ def test_a_whole_number_is_typed_with_the_places_and_the_sign_of_its_type():
         shown, place = form.typed(bits >> 16, bits & 0xFFFF)
         assert (bytes(shown), place) == (typed, len(typed) - 1), (family, number, shown, place)
         assert form.bits(shown) == bits, (family, number, shown)
+
+
+def test_a_unit_stands_behind_what_is_typed_where_it_has_room():
+    shown = Sight(world_of().app.panel)
+    for unit, row in ((b"kW", b"NEW 0000000230kW"), (b"rpm", b"NEW 0000000230")):
+        shown.row = catalogue.find("mm440", 208)
+        shown.row[catalogue.KEY], shown.row[catalogue.UNIT] = b"P0208", unit
+        shown.form, shown.low = value.Form(shown.row, pkw.DOUBLE), 230
+        assert Editing(shown).row(False) == row, Editing(shown).row(False)
+        assert shown.form.fitting(0, 230, 3 + len(unit)) == b"230" + unit
+        assert shown.form.fitting(0, 230, 2 + len(unit)) == b"230"
 
 
 def test_a_number_beyond_its_type_is_refused():

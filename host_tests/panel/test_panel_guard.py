@@ -361,6 +361,9 @@ def test_the_light_and_the_lock_keep_their_own_time_and_neither_needs_the_other(
             assert guard.locked == (code > 0 and at_ms >= 350_000), at_ms
         assert closed == ([350_000] if code else []), closed
         assert lit == ([False, True, False] if minutes else []), lit
+        unlit = Guard(settings, keys, MASK, None, False)  # nothing that could be switched
+        for now_ms in (0, 300_000):
+            assert unlit.step(now_ms, False) == (code > 0 and now_ms > 0) and not unlit.dark
         guard.unlock()
         assert not guard.locked
         guard.lock()
