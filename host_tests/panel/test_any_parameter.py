@@ -5,7 +5,10 @@ import json
 import sys
 
 import catalogue
+import main
 import on_demand
+from boards.sim.drives.kinds import listed_drives, simulated
+from boards.sim.world import World
 from lookup_bench import (
     choose,
     forget_modules,
@@ -265,6 +268,20 @@ def test_what_a_value_is_called_and_its_limits_take_turns_with_the_name():
     world.check()
 
 
+def test_limits_and_their_unit_are_shown_as_far_as_the_row_has_room():
+    panel = world_of().app.panel
+    shown = Sight(panel)
+    panel.announcer.page_turns = 1  # the name was there before
+    for number, row in (
+        (1120, b"A1 0...650s"),
+        (305, b"A1 0.01...10000A"),
+        (311, b"A1 0...40000"),  # 1/min
+        (27, b"A1"),
+    ):
+        shown.row = catalogue.find("mm440", number)
+        assert shown.row_1() == row, shown.row_1()
+
+
 def test_the_name_is_the_first_of_what_takes_turns():
     world = world_of()
     look_up(world, 1120)
@@ -347,7 +364,7 @@ def test_the_ramp_is_set_to_2_5_seconds_in_the_eeprom():
     look_up(world, 1120)
     press(world, "EDIT")
     wait(world, "NEW 010.00s")
-    assert "P1120[0]  10.00s" in lines(world)
+    assert lines(world) == {"P1120[0]  10.00s", "A1 0...650s"}
     press(world, "PREVIOUS", "DOWN", "NEXT", "UP", "UP", "NEXT")
     type_digits(world, "5")
     wait(world, "NEW 002.50s")
@@ -956,6 +973,23 @@ def test_on_the_bop_link_a_parameter_of_the_link_begins_with_the_index_of_that_l
     for number, row in ((2010, "P2010[1] "), (1120, "P1120[0] ")):
         look_up(world, number)
         assert row_2(world).startswith(row), world.lcd()
+    world.check()
+
+
+def test_a_drive_without_a_parameter_channel_tells_nothing_and_is_asked_for_nothing():
+    """The menu leads here from another one only."""
+    drives = simulated(listed_drives("1=mm440,2=mm420/0"))
+    settings = {"kinds": {"1": "mm440", "2": "mm420/0"}}
+    world = World(main.start, (1, 2), kinds=drives, settings=settings)
+    world.run(1000)
+    look_up(world, 1120)
+    press(world, "ADDRESS_UP")
+    world.run(4000)
+    assert world.lcd()[1] == "P1120          ?", world.lcd()
+    press(world, "EDIT")
+    assert row_2(world) == "NOT READ YET", world.lcd()
+    press(world, "ADDRESS_DOWN")
+    wait(world, "P1120[0]  10.00s")
     world.check()
 
 
