@@ -2,6 +2,7 @@
 """The operator's manual, parameter mode: look at parameters and change them."""
 
 from boards.sim.drives.kinds import listed_drives, simulated
+from panel.pages.question import Question
 from panel_bench import (
     LOOP_US,
     OFF1,
@@ -876,6 +877,21 @@ def test_an_alarm_takes_a_question_away():
     world.run(3000)
     assert not writes(world)
     world.check()
+
+
+def test_a_question_beside_an_alarm_tells_both_in_turn_all_that_is_at_stake():
+    world = running()
+    world.drives[1].unplug()
+    world.run(3000)
+    shown = world.app.panel
+    question = Question(shown, ((b"ONE", b"TWO", b"THREE"), b"SET=DO  PARAM=NO"), (), {})
+    told = []
+    for shown.announcer.page_turns in range(8):
+        question.draw(shown.screen, 0)
+        told.append([row.rstrip() for row in shown.screen.rows()])
+    assert [row for _, row in told] == [ASKED] * 8
+    assert [row for row, _ in told[::2]] == ["ONE", "TWO", "THREE", "ONE"]
+    assert {row for row, _ in told[1::2]} == {"A1 LOST,MAY RUN"}, told
 
 
 def test_an_alarm_of_another_drive_is_not_hidden_by_a_question():
