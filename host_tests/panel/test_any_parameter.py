@@ -722,6 +722,39 @@ def test_what_has_too_many_digits_is_typed_in_hexadecimal_at_once():
     world.check()
 
 
+def test_a_value_reads_as_its_type_has_it_and_is_as_wide_as_the_drive_tells_it():
+    word, double, half = pkw.WORD, pkw.DOUBLE, pkw.float_to_words(2.5)
+    for kind, form, width, high, low, read in (
+        (b"U16", b"", word, 0, 0xFFFF, b"65535"),
+        (b"I16", b"", word, 0, 0xFFFF, b"-1"),
+        (b"I16", b"", word, 0, 0x7FFF, b"32767"),
+        (b"I16", b"", word, 0, 0x8000, b"-32768"),
+        (b"U32", b"", double, 0xFFFF, 0xFFFE, b"4294967294"),
+        (b"I32", b"", double, 0xFFFF, 0xFFFE, b"-2"),
+        (b"U16", b"", double, 1, 0, b"65536"),
+        (b"BICO", b"", double, 52, 3, b"52:3"),
+        (b"BICO", b"", word, 0, 3, b"3"),
+        (b"Float", b"2", double) + half + (b"2.50",),
+        (b"Float", b"", double) + half + (b"2.500",),
+        (b"Float", b"2", word, 0, 5, b"5"),
+        (b"U16", b"x", word, 0, 0xAB, b"00ABh"),
+        (b"U16", b"b52", word, 0, 0xAB, b"00ABh"),
+        (b"U32", b"x", double, 0, 0xAB, b"000000ABh"),
+        (b"U16", b"v700", word, 0, 0xAB, b"171"),
+    ):
+        row = catalogue.find("mm440", 1120)
+        row[catalogue.TYPE], row[catalogue.FORM] = kind, form
+        shown = value.Form(row, width)
+        assert shown.words(high, low) == read, (kind, form, shown.words(high, low))
+        assert shown.list == (form if form[:1] in (b"v", b"b") else b"")
+    for is_integer, width, words, read in (
+        (False, double, half, b"2.500"),
+        (True, double, (1, 0), b"65536"),
+        (True, word, (0, 5), b"5"),
+    ):
+        assert value.Form(None, width, is_integer).words(*words) == read
+
+
 def test_a_whole_number_is_typed_with_the_places_and_the_sign_of_its_type():
     word, double = pkw.WORD, pkw.DOUBLE
     for family, number, width, bits, typed in (
@@ -972,7 +1005,9 @@ def test_a_micromaster_3_has_no_indices():
 
 
 def test_on_the_bop_link_a_parameter_of_the_link_begins_with_the_index_of_that_link():
-    world = world_of("mm440-bop")
+    world = world_of("mm440-bop", settings={"favourites": {"mm440": [27]}})
+    go_to(world, "PARAMETERS", "FAVOURITES")
+    wait(world, "r0027")  # a drive has the same on either link
     for number, row in ((2010, "P2010[1] "), (1120, "P1120[0] ")):
         look_up(world, number)
         assert row_2(world).startswith(row), world.lcd()
