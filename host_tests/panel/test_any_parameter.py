@@ -510,7 +510,9 @@ def test_a_choice_by_its_text_asks_first_where_it_is_risky():
     assert lines(world) == asked
     press(world, "PARAM")
     assert drive.read(700) == 5 and row_2(world) == "NEW            2"
-    press(world, "SET", "SET")
+    press(world, "DOWN", "SET")
+    assert "= 1" in lines(world)
+    press(world, "PARAM", "UP", "SET", "SET")
     wait(world, "WRITTEN (RAM)")
     assert drive.read(700) == 2
     world.check()
@@ -650,6 +652,24 @@ def test_a_bit_without_a_text_has_an_empty_row():
     world.run(500)
     assert world.lcd() == (" " * 16, "P0927.04       0")
     world.check()
+
+
+def test_while_the_text_of_a_bit_or_a_choice_is_looked_for_there_are_dots():
+    for number, row, text in (
+        (927, "P0927.00       1", "CB, PROFIBUS"), (700, "NEW            5", "USS on COM link"),
+    ):  # fmt: skip
+        world = world_of()
+        look_up(world, number)
+        search = sys.modules["panel.lookup"].Search
+        look, search.step = search.step, lambda search: None  # that takes for ever
+        try:
+            press(world, "EDIT")
+            assert (row_1(world).rstrip(), row_2(world)) == ("...", row), world.lcd()
+        finally:
+            search.step = look
+        world.run(500)
+        assert (row_1(world).rstrip(), row_2(world)) == (text, row), world.lcd()
+        world.check()
 
 
 def test_a_double_word_has_thirty_two_bits():
@@ -834,6 +854,10 @@ def test_a_floating_point_number_is_typed_with_as_many_decimals_as_there_is_room
     ):  # fmt: skip
         shown = form.typed(*pkw.float_to_words(number))
         assert (bytes(shown[0]), shown[1]) == (typed, place), shown
+    row = catalogue.find("mm440", 1120)
+    row[catalogue.FORM] = b"6"
+    shown = value.Form(row, pkw.DOUBLE).typed(*pkw.float_to_words(123456792.0))
+    assert (bytes(shown[0]), shown[1]) == (b"123456792.00", 8), shown
 
 
 def test_a_connector_is_typed_as_number_and_index():
@@ -930,6 +954,18 @@ def test_what_is_still_looked_for_can_neither_be_edited_nor_walked_from():
         world.press(key, 30)
     wait(world, "NOT READ YET")
     wait(world, "P1121[0]  10.00s")  # one further, and nothing is edited
+    world.check()
+
+
+def test_another_index_ends_the_search_for_the_next_parameter():
+    world = world_of()
+    look_up(world, 1120)
+    world.app.panel.has_taken = lambda us: True  # so each step looks for one piece
+    for key in ("NEXT", "UP"):
+        world.press(key, 30)
+    wait(world, "P1120[1]  10.00s")
+    world.run(1000)
+    assert lines(world, 4000) == {"Ramp-up time", "A1 0...650s"}
     world.check()
 
 
