@@ -5,7 +5,18 @@ import main
 from boards.sim.drives.families import mm440
 from boards.sim.drives.kinds import listed_drives, simulated
 from boards.sim.world import World
-from panel_bench import OFF1, panel, row_2, running, said, settled, starts, telegrams
+from panel.menu.diagnosis import mirror as mirror_test
+from panel_bench import (
+    OFF1,
+    comes_to,
+    panel,
+    row_2,
+    running,
+    said,
+    settled,
+    starts,
+    telegrams,
+)
 from spoilt_bench import (
     cut_off,
     garbled,
@@ -16,9 +27,11 @@ from spoilt_bench import (
     with_a_wrong_check,
 )
 from uss import pkw
-from uss.finding.witness import CYCLE
+from uss.drive import COUNTERS
+from uss.finding.witness import CYCLE, RESPONSE_DELAY
 from uss.master import LISTENING, OFF
 from uss.tasks.descriptions import NAME, read_description
+from uss.telegram import MIRROR
 
 FOUR = (1, 2, 3, 4)
 
@@ -143,6 +156,41 @@ def test_the_counters_of_the_bus_are_those_of_all_drives_and_what_the_bus_itself
     world.check()
 
 
+RESIDUE = COUNTERS.index("residual")  # of which a whole line never has any
+
+
+def test_a_counter_has_16_bits_and_its_rate_goes_on_when_it_begins_anew():
+    world = panel()
+    counters = world.app.bus.turns.at(1).counters
+    open_menu(world, "DIAGNOSIS", "A1", "COUNTERS")
+    for first, then, seconds, grown in (
+        (0xFFFE, 0xFFFF, 6, 1), (0xFFFE, 1, 6, 3), (0, 811, 6, 811), (0, 0x8001, 40, 0x8001),
+    ):  # fmt: skip
+        counters[RESIDUE] = first
+        read(world, "A1 RESIDUE")
+        world.run(1000 * seconds)  # and some 300 ms have passed since the entry was chosen
+        counters[RESIDUE] = then
+        world.run(100)
+        counted, rate = row_2(world)[1:].split()
+        assert int(counted) == then, world.lcd()
+        a_minute = grown * 60 // seconds
+        assert a_minute * 0.9 <= int(rate[:-4]) <= a_minute, (grown, world.lcd())
+        world.press("DOWN", 40)
+    world.check()
+
+
+def test_the_sum_of_all_drives_has_16_bits_like_their_counters():
+    world = panel(addresses=(1, 2))
+    open_menu(world, "DIAGNOSIS", "BUS COUNTERS")
+    read(world, "BUS RESIDUE")
+    for first, second, told in ((0x8001, 0x8002, "3"), (1, 0xFFFF, "0"), (1, 0xFFFE, "65535")):
+        for address, counted in ((1, first), (2, second)):
+            world.app.bus.turns.at(address).counters[RESIDUE] = counted
+        world.run(100)
+        assert row_2(world)[1:].split()[0] == told, world.lcd()
+    world.check()
+
+
 def test_the_times_are_those_of_the_line():
     world = panel(addresses=(1, 2))
     open_menu(world, "DIAGNOSIS", "A1", "TIMES")
@@ -177,11 +225,28 @@ def test_a_time_of_a_second_and_more_has_no_decimals():
     shown = read(world, "BUS CYCLE")
     least, most = [int(ms) for ms in shown[:-3].split("-")]
     assert shown.endswith(" ms") and 340 <= least <= 360 and 1_370 <= most <= 1_410, shown
-    for most_us, told in ((999_949, "999.9 ms"), (999_951, "1000 ms")):
+    for most_us, told in ((999_949, "999.9-999.9 ms"), (999_951, "1000-1000 ms")):
         times = world.app.bus.witness.times
         times[CYCLE] = times[CYCLE + 1] = most_us
         world.run(100)
-        assert row_2(world)[1:].endswith("-" + told), world.lcd()
+        assert row_2(world)[1:] == told, world.lcd()
+    world.check()
+
+
+def test_a_time_below_a_second_is_told_to_the_nearest_tenth_of_a_millisecond():
+    world = panel()
+    world.drives[1].unplug()  # so nothing else is measured meanwhile
+    world.run(2_000)
+    open_menu(world, "DIAGNOSIS", "BUS TIMES")
+    assert read(world, "BUS REPLY") == "NONE YET"
+    times = world.app.bus.witness.times
+    for least_us, most_us, told in (
+        (49, 50, "0.0-0.1 ms"), (1_949, 1_950, "1.9-2.0 ms"), (9_949, 9_950, "9.9-10.0 ms"),
+        (12_349, 456_751, "12.3-456.8 ms"),
+    ):  # fmt: skip
+        times[RESPONSE_DELAY], times[RESPONSE_DELAY + 1] = least_us, most_us
+        world.run(100)
+        assert row_2(world)[1:] == told, world.lcd()
     world.check()
 
 
@@ -362,6 +427,59 @@ def test_the_mirror_test_counts_what_comes_back():
     assert good == "0" and int(sent) >= 3, world.lcd()
     assert world.drives[1].state == "running" and starts(world, 2) == 0
     world.check()
+
+
+def mirrors(world, since_us=0):
+    """What the panel has sent as mirror telegrams, the newest last."""
+    log = world.wire.log.last(1000)
+    return [data for at_us, sent, data in log if sent and at_us > since_us and data[2] & MIRROR]
+
+
+def test_the_mirror_test_begins_at_0_and_begins_anew_with_set():
+    world = panel()
+    open_menu(world, "DIAGNOSIS")
+    since_us = world.clock.now_us
+    walk_to(world, "A1")
+    world.press("SET")
+    world.run(300)
+    walk_to(world, "MIRROR TEST")
+    for _ in range(2):
+        world.press("SET", 40)
+        assert comes_to(world, ">3 OK OF 3")
+        assert len(mirrors(world, since_us)) == 3
+        since_us = world.clock.now_us
+    world.check()
+
+
+def test_the_mirror_test_counts_as_far_as_row_2_has_room():
+    """To 9999, of both: that takes 42 minutes, or here a line on which each comes back at once."""
+    world = panel()
+    open_menu(world)  # its words are there
+    sent = []
+
+    def post(mirror):
+        sent.append(mirror)
+        mirror.state = pkw.DONE
+
+    world.app.bus.turns.post = post
+    shown = mirror_test.List(world.app.panel, world.app.panel.selected)
+    now_ms = 0
+    for _ in range(10_050):
+        shown.step(0, now_ms)
+        now_ms = now_ms + 250 & world.app.panel.mask
+    assert len(sent) == 9999 and shown.words(0) == b"9999 OK OF 9999", (len(sent), shown.words(0))
+
+
+def test_a_mirror_telegram_has_other_characters_everywhere_and_would_command_nothing():
+    """Whatever the layout: bit 10 of STW is 0."""
+    for kind, pzd_count in (("mm440", 4), ("mm3", 4), ("mm440/3+4", 8), ("mm440/127+3", 6)):
+        world = panel(kinds=simulated(listed_drives("1=" + kind)), settings={"kinds": {"1": kind}})
+        open_menu(world, "DIAGNOSIS", "A1", "MIRROR TEST")
+        world.run(500)
+        net = mirrors(world)[-1][3:-1]
+        assert len(set(net)) >= len(net) - 1, (kind, net)
+        assert not net[-pzd_count] & 0x04, (kind, net)
+        world.check()
 
 
 def test_the_panel_tells_why_it_started_and_what_memory_is_free():

@@ -6,7 +6,15 @@ import json
 import main
 from boards.sim.drives.kinds import listed_drives, simulated
 from boards.sim.world import World
-from panel_bench import row_1, row_2, settled, starts, telegrams, wait_until_known
+from panel_bench import (
+    comes_to,
+    row_1,
+    row_2,
+    settled,
+    starts,
+    telegrams,
+    wait_until_known,
+)
 
 OFF1 = 0x047E
 
@@ -167,6 +175,19 @@ def test_what_is_not_taken_does_not_trip_while_the_list_is_shown():
     world.run(4000)
     press(world, "ADDRESS_UP")
     wait_until_known(world)
+    world.check()
+
+
+def test_set_on_the_first_entry_takes_nobody_before_the_search_is_over():
+    """Neither before one is found nor after that."""
+    world = line_of("1,3=g110", (1,))
+    opened(world)
+    press(world, "SET", "SET")
+    assert row_2(world) == ">0 FOUND", world.lcd()
+    assert comes_to(world, ">1 FOUND"), world.lcd()
+    press(world, "SET")
+    assert title(world).startswith("SEARCH ") and row_2(world) == ">1 FOUND", world.lcd()
+    assert [drive.address for drive in world.app.bus.turns.drives] == [1]
     world.check()
 
 

@@ -12,6 +12,7 @@ from boards.sim.world import World
 from panel_bench import (
     LOOP_US,
     SlowClock,
+    comes_to,
     panel,
     row_1,
     row_2,
@@ -21,6 +22,8 @@ from panel_bench import (
     telegrams,
     wait_until_known,
 )  # fmt: skip
+from spoilt_bench import spoil, with_a_wrong_check
+from uss.telegram import MIRROR
 from version import VERSION
 
 OFF1 = 0x047E
@@ -611,6 +614,28 @@ def test_a_drive_of_any_family_layout_and_link_is_taken_from_its_address_as_what
         assert found == as_what, (kind, found)
         assert row_2(world) == "READY        A7" and starts(world, 7) == 0, (kind, world.lcd())
         world.check()
+
+
+def test_a_drive_that_takes_any_length_is_known_for_that_though_an_answer_is_lost():
+    """Two lengths that it answers tell: 10 net characters, and 12."""
+    lost = []
+
+    def lose_one(reply):
+        if reply[2] & MIRROR and len(reply) == 12 + 4 and not lost:
+            lost.append(reply)
+            return with_a_wrong_check(reply)
+        return reply
+
+    kinds = simulated(listed_drives("2=mm440/127+5"))
+    world = World(main.start, (1, 2), settings={"drives": [1]}, kinds=kinds)
+    spoil(world.wire, world.drives[2], lose_one)
+    world.run(3000)
+    lists(world, "ANY ADDRESS")
+    press(world, "ADDRESS_UP")
+    assert comes_to(world, ">A2  ANSWERS"), world.lcd()
+    press(world, "SET")
+    assert comes_to(world, "A2 ADDED"), world.lcd()
+    assert lost and world.app.settings.kinds["2"] == "mm440/127+5", world.app.settings.kinds
 
 
 def test_a_drive_that_nobody_can_command_is_not_added():
