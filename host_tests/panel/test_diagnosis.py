@@ -6,6 +6,7 @@ from boards.sim.drives.families import mm440
 from boards.sim.drives.kinds import listed_drives, simulated
 from boards.sim.world import World
 from panel.menu.diagnosis import mirror as mirror_test
+from panel.menu.diagnosis import telegrams as telegram_list
 from panel_bench import (
     OFF1,
     comes_to,
@@ -17,6 +18,7 @@ from panel_bench import (
     starts,
     telegrams,
 )
+from round_bench import framed
 from spoilt_bench import (
     cut_off,
     garbled,
@@ -31,7 +33,7 @@ from uss.drive import COUNTERS
 from uss.finding.witness import CYCLE, RESPONSE_DELAY
 from uss.master import LISTENING, OFF
 from uss.tasks.descriptions import NAME, read_description
-from uss.telegram import MIRROR
+from uss.telegram import MIRROR, NET
 
 FOUR = (1, 2, 3, 4)
 
@@ -153,6 +155,10 @@ def test_the_counters_of_the_bus_are_those_of_all_drives_and_what_the_bus_itself
     assert abs(sent - world.app.bus.turns.exchanges) <= 3, world.lcd()
     for wanted in ("BUS FOREIGN", "BUS FAILED", "BUS HUNG"):
         assert read(world, wanted).split()[0] == "0", world.lcd()
+    bus = world.app.bus
+    bus.foreign, bus.failures, bus.dead_man_trips = 1, 2, 3
+    for wanted, counted in (("BUS FOREIGN", "1"), ("BUS FAILED", "2"), ("BUS HUNG", "3")):
+        assert read(world, wanted).split()[0] == counted, world.lcd()
     world.check()
 
 
@@ -278,10 +284,10 @@ def test_the_last_telegrams_are_shown_in_words_and_in_hexadecimal():
     assert "GOOD" in shown and [row for row in shown if row.startswith("ZSW FB34 RUNS")], shown
     assert [row for row in shown if row.startswith("HIW 0CC")], shown
     assert [row for row in shown if row.startswith("PWE ")], shown
-    at = [row[:6] == "020E01" for row in shown].index(True)
-    sent = bytes.fromhex("".join(shown[at : at + 3]))
-    wire = [characters for _, from_panel, characters in world.wire.log.last(400) if from_panel]
-    assert sent in [bytes(one) for one in wire], shown
+    wire = [(sent, bytes(characters)) for _, sent, characters in world.wire.log.last(400)]
+    for at, is_sent in ((4, True), (12, False)):  # four words before each, and what was found
+        characters = bytes.fromhex("".join(shown[at : at + 3]))
+        assert (is_sent, characters) in wire, shown
     world.press("SET")
     world.run(200)
     assert title(world) in ("A1 SENT", "A1 HEARD")
@@ -371,6 +377,115 @@ def test_the_words_of_a_task_are_where_the_drive_has_them():
         world.check()
 
 
+def held(**options):
+    """A panel that holds the last telegrams of drive 1, at the first entry, and its `Witness`."""
+    world = panel(**options)
+    open_menu(world, "DIAGNOSIS", "A1", "TELEGRAMS")
+    world.press("SET")
+    world.run(100)
+    assert settled(world)[0].startswith("A1 HELD     1/"), world.lcd()
+    return world, world.app.bus.witness
+
+
+def put(characters, words):
+    """These words as the net data of a telegram that is held."""
+    for place, word in enumerate(words):
+        characters[NET + 2 * place], characters[NET + 2 * place + 1] = word >> 8, word & 0xFF
+
+
+def entry(world, steps=0):
+    """The entry so many steps further on."""
+    for _ in range(steps):
+        world.press("DOWN", 40)
+    world.run(100)
+    return settled(world)[1][1:].rstrip()
+
+
+def test_a_task_is_told_as_what_it_does_to_the_parameter():
+    """Eight of them write, four into the EEPROM as well."""
+    world, witness = held()
+    for task in range(16):
+        put(witness.request, (task << 12 | 1999, 99))
+        does = "WRITE" if task in (2, 3, 7, 8) else "STORE" if task in (11, 12, 13, 14) else "READ"
+        told = does + " P1999[99]" if task else "NO TASK"
+        assert entry(world) == told, (task, world.lcd())
+    for index in (254, 255):
+        put(witness.request, (1 << 12, index))
+        assert entry(world) == "READ P0000[%d]" % index, world.lcd()
+    entry(world, 8)
+    for reply in range(16):
+        put(witness.reply, (reply << 12 | 700, 0, 5, 17))
+        told = {0: "NO TASK", 7: "ERROR 17", 8: "NO RIGHTS"}.get(reply, "IS P0700[0]")
+        assert entry(world) == told, (reply, world.lcd())
+
+
+def test_control_word_and_main_values_are_told_in_hexadecimal_and_in_words():
+    world, witness = held()
+    commands = (
+        (0x047E, " OFF1"), (0x047C, " OFF2"), (0x047A, " OFF3"), (0x047F, " ON"),
+        (0x0C7F, " ON"), (0x057E, " JOG"), (0x067E, " JOG"), (0x04FE, ""), (0x0000, ""),
+    )  # fmt: skip
+    states = (
+        (0xFB31, "READY"), (0xFB34, "RUNS"), (0xFB3C, "FAULT"), (0xFB70, "INHIB"), (0, "WAITS"),
+    )  # fmt: skip
+    values = (
+        (0x4000, "100"), (0xC000, "-100"), (0x0CCD, "20"), (0, "0"), (0x7FFF, "200"),
+        (0x8000, "-200"), (81, "0"), (82, "1"), (0xFFAF, "0"), (0xFFAE, "-1"), (0x2000, "50"),
+    )  # fmt: skip
+    entry(world, 2)
+    for word, told in commands:
+        put(witness.request, (0, 0, 0, 0, word, 0x1111))
+        assert entry(world) == "STW %04X%s" % (word, told), world.lcd()
+    entry(world, 1)
+    for value, percent in values:
+        put(witness.request, (0, 0, 0, 0, 0x2222, value))
+        assert entry(world) == "HSW %04X %s%%" % (value, percent), world.lcd()
+    entry(world, 7)
+    for word, told in states:
+        put(witness.reply, (0, 0, 0, 0, word, 0x1111))
+        assert entry(world) == "ZSW %04X %s" % (word, told), world.lcd()
+    entry(world, 1)
+    for value, percent in values:
+        put(witness.reply, (0, 0, 0, 0, 0x2222, value))
+        assert entry(world) == "HIW %04X %s%%" % (value, percent), world.lcd()
+
+
+def test_of_a_long_telegram_the_first_42_characters_are_kept_and_told():
+    """A word that ends behind the last of them is not."""
+    kind = "mm440/127"
+    world, witness = held(
+        kinds=simulated(listed_drives("1=" + kind)), settings={"kinds": {"1": kind}}
+    )
+    kept = ("STW 047F ON", "HSW 4000 100%", "ZSW FB34 RUNS", "HIW 2000 50%")
+    for pkw_words, told in ((16, kept), (17, kept), (18, ("...",) * 4)):
+        sent = framed(1, bytes(range(2 * pkw_words)) + b"\x04\x7f\x40\x00")
+        heard = framed(1, bytes(range(99, 99 + 2 * pkw_words)) + b"\xfb\x34\x20\x00")
+        witness.request[:] = (sent + bytes(2))[:42]
+        witness.reply[:] = (heard + bytes(2))[:42]
+        witness.request_count = witness.reply_count = len(sent)
+        shown = [entry(world, 1) for _ in range(21)]
+        last = shown.pop()  # the list goes round: this is the first entry
+        assert last.startswith("NO TASK"), shown
+        assert tuple(shown[1:3] + shown[12:14]) == told, shown
+        for at, telegram in ((3, sent), (14, heard)):
+            assert bytes.fromhex("".join(shown[at : at + 6])) == telegram[:42], (at, shown)
+        assert shown[9] == "GOOD", shown
+
+
+def test_an_entry_that_is_not_there_any_more_is_the_last_one_that_is():
+    """On the chip the telegrams go on while somebody looks at the last ones."""
+    world = panel()
+    open_menu(world)
+    shown = telegram_list.List(world.app.panel, world.app.panel.selected)
+    assert (shown.count(), shown.words(0)) == (5, b"NONE YET")
+    headings = [shown.heading(place) for place in (0, 3, 4, 99)]
+    assert headings == [b"A1 SENT", b"A1 SENT", b"A1 HEARD", b"A1 HEARD"], headings
+    world.run(200)
+    assert shown.count() == 15
+    assert shown.words(15) == shown.words(99) == shown.words(14) != shown.words(13)
+    shown.end()
+
+
 def test_a_telegram_without_a_parameter_channel_has_no_task():
     kinds = {1: {"family": mm440, "parameters": {2013: 127, 2014: 2_000}}}
     world = panel(kinds=kinds, settings={"kinds": {"1": "mm440/127s"}})
@@ -448,6 +563,18 @@ def test_the_mirror_test_begins_at_0_and_begins_anew_with_set():
         assert comes_to(world, ">3 OK OF 3")
         assert len(mirrors(world, since_us)) == 3
         since_us = world.clock.now_us
+    world.check()
+
+
+def test_the_mirror_test_of_a_silent_drive_leaves_the_line_to_those_that_answer():
+    """Four mirrors in a second would take 40 % of the time at this rate."""
+    world = panel(addresses=(1, 2), baud=2400)
+    world.drives[2].unplug()
+    world.run(3_000)
+    open_menu(world, "DIAGNOSIS", "A2", "MIRROR TEST")
+    since_us = world.clock.now_us
+    world.run(10_000)
+    assert 5 < len(mirrors(world, since_us)) < 20, len(mirrors(world, since_us))
     world.check()
 
 

@@ -191,6 +191,15 @@ def test_set_on_the_first_entry_takes_nobody_before_the_search_is_over():
     world.check()
 
 
+def test_a_search_that_takes_longer_than_a_minute_goes_on_without_a_key():
+    world = line_of("1", (1,), baud=2400)
+    opened(world)
+    press(world, "SET")
+    world.run(65_000)
+    assert title(world).startswith("SEARCH ") and row_2(world) == ">0 FOUND", world.lcd()
+    world.check()
+
+
 def test_the_last_of_three_that_were_found_is_taken_alone():
     world = line_of("1,3=g110,5,6=mm3", (1,))
     opened(world)

@@ -740,6 +740,32 @@ def test_an_address_key_that_is_held_leaves_the_list_and_counts_through_all_addr
     world.check()
 
 
+def test_set_takes_only_a_drive_that_answers_and_is_not_in_the_list():
+    world = panel(addresses=(1, 2))
+    lists(world, "ANY ADDRESS")
+    for key, shown in ((None, ">A1  IN THE LIST"), ("UP", ">A0  NOBODY")):
+        if key:
+            press(world, key)
+        assert comes_to(world, shown), world.lcd()
+        press(world, "SET")
+        assert row_2(world) == shown, world.lcd()
+        world.run(2000)
+        assert row_2(world) == shown and world.app.settings.drives == (1, 2), world.lcd()
+
+
+def test_an_address_is_asked_in_the_share_of_the_line_that_silent_drives_have():
+    """A fifth of its time: so nobody is asked more than five or six times in a second."""
+    world = panel()
+    lists(world, "ANY ADDRESS")
+    press(world, "UP")
+    assert comes_to(world, ">A0  NOBODY"), world.lcd()
+    since_us = world.clock.now_us
+    world.run(5000)
+    log = world.wire.log.last(1000)
+    asked = [data for at_us, sent, data in log if sent and at_us > since_us and data[2] & MIRROR]
+    assert 20 < len(asked) < 40, len(asked)
+
+
 def test_addresses_are_looked_at_beside_a_motor_that_runs():
     world = World(main.start, (1, 4), settings={"drives": [1]})
     world.run(3000)

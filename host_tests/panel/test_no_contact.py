@@ -7,7 +7,8 @@ import main
 from boards.sim.drives.families import generic
 from boards.sim.world import World
 from panel_bench import panel, row_1, row_2, settled, telegrams, wait_until_known
-from spoilt_bench import TROUBLES, spoil
+from spoilt_bench import TROUBLES, shorter, spoil
+from uss.drive import COUNTERS
 
 OFF1 = 0x047E
 
@@ -80,6 +81,61 @@ def test_a_step_stays_where_it_is_read_though_something_else_is_heard_by_now():
     assert row_2(world) == ">NOTHING", world.lcd()
     press(world, "DOWN", "DOWN")
     assert row_2(world) == ">DRIVE HAS MAINS", world.lcd()
+
+
+def test_what_is_heard_now_counts_as_long_as_no_step_is_read():
+    """Also when the counted telegrams are looked at, and whichever way it has changed."""
+    world = panel(addresses=(1, 2))
+    world.drives[1].unplug()
+    world.run(3000)
+    why(world)
+    assert row_2(world) == ">NOTHING", world.lcd()
+    world.drives[2].unplug()
+    world.run(3000)
+    assert row_2(world) == ">NO DRIVE AT ALL", world.lcd()
+    press(world, "DOWN", "DOWN")
+    assert row_2(world) == ">PLUG AND WIRES", world.lcd()
+    press(world, "UP")
+    world.drives[2].plug()
+    world.run(3000)
+    press(world, "DOWN")
+    assert row_2(world) == ">DRIVE HAS MAINS", world.lcd()
+
+
+def test_the_telegrams_that_it_answered_are_counted_as_far_as_there_is_room():
+    world = panel()
+    world.drives[1].unplug()
+    world.run(3000)
+    counters = world.app.bus.turns.at(1).counters
+    why(world)
+    press(world, "DOWN")
+    for place in range(len(counters)):
+        counters[place] = 0
+    counters[COUNTERS.index("good")], counters[COUNTERS.index("bcc")] = 812, 7_000
+    world.run(100)
+    good, _, _, counted = row_2(world)[1:].split()
+    assert good == "812" and 7_812 <= int(counted) <= 7_815, world.lcd()
+    counters[COUNTERS.index("start")] = 5_000
+    world.run(100)
+    assert row_2(world) == ">812 OK OF 9999", world.lcd()
+    counters[COUNTERS.index("good")] = 10_000
+    world.run(100)
+    assert row_2(world) == ">9999 OK OF 9999", world.lcd()
+
+
+def test_set_on_what_was_heard_leads_nowhere():
+    world = panel()
+    spoil(world.wire, world.drives[1], shorter)
+    world.run(3000)
+    why(world)
+    for _ in range(2):
+        before = title(world)
+        press(world, "SET")
+        assert title(world) == before and before.startswith("A1 HEARD"), world.lcd()
+        press(world, "DOWN")
+    assert row_2(world) == ">P2013 = 4", world.lcd()
+    press(world, "SET")
+    assert row_2(world).startswith(">PKW 4 WORDS"), world.lcd()
 
 
 def test_of_a_drive_whose_parameters_nobody_knows_the_values_are_named():

@@ -214,6 +214,8 @@ def test_a_search_that_finds_no_memory_says_so_and_may_be_tried_again():
     world.press("SET")
     world.run(1000)
     assert world.lcd()[0].startswith("SEARCH "), world.lcd()
+    left = [name for name in modules() if name.startswith("uss.finding.")]
+    assert "uss.finding.scan" not in left and "uss.finding.enquiry" not in left, left
     world.check()
 
 
