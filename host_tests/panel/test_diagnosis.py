@@ -121,6 +121,7 @@ def test_the_counters_of_a_drive_are_those_of_the_specification_with_their_rates
     world = running(addresses=(1, 2))
     open_menu(world, "DIAGNOSIS", "A2", "COUNTERS")
     assert title(world) == "A2 GOOD", world.lcd()
+    assert row_2(world).endswith("   .../min"), world.lcd()  # too early for a rate
     world.run(10_000)
     counted, rate = row_2(world)[1:].split()
     drive = world.app.bus.turns.at(2)
@@ -132,7 +133,7 @@ def test_the_counters_of_a_drive_are_those_of_the_specification_with_their_rates
         world.press("DOWN", 40)
     assert names == ["GOOD", "START", "LENGTH", "BCC", "ADDRESS", "NOREPLY", "RESIDUE"], names
     read(world, "A2 NOREPLY")
-    assert row_2(world).endswith("   .../min"), world.lcd()  # too early for a rate
+    assert row_2(world).endswith("   .../min"), world.lcd()
     world.drives[2].unplug()
     world.run(5_000)
     counted, rate = row_2(world)[1:].split()
@@ -668,13 +669,14 @@ def test_bus_off_leaves_the_line_and_param_takes_it_back_listening_first():
 
 
 def test_bus_off_says_what_it_may_cost_and_asks():
-    world = panel()
-    world.run(3_000)
-    open_menu(world, "DIAGNOSIS", "BUS OFF")
-    assert settled(world) == ("P2014 MAY TRIP  ", ">SET=LEAVE LINE "), world.lcd()
-    world.press("PARAM")
-    world.run(500)
-    assert world.app.bus.phase != OFF
+    for kind, number in (("mm440", "P2014"), ("mm3", "P0093")):
+        world = panel(kinds=simulated(listed_drives("1=" + kind)), settings={"kinds": {"1": kind}})
+        world.run(3_000)
+        open_menu(world, "DIAGNOSIS", "BUS OFF")
+        assert settled(world) == (number + " MAY TRIP  ", ">SET=LEAVE LINE "), world.lcd()
+        world.press("PARAM")
+        world.run(500)
+        assert world.app.bus.phase != OFF
 
 
 def test_bus_off_is_refused_while_a_motor_runs():

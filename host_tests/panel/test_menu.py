@@ -634,6 +634,7 @@ def test_a_drive_that_takes_any_length_is_known_for_that_though_an_answer_is_los
     press(world, "ADDRESS_UP")
     assert comes_to(world, ">A2  ANSWERS"), world.lcd()
     press(world, "SET")
+    assert row_2(world) == ">A2  ...", world.lcd()
     assert comes_to(world, "A2 ADDED"), world.lcd()
     assert lost and world.app.settings.kinds["2"] == "mm440/127+5", world.app.settings.kinds
 
