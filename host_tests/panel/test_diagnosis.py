@@ -36,6 +36,7 @@ from uss.tasks.descriptions import NAME, read_description
 from uss.telegram import MIRROR, NET
 
 FOUR = (1, 2, 3, 4)
+PARAMETER_CHANGED = 0x0800  # bit 11 of PKE, which is no part of the number
 
 
 def open_menu(world, *entries):
@@ -121,8 +122,12 @@ def test_the_counters_of_a_drive_are_those_of_the_specification_with_their_rates
     world = running(addresses=(1, 2))
     open_menu(world, "DIAGNOSIS", "A2", "COUNTERS")
     assert title(world) == "A2 GOOD", world.lcd()
-    assert row_2(world).endswith("   .../min"), world.lcd()  # too early for a rate
-    world.run(10_000)
+    for ms in (0, 1_300):
+        world.run(ms)
+        assert row_2(world).endswith("   .../min"), world.lcd()  # too early for a rate
+    world.run(700)
+    assert not row_2(world).endswith("   .../min"), world.lcd()
+    world.run(8_000)
     counted, rate = row_2(world)[1:].split()
     drive = world.app.bus.turns.at(2)
     assert abs(int(counted) - drive.counters[0]) <= 2, world.lcd()
@@ -411,7 +416,7 @@ def test_a_task_is_told_as_what_it_does_to_the_parameter():
         told = does + " P1999[99]" if task else "NO TASK"
         assert entry(world) == told, (task, world.lcd())
     for index in (254, 255):
-        put(witness.request, (1 << 12, index))
+        put(witness.request, (1 << 12 | PARAMETER_CHANGED, index))
         assert entry(world) == "READ P0000[%d]" % index, world.lcd()
     entry(world, 8)
     for reply in range(16):
@@ -535,7 +540,7 @@ def test_the_mirror_test_counts_what_comes_back():
     assert title(world)[:9] == "A2 MIRROR"
     world.run(5_000)
     good, _, _, sent = row_2(world)[1:].split()
-    assert good == sent and 10 <= int(sent) <= 25, world.lcd()
+    assert good == sent and 18 <= int(sent) <= 22, world.lcd()  # four a second
     world.drives[2].unplug()
     world.press("SET")
     world.run(5_000)

@@ -60,9 +60,12 @@ def searched(world):
     """Begin, and wait for the end. How long that takes, in ms."""
     began_us = world.clock.now_us
     press(world, "SET")
-    assert title(world).startswith("SEARCH "), world.lcd()
+    percents = []
     while title(world).startswith("SEARCH "):
+        percents.append(int(row_1(world)[7:].split("%")[0]))
         world.run(100)
+    assert percents == sorted(percents), percents
+    assert percents[0] < 10 and 90 < percents[-1] <= 100, percents
     return (world.clock.now_us - began_us) // 1000
 
 

@@ -616,6 +616,19 @@ def test_a_drive_of_any_family_layout_and_link_is_taken_from_its_address_as_what
         world.check()
 
 
+def test_a_drive_of_any_fixed_length_answers_at_its_address():
+    """Of each length that a family has with 2...8 PZD words one."""
+    layouts = ("3+2", "4+2", "0+2", "4+4", "4+3", "0+4", "0+3", "3+6", "4+6", "4+7", "4+8")
+    text = ",".join(["%d=mm440/%s" % (2 + place, one) for place, one in enumerate(layouts)])
+    kinds = simulated(listed_drives(text))
+    world = World(main.start, tuple(range(1, 13)), settings={"drives": [1]}, kinds=kinds)
+    world.run(1000)
+    lists(world, "ANY ADDRESS")
+    for place, layout in enumerate(layouts):
+        press(world, "ADDRESS_UP")
+        assert comes_to(world, ">A%-2d ANSWERS" % (2 + place)), (layout, world.lcd())
+
+
 def test_a_drive_that_takes_any_length_is_known_for_that_though_an_answer_is_lost():
     """Two lengths that it answers tell: 10 net characters, and 12."""
     lost = []
