@@ -172,7 +172,7 @@ RESIDUE = COUNTERS.index("residual")  # of which a whole line never has any
 
 
 def test_a_counter_has_16_bits_and_its_rate_goes_on_when_it_begins_anew():
-    world = panel()
+    world = panel(baud=4800)  # a minute passes, and the fewer telegrams in it the sooner
     counters = world.app.bus.turns.at(1).counters
     open_menu(world, "DIAGNOSIS", "A1", "COUNTERS")
     for first, then, seconds, grown in (
