@@ -304,6 +304,15 @@ def test_a_single_transfer_that_fails_heals_within_a_second():
     assert bench.display.failures == 1
 
 
+def test_its_failures_are_counted_with_16_bits():
+    bench = running()
+    bench.chip_of_backpack.plugged = False
+    bench.display.failures = 0xFFFE
+    for wanted in (0xFFFF, 0, 1):
+        bench.display.backlight(False)
+        assert bench.display.failures == wanted
+
+
 def test_a_failure_is_noticed_at_rest_by_the_next_refresh():
     bench = running()
     bench.chip_of_backpack.plugged = False

@@ -139,6 +139,28 @@ def test_an_interrupt_that_finds_no_stack_puts_the_engine_off():
     assert bench.pacer.put_off == 2 and bench.engine.recovered == 0
 
 
+def test_an_interrupt_that_is_put_off_is_served_a_millisecond_later_though_nothing_else_is_due():
+    bench = Bench(stack_bytes=STACK_BYTES)
+    bench.engine.due_us = 20 * WAKE_US
+    bench.let_timer_fire()
+    with Depth(DEEP_BYTES):
+        bench.link.on_activity()
+    assert bench.engine.entries == 2 and bench.timer.period == WAKE_US
+    bench.let_timer_fire()
+    assert bench.engine.entries == 3 and bench.timer.period == 20 * WAKE_US
+
+
+def test_its_counters_have_16_bits():
+    bench = Bench(stack_bytes=STACK_BYTES)
+    pacer = bench.pacer
+    pacer.runs = pacer.put_off = 0xFFFE
+    for wanted in (0xFFFF, 0, 1):
+        bench.link.on_activity()
+        with Depth(DEEP_BYTES):
+            bench.link.on_activity()
+        assert (pacer.runs, pacer.put_off) == (wanted, wanted)
+
+
 def test_an_interrupt_while_the_engine_is_put_off_is_not_forgotten():
     bench = Bench(stack_bytes=STACK_BYTES)
     with Depth(DEEP_BYTES):
@@ -268,6 +290,52 @@ def test_interrupts_without_end_are_served_by_the_timer_in_the_end():
     if bench.engine.entries == entries:  # it was set for 700 us, before it was needed after 1000
         bench.let_timer_fire()
     assert bench.engine.entries == entries + 1 and bench.clock.now <= WAKE_US
+
+
+def test_an_interrupt_wherever_it_falls_after_the_last_round_leaves_no_engine_asleep():
+    """The timer is set then, and nobody may set it in the middle of that."""
+    point = 0
+    while is_interrupted_after_the_rounds(point):
+        point += 1
+    assert point >= 8, "too few points: %d" % point
+
+
+def is_interrupted_after_the_rounds(point):
+    """Let an interrupt fall there, after which nothing is due for long; answer False when the
+    engine was left before it came to that."""
+    bench = Bench(pacer=InterruptedPacer)
+    engine, left = bench.engine, [point]
+    engine.due_us = 20 * WAKE_US
+    fires(bench)
+    before = engine.entries
+    engine.meanwhile = bench.pacer.run
+
+    def interrupt():
+        if engine.entries == before + ROUNDS_MAX and not engine.inside:
+            engine.meanwhile, engine.due_us = None, 50
+            left[0] -= 1
+            if left[0] == -1:
+                bench.link.on_activity()
+
+    bench.clock.meanwhile = interrupt
+    bench.pacer.run()
+    bench.clock.meanwhile = None
+    engine.due_us = 20 * WAKE_US
+    for _ in range(4):  # each time it may come too early, once
+        entries = engine.entries
+        for _ in range(2):
+            if engine.entries == entries:
+                assert bench.timer.period, "asleep, at point %d" % point
+                fires(bench)
+        assert engine.entries == entries + 1, "late, at point %d" % point
+    return left[0] < 0
+
+
+def fires(bench):
+    """The one-shot timer comes, and comes no more unless somebody sets it."""
+    bench.clock.now += bench.timer.period
+    bench.timer.period = None
+    bench.timer.callback(bench.timer)
 
 
 def test_no_interrupt_is_forgotten_wherever_it_falls_while_the_timer_is_served():
