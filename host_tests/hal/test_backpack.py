@@ -292,6 +292,7 @@ def test_it_is_set_up_anew_when_it_is_plugged_in_again():
     bench.chip_of_backpack.plugged = True
     picture = bytearray(b"\x00" + READY[1:])
     assert bench.run(picture, AGAIN_MS + START_MS) and bench.text() == "⧗" + shown(READY[1:])
+    bench.check()  # not even the first look has hurried a display that has just got power
 
 
 def test_a_single_transfer_that_fails_heals_within_a_second():

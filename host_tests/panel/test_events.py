@@ -1,10 +1,14 @@
 # SPDX-License-Identifier: MIT
 """The operator's manual, events: what has happened since power-on, and how long ago."""
 
+import main
+from boards.sim.drives.families import mm3, mm440
+from boards.sim.world import World
 from lookup_bench import entries, go_to, press, settled_heading, wait, world_of
+from panel import texts
 from panel.menu.events import age
 from panel.reports.journal import EVENTS, NOBODY, Journal
-from panel_bench import row_1, row_2
+from panel_bench import row_1, row_2, wait_until_known
 
 
 def run_motor(world):
@@ -104,6 +108,29 @@ def test_set_tells_nothing_of_a_drive_that_is_not_shown_nor_of_the_panel():
         world.run(800)
         assert row_2(world) == before, (event, world.lcd())
         press(world, "PARAM", "PARAM")
+    world.check()
+
+
+def test_an_event_reads_as_the_family_of_its_drive_writes_it():
+    """It may be another one than the drive shown has; and it stays when its drive is removed."""
+    world = World(
+        main.start, (1, 2), kinds={1: {"family": mm440}, 2: {"family": mm3}},
+        settings={"kinds": {"1": "mm440", "2": "mm3"}},
+    )  # fmt: skip
+    world.run(1000)
+    wait_until_known(world)
+    press(world, "ADDRESS_UP")
+    wait_until_known(world)
+    world.drives[2].fault(2)
+    world.run(1500)
+    press(world, "ADDRESS_UP")
+    world.run(1500)
+    world.app.panel.journal.note(texts.UNSUPERVISED, 2)
+    assert events(world) == [("A2", "P0093=0"), ("A2", "FAULT F002")]
+    press(world, "ADDRESS_UP")
+    world.app.panel.remove()
+    world.run(1500)
+    assert events(world) == [("A2", "P2014=0"), ("A2", "FAULT F0002")]
     world.check()
 
 
