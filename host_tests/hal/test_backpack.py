@@ -285,14 +285,17 @@ def test_a_backpack_that_is_unplugged_does_not_stop_the_panel():
 
 
 def test_it_is_set_up_anew_when_it_is_plugged_in_again():
-    bench = running(HOURGLASS)
-    bench.chip_of_backpack.plugged = False
-    bench.run(bytearray(READY), 3_000)
-    bench.chip_of_backpack.power_on()  # it had no power meanwhile, and the display neither
-    bench.chip_of_backpack.plugged = True
-    picture = bytearray(b"\x00" + READY[1:])
-    assert bench.run(picture, AGAIN_MS + START_MS) and bench.text() == "⧗" + shown(READY[1:])
-    bench.check()  # not even the first look has hurried a display that has just got power
+    """It had no power meanwhile, and the display neither."""
+    for away_ms in (AGAIN_MS - 10, 3_000):
+        bench = running(HOURGLASS)
+        bench.chip_of_backpack.plugged = False
+        bench.run(bytearray(READY), away_ms)
+        bench.chip_of_backpack.power_on()
+        bench.chip_of_backpack.plugged = True
+        picture = bytearray(b"\x00" + READY[1:])
+        assert bench.run(picture, AGAIN_MS + START_MS), away_ms
+        assert bench.text() == "⧗" + shown(READY[1:]), away_ms
+        bench.check()  # not even the first look has hurried a display that has just got power
 
 
 def test_a_single_transfer_that_fails_heals_within_a_second():

@@ -270,7 +270,24 @@ def test_a_node_that_was_added_is_asked_by_the_list_and_the_others_by_the_scan()
         sent = len(bench.sent)
         bench.loop = lambda bench=bench, scan=scan: scan.keep(bench.now)
         bench.run(1_000_000)
-        assert set(bench.addresses(sent)) == {1, 2}, added
+        asked = bench.addresses(sent)
+        assert set(asked) == {1, 2}, added
+        assert 8 <= asked.count(3 - added) <= 11, "in a second, each time after KEEP_US"
+
+
+def test_when_it_is_over_each_step_of_a_slow_loop_asks_the_node_that_waits_longest():
+    bench = Bench([Node(1), Node(2), Node(3)], listed=False)
+    scan = Scan(bench.master, MASK, (1, 2, 3), (12,))
+    bench.run_until(lambda: scan.step(bench.now), 60_000_000)
+    bench.run(200_000)
+    sent = len(bench.sent)
+    for times in (1, 1, 1, 3, 3, 3, 1, 1, 1):
+        for _ in range(times):  # as long as one is under way there is no other one
+            scan.keep(bench.now)
+        bench.run(150_000)
+    asked = bench.addresses(sent)
+    assert sorted(asked[:3]) == [1, 2, 3] and asked == 3 * asked[:3], asked
+    assert {each.stw() for each in bench.sent[sent:]} == {0x047E}
 
 
 def test_a_scan_that_is_to_look_no_further_asks_what_it_has_found_not_for_long():
