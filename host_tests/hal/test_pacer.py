@@ -255,6 +255,9 @@ def test_interrupts_without_end_do_not_keep_the_loop_out():
     bench.pacer.run()
     assert bench.engine.entries == 1 + ROUNDS_MAX
     assert bench.timer.period == 700
+    bench.engine.meanwhile = None
+    bench.let_timer_fire()
+    assert bench.engine.entries == 2 + ROUNDS_MAX, "what is due is not put off"
 
 
 def test_a_timer_that_fires_while_it_is_set_does_not_leave_the_engine_asleep():

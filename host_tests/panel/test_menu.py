@@ -120,6 +120,34 @@ def test_the_drives_at_a_glance_and_one_of_them_shown():
     world.check()
 
 
+def test_where_the_last_drive_of_the_list_has_gone_the_one_before_it_is_there():
+    """A program may remove one while somebody looks."""
+    for key in ("STOP", "SET"):
+        world = panel(addresses=(1, 2, 3))
+        wait_until_known(world)
+        menu(world)
+        press(world, "SET", "UP")
+        assert row_2(world).startswith(">A3 "), world.lcd()
+        shown, last = world.app.panel.controls[0], world.app.panel.controls[2]
+        world.app.panel.show(last)
+        world.app.panel.remove()
+        world.app.panel.show(shown)
+        world.press(key)
+        world.run(300)
+        assert row_2(world) == {"STOP": ">A1 A2: STOP", "SET": ">SHOW IT"}[key], world.lcd()
+        world.check()
+
+
+def test_a_motor_that_turns_backwards_has_a_sign_in_the_menu():
+    world = running(settings={"setpoint_centihertz": 1234})
+    press(world, "REVERSE")
+    world.run(8000)
+    menu(world)
+    press(world, "SET", "SET", "UP")
+    assert row_2(world) == ">-12.34 Hz", world.lcd()
+    world.check()
+
+
 def test_a_drive_is_removed_unless_it_runs():
     world = panel(addresses=(1, 2))
     wait_until_known(world)
@@ -164,12 +192,12 @@ def kept(world):
 
 
 def test_every_setting_is_shown_with_its_value_and_its_unit():
-    world = panel()
+    world = panel(settings={"highest_centihertz": 8765})
     menu(world)
     press(world, "DOWN", "DOWN", "DOWN", "SET")
     assert entries(world)[:11] == [
         "BAUD 19200", "2ND STOP OFF3", "REPLY 20 ms", "LOST 1000 ms", "START 10.00 Hz",
-        "STEP 0.10 Hz", "LOW 0.00 Hz", "HIGH 650.00 Hz", "KEY WAIT 400 ms", "KEY RATE 120 ms",
+        "STEP 0.10 Hz", "LOW 0.00 Hz", "HIGH 87.65 Hz", "KEY WAIT 400 ms", "KEY RATE 120 ms",
         "LIGHT STAYS ON",
     ]  # fmt: skip
 

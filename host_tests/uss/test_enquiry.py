@@ -2,8 +2,11 @@
 """What a drive is: by the parameters that it has, and by what they tell."""
 
 from uss import families
-from uss.finding.enquiry import Node, enquiry
+from uss.finding.enquiry import SILENCES, TRIES, Enquirer, Node, enquiry
 from uss.layout import Layout
+from uss.outside import DONE, TIMED_OUT
+from uss.receiver import SILENT
+from uss.telegram import GOOD
 
 ADDRESS = 7
 FOUR_AND_TWO = Layout(4, 2)
@@ -49,3 +52,30 @@ def test_if_both_have_the_address_it_is_the_one_that_commands_the_drive():
     ):
         node = asked(MM4 | {(2011, 0): ADDRESS, (2011, 1): ADDRESS, (700, 0): source})
         assert node.family is family and node.off_time_ms == off_time_ms, (source, node)
+
+
+def ask(enquirer, state, finding):
+    """Ask the next question, which ends like that; answer what it was about."""
+    question = enquirer.question()
+    question.state, question.finding = state, finding
+    assert not enquirer.take(question)
+    return question.job.number, question.job.index
+
+
+def test_a_silence_is_no_answer_before_the_second_one_and_a_late_one_before_the_sixth():
+    for finding, times in ((SILENT, SILENCES), (GOOD, TRIES)):
+        enquirer = Enquirer(ADDRESS, FOUR_AND_TWO.net_count, False)
+        before = None
+        for _ in range(4):
+            tried = [ask(enquirer, TIMED_OUT, finding) for _ in range(times)]
+            assert tried == times * tried[:1] and tried[0] != before, tried
+            before = tried[0]
+
+
+def test_a_question_that_is_answered_at_the_second_time_leaves_the_next_one_two():
+    enquirer = Enquirer(ADDRESS, FOUR_AND_TWO.net_count, False)
+    before = None
+    for _ in range(4):
+        lost, answered = ask(enquirer, TIMED_OUT, SILENT), ask(enquirer, DONE, GOOD)
+        assert lost == answered != before
+        before = lost

@@ -774,6 +774,21 @@ def test_a_drive_that_is_switched_on_beside_thirty_others_is_found_by_the_list()
     assert not bench.found
 
 
+def test_other_pzd_words_are_found_beside_many_silent_drives_too():
+    """It takes a minute at the least: the usual lengths of the others come first."""
+    bench = Search({2: (0, 3)}, present=(1,) + tuple(range(3, 11)))
+    for address in range(2, 11):
+        bench.nodes[address].plugged = False
+    bench.contact()
+    bench.drives[1].start(0x1000)
+    bench.run(5_000_000)
+    bench.nodes[2].plugged = True
+    began = bench.now
+    bench.until_found(2, 90_000_000)
+    assert bench.now - began > 45_000_000, bench.now - began
+    assert layout_of(bench.drives[2]) == (0, 3) and bench.found == [bench.drives[2]]
+
+
 def test_where_nobody_answers_and_nobody_may_run_it_is_quick():
     bench = Search({2: (0, 2), 3: (3, 2), 4: (127, 2)}, present=())
     bench.run_until(lambda: all([drive.contact for drive in bench.drives.values()]), 4_000_000)
