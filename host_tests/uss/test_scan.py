@@ -191,6 +191,7 @@ def test_a_drive_of_the_bus_that_does_not_answer_is_looked_for():
     scan = Scan(bench.master, MASK, range(5))
     bench.run_until(lambda: scan.step(bench.now), 60_000_000)
     assert scan.found == {1: 12, 2: 10}
+    assert scan.nodes == scan.will_trip == {}, "it is the list that asks it"
 
 
 def test_drives_that_were_not_asked_yet_are_waited_for():
@@ -214,6 +215,28 @@ def test_while_it_scans_the_drives_keep_four_fifths_of_their_rate():
     bench.run_until(lambda: scan.over, 60_000_000)
     assert scan.found == {1: 12, 2: 12} and bench.nodes[1].zsw == 0xFB34
     assert not any(bench.drives[1].counters[1:])
+
+
+def beside_one_that_runs(*addresses):
+    """Drive 1 runs; nobody has told the master of the others."""
+    bench = Bench([Node(1)] + [Node(address) for address in addresses], listed=False)
+    bench.drives[1] = bench.master.turns.add(1)
+    bench.contact()
+    bench.drives[1].start(0x1000)
+    bench.run(1_000_000)
+    return bench
+
+
+def test_nodes_that_have_fallen_silent_since_take_no_more_of_the_line_than_the_scan_did():
+    bench = beside_one_that_runs(2, 3)
+    alone = bench.rate(1, 5_000_000)
+    scan = Scan(bench.master, MASK, (2, 3), (12,))
+    bench.loop = lambda: scan.step(bench.now & MASK)
+    bench.run_until(lambda: scan.over, 60_000_000)
+    bench.nodes[2].plugged = bench.nodes[3].plugged = False
+    bench.loop = lambda: scan.keep(bench.now & MASK)
+    beside = bench.rate(1, 5_000_000)
+    assert 0.79 * alone < beside < 0.87 * alone, (beside, alone)
 
 
 def test_it_is_over_when_it_said_beside_drives_too():
@@ -261,18 +284,32 @@ def test_the_program_may_end_it():
         assert scan.will_trip == {3: None}
 
 
+def test_what_a_node_is_can_be_told_when_it_was_asked_everything():
+    bench = Bench([Node(3), Node(5)], listed=False)
+    scan = Scan(bench.master, MASK, (5, 3), (12,))
+    bench.run_until(lambda: scan.step(bench.now) or scan.nodes)
+    assert list(scan.nodes) == [5] and scan.asked_nodes() == []
+    bench.run_until(lambda: scan.step(bench.now), 60_000_000)
+    assert scan.asked_nodes() == [(3, scan.nodes[3]), (5, scan.nodes[5])]
+
+
 def test_a_node_that_was_added_is_asked_by_the_list_and_the_others_by_the_scan():
     for added in (1, 2):
         bench = Bench([Node(1), Node(2)], listed=False)
         scan = Scan(bench.master, MASK, (1, 2), (12,))
         bench.run_until(lambda bench=bench, scan=scan: scan.step(bench.now), 60_000_000)
-        bench.master.turns.add(added)
+        drive = bench.master.turns.add(added)
         sent = len(bench.sent)
         bench.loop = lambda bench=bench, scan=scan: scan.keep(bench.now)
         bench.run(1_000_000)
         asked = bench.addresses(sent)
         assert set(asked) == {1, 2}, added
         assert 8 <= asked.count(3 - added) <= 11, "in a second, each time after KEEP_US"
+        drive.start(0x1000)
+        bench.run(100_000)
+        sent = len(bench.sent)
+        bench.run(1_000_000)
+        assert set(bench.stws(added, sent)) == {0x047F}, "no OFF1 for a drive of the list"
 
 
 def test_when_it_is_over_each_step_of_a_slow_loop_asks_the_node_that_waits_longest():
