@@ -139,12 +139,12 @@ def test_where_the_last_drive_of_the_list_has_gone_the_one_before_it_is_there():
 
 
 def test_a_motor_that_turns_backwards_has_a_sign_in_the_menu():
-    world = running(settings={"setpoint_centihertz": 1234})
+    world = running(settings={"setpoint_centihertz": 1284})
     press(world, "REVERSE")
     world.run(8000)
     menu(world)
     press(world, "SET", "SET", "UP")
-    assert row_2(world) == ">-12.34 Hz", world.lcd()
+    assert row_2(world) == ">-12.84 Hz", world.lcd()
     world.check()
 
 
@@ -200,6 +200,19 @@ def test_every_setting_is_shown_with_its_value_and_its_unit():
         "STEP 0.10 Hz", "LOW 0.00 Hz", "HIGH 87.65 Hz", "KEY WAIT 400 ms", "KEY RATE 120 ms",
         "LIGHT STAYS ON",
     ]  # fmt: skip
+
+
+def test_there_is_no_setting_for_what_the_board_has_not():
+    def start(board):
+        board.backlight = board.serial = None
+        return main.start(board)
+
+    world = World(start)
+    world.run(1000)
+    lists(world, "SETTINGS")
+    shown = entries(world)
+    assert "BAUD 19200" in shown and "LANG. English" in shown, shown
+    assert not [row for row in shown if row.startswith(("LIGHT", "LOG"))], shown
 
 
 def test_a_setting_is_changed_within_its_limits_and_kept():
@@ -430,6 +443,17 @@ def test_a_drive_that_stands_several_times_in_the_list_is_asked_more_often():
     world.run(4000)
     assert kept(world)["repeats"] == {}
     world.check()
+
+
+def test_nobody_stands_in_the_list_less_than_once_or_more_than_four_times():
+    world = panel(addresses=(1, 2))
+    lists(world, "TURNS")
+    press(world, "SET")
+    for keys, told in (("DOWN", "x1"), ("UP", "x2"), (5 * "UP ", "x4"), ("DOWN", "x3")):
+        press(world, *keys.split())
+        assert row_2(world) == ">A1  " + told, (keys, world.lcd())
+    press(world, "PARAM")
+    assert row_2(world) == ">TURNS" and not kept(world).get("repeats"), world.lcd()
 
 
 def test_turns_follow_a_drive_that_comes_goes_or_gets_another_address():

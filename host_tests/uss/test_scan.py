@@ -332,7 +332,9 @@ def test_a_scan_that_is_to_look_no_further_asks_what_it_has_found_not_for_long()
     bench = Bench([Node(3)], listed=False)
     scan = Scan(bench.master, MASK)
     bench.run_until(lambda: scan.step(bench.now) or scan.nodes, 60_000_000)
+    assert scan.progress(1000) < 100
     scan.finish()
+    assert scan.progress(1000) == 1000
     bench.run_until(lambda: scan.step(bench.now))
     questions = [each for each in bench.sent if each.address == 3]
     # And the one that had been posted, and OFF1 in its usual form.
