@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: MIT
 """Who is on the line, and at which rate: by mirror telegrams, which nobody acts on."""
 
+from boards.sim.drives.families import mm420
+from fleet_bench import Fleet
 from round_bench import MASK, MIRROR, READY, RUNNING, Bench, Node, framed
 from uss.errors import UssError
 from uss.finding import scan as scanning
@@ -325,6 +327,26 @@ def test_when_it_is_over_each_step_of_a_slow_loop_asks_the_node_that_waits_longe
     asked = bench.addresses(sent)
     assert sorted(asked[:3]) == [1, 2, 3] and asked == 3 * asked[:3], asked
     assert {each.stw() for each in bench.sent[sent:]} == {0x047E}
+
+
+def test_a_node_is_kept_from_tripping_and_one_that_never_trips_is_left_alone():
+    """P2014 = 0: it does not wait for telegrams. The other one is asked three times within it."""
+    off_times_ms = {3: 0, 4: 900}
+    kinds = {address: {"family": mm420, "parameters": {2014: off_time_ms}}
+             for address, off_time_ms in off_times_ms.items()}  # fmt: skip
+    fleet = Fleet(kinds, listed=False)
+    scan = Scan(fleet.master, fleet.clock.ticks_mask, (3, 4), (12,))
+    fleet.run_until(lambda: scan.step(fleet.clock.ticks_us()))
+    assert {address: node.off_time_ms for address, node in scan.nodes.items()} == off_times_ms
+    assert scan.will_trip == {4: 900}
+    since, until_us = fleet.wire.log.count, fleet.clock.now_us + 3_000_000
+    while fleet.clock.now_us < until_us:
+        scan.keep(fleet.clock.ticks_us())
+        fleet.run(2)
+    log = fleet.wire.log.last(fleet.wire.log.count - since)
+    asked = [characters[2] for _, mine, characters in log if mine]
+    assert set(asked) == {4} and 9 <= len(asked) <= 11, asked
+    assert fleet.motors[4].state == "ready", fleet.motors[4].state
 
 
 def test_a_scan_that_is_to_look_no_further_asks_what_it_has_found_not_for_long():
