@@ -899,6 +899,34 @@ def test_family_layout_and_link_of_a_drive_are_chosen():
     world.check()
 
 
+def test_other_pzd_words_leave_the_requests_short_and_other_pkw_words_do_not():
+    settings = {"kinds": {"1": "mm440/127s"}}
+    world = World(main.start, (1,), kinds=simulated(listed_drives("1=mm440")), settings=settings)
+    world.drives[1].write(2013, 0, 127)
+    world.run(2000)
+    wait_until_known(world)
+    assert chosen(world, "PZD", "PZD 4 WORDS", (2012, 4)) == "mm440/127s+4"
+    assert chosen(world, "PKW", "PKW 4 WORDS", (2013, 4)) == "mm440/4+4"
+    assert chosen(world, "PKW", "PKW 127 WORDS", (2013, 127)) == "mm440/127+4"
+
+
+def test_without_contact_a_family_comes_with_its_own_layout_and_link():
+    """Nobody knows whether the ones that it had are right."""
+    settings = {"kinds": {"1": "mm440", "2": "mm440-bop/4+6"}}
+    kinds = simulated(listed_drives("1=mm440,2=mm440-bop"))
+    world = World(main.start, (1, 2), kinds=kinds, settings=settings)
+    world.drives[2].unplug()
+    world.run(1000)
+    wait_until_known(world)
+    menu(world)
+    press(world, "SET", "DOWN", "SET")
+    for what in ("FAMILY", "FAMILY V20"):
+        go_to(world, what)
+        press(world, "SET")
+    world.run(4000)
+    assert kept(world)["kinds"] == {"1": "mm440", "2": "v20"}
+
+
 def test_each_choice_is_one_that_the_family_has():
     for kind, offered in (
         ("mm3", (1, 1, 1)),
