@@ -145,6 +145,31 @@ def test_no_more_is_read_than_is_wanted():
     assert store.read() == data
 
 
+class Pieces:
+    """A file of which no read may bring more than a chip has room for."""
+
+    def __init__(self, data):
+        self.data = data
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        pass
+
+    def read(self, most):
+        assert 0 < most <= 256, "a chip may not have that in one piece"
+        piece, self.data = self.data[:most], self.data[most:]
+        return piece
+
+
+def test_a_file_is_read_in_pieces():
+    data = bytes(range(256)) * 3
+    store = FileStore("s", lambda path, mode: Pieces(data), None)
+    for most in (-1, 700, 5000):
+        assert store.read(most) == data[: most if most > 0 else None], most
+
+
 def test_without_a_file_nothing_is_set_aside():
     flash = flash_with()
     store_on(flash).set_aside()
