@@ -405,6 +405,19 @@ def test_a_line_that_finds_its_direction_is_busy_until_the_last_stop_bit():
         assert link.sending_us(clock.ticks_us()) == 0
 
 
+def test_how_late_a_line_that_finds_its_direction_may_notice_a_burst_is_said():
+    """1.25 ms at the least after its end, and 14 ms more at the most."""
+    link, uart, clock = self_directed()
+    assert link.resolution_us == 1_250 + 14_000
+    calls = []
+    link.on_activity = lambda: calls.append(clock.ticks_us())
+    clock.advance(50_000)
+    uart.heard = REQUEST
+    uart.handler(uart)
+    assert calls == [50_000] and link.receive(bytearray(260), 0) == len(REQUEST)
+    assert link.received_at == 50_000 - 1_250
+
+
 def test_what_was_heard_before_a_request_does_not_date_the_reply():
     link, uart, clock = self_directed()
     clock.advance(100_000)

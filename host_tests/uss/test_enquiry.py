@@ -26,6 +26,7 @@ def asked(values):
     try:
         while True:
             _, number, index = questions.send(value)
+            assert index in (0, 1), "no drive has a third link"
             value = values.get((number, index))
     except StopIteration:
         return node
