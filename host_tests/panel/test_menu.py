@@ -572,6 +572,9 @@ def test_order_and_turns_are_not_changed_while_a_motor_runs():
             press(world, "UP", "SET")
         assert world.reads("STOP ALL FIRST"), (name, world.lcd())
         assert world.drives[1].state == "running"
+        world.run(3000)
+        press(world, "PARAM")  # nothing was changed, so there is nothing to stop for
+        assert row_2(world) == ">" + name, world.lcd()
         world.check()
 
 

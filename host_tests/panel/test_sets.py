@@ -1083,6 +1083,8 @@ def test_a_bad_file_is_told_by_what_is_wrong_and_changes_nothing():
     press(world, "DOWN")
     world.run(500)
     assert row_2(world) == ">? a-pump-or-a-f", world.lcd()
+    press(world, "SET")
+    assert row_1(world) == "a-pump-or-   1/4", world.lcd()
     world.check()
 
 
