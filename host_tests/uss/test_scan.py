@@ -16,7 +16,13 @@ def found_on(nodes, scan=None, **more):
     """A scan of a line on which the master knows nobody; the bench and the scan."""
     bench = Bench(nodes, listed=False, **more)
     scan = Scan(bench.master, MASK)
-    bench.run_until(lambda: scan.step(bench.now), 60_000_000)
+
+    def step():
+        is_over = scan.step(bench.now)
+        assert is_over is scan.over, "the step with which it is over has not said so"
+        return is_over
+
+    bench.run_until(step, 60_000_000)
     return bench, scan
 
 
@@ -419,6 +425,7 @@ class Lines:
             if scan.step(now):
                 assert scan.step(now)  # it stays over
                 return
+            assert not scan.over, "the step with which it is over has not said so"
 
 
 def test_the_rate_is_found_and_who_is_there():
