@@ -155,9 +155,9 @@ def test_its_counters_have_16_bits():
     pacer = bench.pacer
     pacer.runs = pacer.put_off = 0xFFFE
     for wanted in (0xFFFF, 0, 1):
-        bench.link.on_activity()
-        with Depth(DEEP_BYTES):
-            bench.link.on_activity()
+        for depth_bytes in (0, DEEP_BYTES):
+            with Depth(depth_bytes):
+                bench.link.on_activity()
         assert (pacer.runs, pacer.put_off) == (wanted, wanted)
 
 
