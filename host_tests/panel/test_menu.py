@@ -930,6 +930,24 @@ def test_without_contact_a_family_comes_with_its_own_layout_and_link():
     assert kept(world)["kinds"] == {"1": "mm440", "2": "v20"}
 
 
+def test_choosing_begins_with_the_first_where_the_drive_has_what_its_family_has_not():
+    """It was found by trying: the family in the list is the wrong one."""
+    settings = {"kinds": {"1": "mm420"}}
+    world = World(
+        main.start, (1,), kinds=simulated(listed_drives("1=mm440/4+8")), settings=settings
+    )
+    for _ in range(60):
+        world.run(1000)
+        if world.app.panel.selected.drive.contact:
+            break
+    world.run(1000)
+    menu(world)
+    press(world, "SET", "SET")
+    go_to(world, "PZD 8")
+    press(world, "SET")
+    assert world.lcd() == ("PZD WORDS    1/3", ">PZD 2 WORDS    "), world.lcd()
+
+
 def test_each_choice_is_one_that_the_family_has():
     for kind, offered in (
         ("mm3", (1, 1, 1)),
