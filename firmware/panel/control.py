@@ -339,8 +339,6 @@ class Control:
                 self.lost_running = is_lost_running
                 if is_lost_running:
                     self._note(texts.OTHER_LOST)
-            if self.absence_known:
-                self.absence_known = False
         if self.phase == CHECKING:
             self._finish_check(now_us)
             return  # that may have taken long

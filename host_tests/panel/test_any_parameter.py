@@ -141,6 +141,21 @@ def test_a_group_is_walked_both_ways_and_round():
     world.check()
 
 
+def test_no_other_index_is_gone_to_while_the_first_one_of_a_group_is_looked_for():
+    world = world_of()
+    go_to(world, "PARAMETERS")
+    while not row_2(world).startswith(">Ramps"):
+        press(world, "DOWN")
+    look = Search.step
+    Search.step = lambda search: None  # as if it took long
+    try:
+        press(world, "SET", "UP", "UP")
+    finally:
+        Search.step = look
+    wait(world, "P1120[0]  10.00s")
+    world.check()
+
+
 def test_while_the_first_one_of_a_group_is_looked_for_there_are_dots():
     panel = world_of().app.panel
     panel.remembered["panel.lookup.parameter"] = b"1120-1124", FIRST
@@ -280,6 +295,7 @@ def test_limits_and_their_unit_are_shown_as_far_as_the_row_has_room():
         (305, b"A1 0.01...10000A"),
         (311, b"A1 0...40000"),  # 1/min
         (27, b"A1"),
+        (356, b"A1"),  # no mH of the address
     ):
         shown.row = catalogue.find("mm440", number)
         assert shown.row_1() == row, shown.row_1()

@@ -174,8 +174,6 @@ def test_a_step_says_in_turn_its_name_what_the_drive_has_and_what_to_know_about_
         assert settled_heading(world)[0] == "P%04d" % number
         name, note = steps[number][1].decode(), steps[number][catalogue.STEP_NOTE].decode()
         rows = rows[: rows.index(rows[0], 1)]  # all of them once
-        first = rows.index(name)
-        rows = rows[first:] + rows[:first]
         assert rows[:2] == [name, has] and " ".join(rows[2:]) == note, (rows, note)
     press(world, "SET")
     assert settled_heading(world)[0] == "P0205" and "SET=YES" not in row_2(world), world.lcd()

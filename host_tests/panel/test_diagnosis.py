@@ -415,6 +415,9 @@ def test_a_task_is_told_as_what_it_does_to_the_parameter():
         does = "WRITE" if task in (2, 3, 7, 8) else "STORE" if task in (11, 12, 13, 14) else "READ"
         told = does + " P1999[99]" if task else "NO TASK"
         assert entry(world) == told, (task, world.lcd())
+    for task, told in ((1, "READ P127999.."), (2, "WRITE P127999.."), (11, "STORE P127999..")):
+        put(witness.request, (task << 12 | 1999, 0xFF63))
+        assert entry(world) == told, world.lcd()  # cut at its end it would tell another index
     for index in (254, 255):
         put(witness.request, (1 << 12 | PARAMETER_CHANGED, index))
         assert entry(world) == "READ P0000[%d]" % index, world.lcd()

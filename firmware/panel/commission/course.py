@@ -47,6 +47,7 @@ class List(Entries):
         self._told = panel.remembered.setdefault(_TOLD, {}).setdefault(argument, [])
         self._steps = []
         self._search = Search()  # for all steps, then for the rows of the one that is shown
+        self._first_turn = 0  # of the page, since the name of the step is known
         self._look(None)
         numbers = b"%d00-%d99" % (procedure, procedure)
         self._search.begin(catalogue.rows(self._table, numbers, "S", paced=True))
@@ -61,7 +62,6 @@ class List(Entries):
         """Show a step, of which nothing is known yet."""
         self._shown = step
         self._phase = LOOKS
-        self._first_turn = self.panel.announcer.page_turns  # its name comes first
         self._lines = []  # its name, and what to know about it
         self._note = None  # makes the lines of that, one in a step
         self._row = None  # of its parameter
@@ -213,6 +213,7 @@ class List(Entries):
                 self._read_all()
         elif row and not self._lines:
             self._lines = [text(row)[:_WIDTH]]
+            self._first_turn = self.panel.announcer.page_turns  # it comes first
             self._note = broken(text(row, catalogue.STEP_NOTE), _WIDTH)
         elif row:
             self._row = row

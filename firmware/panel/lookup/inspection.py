@@ -43,7 +43,7 @@ class Inspection(Answers):
             if direction and not self._is_moving:
                 self._walk(direction)
             direction = acts.direction("UP", "DOWN")
-            if direction:
+            if direction and not self._is_coming:
                 self._go_to_index(direction, now_ms)
 
     def _type(self, acts, now_ms):

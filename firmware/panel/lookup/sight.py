@@ -87,8 +87,9 @@ class Sight:
         if row and row[catalogue.HIGHEST]:
             between = row[catalogue.LOWEST] + b"..." + row[catalogue.HIGHEST]
             for more in (b" " + between, row[catalogue.UNIT]):
-                if len(limits) + len(more) <= texts.ROW_WIDTH:
-                    limits += more
+                if len(limits) + len(more) > texts.ROW_WIDTH:
+                    break  # a unit alone would be one of the address
+                limits += more
         return limits
 
     def _value_row(self):

@@ -36,13 +36,12 @@ class List(Entries):
 
     def __init__(self, panel, argument):
         Entries.__init__(self, panel, argument)
-        self._telegram = self._mirror = Mirror(0, bytes(_NET_MAX))
+        self._mirror = Mirror(0, bytes(_NET_MAX))
+        self._telegram = self._mirror  # the one that is under way, or was
 
     def _begin(self, address):
         """Look for a drive at another address."""
         self._address = address
-        self._telegram = self._mirror  # the one that is under way, or was
-        self._sent = False
         self._row = self._net_count = self._silences = 0
         self._is_nobody = self._is_wanted = False
         self._enquirer = None

@@ -38,7 +38,6 @@ class List(Entries):
         if self._times is None:
             return False
         most = on_demand.load("settings_file").REPEATS_MAX
-        on_demand.drop("settings_file")
         self._times = max(1, min(most, self._times + (1 if steps > 0 else -1)))
         return True
 

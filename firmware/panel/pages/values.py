@@ -197,8 +197,6 @@ class Values:
 def _hundredths(job, factor):
     """What a job has read, in hundredths of the unit, or None. It takes no floating-point number,
     which would take memory each time."""
-    if job.state != pkw.DONE:
-        return None
     if factor:
         return job.low * factor if job.width == pkw.WORD else None
     if job.width != pkw.DOUBLE:

@@ -130,4 +130,7 @@ def _task(pke, ind, error, is_reply):
         text = words.WRITES
     elif pkw.FIRST_PERMANENT <= code < pkw.TEXT:
         text = words.STORES
-    return texts.of(text, (pke & _NUMBER) + page * pkw.PNU_PER_PAGE, ind & 0xFF)
+    row = texts.of(text, (pke & _NUMBER) + page * pkw.PNU_PER_PAGE, ind & 0xFF)
+    if len(row) > texts.ROW_WIDTH - 1:  # cut at its end, it would tell another index
+        row = row[: row.index(b"[")] + b".."
+    return row
