@@ -69,3 +69,7 @@ def test_a_drive_is_found_and_another_one_commissioned():
 
 def test_a_set_is_saved_compared_and_written():
     is_as_recorded("sets")
+
+
+def test_each_setting_is_changed():
+    is_as_recorded("settings")
