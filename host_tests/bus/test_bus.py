@@ -25,13 +25,21 @@ def near(value, wanted, within=0.02):
     assert abs(value - wanted) <= within, (value, wanted)
 
 
+def took_s(bench, action, *arguments):
+    """How many seconds an action takes on the line."""
+    since_us = bench.clock.now_us
+    action(*arguments)
+    return (bench.clock.now_us - since_us) / 1_000_000
+
+
 # --- to run -------------------------------------------------------------------------------------
 
 
 def test_a_drive_runs_at_a_frequency_and_tells_its_speed():
     bench = Bench()
     drive = bench.drive
-    drive.run(25.0)
+    bench.bus.wait(0.5)
+    assert took_s(bench, drive.run, 25.0) < 0.5  # it says at once that it runs
     assert bench.bus.wait(3, lambda: drive.hertz > 24.9)
     near(drive.hertz, 25.0)
     near(drive.percent, 50.0)
@@ -443,7 +451,9 @@ def test_stop_beats_a_start_that_still_waits():
     assert not bench.drive.is_running
     bench.motor().write(10, 0, 1)  # it takes its time to start
     bench.at(1.5, bench.drive.stop)
+    since_us = bench.clock.now_us
     assert "told to stop meanwhile" in refusal(NotStarted, bench.drive.run, 10.0)
+    assert bench.clock.now_us - since_us in range(1_500_000, 1_600_000)  # nobody waits for more
     bench.end()
 
 

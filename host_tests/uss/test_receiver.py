@@ -70,6 +70,17 @@ def test_a_link_that_looks_late_is_believed_about_a_reply_behind_the_echo_too():
         assert come_with_the_echo(Line(polled_us=TCH // 2), REPLY, pause_us) == finding, pause_us
 
 
+def test_what_was_sent_is_a_reply_only_if_there_certainly_was_a_start_interval():
+    """Else it is its echo. How late a link may have looked counts against the reply."""
+    for polled_us in (0, TCH // 2, 5 * TCH):
+        rounded_us = len(REPLY) * TCH - Line().receiver.sixteen_us
+        least_us = LINE.start_interval_us + polled_us - rounded_us
+        for pause_us, finding in ((least_us, GOOD), (least_us - 1, WAITING)):
+            line = Line(polled_us=polled_us)
+            assert line.come(echo_of(line), pause_us) == finding, (polled_us, pause_us)
+            assert line.receiver.echo == (finding == WAITING)
+
+
 def test_a_reply_that_begins_in_one_burst_with_the_echo_is_put_together():
     """And it has its residual run time from its own first character on."""
     for cut in range(1, 16):
@@ -162,7 +173,8 @@ def test_a_whole_telegram_of_another_length_is_told_from_noise():
             left_us = line.receiver.due_us(line.link, line.receiver.heard_at)
             assert 2 * TCH <= left_us <= 3 * TCH  # nobody waits for the rest of it for long
             now = line.receiver.heard_at + left_us
-            assert line.receiver.take(line.link, now) == GARBLED, cut
+            for late_us, finding in ((-1, WAITING), (0, GARBLED), (1, GARBLED)):
+                assert line.receiver.take(line.link, now + late_us) == finding, (cut, late_us)
         assert Line().come(whole[:-1] + b"\x55", 3 * TCH) == GARBLED
         assert Line().come(whole + b"\x00", 3 * TCH) == GARBLED
     for length in (0, 1, 2, 255):
@@ -214,6 +226,51 @@ def test_a_link_that_looks_late_is_believed_as_far_as_it_knows():
     assert line.come(REPLY, 100) == GOOD
     line = Line(polled_us=5_000)
     assert line.come(REPLY, 3 * TCH, after_us=4_000) == GOOD
+
+
+def test_a_link_that_looks_late_is_believed_about_the_end_of_a_reply_too():
+    """The residual run time may have been kept, and a telegram of another length may go on."""
+    polled_us = 2_000
+    longest_us = LINE.residual_us(12) + polled_us
+    for passed_us, finding in ((longest_us, GOOD), (longest_us + 1, CUT_OFF)):
+        line = Line(polled_us=polled_us)
+        line.come(REPLY[:7], 3 * TCH)
+        began_at = line.receiver.heard_at - (7 * line.receiver.sixteen_us >> 4)
+        gap_us = began_at + passed_us - line.receiver.heard_at - 9 * TCH
+        assert line.come(REPLY[7:], gap_us) == finding, passed_us
+        line = Line(polled_us=polled_us)
+        line.come(REPLY[:7], 3 * TCH)
+        now = line.receiver.heard_at
+        due_us = line.receiver.due_us(line.link, now)
+        assert due_us == began_at + longest_us + 1 - now
+        now += due_us + passed_us - longest_us - 1
+        finding = WAITING if finding == GOOD else CUT_OFF
+        assert line.receiver.take(line.link, now) == finding, passed_us
+    line = Line(polled_us=polled_us)
+    line.come(b"\x02\x06\x01", 3 * TCH)
+    due_us = line.receiver.due_us(line.link, line.receiver.heard_at)
+    assert due_us == LINE.start_interval_us + polled_us + 1
+    for now, finding in ((due_us - 1, WAITING), (due_us, GARBLED)):
+        assert line.receiver.take(line.link, line.receiver.heard_at + now) == finding
+
+
+def test_a_link_without_interrupts_is_looked_at_when_the_reply_may_be_complete():
+    """And then every millisecond, up to the end of the response delay."""
+    line = Line()
+    line.link.interrupts = False
+    earliest_us = LINE.start_interval_us + line.receiver.sixteen_us  # of 16 characters
+    window_us = line.receiver.window_us
+    for passed_us, due_us in (
+        (0, earliest_us),
+        (earliest_us - 1_001, 1_001),
+        (earliest_us - 999, 1_000),
+        (earliest_us + 50, 1_000),
+        (window_us - 400, 400),
+        (window_us + 400, 1),
+    ):
+        assert line.receiver.due_us(line.link, SENT_AT + passed_us) == due_us, passed_us
+    line.link.interrupts = True
+    assert line.receiver.due_us(line.link, SENT_AT) == window_us
 
 
 def test_the_counter_may_wrap_anywhere_in_an_exchange():
@@ -282,6 +339,12 @@ def test_what_comes_in_without_end_is_not_waited_for_longer_than_a_reply_takes()
     last_us = line.receiver.window_us + LINE.residual_us(12)
     assert line.silence(last_us - 1) == WAITING
     assert line.silence(last_us) == BAD_START
+    line = coming()
+    line.link.resolution_us = 2_000
+    assert line.silence(last_us + 1_999) == WAITING
+    due_us = line.receiver.due_us(line.link, SENT_AT + last_us)
+    assert due_us == 2_000
+    assert line.silence(last_us + 2_000) == BAD_START
 
 
 def test_what_is_still_coming_when_a_reply_is_given_up_keeps_the_line_from_being_silent():
