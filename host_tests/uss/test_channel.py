@@ -11,6 +11,7 @@ from uss import pkw
 from uss.channel import JOBS_MAX, REST_MAX
 from uss.layout import VARIABLE
 from uss.tasks import arrays
+from uss.tasks.change_reports import Reports
 
 NO_TASK = (0, 0, 0, 0)
 
@@ -97,6 +98,14 @@ def test_with_variable_length_the_task_makes_the_telegram_longer_and_shorter():
         assert job.state == pkw.DONE
         assert line.send() == (0, 0, 0)
         line.answer(0, 0, 0)
+
+
+def test_with_variable_length_a_task_must_find_room_in_the_request():
+    line = Line(VARIABLE, longest=3)
+    job = line.ask(pkw.write_double(731, 1))
+    assert job.state == pkw.REFUSED and job.error == pkw.TOO_SMALL
+    line.ask(pkw.write_word(731, 1))
+    assert line.send() == (0x22DB, 0, 1)
 
 
 def test_a_drive_without_pkw_words_cannot_be_asked():
@@ -354,6 +363,56 @@ def test_what_may_be_too_old_by_then_is_not_foreseen():
     assert job.state == pkw.TIMED_OUT
 
 
+def foreseen(line, answering):
+    """The words that are foreseen; None if that depends."""
+    words = line.channel.foresee(answering)
+    return words and tuple(words[at] << 8 | words[at + 1] for at in range(0, 8, 2))
+
+
+def test_what_is_foreseen_behind_an_answer_is_what_is_sent_then():
+    """Whatever was asked, and whatever comes next."""
+    for make in (
+        lambda: pkw.read(700),
+        lambda: pkw.write_word(700, 5),
+        lambda: pkw.write_word(700, 5, eeprom=True),
+        lambda: pkw.write_double(700, 5, eeprom=True),
+        lambda: arrays.write_element_word(700, 0, 5, eeprom=True),
+        lambda: arrays.write_element_double(700, 0, 5, eeprom=True),
+    ):
+        for number, index in ((None, 0), (700, 0), (700, 1), (5, 0), (1000, 0), (2700, 0)):
+            line = Line()
+            job = line.ask(make())
+            if number is not None:
+                line.ask(pkw.read(number, index))
+            assert foreseen(line, True) == foreseen(line, False) == line.send()
+            assert foreseen(line, False) == line.sent[-1]  # an old answer comes
+            following = foreseen(line, True)
+            reply = {1: 1, 2: 1, 11: 5, 12: 4, 13: 2, 14: 1}[job.task]
+            line.answer(reply << 12 | 700, 0, 0, 5)
+            assert job.state == pkw.DONE
+            assert foreseen(line, False) == line.send() == following, (job, number)
+            if following == NO_TASK:
+                following = foreseen(line, True)
+                line.answer(*NO_TASK)
+                assert foreseen(line, False) == line.send() == following, (job, number)
+
+
+def test_telegrams_that_were_foreseen_end_a_task_as_any_others_do():
+    """With one without the task behind it, and none more: the next question is sent at once."""
+    line = Line()
+    for value in range(2 * JOBS_MAX):
+        job = line.ask(pkw.read(700))
+        for words, reply in ((job.words, (0x12BC, 0, 0, value)), (bytes(8), NO_TASK)):
+            assert line.channel.foresee(False) == words
+            line.channel.sent(words, 0, line.now)
+            assert not line.channel.idle
+            line.answer(*reply)
+        assert job.state == pkw.DONE and job.low == value and line.channel.idle
+    Reports(line.channel)
+    line.channel.sent(bytes(8), 0, line.now)  # it was foreseen before
+    assert not line.channel.idle
+
+
 def test_a_drive_that_lags_three_telegrams_is_read_however_slow_the_round_is():
     line = Line()
     job = line.ask(pkw.read(1000))
@@ -470,6 +529,20 @@ def test_a_drive_that_was_silent_before_the_task_came_says_nothing_about_it():
     assert job.state == pkw.PENDING
     for silent in range(1, 4):  # but these do
         assert line.send() == (0x13E8, 0, 0, 0)
+        line.channel.miss(line.now, silent)
+    line.send()
+    line.answer(*NO_TASK)
+    assert job.state == pkw.UNANSWERED
+
+
+def test_a_silence_before_its_first_telegram_is_not_held_against_a_task():
+    line = Line()
+    line.send()
+    job = line.ask(pkw.read(999))
+    for _ in range(3):
+        line.channel.miss(line.now, 1)  # of the one that is on the line
+    for silent in range(1, 4):
+        assert line.send() == (0x13E7, 0, 0, 0)
         line.channel.miss(line.now, silent)
     line.send()
     line.answer(*NO_TASK)

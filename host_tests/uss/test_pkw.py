@@ -46,6 +46,7 @@ def test_pages_of_numbers_from_2000_on():
         assert pkw.ind(number, 3) == high_byte << 8 | 3, number
     assert asked(pkw.read(8820, 16))[:2] == (0x1334, 0x2010)
     assert pkw.pke(1, 8820) == 0x1334
+    assert asked(pkw.read(127999, 254))[:2] == (0x17CF, 0xFCFE)  # the last of all
 
 
 def test_every_page_can_be_told_from_every_other():
