@@ -363,6 +363,22 @@ def test_what_may_be_too_old_by_then_is_not_foreseen():
     assert job.state == pkw.TIMED_OUT
 
 
+def test_the_time_of_a_job_goes_on_while_it_waits_for_the_end_of_the_one_before():
+    line = Line()
+    line.ask(pkw.read(700))
+    job = line.ask(pkw.read(700))
+    line.send()
+    line.answer(0x12BC, 0, 0, 5)
+    for _ in range(REST_MAX):
+        assert line.send(us=100_000) == NO_TASK
+        line.answer(0x12BC, 0, 0, 5)
+    for _ in range(5):
+        assert line.send() == (0x12BC, 0, 0, 0) and job.state == pkw.PENDING
+        line.answer(*NO_TASK)
+    line.send(us=100_000)
+    assert job.state == pkw.TIMED_OUT  # 2 s after its turn came
+
+
 def foreseen(line, answering):
     """The words that are foreseen; None if that depends."""
     words = line.channel.foresee(answering)
@@ -601,6 +617,26 @@ def test_a_drive_that_lags_is_silent_for_longer_on_a_task_that_it_does_not_know(
         assert following.state == pkw.DONE and following.low == 5, lag
 
 
+def test_a_drive_that_lags_may_be_silent_for_as_many_telegrams_without_the_task():
+    """If it is so for one more, the wire is to blame. Four at the most are counted."""
+    for lags in range(6):
+        for silent, state in ((0, pkw.UNANSWERED), (1, pkw.PENDING)):
+            line = Line()
+            job = line.ask(pkw.read(1000))
+            for _ in range(lags):
+                line.send()
+                line.answer(*NO_TASK)
+            for _ in range(3):
+                assert line.send() == (0x13E8, 0, 0, 0)
+                line.miss()
+            for _ in range(min(lags, 4) + silent):
+                assert line.send() == NO_TASK
+                line.miss()
+            assert line.send() == NO_TASK
+            line.answer(*NO_TASK)
+            assert job.state == state, (lags, silent)
+
+
 def test_in_a_slow_round_every_second_telegram_goes_without_the_task():
     """With the next silence half of the lost time would be over: the drive is asked without it in
     between, and three silences on it, each behind an answer, are enough all the same.
@@ -614,6 +650,25 @@ def test_in_a_slow_round_every_second_telegram_goes_without_the_task():
         assert line.send(us=300_000) == NO_TASK
         line.answer(*NO_TASK)
     assert job.state == pkw.UNANSWERED
+
+
+def test_in_a_slow_round_two_silences_are_enough_of_a_drive_that_lags():
+    """Its old answer has come between; of one that has not answered so, a third is wanted."""
+    for lags, state in ((1, pkw.UNANSWERED), (0, pkw.PENDING)):
+        line = Line()
+        job = line.ask(pkw.read(999))
+        for _ in range(lags):
+            line.send()
+            line.answer(*NO_TASK)
+        for silent in (1, 2):
+            assert line.send(us=300_000) == (0x13E7, 0, 0, 0)
+            line.channel.miss(line.now, silent, silent == 2)
+        for silent in range(lags):
+            assert line.send(us=300_000) == NO_TASK
+            line.channel.miss(line.now, 3 + silent, True)
+        assert line.send(us=300_000) == NO_TASK
+        line.answer(*NO_TASK)
+        assert job.state == state, lags
 
 
 def test_in_a_slow_round_a_single_loss_is_not_held_against_a_question():

@@ -16,6 +16,7 @@ from uss.going_on import plan as plans
 from uss.going_on import python
 from uss.layout import Layout
 from uss.outside import Mirror
+from uss.tasks.change_reports import Reports
 
 IDLE_US = 1_667  # 32 bits at 19200
 FAULT, INHIBIT = 0x0008, 0x0040
@@ -313,6 +314,35 @@ def test_the_next_task_follows_the_answer_at_once():
     assert len(bench.sent) - sent - (bench.went_on - went_on) <= 2
 
 
+def test_whoever_follows_change_reports_or_no_longer_does_is_asked_as_before():
+    """While they are followed a reply is looked at first: it may hold a report."""
+    node = Telling(1)
+    bench = running(node)
+    reports = Reports(bench.drives[1].channel)
+    bench.run(100_000)
+    went_on = bench.went_on
+    bench.run(200_000)
+    assert bench.went_on == went_on
+    reports.close()
+    jobs = ask(bench, 1, (700, 5))
+    bench.run(300_000)
+    assert [job.integer_value() for job in jobs] == [700, 5]
+    assert bench.went_on > went_on + 3 and node.stw == 0x047F
+
+
+def test_a_question_that_comes_while_there_is_time_is_in_the_next_telegram():
+    bench = going([Telling(1)])
+    begin_of_a_telegram(bench)
+    bench.run(10_500)
+    jobs = ask(bench, 1, (700, 5))
+    bench.due = bench.now  # the engine is entered, as a call has overtaken what was ready
+    went_on, sent = bench.went_on, len(bench.sent)
+    bench.run(150_000)
+    assert [job.state for job in jobs] == [pkw.DONE, pkw.DONE]
+    assert [telegram.task() for telegram in bench.sent[sent:]][:3] == [1, 1, 0]
+    assert bench.went_on - went_on == len(bench.sent) - sent
+
+
 def test_the_same_question_twice_has_no_task_between():
     node = Telling(1)
     bench = going([node])
@@ -481,6 +511,26 @@ def test_a_drive_that_is_divided_anew_when_the_link_has_gone_on_has_missed_its_t
     assert drive.counters[0] == good and sum(drive.counters[1:]) == missed + 1
     bench.run(200_000)
     assert drive.contact and drive.zsw == READY and sum(drive.counters[1:]) == missed + 1
+
+
+def test_a_call_overtakes_what_is_ready_if_there_is_time_to_make_another_ready():
+    """Up to a millisecond and a half before the reply can be there; see `hal.pacer`."""
+    for foreseen in (True, False):
+        bench = going([Node(1), Node(2)], foreseen=foreseen)
+        begin_of_a_telegram(bench)
+        bench.run(10_500)  # the reply is awaited
+        master, timing = bench.master, bench.timing
+        assert not master.is_overtaken(bench.now)
+        bench.drives[2].stop()
+        assert master.is_overtaken(bench.now)
+        last_at = bench.sent[-1].at + 2 * timing.telegram_us(12) + timing.start_interval_us
+        assert master.is_overtaken(last_at - 1_500 - LATE_US)
+        assert not master.is_overtaken(last_at - 1_500 + LATE_US)
+    bench = Bench([Node(1)], idle_us=IDLE_US, goes_on=True, foreseen=True, echo=True)
+    bench.contact()
+    begin_of_a_telegram(bench)
+    bench.drives[1].stop()
+    assert not bench.master.is_overtaken(bench.now)  # nothing is made ready on such a line
 
 
 def test_a_telegram_outside_the_list_is_the_next_but_one_at_the_latest():

@@ -5,9 +5,9 @@ Specification A-5.1.2 (start interval), A-5.2.1.1 (response delay), A-6.3 (resid
 """
 
 from receiver_bench import LINE, MASK, REPLY, SENT_AT, TCH, Line, Link
-from uss import receiver, telegram
+from uss import bus, receiver, telegram
 from uss.drive import Drive
-from uss.layout import Layout
+from uss.layout import STANDARD, VARIABLE, Layout
 from uss.receiver import CUT_OFF, GARBLED, SILENT, WAITING
 from uss.telegram import BAD_ADDRESS, BAD_BCC, BAD_LENGTH, BAD_START, GOOD
 
@@ -88,6 +88,11 @@ def test_a_reply_that_begins_in_one_burst_with_the_echo_is_put_together():
         assert come_with_the_echo(line, REPLY[:cut], 3 * TCH) == WAITING
         assert line.come(REPLY[cut:], 0) == GOOD, cut
         assert bytes(line.receiver.buffer[: line.receiver.count]) == REPLY, cut
+        line = Line()  # the echo comes in pieces as well, and ends with the request
+        echo = echo_of(line)
+        assert line.come(echo[:cut], -len(echo) * TCH) == WAITING
+        assert line.come(echo[cut:] + REPLY, (3 + cut - len(echo)) * TCH) == GOOD, cut
+        assert line.receiver.echo and not line.receiver.stray
     line = Line()
     line.drive = Drive(1, MASK, layout=Layout(3, 2))
     line.drive.fill(0)
@@ -105,6 +110,7 @@ def test_a_reply_that_begins_in_one_burst_with_the_echo_is_put_together():
 
 def test_silence_is_noticed_when_the_response_delay_is_over():
     line = Line()
+    assert line.receiver.window_us == 20_000 + TCH + 2  # two instants are rounded
     assert line.silence(20_000) == WAITING  # its first character may be under way
     assert line.silence(20_000 + TCH + 3) == SILENT
 
@@ -147,6 +153,20 @@ def test_a_reply_that_breaks_off_is_given_up_after_the_residual_time():
     assert line.silence(began_us + LINE.residual_us(12) + 12) == CUT_OFF
 
 
+def test_until_its_length_has_come_a_reply_may_take_as_long_as_one_that_is_awaited():
+    """With a variable length as the longest (A-5.2.1.2), else as one of the request's length."""
+    for layout, net_count in ((STANDARD, 12), (Layout(3, 2), 10), (Layout(VARIABLE, 2), 252)):
+        line = Line()
+        line.drive = Drive(1, MASK, layout=layout)
+        line.drive.fill(0)
+        line.receiver.open(line.drive, SENT_AT)
+        line.come(REPLY[:1], 3 * TCH)
+        longest_us = 3 * TCH + LINE.residual_us(net_count)
+        assert line.silence(longest_us) == WAITING, layout
+        assert line.receiver.due_us(line.link, SENT_AT + longest_us) in (1, 2)
+        assert line.silence(longest_us + 2) == CUT_OFF, layout
+
+
 def test_every_other_error_is_found():
     """Also by a link that cannot tell by the pause whether an echo may have come."""
     other = bytearray(REPLY)
@@ -181,8 +201,13 @@ def test_a_whole_telegram_of_another_length_is_told_from_noise():
                 assert line.receiver.take(line.link, now + late_us) == finding, (cut, late_us)
         assert Line().come(whole[:-1] + b"\x55", 3 * TCH) == GARBLED
         assert Line().come(whole + b"\x00", 3 * TCH) == GARBLED
+    for net_count in (1, 252):  # the shortest and the longest that there are
+        whole = bytes((2, net_count + 2, 1)) + bytes(net_count)
+        whole += bytes((telegram.bcc(whole, len(whole)),))
+        assert Line().come(whole, 3 * TCH) == BAD_LENGTH
     for length in (0, 1, 2, 255):
-        assert Line().come(bytes((2, length, 1, 0, 0)), 3 * TCH) == GARBLED, length
+        for more in (b"", b"\x01\x00\x00"):  # its second character has said it
+            assert Line().come(bytes((2, length)) + more, 3 * TCH) == GARBLED, length
 
 
 def test_a_whole_telegram_of_another_length_and_address_is_somebody_elses():
@@ -312,6 +337,17 @@ def test_noise_of_any_kind_is_survived_and_the_next_reply_taken():
 def test_every_finding_has_a_name():
     assert len(receiver.FINDINGS) == len(receiver.TROUBLES) == GARBLED + 1
     assert receiver.FINDINGS[: len(telegram.FINDINGS)] == telegram.FINDINGS
+
+
+def test_every_trouble_is_said_in_words():
+    for trouble, words in (
+        (receiver.SILENCE, "does not answer"),
+        (receiver.NOISE, "is noise"),
+        (receiver.OTHER_LENGTH, "of another length"),
+        (receiver.OTHER_ADDRESS, "another address"),
+        (receiver.WRONG_CHECK, "a wrong check character"),
+    ):
+        assert words in bus.TROUBLES[trouble], words
 
 
 # --- a link that announces the end of what is coming --------------------------------------------
