@@ -341,8 +341,10 @@ def test_a_drive_that_is_held_by_off2_from_elsewhere_is_not_started():
     bench = Bench()
     bench.bus.wait(0.5)
     bench.drive._may_start = lambda: False  # what a terminal does to the status word
+    since_us = bench.clock.now_us
     text = refusal(NotStarted, bench.drive.run, 10.0)
     assert text == "drive 1 is inhibited, or stopped by OFF2 or OFF3 from elsewhere"
+    assert 1_000_000 < bench.clock.now_us - since_us < 1_600_000  # a second, and the questions
     bench.end()
 
 
@@ -413,7 +415,10 @@ def test_one_that_would_run_on_is_started_when_its_owner_says_that_it_may():
 
 def test_a_drive_that_does_not_start_is_told_to_stop_so_that_it_does_not_start_later():
     bench = Bench(parameters={2014: 2_000, 10: 1})
+    bench.bus.wait(0.5)
+    since_us = bench.clock.now_us
     assert "is it being commissioned" in refusal(NotStarted, bench.drive.run, 10.0)
+    assert 5_000_000 < bench.clock.now_us - since_us < 5_600_000  # so long it may take
     bench.bus.wait(0.1)
     assert bench.stws(1)[-1] == pzd.OFF1
     bench.motor().write(10, 0, 0)
@@ -1588,6 +1593,8 @@ def test_how_long_a_reply_may_take_and_a_silence_last_is_up_to_the_program():
         bus = Master(stage.board.make_link(19200), 19200, **options)
         drive = bus.add(1, MM420)
         assert bus.wait(2, lambda drive=drive: drive.contact)
+        stage.drives[1].reply_delay_us = 18_000  # by the specification it has 20 ms
+        assert bus.wait(0.5) and drive.contact and not drive.silent
         stage.drives[1].reply_delay_us = 40_000
         assert not bus.wait(silent_s - 0.1, lambda drive=drive: not drive.contact)
         assert bus.wait(0.3, lambda drive=drive: not drive.contact) != answers, options
@@ -1597,7 +1604,9 @@ def test_how_long_a_reply_may_take_and_a_silence_last_is_up_to_the_program():
 def test_the_link_has_a_clock_and_the_rate_is_one_of_uss():
     bench = Bench(())
     link = bench.board.make_link(19200)
-    assert Master(link).clock is bench.board.clock
+    bus = Master(link)
+    assert bus.clock is bench.board.clock
+    assert bus.engine.timing.baud == 19200 and bus.engine.timing.reply_timeout_us == 20_000
     assert "12345" in refusal(ValueError, Master, link, baud=12345)
 
 

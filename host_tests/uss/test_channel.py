@@ -424,9 +424,12 @@ def test_telegrams_that_were_foreseen_end_a_task_as_any_others_do():
             assert not line.channel.idle
             line.answer(*reply)
         assert job.state == pkw.DONE and job.low == value and line.channel.idle
-    Reports(line.channel)
+    reports = Reports(line.channel)
     line.channel.sent(bytes(8), 0, line.now)  # it was foreseen before
     assert not line.channel.idle
+    reports.close()
+    line.channel.sent(bytes(8), 0, line.now)
+    assert line.channel.idle
 
 
 def test_a_drive_that_lags_three_telegrams_is_read_however_slow_the_round_is():
@@ -484,6 +487,7 @@ def test_a_task_that_silences_the_drive_is_withdrawn_after_three_telegrams():
         ask_in_vain(line, job)
         following = line.ask(pkw.read(700))
         assert line.send() == NO_TASK
+        assert line.channel.foresee(True) is line.channel.foresee(False) is None  # that depends
         line.answer(*NO_TASK)
         assert job.state == pkw.UNANSWERED, job
         if job.writes():  # its answer may come late
@@ -493,6 +497,9 @@ def test_a_task_that_silences_the_drive_is_withdrawn_after_three_telegrams():
         line.answer(0x12BC, 0, 0, 5)
         assert following.state == pkw.DONE and following.low == 5
         assert [task for task in tasks(line) if task == job.task][3:] == [1] * (job.task == 1)
+        line.send()
+        line.answer(*NO_TASK)
+        ask_in_vain(line, job)  # what it was blamed for is not held against it again
 
 
 def test_a_task_is_not_to_blame_when_the_drive_is_silent_without_it_too():

@@ -7,16 +7,18 @@ The link looks at the reply by itself, 32 bits after its last character as the R
 
 import random
 
-from round_bench import READY, RUNNING, Bench, Node, framed
+from round_bench import MASK, READY, RUNNING, Bench, Node, framed
 from uss import pkw, pzd
 from uss.drive import ANY, ATTENTION
 from uss.families import GENERIC, drive_maker
+from uss.finding.witness import RESPONSE_DELAY, START_DELAY, Witness
 from uss.going_on import master as going_on
 from uss.going_on import plan as plans
 from uss.going_on import python
 from uss.layout import Layout
 from uss.outside import Mirror
 from uss.tasks.change_reports import Reports
+from uss.telegram import GOOD
 
 IDLE_US = 1_667  # 32 bits at 19200
 FAULT, INHIBIT = 0x0008, 0x0040
@@ -133,6 +135,63 @@ def test_a_drive_that_is_listed_twice_is_asked_twice():
     bench.run(2_000_000)
     lately = bench.addresses(-40)
     assert lately.count(1) == 20 and lately.count(2) == 10, lately
+
+
+def goes_on_always(bench, us=300_000):
+    """Whether each telegram leaves behind the reply before it, with nobody looking."""
+    went_on, sent = bench.went_on, len(bench.sent)
+    bench.run(us)
+    return bench.went_on - went_on == len(bench.sent) - sent > 3
+
+
+def test_what_one_drive_must_not_say_if_it_is_asked_again_others_may():
+    """A drive that runs is asked twice in a row, then one that stands; that one tells a value."""
+    bench = going([Telling(4), Telling(8)])
+    drives = bench.drives
+    bench.master.turns.arrange([drives[4], drives[4], drives[8]])
+    drives[4].start(0x2000)
+    bench.run(300_000)
+    assert bench.nodes[4].stw == 0x047F and goes_on_always(bench)
+    jobs = ask(bench, 8, (700, 1082, 5))
+    bench.run(50_000)
+    assert goes_on_always(bench)
+    assert [job.integer_value() for job in jobs] == [700, 1082, 5]
+    jobs = ask(bench, 4, (700, 1082, 5))
+    bench.run(50_000)
+    assert goes_on_always(bench)
+    assert [job.integer_value() for job in jobs] == [700, 1082, 5]
+
+
+def test_a_drive_that_was_stopped_goes_on_as_one_that_never_ran():
+    bench = running(Telling(1))
+    bench.drives[1].stop()
+    bench.run(300_000)
+    assert goes_on_always(bench)
+
+
+def test_a_reply_as_soon_as_a_start_interval_allows_is_gone_on_from():
+    """A link that sees well when a character came needs no more time than that."""
+    for delay_us in (1_146, 1_719, 10_000):
+        bench = Bench([Node(1, delay_us=delay_us)], idle_us=300, goes_on=True, foreseen=True)
+        bench.contact()
+        bench.run(300_000)
+        assert goes_on_always(bench), delay_us
+
+
+def test_a_witness_sees_each_reply_that_the_link_has_gone_on_from():
+    bench = going([Node(1), Node(2)])
+    master, character_us = bench.master, bench.timing.character_us
+    witness = Witness(character_us, MASK, 2)
+    master.witness = witness
+    progress, sent = master.progress, len(bench.sent)
+    assert goes_on_always(bench)
+    assert abs(master.progress - progress - len(bench.sent) + sent) <= 1
+    assert witness.finding == GOOD and witness.request_count == witness.reply_count == 16
+    assert bytes(witness.reply)[:3] == b"\x02\x0e\x02" and bytes(witness.request)[2] == 2
+    for place, least_us in ((RESPONSE_DELAY, 3 * character_us), (START_DELAY, IDLE_US)):
+        shortest_us, longest_us = witness.times[place : place + 2]
+        assert abs(shortest_us - least_us) < 2 * LATE_US, (place, shortest_us)
+        assert abs(longest_us - least_us) < 2 * LATE_US, (place, longest_us)
 
 
 def test_a_silent_drive_is_waited_for_and_the_others_go_on():
@@ -355,6 +414,17 @@ def test_the_same_question_twice_has_no_task_between():
     assert tasks[first : first + 4] == [1, 0, 1, 0], tasks
 
 
+def test_a_drive_that_lags_says_that_there_is_no_task_before_the_same_question():
+    bench = going([Telling(1, lag=1)])
+    jobs = ask(bench, 1, (700, 700))
+    count = len(bench.sent)
+    bench.run(400_000)
+    assert [job.state for job in jobs] == [pkw.DONE, pkw.DONE]
+    tasks = [telegram.task() for telegram in bench.sent[count:]]
+    first = tasks.index(1)
+    assert tasks[first : first + 8] == [1, 1, 0, 0, 1, 1, 0, 0], tasks
+
+
 def test_a_drive_that_lags_or_is_deaf_is_asked_as_before():
     for lag in range(4):
         bench = going([Telling(1, lag=lag), Telling(2)])
@@ -518,8 +588,8 @@ def test_a_call_overtakes_what_is_ready_if_there_is_time_to_make_another_ready()
     for foreseen in (True, False):
         bench = going([Node(1), Node(2)], foreseen=foreseen)
         begin_of_a_telegram(bench)
-        bench.run(10_500)  # the reply is awaited
         master, timing = bench.master, bench.timing
+        bench.run(10_500)  # the reply is awaited
         assert not master.is_overtaken(bench.now)
         bench.drives[2].stop()
         assert master.is_overtaken(bench.now)

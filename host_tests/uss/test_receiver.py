@@ -396,6 +396,13 @@ def test_what_is_still_coming_when_a_reply_is_given_up_keeps_the_line_from_being
     assert line.receiver.heard_at == SENT_AT + given_up_us
 
 
+def test_a_reply_that_the_link_has_judged_by_itself_counts_as_taken():
+    line = Line()
+    line.receiver.accept(len(REPLY), SENT_AT + 20 * TCH)
+    assert line.receiver.count == len(REPLY)
+    assert line.receiver.heard_at == SENT_AT + 20 * TCH
+
+
 def test_what_was_heard_before_the_request_had_left_is_no_reply_to_it():
     """The late reply to the request before it, say: taken only now, and not a word of it true."""
     for before_us in (1, TCH, 100 * TCH):
