@@ -100,12 +100,16 @@ def test_with_variable_length_the_task_makes_the_telegram_longer_and_shorter():
         line.answer(0, 0, 0)
 
 
-def test_with_variable_length_a_task_must_find_room_in_the_request():
+def test_a_task_must_find_room_in_the_request():
     line = Line(VARIABLE, longest=3)
     job = line.ask(pkw.write_double(731, 1))
     assert job.state == pkw.REFUSED and job.error == pkw.TOO_SMALL
     line.ask(pkw.write_word(731, 1))
     assert line.send() == (0x22DB, 0, 1)
+    line = Line(3)
+    Reports(line.channel)  # who follows them has no more room by that
+    line.ask(job)
+    assert job.state == pkw.REFUSED and job.error == pkw.TOO_SMALL
 
 
 def test_a_drive_without_pkw_words_cannot_be_asked():

@@ -26,6 +26,15 @@ def test_the_tasks_of_the_reference_manual():
         assert asked(job) == words, job
 
 
+def test_a_job_that_is_not_told_a_value_or_an_index_has_0():
+    for task, pke in ((pkw.READ, 0x12DB), (pkw.WRITE_WORD, 0x22DB), (pkw.WRITE_DOUBLE, 0x32DB)):
+        job = pkw.Job(task, 731)
+        assert asked(job) == (pke, 0, 0, 0) and (job.index, job.high, job.low) == (0, 0, 0)
+        job.aim(task, 1000, 3, 4, 5)
+        job.aim(task, 731)
+        assert asked(job) == (pke, 0, 0, 0) and (job.index, job.high, job.low) == (0, 0, 0)
+
+
 def test_numbers_with_a_sign_are_written_in_two_s_complement():
     assert asked(pkw.write_word(1005, -3000))[3] == 0x10000 - 3000
     assert asked(pkw.write_word(1005, 0xFFFF))[3] == 0xFFFF
@@ -102,6 +111,7 @@ def test_a_value_stands_where_the_length_says():
         assert answered(job, words, form), words
         assert job.state == pkw.DONE and job.integer_value() == value, words
         assert job.width == words[0] >> 12
+        assert (job.high, job.low) == (value >> 16, value & 0xFFFF), words
 
 
 def test_the_same_bits_as_unsigned_as_signed_and_as_float():
