@@ -40,6 +40,7 @@ def test_a_drive_runs_at_a_frequency_and_tells_its_speed():
     drive = bench.drive
     bench.bus.wait(0.5)
     assert took_s(bench, drive.run, 25.0) < 0.5  # it says at once that it runs
+    assert drive.engine.near == 326  # 2 % of 4000h, by which a standstill is noticed
     assert bench.bus.wait(3, lambda: drive.hertz > 24.9)
     near(drive.hertz, 25.0)
     near(drive.percent, 50.0)
@@ -376,6 +377,7 @@ def test_a_drive_that_trips_soon_gets_more_turns_than_the_list_gives_it():
     bench.bus.wait(1)
     bench.drive.acknowledge()
     bench.drive.run(10.0)
+    assert sent_within_us(bench) == 133_333
     bench.bus.wait(3)
     assert bench.drive.is_running and bench.drive.fault == 0
     bench.end()

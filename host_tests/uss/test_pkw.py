@@ -126,6 +126,19 @@ def test_the_same_bits_as_unsigned_as_signed_and_as_float():
     assert job.float_value() == -10.0
 
 
+def test_what_was_offered_instead_is_forgotten_when_a_job_is_refused_again():
+    job = pkw.write_word(1000, 61000)
+    for words, offered in (
+        ((0x73E8, 0, 2, 60000, 7), (2, 60000, 7)),
+        ((0x73E8, 0, 2, 60000), (2, 60000, None)),
+        ((0x73E8, 0, 2), (2, None, None)),
+        ((0x73E8, 0, 0, 1001, 999), (0, 1001, 999)),
+        ((0x73E8, 0, 17), (17, None, None)),
+    ):
+        assert answered(job, words, VARIABLE) and job.state == pkw.REFUSED
+        assert (job.error, job.next, job.previous) == offered, words
+
+
 def test_every_task_is_answered_by_its_own_replies():
     """Specification tables 4.1 and 4.2: AK 7 refuses any, AK 8 those that change something."""
     answers = {
