@@ -346,6 +346,25 @@ def until_done(plc, block, ms=3_000, **inputs):
     raise AssertionError("not done")
 
 
+def test_a_block_without_a_request_asks_for_nothing_and_is_not_done():
+    """An input that is not connected is off, but EN; DRIVE, PARAM, INDEX and VALUE are 0."""
+    plc = Plc(parameters={1120: 12.5})
+    plc.run(300)
+    for kind in (USS_RPM_W, USS_RPM_D, USS_RPM_R, USS_WPM_W, USS_WPM_D, USS_WPM_R):
+        block = kind(plc.port)
+        for _ in range(3):
+            assert (block.DONE, block.ERROR, block.STATUS_WORD) == (False, 0, 0), kind.__name__
+            assert block.PKW_ERROR is None
+            block(DRIVE=1, PARAM=700)
+            plc.run(60)
+        block(DRIVE=1, PARAM=700, EN=False, XMT_REQ=True)  # nor has it one when it is off
+        plc.run(60)
+        assert not block.DONE, kind.__name__
+        block(XMT_REQ=True)
+        assert block.DONE and block.ERROR == codes.NOT_ACTIVE, kind.__name__
+    assert plc.drive().read(700) == 5
+
+
 def test_reading_a_word_a_double_word_and_a_real():
     plc = Plc(parameters={1120: 12.5})
     plc.run(300)

@@ -302,6 +302,39 @@ def plan_of(answers=0, zsw=None, near=0):
     return plan
 
 
+def test_each_bit_that_matters_is_looked_at_and_no_other():
+    """The bits of motion, how near to 0 the speed is, which answers may come, and about what."""
+    attention = bytearray(ATTENTION)
+    asked = b"\x12\xbc\x80\x01"
+    request = framed(1, asked + bytes(4) + b"\x04\x7f\x20\x00")
+
+    def says_nothing(plan, answer=asked, zsw=RUNNING, hiw=0x2000):
+        words = bytes((zsw >> 8, zsw & 0xFF, hiw >> 8 & 0xFF, hiw & 0xFF))
+        return judged(framed(1, bytes(answer) + bytes(4) + words), request, plan, attention)
+
+    for bit in range(16):
+        zsw = RUNNING ^ 1 << bit
+        assert says_nothing(plan_of(), zsw=zsw)
+        assert says_nothing(plan_of(zsw=RUNNING), zsw=zsw) == (bit not in (2, 3, 6)), bit
+    for hiw in (-0x8000, -164, -163, -1, 0, 1, 163, 164, 0x7FFF):
+        assert says_nothing(plan_of(zsw=RUNNING), hiw=hiw)
+        assert says_nothing(plan_of(zsw=RUNNING, near=326), hiw=hiw) == (abs(hiw) > 163), hiw
+    for kind in range(16):
+        for other in (False, True):
+            answer = bytes((kind << 4 | 2, 0xBC, 0x80, 1 + other))
+            assert says_nothing(plan_of(), answer)
+            expected = kind == 0 or not other
+            assert says_nothing(plan_of(1 << kind), answer) == expected, (kind, other)
+            assert not says_nothing(plan_of(0xFFFF ^ 1 << kind), answer), kind
+    for bit in range(32):
+        answer = bytearray(asked)
+        answer[bit >> 3] ^= 0x80 >> (bit & 7)
+        expected = bit in (0, 1, 2, 3, 4)  # AK may be any; bit 11 is no part of PNU
+        assert says_nothing(plan_of(0xFFFF), answer) == expected, bit
+    attention[ANY] = 1
+    assert not says_nothing(plan_of())
+
+
 def test_both_twins_say_the_same_of_anything():
     seed = 20_261_126
     print("seed", seed)
