@@ -6,9 +6,9 @@ Specification C-4.2.1.1. Time is in microseconds and only passes when a test say
 
 import random
 
-from pkw_bench import Line, refused
+from pkw_bench import MASK, Line, refused
 from uss import pkw
-from uss.channel import JOBS_MAX, REST_MAX
+from uss.channel import JOBS_MAX, REST_MAX, Channel
 from uss.layout import VARIABLE
 from uss.tasks import arrays
 from uss.tasks.change_reports import Reports
@@ -314,6 +314,29 @@ def test_eight_jobs_wait_and_a_ninth_is_not_taken():
     assert not line.channel.is_full()
 
 
+def test_a_channel_that_becomes_another_begins_anew():
+    """What waited is over. The answer to it may come still: the drive says AK 0 first."""
+    for waiting in (0, 1, 3, JOBS_MAX):
+        line = Line()
+        line.ask(pkw.read(700))
+        line.send()
+        line.answer(0x12BC, 0, 0, 5)
+        jobs = [line.ask(pkw.read(700 + number)) for number in range(waiting)]
+        line.channel.become(Channel(MASK, 3))
+        assert [job.state for job in jobs] == [pkw.TIMED_OUT] * waiting
+        jobs = [line.ask(pkw.read(1000 + number)) for number in range(JOBS_MAX)]
+        assert line.channel.is_full()
+        for head in (0x12BC, 0x13E8, 0):
+            assert line.send() == (0, 0, 0), waiting
+            line.answer(head, 0, 0)
+        for number, job in enumerate(jobs):
+            assert line.send() == (0x1000 | 1000 + number, 0, 0), waiting
+            line.answer(0x1000 | 1000 + number, 0, number)
+            assert job.state == pkw.DONE and job.low == number
+    line.channel.become(Channel(MASK, 0))
+    assert line.channel.idle and line.channel.is_full()
+
+
 def test_a_pending_job_is_not_taken_twice():
     line = Line()
     job = line.ask(pkw.read(700))
@@ -356,6 +379,7 @@ def test_the_time_of_a_job_begins_when_it_is_its_turn():
 def test_what_may_be_too_old_by_then_is_not_foreseen():
     """A link may send the telegram that is foreseen much later, without anyone looking at it."""
     line = Line()
+    line.now = 3_000_000  # its time begins with its first telegram
     job = line.ask(pkw.read(1000))
     for _ in range(5):
         words = line.channel.foresee(False)
@@ -363,7 +387,9 @@ def test_what_may_be_too_old_by_then_is_not_foreseen():
         line.channel.sent(words, 0, line.now)
         line.answer(0x12BC, 0, 0, 5)  # still what was asked before
     assert line.channel.foresee(False) is None and job.state == pkw.PENDING
-    line.send(us=2_000_000)
+    line.send(us=1_000_000)
+    assert job.state == pkw.PENDING
+    line.send(us=1_000_000)
     assert job.state == pkw.TIMED_OUT
 
 

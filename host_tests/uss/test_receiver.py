@@ -229,6 +229,7 @@ def test_a_telegram_that_follows_a_stray_character_without_a_pause_is_data():
     assert line.silence(25_000) == BAD_START
     line = Line()
     line.come(b"\x00", 3 * TCH)
+    assert line.receiver.heard_at == SENT_AT + 4 * TCH
     assert line.come(REPLY, TCH) == WAITING
 
 
@@ -372,6 +373,9 @@ def test_a_reply_that_is_coming_in_is_waited_for_beyond_the_response_delay():
     due_us = line.receiver.due_us(line.link, SENT_AT + line.receiver.window_us + 1)
     assert due_us == LINE.residual_us(12) - 1
     assert line.come(REPLY, line.receiver.window_us - TCH) == GOOD
+    line.silence(line.receiver.window_us + 1)
+    line.receiver.open(line.drive, SENT_AT + 50_000)  # nothing has come of the next one so far
+    assert line.receiver.due_us(line.link, SENT_AT + 50_000) == line.receiver.window_us
 
 
 def test_what_comes_in_without_end_is_not_waited_for_longer_than_a_reply_takes():
