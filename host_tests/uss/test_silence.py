@@ -370,6 +370,135 @@ def test_no_gap_is_longer_than_the_bus_has_promised():
         assert (late is None) == (promised_us < 666_666), (present, running, promised_us)
 
 
+def measured_us(bench, us=1_000_000):
+    """What an answered exchange takes at present, on the average; `us` pass meanwhile."""
+    turns, silence = bench.master.turns, bench.master.deadlines.silence
+    began, count, silences, spent = bench.now, turns.exchanges, silence.count, silence.spent_us
+    bench.run(us)
+    count = turns.exchanges - count - (silence.count - silences)
+    return (bench.now - began - (silence.spent_us - spent)) // count
+
+
+def promise_us(bench, running, exchange_us, look_us=4_000):
+    """The gap where so many run and none is silent: the loop sees in two looks and 16 ms that a
+    drive is late; theirs are two telegrams of three; one was just sent to somebody else. And a
+    silence."""
+    others_us = (running + 1) * exchange_us // 2 + exchange_us
+    return 2 * look_us + 16_000 + running * exchange_us + others_us + silence_us(bench)
+
+
+def is_about(us, expected_us):
+    return abs(us - expected_us) < expected_us // 40
+
+
+def test_the_promise_is_made_of_exchanges_as_long_as_they_are():
+    """They are measured, without what silent drives take; not where the bus waits for its cycle
+    time, and not where a measurement has too few of them."""
+    for delay_us, plugged in ((None, 4), (18_000, 4), (18_000, 3), (5_000, 3)):
+        bench = Bench([Node(address, delay_us=delay_us) for address in (1, 2, 3, 4)])
+        bench.nodes[4].plugged = plugged == 4
+        bench.contact()
+        bench.run(4_000_000)
+        deadlines, drive = bench.master.deadlines, bench.drives[1]
+        expected_us = promise_us(bench, 1, measured_us(bench)) - silence_us(bench)
+        if plugged == 3:  # and the silent ones have a fifth of the line
+            expected_us = expected_us * 5 // 4
+        expected_us += silence_us(bench)
+        assert is_about(deadlines.gap_us(drive), expected_us), (delay_us, plugged)
+        bench.master.turns.cycle_us = 200_000
+        bench.run(3_000_000)
+        assert is_about(deadlines.gap_us(drive), expected_us), (delay_us, plugged)
+    slow = Bench([Node(1, delay_us=18_000), Node(2, delay_us=18_000)], baud=2400)
+    slow.contact()
+    slow.run(3_000_000)
+    quickest_us = slow.timing.exchange_us(12, slow.timing.start_interval_us)
+    assert measured_us(slow, 10_000_000) > quickest_us + 10_000
+    promised_us = slow.master.deadlines.gap_us(slow.drives[1])
+    assert is_about(promised_us, promise_us(slow, 1, quickest_us))
+
+
+def test_the_promise_grows_with_every_drive_that_runs_until_the_list_alone_does():
+    bench = Bench([Node(address, delay_us=5_000) for address in range(1, 11)])
+    bench.contact()
+    bench.run(2_000_000)
+    deadlines, turns = bench.master.deadlines, bench.master.turns
+    for running in range(10):
+        drive = bench.drives[running + 1]
+        exchange_us = measured_us(bench)
+        expected_us = promise_us(bench, running + 1, exchange_us)
+        if running + 1 >= 7:  # two thirds of the list: it goes round, and more every fourth time
+            expected_us = 10 * exchange_us * 4 // 3 + silence_us(bench)
+        promised_us = deadlines.gap_us(drive)
+        assert is_about(promised_us, expected_us), (running, promised_us, expected_us)
+        assert turns.lists_between == (3 if running >= 7 else 1), running
+        # It trips after three times that: a millisecond less, and it would be late.
+        deadlines.supervise(drive, 3 * promised_us // 1000)
+        assert deadlines.first_late(drive) is drive
+        deadlines.supervise(drive, 3 * promised_us // 1000 + 2)
+        assert deadlines.first_late(drive) is None
+        deadlines.supervise(drive, 0)
+        drive.start(0x1000)
+    turns.cycle_us = 300_000  # then the list alone may not do
+    bench.run(1_000_000)
+    assert turns.lists_between == 1 and deadlines.gap_us(drive) > expected_us + 50_000
+    bench.nodes[10].plugged = False  # an exchange with it takes longer from now on
+    turns.cycle_us = 0
+    bench.run(3_000_000)
+    exchange_us = measured_us(bench)
+    expected_us = (9 * exchange_us + silence_us(bench)) * 4 // 3 + silence_us(bench)
+    assert is_about(deadlines.gap_us(bench.drives[1]), expected_us)
+
+
+def test_one_that_was_lost_before_it_was_seen_to_run_counts_as_one_that_runs():
+    """Until its STOP is answered; an exchange with it takes as long as a silence."""
+    bench = Bench([Node(address) for address in range(1, 11)])
+    bench.contact()
+    bench.nodes[1].follows = False
+    bench.drives[1].start(0x1000)
+    bench.run(100_000)
+    bench.nodes[1].plugged = False
+    bench.run(1_500_000)
+    bench.drives[1].stop()
+    bench.run(3_000_000)
+    assert bench.drives[1].was_running and not bench.drives[1].contact
+    exchange_us = measured_us(bench)
+    expected_us = promise_us(bench, 2, exchange_us)
+    expected_us += (silence_us(bench) - exchange_us) * 3 // 2
+    assert is_about(bench.master.deadlines.gap_us(bench.drives[2]), expected_us)
+    bench.nodes[1].plugged = True
+    bench.run(1_000_000)
+    expected_us = promise_us(bench, 1, exchange_us)
+    assert is_about(bench.master.deadlines.gap_us(bench.drives[2]), expected_us)
+
+
+def test_a_loop_that_is_slow_promises_less_and_sees_as_soon_who_runs():
+    for look_us in (20_000, 30_000, 48_000, 60_000, 100_000):
+        bench = Bench([Node(address) for address in range(1, 11)])
+        bench.contact()
+        bench.refreshing = False
+        looked = [0]
+
+        def look_now_and_then():
+            if bench.now - looked[0] >= look_us:
+                looked[0] = bench.now
+                bench.master.refresh(bench.now)
+
+        bench.loop = look_now_and_then
+        bench.run(2_000_000)
+        exchange_us = measured_us(bench)
+        for running in (0, 1, 2):
+            promised_us = bench.master.deadlines.gap_us(bench.drives[running + 1])
+            expected_us = promise_us(bench, running + 1, exchange_us, look_us)
+            assert is_about(promised_us, expected_us), (look_us, running)
+            bench.drives[running + 1].start(0x1000)
+            bench.run(400_000)
+        bench.loop = None  # quick again: what was slow is soon forgotten
+        bench.refreshing = True
+        bench.run(1_000_000)
+        promised_us = bench.master.deadlines.gap_us(bench.drives[4])
+        assert is_about(promised_us, promise_us(bench, 4, exchange_us)), look_us
+
+
 def test_a_drive_that_runs_is_named_when_another_one_would_make_it_late():
     bench = bench_of(20, present=31)
     deadlines, drives = bench.master.deadlines, bench.drives
