@@ -8,6 +8,7 @@ from uss.drive import Drive
 from uss.families import MM4
 from uss.receiver import SILENCE
 from uss.survey import Survey, centihertz, rpm, spare_jobs
+from uss.telegram_count import TelegramCount
 
 MASK = (1 << 30) - 1
 ROWS = len(MM4.survey)
@@ -194,6 +195,49 @@ def test_accidents_do_not_add_up_and_excuse_nothing_that_makes_no_sense_later():
     assert line.odd == 0 and not line.drives[0].doubted
 
 
+# --- what is asked when -------------------------------------------------------------------------
+
+ROUND = [50, 51, 2019, 2019, 719, 840, 1070, 2200, 700, 1000, 2000, 2009, 1080, 1082, 2014]
+WATCHED = [2024, 1080, 1082]
+
+
+def numbers(line, exchanges):
+    """Parameters that are asked for; each is asked in several telegrams, one behind the other."""
+    line.asked.clear()
+    let_pass(line, exchanges)
+    asked = [b for a, b in zip([b""] + line.asked, line.asked) if a != b]
+    return [(each[0] & 7) << 8 | each[1] + (2000 if each[2] & 0x80 else 0) for each in asked]
+
+
+def test_all_is_asked_on_contact_and_before_a_start_and_then_a_parameter_every_tenth_of_a_second():
+    line = Line((1,))
+    line.exchange(0)
+    survey = line.surveys[0]
+    assert numbers(line, 20)[:ROWS] == ROUND + [1210, 2024] and survey.complete
+    assert survey.unchecked == 0
+    let_pass(line, 10)
+    asked = numbers(line, 400)
+    assert 56 <= len(asked) <= 58, len(asked)  # 5 exchanges of 20 ms, and the answer
+    first = asked.index(50)
+    assert (asked[first:] + asked)[:15] == ROUND and asked[:40] == asked[15:55]
+    survey.recheck()
+    assert survey.unchecked == ROWS
+    assert numbers(line, 45)[:ROWS] == ROUND + [1210, 2024] and survey.unchecked == 0
+
+
+def test_while_it_runs_every_other_question_is_for_its_count_and_its_limits():
+    line = runs(5000, 1)
+    line.surveys[0].recheck()
+    assert numbers(line, 45)[:ROWS] == ROUND + [1210, 2024]  # all of them for another START
+    asked = numbers(line, 400)
+    watched = asked[asked.index(2024) :]
+    others, watched = watched[1::2], watched[0::2]
+    assert watched == (WATCHED * 20)[: len(watched)] and len(watched) > 20
+    kept = [number for number in ROUND if number not in WATCHED] * 3
+    first = kept.index(others[0])
+    assert others[:20] == kept[first : first + 20]
+
+
 # --- the telegrams that a drive has counted since its power-up, r2024 ---------------------------
 
 
@@ -253,6 +297,65 @@ def test_who_asks_anew_does_not_hide_that_the_counter_went_back():
     line.surveys[0].recheck()
     let_pass(line, 100)
     assert line.surveys[0].count.restarted
+
+
+def counted(*steps, wanted=0x047F):
+    """Whether a drive counts as reset after these steps: telegrams sent to it, those of them that
+    it answered before it was asked for its count and later, and its count. None: contact was
+    lost. "begin": another run begins."""
+    drive = Drive(1, MASK)
+    drive.wanted = wanted
+    count = TelegramCount(drive)
+    told = 1000
+    for step in ((0, 0, 0, 1000), (0, 0, 0, 1000)) + steps:
+        if step is None:
+            count.forget()
+        elif step == "begin":
+            count.begin()
+        else:
+            sent, before, later, counter = step
+            drive.counters[5] = (drive.counters[5] + sent - before - later) & 0xFFFF
+            drive.counters[0] = (drive.counters[0] + before) & 0xFFFF
+            count.asked()
+            drive.counters[0] = (drive.counters[0] + later) & 0xFFFF
+            count.take(told, counter)
+            told = counter
+    restarted = count.take_restart()
+    assert not count.take_restart()
+    return restarted
+
+
+def test_a_count_may_lack_an_eighth_of_what_was_answered_and_32_and_no_more():
+    moves = (10, 10, 0, 1010)
+    for sent, before, later in ((800, 800, 0), (900, 800, 100), (1000, 800, 0)):
+        assert not counted(moves, (sent, before, later, 1010 + 668)), (sent, later)
+        assert counted(moves, (sent, before, later, 1010 + 667)), (sent, later)
+        assert not counted(moves, (sent, before, later, 1010 + 667), wanted=0)
+    # What was answered after the question may be in this count or in the next.
+    late = moves, (100, 0, 100, 1010)
+    assert not counted(*late + ((800, 800, 0, 1010 + 668),))
+    assert counted(*late + ((800, 800, 0, 1010 + 667),))
+    assert not counted((800, 800, 0, 1000))  # it never moves
+    assert not counted(moves, None, (0, 0, 0, 1010), (800, 800, 0, 1010))
+    assert counted(moves, "begin", (0, 0, 0, 1010), (800, 800, 0, 1010 + 667))
+    assert not counted(moves, "begin", (800, 800, 0, 1010))  # not judged yet
+    assert not counted(moves, (800, 800, 0, 1010), "begin")
+    assert not counted(moves, (800, 800, 0, 1010), None)
+
+
+def test_a_count_that_has_gone_back_was_wrapped_by_64_more_than_were_sent_or_begun_anew():
+    high = (64_000, 64_000, 0, 65_000)
+    most = 65_000 + 800 + 64 - 0x10000
+    assert not counted(high, (800, 100, 0, most)) and counted(high, (800, 100, 0, most + 1))
+    # It counts those to others as well when it has counted 16 more than were sent to it: then
+    # 32 times as many may be in it.
+    high = (0, 0, 0, 1000 + 16), (63_984, 63_984, 0, 65_000)
+    assert counted(*high + ((100, 0, 0, most),))
+    high = (0, 0, 0, 1000 + 17), (63_983, 63_983, 0, 65_000)
+    most = 65_000 + 100 * 32 + 64 - 0x10000
+    assert not counted(*high + ((100, 0, 0, most),))
+    assert counted(*high + ((100, 0, 0, most + 1),))
+    assert counted(*high + (None, (0, 0, 0, 65_000), (100, 0, 0, most)))
 
 
 def test_a_drive_that_has_no_counter_is_not_asked_for_it_again_and_again_while_it_runs():
