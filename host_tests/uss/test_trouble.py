@@ -15,8 +15,14 @@ from spoilt_bench import (
     silent,
     with_a_wrong_check,
 )
-from uss import receiver
+from uss import pkw, receiver
+from uss.drive import Drive
 from uss.outside import Mirror
+from uss.receiver import OTHER_LENGTH, SILENT
+from uss.telegram import BAD_LENGTH
+
+MASK = (1 << 30) - 1
+LOST_US = 1_000_000
 
 
 def spoilt_by_turns(*turns):
@@ -68,6 +74,55 @@ def test_another_trouble_is_noticed_soon():
     assert bench.drives[1].trouble == receiver.OTHER_LENGTH
     bench.nodes[1].plugged = False
     bench.run_until(lambda: bench.drives[1].trouble == receiver.SILENCE, 4_000_000)
+
+
+def test_how_often_another_trouble_must_be_met_with():
+    """Three times where there was one, four where it was the same three times or more; any
+    telegram with the old one outweighs one with the new."""
+    length, silent = BAD_LENGTH, SILENT
+    for before, turns, told in (
+        ((), (length,), (True,)),  # the first one since a valid reply
+        ((silent,), (length,) * 4, (False, False, True, True)),
+        ((silent,) * 2, (length,) * 5, (False, False, False, True, True)),
+        ((silent,) * 9, (length,) * 5, (False, False, False, True, True)),
+        ((silent,), (length, silent, length, length, length), (False,) * 4 + (True,)),
+        ((silent,) * 2, (length, length, silent, length), (False,) * 4),
+        ((silent,), (length,) * 3 + (silent,) * 4, (False, False) + (True,) * 3 + (False,) * 2),
+    ):
+        drive = Drive(1, MASK)
+        drive.take(bytes(16), 16, 0)
+        for finding in before:
+            drive.miss(finding, 0, LOST_US, MASK)
+        seen = []
+        for finding in turns:
+            drive.miss(finding, 0, LOST_US, MASK)
+            seen.append(drive.trouble == OTHER_LENGTH)
+        assert tuple(seen) == told, (before, turns, seen)
+        drive.take(bytes(16), 16, 0)
+        drive.miss(length, 0, LOST_US, MASK)
+        assert drive.trouble == OTHER_LENGTH
+
+
+def test_contact_lasts_a_second_and_half_of_it_is_enough_to_withhold_a_task():
+    """A telegram without the task may then bring a reply, before contact is lost. Each one is
+    taken to need as long as those before it did."""
+    for instants, withheld in (
+        ((250_000,), False), ((250_001,), True),
+        ((100_000, 333_333), False), ((100_000, 333_334), True),
+    ):  # fmt: skip
+        drive = Drive(1, MASK)
+        drive.take(bytes(16), 16, 0)
+        drive.ask(pkw.read(700))
+        for instant in instants:
+            drive.fill(0)
+            assert drive.request[3] >> 4 == 1
+            drive.miss(SILENT, instant, LOST_US, MASK)
+        drive.fill(instants[-1])
+        assert (drive.request[3] >> 4 == 0) == withheld, instants
+        drive.miss(SILENT, LOST_US - 1, LOST_US, MASK)
+        assert drive.contact
+        drive.miss(SILENT, LOST_US, LOST_US, MASK)
+        assert not drive.contact
 
 
 def test_every_trouble_counts_as_no_valid_reply():
