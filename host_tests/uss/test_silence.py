@@ -499,6 +499,132 @@ def test_a_loop_that_is_slow_promises_less_and_sees_as_soon_who_runs():
         assert is_about(promised_us, promise_us(bench, 4, exchange_us)), look_us
 
 
+def room_us(bench):
+    """The longest silence that the bus would risk."""
+    deadlines = bench.master.deadlines
+    short, long = -1_000_000, 2_000_000
+    while long - short > 1:
+        middle = (short + long) // 2
+        if deadlines.silence_wait_us(middle) > 10_000_000:
+            long = middle
+        else:
+            short = middle
+    return long + silence_us(bench)
+
+
+def test_the_silence_that_is_risked_is_what_those_that_run_leave_of_their_bound_or_a_quarter():
+    """A quarter of what they need, where they leave less. The bound of those that never trip is
+    doubled where nobody was silent for more than a second."""
+    for off_time_ms, bound_us in ((0, 666_666), (2_000, 666_666), (700, 233_333), (400, 133_333)):
+        bench = Bench([Node(address) for address in range(1, 13)])
+        bench.contact()
+        bench.run(2_000_000)
+        for running in (1, 2, 3, 4, 5):
+            bench.master.deadlines.supervise(bench.drives[running], off_time_ms)
+            bench.drives[running].start(0x1000)
+            needed_us = promise_us(bench, running, measured_us(bench)) - silence_us(bench)
+            expected_us = max(bound_us - needed_us, needed_us // 4)
+            assert abs(room_us(bench) - expected_us) < 1_000 + expected_us // 50, running
+        bench.master.stop_all()
+        bench.run(500_000)
+        assert room_us(bench) > 1_000_000  # none runs: as long as you like
+    bench = bench_of(20, listed=4)  # with silent ones it is not doubled
+    started(bench, 1, 0)
+    bench.run(2_000_000)
+    needed_us = promise_us(bench, 1, measured_us(bench)) - silence_us(bench)
+    assert abs(room_us(bench) - (333_333 - needed_us)) < 4_000
+
+
+def test_a_drive_in_a_hurry_gets_its_telegrams_as_late_as_can_be():
+    """Its bound less what was promised; and then a single one, so the list goes on."""
+    for running in (1, 2, 3):
+        bench = bench_of(20, present=31)
+        for address in range(10, 10 + running):
+            since = started(bench, address, 1_000)
+        bench.run(1_000_000)
+        exchange_us = measured_us(bench)
+        late_us = 333_333 - bench.master.deadlines.gap_us(bench.drives[10])
+        since = len(bench.sent)
+        bench.run(8_000_000)
+        for address in range(10, 10 + running):
+            these = sorted(gaps(bench, address, since))
+            assert these[0] > 4 * exchange_us, (running, these[0])
+            assert late_us < these[len(these) // 2] < late_us + 3 * exchange_us, running
+            assert these[-1] < late_us + 4 * exchange_us, (running, these[-1])
+
+
+def test_a_drive_whose_time_is_too_short_for_any_line_gets_every_second_telegram():
+    bench = bench_of(20, present=10)
+    started(bench, 3, 60)
+    bench.run(1_000_000)
+    since = len(bench.sent)
+    bench.run(1_000_000)
+    assert max(gaps(bench, 3, since)) < 2 * measured_us(bench) + 1_000
+
+
+def test_extra_telegrams_are_fewer_only_where_two_thirds_may_have_their_turns_too_late():
+    """With one of them behind every turn, and a silence, a round of ten takes 0.47 s."""
+    for off_time_ms, running, between in ((1_465, 10, 1), (1_415, 10, 3), (1_415, 7, 3),
+                                          (1_415, 6, 1), (10_000, 10, 1)):  # fmt: skip
+        bench = bench_of(20, present=10)
+        for address in range(1, running + 1):
+            bench.master.deadlines.supervise(bench.drives[address], off_time_ms)
+            bench.drives[address].start(0x1000)
+        bench.run(1_500_000)
+        assert bench.master.turns.lists_between == between, (off_time_ms, running)
+
+
+def test_a_drive_at_rest_is_asked_in_its_time_where_several_are_told_to_stop_in_vain():
+    """Not where a single one is; nor one that never trips; and behind one that runs."""
+    for silent in (1, 2):
+        bench = bench_of(20, present=31)
+        for address in (5, 7):
+            bench.master.deadlines.supervise(bench.drives[address], 1_000)
+        bench.drives[7].start(0x1000)
+        bench.run(1_000_000)
+        unplugged = (30, 31)[:silent]
+        for address in unplugged:
+            bench.nodes[address].plugged = False
+        bench.run(2_000_000)
+        since = len(bench.sent)
+        for _ in range(30):
+            for address in unplugged:
+                bench.drives[address].stop()
+            bench.run(200_000)
+        longest_us = [max(gaps(bench, address, since) or [6_000_000]) for address in (5, 6, 7)]
+        assert (longest_us[0] < 700_000) == (silent > 1), longest_us
+        assert longest_us[1] > 1_500_000 and longest_us[2] < 333_333, longest_us
+        bench.run(5_000_000)  # nobody is told any more: the list does
+        since = len(bench.sent)
+        bench.run(5_000_000)
+        assert min(gaps(bench, 5, since)) > 600_000
+
+
+def test_a_drive_takes_its_time_and_its_rest_along_to_another_address():
+    bench = bench_of(20, listed=4)
+    bench.run(3_000_000)
+    deadlines, turns, drives = bench.master.deadlines, bench.master.turns, bench.drives
+    deadlines.supervise(drives[1], 900)
+    turns.readdress(drives[1], 11)
+    turns.readdress(drives[3], 13)
+    assert deadlines.bound_us(drives[1]) == 300_000
+    for new in (11, 13):
+        bench.nodes[new] = Node(new)
+    since = len(bench.sent)
+    bench.run_until(lambda: drives[3].contact, 5_000_000)
+    bench.run(5_000_000)
+    asked = bench.addresses(since)
+    assert asked.count(4) > 5 and asked.count(11) > 70 and asked.count(13) > 70
+    assert not {1, 3} & set(asked)
+    turns.remove(drives[1])
+    for address in (1, 11):  # the next ones there have none yet
+        drive = turns.add(address)
+        assert deadlines.bound_us(drive) == turns.lost_us // 3
+        bench.run(500_000)
+    turns.remove(drives[4])
+    assert not deadlines.silence.resting
+
+
 def test_a_drive_that_runs_is_named_when_another_one_would_make_it_late():
     bench = bench_of(20, present=31)
     deadlines, drives = bench.master.deadlines, bench.drives
