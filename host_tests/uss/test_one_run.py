@@ -7,7 +7,10 @@ a second, with a drive behind them: panel/test_panel_one_run.py.
 
 from master_bench import Bus
 from uss import pzd
+from uss.drive import Drive
+from uss.telegram import put_word
 
+MASK = (1 << 30) - 1
 READY, RUNNING = 0xFB31, 0xFB34
 EXCHANGE_US = 30_000
 FULL = pzd.FULL_SCALE
@@ -71,6 +74,40 @@ def test_either_way_and_within_one_percent_of_zero():
             bus = running(hsw, stw, hiw)
             bus.hiw[1] = rest
             assert not is_taken_back(bus), (hex(hsw), hex(stw), hex(rest))
+
+
+def is_one_run(hsw, first, then, stw=pzd.ON, full_scale=FULL):
+    """Whether a drive whose HIW is `first` in one reply and `then` in the next is left with ON."""
+    drive = Drive(1, MASK)
+    reply = bytearray(16)
+    put_word(reply, 11, READY)
+    drive.tell_speed(full_scale)
+    drive.fill(0)
+    drive.take(reply, 16, 0)
+    drive.start(hsw, stw)
+    put_word(reply, 11, RUNNING)
+    for hiw in (first, then):
+        drive.fill(0)
+        put_word(reply, 13, hiw & 0xFFFF)
+        drive.take(reply, 16, 0)
+    return not drive.stopped_by_engine()
+
+
+def test_the_figures_to_one_count_of_the_actual_value():
+    """Reached within 2 %, 326 counts of 4000h; standing within 1 %; looked after from 5 % on."""
+    for sign, stw in ((1, pzd.ON), (-1, pzd.ON), (-1, pzd.ON_REVERSE)):
+        hsw = HALF * (1 if stw == pzd.ON_REVERSE else sign) & 0xFFFF
+        at = sign * HALF
+        for first, then, is_left in (
+            (at - 326, 0, False), (at - 327, 0, True), (at + 326, 0, False), (at + 327, 0, True),
+            (at, 163, False), (at, 164, True), (at, -163, False), (at, -164, True),
+        ):  # fmt: skip
+            assert is_one_run(hsw, first, then, stw) == is_left, (sign, stw, first, then)
+        for hsw, is_left in ((814, True), (815, False)):
+            assert is_one_run(sign * hsw & 0xFFFF, sign * hsw, 0) == is_left, (sign, hsw)
+    for full_scale, first, is_left in ((1000, 980, False), (1000, 979, True), (1999, 962, False),
+                                       (1999, 961, True), (0, 1000, True)):  # fmt: skip
+        assert is_one_run(1000, first, 0, full_scale=full_scale) == is_left, (full_scale, first)
 
 
 def test_a_motor_that_has_not_come_up_to_its_setpoint_is_left_alone():

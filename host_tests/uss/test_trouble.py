@@ -125,6 +125,21 @@ def test_contact_lasts_a_second_and_half_of_it_is_enough_to_withhold_a_task():
         assert not drive.contact
 
 
+def test_a_drive_tells_for_how_long_it_is_silent():
+    """Since its last valid reply, or, without contact, since the last telegram. An interrupt may
+    be ahead of who asks, by a tenth of a second."""
+    drive = Drive(1, MASK)
+    for at in (1_000_000, MASK - 5):
+        drive.lose()
+        drive.miss(SILENT, at - 3_000, LOST_US, MASK)
+        assert drive.silent_us(at, MASK) == 3_000
+        drive.take(bytes(16), 16, at)
+        drive.miss(SILENT, at + 2_000 & MASK, LOST_US, MASK)
+        for us, told_us in ((7_000, 7_000), (0, 0), (-1, 0), (-100_000, 0)):
+            assert drive.silent_us(at + us & MASK, MASK) == told_us, (at, us)
+        assert drive.silent_us(at - 200_000 & MASK, MASK) > 1_000_000
+
+
 def test_every_trouble_counts_as_no_valid_reply():
     """None of them keeps contact: that, and the count of silence, are as they ever were."""
     for how, trouble, _, _ in TROUBLES:
