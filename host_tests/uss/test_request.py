@@ -10,6 +10,7 @@ import random
 from uss import pkw, pzd, telegram
 from uss.drive import Drive
 from uss.families import MM4
+from uss.layout import Layout
 from uss.survey import Survey, spare_jobs
 
 MASK = (1 << 30) - 1
@@ -192,3 +193,50 @@ def test_a_setpoint_that_is_no_word_is_refused():
         else:
             raise AssertionError(hsw)
         assert not drive.wanted
+
+
+def test_each_change_is_in_the_very_next_telegram_of_a_drive_of_which_nothing_else_changes():
+    drive = Drive(5, MASK, layout=Layout(4, 6))
+    drive.take(bytes(24), 24, 0)
+    drive.start(0x1000)
+    reply = bytearray(24)
+    telegram.put_word(reply, 11, 0xFB34)
+    for change, place, word in (
+        (lambda: None, 1, pzd.ON),
+        (lambda: drive.turn(pzd.ON_REVERSE), 1, pzd.ON_REVERSE),
+        (lambda: drive.turn(pzd.ON), 1, pzd.ON),
+        (lambda: drive.control(0x0010, False), 1, 0x046F),
+        (lambda: drive.control(0x8000, True), 1, 0x846F),
+        (lambda: drive.control(0x0010, True), 1, 0x847F),
+        (lambda: drive.control(0x8000, False), 1, pzd.ON),
+        (lambda: drive.put(3, 0x1234), 3, 0x1234),
+        (lambda: drive.put(6, 0x4321), 6, 0x4321),
+        (lambda: drive.start(0x2000, pzd.JOG_LEFT), 1, pzd.JOG_LEFT),
+        (lambda: drive.stop(), 1, pzd.OFF1),
+        (lambda: drive.stop(pzd.OFF2), 1, pzd.OFF2),
+        (lambda: drive.acknowledge(), 1, pzd.OFF2 | pzd.STW_ACKNOWLEDGE),
+        (lambda: drive.start(0x30FF), 2, 0x30FF),
+        (lambda: setattr(drive, "hsw", 0xFE01), 2, 0xFE01),
+        (lambda: drive.stop(), 2, 0),
+    ):
+        for _ in range(3):
+            drive.fill(0)
+            drive.take(reply, 24, 0)
+        change()
+        drive.fill(0)
+        assert telegram.get_word(drive.request, 9 + 2 * place) == word, (place, word)
+        drive.take(reply, 24, 0)
+    assert drive.answered_off() and not drive.is_on()
+    # What was put stands in another layout as far as there is a place for it.
+    for pkw_words, *expected in (
+        (4, 0x1234, 0, 0, 0x4321, 0, 0), (4, 0x1234, 0, 0, 0x4321), (4, 0x1234), (3, 0x1234, 0),
+        (0,), (4, 0, 0),
+    ):  # fmt: skip
+        pzd_words = 2 + len(expected)
+        drive.become(Drive(5, MASK, layout=Layout(pkw_words, pzd_words)))
+        drive.fill(0)
+        size = 2 * (pkw_words + pzd_words) + 4
+        assert drive.size == size == len(drive.request)
+        words = [telegram.get_word(drive.request, at) for at in range(3, size - 1, 2)]
+        assert words == [0] * pkw_words + [pzd.OFF1, 0] + expected
+        drive.take(bytes(size), size, 0)
