@@ -137,6 +137,81 @@ def test_a_drive_that_does_not_answer_rests_and_comes_back():
     assert table.turns.round_count == 3 and table.drives[2].contact
 
 
+def eight(*lost):
+    """Eight drives, those that are lost left the round."""
+    table = Table(*range(1, 9))
+    table.asked(8)
+    table.silent.update(lost)
+    for _ in range(3):
+        table.rest(50)
+        table.asked(40)
+    assert [drive.address for drive in table.turns.drives if not drive.contact] == list(lost)
+    table.turns.arrange(table.turns.drives)  # a round begins
+    return table
+
+
+def asked_of_pressed(table, pressed, count):
+    """Whose turns they are while the loop presses these as long as they wait."""
+    waiting, asked = list(pressed), []
+    for _ in range(count):
+        for address in waiting:
+            table.drives[address].press()
+        asked += table.asked(1)
+        if asked[-1] in waiting:
+            waiting.remove(asked[-1])
+    return asked
+
+
+def test_two_drives_that_would_be_late_go_before_each_turn_of_the_list():
+    assert asked_of_pressed(eight(), (5, 6, 7, 8), 8) == [5, 6, 1, 7, 8, 2, 3, 4]
+    assert asked_of_pressed(eight(), (5,), 4) == [5, 1, 2, 3]
+    table = eight()
+    table.drives[4].press(1)  # at rest: behind one that may run
+    assert asked_of_pressed(table, (7,), 4) == [7, 4, 1, 2]
+
+
+def test_a_drive_that_wants_more_gets_every_second_turn_or_every_fourth():
+    table = eight()
+    table.drives[5].want_turns(True)
+    assert table.asked(8) == [5, 1, 5, 2, 5, 3, 5, 4]
+    table.drives[6].want_turns(True)  # by turns with it,
+    for address in (10, 11):  # and both with telegrams outside the list
+        table.turns.post(Mirror(address))
+    asked = [address & 0x1F for address in table.asked(12)]
+    assert asked[1::2] == [5, 6, 7, 8, 1, 2], asked
+    assert asked[0::2] == [10, 6, 11, 5, 6, 5], asked
+    table = eight()
+    table.turns.lists_between = 3
+    table.drives[8].want_turns(True)
+    assert table.asked(12) == [8, 1, 2, 3, 8, 4, 5, 6, 8, 7, 8, 1]
+    table.drives[8].want_turns(False)
+    assert table.asked(9) == [2, 3, 4, 5, 6, 7, 8, 1, 2]
+
+
+def test_stops_go_before_other_commands_and_those_in_vain_leave_room_for_who_would_be_late():
+    table = eight(6, 7, 8)
+    for address in (1, 6):
+        table.drives[address].stop()
+    for address in (2, 3):
+        table.drives[address].start(0x1000)
+    table.drives[4].acknowledge()
+    asked = table.asked(5)
+    assert set(asked[:3]) == {1, 4, 6} and set(asked[3:]) == {2, 3}, asked
+    table = eight(6, 7, 8)
+    for address in (6, 7, 8):
+        table.drives[address].stop()
+    asked = asked_of_pressed(table, (1, 2, 3, 4, 5), 8)
+    places = [place for place, address in enumerate(asked) if address > 5]
+    assert places == [0, 4, 7] and set(asked) == set(range(1, 9)), asked
+    table = eight(6, 7, 8)  # but one that is told to run waits for the stops
+    table.drives[2].start(0x1000)
+    table.asked(2)
+    for address in (6, 7, 8):
+        table.drives[address].stop()
+    asked = asked_of_pressed(table, (2,), 4)
+    assert set(asked[:3]) == {6, 7, 8} and asked[3] == 2, asked
+
+
 def test_a_drive_that_trips_soon_has_its_turn_in_time_in_a_long_list():
     table = Table(*range(1, 32))
     table.asked(31)
