@@ -8,7 +8,7 @@ a second, with a drive behind them: panel/test_panel_one_run.py.
 from master_bench import Bus
 from uss import pzd
 from uss.drive import Drive
-from uss.telegram import put_word
+from uss.telegram import put_word, seal
 
 MASK = (1 << 30) - 1
 READY, RUNNING = 0xFB31, 0xFB34
@@ -108,6 +108,49 @@ def test_the_figures_to_one_count_of_the_actual_value():
     for full_scale, first, is_left in ((1000, 980, False), (1000, 979, True), (1999, 962, False),
                                        (1999, 961, True), (0, 1000, True)):  # fmt: skip
         assert is_one_run(1000, first, 0, full_scale=full_scale) == is_left, (full_scale, first)
+
+
+def exchange(drive, *hiws):
+    """Its replies say that it runs, and these actual values."""
+    reply = bytearray(16)
+    put_word(reply, 11, RUNNING)
+    for hiw in hiws:
+        drive.fill(0)
+        seal(drive.request, 1, 12)
+        drive.sealed = True
+        put_word(reply, 13, hiw)
+        drive.take(reply, 16, 0)
+
+
+def test_what_hiw_is_may_be_told_while_it_runs():
+    drive = Drive(1, MASK)
+    drive.tell_speed(0)
+    exchange(drive, 0)
+    drive.start(HALF)
+    exchange(drive, HALF, 0)
+    assert drive.is_on()
+    drive.tell_speed(FULL)
+    exchange(drive, HALF)
+    assert drive.is_on()
+    exchange(drive, 0)
+    assert not drive.is_on()
+
+
+def test_a_setpoint_that_was_foreseen_has_to_be_reached_as_well():
+    drive = Drive(1, MASK)
+    exchange(drive, 0)
+    drive.start(HALF)
+    exchange(drive, HALF)
+    drive.hsw = HALF + 0x1000
+    foreseen = drive.foresee(bytearray(16), False)
+    assert foreseen[13:15] == bytes(((HALF + 0x1000) >> 8, 0))
+    drive.follow(foreseen, 0)
+    reply = bytearray(16)
+    put_word(reply, 11, RUNNING)
+    for hiw, is_on in ((0, True), (HALF + 0x1000, True), (0, False)):
+        put_word(reply, 13, hiw)
+        drive.take(reply, 16, 0)
+        assert drive.is_on() == is_on, hiw
 
 
 def test_a_motor_that_has_not_come_up_to_its_setpoint_is_left_alone():

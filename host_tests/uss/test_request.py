@@ -11,6 +11,7 @@ from uss import pkw, pzd, telegram
 from uss.drive import Drive
 from uss.families import MM4
 from uss.layout import Layout
+from uss.receiver import SILENT
 from uss.survey import Survey, spare_jobs
 
 MASK = (1 << 30) - 1
@@ -233,10 +234,54 @@ def test_each_change_is_in_the_very_next_telegram_of_a_drive_of_which_nothing_el
         (0,), (4, 0, 0),
     ):  # fmt: skip
         pzd_words = 2 + len(expected)
+        drive.miss(SILENT, 0, LOST_US, MASK)
         drive.become(Drive(5, MASK, layout=Layout(pkw_words, pzd_words)))
+        assert drive.silent == drive.status == 0  # it has missed no telegram of this layout
         drive.fill(0)
         size = 2 * (pkw_words + pzd_words) + 4
         assert drive.size == size == len(drive.request)
         words = [telegram.get_word(drive.request, at) for at in range(3, size - 1, 2)]
         assert words == [0] * pkw_words + [pzd.OFF1, 0] + expected
         drive.take(bytes(size), size, 0)
+
+
+def ready_and_sealed(address=5):
+    """A drive in contact of which nothing is changing; its last telegram is whole."""
+    drive = Drive(address, MASK)
+    for _ in range(2):
+        drive.fill(0)
+        telegram.seal(drive.request, address, 12)
+        drive.sealed = True
+        drive.take(bytes(16), 16, 0)
+    return drive
+
+
+def test_a_telegram_is_foreseen_only_where_it_is_whole_and_to_the_same_address():
+    room = bytearray(16)
+    drive = ready_and_sealed()
+    assert drive.foresee(room, False) is drive.request
+    drive.sealed = False
+    assert drive.foresee(room, False) is None
+    for address in (3, 7):
+        drive = ready_and_sealed()
+        drive.move(address)
+        assert drive.foresee(room, False) is None
+    drive = ready_and_sealed()
+    drive.stop()
+    assert drive.foresee(room, False) is None
+
+
+def test_a_start_ends_the_repetitions_of_a_stop():
+    drive = ready_and_sealed()
+    assert not drive.stopped_by_engine()
+    drive.stop()
+    drive.fill(0)
+    drive.miss(SILENT, 0, LOST_US, MASK)
+    assert drive.urgency() == 1 and not drive.stopped_by_engine()
+    drive.start(0x1000)
+    drive.fill(0)
+    assert drive.urgency() == 0 and drive.is_on()
+    drive.revoke()
+    assert drive.stopped_by_engine()
+    drive.stop()
+    assert not drive.stopped_by_engine()
