@@ -188,6 +188,63 @@ def test_a_drive_that_wants_more_gets_every_second_turn_or_every_fourth():
     assert table.asked(9) == [2, 3, 4, 5, 6, 7, 8, 1, 2]
 
 
+def foreseen(table, count):
+    """Whose the next turns are by `foresee`, each of them passed on at once."""
+    asked = []
+    for _ in range(count):
+        table.now += EXCHANGE_US
+        drive = table.turns.foresee(table.now)
+        assert table.turns.foresee(table.now) is drive
+        drive.fill(table.now)
+        drive.take(bytes((2, 14, drive.address)) + bytes(8) + READY + bytes(1), 16, table.now)
+        table.turns.pass_on()
+        asked.append(drive.address & 0x1F)
+    return asked
+
+
+def test_what_is_foreseen_is_what_would_be_chosen():
+    table = eight()
+    exchanges = table.turns.exchanges
+    assert foreseen(table, 10) == [1, 2, 3, 4, 5, 6, 7, 8, 1, 2]
+    assert table.turns.exchanges == exchanges + 10
+    table.drives[5].want_turns(True)
+    assert foreseen(table, 8) == [5, 3, 5, 4, 5, 5, 5, 6]
+    table.turns.lists_between = 3
+    assert foreseen(table, 12) == [5, 7, 8, 1, 5, 2, 3, 4, 5, 5, 6, 7]
+    table.drives[5].want_turns(False)
+    assert foreseen(table, 4) == [8, 1, 2, 3]
+    table.turns.exchanges = 0xFFFF
+    assert foreseen(table, 1) == [4] and table.turns.exchanges == 0
+
+
+def test_who_was_foreseen_keeps_the_turn_behind_what_is_more_urgent():
+    table = eight()
+    turns, drives = table.turns, table.drives
+    assert turns.foresee(0) is drives[1]
+    drives[3].stop()
+    assert turns.foresee(0) is None
+    assert table.asked(1) == [3]
+    turns.repeat(drives[7])
+    assert turns.foresee(0) is None
+    assert table.asked(3) == [7, 1, 2]
+    mirror = Mirror(9)
+    mirror.ahead = True
+    turns.post(mirror)
+    assert turns.foresee(0) is None
+    assert [address & 0x1F for address in table.asked(3)] == [9, 3, 4]
+    drives[8].press()
+    assert turns.foresee(0) is None
+    assert table.asked(3) == [8, 5, 6]
+    assert turns.foresee(0) is drives[7]
+    turns.remove(drives[8])
+    assert turns.foresee(0) is drives[7]
+    turns.remove(drives[7])
+    assert turns.foresee(0) is drives[1]
+    assert table.asked(3) == [1, 2, 3]
+    turns.cycle_us = 1_000_000
+    assert turns.foresee(0) is None
+
+
 def test_stops_go_before_other_commands_and_those_in_vain_leave_room_for_who_would_be_late():
     table = eight(6, 7, 8)
     for address in (1, 6):
