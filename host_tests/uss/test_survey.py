@@ -225,6 +225,33 @@ def test_all_is_asked_on_contact_and_before_a_start_and_then_a_parameter_every_t
     assert numbers(line, 45)[:ROWS] == ROUND + [1210, 2024] and survey.unchecked == 0
 
 
+def test_it_gets_more_turns_while_somebody_waits_and_with_contact_all_is_forgotten():
+    line = Line((1,))
+    survey, drive = line.surveys[0], line.drives[0]
+    line.exchange(0)
+    let_pass(line, 1)
+    assert drive.asking and survey.unchecked == ROWS
+    let_pass(line, 40)
+    assert not drive.asking and survey.complete and survey.scaling and survey.actual is None
+    assert survey.is_settled() and min(survey.values) >= 0
+    for _ in range(2):
+        survey.recheck()
+        let_pass(line, 6)
+        assert drive.asking and 0 < survey.unchecked < ROWS
+        survey.drop_recheck()
+        assert not drive.asking and not survey.unchecked
+    survey.recheck()
+    let_pass(line, 2)
+    version = survey.version
+    drive.lose()
+    for _ in range(3):
+        survey.step(line.now)
+    assert not survey.unchecked and not drive.asking and survey.version > version
+    assert not survey.complete and survey.scaling is None and max(survey.values) <= 0
+    survey.recheck()  # of a drive without contact nothing is asked
+    assert not survey.unchecked
+
+
 def test_while_it_runs_every_other_question_is_for_its_count_and_its_limits():
     line = runs(5000, 1)
     line.surveys[0].recheck()
@@ -341,6 +368,33 @@ def test_a_count_may_lack_an_eighth_of_what_was_answered_and_32_and_no_more():
     assert not counted(moves, "begin", (800, 800, 0, 1010))  # not judged yet
     assert not counted(moves, (800, 800, 0, 1010), "begin")
     assert not counted(moves, (800, 800, 0, 1010), None)
+
+
+def test_a_count_moves_when_it_grows_from_more_than_nothing():
+    begun = (0, 0, 0, 0), None, (0, 0, 0, 0)
+    assert not counted(*begun + ((10, 10, 0, 10), (800, 800, 0, 10)))
+    assert counted(*begun + ((10, 10, 0, 10), (10, 10, 0, 20), (800, 800, 0, 20)))
+
+
+def test_another_run_asks_for_the_count_again_and_begins_with_what_it_is_then():
+    line = runs(5000, 1)
+    survey, drive = line.surveys[0], line.drives[0]
+    drive.stop()
+    let_pass(line, 20)
+    line.counts[0] = (0, 1)
+    drive.start(0x1000)
+    survey.count_anew()
+    let_pass(line, 100)
+    assert not survey.has_restarted()
+    line.counts[0] = (0, 1)
+    let_pass(line, 100)
+    assert survey.has_restarted() and not survey.has_restarted()
+    line.without = R2024
+    let_pass(line, 100)
+    assert 2024 not in numbers(line, 200)
+    line.without = None
+    survey.count_anew()
+    assert 2024 in numbers(line, 100)
 
 
 def test_a_count_that_has_gone_back_was_wrapped_by_64_more_than_were_sent_or_begun_anew():
