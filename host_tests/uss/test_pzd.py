@@ -87,3 +87,27 @@ def test_golden_replies_mean_what_their_documents_say():
     assert pzd.Scaling(5000, True).centihertz(running[5]) == 1000
     half = by_id["S2-2"].words()
     assert pzd.Scaling(5000, False).centihertz(half[1]) == 2500
+
+
+def test_a_fault_outranks_all_and_the_inhibit_all_but_a_fault():
+    for others in range(0x80):
+        assert pzd.state(others | pzd.ZSW_FAULT) == pzd.FAULT
+        without_fault = others & ~pzd.ZSW_FAULT
+        assert pzd.state(without_fault | pzd.ZSW_INHIBIT) == pzd.INHIBITED
+        free = without_fault & ~pzd.ZSW_INHIBIT
+        assert pzd.state(free | pzd.ZSW_RUNNING) == pzd.RUNNING
+        is_ready = others & pzd.ZSW_READY == pzd.ZSW_READY
+        assert pzd.state(free & ~pzd.ZSW_RUNNING) == (pzd.READY if is_ready else pzd.NOT_READY)
+    assert pzd.ZSW_READY == 0x31 and pzd.ZSW_WARNING == 0x80
+
+
+def test_a_scaling_says_what_it_is_of_and_how_far_it_goes():
+    relative, absolute = pzd.Scaling(5000, False), pzd.Scaling(5000, True)
+    assert relative.full_scale() == 0x4000 and absolute.full_scale() == 5000
+    assert relative.limit_centihertz() == 9999 and absolute.limit_centihertz() == 32767
+    assert relative.hsw(-1) == 0xFFFD and absolute.hsw(-1) == 0xFFFF and relative.hsw(1) == 3
+    for scaling, other in ((relative, absolute), (absolute, relative)):
+        assert scaling.is_of(5000, scaling.absolute) and not scaling.is_of(5000, other.absolute)
+        assert not scaling.is_of(4999, scaling.absolute)
+        assert not scaling.is_of(5001, scaling.absolute)
+    assert pzd.BEYOND == (0x7FFF, 0x8000)

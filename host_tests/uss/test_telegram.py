@@ -111,3 +111,14 @@ def test_words_travel_high_byte_first():
     telegram.put_word(buffer, 1, 0x047F)
     assert buffer == b"\x00\x04\x7f\x00"
     assert telegram.get_word(buffer, 1) == 0x047F
+
+
+def test_a_few_characters_are_no_telegram_and_one_net_character_is_enough():
+    for characters in (b"\x02", b"\x02\x00", b"\x02\x01\x03", b"\x02\x02\x01\x01"):
+        assert telegram.judge(characters, len(characters), None, None) == telegram.BAD_LENGTH
+    shortest = built(b"\x5a", 31)
+    assert shortest == b"\x02\x03\x1f\x5a\x44"
+    assert telegram.judge(shortest, 5, telegram.NODE_MAX, 1) == telegram.GOOD
+    findings = telegram.GOOD, telegram.BAD_START, telegram.BAD_LENGTH, telegram.BAD_BCC
+    assert findings + (telegram.BAD_ADDRESS,) == tuple(range(len(telegram.FINDINGS)))
+    assert (telegram.BROADCAST, telegram.MIRROR, telegram.SPECIAL) == (32, 64, 128)

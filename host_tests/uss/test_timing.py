@@ -75,3 +75,12 @@ def test_an_instant_that_is_still_to_come_has_not_passed():
     mask = (1 << 30) - 1
     assert elapsed(100, 103, mask) == 0
     assert elapsed(mask, 2, mask) == 0
+
+
+def test_a_slow_line_waits_twice_the_pause_that_a_drive_must_keep():
+    for baud, timeout_us in ((300, 146_668), (1200, 36_668), (2400, 20_000), (19200, 20_000)):
+        line = Timing(baud)
+        assert line.reply_timeout_us == timeout_us == max(20_000, 2 * line.start_interval_us)
+    assert Timing(300, 200_000).reply_timeout_us == 200_000
+    assert BAUD_RATES[:4] == (300, 600, 1200, 2400)
+    assert len(set(BAUD_RATES)) == 13 and list(BAUD_RATES) == sorted(BAUD_RATES)
