@@ -30,6 +30,24 @@ def test_it_listens_for_100_ms_before_its_first_telegram():
     assert len(bus.sent) == 1
 
 
+def test_it_listens_as_long_however_late_it_begins():
+    bus = Bus(start_at=10_000_000)
+    bus.run(200_000)
+    assert 10_100_000 <= bus.sent[0][0] < 10_110_000
+
+
+def test_an_exchange_is_under_way_with_the_drive_that_was_sent_something_and_with_no_other():
+    bus = Bus(addresses=(1, 2))
+    seen = set()
+    for _ in range(300):
+        bus.run(1_000)
+        busy = [drive.address for drive in bus.drives if bus.master.is_under_way(drive)]
+        goes_on = bus.master.phase in (SENDING, AWAITING)
+        assert busy == ([bus.sent[-1][1][2]] if goes_on else []), (bus.master.phase, busy)
+        seen.add(tuple(busy))
+    assert seen == {(), (1,), (2,)}
+
+
 def test_another_master_is_noticed_and_not_fought():
     bus = Bus()
     for _ in range(50):
