@@ -6,10 +6,13 @@ from uss import families
 
 
 def shown(width, hundredths, decimals):
+    """What stands in a field that was full of something else, as nothing beside it changes."""
     screen = Screen()
+    for row in range(ROWS):
+        screen.put(row, 0, COLUMNS, b"x" * COLUMNS)
     screen.number(1, 3, width, hundredths, decimals)
-    row = screen.rows()[1]
-    assert row[:3] == "   " and row[3 + width :] == " " * (13 - width)
+    other, row = screen.rows()
+    assert other == "x" * 16 and row[:3] == "xxx" and row[3 + width :] == "x" * (13 - width)
     return row[3 : 3 + width]
 
 
@@ -21,6 +24,7 @@ def test_numbers_stand_at_the_right_of_their_field():
         (6, 0, 2, "  0.00"),
         (6, 5, 2, "  0.05"),
         (6, -5, 2, " -0.05"),
+        (6, -1, 2, " -0.01"),
         (6, -1000, 2, "-10.00"),
         (6, 65000, 2, "650.00"),
         (5, 65000, 1, "650.0"),
@@ -55,6 +59,23 @@ def test_every_frequency_of_a_drive_fits_its_field():
             text = shown(width, centihertz, decimals)
             places = len(text.split(".")[1]) if "." in text else 0
             assert abs(float(text) * 100 - centihertz) <= (0.5, 5, 50)[2 - places] + 0.01, text
+
+
+def test_a_number_with_all_its_digits_begins_with_zeros():
+    """A parameter number of one that is being typed; of more digits there are the last ones."""
+    screen = Screen()
+    for number, text in ((0, "0000"), (7, "0007"), (1089, "1089"), (9, "0009"), (12345, "2345")):
+        for row in range(ROWS):
+            screen.put(row, 0, COLUMNS, b"x" * COLUMNS)
+        screen.digits(1, 3, 4, number)
+        assert screen.rows() == ("x" * 16, "xxx" + text + "x" * 9), number
+
+
+def test_fn_of_a_compact_keypad_stands_over_the_first_places():
+    screen = Screen()
+    screen.put(0, 0, COLUMNS, b"x" * COLUMNS)
+    screen.mark(2)
+    assert screen.rows() == ("^^" + "x" * 14, " " * 16)
 
 
 def test_text_is_cut_or_filled_to_its_field():

@@ -2,6 +2,7 @@
 """The file of a parameter set, and what ten of them take."""
 
 import io
+from binascii import crc32
 
 import catalogue
 from boards.sim.chip.flash import BLOCK_BYTES, CAPACITY_BYTES, Flash
@@ -10,6 +11,7 @@ from panel.menu.sets import words
 from panel.sets import saving, set_file, work, writing
 from sets_bench import made
 from uss import families
+from uss.pkw import NUMBER_MAX
 
 FILE_SYSTEM_BYTES = 1408 * 1024  # of a Pico with the firmware file: nothing else is in it
 SECTOR_BYTES = 4096
@@ -79,6 +81,71 @@ def test_a_head_is_to_the_letter_too():
         {"ratings": [(206, b"3F40000G")]},
     ):
         assert error_of(made(rows, **options)) == words.DAMAGED, options
+
+
+def sealed(text, count):
+    """With a last line that fits it."""
+    return text + b"end %d %08X\n" % (count, crc32(text) & 0xFFFFFFFF)
+
+
+def test_the_first_line_and_the_names_of_the_head_are_those_of_a_set():
+    text = b"USS SET 1\nfamily mm440\naddress 1\nname MADE\npanel 0.0\nP0003 0 U16 0003\n"
+    assert len(error_of(sealed(text, 1))) == 1
+    for old, new, outcome in (
+        (b"SET 1", b"SET 10", words.NO_SET),
+        (b"SET 1", b"SET 2", words.NO_SET),
+        (b"SET 1", b"SET 0", words.NO_SET),
+        (b"family", b"familz", words.DAMAGED),
+        (b"address", b"addresr", words.DAMAGED),
+        (b"name", b"namf", words.DAMAGED),
+        (b"panel", b"pamel", words.DAMAGED),
+    ):
+        assert error_of(sealed(text.replace(old, new), 1)) == outcome, new
+
+
+def test_a_row_is_to_the_letter_too():
+    row = (1120, 0, b"Float", b"41200000")
+    assert len(error_of(made([row, (1120, 254, b"U16", b"0003")]))) == 2
+    for wrong in (
+        (1120, 0, b"U64", b"00000003"),
+        (1120, 0, b"float", b"41200000"),
+        (1120, 0, b"Float", b"4120000"),
+        (1120, 0, b"Float", b"41200000 "),
+        (1120, 0, b"Float", b"4120000a"),
+        (1120, 0, b"U16", b"41200000"),
+        (1120, 255, b"U16", b"0003"),
+        (NUMBER_MAX + 1, 0, b"U16", b"0003"),
+    ):
+        assert error_of(made([wrong])) == words.DAMAGED, wrong
+    assert len(error_of(made([(NUMBER_MAX, 0, b"U16", b"0003")]))) == 1
+
+
+def test_the_rows_stand_in_their_order():
+    """By number, and by index where that is the same; none stands there twice."""
+    places = (3, 0), (3, 1), (4, 0), (300, 254), (301, 0)
+    rows = [place + (b"U16", b"0003") for place in places]
+    assert len(error_of(made(rows))) == 5
+    for at in range(4):
+        for some in ([rows[at + 1], rows[at]], [rows[at], rows[at]]):
+            assert error_of(made(some)) == words.DAMAGED, some
+
+
+def test_a_file_has_no_more_than_128_kb():
+    """With remarks, of which the last line here has as many as it takes."""
+    data = made([(3, 0, b"U16", b"0003")])
+    assert len(error_of(data + b"#" * (131072 - len(data)))) == 1
+    assert error_of(data + b"#" * (131073 - len(data))) == words.TOO_BIG
+
+
+def test_a_line_has_64_characters_at_the_most_without_its_remark():
+    """Wherever the piece ends that is read at once."""
+    for length in (64, 65):
+        texts = []
+        for before in range(180, 260, 5):
+            line = b"panel " + b"x" * (length - 6)
+            data = b"USS SET 1 #" + b"-" * before + b"\nfamily mm440\naddress 1\nname A\n" + line
+            texts.append(error_of(data))
+        assert (words.NO_SET in texts) == (length > 64), texts
 
 
 class Store:

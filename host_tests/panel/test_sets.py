@@ -131,6 +131,15 @@ def too_big():
     return bytes(data)
 
 
+def own_rating(drive):
+    """Ratings of a file that are those of this drive."""
+    kinds = [(number, drive.parameters.rows[number]) for number in (206, 207, 208)]
+    words_of = [
+        parameters.words_of(row[parameters.TYPE], drive.read(number)) for number, row in kinds
+    ]
+    return [(row[0], b"%04X%04X" % tuple(told)) for (_, row), told in zip(kinds, words_of)]
+
+
 def runs(world, address=2):
     show(world, address)
     wait_until_known(world)
@@ -652,6 +661,74 @@ def test_another_drive_keeps_bus_and_sources_and_with_another_rating_its_motor()
     assert world.drives[2].read(304) == 400 and world.drives[2].read(1000) == 5
 
 
+def compared(world, *numbers, **options):
+    """Those of these parameters that are compared with the drive shown, whose values are others.
+
+    Twenty at a time, as a comparison lists no more.
+    """
+    found = []
+    for at in range(0, len(numbers), 20):
+        rows = [(number, 0, b"U16", b"ABCD") for number in numbers[at : at + 20]]
+        put(world, *rows, **options)
+        work = Write(world.app.panel, world.app.panel.selected, "1.set")
+        for now_ms in range(2000):
+            if work.outcome:
+                break
+            work.step(now_ms)
+            work.search()
+            world.run(5)
+        assert work.outcome[0] in (words.DIFFER, words.ALL_EQUAL), work.outcome
+        found += [row[0] for row in work.listed]
+    return tuple(found)
+
+
+def test_what_is_left_out_ends_where_it_is_said_to():
+    """Beside each of those numbers there are values that every drive takes."""
+    world = two()
+    show(world, 2)
+    world.run(1000)
+    own = {"ratings": own_rating(world.drives[2])}
+    # Another drive keeps its bus and its sources, and with the same rating not its motor.
+    others = (
+        304, 699, 720, 799, 928, 999, 1001, 1054, 1057, 1069, 1077, 1109, 1114, 1139, 1143, 2008,
+        2052, 2102, 2107,
+    )  # fmt: skip
+    kept = (
+        700, 701, 718, 719, 800, 927, 1000, 1055, 1056, 1070, 1076, 1110, 1113, 1140, 1142, 2009,
+        2051, 2103, 2106,
+    )  # fmt: skip
+    assert compared(world, *sorted(others + kept), **own) == others
+    # The same drive keeps nothing of that, but no set has its operations and passwords.
+    never = (10, 11, 12, 40, 340, 952, 970, 971, 1900, 1910, 1960, 2111, 3900)
+    others = (
+        9, 13, 39, 41, 339, 341, 951, 953, 969, 972, 1899, 1901, 1909, 1911, 1959, 1961, 2110,
+        2112, 3899, 3901,
+    )  # fmt: skip
+    assert compared(world, *sorted(others + never), address=2, **own) == others
+    # With another rating it keeps motor and rating.
+    others = (99, 101, 199, 400, 600, 641, 1799, 1826, 1899, 1927)
+    kept = (100, 200, 399, 601, 640, 1800, 1825, 1901, 1926)
+    options = {"address": 2, "ratings": OTHER_RATING}
+    assert compared(world, *sorted(others + kept), **options) == others
+
+
+def test_what_is_left_out_of_a_micromaster_3_ends_where_it_is_said_to():
+    family = like(
+        mm3,
+        (111, "rated power", "U16", "", 1, 0, 65535, 75, "CUT", 0, ""),
+        (112, "type", "U16", "", 1, 0, 65535, 1, "CUT", 0, ""),
+    )
+    world = panel(kinds={1: {"family": family}}, settings={"kinds": {"1": "mm3"}})
+    wait_until_known(world)
+    own = {"family": b"mm3", "ratings": [(111, b"0000004B"), (112, b"00000001")]}
+    numbers = (5, 6, 7, 8, 71, 90, 91, 95, 96)
+    assert compared(world, *numbers, address=2, **own) == (5, 8, 71, 90, 96)
+    numbers = (70, 71, 89, 90, 100, 101, 102, 943, 944, 945, 970, 971, 972)
+    others = (70, 90, 100, 102, 943, 945, 970, 972)
+    assert compared(world, *numbers, family=b"mm3") == others
+    assert compared(world, 71, 101, 944, **own) == (71, 101)
+
+
 def test_another_drive_takes_what_a_setpoint_means_after_a_question():
     """P2000 asks first, as what cuts the panel off does; but it goes with the setpoints."""
     world = two()
@@ -830,12 +907,9 @@ def test_what_a_drive_refuses_leaves_the_set_half_written():
 def test_what_wants_commissioning_is_written_in_it_whatever_else_the_drive_refuses():
     """P0304 is refused outside commissioning; P0290 and P1082 are beyond their limits."""
     world = two()
-    drive, table = world.drives[2], world.drives[2].parameters
-    kinds = [(number, table.rows[number][parameters.TYPE]) for number in (206, 207, 208)]
-    words_of = {number: parameters.words_of(kind, drive.read(number)) for number, kind in kinds}
-    ratings = [(number, b"%04X%04X" % tuple(words_of[number])) for number, _ in kinds]
+    drive = world.drives[2]
     wrong = [(290, 0, b"U16", b"0009"), (1082, 0, b"Float", b"7F800000")]
-    put(world, (304, 0, b"U16", b"0190"), *ROWS + wrong, ratings=ratings)
+    put(world, (304, 0, b"U16", b"0190"), *ROWS + wrong, ratings=own_rating(drive))
     assert write(world, "A1 MADE") == "HALF, DIFFER 2", world.lcd()
     assert drive.read(304) == 400 and drive.read(1120) == 2.5 and drive.read(10) == 0
 
