@@ -7,8 +7,12 @@ each of them is said for a second and more in every 2 n s.
 
 import main
 from boards.sim.world import World
+from panel import texts
+from panel.announcer import NOTHING, Announcer
 from panel.neighbours import Neighbours
 from panel.pages.home import Home
+from panel.phases import ASKING, IDLE, JOGGING
+from panel.screen import Screen
 from panel_bench import (
     LOOP_US,
     SlowWorld,
@@ -24,6 +28,8 @@ from panel_bench import (
     unsupervised,
     wait_until_known,
 )  # fmt: skip
+from uss import pzd
+from uss.families import MM440
 
 ASKED = "SET=FIX START=GO"
 
@@ -774,3 +780,294 @@ def _runs_on(count):
     options = unsupervised(*range(1, count + 1))
     del options["addresses"]
     return options
+
+
+# --- the announcer by itself: when it says what --------------------------------------------------
+
+
+class Told:
+    """What the announcer asks of a control and its drive. Nothing is the matter with it so far."""
+
+    whole = False  # likewise of a page
+    remark = notice = texts.NOTHING
+    unconfirmed = lost_running = active = absence_known = False
+    phase = IDLE
+    contacts = 1
+    zsw = number = shown_ms = 0
+    digits = 4
+    family = MM440
+
+    def __init__(self, address, **trouble):
+        self.drive = self.survey = self.fault = self.stop_watch = self.setpoint = self
+        self.address = address
+        self.trouble(**trouble)
+
+    def trouble(self, **trouble):
+        for name in trouble:
+            setattr(self, name, trouble[name])
+
+    def is_unheard(self):
+        return not self.contacts
+
+    def needs_attention(self):
+        return self.lost_running or self.unconfirmed
+
+    def runs(self):
+        return self.zsw & pzd.ZSW_RUNNING != 0
+
+    is_on = runs
+
+    def is_below(self):
+        return False
+
+    def show(self, passed_ms):
+        self.shown_ms += passed_ms
+
+
+RUNS = {"zsw": pzd.ZSW_RUNNING}
+TROUBLES = (  # the most dangerous first: what is said of drive 3, and of five
+    ({"unconfirmed": True}, "A3 NOT STOPPED", "NOT STOPPED: 5"),
+    ({"lost_running": True}, "A3 LOST,MAY RUN", "LOST,MAY RUN: 5"),
+    (dict(RUNS, remark=texts.RUNS_LONG), "A3 P2014 LONG", "RUN, P2014 ?: 5"),
+    (RUNS, "A3 RUN,HOLD=ALL", "RUN,HOLD=ALL: 5"),
+    ({"active": True, "number": 11}, "A3 FAULT F0011", "DRIVES FAULT: 5"),
+    ({"notice": texts.LINE_FAILED}, "A3 LINE FAILED", "DRIVES OFF: 5"),
+    ({"contacts": 0}, "A3 MAY RUN", "MAY RUN: 5"),
+)
+
+
+class Teller:
+    """An announcer that has the time, and a picture every `step_ms`; it has looked at all.
+
+    The drive with the first of these addresses is shown, and its page tells what that does.
+    """
+
+    def __init__(self, *controls, step_ms=50):
+        self.controls = [Told(1)] + list(controls)
+        self.announcer = Announcer(self.controls, 0xFFFF)
+        self.now_ms = 0xFF00  # the clock begins anew meanwhile
+        self.step_ms = step_ms
+        self.page = Told(0)
+        self.told = True
+        self.shown = 0
+
+    def row(self):
+        """What is said now; an empty row while it is the page's turn."""
+        if self.announcer.kind == NOTHING:
+            return ""
+        screen = Screen()
+        screen.put(1, 0, texts.ROW_WIDTH, b"x" * texts.ROW_WIDTH)  # of the page
+        self.announcer.draw(screen, 1)
+        return screen.rows()[1].rstrip()
+
+    def step(self):
+        for position in range(len(self.controls)):
+            self.announcer.look(position)
+        self.announcer.begin(self.shown, self.page, self.told, self.now_ms)
+        self.now_ms = self.now_ms + self.step_ms & 0xFFFF
+
+    def said(self, ms):
+        """[(what is said, for how long)], one after the other: the last one is not over yet."""
+        found = []
+        for _ in range(0, ms, self.step_ms):
+            self.step()
+            row = self.row()
+            if not found or found[-1][0] != row:
+                found.append((row, 0))
+            found[-1] = (row, found[-1][1] + self.step_ms)
+        return found
+
+
+def rows_said(teller, ms):
+    """What is said in that time, in the order in which it is."""
+    return [row for row, _ in teller.said(ms) if row]
+
+
+def test_each_trouble_has_its_words_and_from_five_drives_on_a_shared_text():
+    for trouble, alone, together in TROUBLES:
+        rows = rows_said(Teller(Told(3, **trouble)), 8_000)
+        assert rows[:2] == [alone, alone], rows
+        if "contacts" not in trouble:
+            four = Teller(*[Told(address, **trouble) for address in (3, 4, 5, 16)])
+            rows = rows_said(four, 12_000)
+            four = [alone.replace("A3", "A%d" % address) for address in (3, 4, 5, 16)]
+            assert rows[:5] == four + four[:1], rows
+        five = Teller(*[Told(address, **trouble) for address in (3, 4, 5, 6, 7)])
+        rows = rows_said(five, 15_000)
+        assert rows[:2] == [together, together], rows
+    unheard = Teller(Told(3, contacts=0), Told(4, contacts=0))
+    assert rows_said(unheard, 6_000)[:1] == ["MAY RUN: 2"]
+    remarked = Teller(Told(16, remark=texts.RUNS_FOR_EVER, **RUNS))
+    assert rows_said(remarked, 1_000) == ["A16 RUN, P2014=0"]
+    tripped = Teller(*[Told(address, active=True) for address in range(2, 12)])
+    assert rows_said(tripped, 2_000) == ["DRIVES FAULT: 10"]
+
+
+def test_the_most_dangerous_trouble_is_said_first_and_then_all_in_turn():
+    drives = [Told(3, **trouble) for trouble, _, _ in reversed(TROUBLES)]
+    order = [alone for _, alone, _ in TROUBLES]
+    assert rows_said(Teller(*drives), 16_000)[:8] == order + order[:1]
+    two_of_each = [Told(at, **trouble) for trouble, _, _ in TROUBLES[:6] for at in (3, 4)]
+    rows = rows_said(Teller(*two_of_each), 25_000)
+    order = [row.replace("A3", "A%d" % at) for _, row, _ in TROUBLES[:6] for at in (3, 4)]
+    assert rows[:13] == order + order[:1], rows
+
+
+def test_an_announcement_has_1300_ms_and_the_page_what_the_round_leaves_it():
+    """At least 600 ms, and no more than that where one of them is an alarm."""
+    for count, trouble, page_ms in (
+        (1, RUNS, 600), (4, RUNS, 600), (5, RUNS, 4_700), (2, {"contacts": 0}, 2_500),
+        (30, {"contacts": 0}, 4_700), (5, {"active": True}, 600), (5, {"lost_running": True}, 600),
+        (5, {"unconfirmed": True}, 600), (5, {"notice": texts.LINE_FAILED}, 4_700),
+    ):  # fmt: skip
+        teller = Teller(*[Told(2 + place, **trouble) for place in range(count)])
+        lengths = [ms for _, ms in teller.said(15_000)][1:-1]
+        assert lengths[:3] == [1_300, page_ms, 1_300], (count, trouble, lengths)
+    # Two texts in a round; and one more of the drive shown, where its page does not tell.
+    both = [Told(2 + place, **RUNS) for place in range(5)]
+    both += [Told(7 + place, contacts=0) for place in range(5)]
+    assert [ms for _, ms in Teller(*both).said(15_000)][1:4] == [1_300, 1_700, 1_300]
+    notes = [Told(2 + place, notice=texts.LINE_FAILED) for place in range(5)]
+    own = Teller(*notes)
+    own.shown, own.told = 1, False
+    own.said(20_000)
+    rows = ["DRIVES OFF: 5", "", "A2 LINE FAILED", ""]
+    found = [row for row in own.said(15_000) if row[1] in (1_300, 1_700)]
+    assert {row for row, _ in found} == set(rows) and len(found) >= 8, found
+
+
+def test_what_came_late_is_made_up_for():
+    """A slow loop says as much in a minute; the page goes on as often."""
+    for step_ms, most in ((50, 32), (300, 32)):
+        teller = Teller(Told(2, **RUNS), step_ms=step_ms)
+        assert len(rows_said(teller, 60_000)) == most, (step_ms, most)
+        assert teller.announcer.page_turns == most - 1  # after each of them
+        assert min([ms for row, ms in teller.said(20_000)[1:-1] if row]) >= 1_300
+    # Half a second late and more: that counts anew.
+    for step_ms, turns in ((50, 19), (400, 19), (1_000, 14)):
+        teller = Teller(step_ms=step_ms)
+        teller.said(30_000)
+        assert teller.announcer.page_turns == turns, (step_ms, teller.announcer.page_turns)
+
+
+def test_a_page_that_has_come_has_a_turn_at_once_but_not_again_and_again():
+    teller = Teller(*[Told(2 + place, **RUNS) for place in range(5)])
+    teller.said(1_300 + 6_000)  # said, and the page has had most of its turn
+    while teller.row():
+        teller.step()
+    teller.said(4_500)
+    assert not teller.row()
+    teller.page = Told(0)
+    found = teller.said(3_000)
+    assert found[:2] == [("", 600), ("RUN,HOLD=ALL: 5", 1_300)], found
+    quiet = Teller(*[Told(2 + place) for place in range(5)])
+    quiet.said(10_000)
+    for drive in quiet.controls[1:]:  # trouble comes with the page
+        drive.trouble(**RUNS)
+    quiet.page = Told(0)
+    found = quiet.said(3_000)
+    assert found[:2] == [("", 600), ("RUN,HOLD=ALL: 5", 1_300)], found
+    found = []
+    for _ in range(40):
+        teller.page = Told(0)
+        found += teller.said(300)
+    assert len([row for row, _ in found if row]) >= 8, found
+
+
+def test_a_drive_that_has_come_to_be_shown_waits_no_longer_than_its_turn():
+    """Of those that share a text it is said by itself as well, so the page has less."""
+    teller = Teller(*[Told(2 + place, notice=texts.LINE_FAILED) for place in range(5)])
+    teller.told = False
+    while not teller.row():
+        teller.step()
+    while teller.row():
+        teller.step()
+    teller.shown = 1
+    assert teller.said(10_000)[0] in (("", 1_650), ("", 1_700))
+
+
+def test_what_is_over_is_not_said_any_more():
+    for trouble, alone, together in TROUBLES[:6]:
+        over = {name: getattr(Told, name) for name in trouble}
+        drive = Told(3, **trouble)
+        teller = Teller(drive)
+        while teller.row() != alone:
+            teller.step()
+        drive.trouble(**over)
+        teller.step()
+        assert teller.row() == "" and rows_said(teller, 5_000) == [], alone
+        drives = [Told(3 + place, **trouble) for place in range(5)]
+        teller = Teller(*drives)
+        while teller.row() != together:
+            teller.step()
+        drives[4].trouble(**over)
+        teller.step()
+        assert teller.row() == "" and rows_said(teller, 3_000)[0] == alone, together
+
+
+def test_what_its_page_tells_is_not_said_of_the_drive_shown():
+    teller = Teller()
+    shown = teller.controls[0]
+    for trouble, _, _ in TROUBLES[:6]:
+        shown.trouble(**trouble)
+        assert rows_said(teller, 4_000) == [], trouble
+        shown.trouble(**{name: getattr(Told, name) for name in trouble})
+    # A page that tells the frequencies alone leaves these to be said.
+    for trouble, alone, _ in TROUBLES[2:6]:
+        teller.told = False
+        shown.trouble(**trouble)
+        row = alone.replace("A3", "A1")
+        is_said = "RUN," not in alone
+        assert (row in rows_said(teller, 4_000)) == is_said, trouble
+        shown.trouble(**{name: getattr(Told, name) for name in trouble})
+    shown.trouble(notice=texts.LINE_FAILED, phase=ASKING)  # the question says why
+    assert rows_said(teller, 4_000) == []
+    shown.trouble(phase=JOGGING)  # which acknowledges nothing
+    assert "A1 LINE FAILED" in rows_said(teller, 4_000)
+    shown.trouble(notice=texts.NOTHING, phase=IDLE)
+    # One that has both rows leaves all.
+    for trouble, alone, _ in TROUBLES[:6]:
+        teller.page = Told(0)
+        teller.page.whole = True
+        shown.trouble(**trouble)
+        assert alone.replace("A3", "A1") in rows_said(teller, 4_000), trouble
+        shown.trouble(**{name: getattr(Told, name) for name in trouble})
+
+
+def test_stop_has_acknowledged_a_drive_that_was_never_heard():
+    assert rows_said(Teller(Told(3, contacts=0, absence_known=True)), 5_000) == []
+
+
+def test_a_fault_counts_as_shown_as_long_as_it_stands_there():
+    """In the announcement, or on the page of its drive; a shared text tells no number."""
+    tripped = Told(3, active=True, number=11)
+    teller = Teller(tripped)
+    while teller.row() == "":
+        teller.step()
+    assert tripped.shown_ms == 0
+    teller.said(1_300)
+    assert not teller.row() and tripped.shown_ms == 1_300
+    teller.said(400)
+    assert tripped.shown_ms == 1_300 and teller.controls[0].shown_ms > 400
+    many = [Told(3 + place, active=True) for place in range(5)]
+    rows_said(Teller(*many), 10_000)
+    assert [drive.shown_ms for drive in many] == [0] * 5
+
+
+def test_a_drive_that_is_added_or_removed_moves_what_is_said_of_the_others():
+    tripped = [Told(address, active=True, number=11) for address in (2, 3, 4)]
+    teller = Teller(*tripped)
+    assert not Teller().announcer.has_alarm()
+    while teller.row() != "A4 FAULT F0011":
+        teller.step()
+    teller.controls.append(Told(9))
+    teller.announcer.make_room()
+    assert teller.row() == "" and teller.announcer.has_alarm()
+    del teller.controls[2]
+    teller.announcer.close_up(2)
+    rows = rows_said(teller, 8_000)
+    assert rows[:3] == ["A2 FAULT F0011", "A4 FAULT F0011", "A2 FAULT F0011"], rows
+    for _ in range(2):
+        teller.announcer.close_up(1)
+        del teller.controls[1]
+    assert not teller.announcer.has_alarm() and rows_said(teller, 4_000) == []

@@ -3,6 +3,7 @@
 
 import main
 from boards.sim.world import World
+from panel.stop_watch import StopWatch
 from panel_bench import (
     LOOP_US,
     OFF1,
@@ -17,6 +18,7 @@ from panel_bench import (
     telegrams,
     wait_until_known,
 )  # fmt: skip
+from uss import pzd
 
 
 def test_a_stop_that_nobody_confirms_is_an_alarm():
@@ -317,3 +319,135 @@ def test_the_second_stop_is_not_weakened_without_a_status_word():
     world.run(3000)
     assert {stw for _, stw in telegrams(world, world.clock.now_us - 1_000_000, 1)} == {0x047A}
     world.check()
+
+
+# --- the watch by itself: to the millisecond -----------------------------------------------------
+
+
+class Told:
+    """What the watch asks of a drive, which turns at 1000 steps of HIW and answers each OFF1."""
+
+    contact = tells_status = True
+    contacts = 1
+    silent = 0
+    rests = False
+
+    def __init__(self, hiw=1000):
+        self.hiw = hiw
+        self.off_answers = 0xFFFE  # its counter begins anew meanwhile
+
+    def state(self):
+        return pzd.READY if self.rests else pzd.RUNNING
+
+    def may_run(self):
+        return not self.rests
+
+    def answer(self, times=3):
+        self.off_answers = self.off_answers + times & 0xFFFF
+
+
+class Stopped:
+    """A drive that was stopped now, and is watched."""
+
+    def __init__(self, **told):
+        self.drive = Told(told.pop("hiw", 1000))
+        for name in told:
+            setattr(self.drive, name, told[name])
+        self.now_us = 0xF00000  # and so does the clock
+        self.watch = StopWatch(self.drive, 0xFFFFFF)
+        self.after(0)
+
+    def after(self, ms):
+        self.now_us = self.now_us + ms * 1000 & 0xFFFFFF
+        self.watch.step(self.now_us)
+        return self.watch.active, self.watch.unconfirmed
+
+
+GOES_ON, ALARM, OVER = (True, False), (True, True), (False, False)
+
+
+def test_a_stop_has_a_second_to_show():
+    for answers, silent in ((0, 0), (0, 3), (3, 0), (1, 3), (2, 3)):
+        stopped = Stopped(silent=silent)
+        stopped.drive.answer(answers)
+        assert stopped.after(999) == GOES_ON and stopped.after(1) == ALARM, (answers, silent)
+        stopped.drive.answer()
+        stopped.drive.rests = True
+        assert stopped.after(10) == OVER and stopped.after(5_000) == OVER
+    for answers, silent in ((1, 0), (2, 0), (2, 2)):  # others are asked as well: that takes long
+        stopped = Stopped(silent=silent)
+        stopped.drive.answer(answers)
+        assert stopped.after(2_000) == GOES_ON, (answers, silent)
+        stopped.drive.answer(3 - answers)
+        assert stopped.after(10) == ALARM
+
+
+def test_what_was_heard_before_the_stop_confirms_nothing():
+    stopped = Stopped(rests=True)
+    assert stopped.after(900) == GOES_ON
+    stopped.drive.answer(1)
+    assert stopped.after(10) == OVER
+    stopped.watch.begin()
+    assert stopped.after(0) == GOES_ON and stopped.after(900) == GOES_ON
+
+
+def test_a_drive_out_of_contact_needs_to_have_been_heard_at_rest():
+    for contacts, rests, outcome in ((1, True, OVER), (1, False, ALARM), (0, True, ALARM)):
+        stopped = Stopped(contact=False, contacts=contacts, rests=rests, silent=9)
+        assert stopped.after(999) == GOES_ON and stopped.after(1) == outcome, (contacts, rests)
+
+
+def test_words_that_are_no_status_confirm_nothing():
+    stopped = Stopped(tells_status=False)
+    stopped.drive.rests = True
+    stopped.drive.may_run = lambda: True
+    stopped.drive.answer()
+    assert stopped.after(999) == GOES_ON and stopped.after(1) == ALARM
+
+
+def test_who_slows_down_by_four_steps_in_three_seconds_obeys():
+    for sign in (1, -1):
+        stopped = Stopped(hiw=sign * 1000 & 0xFFFF)
+        stopped.drive.answer()
+        stopped.after(10)
+        for speed in (996, 992, 900, 896):
+            stopped.drive.answer()
+            stopped.drive.hiw = sign * speed & 0xFFFF
+            assert stopped.after(990 if speed == 996 else 2_990) == GOES_ON, speed
+        for wait_ms, outcome in ((2_999, GOES_ON), (1, ALARM)):
+            stopped.drive.answer()
+            stopped.drive.hiw = sign * 893 & 0xFFFF  # three are none
+            assert stopped.after(wait_ms) == outcome
+        stopped.drive.answer()
+        stopped.drive.hiw = sign * 892 & 0xFFFF
+        assert stopped.after(10) == GOES_ON  # it does all the same
+        stopped.drive.answer(2)
+        assert stopped.after(4_000) == GOES_ON  # nobody knows yet
+        stopped.drive.silent = 3
+        assert stopped.after(10) == ALARM
+
+
+def test_who_seems_to_slow_down_has_three_seconds_as_long_as_it_seems_so():
+    for back, outcome in ((997, GOES_ON), (1000, ALARM), (1001, ALARM)):
+        stopped = Stopped()
+        for hiw in (1000, 997):
+            stopped.drive.answer()
+            stopped.drive.hiw = hiw
+            stopped.after(10)
+        stopped.drive.hiw = 997
+        stopped.drive.answer()
+        assert stopped.after(1_500) == GOES_ON
+        stopped.drive.hiw = back
+        stopped.drive.answer()
+        assert stopped.after(10) == outcome, back
+        assert stopped.after(1_480) == ALARM
+
+
+def test_a_watch_that_has_ended_says_nothing():
+    stopped = Stopped()
+    stopped.drive.answer()
+    assert stopped.after(1_000) == ALARM
+    stopped.watch.end()
+    assert stopped.after(5_000) == OVER
+    stopped.watch.begin()
+    assert stopped.after(0) == GOES_ON and stopped.after(1_000) == ALARM
