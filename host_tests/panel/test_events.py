@@ -7,8 +7,11 @@ from boards.sim.world import World
 from lookup_bench import entries, go_to, press, settled_heading, wait, world_of
 from panel import texts
 from panel.menu.events import age
+from panel.reports.fault import DriveWarning, Fault
 from panel.reports.journal import EVENTS, NOBODY, Journal
 from panel_bench import row_1, row_2, wait_until_known
+from uss import pkw, pzd
+from uss.families import GENERIC, MM3, MM440, V20
 
 
 def run_motor(world):
@@ -173,3 +176,135 @@ def test_the_journal_keeps_the_last_events_and_counts_on_when_the_clock_wraps():
     assert ages == list(range(10, 10 * EVENTS + 1, 10)), ages
     journal.note(b"PANEL HUNG")
     assert journal.event(0)[1] == NOBODY
+
+
+def test_a_second_has_gone_when_a_thousand_milliseconds_have():
+    journal = Journal(0xFFFF)
+    journal.tick(500)
+    journal.note(b"FAULT", 3, 11)
+    assert journal.count == 1 and journal.event(0) == (b"FAULT", 3, 11, 0)
+    for now_ms, age_s in ((1_499, 0), (1_500, 1), (2_499, 1), (5_600, 5), (6_499, 5), (6_500, 6)):
+        journal.tick(now_ms)
+        assert journal.event(0)[3] == age_s, now_ms
+    journal.note(b"PANEL HUNG")
+    assert journal.event(0) == (b"PANEL HUNG", NOBODY, 0, 0) and journal.event(1)[3] == 6
+
+
+# --- the number of a fault or a warning, by itself -----------------------------------------------
+
+
+class Told:
+    """A drive that is asked, as far as a report asks it. It answers when it is told to."""
+
+    contact = tells_status = True
+    full = False
+    zsw = 0
+
+    def __init__(self):
+        self.channel = self
+        self.asked = []
+
+    def is_full(self):
+        return self.full
+
+    def ask(self, job):
+        job.state = pkw.PENDING
+        self.asked.append(job)
+
+    def answer(self, low=0, state=pkw.DONE):
+        self.asked[-1].low = low
+        self.asked[-1].state = state
+
+
+def stepped(report, *times_ms):
+    for now_ms in times_ms:
+        report.step(now_ms * 1_000 & 0x3FFFFFF)
+    return report.active, report.number
+
+
+def test_the_number_of_a_fault_is_asked_for_twice_a_second_as_long_as_it_is_there():
+    drive = Told()
+    fault = Fault(drive, 0x3FFFFFF, MM440)
+    assert stepped(fault, 67_000) == (False, 0) and drive.asked == []
+    drive.zsw = pzd.ZSW_FAULT
+    drive.full = True
+    assert stepped(fault, 67_001) == (True, 0) and drive.asked == []
+    drive.full = False
+    assert stepped(fault, 67_002, 67_003) == (True, 0)
+    assert [(job.number, job.index) for job in drive.asked] == [(947, 0)]
+    drive.answer(11)
+    assert stepped(fault, 67_100, 67_501) == (True, 11) and len(drive.asked) == 1
+    assert stepped(fault, 67_502) == (True, 11) and len(drive.asked) == 2
+    drive.answer(12)  # by now it is another one
+    assert stepped(fault, 67_600) == (True, 12)
+    stepped(fault, 68_002)
+    drive.answer(state=pkw.TIMED_OUT)
+    assert stepped(fault, 68_100) == (True, 12)
+    stepped(fault, 68_501)
+    assert len(drive.asked) == 3
+    stepped(fault, 68_502)
+    assert len(drive.asked) == 4
+    for state in (pkw.REFUSED, pkw.UNANSWERED):
+        before = len(drive.asked)
+        begun_ms = 68_502 if state == pkw.REFUSED else 78_502
+        drive.answer(77, state)
+        assert stepped(fault, begun_ms + 1, begun_ms + 9_999) == (True, 12), state
+        assert len(drive.asked) == before
+        stepped(fault, begun_ms + 10_000)
+        assert len(drive.asked) == before + 1, state
+
+
+def test_a_fault_that_is_over_has_no_number_and_an_answer_about_it_does_not_count():
+    for over in ({"zsw": 0}, {"contact": False}, {"tells_status": False}):
+        drive = Told()
+        drive.zsw = pzd.ZSW_FAULT
+        fault = Fault(drive, 0x3FFFFFF, MM440)
+        assert stepped(fault, 0) == (True, 0)
+        drive.answer(11)
+        assert stepped(fault, 10, 510) == (True, 11) and len(drive.asked) == 2
+        fault.show(1_000)
+        assert fault.was_shown()
+        for name in over:
+            setattr(drive, name, over[name])
+        assert stepped(fault, 520) == (False, 0) and not fault.was_shown(), over
+        drive.answer(12)
+        assert stepped(fault, 530, 5_000) == (False, 0) and len(drive.asked) == 2
+        drive.zsw, drive.contact, drive.tells_status = pzd.ZSW_FAULT, True, True
+        assert stepped(fault, 5_001) == (True, 0)  # at once
+        assert len(drive.asked) == 3
+        drive.answer(13)
+        assert stepped(fault, 5_002) == (True, 13)
+
+
+def test_a_fault_was_shown_when_it_has_been_there_for_a_second():
+    drive = Told()
+    fault = Fault(drive, 0x3FFFFFF, MM440)
+    fault.show(5_000)
+    assert not fault.was_shown()  # it is none yet
+    drive.zsw = pzd.ZSW_FAULT
+    stepped(fault, 0)
+    fault.show(400)
+    fault.show(599)
+    assert not fault.was_shown()
+    fault.show(1)
+    assert fault.was_shown()
+    fault.show(1_000)
+    assert fault.was_shown()
+
+
+def test_a_warning_is_that_of_the_drive_that_is_shown():
+    first, second = Told(), Told()
+    warning = DriveWarning(first, 0x3FFFFFF, MM440)
+    first.zsw = pzd.ZSW_WARNING
+    assert stepped(warning, 0) == (True, 0) and first.asked[0].number == 2110
+    first.answer(501)
+    assert stepped(warning, 1) == (True, 501) and warning.digits == 4
+    warning.turn_to(second, GENERIC)
+    assert (warning.active, warning.number, warning.digits) == (False, 0, 0)
+    second.zsw = pzd.ZSW_WARNING | pzd.ZSW_FAULT
+    assert stepped(warning, 2, 3) == (True, 0) and second.asked == []  # nobody knows which has it
+    for family, digits in ((MM3, 3), (V20, 0), (MM440, 4)):
+        warning.turn_to(second, family)
+        assert warning.digits == digits == Fault(second, 0x3FFFFFF, family).digits
+    second.zsw = pzd.ZSW_FAULT
+    assert stepped(warning, 4, 5) == (False, 0)

@@ -5,6 +5,7 @@ Parameters are changed behind the bus's back, as somebody at the drive does.
 """
 
 from boards.sim.drives.families import mm440
+from panel.setpoint import Setpoint
 from panel_bench import (
     OFF1,
     ON,
@@ -357,3 +358,149 @@ def test_a_count_that_came_too_late_does_not_matter_to_a_motor_that_runs():
     world.run(5000)
     assert row_2(world) == "READY        A1", world.lcd()
     world.check()
+
+
+# --- the setpoint by itself ----------------------------------------------------------------------
+
+
+class Scale:
+    """4000h is so many hundredths of a hertz."""
+
+    def __init__(self, full):
+        self.full = full
+
+    def hsw(self, centihertz):
+        return (centihertz * 0x4000 + self.full // 2) // self.full
+
+    def centihertz(self, word):
+        return (word * self.full + 0x2000) // 0x4000
+
+
+class Told:
+    """The survey of a drive, and the settings of its panel: what a setpoint asks of them."""
+
+    complete = True
+    wanted = hsw = version = 0
+    lowest_centihertz, highest_centihertz, setpoint_centihertz = 0, 6_000, 1_000
+
+    def __init__(self):
+        self.drive = self
+        self.limits = (0, 5_000)
+        self.scaling = Scale(5_000)
+
+    def lowest(self):
+        return self.limits[0]
+
+    def highest(self):
+        return self.limits[1]
+
+    def tell(self, lowest=0, highest=5_000, **told):
+        """It has told something else."""
+        self.limits = (lowest, highest)
+        for name in told:
+            setattr(self, name, told[name])
+        self.version += 1
+
+
+def made(**told):
+    survey = Told()
+    for name in told:
+        setattr(survey, name, told[name])
+    setpoint = Setpoint(survey, survey)
+    survey.tell()
+    assert setpoint.has_news() and setpoint.step()
+    assert not setpoint.has_news() and not setpoint.step()
+    return survey, setpoint
+
+
+def run_it(survey, setpoint):
+    """ON is sent: that alone is no news."""
+    survey.wanted = 1
+    assert not setpoint.has_news() and not setpoint.step() and not setpoint.has_news()
+
+
+def told(survey, setpoint, *limits, **more):
+    """What is shown, and what is sent, once it has told that."""
+    survey.tell(*limits, **more)
+    assert setpoint.has_news() and setpoint.step() and not setpoint.has_news()
+    return setpoint.centihertz, survey.hsw
+
+
+def word(centihertz):
+    return Scale(5_000).hsw(centihertz)
+
+
+def test_while_it_stands_the_setpoint_comes_back_when_a_limit_goes():
+    survey, setpoint = made()
+    assert (setpoint.centihertz, survey.hsw) == (1_000, word(1_000))
+    assert told(survey, setpoint, 0, 800) == (800, word(800))
+    assert told(survey, setpoint) == (1_000, word(1_000))
+    assert told(survey, setpoint, 1_200) == (1_200, word(1_200)) and not setpoint.is_below()
+    assert told(survey, setpoint, 1_200, 900) == (900, word(900))  # no more than the highest
+    assert told(survey, setpoint) == (1_000, word(1_000))
+    setpoint.change(10)
+    assert (setpoint.centihertz, survey.hsw) == (1_010, word(1_010))
+    assert told(survey, setpoint, 0, 800)[0] == 800
+    setpoint.change(-1)
+    assert told(survey, setpoint)[0] == 799  # that is what the operator set last
+
+
+def test_a_setpoint_keeps_within_the_limits_of_panel_and_drive():
+    for settings, limits, lowest, highest in (
+        ((0, 6_000), (0, 5_000), 0, 5_000),
+        ((0, 4_000), (0, 5_000), 0, 4_000),
+        ((500, 6_000), (300, 5_000), 500, 5_000),
+        ((300, 6_000), (500, 5_000), 500, 5_000),
+    ):
+        survey, setpoint = made(lowest_centihertz=settings[0], highest_centihertz=settings[1])
+        told(survey, setpoint, *limits)
+        for change, reached in ((-9_000, lowest), (9_000, highest), (-1, highest - 1)):
+            setpoint.change(change)
+            assert (setpoint.centihertz, survey.hsw) == (reached, word(reached)), change
+        # A drive that is not known has those of the panel, and is sent nothing.
+        assert told(survey, setpoint, *limits, complete=False)[1] == word(highest - 1)
+        setpoint.change(9_000)
+        assert (setpoint.centihertz, survey.hsw) == (settings[1], word(highest - 1))
+
+
+def test_while_it_runs_a_limit_lowers_the_setpoint_for_good():
+    survey, setpoint = made()
+    run_it(survey, setpoint)
+    assert told(survey, setpoint, 0, 800) == (800, word(800))
+    assert told(survey, setpoint) == (800, word(800))
+    assert told(survey, setpoint, 900) == (800, word(800)) and setpoint.is_below()
+    setpoint.change(-10)  # down is not up
+    assert (setpoint.centihertz, survey.hsw) == (800, word(800))
+    setpoint.change(10)
+    assert (setpoint.centihertz, survey.hsw) == (900, word(900)) and not setpoint.is_below()
+    setpoint.change(-10)
+    assert setpoint.centihertz == 900
+    assert told(survey, setpoint, 0, 700, complete=False) == (900, word(900))
+    assert told(survey, setpoint, 0, 700, complete=True) == (700, word(700))
+    survey.wanted = 0
+    assert told(survey, setpoint) == (700, word(700))
+
+
+def test_another_scaling_raises_no_word_that_is_sent():
+    survey, setpoint = made()
+    run_it(survey, setpoint)
+    before = survey.hsw
+    assert told(survey, setpoint, scaling=Scale(2_500)) == (500, before)
+    less = Scale(10_000).hsw(500)
+    assert told(survey, setpoint, scaling=Scale(10_000)) == (500, less)
+    assert told(survey, setpoint) == (500, less)
+    survey, setpoint = made()
+    run_it(survey, setpoint)
+    assert told(survey, setpoint, scaling=Scale(4_999))[1] <= before  # nor by rounding
+
+
+def test_a_direction_is_a_minus_that_every_other_setpoint_keeps():
+    survey, setpoint = made()
+    setpoint.negate(True)
+    assert survey.hsw == -word(1_000) & 0xFFFF and setpoint.centihertz == 1_000
+    run_it(survey, setpoint)
+    assert told(survey, setpoint, 0, 800) == (800, -word(800) & 0xFFFF)
+    setpoint.change(-100)
+    assert survey.hsw == -word(700) & 0xFFFF
+    setpoint.negate(False)
+    assert survey.hsw == word(700)
