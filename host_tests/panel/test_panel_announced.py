@@ -866,6 +866,14 @@ class Teller:
         self.announcer.begin(self.shown, self.page, self.told, self.now_ms)
         self.now_ms = self.now_ms + self.step_ms & 0xFFFF
 
+    def until(self, row):
+        """Until this is said, within ten seconds; an empty row: until it is the page's turn."""
+        for _ in range(10_000 // self.step_ms):
+            if self.row() == row:
+                return
+            self.step()
+        raise AssertionError("%r is not said, but %r" % (row, self.row()))
+
     def said(self, ms):
         """[(what is said, for how long)], one after the other: the last one is not over yet."""
         found = []
@@ -953,13 +961,14 @@ def test_what_came_late_is_made_up_for():
 def test_a_page_that_has_come_has_a_turn_at_once_but_not_again_and_again():
     teller = Teller(*[Told(2 + place, **RUNS) for place in range(5)])
     teller.said(1_300 + 6_000)  # said, and the page has had most of its turn
-    while teller.row():
-        teller.step()
+    teller.until("")
     teller.said(4_500)
-    assert not teller.row()
+    assert not teller.row() and teller.announcer.page_turns > 0
     teller.page = Told(0)
+    found = teller.said(50)
+    assert teller.announcer.page_turns == 0
     found = teller.said(3_000)
-    assert found[:2] == [("", 600), ("RUN,HOLD=ALL: 5", 1_300)], found
+    assert found[:2] == [("", 550), ("RUN,HOLD=ALL: 5", 1_300)], found
     quiet = Teller(*[Told(2 + place) for place in range(5)])
     quiet.said(10_000)
     for drive in quiet.controls[1:]:  # trouble comes with the page
@@ -974,14 +983,24 @@ def test_a_page_that_has_come_has_a_turn_at_once_but_not_again_and_again():
     assert len([row for row, _ in found if row]) >= 8, found
 
 
+def test_the_drive_that_was_shown_before_has_the_next_announcement():
+    """Its own page has told all of it so far."""
+    controls = [Told(1, **RUNS), Told(2)]
+    announcer, page = Announcer(controls, 0xFFFF), Told(0)
+    for now_ms in range(0, 1_000, 50):
+        announcer.begin(0, page, True, now_ms)
+    for now_ms in range(1_000, 1_650, 50):
+        assert announcer.kind == NOTHING
+        announcer.begin(1, page, True, now_ms)
+    assert announcer.kind != NOTHING and announcer.control is controls[0]
+
+
 def test_a_drive_that_has_come_to_be_shown_waits_no_longer_than_its_turn():
     """Of those that share a text it is said by itself as well, so the page has less."""
     teller = Teller(*[Told(2 + place, notice=texts.LINE_FAILED) for place in range(5)])
     teller.told = False
-    while not teller.row():
-        teller.step()
-    while teller.row():
-        teller.step()
+    teller.until("DRIVES OFF: 5")
+    teller.until("")
     teller.shown = 1
     assert teller.said(10_000)[0] in (("", 1_650), ("", 1_700))
 
@@ -991,15 +1010,13 @@ def test_what_is_over_is_not_said_any_more():
         over = {name: getattr(Told, name) for name in trouble}
         drive = Told(3, **trouble)
         teller = Teller(drive)
-        while teller.row() != alone:
-            teller.step()
+        teller.until(alone)
         drive.trouble(**over)
         teller.step()
         assert teller.row() == "" and rows_said(teller, 5_000) == [], alone
         drives = [Told(3 + place, **trouble) for place in range(5)]
         teller = Teller(*drives)
-        while teller.row() != together:
-            teller.step()
+        teller.until(together)
         drives[4].trouble(**over)
         teller.step()
         assert teller.row() == "" and rows_said(teller, 3_000)[0] == alone, together
@@ -1042,8 +1059,7 @@ def test_a_fault_counts_as_shown_as_long_as_it_stands_there():
     """In the announcement, or on the page of its drive; a shared text tells no number."""
     tripped = Told(3, active=True, number=11)
     teller = Teller(tripped)
-    while teller.row() == "":
-        teller.step()
+    teller.until("A3 FAULT F0011")
     assert tripped.shown_ms == 0
     teller.said(1_300)
     assert not teller.row() and tripped.shown_ms == 1_300
@@ -1058,8 +1074,7 @@ def test_a_drive_that_is_added_or_removed_moves_what_is_said_of_the_others():
     tripped = [Told(address, active=True, number=11) for address in (2, 3, 4)]
     teller = Teller(*tripped)
     assert not Teller().announcer.has_alarm()
-    while teller.row() != "A4 FAULT F0011":
-        teller.step()
+    teller.until("A4 FAULT F0011")
     teller.controls.append(Told(9))
     teller.announcer.make_room()
     assert teller.row() == "" and teller.announcer.has_alarm()

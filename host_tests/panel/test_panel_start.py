@@ -3,6 +3,8 @@
 
 import main
 from boards.sim.world import World
+from panel import texts
+from panel.command import Command
 from panel_bench import (
     LOOP_US,
     OFF1,
@@ -18,7 +20,8 @@ from panel_bench import (
     unsupervised,
     wait_until_known,
 )  # fmt: skip
-from uss import pkw
+from uss import pkw, pzd
+from uss.families import rows
 
 
 def refused(world, reason):
@@ -536,3 +539,107 @@ def test_what_was_set_at_a_drive_out_of_sight_is_known_when_it_is_shown():
     world.press("JOG_RIGHT", 500)
     assert starts(world, 2) == 1
     world.check()
+
+
+# --- an obeyed START by itself -------------------------------------------------------------------
+
+
+class Told:
+    """What a command asks of its drive, the survey of it, and its bus."""
+
+    contact = True
+    contacts = 5
+    dead_man_trips = failures = version = 0
+    cycle_us = 100_000
+    mask = 0x3FFFFFFF
+
+    def __init__(self):
+        self.bus = self.turns = self
+        self.wrong = list(rows.NOTHING_WRONG)
+        self.is_running = False
+
+    def longest_cycle_us(self):
+        return self.cycle_us
+
+    def state(self):
+        return pzd.RUNNING if self.is_running else pzd.READY
+
+
+GIVEN_US = 0x3FFFFFF0  # the clock begins anew meanwhile
+
+
+def given(**options):
+    told = Told()
+    for name in options:
+        setattr(told, name, options[name])
+    command = Command(told, told, told)
+    command.settle_in()
+    command.give(GIVEN_US, told.dead_man_trips)
+    return told, command
+
+
+def test_a_start_is_given_up_after_twelve_seconds_and_ten_rounds():
+    for cycle_us, most_ms in ((100_000, 12_000), (1_200_000, 12_000), (1_500_000, 15_000)):
+        _, command = given(cycle_us=cycle_us)
+        for ms, is_overdue in ((0, False), (most_ms - 1, False), (most_ms, True)):
+            at_us = GIVEN_US + ms * 1_000 & 0x3FFFFFFF
+            assert command.is_overdue(at_us) == is_overdue, (cycle_us, ms)
+    _, command = given(mask=0xFFFFFF)  # a clock that begins anew after 16 s
+    assert not command.is_overdue(GIVEN_US + 4_190_000 & 0xFFFFFF)
+    assert command.is_overdue(GIVEN_US + 4_200_000 & 0xFFFFFF)
+
+
+def test_what_took_a_start_back_is_told_by_what_has_happened_since():
+    for changes, notice in (
+        ({}, texts.STOPPED_ITSELF),
+        ({"failures": 1}, texts.ENGINE_FAILED),
+        ({"dead_man_trips": 1, "failures": 1}, texts.PANEL_HUNG),
+        ({"contact": False, "dead_man_trips": 1}, texts.LINE_FAILED),
+        ({"contacts": 6, "failures": 1}, texts.LINE_FAILED),
+    ):
+        told, command = given()
+        assert not command.is_stale()
+        for name in changes:
+            setattr(told, name, changes[name])
+        assert command.why_stopped() == notice, changes
+        assert command.is_stale() == ("dead_man_trips" in changes)
+        command.give(GIVEN_US, told.dead_man_trips)  # pressed again: that is over
+        assert not command.is_stale()
+        if told.contact:
+            assert command.why_stopped() == texts.STOPPED_ITSELF
+
+
+def test_on_that_leads_to_nothing_is_taken_back_after_five_seconds():
+    for runs_once in (False, True):
+        told, command = given()
+        command.send(GIVEN_US)
+        for ms in (0, 4_999):
+            assert not command.why_in_vain(False, GIVEN_US + ms * 1_000 & told.mask)
+        if runs_once:
+            told.is_running = True
+            assert not command.why_in_vain(False, GIVEN_US + 4_999_500 & told.mask)
+            told.is_running = False
+        notice = command.why_in_vain(False, GIVEN_US + 5_000_000 & told.mask)
+        assert notice == (texts.NOTHING if runs_once else texts.DID_NOT_START)
+        command.send(GIVEN_US)
+        assert command.why_in_vain(False, GIVEN_US + 5_000_000 & told.mask) == texts.DID_NOT_START
+
+
+def test_on_that_somebody_else_has_taken_away_is_taken_back_once_that_is_known():
+    for row, start, jog in (
+        (rows.COMMAND, True, True), (rows.STATUS, True, True), (rows.SETPOINT, True, False),
+        (rows.ACTUAL, False, False),
+    ):  # fmt: skip
+        told, command = given()
+        assert not command.has_judged() and not command.why_in_vain(False, GIVEN_US)
+        assert command.has_judged()
+        told.wrong[row] = rows.COMMAND_SOURCE
+        assert not command.why_in_vain(False, GIVEN_US)  # what is known is judged already
+        told.version = 1
+        assert not command.has_judged()
+        notices = [command.why_in_vain(jogs, GIVEN_US) for jogs in (False, True)]
+        taken = {True: texts.TAKEN_AWAY, False: texts.NOTHING}
+        assert notices == [taken[start], taken[jog]], row
+        told.wrong[row] = rows.RIGHT
+        told.version = 2
+        assert not command.why_in_vain(False, GIVEN_US)

@@ -5,7 +5,8 @@ without its operator's word.
 
 import json
 
-from panel.supervision import off_time_ms
+from panel import risks, texts
+from panel.supervision import longest_off_time_ms, off_time_ms
 from panel_bench import (
     LOOP_US,
     ON,
@@ -20,6 +21,7 @@ from panel_bench import (
     unsupervised,
     wait_until_known,
 )  # fmt: skip
+from uss.families import GENERIC, MM3, MM440, rows
 
 OFF3 = 0x047A
 ASKED = "SET=FIX START=GO"
@@ -695,3 +697,98 @@ def test_a_start_is_asked_about_behind_the_question_of_a_parameter():
     world.run(3000)
     assert world.drives[2].state == "running"
     world.check()
+
+
+# --- the risks by themselves ---------------------------------------------------------------------
+
+
+class Told:
+    """What the risks ask of a control, its desk and its drive."""
+
+    pkw_words = 4
+    longest_off_time_ms = 2_000
+    address = 7
+    late = None
+    unsupervised = False
+
+    def __init__(self, ms=1_000, restart=1, family=MM440):
+        self.survey = self.desk = self.bus = self.deadlines = self.drive = self.layout = self
+        self.ms, self.family = ms, family
+        self.values = [-1] * rows.COUNT_OF_ROWS
+        self.values[rows.SUPERVISION] = ms
+        self.values[rows.RESTART] = restart
+        self.accepted = {}
+
+    def off_time_ms(self):
+        return self.ms
+
+    def first_late(self, drive):
+        assert drive is self
+        return self.late
+
+    def accepts(self, row, value):
+        return self.accepted.get(row) == value
+
+    def accepts_unsupervised(self):
+        return self.unsupervised
+
+
+SUPERVISION, LATENESS, RESTART = range(3)
+
+
+def open_risks(control):
+    return [row for row in range(len(risks.RISKS)) if risks.is_open(control, row)]
+
+
+def test_a_motor_may_run_on_for_two_seconds_or_four_rounds_of_the_bus():
+    for cycle_us, longest_ms in ((1_000, 2_000), (498_999, 2_000), (500_000, 2_004),
+                                 (999_999, 4_000), (1_000_000, 4_004)):  # fmt: skip
+        assert longest_off_time_ms(cycle_us) == longest_ms, cycle_us
+
+
+def test_a_risk_is_there_from_the_first_value_on_that_is_one():
+    for ms, is_open, exposure_ms in (
+        (1, False, 0), (2_000, False, 0), (2_001, True, 2_001), (65_535, True, 65_535),
+    ):  # fmt: skip
+        control = Told(ms)
+        assert open_risks(control) == [SUPERVISION] * is_open, ms
+        assert risks.exposure_ms(control) == exposure_ms
+    assert open_risks(Told(0)) == [SUPERVISION]
+    assert risks.exposure_ms(Told(0)) > 65_535 * 10  # for ever is longer than any P2014
+    for restart, is_open in ((-1, False), (0, False), (1, False), (2, True), (6, True)):
+        assert open_risks(Told(restart=restart)) == [RESTART] * is_open, restart
+    control = Told()
+    control.late = Told()
+    assert open_risks(control) == [LATENESS] and risks.measure(control, LATENESS) == 7
+
+
+def test_a_risk_that_was_taken_is_one_again_when_it_is_another():
+    control = Told(5_000, 2)
+    assert open_risks(control) == [SUPERVISION, RESTART]
+    control.accepted = {SUPERVISION: 5_000, RESTART: 2}
+    assert open_risks(control) == []
+    control.ms, control.values[rows.RESTART] = 6_000, 3
+    assert open_risks(control) == [SUPERVISION, RESTART]
+    control.unsupervised = True  # and with it any P2014
+    assert open_risks(control) == [RESTART]
+    control.ms = 0
+    assert open_risks(control) == [RESTART]
+
+
+def test_a_question_has_the_values_of_its_risk():
+    control = Told(2_301, 3)
+    for ms, values in ((2_301, (2014, 2_301, 2, 4)), (2_300, (2014, 2_300, 2, 3))):
+        told = risks.ask(Told(ms), SUPERVISION)
+        assert told[2] and told[:2] + told[3:] == (texts.ASK_LONG, values, ms), told
+    assert risks.ask(control, RESTART) == (texts.ASK_RESTART, (3,), False, 3)
+    control.late = Told()
+    assert risks.ask(control, LATENESS) == (texts.ASK_LATE, (7,), False, 7)
+    told = risks.ask(Told(0), SUPERVISION)
+    assert told[2] and told[:2] + told[3:] == (texts.ASK_UNSUPERVISED, (2014,), 0), told
+    assert risks.ask(Told(0, family=MM3), SUPERVISION)[1] == (MM3.off_time_number,)
+    # Without a parameter channel, or where nobody knows which it is, SET puts nothing right.
+    for control in (Told(0), Told(5_000), Told(0, family=GENERIC)):
+        if control.family is MM440:
+            control.pkw_words = 0
+        text, values, can_fix, value = risks.ask(control, SUPERVISION)
+        assert (text, values, value) == (texts.ASK_UNTOLD, (), control.ms) and not can_fix

@@ -8,9 +8,9 @@ import catalogue
 from boards.sim.chip.flash import BLOCK_BYTES, CAPACITY_BYTES, Flash
 from hal.store import FileStore
 from panel.menu.sets import words
-from panel.sets import saving, set_file, work, writing
+from panel.sets import pump, saving, set_file, work, writing
 from sets_bench import made
-from uss import families
+from uss import families, pkw
 from uss.pkw import NUMBER_MAX
 
 FILE_SYSTEM_BYTES = 1408 * 1024  # of a Pico with the firmware file: nothing else is in it
@@ -262,3 +262,30 @@ def test_what_is_left_out_has_a_reason_for_every_family():
         for number in wanted + (family.pzd_words_number, family.pkw_words_number):
             if number is not None and name != "g120":
                 assert [1 for first, last in bus if first <= number <= last], (name, number)
+
+
+def test_a_value_is_written_with_the_task_that_the_family_has_for_it():
+    """By family, number, index, type and whether it is to last; what is always kept is kept."""
+    mm3, mm440, v20, g120 = families.MM3, families.MM440, families.V20, families.G120
+    for family, number, index, kind, eeprom, task in (
+        (mm440, 1120, 0, b"U16", False, pkw.WRITE_WORD),
+        (mm440, 1120, 1, b"I16", True, pkw.WRITE_WORD_EEPROM),
+        (mm440, 1120, 1, b"Float", False, pkw.WRITE_DOUBLE),
+        (mm440, 1120, 0, b"BICO", True, pkw.WRITE_DOUBLE_EEPROM),
+        (mm440, 2010, 0, b"U16", False, pkw.WRITE_WORD_EEPROM),
+        (mm3, 5, 1, b"U16", True, pkw.WRITE_WORD),
+        (mm3, 91, 0, b"U16", False, pkw.WRITE_WORD),
+        (v20, 1120, 0, b"Float", False, pkw.WRITE_DOUBLE),
+        (g120, 1120, 1, b"U16", False, pkw.WRITE_ELEMENT_WORD),
+        (g120, 1120, 2, b"U32", False, pkw.WRITE_ELEMENT_DOUBLE),
+        (g120, 1120, 1, b"I16", True, pkw.WRITE_ELEMENT_WORD_EEPROM),
+        (g120, 1120, 1, b"I32", True, pkw.WRITE_ELEMENT_DOUBLE_EEPROM),
+        (g120, 2020, 1, b"U16", False, pkw.WRITE_ELEMENT_WORD_EEPROM),
+    ):
+        aim = pump.writes(family, (0, number, index, kind, 3, 4), eeprom)
+        assert aim == (task, number, index, 3, 4), (family, number, index, kind, eeprom)
+    for family, index, task in (
+        (mm440, 0, pkw.READ), (mm440, 1, pkw.READ), (g120, 0, pkw.READ),
+        (g120, 1, pkw.READ_ELEMENT), (mm3, 1, pkw.READ),
+    ):  # fmt: skip
+        assert pump.reads(family, 1120, index) == (task, 1120, index), (family, index)
