@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """The picture of 2 x 16 characters. The texts that stand in it: test_languages.py."""
 
-from panel.screen import COLUMNS, ROWS, Screen
+from panel.screen import BUSY, COLUMNS, EDITS, GLYPHS, ROWS, Screen
 from uss import families
 
 
@@ -100,6 +100,27 @@ def test_letters_are_those_of_iso_8859_1():
     screen = Screen("A02")
     screen.put(0, 0, 16, b"\xc4\xd6\xdc\xe4\xf6\xfc\xdf \xe9\xc7")
     assert bytes(screen.picture[:10]) == b"\xc4\xd6\xdc\xe4\xf6\xfc\xdf \xe9\xc7"
+
+
+PICTURES = """
+#####   ..#..   .#.#.   .#.#.   .#.#.
+#...#   .###.   .....   .....   .....
+.#.#.   #.#.#   .###.   .###.   #...#
+..#..   ..#..   #...#   #...#   #...#
+.#.#.   ..#..   #####   #...#   #...#
+#...#   #.#.#   #...#   #...#   #...#
+#####   .###.   #...#   .###.   .###.
+.....   ..#..   .....   .....   .....
+"""
+
+
+def test_the_pictures_of_our_own_are_an_hourglass_an_arrow_and_three_letters():
+    """Of codes 0 to 4, as the display is given their dots: five in a row, eight rows."""
+    assert (BUSY, EDITS) == (0, 1) and len(GLYPHS) == 5 * 8
+    for row, line in enumerate(PICTURES.strip().split("\n")):
+        for code, dots in enumerate(line.split()):
+            bits = int(dots.replace("#", "1").replace(".", "0"), 2)
+            assert GLYPHS[8 * code + row] == bits, (code, row)
 
 
 def test_parameter_numbers_fit_their_field():

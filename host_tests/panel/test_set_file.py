@@ -289,3 +289,104 @@ def test_a_value_is_written_with_the_task_that_the_family_has_for_it():
         (g120, 1, pkw.READ_ELEMENT), (mm3, 1, pkw.READ),
     ):  # fmt: skip
         assert pump.reads(family, 1120, index) == (task, 1120, index), (family, index)
+
+
+class Told:
+    """A drive that is asked, and answers when it is told to."""
+
+    full = False
+
+    def __init__(self):
+        self.channel = self
+        self.asked = []
+
+    def is_full(self):
+        return self.full
+
+    def ask(self, job):
+        job.state = pkw.PENDING
+        self.asked.append(job)
+
+    def numbers(self):
+        return [job.number for job in self.asked]
+
+
+def of(*numbers):
+    """Tasks about these parameters; 0: a step is over."""
+    return iter([((pkw.READ, number), -number) if number else None for number in numbers])
+
+
+def is_over(steps):
+    try:
+        next(steps)
+    except StopIteration:
+        return True
+    return False
+
+
+def test_two_readings_are_on_their_way_and_taken_in_order():
+    drive, taken = Told(), []
+    steps = pump.run(drive, of(1, 2, 3, 4), lambda job, tag: taken.append((job.number, tag)))
+    assert not is_over(steps) and not is_over(steps) and drive.numbers() == [1, 2]
+    first, second = drive.asked
+    second.state = pkw.DONE
+    assert not is_over(steps) and taken == [] and drive.numbers() == [1, 2]
+    first.state = pkw.REFUSED
+    assert not is_over(steps) and taken == [(1, -1), (2, -2)]
+    assert len(drive.asked) == 4 and sorted([job.number for job in drive.asked[2:]]) == [3, 4]
+    for job in drive.asked[2:]:
+        job.state = pkw.DONE
+    assert not is_over(steps) and is_over(steps) and taken[2:] == [(3, -3), (4, -4)]
+    nothing = pump.run(drive, of(), None)
+    assert not is_over(nothing) and is_over(nothing)
+
+
+def test_one_write_is_on_its_way_at_a_time():
+    drive, taken = Told(), []
+    steps = pump.run(drive, of(1, 2), lambda job, tag: taken.append(tag), 1)
+    for count in (1, 2):
+        assert not is_over(steps) and not is_over(steps) and len(drive.asked) == count
+        drive.asked[-1].state = pkw.TIMED_OUT
+    assert not is_over(steps) and is_over(steps) and taken == [-1, -2]
+
+
+def test_a_task_that_is_to_be_tried_again_is_asked_again():
+    drive, taken = Told(), []
+
+    def take(job, tag):
+        taken.append(tag)
+        return len(taken) < 3
+
+    steps = pump.run(drive, of(7), take)
+    for count in (1, 2, 3):
+        assert not is_over(steps) and drive.numbers() == [7] * count
+        drive.asked[-1].state = pkw.TIMED_OUT
+    assert not is_over(steps) and is_over(steps) and taken == [-7] * 3
+
+
+def test_what_takes_long_has_a_step_of_its_own():
+    drive, taken = Told(), []
+    steps = pump.run(drive, of(1, 0, 2, 0, 3), lambda job, tag: taken.append(tag))
+    assert not is_over(steps) and drive.numbers() == [1]
+    assert not is_over(steps) and [job.number for job in drive.asked[1:]] == [2]
+    drive.asked[0].state = pkw.DONE
+    assert not is_over(steps) and taken == [-1] and len(drive.asked) == 2
+    assert not is_over(steps) and len(drive.asked) == 3  # nothing was taken in that step
+    for job in drive.asked[1:]:
+        job.state = pkw.DONE
+    assert not is_over(steps) and is_over(steps) and taken == [-1, -2, -3]
+
+
+def test_nothing_is_asked_nor_taken_where_there_is_no_room():
+    drive, taken = Told(), []
+    steps = pump.run(drive, of(1, 2, 3), lambda job, tag: taken.append(tag))
+    drive.full = True
+    assert not is_over(steps) and drive.asked == []
+    drive.full = False
+    assert not is_over(steps) and len(drive.asked) == 2
+    drive.full = True
+    for job in drive.asked:
+        job.state = pkw.DONE
+    assert not is_over(steps) and taken == []
+    drive.full = False
+    assert not is_over(steps) and taken == [-1, -2] and len(drive.asked) == 3
