@@ -7,7 +7,9 @@ from binascii import crc32
 import catalogue
 from boards.sim.chip.flash import BLOCK_BYTES, CAPACITY_BYTES, Flash
 from hal.store import FileStore
+from panel import texts
 from panel.menu.sets import words
+from panel.pages.parameter_words import NO_ANSWER
 from panel.sets import pump, saving, set_file, work, writing
 from sets_bench import made
 from uss import families, pkw
@@ -390,3 +392,173 @@ def test_nothing_is_asked_nor_taken_where_there_is_no_room():
     assert not is_over(steps) and taken == []
     drive.full = False
     assert not is_over(steps) and taken == [-1, -2] and len(drive.asked) == 3
+
+
+class Panel:
+    """What a work asks of its panel, of the drive that is shown, and of the clock."""
+
+    mask = 0xFFFF
+    errand = None
+    contact = True
+    active = False
+    step_us = 0  # a reading of the clock later
+    now_us = 0
+    resumed = 0
+
+    def __init__(self):
+        self.board = self.clock = self.bus = self.control = self.drive = self.survey = self
+        self.family = families.MM440
+
+    def ticks_us(self):
+        self.now_us += self.step_us
+        return self.now_us & self.mask
+
+    def resume(self):
+        self.resumed += 1
+
+    def is_active(self):
+        return self.active
+
+
+class Steps(work.Work):
+    """Does so many steps, then what it is told to."""
+
+    def __init__(self, panel, count=10**6, last=None):
+        self.count, self.last, self.did, self.ahead = count, last, 0, 0
+        work.Work.__init__(self, panel, panel)
+
+    def work(self):
+        for _ in range(self.count):
+            self.did += 1
+            yield
+        if self.last is not None:
+            raise self.last
+        self.end(words.ALL_EQUAL)
+
+    def look_ahead(self):
+        if not self.ahead:
+            return False
+        self.ahead -= 1
+        return True
+
+
+def stepped(panel, steps, *times_ms):
+    for now_ms in times_ms:
+        steps.step(now_ms & panel.mask)
+    return steps.outcome
+
+
+def test_a_work_ends_with_what_went_wrong():
+    for error, outcome in (
+        (None, (words.ALL_EQUAL,)), (OSError(28), (words.FLASH_FULL,)),
+        (MemoryError(), (texts.NO_MEMORY,)), (ValueError(), (texts.NO_MEMORY,)),
+        (ValueError("no text of ours"), (texts.NO_MEMORY,)),
+        (ValueError(words.OTHER_FAMILY, b"MM3"), (words.OTHER_FAMILY, b"MM3")),
+    ):  # fmt: skip
+        for searches in (False, True):
+            panel = Panel()
+            steps = Steps(panel, 2, error)
+            assert stepped(panel, steps, 0) is None and steps.did == 1
+            if searches:
+                steps.search()
+            assert stepped(panel, steps, 10, 20) == outcome and steps.did == 2, error
+            assert stepped(panel, steps, 30) == outcome and panel.resumed == 0
+    panel = Panel()
+    steps = Steps(panel)
+    stepped(panel, steps, 0)
+    panel.contact = False
+    assert stepped(panel, steps, 10) == (texts.NO_CONTACT,)
+    panel = Panel()
+    panel.active = True
+    assert stepped(panel, Steps(panel), 10) == (texts.STOP_FIRST,)
+    # What was to be written into the flash is not written any more, and the bus goes on.
+    panel = Panel()
+    steps = Steps(panel)
+    panel.errand = len
+    steps.end(words.NOTHING_WRITTEN)
+    assert (panel.errand, panel.resumed) == (None, 1)
+
+
+def test_a_work_that_comes_no_further_for_15_seconds_has_no_answer():
+    panel = Panel()
+    steps = Steps(panel)
+    start_ms = 0xF000  # the clock begins anew meanwhile
+    assert stepped(panel, steps, start_ms, start_ms + 15_000) is None
+    steps.done = 1
+    assert stepped(panel, steps, start_ms + 15_001, start_ms + 30_001) is None
+    steps.asks = True  # nobody hurries whoever is asked
+    assert stepped(panel, steps, start_ms + 30_002, start_ms + 50_000) is None
+    steps.asks = False
+    assert stepped(panel, steps, start_ms + 65_000) is None
+    assert stepped(panel, steps, start_ms + 65_001) == (NO_ANSWER,)
+
+
+def test_how_far_a_work_is_and_how_long_it_still_takes():
+    panel = Panel()
+    steps = Steps(panel)
+    stepped(panel, steps, 0xFF00)
+    assert (steps.percent(), steps.left_s) == (0, None)
+    steps.total = 200
+    for done, after_ms, percent, left_s in (
+        (20, 3_000, 10, 27), (21, 3_000, 10, 25), (100, 10_000, 50, 10), (199, 20_000, 99, 0),
+        (200, 20_000, 100, 0), (201, 21_000, 100, 0),
+    ):  # fmt: skip
+        steps.done = done
+        stepped(panel, steps, 0xFF00 + after_ms)
+        assert (steps.percent(), steps.left_s) == (percent, left_s), done
+    steps.done = 10  # another round
+    stepped(panel, steps, 0xFF00 + 22_000, 0xFF00 + 24_000)
+    assert steps.left_s == 38
+
+
+def test_a_step_of_the_loop_has_as_many_of_a_work_as_fit_half_a_millisecond():
+    for step_us, did in ((0, 6), (99, 6), (100, 5), (250, 2), (500, 1), (2_000, 1)):
+        panel = Panel()
+        steps = Steps(panel)
+        steps.search()
+        assert steps.did == 0  # no step has told the time so far
+        stepped(panel, steps, 100)
+        panel.step_us = step_us
+        panel.now_us = panel.mask - 150
+        steps.search()
+        assert steps.did == 1 + did, step_us
+    panel = Panel()
+    steps = Steps(panel)
+    stepped(panel, steps, 0)
+    steps.ahead = 2  # that comes first
+    steps.search()
+    assert steps.did == 1 + 4 and steps.ahead == 0
+
+
+def test_flash_is_written_when_it_may_be_and_tells_what_it_could_not():
+    for error, outcome in ((None, (words.ALL_EQUAL,)), (OSError(28), (words.FLASH_FULL,))):
+        panel, written = Panel(), []
+
+        def write(what):
+            written.append(what)
+            if error is not None:
+                raise error
+
+        class Writes(Steps):
+            def work(self):
+                yield from self.write_flash(write, 5)
+                self.end(words.ALL_EQUAL)
+
+        steps = Writes(panel)
+        assert stepped(panel, steps, 0, 10) is None and written == []
+        errand, panel.errand = panel.errand, None
+        errand()
+        assert written == [5]
+        assert stepped(panel, steps, 20) == outcome and panel.resumed == 0
+
+
+def test_a_reading_that_says_nothing_is_repeated_three_times():
+    steps, job = Steps(Panel()), pkw.read(5)
+    for state, repeated in (
+        (pkw.TIMED_OUT, True), (pkw.TIMED_OUT, True), (pkw.UNANSWERED, True),
+        (pkw.TIMED_OUT, False), (pkw.TIMED_OUT, True), (pkw.DONE, False), (pkw.TIMED_OUT, True),
+        (pkw.TIMED_OUT, True), (pkw.REFUSED, False), (pkw.TIMED_OUT, True),
+        (pkw.TIMED_OUT, True), (pkw.TIMED_OUT, True), (pkw.TIMED_OUT, False),
+    ):  # fmt: skip
+        job.state = state
+        assert steps.is_to_be_repeated(job) == repeated
