@@ -1086,3 +1086,138 @@ def test_a_drive_that_is_added_or_removed_moves_what_is_said_of_the_others():
         teller.announcer.close_up(1)
         del teller.controls[1]
     assert not teller.announcer.has_alarm() and rows_said(teller, 4_000) == []
+
+
+# --- the drives that are not shown: what is done with each in its turn ---------------------------
+
+
+class Other:
+    """A control that notes what is done with it. It has to be watched, and is at rest."""
+
+    contact = True
+    quiet = active = news = False
+
+    def __init__(self, place, done):
+        self.drive = self
+        self.place, self.done = place, done
+
+    def ask(self, now_us, reread_us):
+        assert reread_us == 2_000_000
+        self.done.append(("ask", self.place))
+        news, self.news = self.news, False
+        return news
+
+    def watch(self, now_us):
+        self.done.append(("watch", self.place))
+
+    def keep_quiet(self):
+        self.done.append(("keep quiet", self.place))
+
+    def is_quiet(self):
+        return self.quiet
+
+    def is_active(self):
+        return self.active
+
+
+class Beside:
+    """The neighbours of the first of so many drives; what is done in each step."""
+
+    taken_us = 0  # by each step so far
+
+    def __init__(self, count):
+        self.done = []
+        self.controls = [Other(place, self.done) for place in range(count)]
+        self.neighbours = Neighbours(self.controls, self, self)
+
+    def look(self, place):
+        self.done.append(("look", place))
+
+    def heed(self, control):
+        self.done.append(("heed", control.place))
+
+    def has_taken(self, us):
+        return self.taken_us >= us
+
+    def step(self):
+        del self.done[:]
+        self.neighbours.step(1)
+        return list(self.done)
+
+    def steps(self, count):
+        return [self.step() for _ in range(count)]
+
+
+def asked_of(place):
+    return [[("ask", place)], [("watch", place), ("keep quiet", place), ("look", place)]]
+
+
+def test_each_drive_that_is_not_shown_is_asked_and_then_watched():
+    beside = Beside(4)
+    for _ in range(2):
+        for place in (1, 2, 3):
+            assert beside.steps(2) == asked_of(place)
+    beside.steps(2)
+    beside.neighbours.show(2)  # the one that was shown is the next one
+    assert beside.steps(2) == asked_of(0)
+    assert beside.steps(2) == asked_of(1)
+    assert beside.steps(2) == asked_of(3)
+    assert beside.step() == [("ask", 0)]
+    beside.neighbours.show(0)  # what was begun is not gone on with
+    assert beside.steps(2) == asked_of(2)
+    assert beside.steps(2) == asked_of(3)
+
+
+def test_a_drive_that_has_told_something_is_asked_again_in_its_next_turn():
+    beside = Beside(3)
+    beside.controls[1].news = True
+    assert beside.step() == [("ask", 1), ("heed", 1)]
+    assert beside.steps(2) == asked_of(1)
+    assert beside.steps(2) == asked_of(2)
+
+
+def test_a_drive_with_nothing_new_has_one_step_and_is_heard_of_if_it_is_silent():
+    beside = Beside(3)
+    for control in beside.controls:
+        control.quiet = True
+    beside.controls[2].contact = False
+    assert beside.steps(3) == [[("ask", 1)], [("ask", 2), ("look", 2)], [("ask", 1)]]
+    beside.taken_us = 1_500  # that was enough for a step: the next one watches it
+    assert beside.step() == [("ask", 2)]
+    assert beside.step() == [("watch", 2), ("keep quiet", 2)]
+    assert beside.step() == [("look", 2)]
+    beside.taken_us = 1_499
+    assert beside.steps(2) == [[("ask", 1)], [("ask", 2), ("look", 2)]]
+
+
+def test_a_watch_that_took_a_step_is_forgotten_with_the_drive_that_is_shown():
+    beside = Beside(3)
+    beside.taken_us = 1_500
+    assert beside.steps(2) == [[("ask", 1)], [("watch", 1), ("keep quiet", 1)]]
+    beside.neighbours.show(1)
+    beside.taken_us = 0
+    assert beside.steps(2) == asked_of(0)
+
+
+def test_they_are_at_rest_when_each_of_them_was_found_so():
+    for quiet in (False, True):
+        beside = Beside(4)
+        for control in beside.controls:
+            control.quiet = quiet
+        at_rest = []
+        for _ in range(3):
+            at_rest.append(beside.neighbours.are_at_rest())
+            beside.steps(1 if quiet else 2)
+        assert at_rest == [False] * 3 and beside.neighbours.are_at_rest(), quiet
+        beside.controls[2].quiet, beside.controls[2].active = False, True
+        for _ in range(10):
+            beside.step()
+            if beside.done[:1] == [("watch", 2)]:
+                break
+        assert not beside.neighbours.are_at_rest()
+        beside.controls[2].active = False
+        beside.steps(7)
+        assert beside.neighbours.are_at_rest()
+        beside.neighbours.show(1)
+        assert not beside.neighbours.are_at_rest()
+    assert Beside(1).neighbours.are_at_rest() and not Beside(2).neighbours.are_at_rest()
