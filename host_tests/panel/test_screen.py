@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: MIT
 """The picture of 2 x 16 characters. The texts that stand in it: test_languages.py."""
 
+from panel import texts
+from panel.announcer import NOTHING, RUNS
 from panel.screen import BUSY, COLUMNS, EDITS, GLYPHS, ROWS, Screen
+from panel.view import View
 from uss import families
 
 
@@ -126,3 +129,158 @@ def test_the_pictures_of_our_own_are_an_hourglass_an_arrow_and_three_letters():
 def test_parameter_numbers_fit_their_field():
     for family in families.FAMILIES:
         assert all(0 < number <= 9999 for number, _ in family.shown)
+
+
+# --- what stands in it: the view by itself -------------------------------------------------------
+
+
+class Told:
+    """What a view asks of its panel, the drive shown, the announcer, the keys, and the page."""
+
+    kind = NOTHING
+    text = shift = 0
+    message = values = draw_row_2 = None
+    is_in_use = unconfirmed = lost_running = reversed = percent = beyond = whole = False
+    tells_state = True
+    centihertz, actual, address = 1_000, 998, 1
+
+    def __init__(self, **told):
+        self.selected = self.announcer = self.stop_key = self.stop_watch = self.setpoint = self
+        self.survey = self.drive = self
+        for name in told:
+            setattr(self, name, told[name])
+
+    def line_in_use(self):
+        return self.is_in_use
+
+    def needs_attention(self):
+        return self.unconfirmed or self.lost_running
+
+    def is_percent(self):
+        return self.percent
+
+    def actual_centihertz(self):
+        return self.actual
+
+    def actual_is_beyond(self):
+        return self.beyond
+
+    def draw(self, screen, what):
+        """As the announcer, in this row; as the page: what is later than any row."""
+        if what < ROWS:
+            screen.put(what, 0, COLUMNS, b"A3 RUN,HOLD=ALL")
+        elif self.whole:
+            screen.put(0, 0, COLUMNS, b"PAGE 1")
+            screen.put(1, 0, COLUMNS, b"PAGE 2")
+        else:
+            screen.put(1, 0, 13, b"READY")
+
+
+class Values:
+    def __init__(self, draws):
+        self.draws = draws
+
+    def draw(self, screen):
+        screen.put(0, 7, 9, b" I:  1.25" if self.draws else b"")
+        return self.draws
+
+
+def below(screen, now_ms):
+    screen.put(1, 0, COLUMNS, b">BELOW")
+
+
+def viewed(**told):
+    """Both rows of a picture over one that was full of something else; how many steps it took."""
+    panel, screen = Told(**told), Screen()
+    for row in range(ROWS):
+        screen.put(row, 0, COLUMNS, b"x" * COLUMNS)
+    view = View(panel, screen, panel)
+    assert view.is_done()
+    view.begin(panel)
+    steps = 0
+    while not view.is_done() and steps < 9:
+        view.step(5_000)
+        steps += 1
+    before = screen.rows()
+    view.step(5_000)  # there is nothing left to draw
+    assert screen.rows() == before and view.is_done()
+    return before[0].rstrip(), before[1].rstrip(), steps
+
+
+FREQUENCIES = "S: 10.0 F:  9.98"
+SAID = "A3 RUN,HOLD=ALL"
+UNCONFIRMED, LOST = "STOP UNCONFIRMED", "NO CONTACT,"
+
+
+def test_the_frequencies_stand_in_row_1_and_the_page_in_row_2():
+    for told, rows in (
+        ({}, (FREQUENCIES, "READY        A1")),
+        ({"address": 9}, (FREQUENCIES, "READY        A9")),
+        ({"address": 10}, (FREQUENCIES, "READY        A10")),
+        ({"reversed": True}, ("S:-10.0 F:  9.98", "READY        A1")),
+        ({"reversed": True, "centihertz": 0}, ("S: -0.0 F:  9.98", "READY        A1")),
+        ({"centihertz": 0}, ("S:  0.0 F:  9.98", "READY        A1")),
+        ({"actual": -65_000}, ("S: 10.0 F:-650.0", "READY        A1")),
+        ({"actual": None}, ("S: 10.0 F: -----", "READY        A1")),
+        ({"actual": None, "beyond": True}, ("S: 10.0 F: -----", "READY        A1")),
+        ({"shift": 2}, ("^^ 10.0 F:  9.98", "READY        A1")),
+        ({"values": Values(True)}, ("S: 10.0 I:  1.25", "READY        A1")),
+        ({"values": Values(False)}, (FREQUENCIES, "READY        A1")),
+    ):
+        assert viewed(**told) == rows + (4,), (told, viewed(**told))
+    assert viewed(beyond=True)[0] == "S: 10.0 F: >>>>>"
+    assert viewed(percent=True)[0] == "S: 10.0%F:  9.98"
+
+
+def test_what_must_be_said_has_its_row():
+    """A held STOP before a message, that before another master; an alarm before these two."""
+    held, in_use = "STOP, HOLD: OFF3", "LINE IN USE"
+    message, lost = {"message": b"KEPT"}, {"lost_running": True}
+    announced = {"kind": RUNS}
+    for told, row_1, row_2 in (
+        (message, FREQUENCIES, "KEPT"),
+        ({"is_in_use": True}, FREQUENCIES, in_use),
+        (dict(message, is_in_use=True), FREQUENCIES, "KEPT"),
+        (announced, FREQUENCIES, SAID),
+        (dict(message, **announced), SAID, "KEPT"),
+        ({"unconfirmed": True}, FREQUENCIES, UNCONFIRMED),
+        (dict(announced, unconfirmed=True), UNCONFIRMED, SAID),
+        (dict(message, unconfirmed=True), FREQUENCIES, UNCONFIRMED),
+        (lost, LOST, "MAY RUN      A1"),
+        (dict(lost, **announced), LOST, SAID),
+        (dict(lost, unconfirmed=True), LOST, UNCONFIRMED),
+        (dict(lost, unconfirmed=True, **announced), UNCONFIRMED, SAID),
+        (dict(lost, **message), LOST, "MAY RUN      A1"),
+    ):
+        assert viewed(**told)[:2] == (row_1, row_2), (told, viewed(**told))
+    for told, row_1 in (
+        ({}, FREQUENCIES), (announced, SAID), ({"unconfirmed": True}, UNCONFIRMED), (lost, LOST)
+    ):  # fmt: skip
+        rows = viewed(text=texts.HOLD_FOR_OFF3, message=b"KEPT", is_in_use=True, **told)
+        assert rows[:2] == (row_1, held), (told, rows)
+
+
+def test_a_page_with_both_rows_leaves_them_to_what_must_be_said():
+    message, announced = {"message": b"KEPT"}, {"kind": RUNS}
+    for told, rows in (
+        ({}, ("PAGE 1", "PAGE 2")),
+        (message, ("PAGE 1", "KEPT")),
+        (announced, (SAID, "PAGE 2")),
+        (dict(message, **announced), (SAID, "KEPT")),
+        ({"lost_running": True}, ("PAGE 1", "PAGE 2")),
+        ({"shift": 1}, ("^AGE 1", "PAGE 2")),
+    ):
+        assert viewed(whole=True, **told) == rows + (1,), (told, viewed(whole=True, **told))
+        later = viewed(whole=True, draw_row_2=below, **told)
+        row_2 = ">BELOW" if rows[1] == "PAGE 2" else rows[1]
+        assert later == (rows[0], row_2, 2), (told, later)
+
+
+def test_a_picture_tells_the_state_unless_something_is_said_in_its_place():
+    for told, tells in (
+        ({}, True), ({"tells_state": False}, False), ({"message": b"KEPT"}, False),
+        ({"is_in_use": True}, False), ({"message": b"KEPT", "unconfirmed": True}, True),
+        ({"text": texts.LINE_IN_USE, "unconfirmed": True}, False),
+    ):  # fmt: skip
+        panel = Told(**told)
+        assert View(panel, Screen(), panel).tells_state(panel) == tells, told
