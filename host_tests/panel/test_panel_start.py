@@ -3,8 +3,10 @@
 
 import main
 from boards.sim.world import World
-from panel import texts
+from panel import risks, texts
 from panel.command import Command
+from panel.control import Control, Desk
+from panel.phases import ASKING, CHECKING, IDLE, JOGGING, RUNNING
 from panel_bench import (
     LOOP_US,
     OFF1,
@@ -21,7 +23,7 @@ from panel_bench import (
     wait_until_known,
 )  # fmt: skip
 from uss import pkw, pzd
-from uss.families import rows
+from uss.families import MM440, rows
 
 
 def refused(world, reason):
@@ -643,3 +645,471 @@ def test_on_that_somebody_else_has_taken_away_is_taken_back_once_that_is_known()
         told.wrong[row] = rows.RIGHT
         told.version = 2
         assert not command.why_in_vain(False, GIVEN_US)
+
+
+# --- one drive under the operator's hand, by itself ----------------------------------------------
+
+
+class Scale:
+    """Three steps of a word are a hundredth of a hertz."""
+
+    def hsw(self, centihertz):
+        return centihertz * 3
+
+    def centihertz(self, word):
+        return word // 3
+
+    def limit_centihertz(self):
+        return 5_000
+
+
+class Machine(Told):
+    """A drive that stands and has told all, its survey, its bus, and the settings of the panel."""
+
+    address = 3
+    tells_status = complete = settled = True
+    silent = hiw = hsw = wanted = answered_stw = off_answers = unchecked = 0
+    off, at, zsw = pzd.OFF1, pzd.READY, 0x0231
+    was_running = unreadable = restarted = may = engine_stops = dirty = late = False
+    setpoint_centihertz, lowest_centihertz, highest_centihertz = 1_000, 0, 5_000
+    second_stop = "OFF3"
+    unsupervised = half_at = ()
+    family = MM440
+    version = 1
+
+    def __init__(self, **told):
+        Told.__init__(self)
+        self.drive = self.deadlines = self.channel = self.layout = self
+        self.scaling = self.actual = Scale()
+        self.pkw_words = 4
+        self.values = [0] * rows.COUNT_OF_ROWS
+        self.values[rows.SUPERVISION] = 1_000
+        self.sent, self.rechecks, self.counted = [], 0, 0
+        for name in told:
+            setattr(self, name, told[name])
+        self.control = Control(self, self, Desk(self, self, self.mask))
+        self.now_us = GIVEN_US
+        self.turn_of_loop()
+
+    # --- the drive
+
+    def start(self, hsw, stw=ON):
+        self.wanted, self.off, self.hsw, self.engine_stops = stw, pzd.OFF1, hsw, False
+        self.sent.append(stw)
+
+    def stop(self, off=pzd.OFF1):
+        self.wanted, self.off, self.engine_stops = 0, off, False
+        self.sent.append(off)
+
+    def turn(self, stw):
+        self.sent.append(("turn", stw))
+
+    def acknowledge(self):
+        self.sent.append("acknowledge")
+
+    def state(self):
+        return self.at
+
+    def is_on(self):
+        return self.wanted != 0 and not self.engine_stops
+
+    def stopped_by_engine(self):
+        return self.engine_stops
+
+    def may_run(self):
+        return self.may
+
+    def first_late(self, drive):
+        return None
+
+    # --- its survey
+
+    def step(self, now_us, reread_us=0):
+        self.reread_us = reread_us
+
+    def settle(self):
+        pass
+
+    def recheck(self):
+        self.rechecks += 1
+
+    def drop_recheck(self):
+        pass
+
+    def count_anew(self):
+        self.counted += 1
+
+    def is_settled(self):
+        return self.settled
+
+    def has_restarted(self):
+        return self.restarted
+
+    def off_time_ms(self):
+        return self.values[rows.SUPERVISION]
+
+    def lowest(self):
+        return 0
+
+    def highest(self):
+        return 5_000
+
+    own_highest = highest
+
+    def is_percent(self):
+        return False
+
+    # --- what goes on
+
+    def accept_unsupervised(self, address):
+        self.unsupervised += (address,)
+
+    def tell(self, row, value):
+        self.values[row] = value
+        self.version += 1
+
+    def spin(self, does=True):
+        self.at, self.zsw = (pzd.RUNNING, 0x0235) if does else (pzd.READY, 0x0231)
+        self.may = does
+
+    def turn_of_loop(self, ms=4):
+        self.now_us = self.now_us + ms * 1_000 & self.mask
+        self.control.ask(self.now_us)
+        self.control.ask_on(self.now_us)
+        self.control.watch(self.now_us)
+
+    def turns_of_loop(self, count=20, ms=4):
+        for _ in range(count):
+            self.turn_of_loop(ms)
+
+    def happened(self):
+        """The events, the last first: text and number."""
+        journal = self.control.desk.journal
+        events = [journal.event(place) for place in range(journal.count)]
+        assert all([event[1] == self.address for event in events])
+        return [event[0] if not event[2] else (event[0], event[2]) for event in events]
+
+
+def started(**told):
+    drive = Machine(**told)
+    drive.control.start()
+    drive.turns_of_loop()
+    drive.spin()
+    drive.turn_of_loop()
+    assert drive.control.phase == RUNNING and drive.sent == [ON], (drive.control.phase, drive.sent)
+    return drive
+
+
+def test_start_sends_on_when_the_drive_has_told_all_anew():
+    drive = Machine(unchecked=1)
+    assert drive.control.is_quiet() and not drive.control.is_active()
+    drive.control.start()
+    drive.control.start()  # pressed again
+    assert drive.control.phase == CHECKING and drive.control.is_starting()
+    assert not drive.control.is_quiet()
+    drive.turns_of_loop(40)
+    assert (drive.sent, drive.rechecks, drive.counted) == ([], 1, 1)
+    drive.unchecked, drive.settled = 0, False
+    drive.turns_of_loop()
+    assert drive.sent == []
+    drive.settled = True
+    drive.turns_of_loop()
+    assert drive.sent == [ON] and drive.hsw == 3_000 and drive.control.phase == RUNNING
+    assert drive.happened() == [] and not drive.control.take_refusal()
+    assert drive.control.is_starting() and drive.control.is_active()
+    drive.turns_of_loop(100, 40)
+    assert drive.sent == [ON]
+    drive.turns_of_loop(40, 40)  # it does not run
+    assert drive.sent == [ON, OFF1] and drive.control.phase == IDLE
+    assert drive.control.notice == texts.DID_NOT_START
+    assert drive.happened() == [texts.DID_NOT_START]
+
+
+def test_a_start_that_waits_too_long_or_outlives_a_hang_is_none():
+    drive = Machine(unchecked=1)
+    drive.control.start()
+    drive.turns_of_loop(290, 40)
+    assert drive.control.phase == CHECKING
+    drive.turns_of_loop(20, 40)
+    assert drive.control.phase == IDLE and drive.control.notice == texts.DID_NOT_START
+    assert drive.control.take_refusal() == texts.REFUSED_CHECKING
+    assert drive.control.take_refusal() == texts.NOTHING and drive.sent == []
+    drive.control.start()
+    assert drive.control.notice == texts.NOTHING
+    drive.dead_man_trips = 1
+    drive.unchecked = 0
+    drive.turns_of_loop()
+    assert drive.sent == [] and drive.control.notice == texts.PANEL_HUNG
+    assert drive.happened() == [texts.PANEL_HUNG, texts.DID_NOT_START]
+
+
+def test_a_start_asks_about_each_risk_that_nobody_has_taken():
+    drive = Machine()
+    drive.tell(rows.RESTART, 3)
+    drive.tell(rows.SUPERVISION, 0)
+    control = drive.control
+    control.start()
+    drive.turns_of_loop()
+    assert (control.phase, control.question()) == (ASKING, risks.SUPERVISION) and drive.sent == []
+    assert not control.is_starting() and drive.happened() == [texts.DID_NOT_START]
+    control.accept_risk(risks.SUPERVISION, 0)
+    drive.turns_of_loop()
+    assert drive.unsupervised == (3,) and control.accepts_unsupervised()
+    assert (control.phase, control.question()) == (ASKING, 2) and not control.accepts(2, 3)
+    control.accept_risk(2, 3)
+    assert control.accepts(2, 3) and not control.accepts(2, 2)
+    drive.turns_of_loop()
+    assert drive.sent == [ON] and control.notice == texts.NOTHING
+    control.stop()
+    drive.tell(rows.RESTART, 4)
+    drive.turns_of_loop()
+    control.start()
+    drive.turns_of_loop()
+    assert control.phase == ASKING
+    control.keep_quiet()  # another drive is shown
+    assert control.phase == IDLE
+
+
+def test_a_stop_is_sent_whatever_goes_on_and_acknowledges_what_was_seen():
+    drive = started()
+    control = drive.control
+    control.stop()
+    assert drive.sent == [ON, OFF1] and control.phase == IDLE and control.stop_watch.active
+    assert drive.happened() == [texts.STOP_KEY] and not control.needs_attention()
+    drive.turn_of_loop()
+    for _ in range(3):  # pressed again and again
+        control.stop()
+        drive.turn_of_loop(400)
+    assert control.stop_watch.unconfirmed and control.needs_attention()
+    assert drive.happened() == [texts.OTHER_UNCONFIRMED, texts.STOP_KEY]
+    assert drive.sent == [ON] + [OFF1] * 4
+    drive.spin(False)
+    drive.off_answers += 3
+    drive.turns_of_loop()
+    assert not control.needs_attention() and not control.stop_watch.active
+    control.notice = texts.LINE_FAILED
+    control.stop_unseen()
+    assert control.notice == texts.LINE_FAILED
+    control.stop()
+    assert control.notice == texts.NOTHING and "acknowledge" not in drive.sent
+    drive.contact = False
+    control.stop()
+    assert control.absence_known
+    drive.turn_of_loop()
+    assert not control.absence_known
+
+
+def test_a_second_stop_ends_when_it_was_heard_and_the_motor_stands():
+    off3 = pzd.OFF3
+    drive = started(second_stop="OFF3")
+    drive.control.second_stop()
+    drive.control.stop_unseen()  # weakens nothing
+    assert drive.sent[1:] == [off3, off3]
+    for answered, runs, is_over in (
+        (OFF1, False, False), (off3, True, False), (off3 | pzd.STW_ACKNOWLEDGE, False, True),
+    ):  # fmt: skip
+        drive.answered_stw = answered
+        drive.spin(runs)
+        drive.turn_of_loop()
+        assert (drive.off == pzd.OFF1) == is_over, answered
+    drive = started(second_stop="none")
+    drive.control.second_stop()
+    assert drive.sent == [ON] and drive.control.phase == RUNNING
+    drive = started(second_stop="OFF2")
+    drive.control.second_stop()
+    assert drive.sent == [ON, pzd.OFF2] and drive.control.phase == IDLE
+
+
+def test_a_jog_turns_as_long_as_its_key_is_held():
+    drive = Machine()
+    control = drive.control
+    control.end_jog()
+    assert drive.sent == []
+    control.jog(pzd.JOG_LEFT)
+    assert drive.sent == [pzd.JOG_LEFT] and control.phase == JOGGING and drive.counted == 1
+    drive.spin()
+    drive.turns_of_loop()
+    control.start()
+    assert control.take_refusal() == texts.REFUSED_JOG and control.phase == JOGGING
+    control.reverse()
+    assert control.take_refusal() == texts.REFUSED_JOG and not control.reversed
+    assert not control.own_jog_ends()
+    control.end_jog()
+    assert drive.sent == [pzd.JOG_LEFT, OFF1] and control.own_jog_ends()
+    control.jog(pzd.JOG_RIGHT)  # while it still ramps down
+    assert drive.sent[2:] == [pzd.JOG_RIGHT] and not control.stop_watch.active
+    control.end_jog()
+    drive.spin(False)
+    drive.off_answers += 3
+    drive.turns_of_loop()
+    assert not control.own_jog_ends() and drive.happened() == []
+    drive.spin()
+    control.jog(pzd.JOG_RIGHT)  # somebody else has started it
+    assert control.take_refusal() == texts.REFUSED_RUNS and control.phase == IDLE
+
+
+def test_the_direction_is_turned_at_once_and_kept():
+    drive = Machine()
+    for is_reversed in (True, False, True):
+        drive.control.reverse()
+        assert drive.control.reversed == is_reversed
+        stw = MM440.on_reverse if is_reversed else MM440.on
+        assert drive.sent[-1] == ("turn", stw)
+    drive.control.start()
+    drive.turns_of_loop()
+    assert drive.sent[-1] == MM440.on_reverse
+
+
+def test_what_somebody_changes_while_it_runs_is_remarked_and_ends_a_jog():
+    for ms, remark, notice in (
+        (0, texts.RUNS_FOR_EVER, texts.UNSUPERVISED), (30_000, texts.RUNS_LONG, texts.RUNS_LONG)
+    ):  # fmt: skip
+        drive = started()
+        drive.tell(rows.SUPERVISION, ms)
+        drive.turns_of_loop()
+        assert drive.control.remark == remark and drive.sent == [ON]
+        drive.tell(rows.SUPERVISION, 1_000)
+        drive.turns_of_loop()
+        assert drive.control.remark == texts.NOTHING
+        drive = Machine()
+        drive.control.jog(pzd.JOG_LEFT)
+        drive.spin()
+        drive.turns_of_loop()
+        drive.tell(rows.SUPERVISION, ms)
+        drive.turns_of_loop()
+        assert drive.sent == [pzd.JOG_LEFT, OFF1] and drive.control.notice == notice
+        assert drive.control.phase == IDLE and drive.happened() == [notice]
+    drive = started(unsupervised=(3,))  # what was so before is no news
+    drive.tell(rows.SUPERVISION, 65_000)
+    drive.turns_of_loop()
+    drive.control.stop()
+    drive.spin(False)
+    drive.turns_of_loop()
+    assert drive.control.remark == texts.RUNS_LONG  # of the last run
+    drive.control.start()
+    drive.turns_of_loop()
+    drive.spin()
+    drive.turns_of_loop()
+    assert drive.control.remark == texts.NOTHING
+
+
+def test_what_the_engine_or_the_drive_itself_ends_is_over():
+    drive = started()
+    drive.engine_stops = True
+    drive.turn_of_loop()
+    assert drive.sent == [ON, OFF1] and drive.control.notice == texts.STOPPED_ITSELF
+    drive = started()
+    drive.restarted = True
+    drive.turn_of_loop()
+    assert drive.sent == [ON, OFF1] and drive.control.notice == texts.DRIVE_RESET
+    assert drive.control.phase == IDLE and drive.happened() == [texts.DRIVE_RESET]
+
+
+def test_a_drive_that_was_lost_while_it_ran_is_an_alarm_until_it_is_heard():
+    drive = started()
+    control = drive.control
+    drive.contact, drive.was_running = False, True
+    drive.turn_of_loop()
+    assert control.lost_running and control.needs_attention() and not control.runs()
+    assert drive.happened()[-1] == texts.OTHER_LOST and control.is_active()
+    drive.contact, drive.was_running = True, False
+    drive.turn_of_loop()
+    assert not control.lost_running and control.runs()
+    drive = Machine()
+    drive.contact = False
+    drive.turn_of_loop()
+    assert not drive.control.lost_running and drive.happened() == []
+    for contacts, silent, is_unheard in ((0, 2, False), (0, 3, True), (1, 3, False)):
+        drive.contacts, drive.silent = contacts, silent
+        assert drive.control.is_unheard() == is_unheard, (contacts, silent)
+
+
+def test_the_actual_frequency_is_none_that_was_told_long_ago():
+    drive = Machine(hiw=300)
+    control = drive.control
+    assert control.actual_centihertz() == 100 and not control.actual_is_beyond()
+    for told in ({"contact": False}, {"silent": 3}, {"actual": None}):
+        for name in told:
+            before = getattr(drive, name)
+            setattr(drive, name, told[name])
+            assert control.actual_centihertz() is None, told
+            setattr(drive, name, before)
+    drive.silent = 2
+    assert control.actual_centihertz() == 100
+    drive.hiw = pzd.BEYOND[0]
+    assert control.actual_is_beyond()
+
+
+def test_a_motor_that_runs_against_off_is_watched_unless_that_is_not_known():
+    for told, watched in (({}, True), ({"complete": False}, False), ({"local": True}, False)):
+        drive = Machine()
+        if told.pop("local", False):
+            drive.wrong[rows.COMMAND] = rows.COMMAND_SOURCE
+        for name in told:
+            setattr(drive, name, told[name])
+        drive.spin()
+        drive.turns_of_loop()
+        assert drive.control.stop_watch.active == watched, told
+        assert not drive.control.is_quiet() and drive.control.is_active()
+
+
+def test_a_drive_is_quiet_until_something_changes():
+    for change in (
+        {"zsw": 0x0A31}, {"contact": False}, {"version": 9}, {"zsw": 0x0239},
+    ):  # fmt: skip
+        drive = Machine()
+        assert drive.control.is_quiet()
+        for name in change:
+            setattr(drive, name, change[name])
+        assert not drive.control.is_quiet(), change
+    drive = Machine()
+    drive.control.moved = True
+    assert not drive.control.is_quiet() and not drive.control.is_unsaved()
+    drive.dirty = True
+    drive.turn_of_loop()
+    assert drive.control.moved and drive.control.is_unsaved()
+    drive.dirty = False
+    drive.turn_of_loop()
+    assert not drive.control.moved and drive.control.is_quiet()
+    drive.control.stop()
+    assert not drive.control.is_quiet()
+
+
+def test_while_it_runs_its_settings_are_read_again_the_sooner_the_more_it_is_shown():
+    drive = started()
+    for asked_us, reread_us in ((None, 200_000), (2_000_000, 330_000)):
+        if asked_us is None:
+            drive.control.ask(drive.now_us)
+        else:
+            drive.control.ask(drive.now_us, asked_us)
+        assert drive.reread_us == reread_us
+    drive.complete = False
+    drive.control.change(100)
+    assert drive.control.take_refusal() == texts.REFUSED_CHECKING
+    assert drive.control.setpoint.centihertz == 1_000
+    drive.complete = True
+    drive.control.change(100)
+    assert drive.control.setpoint.centihertz == 1_100 and not drive.control.take_refusal()
+
+
+def test_where_no_status_is_told_it_may_run_for_forty_seconds():
+    drive = started()
+    drive.wrong[rows.STATUS] = rows.STATUS_SENT
+    drive.version += 1
+    drive.turn_of_loop()
+    assert not drive.tells_status and drive.control.notice == texts.TAKEN_AWAY
+    drive.at = pzd.READY  # by words that are none
+    for ms in range(0, 60_000, 1_000):
+        drive.turn_of_loop(1_000)
+        if ms == 2_000:
+            assert drive.control.needs_attention()
+            drive.control.stop_watch.end()
+    assert drive.control.is_active()
+    drive.wrong[rows.STATUS] = rows.RIGHT
+    drive.version += 1
+    drive.spin(False)
+    drive.off_answers += 3
+    drive.turns_of_loop(39, 1_000)
+    assert not drive.control.is_active() and not drive.control.is_quiet()
+    drive.turns_of_loop(3, 1_000)
+    assert drive.control.is_quiet()
