@@ -1169,11 +1169,12 @@ def test_each_drive_that_is_not_shown_is_asked_and_then_watched():
 
 
 def test_a_drive_that_has_told_something_is_asked_again_in_its_next_turn():
-    beside = Beside(3)
-    beside.controls[1].news = True
-    assert beside.step() == [("ask", 1), ("heed", 1)]
+    beside = Beside(4)
     assert beside.steps(2) == asked_of(1)
+    beside.controls[2].news = True
+    assert beside.step() == [("ask", 2), ("heed", 2)]
     assert beside.steps(2) == asked_of(2)
+    assert beside.steps(2) == asked_of(3)
 
 
 def test_a_drive_with_nothing_new_has_one_step_and_is_heard_of_if_it_is_silent():
@@ -1188,6 +1189,8 @@ def test_a_drive_with_nothing_new_has_one_step_and_is_heard_of_if_it_is_silent()
     assert beside.step() == [("look", 2)]
     beside.taken_us = 1_499
     assert beside.steps(2) == [[("ask", 1)], [("ask", 2), ("look", 2)]]
+    beside.controls[1].quiet = False
+    assert beside.steps(2) == asked_of(1)
 
 
 def test_a_watch_that_took_a_step_is_forgotten_with_the_drive_that_is_shown():
@@ -1214,10 +1217,18 @@ def test_they_are_at_rest_when_each_of_them_was_found_so():
             beside.step()
             if beside.done[:1] == [("watch", 2)]:
                 break
-        assert not beside.neighbours.are_at_rest()
+        for _ in range(12):
+            assert not beside.neighbours.are_at_rest()
+            beside.step()
         beside.controls[2].active = False
         beside.steps(7)
         assert beside.neighbours.are_at_rest()
         beside.neighbours.show(1)
         assert not beside.neighbours.are_at_rest()
-    assert Beside(1).neighbours.are_at_rest() and not Beside(2).neighbours.are_at_rest()
+    assert Beside(1).neighbours.are_at_rest()
+    beside = Beside(2)
+    assert not beside.neighbours.are_at_rest()
+    beside.steps(2)
+    assert beside.neighbours.are_at_rest()
+    beside.neighbours.show(1)
+    assert not beside.neighbours.are_at_rest()

@@ -463,13 +463,27 @@ def test_a_setpoint_keeps_within_the_limits_of_panel_and_drive():
         assert (setpoint.centihertz, survey.hsw) == (settings[1], word(highest - 1))
 
 
+def test_a_setpoint_is_there_before_a_drive_has_told_anything():
+    survey = Told()
+    setpoint = Setpoint(survey, survey)
+    assert not setpoint.has_news() and not setpoint.step() and not setpoint.is_below()
+    setpoint.change(10)
+    assert setpoint.centihertz == 1_010
+    run_it(survey, setpoint)
+    # What it has told counts with the next key, even before its turn.
+    survey, setpoint = made()
+    survey.tell(0, 800)
+    setpoint.change(10)
+    assert setpoint.centihertz == 800 and not setpoint.has_news()
+
+
 def test_while_it_runs_a_limit_lowers_the_setpoint_for_good():
     survey, setpoint = made()
     run_it(survey, setpoint)
     assert told(survey, setpoint, 0, 800) == (800, word(800))
     assert told(survey, setpoint) == (800, word(800))
     assert told(survey, setpoint, 900) == (800, word(800)) and setpoint.is_below()
-    setpoint.change(-10)  # down is not up
+    setpoint.change(-1)  # down is not up
     assert (setpoint.centihertz, survey.hsw) == (800, word(800))
     setpoint.change(10)
     assert (setpoint.centihertz, survey.hsw) == (900, word(900)) and not setpoint.is_below()

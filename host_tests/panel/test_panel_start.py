@@ -670,7 +670,8 @@ class Machine(Told):
     tells_status = complete = settled = True
     silent = hiw = hsw = wanted = answered_stw = off_answers = unchecked = 0
     off, at, zsw = pzd.OFF1, pzd.READY, 0x0231
-    was_running = unreadable = restarted = may = engine_stops = dirty = late = False
+    fault_number = 11
+    was_running = unreadable = restarted = may = engine_stops = dirty = False
     setpoint_centihertz, lowest_centihertz, highest_centihertz = 1_000, 0, 5_000
     second_stop = "OFF3"
     unsupervised = half_at = ()
@@ -684,7 +685,7 @@ class Machine(Told):
         self.pkw_words = 4
         self.values = [0] * rows.COUNT_OF_ROWS
         self.values[rows.SUPERVISION] = 1_000
-        self.sent, self.rechecks, self.counted = [], 0, 0
+        self.sent, self.rechecks, self.counted, self.steps, self.dropped = [], 0, 0, 0, 0
         for name in told:
             setattr(self, name, told[name])
         self.control = Control(self, self, Desk(self, self, self.mask))
@@ -722,10 +723,17 @@ class Machine(Told):
     def first_late(self, drive):
         return None
 
+    def is_full(self):
+        return False
+
+    def ask(self, job):
+        job.state, job.low = pkw.DONE, self.fault_number
+
     # --- its survey
 
     def step(self, now_us, reread_us=0):
         self.reread_us = reread_us
+        self.steps += 1
 
     def settle(self):
         pass
@@ -734,7 +742,7 @@ class Machine(Told):
         self.rechecks += 1
 
     def drop_recheck(self):
-        pass
+        self.dropped += 1
 
     def count_anew(self):
         self.counted += 1
@@ -801,8 +809,9 @@ def started(**told):
 
 
 def test_start_sends_on_when_the_drive_has_told_all_anew():
-    drive = Machine(unchecked=1)
+    drive = Machine(unchecked=1, dead_man_trips=2)
     assert drive.control.is_quiet() and not drive.control.is_active()
+    assert not drive.control.needs_attention() and not drive.control.lost_running
     drive.control.start()
     drive.control.start()  # pressed again
     assert drive.control.phase == CHECKING and drive.control.is_starting()
@@ -815,6 +824,7 @@ def test_start_sends_on_when_the_drive_has_told_all_anew():
     drive.settled = True
     drive.turns_of_loop()
     assert drive.sent == [ON] and drive.hsw == 3_000 and drive.control.phase == RUNNING
+    assert drive.dropped == 1
     assert drive.happened() == [] and not drive.control.take_refusal()
     assert drive.control.is_starting() and drive.control.is_active()
     drive.turns_of_loop(100, 40)
@@ -875,6 +885,7 @@ def test_a_stop_is_sent_whatever_goes_on_and_acknowledges_what_was_seen():
     control = drive.control
     control.stop()
     assert drive.sent == [ON, OFF1] and control.phase == IDLE and control.stop_watch.active
+    assert not control.own_jog_ends() and drive.dropped == 2
     assert drive.happened() == [texts.STOP_KEY] and not control.needs_attention()
     drive.turn_of_loop()
     for _ in range(3):  # pressed again and again
@@ -979,18 +990,24 @@ def test_what_somebody_changes_while_it_runs_is_remarked_and_ends_a_jog():
         drive.turns_of_loop()
         assert drive.sent == [pzd.JOG_LEFT, OFF1] and drive.control.notice == notice
         assert drive.control.phase == IDLE and drive.happened() == [notice]
-    drive = started(unsupervised=(3,))  # what was so before is no news
+    values = [0] * rows.COUNT_OF_ROWS
+    drive = started(unsupervised=(3,), values=values)  # what was so before is no news
+    drive.tell(rows.RESTART, 0)
+    drive.turns_of_loop()
+    assert drive.control.remark == texts.NOTHING
+    drive = started()
     drive.tell(rows.SUPERVISION, 65_000)
     drive.turns_of_loop()
     drive.control.stop()
     drive.spin(False)
     drive.turns_of_loop()
     assert drive.control.remark == texts.RUNS_LONG  # of the last run
+    drive.tell(rows.SUPERVISION, 1_000)
     drive.control.start()
     drive.turns_of_loop()
     drive.spin()
     drive.turns_of_loop()
-    assert drive.control.remark == texts.NOTHING
+    assert drive.control.remark == texts.NOTHING and drive.control.phase == RUNNING
 
 
 def test_what_the_engine_or_the_drive_itself_ends_is_over():
@@ -1113,3 +1130,108 @@ def test_where_no_status_is_told_it_may_run_for_forty_seconds():
     assert not drive.control.is_active() and not drive.control.is_quiet()
     drive.turns_of_loop(3, 1_000)
     assert drive.control.is_quiet()
+
+
+def test_a_fault_is_noted_once_and_acknowledged_when_it_was_seen():
+    drive = Machine()
+    control = drive.control
+    assert not control.fault.active
+    drive.at, drive.zsw = pzd.FAULT, 0x0238
+    drive.turns_of_loop()
+    assert control.fault.active and drive.happened() == [(texts.FAULT, 11)]
+    drive.fault_number = 12  # by now it is another one
+    drive.turns_of_loop(20, 100)
+    assert drive.happened() == [(texts.FAULT, 12), (texts.FAULT, 11)]
+    control.stop()
+    assert drive.sent == [OFF1]  # nobody has seen it
+    control.fault.show(1_000)
+    control.stop_unseen()
+    assert "acknowledge" not in drive.sent
+    control.stop()
+    assert drive.sent[-2:] == ["acknowledge", OFF1]
+    drive.spin(False)
+    drive.turn_of_loop()
+    assert not control.fault.active and len(drive.happened()) == 2
+
+
+def test_a_new_start_ends_the_alarm_of_the_stop_before():
+    for starts_again in (False, True):
+        drive = started()
+        drive.control.stop()
+        drive.spin(False)
+        drive.may = True  # no answer so far
+        drive.turns_of_loop(3, 1_000)
+        assert drive.control.needs_attention()
+        if starts_again:
+            drive.control.start()
+            drive.turns_of_loop()
+            assert drive.control.phase == RUNNING
+        else:
+            drive.control.jog(pzd.JOG_RIGHT)
+        assert not drive.control.needs_attention()
+
+
+def test_a_step_that_took_the_news_of_the_setpoint_asks_nothing():
+    drive = Machine()
+    before = drive.steps
+    assert not drive.control.ask(drive.now_us, 77) and drive.steps == before + 1
+    assert drive.reread_us == 77
+    drive.version += 1
+    assert drive.control.ask(drive.now_us) and drive.steps == before + 1
+    drive.complete = False
+    drive.version += 1
+    assert not drive.control.ask(drive.now_us) and drive.steps == before + 2
+    drive.complete = True
+    drive.control.ask_on(drive.now_us)
+    assert drive.steps == before + 2  # nobody waits
+    drive.settled = False
+    drive.control.ask_on(drive.now_us)
+    assert drive.steps == before + 3
+    drive.settled, drive.unchecked = True, 1
+    drive.control.start()
+    assert not drive.control.ask(drive.now_us) and drive.steps == before + 3
+    drive.turns_of_loop()
+    before = drive.steps
+    drive.control.ask_on(drive.now_us)  # START waits
+    assert drive.steps == before + 1
+    drive.unchecked = 0
+    drive.turns_of_loop()
+    drive.version += 1
+    assert drive.wanted and drive.control.ask(drive.now_us)
+    assert not drive.control.ask(drive.now_us)
+
+
+def test_another_drive_that_is_shown_takes_the_refusal_and_not_the_start():
+    drive = Machine(contact=False)
+    drive.control.start()
+    assert drive.control.phase == IDLE
+    before = drive.dropped
+    drive.control.keep_quiet()
+    assert not drive.control.take_refusal() and drive.dropped == before + 1
+    drive = Machine(unchecked=1)
+    drive.control.start()
+    drive.control.keep_quiet()
+    drive.control.drop_question()
+    assert drive.control.phase == CHECKING and drive.dropped == 0
+
+
+def test_what_the_desk_knows_follows_its_list_and_its_line():
+    drive = Machine(cycle_us=2_000_000)
+    desk = Desk(drive, drive, drive.mask, texts.LINE_LOW)
+    assert (desk.longest_off_time_ms, desk.off_time_ms) == (8_004, 6_100)
+    drive.cycle_us = 0
+    desk.follow_list()
+    assert (desk.longest_off_time_ms, desk.off_time_ms) == (2_000, 1_000)
+    control = Control(drive, drive, desk)
+    control.start()
+    assert control.take_refusal() == texts.LINE_LOW
+    control.watch(drive.now_us)  # it answers
+    assert desk.defect == texts.NOTHING
+    control.start()
+    assert not control.take_refusal()
+    for defect in (texts.NO_CONTACT, texts.WRONG_DRIVE, texts.ADDRESS, texts.LINE_IN_USE):
+        desk = Desk(drive, drive, drive.mask, defect)
+        desk.note_answer()
+        assert desk.defect == defect
+    drive.half_at = (3,)
+    assert control.is_half_written()
