@@ -670,7 +670,7 @@ class Machine(Told):
     tells_status = complete = settled = True
     silent = hiw = hsw = wanted = answered_stw = off_answers = unchecked = 0
     off, at, zsw = pzd.OFF1, pzd.READY, 0x0231
-    fault_number = 11
+    fault_number, late = 11, None
     was_running = unreadable = restarted = may = engine_stops = dirty = False
     setpoint_centihertz, lowest_centihertz, highest_centihertz = 1_000, 0, 5_000
     second_stop = "OFF3"
@@ -721,7 +721,7 @@ class Machine(Told):
         return self.may
 
     def first_late(self, drive):
-        return None
+        return self.late
 
     def is_full(self):
         return False
@@ -862,7 +862,11 @@ def test_a_start_asks_about_each_risk_that_nobody_has_taken():
     drive.turns_of_loop()
     assert (control.phase, control.question()) == (ASKING, risks.SUPERVISION) and drive.sent == []
     assert not control.is_starting() and drive.happened() == [texts.DID_NOT_START]
+    drive.late = drive
     control.accept_risk(risks.SUPERVISION, 0)
+    drive.turns_of_loop()
+    assert (control.phase, control.question()) == (ASKING, 1)
+    control.accept_risk(1, 3)
     drive.turns_of_loop()
     assert drive.unsupervised == (3,) and control.accepts_unsupervised()
     assert (control.phase, control.question()) == (ASKING, 2) and not control.accepts(2, 3)
@@ -923,6 +927,11 @@ def test_a_second_stop_ends_when_it_was_heard_and_the_motor_stands():
         drive.spin(runs)
         drive.turn_of_loop()
         assert (drive.off == pzd.OFF1) == is_over, answered
+    drive = started()
+    drive.control.second_stop()
+    drive.at, drive.answered_stw = pzd.FAULT, off3  # it stands for sure
+    drive.turn_of_loop()
+    assert drive.off == pzd.OFF1
     drive = started(second_stop="none")
     drive.control.second_stop()
     assert drive.sent == [ON] and drive.control.phase == RUNNING
@@ -1016,6 +1025,11 @@ def test_what_the_engine_or_the_drive_itself_ends_is_over():
     drive.turn_of_loop()
     assert drive.sent == [ON, OFF1] and drive.control.notice == texts.STOPPED_ITSELF
     drive = started()
+    drive.wrong[rows.SETPOINT] = rows.SETPOINT_SOURCE
+    drive.version += 1
+    drive.turns_of_loop()
+    assert drive.sent == [ON, OFF1] and drive.control.notice == texts.TAKEN_AWAY
+    drive = started()
     drive.restarted = True
     drive.turn_of_loop()
     assert drive.sent == [ON, OFF1] and drive.control.notice == texts.DRIVE_RESET
@@ -1045,7 +1059,7 @@ def test_the_actual_frequency_is_none_that_was_told_long_ago():
     drive = Machine(hiw=300)
     control = drive.control
     assert control.actual_centihertz() == 100 and not control.actual_is_beyond()
-    for told in ({"contact": False}, {"silent": 3}, {"actual": None}):
+    for told in ({"contact": False}, {"silent": 3}, {"silent": 9}, {"actual": None}):
         for name in told:
             before = getattr(drive, name)
             setattr(drive, name, told[name])
@@ -1110,11 +1124,18 @@ def test_while_it_runs_its_settings_are_read_again_the_sooner_the_more_it_is_sho
 
 
 def test_where_no_status_is_told_it_may_run_for_forty_seconds():
+    known = list(rows.NOTHING_WRONG)
+    known[rows.STATUS] = rows.STATUS_SENT
+    assert not Machine(wrong=known).tells_status  # from the first moment on
     drive = started()
     drive.wrong[rows.STATUS] = rows.STATUS_SENT
     drive.version += 1
     drive.turn_of_loop()
     assert not drive.tells_status and drive.control.notice == texts.TAKEN_AWAY
+    drive.wrong[rows.STATUS] = rows.RIGHT
+    drive.tell(rows.STATUS_SENT, -1)  # it is not known any more: that says nothing
+    drive.turn_of_loop()
+    assert not drive.tells_status
     drive.at = pzd.READY  # by words that are none
     for ms in range(0, 60_000, 1_000):
         drive.turn_of_loop(1_000)
@@ -1122,8 +1143,7 @@ def test_where_no_status_is_told_it_may_run_for_forty_seconds():
             assert drive.control.needs_attention()
             drive.control.stop_watch.end()
     assert drive.control.is_active()
-    drive.wrong[rows.STATUS] = rows.RIGHT
-    drive.version += 1
+    drive.tell(rows.STATUS_SENT, 0)
     drive.spin(False)
     drive.off_answers += 3
     drive.turns_of_loop(39, 1_000)
@@ -1223,6 +1243,11 @@ def test_what_the_desk_knows_follows_its_list_and_its_line():
     desk.follow_list()
     assert (desk.longest_off_time_ms, desk.off_time_ms) == (2_000, 1_000)
     control = Control(drive, drive, desk)
+    assert not control.moved and not control.moving and not control.is_active()
+    assert not control.absence_known
+    drive.may = True  # it was heard running last
+    assert control.is_active()
+    drive.may = False
     control.start()
     assert control.take_refusal() == texts.LINE_LOW
     control.watch(drive.now_us)  # it answers
