@@ -882,6 +882,11 @@ def test_a_start_asks_about_each_risk_that_nobody_has_taken():
     assert control.phase == ASKING
     control.keep_quiet()  # another drive is shown
     assert control.phase == IDLE
+    # Only P2014 = 0 is accepted for good: not a long one, nor that a drive is asked late.
+    for row, value in ((risks.SUPERVISION, 5_000), (1, 0)):
+        drive = started()
+        drive.control.accept_risk(row, value)
+        assert drive.unsupervised == () and drive.control.accepts(row, value)
 
 
 def test_a_stop_is_sent_whatever_goes_on_and_acknowledges_what_was_seen():
@@ -963,8 +968,17 @@ def test_a_jog_turns_as_long_as_its_key_is_held():
     drive.off_answers += 3
     drive.turns_of_loop()
     assert not control.own_jog_ends() and drive.happened() == []
+    control.jog(pzd.JOG_RIGHT)
     drive.spin()
-    control.jog(pzd.JOG_RIGHT)  # somebody else has started it
+    drive.turns_of_loop()
+    control.end_jog()
+    control.start()  # while it still ramps down
+    drive.turns_of_loop()
+    assert control.phase == RUNNING and not control.own_jog_ends()
+    control.stop()
+    assert control.stop_watch.active and not control.own_jog_ends()
+    drive.turns_of_loop()
+    control.jog(pzd.JOG_RIGHT)  # it runs, and not by a jog
     assert control.take_refusal() == texts.REFUSED_RUNS and control.phase == IDLE
 
 
