@@ -1,6 +1,10 @@
 # SPDX-License-Identifier: MIT
 """The operator's manual: a drive is given another address, and the panel follows it."""
 
+from panel import texts
+from panel.pages import parameter_words as words
+from panel.pages.parameter_words import failure
+from panel.writer import Writer
 from panel_bench import (
     LOOP_US,
     OFF1,
@@ -25,6 +29,8 @@ from parameter_bench import (
     write_eeprom,
     writes,
 )
+from uss import pkw
+from uss.families import G120, MM440
 
 
 def test_a_drive_is_followed_to_its_new_address():
@@ -498,3 +504,183 @@ def test_an_address_is_not_changed_while_another_drive_is_sent_on():
     world.press("SET", 40)
     assert row_2(world) == "STOP ALL FIRST"
     world.check()
+
+
+# --- the writer by itself ------------------------------------------------------------------------
+
+
+class Told:
+    """What a writer asks of a control, its drive, and the bus. It answers when it is told to."""
+
+    address = answered_address = 1
+    contact = True
+    full = moving = moved = False
+    silent = stops = served = urgent = rechecks = 0
+    cycle_us = 100_000
+
+    def __init__(self, family=MM440):
+        self.drive = self.survey = self.channel = self.turns = self
+        self.family = family
+        self.counters = [0xFFF0, 0xFFF0]
+        self.kept, self.aims, self.hurries = [], [], 0
+        self.writer = Writer(self, self, 0x3FFFFFF)
+        self.now_us = 0x3FFFF00  # the clock begins anew meanwhile
+
+    def is_full(self):
+        return self.full
+
+    def ask(self, job):
+        job.state = pkw.PENDING
+        self.job = job
+        self.aims.append((job.task, job.number, job.index, job.high, job.low))
+
+    def hurry(self):
+        self.urgent = self.served + 1
+        self.hurries += 1
+
+    def recheck(self):
+        self.rechecks += 1
+
+    def longest_cycle_us(self):
+        return self.cycle_us
+
+    def readdress(self, drive, address):
+        if drive is self:
+            self.address = address
+        else:  # the settings: from this one to that one
+            self.kept.append((drive, address))
+
+    def write(self, *what):
+        self.written = self.writer.write(self, *what)
+        return self.written.outcome
+
+    def step(self, ms=0):
+        self.now_us = self.now_us + ms * 1_000 & 0x3FFFFFF
+        self.writer.step(self.now_us)
+        return self.written.outcome
+
+    def answer(self, value=None, state=pkw.DONE):
+        self.job.state, self.job.width = state, self.written.width
+        value = self.written.value if value is None else value
+        self.job.high, self.job.low = value >> 16, value & 0xFFFF
+        return self.step()
+
+    def probe(self, telegrams=3):
+        self.counters[0] += telegrams
+        self.silent += telegrams
+        return self.step()
+
+
+def test_a_write_is_done_when_the_drive_tells_the_value():
+    for what, aim, outcome in (
+        ((5, 0, 7), (pkw.WRITE_WORD, 5, 0, 0, 7), words.WRITTEN),
+        ((5, 2, 7, True), (pkw.WRITE_WORD_EEPROM, 5, 2, 0, 7), words.WRITTEN_EEPROM),
+        ((5, 0, 0x10002, False, pkw.DOUBLE), (pkw.WRITE_DOUBLE, 5, 0, 1, 2), words.WRITTEN),
+        ((5, 0, 3, True, pkw.DOUBLE), (pkw.WRITE_DOUBLE_EEPROM, 5, 0, 0, 3), words.WRITTEN_EEPROM),
+    ):
+        told = Told()
+        assert told.writer.is_idle() and told.writer.take_ended() is None
+        assert told.write(*what) is None and told.aims == []
+        assert not told.writer.is_idle() and told.writer.write(told, 6, 0, 1).outcome
+        told.full = True
+        assert told.step() is None and told.aims == []
+        told.full = False
+        assert told.step() is None and told.step() is None and told.aims == [aim]
+        assert told.answer() == (outcome,) and told.written.done and told.rechecks == 1
+        assert not told.writer.is_idle() and told.writer.take_ended() is told.written
+        assert told.writer.is_idle() and told.writer.take_ended() is None
+        assert not told.moved and told.kept == []
+        assert told.written.news(told) == (outcome,)
+        assert told.written.news(None) == (words.OTHER_WRITTEN, 1)
+    told = Told(G120)
+    told.write(5, 2, 7)
+    told.step()
+    assert told.aims == [(pkw.WRITE_ELEMENT_WORD, 5, 2, 0, 7)]
+
+
+def test_a_write_that_is_not_done_says_why():
+    told = Told()
+    told.full = True
+    assert told.write(5, 0, 7) == (texts.WRITER_BUSY,)
+    told.full, told.contact = False, False
+    assert told.write(5, 0, 7) == (texts.NO_CONTACT,)
+    told.contact = True
+    told.write(5, 0, 7)
+    told.step()
+    for count in (2, 3, 4):  # an old answer to a reading
+        assert told.answer(9) is None and len(told.aims) == count
+    assert told.answer(9) == (words.NOT_WRITTEN,) and not told.written.done
+    assert told.written.news(None) == (words.OTHER_NOT_WRITTEN, 1)
+    told.writer.take_ended()
+    told.write(5, 0, 7)
+    told.step()
+    assert told.answer(9) is None  # its tries are counted anew
+    told.job.error = 11
+    told.silent = 3
+    assert told.answer(state=pkw.REFUSED) == failure(told.job)
+    assert told.rechecks == 2
+
+
+def moving(value=9, **told):
+    """A drive that is being given another address; nobody is there so far."""
+    made = Told()
+    for name in told:
+        setattr(made, name, told[name])
+    assert made.write(2011, MM440.link_index, value) is None
+    assert made.moving and made.address == value and made.hurries == 1
+    return made
+
+
+def test_a_drive_is_given_an_address_that_nobody_has():
+    told = moving()
+    assert told.writer.takes(9) and not told.writer.takes(8)
+    told.silent = 1
+    assert told.step() is None and told.hurries == 1
+    told.served = told.urgent
+    assert told.step() is None and told.hurries == 2
+    assert told.probe(2) is None and told.address == 9 and told.aims == []
+    assert told.probe(1) is None and told.address == 1 and len(told.aims) == 1
+    assert told.answer() == (words.WRITTEN,)
+    assert (told.address, told.kept) == (9, [(1, 9)]) and told.moved and not told.moving
+    assert not told.writer.takes(9)
+    told = moving()
+    told.answered_address = 9
+    assert told.step() == (words.ADDRESS_TAKEN,) and told.address == 1 and not told.moving
+    told = moving()
+    told.silent, told.stops = 1, 1  # STOP is for the drive where it is
+    assert told.step() == (words.NOT_WRITTEN,) and told.address == 1 and told.hurries == 2
+    same = Told()
+    same.write(2011, MM440.link_index, 1)  # it has that already
+    assert not same.moving and not same.writer.takes(1)
+
+
+def test_a_drive_that_falls_silent_on_its_new_address_is_looked_for():
+    for answers, cycle_us, most_ms in (
+        (False, 100_000, 2_000), (False, 1_000_000, 3_000), (True, 100_000, 1_999)
+    ):  # fmt: skip
+        told = moving(cycle_us=cycle_us)
+        told.probe()
+        told.silent = 5
+        assert told.step() is None and told.address == 1
+        told.silent = 6  # three more telegrams: it is spoken to at either
+        assert told.step() is None and told.address == 9
+        told.silent = 8
+        assert told.step() is None and told.address == 9
+        told.silent = 9
+        assert told.step() is None and told.address == 1
+        assert told.answer(state=pkw.TIMED_OUT) is None and told.address == 9
+        assert told.step(most_ms - 1) is None
+        if answers:
+            told.silent, told.answered_address = 0, 9
+            assert told.step() == (words.WRITTEN,) and told.kept == [(1, 9)] and told.moved
+        else:
+            assert told.step(1) == (words.NO_ANSWER,) and told.address == 1
+            assert told.kept == [] and not told.moved
+    told = moving()
+    told.probe()
+    told.silent, told.answered_address = 0, 9
+    assert told.answer(state=pkw.TIMED_OUT) == (words.WRITTEN,) and told.moved
+    told = moving()
+    told.probe()
+    told.silent = 0
+    assert told.answer(state=pkw.TIMED_OUT) == failure(told.job) and not told.moved

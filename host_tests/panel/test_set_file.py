@@ -479,6 +479,23 @@ def test_a_work_ends_with_what_went_wrong():
     assert (panel.errand, panel.resumed) == (None, 1)
 
 
+def test_what_goes_wrong_ahead_of_a_step_ends_the_work_as_well():
+    for error, outcome in (
+        (OSError(28), words.FLASH_FULL), (MemoryError(), texts.NO_MEMORY),
+        (ValueError(words.DAMAGED), words.DAMAGED),
+    ):  # fmt: skip
+
+        class Ahead(Steps):
+            def look_ahead(self):
+                raise error
+
+        panel = Panel()
+        steps = Ahead(panel)
+        stepped(panel, steps, 0)
+        steps.search()
+        assert steps.outcome == (outcome,) and steps.did == 1
+
+
 def test_a_work_that_comes_no_further_for_15_seconds_has_no_answer():
     panel = Panel()
     steps = Steps(panel)
@@ -497,11 +514,11 @@ def test_how_far_a_work_is_and_how_long_it_still_takes():
     panel = Panel()
     steps = Steps(panel)
     stepped(panel, steps, 0xFF00)
-    assert (steps.percent(), steps.left_s) == (0, None)
+    assert (steps.percent(), steps.left_s, steps.asks) == (0, None, False)
     steps.total = 200
     for done, after_ms, percent, left_s in (
         (20, 3_000, 10, 27), (21, 3_000, 10, 25), (100, 10_000, 50, 10), (199, 20_000, 99, 0),
-        (200, 20_000, 100, 0), (201, 21_000, 100, 0),
+        (200, 20_000, 100, 0), (300, 21_000, 100, 0),
     ):  # fmt: skip
         steps.done = done
         stepped(panel, steps, 0xFF00 + after_ms)
