@@ -3,7 +3,7 @@
 
 import main
 from boards.sim.world import World
-from panel import risks, texts
+from panel import permits, risks, texts, wording
 from panel.command import Command
 from panel.control import Control, Desk
 from panel.phases import ASKING, CHECKING, IDLE, JOGGING, RUNNING
@@ -23,7 +23,7 @@ from panel_bench import (
     wait_until_known,
 )  # fmt: skip
 from uss import pkw, pzd
-from uss.families import MM440, rows
+from uss.families import GENERIC, MM3, MM440, rows
 
 
 def refused(world, reason):
@@ -624,7 +624,7 @@ def test_on_that_leads_to_nothing_is_taken_back_after_five_seconds():
         notice = command.why_in_vain(False, GIVEN_US + 5_000_000 & told.mask)
         assert notice == (texts.NOTHING if runs_once else texts.DID_NOT_START)
         command.send(GIVEN_US)
-        assert command.why_in_vain(False, GIVEN_US + 5_000_000 & told.mask) == texts.DID_NOT_START
+        assert command.why_in_vain(False, GIVEN_US + 5_700_000 & told.mask) == texts.DID_NOT_START
 
 
 def test_on_that_somebody_else_has_taken_away_is_taken_back_once_that_is_known():
@@ -671,6 +671,7 @@ class Machine(Told):
     silent = hiw = hsw = wanted = answered_stw = off_answers = unchecked = 0
     off, at, zsw = pzd.OFF1, pzd.READY, 0x0231
     fault_number, late = 11, None
+    least, most = 0, 5_000
     was_running = unreadable = restarted = may = engine_stops = dirty = False
     setpoint_centihertz, lowest_centihertz, highest_centihertz = 1_000, 0, 5_000
     second_stop = "OFF3"
@@ -757,10 +758,10 @@ class Machine(Told):
         return self.values[rows.SUPERVISION]
 
     def lowest(self):
-        return 0
+        return self.least
 
     def highest(self):
-        return 5_000
+        return self.most
 
     own_highest = highest
 
@@ -1274,3 +1275,120 @@ def test_what_the_desk_knows_follows_its_list_and_its_line():
         assert desk.defect == defect
     drive.half_at = (3,)
     assert control.is_half_written()
+
+
+OBSTACLES = (  # to a START, the first that is told first
+    ({"off": pzd.OFF3}, texts.REFUSED_STOPPING),
+    ({"contact": False}, texts.REFUSED_SILENT),
+    ({"half_at": (3,)}, texts.REFUSED_HALF_SET),
+    ({"at": pzd.FAULT}, texts.REFUSED_FAULT),
+    ({"complete": False, "unreadable": True}, texts.REFUSED_SCALING),
+    ({"complete": False, "unreadable": False}, texts.REFUSED_CHECKING),
+    (rows.STATUS, texts.REFUSED_STATUS),
+    (rows.COMMAND, texts.REFUSED_COMMAND),
+    (rows.SETPOINT, texts.REFUSED_SETPOINT),
+    ({"least": 5_001, "most": 6_000}, texts.REFUSED_MINIMUM),
+    ({"at": pzd.INHIBITED}, texts.REFUSED_INHIBITED),
+)
+SOURCES = {
+    rows.STATUS: rows.STATUS_SENT, rows.COMMAND: rows.COMMAND_SOURCE,
+    rows.SETPOINT: rows.SETPOINT_SOURCE,
+}  # fmt: skip
+
+
+def hinder(drive, obstacle):
+    if isinstance(obstacle, dict):
+        for name in obstacle:
+            setattr(drive, name, obstacle[name])
+    else:
+        drive.wrong[obstacle] = SOURCES[obstacle]
+
+
+def test_of_many_obstacles_to_a_start_the_first_is_told():
+    drive = Machine()
+    assert permits.why_not_start(drive.control) == texts.NOTHING
+    for obstacle, reason in reversed(OBSTACLES):
+        alone = Machine()
+        for some in (alone, drive):
+            hinder(some, obstacle)
+            assert permits.why_not_start(some.control) == reason, obstacle
+        told = permits.why_not_jog(alone.control)
+        of_start_alone = reason in (texts.REFUSED_SETPOINT, texts.REFUSED_MINIMUM)
+        assert told == (texts.NOTHING if of_start_alone else reason), obstacle
+    for changes, reason in (
+        ({"moving": True}, texts.WRITER_BUSY), ({"moved": True}, texts.REFUSED_UNSAVED)
+    ):  # fmt: skip
+        drive = Machine(dirty=True)
+        for name in changes:
+            setattr(drive.control, name, True)
+        assert permits.why_not_start(drive.control) == reason
+    drive.dirty = False
+    assert permits.why_not_start(drive.control) == texts.NOTHING
+    drive = Machine(at=pzd.NOT_READY, least=6_000)  # the highest counts where it is less
+    assert permits.why_not_start(drive.control) == texts.REFUSED_NOT_READY
+    for row in permits.REFUSED_SOURCES:
+        assert permits.is_about_source(permits.REFUSED_SOURCES[row])
+    assert not permits.is_about_source(texts.REFUSED_FAULT)
+
+
+def test_a_jog_has_reasons_of_its_own():
+    for told, supervision, reason in (
+        ({"family": GENERIC}, 1_000, texts.REFUSED_NO_JOG),
+        ({"wanted": ON}, 1_000, texts.REFUSED_RUNS),
+        ({"at": pzd.RUNNING}, 1_000, texts.REFUSED_RUNS), ({}, 0, texts.REFUSED_UNSUPERVISED),
+        ({}, 2_001, texts.REFUSED_LONG), ({"unchecked": 1}, 1_000, texts.REFUSED_CHECKING),
+        ({"unsupervised": (3,)}, 0, texts.NOTHING), ({}, 2_000, texts.NOTHING),
+    ):  # fmt: skip
+        drive = Machine(**told)
+        drive.tell(rows.SUPERVISION, supervision)
+        assert permits.why_not_jog(drive.control) == reason, (told, supervision)
+
+
+def test_the_state_of_a_drive_in_words():
+    for told, words in (
+        ({}, texts.READY), ({"at": pzd.NOT_READY}, texts.NOT_READY),
+        ({"half_at": (3,)}, texts.HALF_SET), ({"complete": False}, texts.CHECKING),
+        ({"complete": False, "at": pzd.INHIBITED}, texts.INHIBITED),
+        ({"wanted": ON}, texts.STARTING), ({"at": pzd.FAULT, "wanted": ON}, texts.FAULT),
+        ({"at": pzd.RUNNING, "wanted": ON}, texts.RUNNING),
+        ({"at": pzd.RUNNING}, texts.STOPPING),
+        ({"at": pzd.RUNNING, "wanted": pzd.JOG_RIGHT}, texts.JOGS_RIGHT),
+        ({"at": pzd.RUNNING, "wanted": pzd.JOG_LEFT}, texts.JOGS_LEFT),
+        ({"contact": False, "trouble": 0}, texts.NO_CONTACT),
+        ({"contact": False, "trouble": 4}, texts.WRONG_CHECK),
+    ):  # fmt: skip
+        drive = Machine(**told)
+        assert wording.text(drive.control) == words, (told, words)
+        if drive.contact:
+            drive.wrong[rows.STATUS] = rows.STATUS_SENT
+            words = texts.STATUS_UNKNOWN
+        else:
+            words = drive.control.desk.defect = texts.LINE_LOW
+        assert wording.text(drive.control) == words, told
+    drive = Machine()
+    drive.wrong[rows.COMMAND] = rows.COMMAND_SOURCE
+    assert wording.text(drive.control) == texts.LOCAL
+    drive.spin()
+    assert wording.text(drive.control) == texts.RUNS_LOCALLY
+    drive = Machine(at=pzd.INHIBITED)
+    drive.control.notice = texts.LINE_FAILED
+    assert wording.text(drive.control) == texts.LINE_FAILED
+    drive = started()
+    drive.tell(rows.SUPERVISION, 0)
+    drive.turns_of_loop()
+    assert wording.text(drive.control) == texts.RUNS_FOR_EVER
+    for unconfirmed, words in ((True, b"A3 NOT STOPPED"), (False, b"A3 LOST,MAY RUN")):
+        drive.control.stop_watch = Told()
+        drive.control.stop_watch.unconfirmed = unconfirmed
+        assert wording.alarm(drive.control) == words
+
+
+def test_a_motor_at_its_lowest_frequency_runs_faster_than_it_is_told():
+    drive = started()
+    assert wording.remark(drive.control) == texts.NOTHING
+    drive.least = 2_000
+    drive.version += 1
+    drive.turns_of_loop()
+    assert wording.remark(drive.control) == texts.RUNS_FASTER
+    for family, words in ((MM440, b"P2014"), (MM3, b"P%04d" % MM3.off_time_number)):
+        assert words in wording.of(texts.RUNS_FOR_EVER, family)

@@ -377,6 +377,12 @@ def test_what_takes_long_has_a_step_of_its_own():
     for job in drive.asked[1:]:
         job.state = pkw.DONE
     assert not is_over(steps) and is_over(steps) and taken == [-1, -2, -3]
+    drive = Told()
+    steps = pump.run(drive, of(1, 0, 2), lambda job, tag: taken.append(tag))
+    assert not is_over(steps) and drive.numbers() == [1]
+    drive.asked[0].state = pkw.DONE
+    assert not is_over(steps) and len(drive.asked) == 1  # one was taken: that was enough
+    assert not is_over(steps) and len(drive.asked) == 2
 
 
 def test_nothing_is_asked_nor_taken_where_there_is_no_room():
