@@ -836,6 +836,17 @@ def test_start_sends_on_when_the_drive_has_told_all_anew():
     assert drive.happened() == [texts.DID_NOT_START]
 
 
+def test_a_drive_has_five_seconds_to_run_from_on_and_not_from_the_key():
+    drive = Machine(unchecked=1)
+    drive.control.start()
+    drive.turns_of_loop(45, 100)
+    drive.unchecked = 0
+    drive.turns_of_loop(45, 100)
+    assert drive.sent == [ON]
+    drive.turns_of_loop(10, 100)
+    assert drive.sent == [ON, OFF1]
+
+
 def test_a_start_that_waits_too_long_or_outlives_a_hang_is_none():
     drive = Machine(unchecked=1)
     drive.control.start()
@@ -862,6 +873,7 @@ def test_a_start_asks_about_each_risk_that_nobody_has_taken():
     control.start()
     drive.turns_of_loop()
     assert (control.phase, control.question()) == (ASKING, risks.SUPERVISION) and drive.sent == []
+    assert drive.dropped == 1
     assert not control.is_starting() and drive.happened() == [texts.DID_NOT_START]
     drive.late = drive
     control.accept_risk(risks.SUPERVISION, 0)
@@ -1061,6 +1073,7 @@ def test_a_drive_that_was_lost_while_it_ran_is_an_alarm_until_it_is_heard():
     drive.contact, drive.was_running = True, False
     drive.turn_of_loop()
     assert not control.lost_running and control.runs()
+    assert not Machine(contact=False).control.lost_running  # it was never heard
     drive = Machine()
     drive.contact = False
     drive.turn_of_loop()

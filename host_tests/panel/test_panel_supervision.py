@@ -777,7 +777,9 @@ def test_a_risk_that_was_taken_is_one_again_when_it_is_another():
 
 def test_a_question_has_the_values_of_its_risk():
     control = Told(2_301, 3)
-    for ms, values in ((2_301, (2014, 2_301, 2, 4)), (2_300, (2014, 2_300, 2, 3))):
+    for ms, values in (
+        (2_301, (2014, 2_301, 2, 4)), (2_300, (2014, 2_300, 2, 3)), (17_950, (2014, 17_950, 18, 0))
+    ):  # fmt: skip
         told = risks.ask(Told(ms), SUPERVISION)
         assert told[2] and told[:2] + told[3:] == (texts.ASK_LONG, values, ms), told
     assert risks.ask(control, RESTART) == (texts.ASK_RESTART, (3,), False, 3)
