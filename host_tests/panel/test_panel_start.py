@@ -7,6 +7,8 @@ from panel import permits, risks, texts, wording
 from panel.command import Command
 from panel.control import Control, Desk
 from panel.phases import ASKING, CHECKING, IDLE, JOGGING, RUNNING
+from panel.reports.fault import NO_FAULT
+from panel.stop_watch import NO_WATCH
 from panel_bench import (
     LOOP_US,
     OFF1,
@@ -813,6 +815,8 @@ def test_start_sends_on_when_the_drive_has_told_all_anew():
     drive = Machine(unchecked=1, dead_man_trips=2)
     assert drive.control.is_quiet() and not drive.control.is_active()
     assert not drive.control.needs_attention() and not drive.control.lost_running
+    assert drive.control.fault is NO_FAULT  # 31 of what a drive never needs would be too much
+    assert drive.control.stop_watch is NO_WATCH
     drive.control.start()
     drive.control.start()  # pressed again
     assert drive.control.phase == CHECKING and drive.control.is_starting()
@@ -981,6 +985,10 @@ def test_a_jog_turns_as_long_as_its_key_is_held():
     drive.off_answers += 3
     drive.turns_of_loop()
     assert not control.own_jog_ends() and drive.happened() == []
+    control.stop()
+    assert control.stop_watch.active and not control.own_jog_ends()
+    drive.off_answers += 3
+    drive.turns_of_loop()
     control.jog(pzd.JOG_RIGHT)
     drive.spin()
     drive.turns_of_loop()
