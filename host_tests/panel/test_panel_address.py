@@ -575,6 +575,7 @@ def test_a_write_is_done_when_the_drive_tells_the_value():
     for what, aim, outcome in (
         ((5, 0, 7), (pkw.WRITE_WORD, 5, 0, 0, 7), words.WRITTEN),
         ((5, 2, 7, True), (pkw.WRITE_WORD_EEPROM, 5, 2, 0, 7), words.WRITTEN_EEPROM),
+        ((5, 0, 0xFFFF), (pkw.WRITE_WORD, 5, 0, 0, 0xFFFF), words.WRITTEN),
         ((5, 0, 0x10002, False, pkw.DOUBLE), (pkw.WRITE_DOUBLE, 5, 0, 1, 2), words.WRITTEN),
         ((5, 0, 3, True, pkw.DOUBLE), (pkw.WRITE_DOUBLE_EEPROM, 5, 0, 0, 3), words.WRITTEN_EEPROM),
     ):
@@ -619,6 +620,10 @@ def test_a_write_that_is_not_done_says_why():
     told.silent = 3
     assert told.answer(state=pkw.REFUSED) == failure(told.job)
     assert told.rechecks == 2
+    told.writer.take_ended()
+    told.write(5, 0, 7)
+    told.step()
+    assert told.answer(state=pkw.TIMED_OUT) == failure(told.job)  # it has not moved anywhere
 
 
 def moving(value=9, **told):
@@ -632,8 +637,9 @@ def moving(value=9, **told):
 
 
 def test_a_drive_is_given_an_address_that_nobody_has():
-    told = moving()
+    told = moving(stops=5)
     assert told.writer.takes(9) and not told.writer.takes(8)
+    assert told.step() is None  # the last answer was that of the old address
     told.silent = 1
     assert told.step() is None and told.hurries == 1
     told.served = told.urgent
@@ -667,6 +673,12 @@ def test_a_drive_that_falls_silent_on_its_new_address_is_looked_for():
         told.silent = 8
         assert told.step() is None and told.address == 9
         told.silent = 9
+        assert told.step() is None and told.address == 1
+        told.silent = 0  # heard in between: that is counted anew
+        assert told.step() is None and told.address == 1
+        told.silent = 3
+        assert told.step() is None and told.address == 9
+        told.silent = 6
         assert told.step() is None and told.address == 1
         assert told.answer(state=pkw.TIMED_OUT) is None and told.address == 9
         assert told.step(most_ms - 1) is None
