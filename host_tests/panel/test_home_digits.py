@@ -75,15 +75,16 @@ def test_a_setpoint_is_typed_in_and_taken_by_set():
 
 def test_the_digit_that_would_change_blinks():
     world = editing(ready())
-    seen = set()
+    seen = {}
     for keys, shown in (((), "01_.00"), (("NEXT",), "010._0"), (("NEXT",), "010.0_"),
                         (("NEXT",), "_10.00"), (("PREVIOUS", "PREVIOUS"), "010._0")):  # fmt: skip
         press(world, *keys)
-        for _ in range(60):
+        for _ in range(80):  # twice on and off
             world.run(20)
-            seen.add(row_2(world)[4:10])
-        assert shown in seen and "010.00" in seen, seen
-        assert len(seen) == 2, seen
+            row = row_2(world)[4:10]
+            seen[row] = seen.get(row, 0) + 20
+        assert set(seen) == {shown, "010.00"}, seen
+        assert 400 <= seen[shown] <= 600, seen  # for a quarter of a second of 0.8
         seen.clear()
 
 

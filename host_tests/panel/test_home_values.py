@@ -157,7 +157,11 @@ def test_percent_beyond_what_a_word_can_say():
     values_shown = Values(world.app.panel)
     values_shown.turn(1)
     assert drawn(world, values_shown).strip() == "20.0%"
-    world.app.panel.selected.drive.hiw = 0x7FFF
+    drive = world.app.panel.selected.drive
+    for centihertz, text in ((1002, "20.0%"), (1003, "20.1%"), (-1002, "-20.0%")):  # the nearest
+        drive.hiw = round(centihertz * 16384 / 5000) & 0xFFFF
+        assert drawn(world, values_shown).strip() == text, centihertz
+    drive.hiw = 0x7FFF
     assert drawn(world, values_shown) == "  >>>>>%  "
 
 
@@ -189,6 +193,7 @@ def test_every_value_that_a_drive_may_tell_has_room():
     for value, text in (
         (-15000.0, "-15000rpm"), (15000.0, "15000rpm"), (-9999.4, "-9999rpm"), (0.4, "0rpm"),
         (0.5, "1rpm"), (-0.0, "0rpm"), (1e-30, "0rpm"), (131000.0, "131000rpm"),
+        (100_000.0, "100000rpm"), (-10_000.0, "-10000rpm"),
         (1e6, "-----rpm"), (-1e38, "-----rpm"), (float("inf"), "-----rpm"),
     ):  # fmt: skip
         tells(world, 22, value)
@@ -249,6 +254,17 @@ def test_a_start_is_not_later_by_it():
     show(world, "A")
     assert start_ms(world) <= start_ms(plain) + 100
     world.check()
+
+
+def test_of_a_drive_that_is_turned_to_its_settings_are_read_before_its_value():
+    world = show(panel(addresses=(1, 2)), "A")
+    for address in (2, 1):
+        world.press("ADDRESS_UP")
+        since_us = world.clock.now_us
+        world.run(500)
+        assert asked(world, since_us, 27) == 0 and row_1(world)[7:] == "     ?A  ", world.lcd()
+        world.run(2000)
+        assert shown(world) == "  0.00A  " and world.selected() == address, world.lcd()
 
 
 def test_it_is_read_about_three_times_a_second():
@@ -432,6 +448,18 @@ def test_a_value_that_is_refused_later_is_dashes_and_asked_for_seldom():
         assert shown(world).strip().endswith("V")
     finally:
         rows[27] = kept
+    world.check()
+
+
+def test_a_value_that_is_told_again_is_there_ten_seconds_later():
+    world = show(runs("mm440"), "A")
+    rows = world.drives[1].parameters.rows
+    kept = rows.pop(27)
+    world.run(2000)
+    rows[27] = kept
+    assert row_1(world)[7:] == " -----A  ", world.lcd()
+    world.run(10_300)
+    assert float(row_1(world)[7:13]) > 0, world.lcd()
     world.check()
 
 

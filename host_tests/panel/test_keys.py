@@ -226,6 +226,38 @@ def test_keys_at_rest_are_all_up_and_were_all_seen_up():
     assert not jammed.keys.at_rest
 
 
+def test_before_the_first_reading_nothing_is_known_of_any_key():
+    keys = Keys(NAMES, MASK)
+    acts = Acts(keys)
+    for seen in (keys, acts):
+        assert (seen.pressed, seen.repeated, seen.repeats) == (0, 0, 0)
+    assert not keys.at_rest and keys.unsettled == START | STOP | UP
+    assert (keys.down, keys.shift) == (0, 0)
+
+
+def test_the_first_reading_is_no_change_and_up_is_what_was_so_for_20_ms():
+    """Whenever that is by the clock. A STOP that is down then is down at once."""
+    keys = Keys(NAMES, MASK)
+    keys.update(STOP | UP, 5_000)
+    assert keys.down == STOP and not keys.pressed
+    keys = Keys(NAMES, MASK)
+    rests = []
+    for now_ms in range(5_000, 5_025):
+        keys.update(0, now_ms)
+        rests.append(keys.at_rest)
+    assert rests == [False] * 21 + [True] * 4, rests
+
+
+def test_there_is_something_to_do_when_a_key_goes_down_or_repeats_and_while_one_is_held():
+    for key, does in (
+        (START, [121, 521]),
+        (UP, list(range(121, 551))),  # until it has gone up, and then once more
+    ):
+        keys = Keys(NAMES, MASK, held=("UP",))
+        told = [ms for ms in range(600) if keys.update(key if 101 <= ms < 530 else 0, ms)]
+        assert told == does, (key, told)
+
+
 def test_what_was_pressed_can_be_taken_up_later():
     hand = Hand().hold(UP, 21)
     acts = Acts(hand.keys)
@@ -238,6 +270,19 @@ def test_what_was_pressed_can_be_taken_up_later():
     acts.note()
     assert acts.pressed == 0 and acts.repeated == UP and acts.repeats == 9
     assert acts.pace() == 10 and acts.pace(1) == 1
+
+
+def test_a_key_that_repeats_goes_its_own_way_alone():
+    hand = Hand()
+    while not hand.keys.repeated:
+        hand.hold(START, 1)
+    acts = Acts(hand.keys)
+    ways = [acts.direction(*keys) for keys in (("START", "UP"), ("UP", "START"), ("UP", "STOP"))]
+    assert ways == [1, -1, 0], ways
+    hand.keys.forget()  # and it has to be pressed anew
+    seen = len(hand.repeated)
+    hand.hold(START, 500)
+    assert len(hand.repeated) == seen, hand.repeated
 
 
 def test_a_value_moves_the_faster_the_longer_its_key_is_held_up_to_the_pace_that_it_bears():

@@ -330,6 +330,40 @@ def test_what_acts_at_once_is_changed_beside_a_motor_that_runs():
     world.check()
 
 
+def test_beside_a_motor_that_runs_keys_light_and_words_can_be_set_and_nothing_of_the_bus():
+    world = running()
+    settings = world.app.settings
+    for name, acts, key, row in (
+        ("baud", False, "UP", ">BAUD 38400"),
+        ("second_stop", False, "UP", ">2ND STOP OFF2"),
+        ("reply_timeout_ms", False, "UP", ">REPLY 21 ms"),
+        ("lost_ms", False, "UP", ">LOST 1001 ms"),
+        ("setpoint_centihertz", False, "UP", ">START 10.01 Hz"),
+        ("setpoint_step_centihertz", True, "UP", ">STEP 0.11 Hz"),
+        ("lowest_centihertz", False, "UP", ">LOW 0.01 Hz"),
+        ("highest_centihertz", False, "DOWN", ">HIGH 649.99 Hz"),
+        ("key_delay_ms", True, "UP", ">KEY WAIT 401 ms"),
+        ("key_repeat_ms", True, "UP", ">KEY RATE 121 ms"),
+        ("light_minutes", True, "UP", ">LIGHT 1 min"),
+        ("log", True, "UP", ">LOG JSON"),
+        ("language", True, "UP", ">LANG. Deutsch"),  # before the one above, and last here
+    ):
+        before = getattr(settings, name)
+        if name == "baud":
+            setting(world, "BAUD")
+        else:
+            press(world, *{"log": ("DOWN", "DOWN"), "language": ("UP",)}.get(name, ("DOWN",)))
+            press(world, "SET")
+        press(world, key)
+        assert row_2(world) == row, world.lcd()
+        press(world, "SET")
+        assert (getattr(settings, name) != before) == acts, (name, world.lcd())
+        if not acts:
+            assert row_2(world) == "STOP ALL FIRST", (name, world.lcd())
+            press(world, "PARAM")
+    assert world.drives[1].state == "running"
+
+
 def test_stop_acts_everywhere_in_the_menu_and_no_other_key_moves_a_motor():
     settings = ("DOWN", "DOWN", "DOWN", "SET")
     for way in (
@@ -586,6 +620,15 @@ def test_a_value_that_was_not_changed_is_left_alone_and_no_panel_begins_anew():
     assert row_2(world) == ">BAUD 19200" and row_1(world).startswith("SETTINGS"), world.lcd()
     assert world.drives[1].state == "running" and starts(world) == 1
     world.check()
+
+
+def test_order_and_turns_are_there_where_there_are_two_drives_or_more():
+    for addresses, are_there in (((1,), False), ((1, 2), True)):
+        world = panel(addresses=addresses)
+        menu(world)
+        shown = entries(world)
+        assert ("ORDER" in shown, "TURNS" in shown) == (are_there, are_there), shown
+        assert shown[:5] == ["DRIVES", "ANY ADDRESS", "FIND DRIVES", "SETTINGS", "SETS"], shown
 
 
 def test_a_drive_without_pkw_words_has_no_parameters_in_the_menu():

@@ -2,6 +2,7 @@
 """The operator's manual, parameter mode: look at parameters and change them."""
 
 from boards.sim.drives.kinds import listed_drives, simulated
+from panel.pages.parameter_words import failure
 from panel.pages.question import Question
 from panel_bench import (
     LOOP_US,
@@ -201,6 +202,28 @@ def test_a_refusal_that_no_manual_explains_is_told_by_its_number():
     world.run(3200)
     assert row_2(world) == "P2011: ----- A1"
     world.check()
+
+
+def test_each_number_of_a_refusal_has_its_words():
+    told = {
+        0: "NO SUCH PARAM.", 1: "READ ONLY", 2: "BEYOND LIMITS", 3: "NO SUCH INDEX",
+        4: "NOT AN ARRAY", 5: "WRONG DATA TYPE", 6: "MAY ONLY BE 0", 7: "NOT CHANGEABLE",
+        11: "NO WRITE RIGHTS", 12: "KEYWORD MISSING", 17: "MODE FORBIDS IT", 18: "DRIVE ERROR",
+        20: "ILLEGAL VALUE", 101: "INACTIVE NOW", 102: "REPLY TOO LONG", 103: "BAD PKW LENGTH",
+        104: "NOT THIS VALUE", 105: "IS AN ARRAY", 106: "TASK UNKNOWN", 107: "TEXT IS FIXED",
+        200: "BELOW LIMIT NOW", 201: "ABOVE LIMIT NOW", 204: "P0003 TOO LOW",
+        pkw.NO_CHANGE_RIGHTS: "NO WRITE RIGHTS",
+    }  # fmt: skip
+    job = pkw.read(1000)
+    job.state = pkw.REFUSED
+    for job.error in set(told) | set(range(210)):
+        words = failure(job)
+        if job.error in told:
+            assert words == (told[job.error].encode(),), (job.error, words)
+        else:
+            assert words[0] % words[1:] == b"REFUSED: %d" % job.error, (job.error, words)
+    for job.state, text in ((pkw.UNANSWERED, b"NO REPLY TO IT"), (pkw.TIMED_OUT, b"NO ANSWER")):
+        assert failure(job) == (text,), text
 
 
 def test_the_value_of_a_silent_drive_is_not_shown():
