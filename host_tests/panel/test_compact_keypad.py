@@ -416,6 +416,40 @@ def test_a_key_that_has_just_moved_is_unsettled_and_one_that_rests_is_not():
         assert not keys.unsettled, raw
 
 
+def test_before_the_first_reading_nothing_is_known_of_any_of_the_eight():
+    keys = keys_of(COMPACT_KEYS, MASK)
+    assert (keys.down, keys.pressed, keys.repeated, keys.repeats, keys.shift) == (0, 0, 0, 0, 0)
+    assert not keys.at_rest and keys.unsettled == (1 << len(COMPACT_KEYS)) - 1
+    keys.update(1 << COMPACT_KEYS.index("STOP"), 5_000)
+    assert keys.down == keys.bit("STOP") and not keys.pressed
+    for name in ("START", "UP", "JOG"):  # jammed from the beginning
+        keys = keys_of(COMPACT_KEYS, MASK)
+        for now_ms in range(100):
+            keys.update(1 << COMPACT_KEYS.index(name), now_ms)
+        assert keys.down == keys.bit({"JOG": "JOG_RIGHT"}.get(name, name)), name
+        assert not keys.pressed and not keys.at_rest, name
+
+
+def test_there_is_something_to_do_with_each_press_and_while_a_key_that_is_held_is_down():
+    """FN as well, which ends three seconds after it went down; then all keys rest."""
+    for key, does, shifts, rests in (
+        ("UP", [121, 521], [], 551),
+        ("FN", [121], list(range(121, 3_121)), 3_121),
+        ("JOG", list(range(121, 551)), [], 551),  # until it has gone up, and then once more
+    ):
+        keys = keys_of(COMPACT_KEYS, MASK, held=("JOG_RIGHT",))
+        bit = 1 << COMPACT_KEYS.index(key)
+        told, shifted, resting = [], [], []
+        for now_ms in range(3_200):
+            if keys.update(bit if 101 <= now_ms < 530 else 0, now_ms):
+                told.append(now_ms)
+            if keys.shift:
+                shifted.append(now_ms)
+            if keys.at_rest and now_ms > 101:
+                resting.append(now_ms)
+        assert (told, shifted, resting[0]) == (does, shifts, rests), (key, told, resting[0])
+
+
 def test_a_key_that_is_withheld_repeats_nothing_any_more():
     for others in (False, True):
         keys = keys_of(COMPACT_KEYS, MASK, (), None)

@@ -1251,6 +1251,20 @@ def test_stop_names_the_drive_that_an_address_key_has_shown_on_its_way_to_any_ad
     world.check()
 
 
+def test_a_menu_closes_a_minute_after_the_last_key_and_the_address_keys_do_not_walk_it():
+    world = panel()
+    wait_until_known(world)
+    menu(world)
+    for _ in range(2):
+        world.run(40_000)
+        press(world, "ADDRESS_UP", "ADDRESS_DOWN", "ADDRESS_DOWN")
+        assert row_2(world) == ">DRIVES", world.lcd()
+    world.run(57_000)
+    assert row_2(world) == ">DRIVES", world.lcd()
+    world.run(4_000)
+    assert row_2(world) == "READY        A1", world.lcd()
+
+
 def test_a_key_that_moves_a_motor_says_that_the_menu_is_open():
     world = panel()
     wait_until_known(world)
@@ -1259,6 +1273,12 @@ def test_a_key_that_moves_a_motor_says_that_the_menu_is_open():
         press(world, key)
         assert row_2(world) == ">NO: IN THE MENU", (key, world.lcd())
         press(world, "DOWN")
+        assert "NO:" not in row_2(world), world.lcd()  # the next key takes it away
+    press(world, "START")
+    world.run(2_300)
+    assert row_2(world) == ">NO: IN THE MENU", world.lcd()
+    world.run(700)
+    assert "NO:" not in row_2(world) and row_2(world).startswith(">"), world.lcd()
     assert starts(world) == 0 and world.drives[1].state == "ready"
     world.check()
 

@@ -447,3 +447,6 @@ def test_when_the_last_of_a_list_is_taken_back_the_one_before_is_shown():
     press(world, "SET")
     world.run(3500)
     assert row_1(world).endswith("2/2") and row_2(world) == ">A2  SET=ASK", world.lcd()
+    press(world, "SET")
+    world.run(3500)
+    assert row_2(world) == ">A1  SET=ASK" and kept(world)["unsupervised"] == [1], world.lcd()

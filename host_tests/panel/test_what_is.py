@@ -126,6 +126,30 @@ def test_without_a_fault_there_is_nothing_to_ask():
     world.check()
 
 
+def test_a_fault_or_a_warning_without_a_number_cannot_be_asked_about():
+    world = world_of()
+    drive = world.drives[1]
+    for number, report, text in ((2110, drive.warn, "WARN"), (947, drive.fault, "FAULT")):
+        del drive.parameters.rows[number]
+        report(1)
+        wait(world, text)
+        world.run(1500)
+        hold(world, "PARAM", 1400)
+        world.run(500)
+        assert row_2(world) == ">DRIVES", world.lcd()
+        press(world, "PARAM")
+
+
+def test_beside_a_warning_the_other_lists_are_as_ever():
+    world = world_of()
+    world.drives[1].warn(501)
+    wait(world, "WARN A0501")
+    go_to(world, "DIAGNOSIS")
+    world.run(500)
+    assert (row_1(world)[:9], row_2(world)) == ("DIAGNOSIS", ">BUS COUNTERS"), world.lcd()
+    world.check()
+
+
 def test_the_fault_memory_has_the_last_faults_with_their_texts():
     world = world_of()
     drive = world.drives[1]
