@@ -399,6 +399,24 @@ def test_what_was_found_is_kept_and_takes_no_memory():
     assert german.get(b"READY", b"") == b"BEREIT"
 
 
+def test_the_last_twenty_four_words_are_kept_and_need_no_table():
+    module = on_demand.load("panel.languages")
+    german, spoken = module.Language("de"), columns()["de"]
+    found = [text for text in spoken if spoken[text] != text][:24]
+    for text in found:
+        german.get(text, text)
+
+    def missing(path, mode):
+        raise OSError(2)
+
+    module.open = missing
+    try:
+        for text in found:
+            assert german.get(text, text) == spoken[text], text
+    finally:
+        del module.open
+
+
 def test_of_hundreds_of_words_that_were_shown_a_few_are_kept():
     """A chip has no room for all: the ones that were shown last take their place."""
     german, found = Language("de"), list(columns()["de"])

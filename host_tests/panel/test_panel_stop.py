@@ -197,6 +197,39 @@ def test_stop_held_for_four_seconds_stops_all_drives():
     world.check()
 
 
+def test_those_that_run_are_stopped_first_and_then_all_once_more():
+    world = panel(addresses=(1, 2, 3))
+    for _ in range(2):
+        world.press("ADDRESS_UP")
+        wait_until_known(world)
+        world.press("START")
+    world.run(4_000)
+    world.press("ADDRESS_UP")
+    wait_until_known(world)
+    states = [world.drives[address].state for address in (1, 2, 3)]
+    assert states == ["ready", "running", "running"], states
+    world.down("STOP")  # the first one is shown
+    world.run(3_000)
+    told = []
+    for control in world.app.panel.controls:
+        control.stop_unseen = lambda address=control.drive.address: told.append(address)
+    world.run(1_200)
+    assert told == [3, 2, 3, 2, 1], told
+
+
+def test_a_stop_that_is_held_says_what_it_does_next_and_a_short_one_does_not():
+    world = running(loop_us=LOOP_US)
+    world.down("STOP")
+    at_ms = 0
+    for until_ms, text in (
+        (280, "STOPPING     A1"), (400, "STOP, HOLD: OFF3"), (1_450, "STOP, HOLD: OFF3"),
+        (1_600, "OFF3, HOLD: ALL"), (3_950, "OFF3, HOLD: ALL"), (4_100, "ALL DRIVES: STOP"),
+    ):  # fmt: skip
+        world.run(until_ms - at_ms)
+        at_ms = until_ms
+        assert row_2(world) == text, (at_ms, world.lcd())
+
+
 def test_stop_pressed_again_and_again_does_not_put_the_alarm_off():
     world = running()
     world.drives[1].unplug()
