@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: MIT
 """The operator's manual, JOG, REVERSE, a held STOP: a motor turns only as long as it should."""
 
+from panel.keys import Keys
+from panel.keys.jog_keys import JogKeys
+from panel.phases import IDLE, JOGGING
 from panel.reports.fault import Fault
 from panel_bench import (
     LOOP_US,
@@ -163,6 +166,49 @@ def test_stop_beats_jog_and_the_key_must_go_up_first():
     world.run(100)
     assert row_2(world) == "NO: STOP IS DOWN" and words(world, stopped_us) == [OFF1]
     world.check()
+
+
+def test_a_jog_that_was_ended_does_not_come_back_with_any_other_key():
+    world = panel(loop_us=LOOP_US)
+    world.run(2_000)
+    for jog in ("JOG_RIGHT", "JOG_LEFT"):
+        world.down(jog)
+        world.run(1_000)
+        assert world.drives[1].hz() != 0, world.lcd()
+        for key in ("STOP", "UP", "DOWN", "REVERSE", "REVERSE", "NEXT", "PREVIOUS", "SET"):
+            world.press(key)
+            world.run(1_500 if key == "STOP" else 200)
+            assert world.drives[1].hz() == 0, (jog, key, world.lcd())
+        world.up(jog)
+        world.run(200)
+    world.check()
+
+
+class Jogged:
+    """A drive that notes what the jog keys do with it."""
+
+    def __init__(self):
+        self.phase, self.done = IDLE, []
+
+    def jog(self, stw):
+        self.phase = JOGGING
+        self.done.append(stw)
+
+    def end_jog(self):
+        self.phase = IDLE
+        self.done.append(None)
+
+
+def test_whichever_jog_key_comes_first_on_a_board_right_is_right():
+    for names in (("STOP", "JOG_RIGHT", "JOG_LEFT"), ("STOP", "JOG_LEFT", "JOG_RIGHT")):
+        keys = Keys(names, (1 << 30) - 1)
+        jogs = JogKeys(keys.bit("JOG_RIGHT"), keys.bit("JOG_LEFT"))
+        drive = Jogged()
+        for now_ms in range(400):
+            raw = {1: keys.bit("JOG_RIGHT"), 3: keys.bit("JOG_LEFT")}.get(now_ms // 80, 0)
+            keys.update(raw, now_ms)
+            jogs.step(keys, drive, True)
+        assert drive.done == [JOG_RIGHT, None, JOG_LEFT, None], (names, drive.done)
 
 
 def test_start_while_jog_is_held_is_refused():
