@@ -421,6 +421,21 @@ def test_refused_values_are_left_out_in_both_directions():
     world.check()
 
 
+def test_a_value_on_which_the_drive_falls_silent_is_left_out_as_well():
+    world = runs("mm440")
+    hear = world.drives[1].slave.hear
+
+    def hear_selectively(burst):
+        is_asked = bytes(burst.data[3 : min(5, burst.count)]) == b"\x10\x1b"  # r0027, the current
+        return None if is_asked else hear(burst)
+
+    world.drives[1].slave.hear = hear_selectively
+    there = ["%", "Hz", "rpm", "V", "Vdc", "kW", "C M", "C I", "F:"]
+    for _ in range(2):
+        assert units(values(world)) == there
+    assert world.drives[1].state == "running"
+
+
 def test_a_refused_value_is_left_out_and_not_asked_for_again():
     world = runs("g120")
     since_us = world.clock.now_us
