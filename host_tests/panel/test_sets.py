@@ -213,6 +213,8 @@ def test_saving_tells_how_far_it_is_and_how_long_it_still_takes():
     for at_us, percent, left_s in told:
         assert abs(percent - 100 * (at_us - began_us) / (ended_us - began_us)) < 5
         assert percent < 50 or abs(left_s - (ended_us - at_us) / 1e6) < 2, (percent, left_s)
+    for (_, _, left_s), (_, _, later_s) in zip(told, told[1:]):
+        assert later_s - left_s < 5, (left_s, later_s)  # it does not grow
 
 
 def test_what_a_drive_does_not_tell_at_once_is_asked_again():
@@ -285,7 +287,9 @@ def test_a_name_is_given_letter_by_letter():
     sets(world)
     press(world, "SET")
     assert world.lcd() == ("NAME, SET=SAVE  ", ">[S]ET 1        "), world.lcd()
-    press(world, "DOWN", "DOWN", "DOWN", "NEXT", "UP", "PREVIOUS", "PREVIOUS")
+    press(world, "DOWN", "DOWN", "DOWN", "NEXT", "UP")
+    assert row_2(world) == ">P[F]T 1", world.lcd()
+    press(world, "PREVIOUS", "PREVIOUS")
     assert row_2(world) == ">PFT 1    [ ]", world.lcd()
     press(world, "SET")
     world.run(4000)
