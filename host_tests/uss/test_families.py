@@ -4,6 +4,9 @@
 Numbers of chapters are those of the protocol notes, USS.md.
 """
 
+import uss.families.readings as readings
+from boards.sim.drives.families import named as simulated
+from boards.sim.drives.parameters import NUMBER, TYPE
 from uss import bits, families, pkw, pzd
 from uss.families import (
     CU240S,
@@ -57,6 +60,29 @@ LINK = (
 )
 
 
+# Family: rated frequency and rated speed of its motor, present fault and warning; then what is to
+# be set at it first, as (number, value): access to all parameters, USS at the terminals; and what
+# copies RAM to EEPROM.
+NUMBERS = (
+    (MM3, (81, 82), 930, None, (9, 3), None, (971, 1)),
+    (MM440, (310, 311), 947, 2110, (3, 3), None, (971, 1)),
+    (G110, (310, 311), 947, 2110, (3, 3), None, (971, 1)),
+    (V20, (310, 311), 947, 2110, (3, 3), (2023, 1), (971, 1)),
+    (CU240S, (310, 311), 947, 2110, (3, 3), None, (971, 1)),
+    (G120, (310, 311), 947, None, None, (2030, 1), (971, 1)),
+    (GENERIC, None, None, None, None, None, None),
+)
+
+# Family: what a panel without a catalogue shows of it, each with the highest value that it writes.
+SHOWN = (
+    (MM3, ((910, 4), (91, 30), (94, None), (12, None), (13, None))),
+    (MM440, ((700, 6), (1000, 77), (2011, 31), (2024, None), (2025, None))),
+    (G110, ((700, 6), (1000, 77), (2011, 31), (2024, None), (2025, None))),
+    (G120, ((2021, 30), (2040, 65535))),
+    (GENERIC, ()),
+)
+
+
 def refused(work, *arguments):
     """What it says to that; False if it does not refuse."""
     try:
@@ -106,6 +132,19 @@ def test_the_parameters_of_the_link():
         assert family.fault_format % family.off_time_fault == fault, family.name
 
 
+def test_the_parameters_of_the_motor_of_faults_and_of_what_is_set_first():
+    for family, *told in NUMBERS:
+        assert told == [
+            family.motor, family.fault_number, family.warning_number,
+            family.access, family.protocol, family.save,
+        ], family.name  # fmt: skip
+
+
+def test_what_a_panel_without_a_catalogue_shows_of_each_family():
+    for family, shown in SHOWN:
+        assert family.shown == shown, family.name
+
+
 def test_the_telegram_off_time_of_an_mm3_is_in_seconds():
     for family in FAMILIES:
         assert family.off_time_unit_ms == (1000 if family is MM3 else 1)
@@ -125,6 +164,22 @@ def test_which_layouts_a_family_can_be_set_to():
         assert not can_be_set_to(MM3, layout)
     for pkw_words in (0, 3, 4, VARIABLE):
         assert can_be_set_to(GENERIC, Layout(pkw_words, 16))
+
+
+def test_how_the_telegrams_of_a_family_are_divided_unless_somebody_says_so():
+    for family in FAMILIES:
+        layout = Layout(4, 2)
+        if family in (G110, V20, G120):
+            layout = Layout(VARIABLE, 2)
+        elif family is MM3:
+            layout = Layout(3, 2)
+        assert family.layout.is_like(layout), family.name
+
+
+def test_how_many_process_data_a_family_can_be_set_to():
+    for family, most in ((MM420, 4), (MM440, 8), (G110, 4), (V20, 8), (G120, 8), (GENERIC, 16)):
+        assert list(family.pzd_choices) == list(range(most + 1)), family.name
+    assert list(MM3.pzd_choices) == [2]
 
 
 def test_no_word_gives_up_control():
@@ -215,6 +270,82 @@ def test_a_g110_is_asked_for_the_numbers_of_a_micromaster_4_as_far_as_it_has_the
             assert asked[row] == (number, 0, kind), row
 
 
+def test_the_rows_of_a_micromaster_3_and_of_a_g120_are_seven():
+    """Their files have these alone: the macro of a G120 connects ON and the setpoint."""
+    for family, kind, words, scaled in (
+        (MM3, rows.STEPS, {0: 910, 3: 95, 6: 93}, {2: 94, 4: 12, 5: 13}),
+        (G120, rows.RPM, {6: 2040}, {2: 2000, 4: 1080, 5: 1082}),
+    ):
+        expected = [None] * rows.COUNT_OF_ROWS
+        for numbers, kind_of_it in ((words, rows.WORD), (scaled, kind)):
+            for row, number in numbers.items():
+                expected[row] = (number, 0, kind_of_it, None)
+        assert list(family.survey) == expected, family.name
+
+
+def test_what_a_row_is_taken_for_where_the_drive_has_no_such_parameter():
+    """None: then nothing is known of the drive, and it does not start."""
+    missing = [row[3] for row in MM4.survey]
+    assert missing[: rows.SUPERVISION] == [None] * 6
+    assert missing[rows.SUPERVISION : rows.STATUS_SENT] == [0] * 5
+    assert missing[rows.STATUS_SENT : rows.SELECTION] == [None] * 2
+    assert missing[rows.SELECTION] == missing[rows.PID] == 0
+    missing = [row and row[3] for row in G110.survey]
+    expected = {rows.RESTART: 0, rows.COUNTER: 0, rows.SELECTION: 0}
+    expected[rows.ON_SOURCE], expected[rows.MAIN_SOURCE] = 2036 << 16, 2018 << 16 | 1
+    assert missing == [expected.get(row) for row in range(rows.COUNT_OF_ROWS)]
+
+
+def test_the_set_that_is_active_is_the_index_of_what_belongs_to_it():
+    values = [rows.UNKNOWN] * rows.COUNT_OF_ROWS
+    asked = [rows.index_of(row, values) for row in MM4.survey]
+    assert asked == [row[1] if row[1] > 0 else 0 for row in MM4.survey], "the first, so far"
+    values[rows.COMMAND_SET], values[rows.DRIVE_SET] = 1, 2
+    for row in MM4.survey:
+        of_the_set = {rows.BY_COMMAND_SET: 1, rows.BY_DRIVE_SET: 2}
+        assert rows.index_of(row, values) == of_the_set.get(row[1], row[1]), row
+
+
+def test_what_a_drive_tells_is_judged_by_the_rules_of_its_family():
+    """P0719 goes before P0700 and P1000, each digit before one of them."""
+    values = [rows.UNKNOWN] * rows.COUNT_OF_ROWS
+    for family in FAMILIES:
+        assert list(rows.wrong_rows(family.meaning, values)) == [rows.RIGHT] * 4, "nobody knows"
+    right = {
+        rows.SELECTION: 0, rows.COMMAND_SOURCE: 5, rows.ON_SOURCE: 2036 << 16,
+        rows.SETPOINT_SOURCE: 5, rows.MAIN_SOURCE: 2018 << 16 | 1, rows.PID: 0,
+        rows.STATUS_SENT: 52 << 16, rows.ACTUAL_SENT: 21 << 16,
+    }  # fmt: skip
+    for told, wrong in (
+        ({}, {}),
+        ({rows.COMMAND_SOURCE: 4}, {rows.COMMAND: rows.COMMAND_SOURCE}),
+        ({rows.COMMAND_SOURCE: 15}, {rows.COMMAND: rows.COMMAND_SOURCE}),
+        ({rows.ON_SOURCE: 2032 << 16}, {rows.COMMAND: rows.ON_SOURCE}),
+        ({rows.COMMAND_SOURCE: 2, rows.ON_SOURCE: 1}, {rows.COMMAND: rows.COMMAND_SOURCE}),
+        ({rows.SELECTION: 50, rows.COMMAND_SOURCE: 2, rows.ON_SOURCE: 1}, {}),
+        ({rows.SELECTION: 40}, {rows.COMMAND: rows.SELECTION}),
+        ({rows.SELECTION: 4}, {rows.SETPOINT: rows.SELECTION}),
+        ({rows.SELECTION: 5, rows.SETPOINT_SOURCE: 2, rows.MAIN_SOURCE: 1}, {}),
+        ({rows.SELECTION: 5, rows.COMMAND_SOURCE: 2}, {rows.COMMAND: rows.COMMAND_SOURCE}),
+        ({rows.SELECTION: 50, rows.SETPOINT_SOURCE: 2}, {rows.SETPOINT: rows.SETPOINT_SOURCE}),
+        ({rows.SETPOINT_SOURCE: 15}, {rows.SETPOINT: rows.SETPOINT_SOURCE}),
+        ({rows.MAIN_SOURCE: 2015 << 16}, {rows.SETPOINT: rows.MAIN_SOURCE}),
+        ({rows.PID: 1 << 16}, {rows.SETPOINT: rows.PID}),
+        ({rows.STATUS_SENT: 53 << 16}, {rows.STATUS: rows.STATUS_SENT}),
+        (
+            {rows.ACTUAL_SENT: 27 << 16, rows.STATUS_SENT: 0},
+            {rows.ACTUAL: rows.ACTUAL_SENT, rows.STATUS: rows.STATUS_SENT},
+        ),
+    ):
+        for row in range(rows.COUNT_OF_ROWS):
+            values[row] = told.get(row, right.get(row, rows.UNKNOWN))
+        expected = [wrong.get(subject, rows.RIGHT) for subject in range(4)]
+        assert list(rows.wrong_rows(MM4.meaning, values)) == expected, told
+    for source, wrong in ((1, rows.RIGHT), (0, rows.COMMAND_SOURCE), (2, rows.COMMAND_SOURCE)):
+        values[rows.COMMAND_SOURCE] = source
+        assert rows.wrong_rows(MM3.meaning, values)[rows.COMMAND] == wrong, source
+
+
 def test_every_rule_says_which_values_of_which_row_are_right():
     for family in FAMILIES:
         for subject, row, place, right, digit in family.meaning:
@@ -243,12 +374,23 @@ def test_what_is_always_permanent_is_asked_for_as_well():
         if family.address_number is not None:
             assert family.baud_number in family.permanent
             assert family.address_number in family.permanent
+    assert MM4.permanent == G110.permanent == (2010, 2011, 2012, 2013)
+    assert V20.permanent == (2010, 2011, 2012, 2013, 2023)
+    assert MM3.permanent == (91, 92) and G120.permanent == (2020, 2021, 2022, 2023, 2030)
 
 
 def test_the_panel_asks_before_everything_that_cuts_it_off_or_rescales():
     named = (3, 10, 700, 719, 840, 918, 927, 970, 1000, 1070, 1910, 2000, 2009, 2010, 2011, 2012,
              2013, 2014, 2016, 2019, 2023, 3900)  # fmt: skip
     assert sorted(MM4.ask_first) == sorted(named)
+    assert sorted(V20.ask_first) == sorted(named + (717,))
+    assert sorted(MM3.ask_first) == [9, 91, 92, 93, 94, 95, 910, 944]
+    named = (10, 15, 840, 970, 1070, 2000, 2020, 2021, 2022, 2023, 2030, 2040, 2051)
+    assert sorted(G120.ask_first) == list(named)
+    rescales = (94, 95, 2000, 2009, 2016, 2019, 2051)
+    for family in FAMILIES:
+        for number, why in family.ask_first.items():
+            assert why == (RESCALES if number in rescales else CUTS_OFF), (family.name, number)
 
 
 def test_the_bop_link_of_a_micromaster_4_has_words_and_indices_of_its_own():
@@ -333,6 +475,35 @@ def test_which_32_bit_values_are_floating_point():
     assert is_float(MM440, 1120) and is_float(MM440, 2000)
     assert not is_float(MM440, 2019), "a connector: r0052 and an index"
     assert not is_float(GENERIC, 2000), "nobody knows"
+    for number in (732, 733):
+        assert not is_float(MM440, number), "a relay output more than an MM420 has"
+    for row in simulated("mm420").ROWS:
+        if row[TYPE] in ("F", "U32"):
+            assert is_float(MM420, row[NUMBER]) == (row[TYPE] == "F"), row[NUMBER]
+
+
+def test_what_a_drive_tells_of_itself_while_it_runs():
+    """Three PKW words carry no floating-point value, and without any it tells nothing."""
+    usual = [
+        (readings.OUTPUT, 24), (readings.SPEED, 22), (readings.CURRENT, 27),
+        (readings.VOLTAGE, 25), (readings.DC_LINK, 26),
+    ]  # fmt: skip
+    more = [(readings.POWER, 32), (readings.MOTOR, 35)]
+    inverter = [(readings.INVERTER, 37)]
+    for family in FAMILIES:
+        vector = more if family in (MM430, MM440, CU240S, V20, G120) else []
+        expected = [row + (readings.FLOAT,) for row in usual + vector + inverter]
+        if family not in (GENERIC, MM3):
+            assert list(readings.of(family, 4)) == expected, family.name
+            assert list(readings.of(family, VARIABLE)) == expected, family.name
+        assert not readings.of(family, 0), family.name
+        assert family is MM3 or not readings.of(family, 3), family.name
+    words = (
+        (readings.SPEED, 135, 100), (readings.CURRENT, 132, 10), (readings.VOLTAGE, 137, 100),
+        (readings.DC_LINK, 134, 100),
+    )  # fmt: skip
+    assert readings.of(MM3, 3) == readings.of(MM3, 4) == words
+    assert not readings.of(GENERIC, 4)
 
 
 def test_what_the_families_have_in_common_and_what_not():
@@ -342,6 +513,15 @@ def test_what_the_families_have_in_common_and_what_not():
     assert [family for family in FAMILIES if not family.has_eeprom_tasks] == [MM3]
     assert [family for family in FAMILIES if not family.has_indices] == [MM3, G110]
     assert not G120.takes_broadcast and not GENERIC.takes_broadcast
+    assert MM440.takes_broadcast and G110.takes_broadcast and not MM3.takes_broadcast
+    assert [family for family in FAMILIES if family.first_index] == [GENERIC]
+    assert [family for family in FAMILIES if not family.takes_no_control] == [G120]
+    by_array_tasks = [family for family in FAMILIES if family.has_array_tasks]
+    assert by_array_tasks == [GENERIC, V20, CU240S, G120]
+    with_bop = [family for family in FAMILIES if family.has_bop_link]
+    assert with_bop == [MM410, MM420, MM430, MM440, CU240S]
+    absolute = [(family, family.absolute_value) for family in FAMILIES if family.absolute_value]
+    assert absolute[0] == (MM3, 2) and {value for _, value in absolute[1:]} == {1}
     names = [family.name for family in FAMILIES]
     assert len(set(names)) == len(names)
 
