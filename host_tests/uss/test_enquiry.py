@@ -3,7 +3,8 @@
 
 from uss import families
 from uss.finding.enquiry import SILENCES, TRIES, Enquirer, Node, enquiry
-from uss.layout import Layout
+from uss.finding.enquiry import layouts as enquiry_layouts
+from uss.layout import VARIABLE, Layout
 from uss.outside import DONE, TIMED_OUT
 from uss.receiver import SILENT
 from uss.telegram import GOOD
@@ -18,9 +19,9 @@ MM4 = {
 }  # fmt: skip
 
 
-def asked(values):
-    """What is known of a node with 12 net characters whose parameters have these values."""
-    node = Node(ADDRESS, FOUR_AND_TWO.net_count, False)
+def asked(values, net_count=FOUR_AND_TWO.net_count):
+    """What is known of a node with so many net characters whose parameters have these values."""
+    node = Node(ADDRESS, net_count, False)
     questions = enquiry(node)
     value = None
     try:
@@ -80,3 +81,51 @@ def test_a_question_that_is_answered_at_the_second_time_leaves_the_next_one_two(
         lost, answered = ask(enquirer, TIMED_OUT, SILENT), ask(enquirer, DONE, GOOD)
         assert lost == answered != before
         before = lost
+
+
+def test_which_layouts_a_length_may_mean_the_most_usual_first():
+    for net_count, meant in (
+        (2, [(0, 1)]),
+        (4, [(0, 2)]),
+        (6, [(3, 0), (0, 3)]),
+        (8, [(4, 0), (3, 1), (0, 4)]),
+        (12, [(4, 2), (3, 3), (0, 6)]),
+        (32, [(4, 12), (3, 13), (0, 16)]),
+        (34, [(4, 13), (3, 14)]),
+        (38, [(4, 15), (3, 16)]),
+        (40, [(4, 16)]),
+        (42, [(VARIABLE, 2)]),  # of a fixed length none has so many
+    ):
+        layouts = [(one.pkw_words, one.pzd_words) for one in enquiry_layouts(net_count, False)]
+        assert layouts == meant, net_count
+
+
+def test_a_drive_of_variable_length_is_asked_for_every_number_of_process_data():
+    layouts = enquiry_layouts(12, True)
+    assert {one.pkw_words for one in layouts} == {VARIABLE}
+    words = [one.pzd_words for one in layouts]
+    assert words[:3] == [2, 4, 8] and sorted(words) == list(range(17))
+
+
+def test_a_drive_that_tells_nothing_is_of_no_family_that_is_known():
+    node = asked({})
+    assert node.family is families.GENERIC and not node.confirmed and node.off_time_ms is None
+    assert repr(node) == "<USS drive Layout(4, 2)>" and node.zsw == 0
+
+
+def test_the_family_is_told_by_the_parameters_that_only_it_has():
+    """Four words of parameters and so many process data; with how much time it trips."""
+    mm4 = {(2013, 0): 4, (2012, 0): 2, (2014, 0): 1500}
+    for values, net_count, family, off_time_ms in (
+        (mm4 | {(2009, 0): 0}, 12, families.MM4, 1500),
+        (mm4 | {(2009, 0): 1, (2012, 0): 6}, 20, families.MM440, 1500),
+        (mm4 | {(2023, 0): 1}, 12, families.V20, 1500),
+        (mm4, 12, families.G110, 1500),
+        (mm4 | {(2012, 0): 14}, 36, families.GENERIC, 1500),
+        ({(2023, 0): 4, (2022, 0): 2, (2040, 0): 100}, 12, families.G120, 100),
+        ({(93, 0): 2}, 10, families.MM3, 2000),
+        ({(93, 0): 0}, 10, families.MM3, 0),
+    ):
+        node = asked(values, net_count)
+        assert node.family is family and node.confirmed, (values, node)
+        assert node.off_time_ms == off_time_ms and node.layout.net_count == net_count, node

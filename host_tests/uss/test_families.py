@@ -107,6 +107,7 @@ def test_baud_codes_are_those_of_the_manuals():
         assert max(codes) == last and codes[last] == fastest, family.name
         assert sorted(codes) == list(range(first, last + 1)), family.name
         assert family.baud == delivered and delivered in codes.values(), family.name
+    assert GENERIC.baud == 9600 and not GENERIC.baud_codes
 
 
 def test_every_code_is_a_rate_of_the_line_and_back():
@@ -255,6 +256,9 @@ def test_the_rows_of_a_micromaster_4():
     assert by_command_set == [700, 1000, 719, 840, 1070, 2200]
     by_drive_set = [row[0] for row in MM4.survey if row[1] == rows.BY_DRIVE_SET]
     assert by_drive_set == [2000, 1080, 1082]
+    assert [row[0] for row in MM4.survey if row[1] > 0] == [51, 2019]
+    active, sent = MM4.survey[rows.DRIVE_SET], MM4.survey[rows.ACTUAL_SENT]
+    assert active[:2] == (51, 1) and sent[:2] == (2019, 1)
     missing = [MM4.survey[row][3] for row in (rows.ON_SOURCE, rows.MAIN_SOURCE)]
     assert missing == [rows.source(2036), rows.source(2018, 1)]
 
@@ -308,6 +312,7 @@ def test_the_set_that_is_active_is_the_index_of_what_belongs_to_it():
 
 def test_what_a_drive_tells_is_judged_by_the_rules_of_its_family():
     """P0719 goes before P0700 and P1000, each digit before one of them."""
+    assert rows.RIGHT not in range(rows.COUNT_OF_ROWS) and rows.UNKNOWN < 0
     values = [rows.UNKNOWN] * rows.COUNT_OF_ROWS
     for family in FAMILIES:
         assert list(rows.wrong_rows(family.meaning, values)) == [rows.RIGHT] * 4, "nobody knows"
@@ -323,6 +328,10 @@ def test_what_a_drive_tells_is_judged_by_the_rules_of_its_family():
         ({rows.ON_SOURCE: 2032 << 16}, {rows.COMMAND: rows.ON_SOURCE}),
         ({rows.COMMAND_SOURCE: 2, rows.ON_SOURCE: 1}, {rows.COMMAND: rows.COMMAND_SOURCE}),
         ({rows.SELECTION: 50, rows.COMMAND_SOURCE: 2, rows.ON_SOURCE: 1}, {}),
+        (
+            {rows.SELECTION: rows.UNKNOWN, rows.COMMAND_SOURCE: 2, rows.SETPOINT_SOURCE: 2},
+            {rows.COMMAND: rows.COMMAND_SOURCE, rows.SETPOINT: rows.SETPOINT_SOURCE},
+        ),
         ({rows.SELECTION: 40}, {rows.COMMAND: rows.SELECTION}),
         ({rows.SELECTION: 4}, {rows.SETPOINT: rows.SELECTION}),
         ({rows.SELECTION: 5, rows.SETPOINT_SOURCE: 2, rows.MAIN_SOURCE: 1}, {}),

@@ -6,7 +6,7 @@ from uss import pkw, pzd
 from uss.finding.mirror import OutsideTelegram
 from uss.outside import NEW, PENDING, TIMED_OUT, Broadcast, Mirror, Special, stop_all
 from uss.receiver import SILENT
-from uss.telegram import BAD_BCC, BAD_LENGTH
+from uss.telegram import BAD_BCC, BAD_LENGTH, GOOD
 
 NET = b"\x12\x34\x56\x78\x9a\xbc\xde\xf0\x00\x00\x00\x00"
 TOGETHER = Broadcast((pzd.OFF1, 0x1000), {2: 0xFFFF}).request  # a setpoint for all
@@ -91,6 +91,41 @@ def test_a_mirror_telegram_is_repeated_as_often_as_any_exchange():
     bench.contact()
     bench.master.retries = 2
     assert len(through(bench, Mirror(9, NET))) == 3
+
+
+def test_a_mirror_telegram_that_is_over_may_be_aimed_at_another_node():
+    """It has zeros then, and everything else is as with a new one."""
+    bench = Bench(nodes(2))
+    bench.contact()
+    bench.master.retries = 2
+    mirror = Mirror(9, NET)
+    for node, net_count, times in ((9, 12, 3), (8, 10, 3), (2, 12, 1), (1, 4, 3)):
+        mirror.aim(node, net_count)
+        assert (mirror.state, mirror.silent, mirror.finding) == (NEW, 0, GOOD)
+        sent = framed(node | MIRROR, bytes(net_count))
+        fitting = [count for count in range(0, 42) if mirror.fits(count)]
+        assert fitting == [net_count] and mirror.may_reply_alike()
+        assert mirror.node == node and bytes(mirror.request[: mirror.size]) == sent
+        assert repr(mirror) == "<Mirror to ADR %02X>" % (node | MIRROR)
+        assert len(through(bench, mirror)) == times, node
+        assert (mirror.state == pkw.DONE) == (times == 1), node
+        assert mirror.finding == (GOOD if times == 1 else SILENT), node
+
+
+def test_a_mirror_telegram_that_comes_back_the_next_time_has_no_finding():
+    bench = Bench(nodes(2))
+    bench.contact()
+    node = bench.nodes[2]
+    spoilt = [framed(2 | MIRROR, b"\x55" + NET[1:])]
+    node.answer = lambda characters: (
+        spoilt.pop()
+        if characters[2] & MIRROR and spoilt
+        else node.__class__.answer(node, characters)
+    )
+    mirror = Mirror(2, NET)
+    for state, finding in ((TIMED_OUT, BAD_BCC), (pkw.DONE, GOOD)):
+        through(bench, mirror)
+        assert mirror.state == state and mirror.finding == finding
 
 
 def test_after_a_broadcast_the_drives_have_time_to_take_it():
@@ -309,6 +344,7 @@ def test_what_would_start_a_motor_or_is_no_telegram_is_refused():
     refused(Broadcast, (pzd.OFF1, 0), {2: 0x1FFFF})
     refused(Broadcast, (pzd.OFF1, 0), {3: 0xFFFF})  # beyond its words
     refused(Mirror, 32)
+    refused(Mirror, -1)
     refused(Special, 40, b"\x00")
     refused(Special, -1, b"\x00")
     refused(Mirror, 1, bytes(253))
@@ -323,5 +359,6 @@ def test_what_just_is_a_telegram_is_taken():
     assert Broadcast((pzd.ON, 0x1000), {2: 0xFFFF}).request[4] == 0x05
     assert Broadcast((pzd.OFF1,) * 16, {15: 0xFFFF}).request[3:5] == b"\x80\x01"
     for node in (0, 31):
+        assert Mirror(node).request[:16] == framed(MIRROR | node, bytes(12))
         assert Special(node, b"\x55").request == framed(0x80 | node, b"\x55")
     assert Special(None, b"\x55").request == framed(0xA0, b"\x55")
