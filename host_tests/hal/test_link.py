@@ -292,6 +292,28 @@ def test_a_burst_that_somebody_drained_does_not_date_the_next_one():
         assert 0 <= bench.link.received_at - burst.end_us <= 2
 
 
+def test_a_burst_that_somebody_drained_while_it_came_does_not_end_the_next_one():
+    bench = Bench()
+    bench.wire.talk(bench.neighbour, REQUEST, 2)
+    bench.clock.advance(1_100)
+    assert bench.link.receive(bytearray(260), 0) == COMING
+    bench.clock.advance(200)
+    bench.uart.readinto(bytearray(32))
+    assert bench.link.receive(bytearray(260), 0) == 0
+    bench.clock.advance(200_000)
+    bench.wire.talk(bench.neighbour, REQUEST, len(REQUEST))
+    bench.clock.advance(5_000)
+    for _ in range(2):
+        assert bench.link.receive(bytearray(260), 0) == COMING
+
+
+def test_how_late_a_link_may_notice_a_burst_is_said():
+    """Without interrupts as late as somebody may look; else 32 bits after it, at any rate."""
+    for baud, late_us in ((9600, 3_333), (19200, 1_666), (187500, 170)):
+        assert Bench(baud).link.resolution_us == late_us
+        assert Bench(baud, interrupts=False).link.resolution_us == 5_000
+
+
 def test_the_longest_telegram_is_delivered_whole():
     bench = Bench()
     bench.wire.talk(bench.neighbour, bytes(256), 256)
