@@ -118,6 +118,7 @@ def test_other_pzd_words_than_the_list_says_are_found():
     for layout, words in (
         (STANDARD, (4, 4)), (STANDARD, (127, 4)), (STANDARD, (0, 4)), (STANDARD, (3, 4)),
         (STANDARD, (4, 3)), (Layout(3, 2), (127, 3)), (Layout(0, 2), (0, 4)),
+        (Layout(4, 4), (4, 2)),
     ):  # fmt: skip
         line = Line({2: words}, layout=layout, runs=False)
         line.found_after(2, 30_000)
