@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: MIT
 """What a drive is: by the parameters that it has, and by what they tell."""
 
+from round_bench import framed
 from uss import families
-from uss.finding.enquiry import SILENCES, TRIES, Enquirer, Node, enquiry
+from uss.finding.enquiry import NO_CHANNEL, Enquirer, Node, Question, enquiry
 from uss.finding.enquiry import layouts as enquiry_layouts
 from uss.layout import VARIABLE, Layout
 from uss.outside import DONE, TIMED_OUT
-from uss.receiver import SILENT
-from uss.telegram import GOOD
+from uss.receiver import CUT_OFF, SILENT
+from uss.telegram import BAD_BCC, GOOD
 
 ADDRESS = 7
 FOUR_AND_TWO = Layout(4, 2)
@@ -65,7 +66,7 @@ def ask(enquirer, state, finding):
 
 
 def test_a_silence_is_no_answer_before_the_second_one_and_a_late_one_before_the_sixth():
-    for finding, times in ((SILENT, SILENCES), (GOOD, TRIES)):
+    for finding, times in ((SILENT, 2), (GOOD, 6), (BAD_BCC, 6), (CUT_OFF, 6)):
         enquirer = Enquirer(ADDRESS, FOUR_AND_TWO.net_count, False)
         before = None
         for _ in range(4):
@@ -129,3 +130,47 @@ def test_the_family_is_told_by_the_parameters_that_only_it_has():
         node = asked(values, net_count)
         assert node.family is family and node.confirmed, (values, node)
         assert node.off_time_ms == off_time_ms and node.layout.net_count == net_count, node
+
+
+def test_a_drive_without_a_parameter_channel_has_process_data_alone():
+    node = Node(ADDRESS, FOUR_AND_TWO.net_count, False)
+    questions = enquiry(node)
+    layout, number, _ = next(questions)
+    asked_in = [layout]
+    while number is not None:
+        layout, number, _ = questions.send(NO_CHANNEL)
+        if layout is not asked_in[-1]:
+            asked_in.append(layout)
+    assert [repr(one) for one in asked_in] == ["Layout(4, 2)", "Layout(3, 3)", "Layout(0, 6)"]
+    assert node.layout is layout and not node.confirmed and node.family is families.GENERIC
+
+
+def test_whoever_wants_the_layout_alone_asks_for_nothing_else():
+    enquirer = Enquirer(ADDRESS, 16, False, False)
+    for number, value in ((2013, 4), (2012, 4)):
+        question = enquirer.question()
+        assert (question.job.number, question.job.index) == (number, 0)
+        net = bytes((0x10, number - 2000, 0x80, 0, 0, 0, 0, value)) + b"\xfb\x31" + bytes(6)
+        question.take(bytearray(framed(ADDRESS, net)), len(net) + 4, 0)
+        is_over = enquirer.take(question)
+        assert question.state == DONE and is_over == (number == 2012)
+    node = enquirer.node
+    assert repr(node.layout) == "Layout(4, 4)" and node.confirmed and node.zsw == 0xFB31
+    assert node.family is families.GENERIC and node.off_time_ms is None
+
+
+def test_the_answer_to_a_question_says_its_value_and_the_status():
+    for layout, number, net, value in (
+        (FOUR_AND_TWO, 2013, b"\x10\x0d\x80\x00\x00\x00\x00\x03\xfb\x31\x00\x00", 3),
+        (Layout(VARIABLE, 2), 2013, b"\x10\x0d\x80\x00\x00\x03\xfb\x31\x00\x00", 3),
+        (Layout(127, 2), 2013, b"\x20\x0d\x80\x00\x00\x01\x00\x03\xfb\x31\x00\x00", 65539),
+        (Layout(0, 2), None, b"\xfb\x31\x00\x00", None),
+    ):
+        question = Question(ADDRESS, layout, number)
+        assert question.fits(len(net)) and not question.fits(len(net) - 1)
+        assert not question.may_reply_alike() and question.zsw == 0
+        question.miss(SILENT, 0, 0, 0)
+        question.take(bytearray(framed(ADDRESS, net)), len(net) + 4, 0)
+        assert question.state == DONE and question.finding == GOOD, net
+        assert question.value() == value and question.zsw == 0xFB31, net
+    assert Question(ADDRESS, Layout(4, 0), 2013).may_reply_alike()

@@ -6,7 +6,7 @@ from fleet_bench import Fleet
 from round_bench import MASK, MIRROR, READY, RUNNING, Bench, Node, framed
 from uss.errors import UssError
 from uss.finding import scan as scanning
-from uss.finding.scan import EVERY_NET_COUNT, NET_COUNTS, RATES, TRIES, RateScan, Scan
+from uss.finding.scan import EVERY_NET_COUNT, NET_COUNTS, RATES, RateScan, Scan
 from uss.master import OFF
 from uss.outside import DONE, Mirror
 from uss.timing import BAUD_RATES
@@ -52,9 +52,9 @@ def only_harmless(bench):
 
 
 def test_everybody_is_found_with_the_length_that_he_takes():
-    layouts = {0: (4, 2), 3: (3, 2), 7: (0, 2), 12: (4, 4), 31: (4, 8)}
+    layouts = {0: (4, 2), 3: (3, 2), 7: (0, 2), 12: (4, 4), 20: (0, 4), 21: (3, 4), 31: (4, 8)}
     bench, scan = found_on([Node(address, *layout) for address, layout in layouts.items()])
-    assert scan.found == {0: 12, 3: 10, 7: 4, 12: 16, 31: 24}
+    assert scan.found == {0: 12, 3: 10, 7: 4, 12: 16, 20: 8, 21: 14, 31: 24}
     assert not scan.variable and not scan.unclear
     assert only_harmless(bench)
 
@@ -129,7 +129,7 @@ def test_two_nodes_of_one_address_are_told_from_none():
     bench.run_until(lambda: scan.step(bench.now), 60_000_000)
     assert scan.found == {} and set(scan.unclear) == {3}
     asked = [telegram.address for telegram in bench.sent].count(MIRROR | 3)
-    assert asked == TRIES + len(NET_COUNTS) - 1, asked  # silent but at its own length
+    assert asked == 3 + len(NET_COUNTS) - 1, asked  # silent but at its own length
 
 
 def test_a_reply_that_was_spoilt_once_is_asked_for_again():
@@ -366,7 +366,7 @@ def test_a_scan_that_is_to_look_no_further_asks_what_it_has_found_not_for_long()
     bench.run_until(lambda: scan.step(bench.now))
     questions = [each for each in bench.sent if each.address == 3]
     # And the one that had been posted, and OFF1 in its usual form.
-    assert len(questions) == 1 + scanning.LAST_QUESTIONS + 1, len(questions)
+    assert len(questions) == 1 + 20 + 1, len(questions)
     assert not questions[-1].task() and questions[-1].stw() == 0x047E
     # The questions keep it from tripping: mirror telegrams are not needed for that.
     assert bench.addresses().count(MIRROR | 3) == 2
