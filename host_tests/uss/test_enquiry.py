@@ -29,6 +29,8 @@ def asked(values, net_count=FOUR_AND_TWO.net_count):
         while True:
             _, number, index = questions.send(value)
             assert index in (0, 1), "no drive has a third link"
+            has_it = not index or (number, 0) in values
+            assert has_it, "who lacks a parameter is asked for a second one of it: %d" % number
             value = values.get((number, index))
     except StopIteration:
         return node
@@ -122,6 +124,8 @@ def test_the_family_is_told_by_the_parameters_that_only_it_has():
         (mm4 | {(2009, 0): 1, (2012, 0): 6}, 20, families.MM440, 1500),
         (mm4 | {(2023, 0): 1}, 12, families.V20, 1500),
         (mm4, 12, families.G110, 1500),
+        (mm4 | {(2013, 0): 3, (2012, 0): 3, (2009, 0): 0}, 12, families.MM4, 1500),
+        (MM4 | {(2013, 0): 3}, 12, families.on_bop(families.MM4), 700),
         (mm4 | {(2012, 0): 14}, 36, families.GENERIC, 1500),
         ({(2023, 0): 4, (2022, 0): 2, (2040, 0): 100}, 12, families.G120, 100),
         ({(93, 0): 2}, 10, families.MM3, 2000),
@@ -130,6 +134,9 @@ def test_the_family_is_told_by_the_parameters_that_only_it_has():
         node = asked(values, net_count)
         assert node.family is family and node.confirmed, (values, node)
         assert node.off_time_ms == off_time_ms and node.layout.net_count == net_count, node
+        if node.family is families.MM4:
+            told = node.layout.pkw_words, node.layout.pzd_words
+            assert told == (values[2013, 0], values[2012, 0]), node
 
 
 def test_a_drive_without_a_parameter_channel_has_process_data_alone():
@@ -174,3 +181,15 @@ def test_the_answer_to_a_question_says_its_value_and_the_status():
         assert question.state == DONE and question.finding == GOOD, net
         assert question.value() == value and question.zsw == 0xFB31, net
     assert Question(ADDRESS, Layout(4, 0), 2013).may_reply_alike()
+
+
+def test_where_a_status_word_stands_there_is_no_parameter_channel():
+    """An AK above 8, or bit 11 of ZSW."""
+    for first, value in (
+        (0x9000, NO_CHANNEL), (0xF331, NO_CHANNEL), (0x0B31, NO_CHANNEL), (0xFB31, NO_CHANNEL),
+        (0x8000, None), (0x8700, None), (0x0000, None),
+    ):  # fmt: skip
+        question = Question(ADDRESS, FOUR_AND_TWO, 2013)
+        net = bytes((first >> 8, first & 0xFF)) + bytes(10)
+        question.take(bytearray(framed(ADDRESS, net)), 16, 0)
+        assert question.state == TIMED_OUT and question.value() == value, hex(first)
