@@ -415,6 +415,19 @@ def test_the_length_that_the_list_asks_in_is_left_out():
         assert [asked[at] in others for at in range(turn)] == [False] * (turn - 1) + [True]
 
 
+def test_where_eight_are_silent_other_process_data_are_tried_in_every_ninth_turn_of_a_drive():
+    """With fewer, in each turn; the next length each time."""
+    for silent, lengths in (
+        (7, [10, 4, 6, 10, 4, 8, 10, 4, 14]),
+        (8, [10, 4] * 9 + [6]),
+    ):
+        bench = Search({address: (3, 2) for address in range(2, 2 + silent)})
+        for address in range(2, 2 + silent):
+            bench.nodes[address].plugged = False
+        bench.run(60_000_000)
+        assert bench.mirrors(2)[: len(lengths)] == lengths, (silent, bench.mirrors(2))
+
+
 def test_one_that_was_running_when_it_was_lost_is_told_to_stop_before_it_is_looked_for():
     """And then in the layout in which it hears that."""
     bench = Search(present=(1, 2))
@@ -473,7 +486,7 @@ def test_one_that_falls_silent_again_is_looked_for_again():
 
 def test_one_that_was_found_is_asked_by_the_list_before_it_is_looked_for_again():
     """In its new layout, and again if those telegrams are lost, as often as any other drive."""
-    for lost in range(finding.SILENT_MIN):
+    for lost in range(3):
         bench = Search({2: (3, 2), 3: (0, 2), 4: (127, 2)})
         bench.nodes[3].plugged = bench.nodes[4].plugged = False
         bench.run_until(lambda: bench.found)
@@ -523,7 +536,7 @@ def test_one_that_no_telegram_reaches_whole_is_left_for_this_time():
     bench.nodes[2].spoil = 1_000
     bench.until_found(3)
     asked = bench.mirrors(2)
-    assert asked[:4] == [10] * finding.TRIES + [4], asked
+    assert asked[:4] == [10] * 3 + [4], asked
     bench.nodes[2].spoil = 0
     bench.until_found(2)
 
@@ -531,10 +544,10 @@ def test_one_that_no_telegram_reaches_whole_is_left_for_this_time():
 def test_each_length_that_a_drive_takes_is_tried_three_times():
     bench = Search({2: (127, 2)})
     bench.nodes[2].spoil = 1_000
-    bench.run_until(lambda: len(bench.mirrors(2)) > 2 * finding.TRIES, 20_000_000)
-    first, second = bench.mirrors(2)[: finding.TRIES], bench.mirrors(2)[finding.TRIES :]
-    assert len(set(first)) == 1 and len(set(second[: finding.TRIES])) == 1, bench.mirrors(2)
-    assert first[0] != second[0] != second[finding.TRIES], bench.mirrors(2)
+    bench.run_until(lambda: len(bench.mirrors(2)) > 2 * 3, 20_000_000)
+    first, second = bench.mirrors(2)[:3], bench.mirrors(2)[3:]
+    assert len(set(first)) == 1 and len(set(second[:3])) == 1, bench.mirrors(2)
+    assert first[0] != second[0] != second[3], bench.mirrors(2)
 
 
 def test_a_telegram_that_is_lost_makes_no_fixed_length_of_a_variable_one():
@@ -687,6 +700,7 @@ def test_a_telegram_that_is_never_through_does_not_hold_it_up():
     bench.master.turns.post = swallow
     bench.until_found(2, 20_000_000)
     assert len(lost) == 1 and bench.found
+    assert bench.now > 10_000_000, "it may only wait its turn"
 
 
 # --- the others ---------------------------------------------------------------------------------

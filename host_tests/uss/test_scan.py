@@ -102,6 +102,7 @@ def test_the_unusual_lengths_are_found_when_asked_for():
     scan = Scan(bench.master, MASK, (4, 9, 20, 21), EVERY_NET_COUNT)
     bench.run_until(lambda: scan.step(bench.now), 60_000_000)
     assert scan.found == {4: 14, 9: 32, 20: 6}
+    assert list(EVERY_NET_COUNT) == [2 * words for words in range(1, 21)]
 
 
 def test_whoever_takes_any_length_is_said_to():
@@ -351,8 +352,24 @@ def test_a_node_is_kept_from_tripping_and_one_that_never_trips_is_left_alone():
         fleet.run(2)
     log = fleet.wire.log.last(fleet.wire.log.count - since)
     asked = [characters[2] for _, mine, characters in log if mine]
-    assert set(asked) == {4} and 9 <= len(asked) <= 11, asked
+    assert set(asked) == {4} and 9 <= len(asked) <= 10, asked
     assert fleet.motors[4].state == "ready", fleet.motors[4].state
+
+
+def test_those_that_were_found_take_two_of_three_telegrams_at_the_most():
+    """However many they are: else the search would come to no end."""
+    bench = Bench([Node(address) for address in range(20)], listed=False)
+    scan = Scan(bench.master, MASK, range(24), (12, 10), enquire=False)
+    bench.run_until(lambda: scan.step(bench.now), 60_000_000)
+    known, rows = set(), [0]
+    for each in bench.sent:
+        telegram = each.address, len(each.characters)
+        if telegram in known:
+            rows[-1] += 1
+        else:
+            rows.append(0)
+        known.add(telegram)
+    assert max(rows) == 2 and rows.count(2) > 10, rows
 
 
 def test_a_scan_that_is_to_look_no_further_asks_what_it_has_found_not_for_long():
