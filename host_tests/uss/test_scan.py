@@ -356,6 +356,17 @@ def test_a_node_is_kept_from_tripping_and_one_that_never_trips_is_left_alone():
     assert fleet.motors[4].state == "ready", fleet.motors[4].state
 
 
+def test_a_node_without_process_data_is_kept_by_mirror_telegrams():
+    """The others hear OFF1, by which a V20 does not trip either."""
+    bench = Bench([Node(1), Node(5, 4, 0)], listed=False)
+    scan = Scan(bench.master, MASK, (1, 5), (12, 8))
+    bench.run_until(lambda: scan.step(bench.now), 60_000_000)
+    sent = len(bench.sent)
+    bench.loop = lambda: scan.keep(bench.now)
+    bench.run(500_000)
+    assert set(bench.addresses(sent)) == {1, 5 | MIRROR}
+
+
 def test_those_that_were_found_take_two_of_three_telegrams_at_the_most():
     """However many they are: else the search would come to no end."""
     bench = Bench([Node(address) for address in range(20)], listed=False)
@@ -451,6 +462,7 @@ def test_the_rate_is_found_and_who_is_there():
         scan = RateScan(lines.open, MASK, nothing_runs=True, addresses=range(12))
         lines.carry_out(scan)
         assert (scan.baud, scan.found) == (baud, {2: 12, 11: 10})
+        assert set(scan.nodes) == set(scan.will_trip) == {2, 11}
         assert lines.opened == list(RATES[: RATES.index(baud) + 1])
         assert all(only_harmless(bench) for bench in lines.benches)
 
