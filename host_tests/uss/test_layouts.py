@@ -439,6 +439,27 @@ def test_the_sizes_that_are_usual():
     assert Layout(VARIABLE, 2).net_count == 10, "three words when nothing is asked"
 
 
+def test_a_layout_is_four_and_two_words_unless_somebody_says_so():
+    """With a variable length a request has room for a text of 16 characters."""
+    assert Layout().is_like(STANDARD) and repr(Layout()) == "Layout(4, 2)"
+    assert Layout(VARIABLE, 2).longest == 10 and Layout(VARIABLE, 2).net_max == 24
+    assert repr(Layout(VARIABLE, 4, short=True)) == "Layout(127, 4, short=True)"
+
+
+def test_which_replies_fit_a_layout():
+    for layout, fitting in (
+        (STANDARD, [12]), (Layout(3, 2), [10]), (Layout(0, 2), [4]), (Layout(4, 4), [16]),
+        (Layout(VARIABLE, 2), [10, 12, 14, 16, 18]), (Layout(VARIABLE, 5), [16, 18]),
+    ):  # fmt: skip
+        assert [count for count in range(20) if layout.fits(count)] == fitting, layout
+
+
+def test_the_enable_array_of_a_broadcast_needs_four_parameter_words():
+    taking = [layout for layout in layouts() if layout.takes_broadcast()]
+    expected = [(4, pzd_words) for pzd_words in range(1, 17)]
+    assert [(layout.pkw_words, layout.pzd_words) for layout in taking] == expected
+
+
 def test_a_layout_that_is_none_is_refused():
     for pkw_words, pzd_words in (
         (0, 0), (1, 2), (2, 2), (5, 2), (126, 2), (128, 2), (-1, 2), (4, 17), (4, -1), (None, 2),
