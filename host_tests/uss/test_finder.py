@@ -566,6 +566,14 @@ def test_a_telegram_that_is_lost_makes_no_fixed_length_of_a_variable_one():
     assert lost and bench.drives[2].layout.variable
 
 
+def test_a_drive_is_asked_for_its_layout_and_for_nothing_else():
+    """P2013 and P2012; not what it is, nor when it trips."""
+    bench = Search({2: (127, 2)})
+    bench.until_found(2)
+    asked = {each.characters[3:7] for each in bench.sent if each.address == 2}
+    assert asked == {b"\x10\x0d\x80\x00", b"\x10\x0c\x80\x00", bytes(4)}, asked
+
+
 def test_one_that_takes_any_length_and_tells_nothing_gets_the_pzd_words_of_the_list():
     bench = Search({2: (127, 4)})
     bench.nodes[2].tells = False
@@ -611,6 +619,23 @@ def test_a_drive_that_is_changed_or_removed_meanwhile():
             bench.run_until(is_as_it_should_be, 12_000_000)
             bench.run(500_000)
             assert is_as_it_should_be() and bench.drives[3].layout.variable
+
+
+def test_where_many_are_removed_the_others_are_still_looked_for():
+    """It goes through the list one drive in a step, and that may become shorter meanwhile."""
+    for steps in (4, 5, 6, 7, 8):
+        bench = Search({address: (3, 2) for address in range(2, 9)})
+        for address in range(2, 9):
+            bench.nodes[address].plugged = False
+        bench.run(1_000_000)
+        bench.finder = Finder(bench.master, MASK)
+        for _ in range(steps):
+            bench.step()
+        for address in range(4, 9):
+            bench.master.turns.remove(bench.drives[address])
+        bench.nodes[2].plugged = bench.nodes[3].plugged = True
+        bench.until_found(2)
+        bench.until_found(3)
 
 
 def test_one_that_answers_while_it_gets_another_layout_keeps_its_own():
