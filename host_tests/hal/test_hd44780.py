@@ -4,11 +4,11 @@
 import random
 
 from boards.sim.chip.machine import heap_lock, heap_unlock
-from hal.display.character_display import REFRESH_US
 from hal.display.hd44780 import Hd44780
 from lcd_bench import HOURGLASS, LOOP_US, READY, RUNNING, UP_AND_DOWN, LcdBench
 
-REFRESH_MS = REFRESH_US // 1000
+REFRESH_MS = 8_000  # so often all is written anew
+REFRESH_US = REFRESH_MS * 1000
 HEALED_MS = REFRESH_MS + 100  # the longest time that something wrong is seen
 START_MS = 100  # until the first picture is seen
 
