@@ -73,6 +73,25 @@ def test_what_is_there_already_is_not_written_again():
     assert flash.steps == 0
 
 
+def test_larger_files_stand_beside_it():
+    """In its folder; a file has its name once it is whole."""
+    for folder, listed in (("", "."), ("sets/", "sets/")):
+        flash = flash_with()
+        asked = []
+        flash.listdir = lambda path: asked.append(path) or ["b.set", "a.txt", "a.set"]
+        store = FileStore(folder + "s", flash.open, flash)
+        file = store.begin()
+        file.write(NEW)
+        assert folder + "a.set" not in flash.files
+        store.finish(file, "a.set")
+        assert flash.files == {folder + "a.set": NEW}
+        with store.open("a.set") as file:
+            assert file.read() == NEW
+        assert store.names(".set") == ["a.set", "b.set"] and asked == [listed]
+        store.remove("a.set")
+        assert flash.files == {}
+
+
 # --- power cuts ---------------------------------------------------------------------------------
 
 
