@@ -20,10 +20,10 @@ MM4 = {
 }  # fmt: skip
 
 
-def asked(values, net_count=FOUR_AND_TWO.net_count):
+def asked(values, net_count=FOUR_AND_TWO.net_count, everything=True):
     """What is known of a node with so many net characters whose parameters have these values."""
     node = Node(ADDRESS, net_count, False)
-    questions = enquiry(node)
+    questions = enquiry(node, everything)
     value = None
     try:
         while True:
@@ -164,6 +164,8 @@ def test_whoever_wants_the_layout_alone_asks_for_nothing_else():
     node = enquirer.node
     assert repr(node.layout) == "Layout(4, 4)" and node.confirmed and node.zsw == 0xFB31
     assert node.family is families.GENERIC and node.off_time_ms is None
+    node = asked(MM4 | {(2013, 0): 3, (2012, 0): 3, (2013, 1): 3}, everything=False)
+    assert repr(node.layout) == "Layout(3, 3)" and node.confirmed and node.off_time_ms is None
 
 
 def test_the_answer_to_a_question_says_its_value_and_the_status():

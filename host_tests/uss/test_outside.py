@@ -99,6 +99,7 @@ def test_a_mirror_telegram_that_is_over_may_be_aimed_at_another_node():
     bench.contact()
     bench.master.retries = 2
     mirror = Mirror(9, NET)
+    assert (mirror.state, mirror.silent) == (NEW, 0)
     for node, net_count, times in ((9, 12, 3), (8, 10, 3), (2, 12, 1), (1, 4, 3)):
         mirror.aim(node, net_count)
         assert (mirror.state, mirror.silent, mirror.finding) == (NEW, 0, GOOD)
