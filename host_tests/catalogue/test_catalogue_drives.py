@@ -92,6 +92,18 @@ def test_what_asks_first_agrees_with_the_families():
         assert told == {number: why for number, why in ask_first.items() if number in known}
 
 
+def test_which_double_words_are_integers_agrees_with_the_families():
+    """What a family takes for a floating-point number is read as one by the library."""
+    for family in catalogue.FAMILIES:
+        data = getattr(families, family.upper())
+        for row in catalogue.rows(family):
+            told = named(row)
+            if told.type in ("U32", "I32", "BICO", "Float"):
+                number = catalogue.number(row)
+                is_float = families.is_float(data, number)
+                assert is_float == (told.type == "Float"), (family, number)
+
+
 def test_every_parameter_of_the_bus_is_in_the_catalogue():
     for family in catalogue.FAMILIES:
         data = getattr(families, family.upper())

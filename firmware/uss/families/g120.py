@@ -4,7 +4,7 @@
 from uss import pzd
 from uss.layout import VARIABLE, Layout
 from uss.families.generic import CUTS_OFF, GENERIC, RESCALES, codes
-from uss.families.mm4 import MM420, MM440
+from uss.families.mm4 import MM440
 from uss.families.rows import COUNT_OF_ROWS, RPM, WORD
 
 
@@ -50,7 +50,10 @@ class G120(GENERIC):
     takes_no_control = False  # (?) while it runs it trips with F07220
     stw_bits = "STW_BITS_G120"
     zsw_bits = "ZSW_BITS_G120"
-    integer_doubles = MM420.integer_doubles  # (?)
+    integer_doubles = (
+        15, 18, 46, 722, 730, 731, 840, 844, 848, 852, 948, 949, 1070, 1110, 1230, 2029,
+        2051, 2103, 2106, 2124, 2200, 2253, 2264,
+    )  # fmt: skip
     ask_first = {  # (?) the selection
         10: CUTS_OFF,  # commissioning: the motor does not run
         15: CUTS_OFF,  # macro
