@@ -798,12 +798,8 @@ def test_a_value_reads_as_its_type_has_it_and_is_as_wide_as_the_drive_tells_it()
         shown = value.Form(row, width)
         assert shown.words(high, low) == read, (kind, form, shown.words(high, low))
         assert shown.list == (form if form[:1] in (b"v", b"b") else b"")
-    for is_integer, width, words, read in (
-        (False, double, half, b"2.500"),
-        (True, double, (1, 0), b"65536"),
-        (True, word, (0, 5), b"5"),
-    ):
-        assert value.Form(None, width, is_integer).words(*words) == read
+    for width, words, read in ((double, half, b"2.500"), (word, (0, 5), b"5")):
+        assert value.Form(None, width).words(*words) == read, "nobody knows its type"
 
 
 def test_a_whole_number_is_typed_with_the_places_and_the_sign_of_its_type():

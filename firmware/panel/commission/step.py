@@ -60,9 +60,7 @@ class Step:
 
     def form(self, row, job):
         """The `value.Form` of what a reading brought. row: of the parameter."""
-        integers = self._control.survey.family.integer_doubles
-        is_integer = job.width == pkw.WORD or integers and self.number in integers
-        return value.Form(row, job.width, is_integer)
+        return value.Form(row, job.width)
 
     def rescales(self, bits, has):
         """Whether the setpoint means another speed once these bits are written."""

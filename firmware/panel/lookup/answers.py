@@ -199,9 +199,7 @@ class Answers(Sight):
             return
         self.high, self.low = job.high, job.low
         if self.form is None or self.form.width != job.width:
-            integers = self._control.survey.family.integer_doubles
-            is_integer = job.width == pkw.WORD or integers and self.number in integers
-            self.form = value.Form(self.row, job.width, is_integer)
+            self.form = value.Form(self.row, job.width)
             self._editing = None  # digits of another form would mean something else
         self._name_value()
 

@@ -2,7 +2,7 @@
 """How the value of a parameter reads, and how it is typed: word, double word, with a sign,
 floating point, hexadecimal, a connector 52:3.
 
-    form = Form(row, pkw.DOUBLE, is_integer)    # row of the catalogue, or None
+    form = Form(row, pkw.DOUBLE)                # row of the catalogue, or None
     form.words(high, low)                       # b"10.00"
     form.typed(high, low)                       # bytearray(b" 0010.00"), digit by digit
     form.bits(typed)                            # what the drive is sent; ValueError: beyond it
@@ -31,7 +31,7 @@ class Form:
     unit: behind the value. lowest, highest: as in the catalogue, b"" if unknown.
     """
 
-    def __init__(self, row, width, is_integer=False, is_hex=False):
+    def __init__(self, row, width, is_hex=False):
         self.width = width
         self.unit = self.lowest = self.highest = self.list = b""
         kind, form = b"", b""
@@ -40,7 +40,7 @@ class Form:
             self.lowest, self.highest = row[catalogue.LOWEST], row[catalogue.HIGHEST]
         if self.unit[:1].isdigit():
             self.unit = b" " + self.unit  # 1395 1/min
-        kind = _KINDS.get(kind.decode(), UNSIGNED) if kind else UNSIGNED if is_integer else FLOAT
+        kind = _KINDS.get(kind.decode(), UNSIGNED) if kind else FLOAT
         if width == pkw.WORD and kind != SIGNED:
             kind = UNSIGNED
         if form[:1] in (b"v", b"b"):

@@ -50,10 +50,7 @@ class G120(GENERIC):
     takes_no_control = False  # (?) while it runs it trips with F07220
     stw_bits = "STW_BITS_G120"
     zsw_bits = "ZSW_BITS_G120"
-    integer_doubles = (
-        15, 18, 46, 722, 730, 731, 840, 844, 848, 852, 948, 949, 1070, 1110, 1230, 2029,
-        2051, 2103, 2106, 2124, 2200, 2253, 2264,
-    )  # fmt: skip
+    integer_doubles = "G120"
     ask_first = {  # (?) the selection
         10: CUTS_OFF,  # commissioning: the motor does not run
         15: CUTS_OFF,  # macro

@@ -95,8 +95,8 @@ class GENERIC:
     stw2_bits = ()
     zsw2_bits = ()
 
-    # 32-bit parameters that are integers, in a family whose others are floating point. None: not
-    # known of any.
+    # 32-bit parameters that are integers, in a family whose others are floating point: their
+    # numbers, or the name of one of `integers.TABLES`. None: not known of any.
     integer_doubles = None
 
     # Parameters that must not be written without asking, each with CUTS_OFF or RESCALES; and those

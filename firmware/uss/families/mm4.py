@@ -86,14 +86,7 @@ class MM420(GENERIC):
     zsw_bits = "ZSW_BITS"
     stw2_bits = "STW2_BITS"
     zsw2_bits = "ZSW2_BITS"
-    integer_doubles = (  # connectors, and serial numbers, voltages, fault values; some of a V20
-        95, 200, 204, 208, 731, 732, 733, 771, 800, 801, 810, 811, 820, 821, 840, 842, 844,
-        845, 848, 849, 852, 949, 1020, 1021, 1022, 1023, 1026, 1028, 1035, 1036, 1041,
-        1043, 1044, 1055, 1056, 1070, 1071, 1074, 1075, 1076, 1110, 1113, 1124, 1140, 1141,
-        1142, 1175, 1230, 1330, 1501, 1503, 1511, 2016, 2019, 2051, 2103, 2104, 2106, 2151,
-        2152, 2200, 2253, 2254, 2264, 2810, 2812, 2814, 2816, 2818, 2820, 2828, 2830, 2849,
-        2869, 3351, 3852,
-    )  # fmt: skip
+    integer_doubles = "MM4"
     ask_first = {
         3: CUTS_OFF,  # access level
         10: CUTS_OFF,  # commissioning: the motor does not run

@@ -60,4 +60,9 @@ def value(job, kind, is_fine=False):
 
 def is_float(family, number):
     """Whether a 32-bit value of this parameter is floating point, as far as anybody knows."""
-    return family.integer_doubles is not None and number not in family.integer_doubles
+    integers = family.integer_doubles
+    if isinstance(integers, str):
+        from uss.families.integers import TABLES  # here, because few programs need it
+
+        integers = TABLES[integers]
+    return integers is not None and number not in integers

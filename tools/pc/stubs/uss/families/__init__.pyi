@@ -51,7 +51,7 @@ class GENERIC:
     zsw_bits: Any
     stw2_bits: Any
     zsw2_bits: Any
-    integer_doubles: Container[int] | None
+    integer_doubles: Container[int] | str | None
     ask_first: dict[int, str]
     permanent: Sequence[int]
 
