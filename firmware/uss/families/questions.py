@@ -64,5 +64,5 @@ def is_float(family, number):
     if isinstance(integers, str):
         from uss.families.integers import TABLES  # here, because few programs need it
 
-        integers = TABLES[integers]
+        return not sum([bound <= number for bound in TABLES[integers]]) & 1
     return integers is not None and number not in integers
