@@ -2,8 +2,24 @@
 """The blocks that make and read telegrams, held against the telegrams that the source prints."""
 
 from uss.br import codes
-from uss.br.blocks import Block, RxCreatePZD, RxDecompose, TxCompose, TxCreatePZD
-from uss.br.structures import BUFFER, STATUS_WORD, DriveData, RxPZD, Telegram, TxPZD
+from uss.br.blocks import (
+    Block,
+    RxCreatePZD,
+    RxDecompose,
+    TxCompose,
+    TxCreatePZD,
+    check_frequency,
+)
+from uss.br.structures import (
+    BUFFER,
+    RESTART,
+    STATUS_WORD,
+    DriveData,
+    DriveSequence,
+    RxPZD,
+    Telegram,
+    TxPZD,
+)
 
 
 class Bench:
@@ -72,6 +88,26 @@ def test_a_telegram_is_at_first_that_of_a_drive_of_the_source_and_empty():
     assert not any([getattr(data.StatusWord, name) for name in STATUS_WORD])
 
 
+def test_a_sequence_has_255_entries_and_is_at_first_empty():
+    """Place 0, which nobody uses, besides."""
+    sequence = DriveSequence()
+    assert sequence.ControllSequence == [255] * 256 and RESTART == 255 and sequence.ADDR == 0
+    assert BUFFER == 256  # the longest telegram
+
+
+def test_a_name_of_a_code_stands_for_the_number_of_the_source():
+    for name, number in (
+        ("NO_ERROR", 0), ("CONTROL_WORD", 100), ("REFERENCE", 101), ("FREQUENCY", 102),
+        ("PERCENT", 103), ("STX_SENT", 200), ("PKW_LENGTH", 201), ("PZD_LENGTH", 202),
+        ("LGE_SENT", 203), ("ADDRESS", 204), ("PKW_WORD", 206), ("PZD_WORD", 209),
+        ("TOO_LONG", 211), ("STX_RECEIVED", 300), ("LGE_RECEIVED", 301), ("LGE_DIFFERS", 302),
+        ("ADDRESS_RECEIVED", 303), ("PKW_LENGTH_RECEIVED", 304), ("PZD_LENGTH_RECEIVED", 305),
+        ("BCC_RECEIVED", 308), ("ADDRESS_DIFFERS", 310), ("REFERENCE_RECEIVED", 400),
+        ("PZD_RECEIVED", 401), ("READ_FAILED", 507), ("NO_MESSAGE", 600),
+    ):  # fmt: skip
+        assert getattr(codes, name) == number, name
+
+
 def test_each_member_sets_its_bit():
     for members, word in (
         ("", 0x047E), ("Run", 0x047F), ("FaultAcknowledge", 0x04FE), ("JOGRight", 0x057E),
@@ -105,6 +141,8 @@ def test_wrong_frequencies():
         bench = Bench()
         bench.tx_pzd.Par.Freq, bench.tx_pzd.Par.RefFreq = freq, reference
         assert bench.carry_out(bench.create) == code, (freq, reference)
+        assert check_frequency(bench.tx_pzd.Par) == code
+    assert check_frequency(TxPZD().Par) == codes.NO_ERROR
 
 
 def test_what_cannot_be_composed():

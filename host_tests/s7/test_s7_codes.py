@@ -430,6 +430,27 @@ def test_every_code_is_provoked_or_cannot_occur():
         assert provoked != (code in NEVER), code
 
 
+def test_an_input_that_is_not_connected_is_0():
+    """DRIVE, PARAM, INDEX and VALUE, as they go out to the node 0 that is asked by that."""
+    for kind, wanted in (
+        (USS_RPM_W, [0x1000, 0, 0, 0]), (USS_RPM_D, [0x1000, 0, 0, 0]),
+        (USS_RPM_R, [0x1000, 0, 0, 0]), (USS_WPM_W, [0x2000, 0, 0, 0]),
+        (USS_WPM_D, [0x3000, 0, 0, 0]), (USS_WPM_R, [0x3000, 0, 0, 0]),
+    ):  # fmt: skip
+        plant = Plant(active=1)
+        plant.inputs["DRIVE"] = 0
+        block = kind(plant.port)
+        block()
+        plant.run(100, block)
+        assert not block.DONE and not plant.port.is_busy()
+        since = len(plant.line.requests)
+        block(XMT_REQ=True)
+        plant.run(200, block)
+        assert (block.DONE, block.ERROR, block.PKW_ERROR) == (True, 20, 0), kind.__name__
+        tasks = [words_of(request)[:-2] for request in plant.line.requests[since:]]
+        assert wanted in tasks and all([task in (wanted, [0] * 4) for task in tasks]), tasks
+
+
 # --- what is no value of its pin ----------------------------------------------------------------
 
 NO_INTEGERS = (None, "1", "x", b"1", 1.0, 2.5, float("nan"), [], {}, (1,), object())
