@@ -293,6 +293,7 @@ def test_a_drive_that_is_silent_is_not_started_then_or_later():
 def test_a_drive_with_a_fault_says_which_and_wants_it_acknowledged():
     bench = Bench()
     bench.bus.wait(0.5)
+    assert took_s(bench, getattr, bench.drive, "fault") == 0  # without one nothing is read
     bench.motor().fault(1)
     bench.bus.wait(0.2)
     assert bench.drive.fault == 1 and bench.drive.state == "fault"
@@ -367,6 +368,14 @@ def test_a_drive_that_would_run_on_if_the_program_died_is_not_started():
     bench.clock.advance(2_000_000)  # the program hangs, and the drive helps itself
     bench.bus.wait(1)
     assert bench.drive.fault in (70, 72)
+    bench.end()
+
+
+def test_a_program_that_says_nothing_of_it_wants_a_drive_that_would_not_run_on():
+    bench = Bench(parameters={2014: 0, 1120: 1.0}, unsupervised=True)
+    bench.bus.remove(bench.drive)
+    bench.bus.add(1, MM420)
+    assert "would run on if this program died" in refusal(NotStarted, bench.drive.run, 10.0)
     bench.end()
 
 
@@ -580,7 +589,11 @@ def test_another_master_on_the_line_is_left_alone():
         bench.at(0.05, talk)
 
     talk()
+    since_us = bench.clock.now_us
     assert refusal(NoContact, bench.drive.run, 10.0) == "another master is on the line"
+    waited_us = bench.clock.now_us - since_us
+    turns_us = 3 * bench.bus.engine.turns.longest_cycle_us()
+    assert 0 <= waited_us - 1_000_000 - turns_us < 2_000  # a second to listen, and three tries
     assert refusal(NoContact, bench.bus.mirror, 1) == "another master is on the line"
     assert bench.stws(1) == [] and bench.bus.is_line_in_use() and bench.bus.foreign > 5
     bench = Bench()
@@ -697,6 +710,7 @@ def test_without_contact_there_is_no_speed_to_tell():
 
 def test_the_first_question_waits_for_contact_and_settings():
     bench = Bench()
+    assert took_s(bench, bench.drive.do, pkw.read(700)) < 0.9  # as soon as it answers
     near(bench.drive.hertz, 0.0)
     assert bench.drive.contact
     bench.end()
@@ -1182,6 +1196,10 @@ def test_a_motor_that_may_run_keeps_its_address():
     bench.drive.run(10.0)
     text = refusal(UssError, bench.drive.write, 2011, 5, sure=True)
     assert text.startswith("drive 1 may be running") and bench.motor().read(2011) == 1
+    assert bench.drive.write(1120, 2.0) == 2.0  # what is no address goes to the drive
+    assert "not in this operating state" in refusal(
+        Refused, bench.drive.write, 2014, 5_000, sure=True
+    )
     bench.motor().unplug()
     bench.bus.wait(2)  # it is lost, and may run still
     assert refusal(UssError, bench.drive.write, 2011, 5, sure=True) == text
@@ -1258,6 +1276,14 @@ def test_a_drive_that_stands_in_the_list_twice_is_asked_twice_as_often():
     assert [drive.address for drive in bench.bus.engine.turns.list] == [1, 2, 1]
     bench.bus.wait(2)
     near(one.counters[0] / bench.bus.drives[1].counters[0], 2.0, 0.1)
+    bench.end()
+
+
+def test_a_parameter_of_one_of_many_drives_does_not_wait_for_rounds_of_the_list():
+    bench = Bench(tuple(range(1, 13)))
+    assert bench.bus.wait(3, lambda: all([drive.contact for drive in bench.bus.drives]))
+    bench.bus.wait(bench.bus.round_us() / 2_000_000)
+    assert took_s(bench, bench.drive.read, 700) < 0.1
     bench.end()
 
 
@@ -1342,6 +1368,13 @@ def test_a_family_has_its_layouts():
     assert "not 0...31" in refusal(ValueError, bench.bus.add, 32)
 
 
+def test_drives_are_added_in_any_order_of_their_addresses():
+    bench = Bench((), parameters={})
+    five, three, seven = [bench.bus.add(address, MM420) for address in (5, 3, 7)]
+    assert [drive.address for drive in bench.bus.drives] == [5, 3, 7]
+    assert [bench.bus.add(address) for address in (3, 7, 5)] == [three, seven, five]
+
+
 def test_what_is_no_drive_is_not_added():
     bench = Bench()
     add = bench.bus.add
@@ -1366,6 +1399,15 @@ def test_a_bus_takes_only_what_it_can_keep():
         bench.bus.retries = retries
         assert bench.bus.retries == retries
     bench.end()
+
+
+def test_a_wait_is_as_long_as_it_is_told_in_rests_of_a_tenth_of_a_millisecond():
+    stage = Stage(())
+    bus = Master(stage.board.make_link(19200))
+    for seconds, us in ((0, 100), (0.001, 1_000), (0.00101, 1_100)):
+        assert took_s(stage, bus.wait, seconds) == us / 1_000_000, seconds
+    assert took_s(stage, bus.rest) == 0.0001
+    bus.close()
 
 
 def test_a_link_has_one_master_at_a_time():
@@ -1627,3 +1669,6 @@ def test_each_trouble_has_an_exception_that_says_so():
             bench.drive.read(700)
         except NoContact as reason:
             assert reason.trouble == bench.drive.trouble == trouble
+        silent = bench.drive.silent
+        refusal(NoContact, bench.drive.read, 700)
+        assert bench.drive.silent == silent + 3, how.__name__  # three tries, whatever comes back

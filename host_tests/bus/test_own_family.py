@@ -4,17 +4,19 @@
 from boards.sim.drives import pump
 from bus_bench import Bench, refusal
 from tools.examples.own_family import TurboPump
+from tools.examples.simulation import Stage
 from uss import bits, families, pkw
-from uss.bus import NoContact, NotStarted, UssError
+from uss.bus import Master, NoContact, NotStarted, UssError
 from uss.drive import Drive
 from uss.families import G120, GENERIC, MM420
 from uss.layout import Layout
-from uss.master import Master
+from uss.master import Master as Engine
 from uss.s7 import USS_CTRL, USS_INIT, Port
 from uss.timing import Timing
 
 PUMP = {1: {"family": pump}}
 RAMPS = {1120: 1.0, 1121: 1.0, 2014: 0}
+ORDER = ([0x047E, 0], [0x047F, 0x2000])  # OFF1, then ON
 
 
 def bench(family=TurboPump, **options):
@@ -32,7 +34,7 @@ def without_control():
 
 def let_run(world):
     """Somebody else's order, by terminals: it is none of the bus's telegrams."""
-    for words in ([0x047E, 0], [0x047F, 0x2000]):
+    for words in ORDER:
         world.motor().process.accept(words)
 
 
@@ -116,7 +118,7 @@ def test_the_blocks_of_a_plc_run_it_as_well():
     clock = world.clock
 
     def open_bus(baud):
-        return Master(world.board.make_link(baud), Timing(baud), clock.ticks_mask)
+        return Engine(world.board.make_link(baud), Timing(baud), clock.ticks_mask)
 
     port = Port(open_bus, clock, types=(TurboPump,))
     init, motor = USS_INIT(port), USS_CTRL(port)
@@ -199,6 +201,18 @@ def test_a_motor_that_runs_by_its_terminals_is_left_alone_and_goes_on():
     assert drive.state == "no contact, may run" and world.bus.drives == [other]
     world.end()
     assert world.motor().state == "running"
+
+
+def test_so_it_is_where_the_bus_has_control_of_nobody():
+    world = Stage((1,), kinds=PUMP, parameters=RAMPS)
+    bus = Master(world.board.make_link(19200))
+    drive = bus.add(1, TurboPump, control=False)
+    assert drive.read(18) == 0 and not drive.left_alone
+    for words in ORDER:
+        world.drives[1].process.accept(words)
+    bus.wait(0.1)
+    assert drive.left_alone and bus.drives == [] and world.drives[1].state == "running"
+    bus.close()
 
 
 def test_a_task_that_waits_when_the_motor_starts_to_run_ends_with_the_reason():
