@@ -11,6 +11,7 @@ from uss.br.blocks import (
     check_frequency,
 )
 from uss.br.structures import (
+    ADDRESSES,
     BUFFER,
     RESTART,
     STATUS_WORD,
@@ -92,7 +93,7 @@ def test_a_sequence_has_255_entries_and_is_at_first_empty():
     """Place 0, which nobody uses, besides."""
     sequence = DriveSequence()
     assert sequence.ControllSequence == [255] * 256 and RESTART == 255 and sequence.ADDR == 0
-    assert BUFFER == 256  # the longest telegram
+    assert BUFFER == 256 and ADDRESSES == 32  # the longest telegram, and 0...31
 
 
 def test_a_name_of_a_code_stands_for_the_number_of_the_source():
