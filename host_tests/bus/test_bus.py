@@ -1360,6 +1360,19 @@ def test_a_round_may_have_a_fixed_time_and_an_exchange_be_repeated():
     bench.end()
 
 
+def test_a_round_is_as_long_as_its_telegrams_or_as_it_was_fixed():
+    """A telegram of 4 + 2 words is 16 characters; before each there are two of silence."""
+    bus = Bench((1, 2)).bus
+    character_us = 11_000_000 / 19_200
+    near(bus.round_us(), 2 * 2 * (16 + 2) * character_us, 10)
+    bus.add(1)
+    near(bus.round_us(), 3 * 2 * (16 + 2) * character_us, 10)
+    bus.cycle_us = 200_000
+    assert bus.round_us() == 200_000
+    bus.cycle_us = 50_000
+    assert bus.round_us() > 60_000
+
+
 def test_a_family_has_its_layouts():
     bench = Bench((), parameters={})
     assert bench.bus.add(3, G110).layout.variable
