@@ -661,6 +661,115 @@ def test_two_layouts_that_are_the_same_are_one_object():
     assert len(bench.found) == 4 and [each is layouts[0] for each in layouts] == [True] * 4
 
 
+# --- when the next telegram goes, and which -----------------------------------------------------
+
+
+def noted(bench, note):
+    """What `note()` says whenever the finder posts a telegram, from now on."""
+    post, notes = bench.master.turns.post, []
+
+    def noting(telegram):
+        notes.append(note())
+        post(telegram)
+
+    bench.master.turns.post = noting
+    return notes
+
+
+def test_two_silences_show_that_a_drive_takes_no_longer_telegram_and_one_answer_that_it_does():
+    """A reply that was spoilt costs one telegram more, and no silence of those after it."""
+    for words, lengths in (((3, 2), [10, 12, 12]), ((0, 2), [10, 4, 6, 6])):
+        for spoilt in (0, 1, 2):
+            bench = Search({2: words})
+            bench.nodes[2].spoil = spoilt
+            bench.until_found(2)
+            at = 0 if words == (3, 2) else 1
+            asked = lengths[:at] + [lengths[at]] * spoilt + lengths[at:]
+            assert bench.mirrors(2) == asked, (words, spoilt, bench.mirrors(2))
+    for words, lengths in (
+        ((127, 2), [10, 12]),
+        ((4, 3), [10, 4, 6, 10, 4, 8, 10, 4, 14, 16, 16]),
+    ):
+        bench = Search({2: words})
+        bench.until_found(2)
+        assert bench.mirrors(2)[: len(lengths)] == lengths, (words, bench.mirrors(2))
+
+
+def test_three_silences_of_one_that_stood_and_thirty_of_one_that_may_run_come_first():
+    for runs, silences in ((False, 3), (True, 30)):
+        bench = Search(present=(1, 2))
+        drive = bench.drives[2]
+        if runs:
+            bench.contact()
+            drive.start(0x1000)
+            bench.run(300_000)
+        bench.nodes[2].plugged = False
+        notes = noted(bench, lambda: drive.silent)
+        bench.run_until(lambda: notes)
+        assert notes[0] == silences, (runs, notes)
+
+
+def test_the_list_asks_one_silent_drive_for_each_telegram_and_two_where_eight_are_silent():
+    """The silent drives have them in the order of the list, over the wrap of the count too."""
+    for silent, between in ((7, 1), (8, 2)):
+        bench = Search({address: (3, 2) for address in range(2, 2 + silent)})
+        for address in range(2, 2 + silent):
+            bench.nodes[address].plugged = False
+        bench.master.deadlines.silence.count = 0xFFF0
+        bench.contact()
+        bench.drives[1].start(0x1000)
+        bench.run(18_000_000)
+        asked = [address for address in bench.addresses() if address != 1]
+        places = [place for place, address in enumerate(asked) if address & MIRROR]
+        apart = [b - a - 1 for a, b in zip(places, places[1:])]
+        assert len(apart) > 30 and set(apart) == {between}, (silent, apart)
+        turns = [asked[place] & 0x1F for place in places]
+        turns = [b for a, b in zip(turns, turns[1:]) if a != b]
+        turns = turns[turns.index(2, 4) :]  # until then not all of them were silent long enough
+        order = list(range(2, 2 + silent)) * 2
+        assert turns[: len(order)] == order[: len(turns)] and len(turns) > 4, (silent, turns)
+
+
+def test_a_telegram_that_is_longer_than_those_of_the_list_needs_room_for_the_rest():
+    for layout, lengths in (((0, 2), (6, 8, 10, 12, 14, 16)), ((4, 2), (12, 14, 16))):
+        bench = Bench([Node(1, *layout), Node(2, *layout)])
+        bench.nodes[2].plugged = False
+        bench.contact()
+        search = Finder(bench.master, MASK)
+        bench.loop = lambda: search.step(bench.now)
+        wait_us, longer = bench.master.deadlines.silence_wait_us, set()
+
+        def noting(longer_us):
+            longer.add(longer_us)
+            return wait_us(longer_us)
+
+        bench.master.deadlines.silence_wait_us = noting
+        bench.run(10_000_000)
+        own_us = bench.timing.telegram_us(2 * sum(layout))
+        rests = [bench.timing.telegram_us(length) - own_us for length in lengths]
+        assert sorted(longer) == rests, (layout, longer)
+
+
+def test_a_telegram_that_is_lost_is_given_up_after_ten_seconds():
+    """And its buffer is not used again, because the engine may still have it."""
+    bench = Search({2: (3, 2)})
+    bench.nodes[2].plugged = False
+    posted = []
+
+    def swallow(telegram):
+        telegram.state = finding.PENDING
+        posted.append((telegram, bench.now))
+
+    bench.master.turns.post = swallow
+    bench.run_until(lambda: posted)
+    began = posted[0][1]
+    for waited_us, count in ((0, 1), (9_999_999, 1), (10_000_000, 2)):
+        bench.loop = lambda: bench.finder.step(began + waited_us & MASK)
+        bench.run(1_500_000)
+        assert len(posted) == count, waited_us
+    assert posted[0][0] is not posted[1][0]
+
+
 # --- where nobody can be asked ------------------------------------------------------------------
 
 
