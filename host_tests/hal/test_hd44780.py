@@ -4,6 +4,7 @@
 import random
 
 from boards.sim.chip.machine import heap_lock, heap_unlock
+from boards.sim.clock import Clock
 from hal.display.hd44780 import Hd44780
 from lcd_bench import HOURGLASS, LOOP_US, READY, RUNNING, UP_AND_DOWN, LcdBench
 
@@ -456,3 +457,146 @@ def test_garbled_dots_heal_while_the_picture_changes():
         assert bench.lcd.cgram[:16] == HOURGLASS + UP_AND_DOWN, every
         assert bench.run(picture, 20) and bench.text() == shown(picture)
         assert bench.lcd.complaints() == []
+
+
+# --- to the microsecond --------------------------------------------------------------------------
+
+
+class Line:
+    """A pin; `log` has (instant, name, level) each time that one is set."""
+
+    def __init__(self, name, clock, log):
+        self.name, self.clock, self.log = name, clock, log
+
+    def value(self, level):
+        self.log.append((self.clock.now_us, self.name, level))
+
+
+class Lines:
+    """A driver on pins that note what is done to them."""
+
+    def __init__(self):
+        self.clock, self.log = Clock(), []
+        select, enable = self.line("RS"), self.line("E")
+        data = tuple(self.line("D%d" % bit) for bit in (4, 5, 6, 7))
+        self.display = Hd44780(select, enable, data, self.clock)
+
+    def line(self, name):
+        return Line(name, self.clock, self.log)
+
+    def pulses(self):
+        """(instant, register, four bits) of each pulse so far."""
+        levels, pulses = {}, []
+        for at_us, name, level in self.log:
+            levels[name] = level
+            if (name, level) == ("E", 1):
+                bits = sum(levels["D%d" % bit] << bit - 4 for bit in (4, 5, 6, 7))
+                pulses.append((at_us, levels["RS"], bits))
+        return pulses
+
+    def count(self):
+        return len(self.pulses())
+
+    def show(self, picture, us):
+        """For so long, with a look in each microsecond; whether all is shown."""
+        until_us = self.clock.now_us + us
+        shown = False
+        while self.clock.now_us < until_us:
+            shown = self.display.show(picture)
+            if self.clock.now_us < until_us:
+                self.clock.advance(1)
+        return shown
+
+
+def test_the_controller_is_set_up_no_sooner_than_the_data_sheet_allows_and_no_later():
+    """Time from the pulse before, register, four bits; a pulse takes 1 us, a look another."""
+    lines = Lines()
+    lines.display.define(HOURGLASS)
+    assert lines.show(RUNNING, 60_000)
+    pulses = lines.pulses()
+    before = [0] + [at_us for at_us, _, _ in pulses]
+    steps = [(at_us - last, bits) for last, (at_us, _, bits) in zip(before, pulses)]
+    assert steps[:11] == [
+        (40_001, 3), (4_102, 3), (101, 3), (101, 2),
+        (101, 2), (1, 8), (1 + 101 + 54, 0), (1, 6), (54 + 53, 0), (1, 2),
+        (2_160 + 2 + 53, 4),
+    ]  # fmt: skip
+    assert {register for _, register, _ in pulses[:12]} == {0}
+    # The dots, with the way to them; either row, with the way to it; last, the display is on.
+    written = pulses[10:]
+    assert [register for _, register, _ in written] == (
+        [0, 0] + [1] * 16 + ([0, 0] + [1] * 32) * 2 + [0, 0]
+    )
+    codes = [a[2] << 4 | b[2] for a, b in zip(written[::2], written[1::2])]
+    rows = [0x80] + list(RUNNING[:16]) + [0xC0] + list(RUNNING[16:])
+    assert codes == [0x40] + list(HOURGLASS) + rows + [0x0C]
+    # A command takes 53 us, a character or a row of dots 61; between two pieces is a look.
+    for (at_us, register, _), (next_us, _, _) in zip(written[1:-1:2], written[2::2]):
+        wait_us = 62 if register else 54
+        assert next_us - at_us in (wait_us, wait_us + 1), at_us
+
+
+def test_two_rows_of_sixteen_whose_lines_begin_low_and_are_set_only_where_they_change():
+    lines = Lines()
+    assert (lines.display.rows, lines.display.columns) == (2, 16)
+    levels = {}
+    for _, name, level in lines.log:
+        levels[name] = level
+    assert levels == {name: 0 for name in ("RS", "E", "D4", "D5", "D6", "D7")}
+    begun = len(lines.log)
+    assert lines.show(RUNNING, 60_000)
+    raised_us = 0
+    for at_us, name, level in lines.log[begun:]:
+        assert level in (0, 1)
+        assert name == "RS" or levels[name] != level, (at_us, name)
+        levels[name] = level
+        if name == "E":
+            assert level or at_us - raised_us == 1
+            raised_us = at_us
+
+
+def refreshed():
+    """A display at rest; and the instant from which its next refresh counts."""
+    lines = Lines()
+    assert lines.show(RUNNING, 60_000)
+    return lines, lines.pulses()[10][0]
+
+
+def test_a_display_at_rest_is_refreshed_after_eight_seconds():
+    lines, since_us = refreshed()
+    count = lines.count()
+    lines.clock.advance(since_us + 8_000_000 - lines.clock.now_us)
+    assert lines.display.show(RUNNING) and lines.count() == count
+    lines.clock.advance(1)
+    assert lines.display.show(RUNNING) and lines.count() == count + 1
+    assert lines.pulses()[-1][1:] == (0, 3)
+
+
+def test_from_seven_seconds_on_a_refresh_begins_behind_a_change():
+    """As soon as all of that is shown: not before, and not while some of it is left."""
+    for after_us, cells, pulses in (
+        (7_000_000, 1, 4),
+        (7_000_001, 1, 4 + 1),
+        (7_000_001, 7, 2 + 2 * 7 + 1),  # 8 bytes, the most that one piece has
+        (7_000_001, 8, 2 + 2 * 7),
+    ):
+        lines, since_us = refreshed()
+        count = lines.count()
+        lines.clock.advance(since_us + after_us - lines.clock.now_us)
+        picture = b"#" * cells + RUNNING[cells:]
+        assert lines.display.show(picture) == (cells < 8)
+        assert lines.count() - count == pulses, (after_us, cells, lines.count() - count)
+
+
+def test_a_refresh_between_two_pieces_of_a_change_goes_to_its_place_first():
+    """It has sent the controller home meanwhile, away from the next cell that differs."""
+    lines, since_us = refreshed()
+    lines.clock.advance(since_us + 8_000_000 - lines.clock.now_us)
+    picture = b"#" * 16 + RUNNING[16:]
+    count = lines.count()
+    assert not lines.display.show(picture)
+    lines.clock.advance(1)
+    assert lines.show(picture, 20_000)
+    bits = [each for _, _, each in lines.pulses()[count:]]
+    assert bits[:2] == [8, 0] and bits[2:16] == [2, 3] * 7
+    assert bits[16:26] == [3, 3, 3, 2, 2, 8, 0, 6, 0, 2] and bits[26:30] == [8, 7, 2, 3]

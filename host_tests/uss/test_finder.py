@@ -15,6 +15,7 @@ from uss.finding import finder as finding
 from uss.finding.enquiry import NO_CHANNEL, Question
 from uss.finding.finder import Finder
 from uss.layout import STANDARD, VARIABLE, Layout
+from uss.master import CLOSED, LISTENING, OFF
 from uss.outside import Mirror
 from uss.receiver import OTHER_LENGTH
 
@@ -730,6 +731,33 @@ def test_the_list_asks_one_silent_drive_for_each_telegram_and_two_where_eight_ar
         assert turns[: len(order)] == order[: len(turns)] and len(turns) > 4, (silent, turns)
 
 
+def test_room_that_the_list_does_not_use_is_taken_after_four_silent_telegrams():
+    for silent in (1, 8):
+        bench = Search({address: (3, 2) for address in range(2, 2 + silent)})
+        for address in range(2, 2 + silent):
+            bench.nodes[address].plugged = False
+        bench.run(3_000_000)
+        silence = bench.master.deadlines.silence
+        silence.give_turn = lambda: None  # the list asks no silent drive any more
+        bench.run(1_000_000)
+        notes = noted(bench, lambda: silence.wait_us + 4 * silence.silent_exchange_us)
+        bench.run(4_000_000)
+        assert len(notes) > 2 and all([-3_000 < late_us <= 0 for late_us in notes]), notes
+
+
+def test_the_longest_telegram_that_a_drive_can_take_is_one_word_longer_than_any_of_the_list():
+    """4 + 16 words, from a drive that is doubted: perhaps it takes any length."""
+    for words, net_count in (((4, 16), 42), ((3, 16), 40)):
+        bench = Bench([Node(1), Node(2, *words)])
+        bench.contact()
+        search = Finder(bench.master, MASK)
+        bench.loop = lambda: search.step(bench.now)
+        bench.drives[2].doubt()
+        bench.run(1_500_000)
+        asked = [len(each.characters) - 4 for each in bench.sent if each.address == 2 | MIRROR]
+        assert asked == [net_count] * 2, (words, asked)
+
+
 def test_a_telegram_that_is_longer_than_those_of_the_list_needs_room_for_the_rest():
     for layout, lengths in (((0, 2), (6, 8, 10, 12, 14, 16)), ((4, 2), (12, 14, 16))):
         bench = Bench([Node(1, *layout), Node(2, *layout)])
@@ -785,6 +813,24 @@ def test_nothing_is_sent_while_the_bus_listens_or_is_off():
     assert len(bench.sent) == sent
     bench.master.on()
     bench.until_found(2)
+
+
+def test_nothing_is_posted_before_the_bus_has_listened_nor_after_it_was_closed():
+    """What was posted would be sent as the first thing when it is on again."""
+    bench = Search({2: (3, 2)})
+    bench.nodes[2].plugged = False
+    bench.run(3_000_000)
+    notes = noted(bench, lambda: bench.master.phase)
+    for _ in range(3):
+        bench.master.off()
+        bench.run(1_000_000)
+        bench.master.on()
+        bench.run(1_500_000)
+    assert len(notes) > 3 and not {LISTENING, OFF, CLOSED} & set(notes), notes
+    posted = len(notes)
+    bench.master.close()
+    bench.run(2_000_000)
+    assert bench.master.phase == CLOSED and len(notes) == posted
 
 
 def test_where_others_wait_already_it_waits():
