@@ -378,3 +378,27 @@ def test_a_picture_that_never_rests_is_refreshed_as_well():
     assert bench.text()[:14] == shown(RUNNING[:14]) and bench.text()[15:] == shown(RUNNING[15:])
     assert lcd.cgram[:16] == HOURGLASS + UP_AND_DOWN
     bench.check()
+
+
+def test_what_goes_over_the_bus_first():
+    """Each nibble with E and without; before the first one P0, so that it stands before E rises.
+    P3 is the light."""
+    bench = BackpackBench()
+    bench.boot()
+    sent, write_to = [], bench.write_to
+
+    def noting(address, data):
+        sent.append((bench.clock.now_us, address, bytes(data)))
+        write_to(address, data)
+
+    bench.write_to = noting
+    began_us = bench.clock.now_us
+    for wait_us in (40_000, 1, 5_000, 5_000):
+        bench.clock.advance(wait_us)
+        bench.display.show(RUNNING)
+    assert sent[0][:2] == (began_us + 40_001, 0x27)
+    assert [data.hex() for _, _, data in sent] == [
+        "383c38",
+        "3c38" + "3c38" + "2c28" + "2c28" + "8c88",
+        "0c08" + "6c68" + "0c08" + "2c28",
+    ]

@@ -600,3 +600,17 @@ def test_a_refresh_between_two_pieces_of_a_change_goes_to_its_place_first():
     bits = [each for _, _, each in lines.pulses()[count:]]
     assert bits[:2] == [8, 0] and bits[2:16] == [2, 3] * 7
     assert bits[16:26] == [3, 3, 3, 2, 2, 8, 0, 6, 0, 2] and bits[26:30] == [8, 7, 2, 3]
+
+
+def test_a_picture_that_changes_all_the_time_has_two_pieces_of_three_of_a_refresh():
+    """Bytes of each piece. What leads to the display being on again waits for no change."""
+    lines, since_us = refreshed()
+    picture, sizes = bytearray(RUNNING), []
+    lines.clock.advance(since_us + 8_000_001 - lines.clock.now_us)
+    for turn in range(20):
+        count = lines.count()
+        picture[5] = 0x41 + turn
+        lines.display.show(picture)
+        sizes.append((lines.count() - count) / 2)
+        lines.clock.advance(4_200)
+    assert sizes == [0.5, 2.5, 2] + [2, 2, 8] * 4 + [2, 2, 7, 3, 2], sizes
