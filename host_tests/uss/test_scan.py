@@ -76,6 +76,8 @@ def test_an_empty_line_takes_as_long_as_was_said():
     assert scan.found == {} and scan.asked == 32 * len(NET_COUNTS) == len(bench.sent)
     assert 0.8 * promised_ms <= (bench.now - began) / 1000 <= promised_ms
     assert 6_000 < promised_ms < 9_000
+    lengths = [len(each.characters) - 4 for each in bench.sent]
+    assert lengths[::32] == lengths[31::32] == [12, 10, 4, 16, 24, 8, 14], "the most usual first"
 
 
 def test_an_unknown_node_is_told_to_stop_and_nothing_else():
@@ -356,6 +358,27 @@ def test_a_node_is_kept_from_tripping_and_one_that_never_trips_is_left_alone():
     assert fleet.motors[4].state == "ready", fleet.motors[4].state
 
 
+def test_when_a_node_is_asked_again():
+    """After a third of its P2014, but not within 100 ms, and then also where it is not known.
+    It counts from the step that has seen the end of the telegram before."""
+    bench = Bench([Node(1)], listed=False)
+    scan = Scan(bench.master, MASK, (1,), (12,))
+    bench.run_until(lambda: scan.step(bench.now), 60_000_000)
+    for off_time_ms, again_us in (
+        (None, 100_000), (150, 100_000), (300, 100_000), (301, 100_333), (900, 300_000),
+    ):  # fmt: skip
+        scan.nodes[1].off_time_ms = off_time_ms
+        scan.keep(bench.now)
+        bench.run(400_000)
+        scan.keep(bench.now)
+        bench.run(100_000)
+        asked_at, sent = bench.now, len(bench.sent)
+        for later_us, count in ((0, 0), (again_us - 1, 0), (again_us, 1)):
+            scan.keep(asked_at + later_us & MASK)
+            bench.run(50_000)
+            assert len(bench.sent) - sent == count, (off_time_ms, later_us)
+
+
 def test_a_node_without_process_data_is_kept_by_mirror_telegrams():
     """The others hear OFF1, by which a V20 does not trip either."""
     bench = Bench([Node(1), Node(5, 4, 0)], listed=False)
@@ -548,7 +571,14 @@ def test_no_rate_is_tried_unless_every_drive_of_the_list_is_seen_to_stand():
 
 
 def test_every_rate_is_tried_once():
+    """Of all that there are, those of every interface first."""
     assert sorted(RATES) == sorted(BAUD_RATES)
+    lines = Lines(None, [])
+    scan = RateScan(lines.open, MASK, nothing_runs=True, addresses=(0,), net_counts=(4,))
+    lines.carry_out(scan)
+    assert lines.opened == [
+        9600, 19200, 38400, 57600, 115200, 187500, 4800, 2400, 76800, 93750, 1200, 600, 300,
+    ]  # fmt: skip
     lines = Lines(None, [])
     rates = (9600, 115200, 38400)
     scan = RateScan(lines.open, MASK, nothing_runs=True, rates=rates, addresses=range(4))
@@ -654,3 +684,10 @@ def test_how_long_it_takes_is_said_beforehand():
     usual = RateScan(None, MASK, nothing_runs=True, rates=(19200,))
     assert usual.longest_ms == Scan(Bench([], listed=False).master, MASK).longest_ms
     assert scanning.NET_COUNTS[0] == 12
+    both = RateScan(None, MASK, nothing_runs=True, rates=(9600, 19200))
+    assert [each.longest_ms for each in (slow, usual, both)] == [194_720, 8_111, 18_735]
+    bench = Bench([Node(1)])
+    scan = Scan(bench.master, MASK)
+    assert scan.longest_ms == 8_111
+    bench.contact()
+    assert scan.longest_ms == 40_559, "it has a fifth of the time"
