@@ -522,6 +522,27 @@ def test_one_that_answers_in_another_length_goes_first_unless_that_was_in_vain()
     bench.run(1_000_000)
 
 
+def test_one_that_goes_first_changes_nothing_about_whose_turn_it_is_afterwards():
+    sets = {address: (127, 2) for address in range(2, 9)}
+    bench = Search(sets)
+    for address in sets:
+        bench.nodes[address].plugged = False
+    bench.run(10_000_000)
+    bench.run_until(lambda: bench.sent[-1].address == 7 | MIRROR)  # that of 6 is just over
+    since, node = len(bench.sent) - 1, bench.nodes[6]
+    node.plugged = True
+    node.pkw_words, node.pzd_words, node.stray = 4, 12, bytes(22)
+    bench.run(15_000_000)
+    asked = [each.address & 0x1F for each in bench.sent[since:] if each.address & MIRROR]
+    turns = [b for a, b in zip(asked, asked[1:]) if a != b]
+    first = [at for at, (a, b) in enumerate(zip(turns, turns[1:]), 1) if b == 6 and a != 5]
+    assert len(first) == 1, turns
+    turns.pop(first[0])
+    assert len(turns) > 10 and 8 in turns, turns
+    for a, b in zip(turns, turns[1:]):
+        assert b == (a + 1 if a < 8 else 2), turns
+
+
 def test_a_reply_that_was_spoilt_is_asked_for_again():
     for spoilt in (1, 2):
         bench = Search({2: (3, 2)})
@@ -565,6 +586,37 @@ def test_a_telegram_that_is_lost_makes_no_fixed_length_of_a_variable_one():
     node.answer = lossy
     bench.until_found(2)
     assert lost and bench.drives[2].layout.variable
+
+
+def test_one_whose_longer_replies_are_spoilt_and_then_lost_is_taken_for_one_of_fixed_length():
+    """Which such a drive takes as well; and nobody asks it for ever."""
+    bench = Search({2: (127, 2)})
+    node, answer = bench.nodes[2], bench.nodes[2].answer
+    longer = []
+
+    def spoilt(characters):
+        reply = answer(characters)
+        if characters[2] & MIRROR and len(characters) == 16:
+            longer.append(reply)
+            return reply[:5] + b"\x77" + reply[6:] if len(longer) < 3 else None
+        return reply
+
+    node.answer = spoilt
+    bench.until_found(2)
+    assert bench.mirrors(2) == [10, 12, 12, 12] and layout_of(bench.drives[2]) == (3, 2)
+
+
+def test_the_list_goes_on_asking_one_that_answers_each_question_in_time():
+    bench = Search({2: (127, 2)})
+    silence, spared = bench.master.deadlines.silence, []
+
+    def loop():
+        bench.step()
+        spared.append(silence.spared)
+
+    bench.loop = loop
+    bench.until_found(2)
+    assert bench.drives[2].layout.variable and set(spared) == {None}
 
 
 def test_a_drive_is_asked_for_its_layout_and_for_nothing_else():
