@@ -4,10 +4,10 @@
 from boards.sim.drives.families import mm420
 from fleet_bench import Fleet
 from round_bench import MASK, MIRROR, READY, RUNNING, Bench, Node, framed
-from uss.errors import UssError
+from uss.errors import NoContact, UssError
 from uss.finding import scan as scanning
 from uss.finding.scan import EVERY_NET_COUNT, NET_COUNTS, RATES, RateScan, Scan
-from uss.master import OFF
+from uss.master import CLOSED, OFF
 from uss.outside import DONE, Mirror
 from uss.timing import BAUD_RATES
 
@@ -108,9 +108,15 @@ def test_the_unusual_lengths_are_found_when_asked_for():
 
 
 def test_whoever_takes_any_length_is_said_to():
-    _, scan = found_on([Node(2), Node(5, 127, 2), Node(6, 127, 4)])
+    """And that is seen before it is asked what it is: a telegram that is a word longer."""
+    bench, scan = found_on([Node(2), Node(5, 127, 2), Node(6, 127, 4)])
     assert set(scan.found) == {2, 5, 6}
     assert scan.variable == {5, 6}
+    assert [address for address, node in scan.nodes.items() if node.variable] == [5, 6]
+    for address in (2, 5, 6):
+        asked = [each for each in bench.sent if each.address & 0x1F == address]
+        lengths = [len(each.characters) - 4 for each in asked[:2]]
+        assert lengths == [12, 14] and [each.address & MIRROR for each in asked[:3]] == [64, 64, 0]
 
 
 def test_a_drive_without_process_data_that_answers_alike_makes_no_line_with_an_echo():
@@ -162,6 +168,25 @@ def test_it_waits_until_the_bus_has_listened():
     assert bench.sent == []
     bench.run(20_000)
     assert bench.sent
+
+
+def test_it_says_so_where_the_bus_is_off_or_closed_unless_it_is_over():
+    for silence in ("off", "close"):
+        bench = Bench([Node(1)], listed=False)
+        scan = Scan(bench.master, MASK)
+        bench.run_until(lambda scan=scan, bench=bench: scan.step(bench.now) or scan.found)
+        getattr(bench.master, silence)()
+        bench.run_until(lambda bench=bench: bench.master.phase in (OFF, CLOSED))
+        bench.run(100_000)
+        sent = len(bench.sent)
+        for _ in range(2):
+            try:
+                scan.step(bench.now)
+            except NoContact:
+                continue
+            raise AssertionError("it went on")
+        scan.end()
+        assert scan.step(bench.now) and len(bench.sent) == sent
 
 
 def test_it_waits_behind_other_telegrams_outside_the_list():
