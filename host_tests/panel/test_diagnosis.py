@@ -229,6 +229,26 @@ def test_the_times_are_those_of_the_line():
     world.check()
 
 
+def test_a_menu_that_closes_ends_what_its_list_has_begun():
+    """Nobody listens to the line any more, and the bus is at work again."""
+    world = panel()
+    for way in (("BUS TIMES",), ("A1", "TELEGRAMS"), ("BUS OFF",)):
+        open_menu(world, "DIAGNOSIS", *way)
+        bus = world.app.bus
+        if way == ("BUS OFF",):
+            world.press("SET")
+            world.run(500)
+            sent = world.wire.log.count
+            world.run(500)
+            assert world.wire.log.count == sent, world.lcd()
+        else:
+            assert bus.witness is not None, way
+        world.app.panel.close_menu()
+        assert bus.witness is None, way
+        world.run(500)
+    assert world.wire.log.count > sent
+
+
 def test_a_time_of_a_second_and_more_has_no_decimals():
     """Four drives at 1200 bit/s: an exchange takes a quarter of a second."""
     world = panel(addresses=FOUR, baud=1200)

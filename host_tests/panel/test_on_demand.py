@@ -4,7 +4,8 @@
 import sys
 
 import on_demand
-from lookup_bench import go_to
+from lookup_bench import choose, go_to
+from panel.pages.table import PAGES, PARAMETER
 from panel_bench import panel, row_2, starts, wait_until_known
 
 PAGE, WRITER, QUESTION = "panel.pages.parameters", "panel.writer", "panel.pages.question"
@@ -193,6 +194,65 @@ def test_of_a_list_that_was_coming_when_the_menu_closed_nothing_stays_in_memory(
     world.run(1000)
     assert row_2(world) == "READY        A1", world.lcd()
     assert not set(sys.modules) - before, set(sys.modules) - before
+
+
+def of_lists():
+    """What lists and pages have loaded, of what is in memory."""
+    return {name for name in sys.modules if name.startswith(("panel.", "uss.", "catalogue"))}
+
+
+def test_a_list_that_is_left_takes_what_no_list_above_it_needs_out_of_memory():
+    """And a menu that closes takes all of it, however deep it is."""
+    world = cramped()
+    for module in modules():
+        on_demand.drop(module)
+    home = of_lists()
+    for way in (("DIAGNOSIS", "BUS TIMES"), ("SETS", "SAVE"), ("PARAMETERS",)):
+        for closes in (False, True):
+            go_to(world)
+            world.run(500)
+            before = []
+            for entry in way:
+                before.append(of_lists())
+                choose(world, entry)
+                world.run(2500)
+            assert len(of_lists()) > len(before[-1]) > len(home), way
+            if closes:
+                world.app.panel.close_menu()
+            else:
+                while before:
+                    world.press("PARAM")
+                    world.run(200)
+                    assert of_lists() == before.pop(), (way, world.lcd())
+                world.press("PARAM")
+            world.run(200)
+            assert of_lists() == home and not row_2(world).startswith(">"), (way, world.lcd())
+    world.check()
+
+
+def test_a_page_that_has_come_while_its_list_was_shown_stays_when_the_menu_closes():
+    """It is not loaded a second time, which takes long."""
+    world = cramped()
+    go_to(world, "PARAMETERS")
+    world.run(3000)
+    assert not [name for name in PAGES[PARAMETER][2] if name not in sys.modules]
+    loaded, load = [], on_demand.load
+
+    def load_and_note(name):
+        if name not in sys.modules:
+            loaded.append(name)
+        return load(name)
+
+    on_demand.load = load_and_note
+    try:
+        choose(world, "BY NUM")
+        world.run(500)
+    finally:
+        on_demand.load = load
+    assert row_2(world).startswith("P0"), world.lcd()
+    assert not [name for name in PAGES[PARAMETER][2] if name in loaded], loaded
+    assert modules() == set(), modules()
+    world.check()
 
 
 def test_a_search_that_finds_no_memory_says_so_and_may_be_tried_again():

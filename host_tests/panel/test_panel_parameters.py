@@ -13,6 +13,7 @@ from panel_bench import (
     row_2,
     running,
     said,
+    settled_row_2,
     starts,
     telegrams,
     wait_until_known,
@@ -154,6 +155,38 @@ def test_a_value_is_that_of_the_drive_shown():
         world.press("ADDRESS_UP", 30)
         assert "?" in row_2(world) or row_2(world)[13:] != row[13:]
         world.run(300)
+    world.check()
+
+
+def test_a_value_is_asked_for_half_a_second_after_its_last_answer():
+    world = parameter("r2024")
+    since_us = world.clock.now_us
+    world.run(6000)
+    asked, before = [], b""
+    for at_us, sent, characters in world.wire.log.last(1000):
+        if sent and at_us > since_us and len(characters) == 16:
+            task = characters[3:6]  # it stays until it is answered
+            if task == b"\x10\x18\x80" != before:
+                asked.append(at_us // 1000)
+            before = task
+    spans = [later - sooner for sooner, later in zip(asked, asked[1:])]
+    assert len(spans) > 7 and 500 <= min(spans) and max(spans) < 700, spans
+    world.check()
+
+
+def test_what_a_refused_parameter_has_left_is_not_said_of_the_next_one():
+    """That one is unknown until it is told; and if it is refused too, that is said as well."""
+    world = panel()
+    parameters = world.drives[1].parameters
+    parameters.rows = {row: parameters.rows[row] for row in parameters.rows if row < 2024}
+    show(world, "P2011")
+    world.press("NEXT")
+    wait_for(world, "r2024: ----- A1")
+    world.drives[1].stale_replies = 10
+    world.press("NEXT")
+    assert settled_row_2(world) == "r2025:     ? A1", world.lcd()
+    wait_for(world, "NO SUCH PARAM.", 900)
+    wait_for(world, "r2025: ----- A1")
     world.check()
 
 
@@ -485,6 +518,59 @@ def test_a_write_that_is_on_its_way_has_an_hourglass():
     world.run(100)
     assert row_2(world) == "P1000:     3⧗A1"
     wait_for(world, "WRITTEN (RAM)")  # two questions of the panel may be before it
+    world.check()
+
+
+def test_another_parameter_has_no_hourglass_of_a_write_that_is_still_on_its_way():
+    world = edit(parameter("P1000"), 3)
+    world.drives[1].stale_replies = 20
+    world.press("SET")
+    world.press("SET")
+    world.press("PREVIOUS")
+    assert settled_row_2(world) == "P0700:     ? A1", world.lcd()
+    wait_for(world, "WRITTEN (RAM)")
+    wait_for(world, "P0700:     5 A1")
+    world.check()
+
+
+def test_what_was_written_is_what_edit_begins_with_a_moment_later():
+    for ms in (0, 120, 240, 360):
+        world = edit(parameter("P1000"), 3)
+        world.press("SET")
+        world.run(ms)
+        world.press("SET")
+        wait_for(world, "WRITTEN (RAM)")
+        world.run(150)
+        world.press("EDIT")
+        assert row_2(world) == "P1000:     3↕A1", (ms, world.lcd())
+        world.check()
+
+
+def test_who_lets_go_of_a_value_while_it_is_written_edits_nothing_when_it_is_refused():
+    world = edit(parameter("P1000"), 7)
+    world.drives[1].stale_replies = 20
+    world.press("SET")
+    world.press("SET")
+    world.press("EDIT")
+    wait_for(world, "NOT THIS VALUE")
+    wait_for(world, "P1000:     5 A1")
+    world.press("UP")
+    assert row_2(world) == "PRESS EDIT FIRST", world.lcd()
+    world.check()
+
+
+def test_a_held_set_does_not_try_again_what_could_not_be_tried():
+    """The drive is out of contact. It comes back while SET is still held."""
+    world = edit(parameter("P1000", parameters={2014: 20_000}), 3)
+    world.press("SET")
+    world.drives[1].unplug()
+    world.run(1500)
+    world.down("SET")
+    wait_for(world, "NO CONTACT")
+    world.drives[1].plug()
+    world.run(6000)
+    world.up("SET")
+    assert world.drives[1].read(1000) == 5 and not writes(world), writes(world)
     world.check()
 
 
