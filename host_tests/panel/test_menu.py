@@ -1061,6 +1061,11 @@ def test_an_alarm_that_was_there_before_does_not_lock_it():
         seen.add(world.lcd())
     assert all([rows[1].startswith(">") for rows in seen]), seen
     assert any([rows[0].startswith("A1 NOT STOPPED") for rows in seen]), seen
+    titles = []
+    for _ in range(100):  # the title comes in turn with it, again and again
+        world.run(100)
+        titles.append(row_1(world).startswith("MENU "))
+    assert 35 < titles.count(True) < 65 and True in titles[-40:], titles
 
 
 def test_a_panel_that_nobody_has_set_up_offers_to_find_drives():

@@ -170,6 +170,10 @@ def test_no_telegram_off_time_is_chosen_that_trips_the_drive():
     world.press("UP")
     world.run(200)
     assert row_2(world).startswith("P2040:  1000"), world.lcd()
+    for key in ("UP", "DOWN"):  # and down again to the shortest, not past it
+        world.press(key)
+        world.run(200)
+    assert row_2(world).startswith("P2040:  1000"), world.lcd()
     world.press("SET")
     world.run(500)
     world.press("SET")

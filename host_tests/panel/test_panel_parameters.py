@@ -430,6 +430,16 @@ def test_set_asks_first():
         world.check()
 
 
+def test_a_question_that_nobody_answers_is_gone_after_half_a_minute():
+    world = edit(parameter("P1000"), 3)
+    world.press("SET")
+    world.run(29_500)
+    assert row_2(world) == ASKED, world.lcd()
+    world.run(700)
+    assert row_2(world) == "P1000:     3↕A1" and not writes(world), world.lcd()
+    world.check()
+
+
 def test_set_does_not_answer_a_question_that_a_message_hides():
     """The drive falls silent on the parameter, which is read on: row 2 says so. SET takes that
     away, once or twice, and when the question is to be read again, SET answers it."""
@@ -446,6 +456,7 @@ def test_set_does_not_answer_a_question_that_a_message_hides():
     wait_for(world, "NO REPLY TO IT")
     assert row_1(world).startswith("A1: P0700=6")
     world.press("SET")
+    world.run(300)  # row 2 is there again, and nobody has read it yet
     world.press("SET")
     world.run(1000)
     assert row_2(world) == ASKED and not writes(world)
@@ -609,7 +620,7 @@ def test_a_set_that_goes_on_after_the_line_failed_makes_nothing_permanent():
     world.down("SET")
     world.run(300)
     world.drives[1].unplug()
-    world.run(8000)
+    assert "NO CONTACT" not in said(world, 8000)  # nothing was tried
     world.drives[1].plug()
     world.run(3000)
     assert (1, 1000, "EEPROM", 3) not in writes(world)

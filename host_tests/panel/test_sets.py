@@ -5,13 +5,14 @@ What is cut off in the middle is tried in test_sets_cut_off.py.
 """
 
 import catalogue
+import on_demand
 from boards.sim.drives import parameters
 from boards.sim.drives.families import g110, mm3
 from boards.sim.drives.parameters import rows_like
 from lookup_bench import world_of
 from panel.menu.sets import words
 from panel.menu.sets.write import value
-from panel.sets.writing import BUS_AND_SOURCES, Write
+from panel.sets.writing import BUS_AND_SOURCES, CHECKS, COMPARES, VERIFIES, WRITES, Write
 from panel_bench import LOOP_US, panel, row_1, row_2, said, settled, starts, wait_until_known
 from sets_bench import (
     BAUD,
@@ -472,6 +473,76 @@ def test_a_comparison_tells_how_far_it_is():
             world.run(50)
         assert told == sorted(told), told
         assert first <= told[0] < first + 20 and 80 < told[-1] <= 100, told
+
+
+class Pretended:
+    """A work on a set that is as far as a test says."""
+
+    def __init__(self, *_):
+        self.asks, self.outcome, self.phase = False, None, COMPARES
+        self.left_s, self.differs, self.listed = None, 0, ()
+
+    def percent(self):
+        return 41
+
+
+def test_what_still_takes_minutes_is_told_in_minutes_and_seconds_and_with_what_differs():
+    front = small().app.panel
+    for name, where in (("Write", "panel.sets.writing"), ("Save", "panel.sets.saving")):
+        module = on_demand.load(where)
+        made = []
+
+        def begun(*what):
+            made.append(Pretended(*what))
+            return made[0]
+
+        usual = getattr(module, name)
+        setattr(module, name, begun)
+        try:
+            if name == "Write":
+                of_write = on_demand.load("panel.menu.sets.write")
+                listed = of_write.List(front, (front.selected, "1.set", None))
+            else:
+                listed = on_demand.load("panel.menu.sets.save").List(front, front.selected)
+                assert not listed.is_busy() and not listed.is_searching()
+                listed.choose(0, 0)
+        finally:
+            setattr(module, name, usual)
+        work = made[0]
+        assert listed.is_busy() and listed.is_searching() and listed.words(0) == b"...", name
+        for work.left_s, work.differs, told in (
+            (0, 0, b"0:00 LEFT"), (59, 0, b"0:59 LEFT"), (60, 0, b"1:00 LEFT"),
+            (119, 0, b"1:59 LEFT"), (125, 0, b"2:05 LEFT"), (3600, 0, b"60:00 LEFT"),
+        ):  # fmt: skip
+            assert listed.words(0) == told, (name, work.left_s, listed.words(0))
+        if name == "Save":
+            assert listed.heading(0) == b"A1 SAVE 41%"
+            work.outcome = (b"SAVED: %d", 7)
+            assert listed.words(0) == b"SAVED: 7" and not listed.is_busy()
+            continue
+        work.left_s, work.differs = 81, 3
+        assert listed.words(0) == b"1:21 3 DIFF"
+        for work.phase, told in (
+            (CHECKS, b"A1 CHECK"), (COMPARES, b"A1 COMPARE 41%"),
+            (WRITES, b"A1 WRITE 41%"), (VERIFIES, b"A1 COMPARE 41%"),
+        ):  # fmt: skip
+            assert listed.heading(0) == told and listed.count() == 1, listed.heading(0)
+        work.outcome = (b"ALL EQUAL",)
+        assert listed.heading(0) == b"A1" and listed.words(0) == b"ALL EQUAL"
+        assert not listed.is_busy()
+
+
+def test_a_question_that_nobody_answers_for_a_minute_writes_nothing():
+    """While it compares the menu stays open, however long that takes; while it asks it closes."""
+    world = two()
+    put(world)
+    begin(world, "A1 MADE", "INTO A2 RAM")
+    wait(world, "SET=WRITE A2")
+    world.run(55_000)
+    assert row_2(world) == ">SET=WRITE A2", world.lcd()
+    world.run(7_000)
+    assert row_2(world) == "READY        A2", world.lcd()
+    assert world.drives[2].read(1120) == 10.0 and marks(world) == []
 
 
 def test_writing_tells_how_far_it_is_to_the_end_of_the_comparison_behind_it():
