@@ -19,6 +19,7 @@ from panel_bench import (
     starts,
     telegrams,
     unsupervised,
+    wait_until,
     wait_until_known,
 )  # fmt: skip
 from uss.families import GENERIC, MM3, MM440, rows
@@ -637,6 +638,9 @@ def test_a_question_asks_about_what_is_and_not_about_what_was():
     world.press("START")
     wait_for(world, ASKED)
     assert settled(world)[0].strip() == "P2014=5000: IT"
+    world.drives[1].write(2014, 0, 7000)
+    wait_until(world, lambda: row_1(world).strip() == "P2014=7000: IT", 4000)
+    assert row_1(world).strip() == "P2014=7000: IT", world.lcd()
     world.drives[1].write(2014, 0, 0)
     for _ in range(200):
         world.run(20)

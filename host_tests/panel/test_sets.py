@@ -1167,6 +1167,21 @@ def test_a_flash_that_tells_no_names_has_no_sets():
     world.check()
 
 
+def test_a_set_that_has_gone_before_it_is_read_is_listed_as_none_and_hides_no_other():
+    world = small()
+    put(world, family=b"mm3")
+    store = world.app.panel.board.store
+    names = store.names
+    store.names = lambda ending: ["0.set"] + names(ending)
+    sets(world)
+    seen = []
+    for _ in range(3):
+        seen.append(settled(world)[1].rstrip())
+        press(world, "DOWN")
+    assert seen == [">SAVE A1", ">? 0.set", ">A1 MADE"], seen
+    world.check()
+
+
 def test_twenty_sets_are_kept_and_the_next_one_has_the_first_number_that_is_free():
     world = small()
     for number in range(1, 21):
