@@ -707,6 +707,20 @@ def test_a_warning_and_its_number_are_shown_at_standstill_and_while_it_runs():
     world.check()
 
 
+def test_a_fault_has_its_row_to_itself_though_the_drive_warns_as_well():
+    world = running()
+    world.drives[1].warn(501, True)
+    world.run(1500)
+    assert [row for row in said(world, 4000) if "A0501" in row], world.lcd()
+    world.drives[1].fault(1)
+    world.run(1500)
+    assert set(said(world, 5000)) == {"FAULT F0001  A1"}, world.lcd()
+    world.drives[1].unplug()
+    world.run(2000)
+    assert row_2(world) == "NO CONTACT   A1", world.lcd()  # and no number of a fault behind it
+    world.check()
+
+
 def test_the_number_of_a_warning_that_is_followed_by_another_is_that_of_the_one_that_is_there():
     world = panel(addresses=(1, 2))
     world.drives[1].warn(501, True)
