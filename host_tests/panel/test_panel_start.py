@@ -932,7 +932,8 @@ def test_a_stop_is_sent_whatever_goes_on_and_acknowledges_what_was_seen():
     drive.contact = False
     control.stop()
     assert control.absence_known
-    drive.turn_of_loop()
+    drive.contact = True
+    control.stop()
     assert not control.absence_known
 
 
