@@ -5,7 +5,7 @@ import struct
 
 from boards.sim.dice import Dice
 from uss.drive import Drive
-from uss.families import MM4
+from uss.families import G120, MM3, MM4, rows
 from uss.receiver import SILENCE
 from uss.survey import Survey, centihertz, rpm, spare_jobs
 from uss.telegram_count import TelegramCount
@@ -22,16 +22,18 @@ SEEDS = range(1, 5)
 class Line:
     """Drives in contact that answer each question in their next telegram, and their surveys."""
 
-    def __init__(self, addresses):
+    def __init__(self, addresses, family=MM4):
         self.spares = spare_jobs()
         self.drives = [Drive(address, MASK) for address in addresses]
-        self.surveys = [Survey(drive, MM4, MASK, self.spares) for drive in self.drives]
+        self.surveys = [Survey(drive, family, MASK, self.spares) for drive in self.drives]
         self.now = 0
         self.questions = [0] * len(self.drives)
         self.counts = {}  # by place: r2024, and by how much it grows with each telegram
         self.silent = set()
         self.odd = 0  # so many of the next answers make no sense
         self.without = None  # PKE and IND of what they lack
+        self.error = 0  # how they refuse it: 0, there is no such parameter
+        self.told = {}  # by PKE and IND: a value that is not 50.0
         self.asked = []  # PKE and IND of each question
 
     def exchange(self, place):
@@ -56,6 +58,7 @@ class Line:
         if drive.request[3] >> 4:
             net[3:11] = b"\x20" + bytes(drive.request[4:7]) + b"\x42\x48\x00\x00"  # 50.0
             net[3] |= drive.request[3] & 0x07
+            net[7:11] = self.told.get(bytes(drive.request[3:7]), net[7:11])
             if bytes(drive.request[3:7]) == R2024:
                 net[7:11] = struct.pack(">HH", 0, count)
             if self.odd:
@@ -63,7 +66,7 @@ class Line:
                 net[3] ^= 0x30  # a word, and there is something in front of it
             if bytes(drive.request[3:7]) == self.without:
                 net[3] |= 0x70
-                net[7:11] = bytes(4)  # refused, error 0: no such parameter
+                net[7:11] = struct.pack(">HH", 0, self.error)
         drive.take(net, 16, self.now)
 
 
@@ -424,3 +427,183 @@ def test_a_drive_that_has_no_counter_is_not_asked_for_it_again_and_again_while_i
     assert R2024 not in asked and len(asked) > 20
     assert limits in (asked[0::2], asked[1::2]), asked
     assert {P1080, P1082} == set(limits[:2]) and limits[2:] == limits[:-2], limits
+
+
+# --- what the answers amount to -----------------------------------------------------------------
+
+
+def task(number, index=0):
+    """PKE and IND of the task that reads a parameter."""
+    page = number >= 2000
+    number -= 2000 * page
+    return bytes((0x10 | number >> 8, number & 0xFF, 0x80 * page, index))
+
+
+def hertz(value):
+    return struct.pack(">f", value)
+
+
+def whole(value):
+    return struct.pack(">I", value)
+
+
+def set_up(family=MM4, **changes):
+    """A drive in contact that is set up for USS; `p1082=hertz(40)` for one that differs."""
+    line = Line((1,), family)
+    for number in (50, 719, 1210, 2009, 2014, 2200):
+        line.told[task(number)] = whole(0)
+    line.told[task(51, 1)] = whole(0)
+    line.told[task(700)] = line.told[task(1000)] = whole(5)
+    line.told[task(840)] = whole(2036 << 16)
+    line.told[task(1070)] = whole(2018 << 16 | 1)
+    line.told[task(1080)] = hertz(2.0)
+    line.told[task(2019)], line.told[task(2019, 1)] = whole(52 << 16), whole(21 << 16)
+    for name in changes:
+        line.told[task(int(name[1:]))] = changes[name]
+    line.exchange(0)
+    return line
+
+
+def read(line):
+    """Everything anew."""
+    let_pass(line, 4)
+    line.surveys[0].recheck()
+    let_pass(line, 2 * ROWS)
+    assert not line.surveys[0].unchecked
+    return line.surveys[0]
+
+
+def test_a_drive_that_is_set_up_for_uss_tells_its_frequencies_and_nothing_is_wrong():
+    line = set_up(p2014=whole(2000), p2000=hertz(60.0), p1082=hertz(87.5))
+    survey = read(line)
+    assert survey.complete and survey.wrong is rows.NOTHING_WRONG and not survey.unreadable
+    assert survey.scaling.is_of(6000, False) and survey.actual is survey.scaling
+    assert (survey.lowest(), survey.highest(), survey.off_time_ms()) == (200, 8750, 2000)
+    assert line.drives[0].near == 0x4000 // 100 * 2
+    line.told[task(1082)] = hertz(40.0)  # less than before
+    line.told[task(1080)] = hertz(3.0)  # more
+    line.told[task(2014)] = whole(256)
+    assert (read(line).lowest(), survey.highest(), survey.off_time_ms()) == (300, 4000, 256)
+    line.told[task(1082)] = hertz(150.0)
+    assert read(line).highest() == 2 * 6000 - 1 and survey.own_highest() == 15000
+    line.told[task(2009)] = whole(1)  # PZD2 is the frequency itself
+    assert read(line).scaling.is_of(6000, True) and survey.actual is survey.scaling
+    assert survey.highest() == 15000 and line.drives[0].near == 6000 // 100 * 2
+    line.told[task(2000)] = hertz(1.0)
+    assert read(line).scaling.is_of(100, True)
+    line.told[task(2000)] = hertz(0.99)  # no drive has so little
+    assert read(line).scaling is None and not survey.complete and survey.actual is None
+
+
+def test_an_actual_value_that_is_no_frequency_has_no_scaling_and_shows_no_standstill():
+    line = set_up()
+    line.told[task(2019, 1)] = whole(27 << 16)  # the current
+    survey = read(line)
+    assert survey.complete and survey.scaling and survey.actual is None
+    assert line.drives[0].near == 0
+    assert survey.wrong[rows.ACTUAL] == rows.ACTUAL_SENT
+    line.told[task(2019, 1)] = whole(21 << 16)
+    assert read(line).actual is survey.scaling and line.drives[0].near
+
+
+def test_with_another_data_set_nothing_counts_until_it_is_read():
+    line = set_up()
+    survey = read(line)
+    for number, index in ((50, 0), (51, 1)):
+        line.told[task(number, index)] = whole(1)
+        survey.recheck()
+        asked = numbers(line, 2)
+        while survey.complete:
+            survey.step(line.now)
+            if survey.is_settled():
+                line.exchange(0)
+        assert survey.scaling is None and not survey.is_settled(), asked
+        for reference in (2000, 1080, 1082, 700, 1000, 719, 840, 1070, 2200):
+            line.told[task(reference, 1)] = line.told.get(task(reference), hertz(50.0))
+        line.asked.clear()
+        assert read(line).complete and survey.scaling
+        by_set = (1080, 1082, 2000) if number == 51 else (700, 719, 840, 1000, 1070, 2200)
+        for each in by_set:
+            assert task(each, 1) in line.asked and task(each) not in line.asked, each
+    for number, index in ((50, 0), (51, 1)):  # an index is a byte
+        before = line.told[task(number, index)]
+        line.told[task(number, index)] = whole(256)
+        assert not read(line).complete
+        line.told[task(number, index)] = before
+        assert read(line).complete
+
+
+def test_what_is_absent_has_its_default_and_is_nothing_new_when_it_is_absent_again():
+    line = set_up(p719=whole(11))
+    survey = read(line)
+    assert survey.wrong[rows.COMMAND] == rows.SELECTION
+    line.without = task(719)
+    version = read(line).version
+    assert survey.complete and survey.wrong is rows.NOTHING_WRONG and not survey.unreadable
+    assert read(line).version == version
+    line.without = task(2009)
+    for line.error in (0, 102):
+        assert not read(line).complete and survey.scaling is None and survey.unreadable
+        assert survey.version > version
+    line.without = None
+    assert read(line).complete and survey.scaling and not survey.unreadable
+
+
+def test_a_recheck_judges_at_once_what_has_come_and_a_lost_contact_forgets_half_a_round():
+    line = set_up()
+    survey, drive = line.surveys[0], line.drives[0]
+    while survey.is_settled() or survey.values[rows.REFERENCE] == rows.UNKNOWN:
+        survey.step(line.now)
+        if survey.is_settled():
+            line.exchange(0)
+    version = survey.version
+    survey.recheck()
+    assert survey.is_settled() and survey.version == version + 1
+    while survey.scaling is None:
+        survey.step(line.now)
+        if survey.is_settled():
+            line.exchange(0)
+    while not survey.is_settled():
+        survey.step(line.now)
+    assert not survey.complete and not survey.unreadable
+    version = survey.version
+    drive.lose()
+    survey.step(line.now)
+    survey.step(line.now)
+    assert survey.scaling is None and survey.version == version + 1
+    survey.step(line.now)
+    assert survey.version == version + 1  # nothing more is to be forgotten
+
+
+def test_a_micromaster_3_tells_its_frequencies_in_steps_of_two_sizes():
+    line = set_up(MM3, p910=whole(1), p94=whole(500), p95=whole(0), p12=whole(25))
+    line.told[task(13)], line.told[task(93)] = whole(600), whole(10)
+    survey = read(line)
+    assert survey.complete and survey.scaling.is_of(5000, False) and not survey.is_percent()
+    assert (survey.lowest(), survey.highest(), survey.off_time_ms()) == (250, 6000, 10_000)
+    assert survey.actual is survey.scaling and line.drives[0].near == 0  # HIW has no sign
+    line.told[task(95)] = whole(1)
+    for _ in range(100):
+        if not survey.complete:
+            break
+        let_pass(line, 1)
+    assert survey.scaling is None  # another size: what was read means something else
+    assert read(line).complete and survey.scaling.is_of(500, False) and survey.lowest() == 25
+    line.told[task(95)] = whole(2)
+    assert read(line).scaling.is_of(500, True) and survey.highest() == 600
+    line.told[task(910)] = whole(0)
+    assert read(line).wrong[rows.COMMAND] == rows.COMMAND_SOURCE and survey.complete
+    line.without = task(95)
+    assert not read(line).complete and survey.scaling is None
+    assert survey.values[rows.LOWEST] == rows.UNKNOWN  # steps of no known size
+
+
+def test_a_drive_that_tells_speeds_is_shown_in_percent_of_its_reference():
+    line = set_up(G120, p1080=hertz(150.0), p1082=hertz(3000.0), p2000=hertz(1500.0))
+    line.told[task(2040)] = whole(100)
+    survey = read(line)
+    assert survey.is_percent() and survey.complete and survey.scaling.is_of(100_00, False)
+    assert (survey.lowest(), survey.own_highest(), survey.off_time_ms()) == (10_00, 200_00, 100)
+    assert survey.highest() == 2 * 100_00 - 1 and survey.actual is survey.scaling
+    line.told[task(2000)] = bytes(4)
+    assert read(line).scaling is None and not survey.complete
