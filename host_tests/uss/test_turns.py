@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Whose turn it is, without a line, a link or a master: `choose` is asked, and answers."""
 
+from uss.layout import Layout
 from uss.outside import Mirror
 from uss.receiver import SILENT
 from uss.timing import Timing
@@ -16,10 +17,10 @@ class Table:
     """Drives at these addresses, and whoever asks those that have their turn; `silent` ones do
     not answer."""
 
-    def __init__(self, *addresses):
+    def __init__(self, *addresses, abandon=None):
         self.now = 0
         self.silent = set()
-        self.turns = Turns(Timing(19200), MASK, LOST_US, lambda drive: False)
+        self.turns = Turns(Timing(19200), MASK, LOST_US, lambda drive: False, abandon)
         self.drives = {address: self.turns.add(address) for address in addresses}
 
     def asked(self, count):
@@ -282,3 +283,97 @@ def test_a_drive_that_trips_soon_has_its_turn_in_time_in_a_long_list():
     gaps = [len(piece) for piece in "".join([".1"[each == 1] for each in asked]).split("1")]
     assert max(gaps[1:-1]) < 300 // 36, gaps
     assert set(asked) == set(range(1, 32))
+
+
+def test_a_drive_that_has_moved_calls_at_its_new_address_and_no_more_at_the_old_one():
+    for old, new in ((9, 5), (5, 9)):
+        table = Table(1, 2, old)
+        turns, drive = table.turns, table.drives[old]
+        table.asked(3)
+        drive.stop()
+        turns.readdress(drive, new)
+        assert turns.has_command()
+        assert table.asked(1) == [new] and not turns.has_command()
+        assert turns.at(old) is None and turns.at(new) is drive
+        drive.want_turns(True)
+        turns.readdress(drive, new)  # where it is already
+        assert turns.at(new) is drive
+        turns.readdress(drive, old)
+        assert table.asked(6)[0::2] == [old] * 3
+        drive.want_turns(False)
+        turns.add(new)  # somebody else, who has not called
+        assert table.asked(5).count(new) in (1, 2) and turns.at(new) is not drive
+
+
+def test_who_called_and_is_gone_or_wants_no_more_is_forgotten_and_the_others_are_heard():
+    table = Table(*range(1, 10))
+    table.asked(9)
+    for address in range(1, 7):
+        table.drives[address].stop()
+    for address in range(1, 7):
+        table.turns.remove(table.drives[address])
+    table.drives[8].stop()
+    assert table.asked(1) == [8]
+    table = eight()
+    for address in range(1, 7):
+        table.drives[address].want_turns(True)
+        table.drives[address].want_turns(False)
+    table.drives[8].want_turns(True)  # an interrupt forgets four of them at the most
+    assert table.asked(5) == [1, 8, 2, 8, 3]
+    table.drives[8].want_turns(False)
+    table.drives[7].want_turns(True)
+    assert table.asked(8).count(7) >= 4
+
+
+def test_who_leaves_the_round_or_joins_it_takes_no_turn_from_anybody():
+    order = (1, 2, 1, 3, 4, 1, 5)
+    for rests in (1, 2, 3, 5):
+        for before in range(len(order) + 1):
+            for between in range(4):
+                table = Table(*range(1, 6))
+                turns, drive = table.turns, table.drives[rests]
+                turns.arrange([table.drives[address] for address in order])
+                table.asked(before)
+                turns.deadlines.silence.rests[rests] = True
+                turns.leave_round(drive)
+                rest = [each for each in order[before:] + order if each != rests]
+                assert table.asked(between) == rest[:between], (rests, before)
+                turns.deadlines.silence.rests[rests] = False
+                turns.join_round(drive)
+                place, left = before, between
+                while left:  # the turns that the others had meanwhile
+                    left -= order[place % len(order)] != rests
+                    place += 1
+                place %= len(order)
+                others = table.asked(7)
+                assert [each for each in others if each != rests] == [
+                    each for each in (order + order)[place : place + 9] if each != rests
+                ][: len(others) - others.count(rests)], (rests, before, between)
+                behind = table.asked(14)
+                assert behind[:7] == behind[7:] and behind.count(rests) == 2 * order.count(rests)
+
+
+def test_a_stop_in_the_midst_of_another_layout_is_heard_and_goes_first():
+    def abandon(drive):
+        drive.stop()
+        assert table.turns.at(4) is None
+        assert table.asked(2) == [1, 5]  # an interrupt comes in, and does not find it
+
+    table = Table(*range(1, 9), abandon=abandon)
+    table.asked(8)
+    drive = table.drives[4]
+    drive.lose()
+    table.drives[5].want_turns(True)
+    assert table.asked(1) == [5]
+    layout = Layout(3, 2)
+    table.turns.relayout(drive, layout)
+    assert drive.layout is layout and table.turns.at(4) is drive
+    table.silent.add(4)
+    assert table.asked(1) == [4] and table.turns.round_count == 8
+    other = Table(4)
+    try:
+        other.turns.relayout(drive, layout)
+    except ValueError as error:
+        assert str(error) == "drive 4 is not on this bus"
+    else:
+        raise AssertionError
