@@ -7,6 +7,8 @@ Control words as in USS.md 4.8 of the protocol notes: r0054 of a MICROMASTER 4.
 from master_bench import Bus
 from uss import bits, pzd
 from uss.drive import Drive
+from uss.layout import STANDARD, Layout
+from uss.receiver import OTHER_LENGTH, SILENT
 
 READY, RUNNING, FAULT = 0xFB31, 0xFB34, 0xFB78
 EXCHANGE_US = 30_000  # with room: 16 characters each way at 19200
@@ -219,3 +221,282 @@ def test_a_second_acknowledgement_has_an_edge_of_its_own():
         words.append(drive.request[11] << 8 | drive.request[12])
         drive.take(reply, 16, 0)
     assert words == [0x04FE, 0x047E, 0x04FE, 0x047E]
+
+
+# --- a drive without a line ---------------------------------------------------------------------
+
+MASK = 0x3FFFFFFF
+LOST_US = 1_000_000
+NEAR = 0x4000 // 100 * 2  # 2 %
+
+
+class Alone:
+    """A drive in contact: it is asked when the test says so, and answers what the test says."""
+
+    def __init__(self, layout=STANDARD):
+        self.drive = Drive(1, MASK, None, layout)
+        self.now = 0
+        self.exchange()
+        assert self.drive.contact and self.drive.contacts == 1
+
+    def send(self):
+        """A telegram: its control word and its setpoint."""
+        drive = self.drive
+        self.now += 20_000
+        drive.fill(self.now)
+        words = drive.request[drive.size - 1 - drive.layout.pzd_count : drive.size - 1]
+        return words[0] << 8 | words[1], words[2] << 8 | words[3]
+
+    def answer(self, zsw=READY, hiw=0):
+        reply = bytes((2, 14, 1)) + bytes(2 * self.drive.layout.pkw_words)
+        reply += bytes((zsw >> 8, zsw & 0xFF, hiw >> 8 & 0xFF, hiw & 0xFF))
+        reply += bytes(2 * self.drive.layout.pzd_words - 4 + 1)
+        self.drive.take(reply, len(reply), self.now)
+
+    def exchange(self, zsw=READY, hiw=0):
+        words = self.send()
+        self.answer(zsw, hiw)
+        return words
+
+    def runs(self, hsw=0x2000, stw=pzd.ON):
+        self.drive.start(hsw, stw)
+        assert self.exchange(RUNNING) == (stw, hsw)
+        return self.drive
+
+
+def test_how_urgent_a_telegram_is():
+    alone = Alone()
+    drive = alone.drive
+    assert drive.urgency() == 0
+    drive.want_turns(True)
+    assert drive.urgency() == 1
+    drive.lose()
+    assert drive.urgency() == 0  # it does not answer anyway
+    assert alone.exchange() == (pzd.OFF1, 0) and drive.urgency() == 1
+    drive.want_turns(False)
+    assert drive.urgency() == 0
+    for call, urgency in ((drive.hurry, 3), (drive.acknowledge, 3), (drive.stop, 3)):
+        call()
+        assert drive.urgency() == urgency
+        alone.exchange()
+        alone.exchange()
+        assert drive.urgency() == 0
+    drive.start(0x1000)
+    assert drive.urgency() == 2
+    assert alone.exchange() == (pzd.ON, 0x1000) and drive.urgency() == 0
+    drive.stop()
+    assert drive.urgency() == 4  # it was told to run, whatever it says
+    alone.exchange(RUNNING)
+    assert drive.urgency() == 0 and drive.may_run()
+    drive.stop()
+    assert drive.urgency() == 4  # it is seen to
+    alone.exchange()
+    assert not drive.may_run()
+    drive.tells_status = False
+    drive.stop()
+    assert drive.urgency() == 4 and drive.may_run()
+    alone.exchange()
+
+
+def test_a_stop_is_repeated_ten_times_to_a_drive_that_answered_and_three_times_to_another():
+    for lost, times in ((False, 10), (True, 3)):
+        alone = Alone()
+        drive = alone.drive
+        if lost:
+            drive.lose()
+            alone.send()
+            alone.exchange()
+            drive.lose()
+        drive.stop()
+        assert not drive.is_told_in_vain() or lost
+        alone.send()
+        for _ in range(times):
+            assert drive.urgency() == 1 and drive.is_told_in_vain() is lost
+            alone.send()
+        assert drive.urgency() == 0 and not drive.is_told_in_vain()
+        drive.ask_soon()
+        assert drive.urgency() == 1
+        alone.send()
+        assert drive.urgency() == 0
+        drive.stop()
+        alone.send()
+        drive.ask_soon()  # what is left of them stays
+        for _ in range(times):
+            assert drive.urgency() == 1
+            alone.send()
+        assert drive.urgency() == 0
+        drive.stop()
+        alone.send()
+        off_answers = drive.off_answers
+        alone.answer()
+        assert drive.urgency() == 0 and drive.off_answers == off_answers + 1
+
+
+def test_a_ticket_is_never_the_one_that_is_void():
+    alone = Alone()
+    drive = alone.drive
+    for ticket, void, drawn in ((0xFFFF, 0, 1), (0xFFFE, 0xFFFF, 0), (7, 8, 9), (7, 6, 8)):
+        drive.ticket, drive.void = ticket, void
+        drive.start(0)
+        assert drive.ticket == drawn and drive.is_on() and not drive.stopped_by_engine()
+        alone.exchange()
+    for hsw in (-1, 0x10000):
+        try:
+            drive.start(hsw)
+        except ValueError:
+            continue
+        raise AssertionError(hsw)
+    drive.start(0xFFFF)
+    assert alone.exchange() == (pzd.ON, 0xFFFF)
+
+
+def test_a_drive_that_stops_of_its_own_accord_is_not_told_to_run_any_more():
+    alone = Alone()
+    drive = alone.drive
+    drive.start(0x2000)
+    for _ in range(3):
+        assert alone.exchange() == (pzd.ON, 0x2000)  # it takes its time to run
+    assert not drive.ran and drive.is_on()
+    alone.exchange(RUNNING)
+    assert drive.ran and drive.is_on()
+    alone.exchange()
+    assert drive.stopped_by_engine() and not drive.is_on() and not drive.ran
+    assert drive.urgency() == 4
+    assert alone.exchange() == (pzd.OFF1, 0) and drive.urgency() == 0
+    assert drive.answered_off() and drive.stopped_by_engine()
+    for trouble in (FAULT, READY | 0x08, READY | 0x40, RUNNING | 0x08, RUNNING | 0x40):
+        drive.start(0x2000)
+        assert not drive.stopped_by_engine()
+        alone.exchange(trouble)
+        assert drive.stopped_by_engine() and alone.exchange() == (pzd.OFF1, 0), hex(trouble)
+    drive.stop()
+    assert not drive.stopped_by_engine()
+
+
+def test_a_motor_that_had_its_speed_and_stands_still_is_not_told_to_run_any_more():
+    still = NEAR // 2
+    for hsw, hiw, stopped in (
+        (0x2000, still, True),
+        (0x2000, still + 1, False),
+        (0x2000, -still, True),
+        (0x2000, -still - 1, False),
+        (0xE000, still, True),
+        (0xE000, -still - 1, False),
+    ):
+        for off, arrives in ((0, True), (NEAR, True), (-NEAR, True), (NEAR + 1, False)):
+            alone = Alone()
+            drive = alone.runs(hsw)
+            alone.exchange(RUNNING, 0)  # still on its way
+            assert drive.is_on()
+            alone.exchange(RUNNING, hsw + off)
+            alone.exchange(RUNNING, hiw)
+            assert drive.stopped_by_engine() is (stopped and arrives), (hsw, hiw, off)
+
+
+def test_a_setpoint_of_less_than_five_percent_may_mean_a_standstill():
+    least = 5 * NEAR // 2
+    for hsw, stw, counts in (
+        (least, pzd.ON, True),
+        (least - 1, pzd.ON, False),
+        (0x10000 - least, pzd.ON, True),
+        (0x10000 - least + 1, pzd.ON, False),
+        (0, pzd.ON, False),
+        (0x2000, pzd.JOG_RIGHT, False),
+    ):
+        alone = Alone()
+        alone.drive.start(hsw, stw)
+        for hiw in (hsw, 0):
+            alone.exchange(RUNNING, hiw)
+        assert alone.drive.stopped_by_engine() is counts, (hsw, stw)
+    alone = Alone()
+    drive = alone.runs(0x2000, pzd.ON_REVERSE)  # it turns the other way
+    alone.exchange(RUNNING, 0x2000)
+    alone.exchange(RUNNING, 0)
+    assert drive.is_on()
+    alone.exchange(RUNNING, -0x2000)
+    drive.hsw = 0x3000  # a new one has not arrived
+    alone.exchange(RUNNING, 0)
+    assert drive.is_on()
+    drive.turn(pzd.ON)
+    alone.exchange(RUNNING, 0x3000)
+    drive.tell_speed(0)  # HIW is something else from now on
+    drive.hsw = 0x3001
+    alone.exchange(RUNNING, 0x3001)
+    alone.exchange(RUNNING, 0)
+    assert drive.is_on()
+    for bit in (0x10, 0x20, 0x40):  # its setpoint does not count
+        alone = Alone()
+        alone.drive.control(bit, False)
+        alone.drive.start(0x2000)
+        for hiw in (0x2000, 0):
+            alone.exchange(RUNNING, hiw)
+        assert alone.drive.is_on(), hex(bit)
+
+
+def test_contact_is_lost_when_the_time_is_over_and_then_on_is_void():
+    alone = Alone()
+    drive = alone.runs()
+    answered = alone.now
+    for passed_us, contact in ((1, True), (LOST_US - 1, True), (LOST_US, False)):
+        drive.miss(SILENT, answered + passed_us, LOST_US, MASK)
+        assert drive.contact is contact
+        if contact:
+            assert drive.silent_us(answered + passed_us, MASK) == passed_us
+    assert drive.silent == 3 and drive.counters[5] == 3 and drive.status == 0x80
+    assert drive.was_running and drive.may_run() and not drive.may_rest() and not drive.is_on()
+    assert drive.stopped_by_engine() and not drive.answered_off() and drive.answered_stw == 0
+    assert drive.silent_us(answered + LOST_US + 5, MASK) == LOST_US + 5
+    drive.miss(OTHER_LENGTH, answered + LOST_US + 9, LOST_US, MASK)
+    tried = answered + LOST_US + 9
+    assert drive.silent_us(tried + 5, MASK) == 5  # since the last telegram
+    for ahead_us in (1, 90_000, 100_001):  # an interrupt was so far ahead
+        assert drive.silent_us(tried - ahead_us, MASK) == 0
+    assert drive.silent_us(tried - 100_002, MASK) > MASK // 2
+    assert drive.silent == 4 and drive.counters[2] == 1 and drive.status & 0x80
+    drive.silent = 0xFFFF
+    drive.miss(SILENT, answered + LOST_US + 9, LOST_US, MASK)
+    assert drive.silent == 0xFFFF
+    drive.counters[5] = drive.counters[0] = drive.contacts = drive.off_answers = 0xFFFF
+    drive.miss(SILENT, answered + LOST_US + 9, LOST_US, MASK)
+    alone.now = answered + LOST_US + 10
+    assert alone.exchange(RUNNING) == (pzd.OFF1, 0)
+    assert drive.counters[5] == drive.counters[0] == drive.contacts == drive.off_answers == 0
+    assert drive.contact and drive.silent == drive.status == 0 and not drive.was_running
+    assert drive.may_run() and drive.stopped_by_engine()
+    alone.exchange()
+    assert not drive.may_run() and drive.answered_off()
+    drive.lose()
+    assert not drive.was_running and drive.may_rest() and not drive.may_run()
+    drive.tells_status = False
+    alone.exchange()
+    drive.lose()
+    assert drive.was_running and not drive.may_rest()
+
+
+def test_further_words_have_their_places_and_others_are_refused():
+    alone = Alone(Layout(4, 5))
+    drive = alone.drive
+    for place in (3, 4, 5):
+        drive.put(place, 0x1111 * place)
+    alone.send()
+    assert bytes(drive.request[15:21]) == b"\x33\x33\x44\x44\x55\x55"
+    reply = bytes(11) + b"\xfb\x31\x01\x23\x0a\xaa\x0b\xbb\x0c\xcc\x00"
+    drive.take(reply, len(reply), alone.now)
+    words = [drive.word(place) for place in range(1, 6)]
+    assert words == [0xFB31, 0x0123, 0x0AAA, 0x0BBB, 0x0CCC]
+    drive.put(5, 0xFFFF)
+    drive.put(3, 0)
+    alone.send()
+    assert bytes(drive.request[15:21]) == b"\x00\x00\x44\x44\xff\xff"
+    for place, word in ((2, 0), (6, 0), (3, -1), (3, 0x10000)):
+        try:
+            drive.put(place, word)
+        except ValueError:
+            continue
+        raise AssertionError((place, word))
+    for place in (0, 6):
+        try:
+            drive.word(place)
+        except ValueError:
+            continue
+        raise AssertionError(place)
