@@ -284,6 +284,7 @@ def test_the_head_of_a_request_tells_another_master():
         (FOREIGN[:2], 0),
         (FOREIGN[:3], 1),
         (b"\x03" + FOREIGN[1:3], 1),
+        (b"\x01" + FOREIGN[1:3], 1),
         (b"\x02\x0f\x09", 1),
         (b"\x02\x02\x09", 1),
         (b"\x02\x04\x09", 2),

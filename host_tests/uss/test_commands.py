@@ -500,3 +500,43 @@ def test_further_words_have_their_places_and_others_are_refused():
         except ValueError:
             continue
         raise AssertionError(place)
+
+
+def test_commands_are_counted_in_sixteen_bits_and_go_on_when_the_count_wraps():
+    alone = Alone()
+    drive = alone.drive
+    drive.stops = drive.stops_sent = 0xFFFF
+    drive.acknowledgements = drive.acknowledged = 0xFFFF
+    drive.served = drive.urgent = 0xFFFF
+    drive.stop()
+    assert (drive.stops, drive.urgent) == (0, 0) and drive.urgency() == 3
+    assert alone.exchange() == (pzd.OFF1, 0) and drive.urgency() == 0
+    drive.acknowledge()
+    assert drive.acknowledgements == 0
+    assert alone.exchange() == (0x04FE, 0) and drive.acknowledged == 0
+    alone.runs()
+    drive.stops = drive.stops_sent = 0
+    drive.revoke()
+    assert drive.stops_sent == 0xFFFF and drive.urgency() == 4 and not drive.is_on()
+    drive.revoke()  # one stop is enough
+    assert drive.stops_sent == 0xFFFF
+    assert alone.exchange() == (pzd.OFF1, 0) and drive.urgency() == 0
+
+
+def test_each_of_many_acknowledgements_is_repeated_without_a_gap_until_it_is_confirmed():
+    alone = Alone()
+    for _ in range(5):
+        alone.drive.acknowledge()
+        for _ in range(4):
+            assert alone.send() == (0x04FE, 0)
+        alone.answer()
+        assert alone.drive.acknowledged == alone.drive.acknowledgements
+        assert [alone.exchange()[0] for _ in range(3)] == [pzd.OFF1] * 3
+    alone.drive.acknowledge()
+    alone.send()
+    alone.drive.lose()  # then it is dropped
+    assert alone.exchange() == (pzd.OFF1, 0)
+    alone.drive.acknowledge()
+    alone.runs()  # and with ON as well
+    alone.drive.stop()
+    assert [alone.exchange()[0] for _ in range(3)] == [pzd.OFF1] * 3

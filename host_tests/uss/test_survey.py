@@ -34,13 +34,14 @@ class Line:
         self.without = None  # PKE and IND of what they lack
         self.error = 0  # how they refuse it: 0, there is no such parameter
         self.told = {}  # by PKE and IND: a value that is not 50.0
+        self.silent_on = None  # PKE and IND of what they do not answer at all
         self.asked = []  # PKE and IND of each question
 
     def exchange(self, place):
         """A reply comes, and the next telegram goes out before the panel has looked at it."""
         drive = self.drives[place]
         self.now += US
-        if place in self.silent:
+        if place in self.silent or bytes(drive.request[3:7]) == self.silent_on:
             drive.miss(SILENCE, self.now, LOST_US, MASK)
         else:
             self._reply(drive, place)
@@ -607,3 +608,58 @@ def test_a_drive_that_tells_speeds_is_shown_in_percent_of_its_reference():
     assert survey.highest() == 2 * 100_00 - 1 and survey.actual is survey.scaling
     line.told[task(2000)] = bytes(4)
     assert read(line).scaling is None and not survey.complete
+
+
+def test_a_drive_that_falls_silent_twice_on_a_parameter_seems_to_lack_it():
+    line = set_up()
+    survey = line.surveys[0]
+    line.silent_on = task(719)
+    for _ in range(300):
+        if survey.complete:
+            break
+        let_pass(line, 1)
+    silences = [asked for asked in zip([b""] + line.asked, line.asked) if asked[0] != asked[1]]
+    assert [asked for _, asked in silences].count(task(719)) == 2
+    assert survey.complete and survey.values[rows.SELECTION] == 0 and not survey.unreadable
+    assert survey.scaling and line.drives[0].contact
+    let_pass(line, 60)
+    assert not survey.unchecked
+    assert 719 not in numbers(line, 400) and survey.complete  # only START asks for it again
+    survey.recheck()
+    assert 719 in numbers(line, 100) and survey.complete
+    line.silent_on = None
+    line.told[task(719)] = whole(12)
+    survey.recheck()
+    let_pass(line, 100)
+    assert survey.values[rows.SELECTION] == 12
+    line.silent_on = task(719)
+    version = survey.version
+    survey.recheck()
+    while survey.values[rows.SELECTION] == 12:
+        let_pass(line, 1)
+    let_pass(line, 1)
+    assert survey.values[rows.SELECTION] == rows.UNKNOWN  # once says nothing yet
+    assert survey.unreadable and not survey.complete and survey.version > version
+    let_pass(line, 200)
+    assert survey.values[rows.SELECTION] == 0 and survey.complete and not survey.unreadable
+
+
+def test_what_must_be_known_and_is_not_answered_leaves_the_drive_unreadable():
+    line = set_up()
+    survey = line.surveys[0]
+    line.silent_on = task(1000)
+    let_pass(line, 300)
+    assert survey.unreadable and not survey.complete and survey.scaling
+    assert survey.values[rows.SETPOINT_SOURCE] == rows.UNKNOWN
+    line.silent_on = None
+    line.drives[0].lose()
+    survey.step(line.now)
+    survey.step(line.now)
+    assert not survey.unreadable
+    let_pass(line, 40)
+    assert survey.complete
+    line.silent_on = task(1210)  # only START needs it
+    let_pass(line, 10)
+    survey.recheck()
+    let_pass(line, 200)
+    assert survey.complete and survey.values[rows.RESTART] == 0 and not survey.unreadable

@@ -124,6 +124,26 @@ def test_a_stop_is_told_when_it_is_answered_or_the_drive_is_lost_and_was_sent_it
     assert not table.drives[2].contact and table.turns.all_told()
 
 
+def test_a_lost_drive_is_told_when_it_was_sent_its_stop_often_enough_or_once_if_it_stood():
+    table = Table(1, 2, 3)
+    table.asked(3)
+    one, two = table.drives[1], table.drives[2]
+    two.start(0x1000)
+    table.asked(3)
+    assert not table.turns.all_told()  # it runs
+    table.silent.update((1, 2))
+    two.lose()
+    sent = 0
+    while not table.turns.all_told():
+        sent += table.asked(1) == [2]
+    assert sent == 11
+    one.lose()
+    assert table.turns.all_told()
+    one.stop()
+    assert not table.turns.all_told()
+    assert table.asked(1) == [1] and table.turns.all_told()
+
+
 def test_a_drive_that_does_not_answer_rests_and_comes_back():
     table = Table(1, 2, 3)
     table.silent.add(2)
