@@ -4,11 +4,13 @@
 Control words as in USS.md 4.8 of the protocol notes: r0054 of a MICROMASTER 4.
 """
 
+from array import array
+
 from master_bench import Bus
 from uss import bits, pzd
 from uss.drive import Drive
 from uss.layout import STANDARD, Layout
-from uss.receiver import OTHER_LENGTH, SILENT
+from uss.receiver import OTHER_LENGTH, SILENCE, SILENT
 
 READY, RUNNING, FAULT = 0xFB31, 0xFB34, 0xFB78
 EXCHANGE_US = 30_000  # with room: 16 characters each way at 19200
@@ -237,7 +239,7 @@ class Alone:
         self.drive = Drive(1, MASK, None, layout)
         self.now = 0
         self.exchange()
-        assert self.drive.contact and self.drive.contacts == 1
+        assert self.drive.contact and self.drive.contacts == self.drive.off_answers == 1
 
     def send(self):
         """A telegram: its control word and its setpoint."""
@@ -262,6 +264,30 @@ class Alone:
         self.drive.start(hsw, stw)
         assert self.exchange(RUNNING) == (stw, hsw)
         return self.drive
+
+
+def test_of_a_drive_that_was_never_heard_nothing_is_known_and_it_is_told_to_stop():
+    drive = Drive(7, MASK)
+    told = (drive.wanted, drive.ticket, drive.stops, drive.hsw, drive.urgent, drive.void)
+    told += (drive.acknowledgements, drive.acknowledged, drive.served, drive.stops_sent)
+    heard = (drive.zsw, drive.hiw, drive.contacts, drive.silent, drive.status, drive.insist)
+    heard += (drive.answered_stw, drive.off_answers, drive.silent_us(0, MASK))
+    assert told + heard == (0,) * 19 and drive.counters == array("H", bytes(14))
+    assert drive.answered_address == drive.address == 7 and drive.further is None
+    assert not (drive.contact or drive.was_running or drive.ran or drive.asking or drive.doubted)
+    assert drive.trouble == SILENCE and drive.near == NEAR and drive.may_rest()
+    assert not (drive.may_run() or drive.is_on() or drive.stopped_by_engine())
+    assert drive.urgency() == 0 and not drive.is_told_in_vain()
+    drive.stop()
+    assert drive.urgency() == 3 and drive.is_told_in_vain()
+    drive.fill(0)
+    assert drive.request[11:15] == b"\x04\x7e\x00\x00" and drive.urgency() == 1
+    for address in (-1, 32):
+        try:
+            Drive(address, MASK)
+        except ValueError:
+            continue
+        raise AssertionError(address)
 
 
 def test_how_urgent_a_telegram_is():

@@ -16,7 +16,7 @@ from uss.master import (
     SENDING,
     Master,
 )
-from uss.receiver import COMING
+from uss.receiver import COMING, Receiver
 from uss.timing import BAUD_RATES, Timing
 
 # --- who talks when -----------------------------------------------------------------------------
@@ -878,3 +878,27 @@ def test_the_patience_with_a_bus_that_works_outlasts_its_longest_exchange():
             least_us = master.patience_us()
             master.turns.add(2)
             assert master.patience_us() >= least_us
+
+
+def test_while_it_sends_it_wants_to_be_entered_at_the_end_or_when_the_reply_is_late():
+    window_us = Receiver(TIMING, MASK).window_us
+    left_us = TIMING.telegram_us(12)
+    for interrupts in (True, False):
+        bus = Bus()
+        bus.interrupts = interrupts  # whether the link reports the reply
+        bus.run(200_000)
+        sent = len(bus.sent)
+        while len(bus.sent) == sent:
+            bus.run(1)
+        begun = bus.sent[-1][0]
+        for passed_us in (0, 1000, left_us - TIMING.character_us, left_us - 5):
+            bus.now = begun + passed_us
+            due_us = bus.master.poll(bus.now)
+            rest_us = left_us - passed_us
+            if interrupts:
+                assert due_us == rest_us + window_us
+            else:
+                assert due_us == max(rest_us, TIMING.character_us)
+        assert bus.master.phase == SENDING
+        bus.run(60_000)
+        assert bus.drives[0].silent == 0 and bus.drives[0].contact

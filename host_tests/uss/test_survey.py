@@ -6,6 +6,7 @@ import struct
 from boards.sim.dice import Dice
 from uss.drive import Drive
 from uss.families import G120, MM3, MM4, rows
+from uss.layout import Layout
 from uss.receiver import SILENCE
 from uss.survey import Survey, centihertz, rpm, spare_jobs
 from uss.telegram_count import TelegramCount
@@ -606,6 +607,9 @@ def test_a_drive_that_tells_speeds_is_shown_in_percent_of_its_reference():
     assert survey.is_percent() and survey.complete and survey.scaling.is_of(100_00, False)
     assert (survey.lowest(), survey.own_highest(), survey.off_time_ms()) == (10_00, 200_00, 100)
     assert survey.highest() == 2 * 100_00 - 1 and survey.actual is survey.scaling
+    survey.recheck()
+    assert survey.unchecked == 4  # of the others it has none
+    assert numbers(line, 12)[:4] == [2000, 1080, 1082, 2040] and survey.unchecked == 0
     line.told[task(2000)] = bytes(4)
     assert read(line).scaling is None and not survey.complete
 
@@ -663,3 +667,24 @@ def test_what_must_be_known_and_is_not_answered_leaves_the_drive_unreadable():
     survey.recheck()
     let_pass(line, 200)
     assert survey.complete and survey.values[rows.RESTART] == 0 and not survey.unreadable
+
+
+def test_another_layout_is_asked_for_what_fits_into_it():
+    for family, in_percent in ((MM4, True), (MM3, False), (G120, True)):
+        line = set_up(family)
+        survey, drive = line.surveys[0], line.drives[0]
+        assert survey.is_percent() is (family is G120)
+        for pkw_words, percent in ((3, in_percent), (0, True), (4, family is G120)):
+            let_pass(line, 3)
+            drive.lose()
+            drive.become(Drive(1, MASK, None, Layout(pkw_words, 2)))
+            survey.step(line.now)
+            assert survey.is_percent() is percent, (family, pkw_words)
+            survey.step(line.now)
+            line.exchange(0)
+            line.asked.clear()
+            if pkw_words == 0:
+                let_pass(line, 5)
+                assert not line.asked
+            if pkw_words == 4:
+                assert len(set(numbers(line, 40))) > 3

@@ -84,6 +84,31 @@ def test_a_stop_goes_before_other_commands_and_these_before_the_list():
     assert table.asked(4) == [2, 3, 1, 2]
 
 
+def test_of_equal_calls_the_one_behind_the_last_goes_first():
+    table = Table(0, 1, 2, 31)
+    table.asked(4)
+    for last, order in ((2, [1, 2, 31, 0]), (31, [31, 0, 1, 2])):
+        for drive in table.turns.drives:
+            drive.stop()
+        assert table.asked(4) == order
+        table.drives[last].stop()
+        assert table.asked(1) == [last], last
+    for drive in table.turns.drives:
+        drive.stop()
+    assert table.asked(4) == [0, 1, 2, 31]
+
+
+def test_an_on_that_is_taken_back_goes_ahead_of_the_list():
+    table = Table(1, 2, 3, 4)
+    table.asked(4)
+    table.drives[3].start(0x1000)
+    table.asked(1)
+    table.drives[3].revoke()
+    assert table.turns.has_command() and table.asked(2) == [3, 1]
+    table.drives[3].revoke()  # it is off already
+    assert not table.turns.has_command() and table.asked(2) == [2, 3]
+
+
 def test_what_nobody_answered_is_repeated_unless_the_drive_was_removed():
     table = Table(1, 2, 3)
     table.asked(1)
@@ -207,6 +232,19 @@ def test_a_drive_that_wants_more_gets_every_second_turn_or_every_fourth():
     assert table.asked(12) == [8, 1, 2, 3, 8, 4, 5, 6, 8, 7, 8, 1]
     table.drives[8].want_turns(False)
     assert table.asked(9) == [2, 3, 4, 5, 6, 7, 8, 1, 2]
+
+
+def test_a_drive_that_wants_more_is_not_forgotten_behind_a_repeat_or_a_foreseen_turn():
+    table = eight()
+    assert not table.turns.is_called()
+    table.drives[5].want_turns(True)
+    table.turns.repeat(table.drives[8])
+    assert table.turns.is_called() and table.asked(4) == [8, 5, 1, 5]
+    assert not table.turns.is_called()
+    table = eight()
+    assert table.turns.foresee(0) is table.drives[1]
+    table.drives[5].want_turns(True)
+    assert table.asked(4) == [1, 5, 2, 5] and not table.turns.is_called()
 
 
 def foreseen(table, count):
