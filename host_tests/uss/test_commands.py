@@ -9,8 +9,9 @@ from array import array
 from master_bench import Bus
 from uss import bits, pzd
 from uss.drive import Drive
+from uss.fast import frame
 from uss.layout import STANDARD, Layout
-from uss.receiver import OTHER_LENGTH, SILENCE, SILENT
+from uss.receiver import OTHER_LENGTH, SILENCE, SILENT, TROUBLES
 
 READY, RUNNING, FAULT = 0xFB31, 0xFB34, 0xFB78
 EXCHANGE_US = 30_000  # with room: 16 characters each way at 19200
@@ -246,13 +247,13 @@ class Alone:
         drive = self.drive
         self.now += 20_000
         drive.fill(self.now)
-        words = drive.request[drive.size - 1 - drive.layout.pzd_count : drive.size - 1]
-        return words[0] << 8 | words[1], words[2] << 8 | words[3]
+        words = drive.request[drive.size - 1 - 2 * drive.layout.pzd_words : drive.size - 1]
+        return words[0] << 8 | words[1], words[2] << 8 | words[3] if len(words) > 2 else 0
 
     def answer(self, zsw=READY, hiw=0):
         reply = bytes((2, 14, 1)) + bytes(2 * self.drive.layout.pkw_words)
-        reply += bytes((zsw >> 8, zsw & 0xFF, hiw >> 8 & 0xFF, hiw & 0xFF))
-        reply += bytes(2 * self.drive.layout.pzd_words - 4 + 1)
+        words = bytes((zsw >> 8, zsw & 0xFF, hiw >> 8 & 0xFF, hiw & 0xFF)) + bytes(32)
+        reply += words[: 2 * self.drive.layout.pzd_words + 1]
         self.drive.take(reply, len(reply), self.now)
 
     def exchange(self, zsw=READY, hiw=0):
@@ -272,6 +273,7 @@ def test_of_a_drive_that_was_never_heard_nothing_is_known_and_it_is_told_to_stop
     told += (drive.acknowledgements, drive.acknowledged, drive.served, drive.stops_sent)
     heard = (drive.zsw, drive.hiw, drive.contacts, drive.silent, drive.status, drive.insist)
     heard += (drive.answered_stw, drive.off_answers, drive.silent_us(0, MASK))
+    assert drive.silent_us(5, MASK) == 5
     assert told + heard == (0,) * 19 and drive.counters == array("H", bytes(14))
     assert drive.answered_address == drive.address == 7 and drive.further is None
     assert not (drive.contact or drive.was_running or drive.ran or drive.asking or drive.doubted)
@@ -566,3 +568,64 @@ def test_each_of_many_acknowledgements_is_repeated_without_a_gap_until_it_is_con
     alone.runs()  # and with ON as well
     alone.drive.stop()
     assert [alone.exchange()[0] for _ in range(3)] == [pzd.OFF1] * 3
+
+
+def test_a_foreseen_telegram_has_the_setpoint_as_it_is_then_and_counts_when_it_is_sent():
+    for layout in (STANDARD, Layout(4, 5), Layout(0, 2), Layout(0, 1)):
+        alone = Alone(layout)
+        drive = alone.drive
+        drive.start(0x2000)
+        alone.exchange(RUNNING)
+        telegram = bytearray(len(drive.request))
+        assert drive.foresee(telegram, False) is None  # it is not whole
+        frame(drive.request, drive.size, 1)
+        drive.sealed = True
+        assert drive.foresee(telegram, False) is drive.request
+        at = drive.size + 1 - 2 * layout.pzd_words
+        for hsw in (0x2001, 0x1FFF, 0x3412, 0x3411, 0xFFFF, 0xF000):
+            before = bytes(drive.request)
+            whole = bytearray(before[: drive.size])
+            if layout.pzd_words > 1:
+                whole[at], whole[at + 1] = hsw >> 8, hsw & 0xFF
+                whole[-1] = 0
+                for character in whole[:-1]:
+                    whole[-1] ^= character
+            drive.hsw = hsw
+            for _ in range(2):
+                assert drive.foresee(telegram, False) is telegram, hex(hsw)
+                assert telegram[: drive.size] == whole and drive.request == before
+            drive.follow(telegram, alone.now)
+            assert drive.request[: drive.size] == whole
+            if layout.pzd_words > 1:
+                assert drive.foresee(telegram, False) is drive.request
+                alone.answer(RUNNING, hsw)
+        if layout.pzd_words > 1:
+            alone.answer(RUNNING, 0)  # it had this speed, and stands
+            assert drive.stopped_by_engine() and drive.foresee(telegram, False) is None
+        drive.stop()
+        alone.exchange()
+        alone.exchange()
+        frame(drive.request, drive.size, 1)
+        drive.sealed = True
+        drive.hsw = 0x1234  # of no meaning with OFF
+        assert drive.foresee(telegram, False) is drive.request
+        drive.follow(bytes(drive.request), alone.now)
+        drive.address = 2
+        assert drive.foresee(telegram, False) is None
+
+
+def test_the_trouble_that_is_told_changes_when_another_has_outweighed_it():
+    alone = Alone()
+    drive = alone.drive
+    for same, others in ((1, 2), (2, 3), (3, 3), (9, 3)):
+        alone.exchange()
+        for _ in range(same):
+            drive.miss(SILENT, alone.now, LOST_US, MASK)
+        for _ in range(others):
+            drive.miss(OTHER_LENGTH, alone.now, LOST_US, MASK)
+            assert drive.trouble == SILENCE, (same, others)
+        drive.miss(OTHER_LENGTH, alone.now, LOST_US, MASK)
+        assert drive.trouble == TROUBLES[OTHER_LENGTH] != SILENCE, (same, others)
+        alone.exchange()
+        drive.miss(SILENT, alone.now, LOST_US, MASK)  # after a reply it begins anew
+        assert drive.trouble == SILENCE

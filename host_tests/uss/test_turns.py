@@ -435,3 +435,27 @@ def test_a_stop_in_the_midst_of_another_layout_is_heard_and_goes_first():
         assert str(error) == "drive 4 is not on this bus"
     else:
         raise AssertionError
+
+
+def test_a_layout_that_comes_too_late_or_to_nothing_leaves_the_drive_in_its_place():
+    for error in (None, MemoryError):
+
+        def abandon(drive, error=error):
+            assert table.turns.round_count == 2
+            if error:
+                raise error
+            drive.contact = True  # it has answered
+
+        table = Table(1, 2, 3, abandon=abandon)
+        table.asked(3)
+        drive = table.drives[2]
+        drive.lose()
+        before = drive.layout
+        try:
+            table.turns.relayout(drive, Layout(3, 2))
+        except (ValueError, MemoryError):
+            pass
+        else:
+            raise AssertionError(error)
+        assert drive.layout is before and table.turns.at(2) is drive
+        assert table.asked(3) == [1, 2, 3] and table.turns.round_count == 3
