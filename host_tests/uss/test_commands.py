@@ -614,6 +614,17 @@ def test_a_foreseen_telegram_has_the_setpoint_as_it_is_then_and_counts_when_it_i
         assert drive.foresee(telegram, False) is None
 
 
+def test_what_has_no_process_data_tells_nothing_of_the_motor():
+    drive = Drive(1, MASK, None, Layout(4, 0))
+    drive.take(bytes((2, 10, 1)) + bytes(8) + b"\xff\xff", 12, 0)
+    assert drive.contact and drive.zsw == drive.hiw == 0 and not drive.may_run()
+    try:
+        drive.start(0)
+    except ValueError:
+        return
+    raise AssertionError
+
+
 def test_the_trouble_that_is_told_changes_when_another_has_outweighed_it():
     alone = Alone()
     drive = alone.drive

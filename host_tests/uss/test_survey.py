@@ -69,7 +69,13 @@ class Line:
             if bytes(drive.request[3:7]) == self.without:
                 net[3] |= 0x70
                 net[7:11] = struct.pack(">HH", 0, self.error)
-        drive.take(net, 16, self.now)
+        pkw_words = drive.layout.pkw_words
+        if pkw_words == 3:
+            net = net[:7] + net[9:]  # it answers with the low word
+            net[3] ^= 0x30 if net[3] >> 4 == 2 else 0
+        elif not pkw_words:
+            net = net[:3] + net[11:]
+        drive.take(net, len(net), self.now)
 
 
 def test_frequencies_are_what_a_floating_point_number_says():
@@ -688,5 +694,25 @@ def test_another_layout_is_asked_for_what_fits_into_it():
             if pkw_words == 0:
                 let_pass(line, 5)
                 assert not line.asked
+                assert survey.complete and survey.scaling.is_of(100_00, False)
             if pkw_words == 4:
                 assert len(set(numbers(line, 40))) > 3
+
+
+def test_in_three_words_a_drive_is_shown_in_percent_whatever_data_set_is_active():
+    line = set_up()
+    survey, drive = line.surveys[0], line.drives[0]
+    drive.lose()
+    drive.become(Drive(1, MASK, None, Layout(3, 2)))
+    survey.step(line.now)
+    line.exchange(0)
+    assert read(line).complete and survey.scaling.is_of(100_00, False)
+    line.asked.clear()
+    asked = numbers(line, 400)
+    assert 719 in asked and not {2000, 1080, 1082, 840, 1070, 2019} & set(asked), asked
+    for number in (700, 1000, 719):
+        line.told[task(number, 1)] = line.told[task(number)]
+    line.told[task(50)] = whole(1)
+    assert read(line).complete and survey.scaling.is_of(100_00, False)
+    line.told[task(2009)] = whole(1)  # Hertz, as if it told them
+    assert not read(line).complete and survey.scaling is None and survey.unreadable
