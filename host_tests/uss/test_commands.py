@@ -255,6 +255,7 @@ class Alone:
         words = bytes((zsw >> 8, zsw & 0xFF, hiw >> 8 & 0xFF, hiw & 0xFF)) + bytes(32)
         reply += words[: 2 * self.drive.layout.pzd_words + 1]
         self.drive.take(reply, len(reply), self.now)
+        assert self.drive.answered_address == 1
 
     def exchange(self, zsw=READY, hiw=0):
         words = self.send()
@@ -284,6 +285,10 @@ def test_of_a_drive_that_was_never_heard_nothing_is_known_and_it_is_told_to_stop
     assert drive.urgency() == 3 and drive.is_told_in_vain()
     drive.fill(0)
     assert drive.request[11:15] == b"\x04\x7e\x00\x00" and drive.urgency() == 1
+    drive.move(9)
+    assert drive.address == 9 and drive.answered_address == 7
+    drive.take(bytes((2, 14, 9)) + bytes(13), 16, 0)
+    assert drive.answered_address == 9
     for address in (-1, 32):
         try:
             Drive(address, MASK)
@@ -612,6 +617,25 @@ def test_a_foreseen_telegram_has_the_setpoint_as_it_is_then_and_counts_when_it_i
         drive.follow(bytes(drive.request), alone.now)
         drive.address = 2
         assert drive.foresee(telegram, False) is None
+
+
+def test_a_new_layout_is_filled_with_what_is_wanted_and_the_further_words_of_both():
+    alone = Alone(Layout(4, 5))
+    drive = alone.drive
+    for place in (3, 4, 5):
+        drive.put(place, 0x1111 * place)
+    alone.exchange()
+    drive.miss(SILENT, alone.now, LOST_US, MASK)
+    drive.sealed = True
+    drive.become(Drive(1, MASK, None, Layout(3, 4)))
+    assert not drive.sealed and drive.silent == drive.status == 0 and drive.size == 3 + 14 + 1
+    alone.exchange()
+    assert bytes(drive.request[9:17]) == b"\x04\x7e\x00\x00\x33\x33\x44\x44"
+    drive.become(Drive(1, MASK, None, Layout(0, 6)))
+    alone.exchange()
+    assert bytes(drive.request[3:15]) == b"\x04\x7e\0\0\x33\x33\x44\x44\0\0\0\0"
+    drive.become(Drive(1, MASK))
+    assert alone.exchange() == (pzd.OFF1, 0) and drive.further is None
 
 
 def test_what_has_no_process_data_tells_nothing_of_the_motor():

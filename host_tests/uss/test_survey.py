@@ -35,6 +35,7 @@ class Line:
         self.without = None  # PKE and IND of what they lack
         self.error = 0  # how they refuse it: 0, there is no such parameter
         self.told = {}  # by PKE and IND: a value that is not 50.0
+        self.works_on = None  # PKE and IND of what they never have an answer to
         self.silent_on = None  # PKE and IND of what they do not answer at all
         self.asked = []  # PKE and IND of each question
 
@@ -69,6 +70,8 @@ class Line:
             if bytes(drive.request[3:7]) == self.without:
                 net[3] |= 0x70
                 net[7:11] = struct.pack(">HH", 0, self.error)
+            if bytes(drive.request[3:7]) == self.works_on:
+                net[3:11] = bytes(8)
         pkw_words = drive.layout.pkw_words
         if pkw_words == 3:
             net = net[:7] + net[9:]  # it answers with the low word
@@ -549,6 +552,10 @@ def test_what_is_absent_has_its_default_and_is_nothing_new_when_it_is_absent_aga
     version = read(line).version
     assert survey.complete and survey.wrong is rows.NOTHING_WRONG and not survey.unreadable
     assert read(line).version == version
+    for line.error in (3, 1, 17, 102, 0):
+        assert read(line).complete is (line.error in (0, 3)), line.error
+        assert survey.unreadable is not survey.complete and survey.scaling
+    version = survey.version
     line.without = task(2009)
     for line.error in (0, 102):
         assert not read(line).complete and survey.scaling is None and survey.unreadable
@@ -716,3 +723,31 @@ def test_in_three_words_a_drive_is_shown_in_percent_whatever_data_set_is_active(
     assert read(line).complete and survey.scaling.is_of(100_00, False)
     line.told[task(2009)] = whole(1)  # Hertz, as if it told them
     assert not read(line).complete and survey.scaling is None and survey.unreadable
+
+
+def test_what_the_drive_works_on_for_too_long_is_unknown_until_it_is_read_again():
+    line = set_up()
+    survey = read(line)
+    survey.count_anew()
+    for number, row in ((719, rows.SELECTION), (1000, rows.SETPOINT_SOURCE), (2024, None)):
+        line.asked.clear()
+        survey.recheck()
+        while task(number) not in line.asked:
+            let_pass(line, 1)
+        line.works_on = task(number)
+        before = survey.values[rows.COUNTER]
+        for _ in range(400):
+            if not survey.complete:
+                break
+            let_pass(line, 1)
+        assert survey.complete is (row is None) and not survey.unreadable, number
+        if row is not None:
+            assert survey.values[row] == rows.UNKNOWN and survey.scaling
+        assert survey.values[rows.COUNTER] == before and survey.count.is_told
+        line.works_on = None
+        let_pass(line, 100)
+        assert survey.complete and survey.scaling and survey.count.is_told
+    line.without = task(719)
+    assert read(line).count.is_told  # that lacks something else
+    line.without = R2024
+    assert not read(line).count.is_told and survey.complete

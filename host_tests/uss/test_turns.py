@@ -328,6 +328,18 @@ def test_stops_go_before_other_commands_and_those_in_vain_leave_room_for_who_wou
     assert set(asked[:3]) == {6, 7, 8} and asked[3] == 2, asked
 
 
+def test_a_stop_to_a_drive_in_contact_waits_for_none_that_would_be_late():
+    table = eight(6, 7, 8)
+    table.drives[6].stop()
+    for address in (1, 2, 4):
+        table.drives[address].press()
+    assert table.asked(1) == [6]  # in vain: now those have their turns,
+    table.drives[3].stop()
+    assert table.asked(1) == [3]  # but not before this one
+    table.drives[7].stop()
+    assert table.asked(4) == [1, 2, 4, 7]
+
+
 def test_a_drive_that_trips_soon_has_its_turn_in_time_in_a_long_list():
     table = Table(*range(1, 32))
     table.asked(31)
