@@ -664,3 +664,15 @@ def test_the_trouble_that_is_told_changes_when_another_has_outweighed_it():
         alone.exchange()
         drive.miss(SILENT, alone.now, LOST_US, MASK)  # after a reply it begins anew
         assert drive.trouble == SILENCE
+
+
+def test_each_finding_has_its_counter_and_its_bit_of_the_error_status_word():
+    """Specification A-5.2.3; a telegram that is garbled counts as one of a wrong length."""
+    findings = ((1, 1, 0x08), (2, 2, 0x40), (3, 3, 0x10), (4, 4, 0x08), (5, 5, 0x80))
+    for finding, row, bit in findings + ((6, 6, 0x20), (7, 2, 0x40)):
+        alone = Alone()
+        alone.drive.miss(finding, alone.now, LOST_US, MASK)
+        assert alone.drive.status == bit, finding
+        counters = [1, 0, 0, 0, 0, 0, 0]
+        counters[row] += 1
+        assert list(alone.drive.counters) == counters, finding

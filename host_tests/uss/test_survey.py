@@ -659,6 +659,14 @@ def test_a_drive_that_falls_silent_twice_on_a_parameter_seems_to_lack_it():
     assert survey.unreadable and not survey.complete and survey.version > version
     let_pass(line, 200)
     assert survey.values[rows.SELECTION] == 0 and survey.complete and not survey.unreadable
+    line.drives[0].lose()
+    survey.step(line.now)
+    line.exchange(0)
+    was_unreadable = False
+    while not survey.complete:
+        let_pass(line, 1)
+        was_unreadable = was_unreadable or survey.unreadable
+    assert was_unreadable and survey.values[rows.SELECTION] == 0  # twice again
 
 
 def test_what_must_be_known_and_is_not_answered_leaves_the_drive_unreadable():
@@ -709,9 +717,11 @@ def test_another_layout_is_asked_for_what_fits_into_it():
 def test_in_three_words_a_drive_is_shown_in_percent_whatever_data_set_is_active():
     line = set_up()
     survey, drive = line.surveys[0], line.drives[0]
+    assert read(line).complete
     drive.lose()
     drive.become(Drive(1, MASK, None, Layout(3, 2)))
     survey.step(line.now)
+    assert not survey.complete and survey.scaling is None and max(survey.values) == 0
     line.exchange(0)
     assert read(line).complete and survey.scaling.is_of(100_00, False)
     line.asked.clear()

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 """Whose turn it is, without a line, a link or a master: `choose` is asked, and answers."""
 
-from uss.layout import Layout
+from uss.layout import VARIABLE, Layout
 from uss.outside import Mirror
 from uss.receiver import SILENT
 from uss.timing import Timing
@@ -211,6 +211,12 @@ def asked_of_pressed(table, pressed, count):
 def test_two_drives_that_would_be_late_go_before_each_turn_of_the_list():
     assert asked_of_pressed(eight(), (5, 6, 7, 8), 8) == [5, 6, 1, 7, 8, 2, 3, 4]
     assert asked_of_pressed(eight(), (5,), 4) == [5, 1, 2, 3]
+    table, asked = eight(), []
+    for _ in range(9):
+        for address in (5, 6, 7, 8):  # they are always late, and have equal turns
+            table.drives[address].press()
+        asked += table.asked(1)
+    assert asked == [5, 6, 1, 7, 8, 2, 5, 6, 3]
     table = eight()
     table.drives[4].press(1)  # at rest: behind one that may run
     assert asked_of_pressed(table, (7,), 4) == [7, 4, 1, 2]
@@ -296,8 +302,9 @@ def test_who_was_foreseen_keeps_the_turn_behind_what_is_more_urgent():
     assert table.asked(3) == [8, 5, 6]
     assert turns.foresee(0) is drives[7]
     turns.remove(drives[8])
-    assert turns.foresee(0) is drives[7]
+    assert turns.foresee(0) is drives[7] and not turns.is_called()
     turns.remove(drives[7])
+    assert turns.is_called()  # what was made ready is perhaps for it
     assert turns.foresee(0) is drives[1]
     assert table.asked(3) == [1, 2, 3]
     turns.cycle_us = 1_000_000
@@ -383,6 +390,7 @@ def test_who_called_and_is_gone_or_wants_no_more_is_forgotten_and_the_others_are
     for address in range(1, 7):
         table.turns.remove(table.drives[address])
     table.drives[8].stop()
+    table.turns.remove(table.drives[7])  # no other call is lost by it
     assert table.asked(1) == [8]
     table = eight()
     for address in range(1, 7):
@@ -471,3 +479,23 @@ def test_a_layout_that_comes_too_late_or_to_nothing_leaves_the_drive_in_its_plac
             raise AssertionError(error)
         assert drive.layout is before and table.turns.at(2) is drive
         assert table.asked(3) == [1, 2, 3] and table.turns.round_count == 3
+
+
+def test_the_longest_exchange_is_that_of_the_largest_layout_that_is_left():
+    turns = Table().turns
+    assert turns.longest_exchange_us == turns.longest_cycle_us() == 0
+    small, large = Layout(3, 2), Layout(4, 16)
+    one = turns.add(1, small)
+    assert turns.longest_exchange_us == turns.longest_cycle_us([one]) > 0
+    two = turns.add(2, large)
+    three = turns.add(3, Layout(3, 2))
+    turns.add(3)
+    assert turns.longest_exchange_us == turns.longest_cycle_us([two])
+    assert turns.longest_cycle_us() == turns.longest_cycle_us([one, two, three, three])
+    turns.remove(two)
+    assert turns.longest_exchange_us == turns.longest_cycle_us([one])
+    turns.relayout(one, large)
+    assert turns.longest_exchange_us == turns.longest_cycle_us([one])
+    fixed_us = turns.longest_exchange_us
+    turns.add(4, Layout(VARIABLE, 2))  # its reply may have any length
+    assert turns.longest_exchange_us > fixed_us + 200 * turns.timing.character_us
