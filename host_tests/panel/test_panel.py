@@ -515,3 +515,72 @@ class Counted:
 
     def show(self, _picture):
         self._done.append("show")
+
+
+# --- the time of a step --------------------------------------------------------------------------
+
+
+class ByItself:
+    """A panel whose clock and line are those of the test: when its step began, how late it is now,
+    and until when nothing disturbs."""
+
+    def __init__(self, now_us=0):
+        self.panel = panel().app.panel
+        self.now_us = now_us
+        self.free_until_us = 0
+        self.deadlines = self.panel.bus.deadlines
+        self.panel.board.clock = self.panel.bus = self
+
+    def ticks_us(self):
+        return self.now_us & self.panel.mask
+
+    def is_undisturbed(self, until_us):
+        return until_us <= self.free_until_us
+
+    def begin(self, taken_us, now_ms=0):
+        """A step has begun, so long ago."""
+        self.panel.step(0, now_ms, self.now_us - taken_us & self.panel.mask)
+
+    def tries(self, count):
+        """How often what takes long was put off, each time it was asked for, until it began."""
+        put_off = []
+        for _ in range(count):
+            put_off.append(0)
+            while not self.panel.has_time():
+                put_off[-1] += 1
+                assert put_off[-1] < 50
+        return put_off
+
+
+def test_what_takes_long_waits_for_a_telegram_and_then_for_a_step_that_has_just_begun():
+    alone = ByItself()
+    alone.begin(799)
+    alone.free_until_us = 2_000  # so long it takes
+    assert alone.tries(2) == [0, 0]
+    alone.free_until_us = 1_999
+    assert alone.tries(2) == [7, 7]
+    alone.begin(800)  # interrupted already
+    alone.free_until_us = 9_999
+    assert alone.tries(2) == [15, 15]
+
+
+def test_how_long_a_step_has_taken_is_told_by_a_clock_that_begins_anew():
+    for now_us in (5_000, 300):
+        alone = ByItself(now_us)
+        alone.begin(500)
+        assert alone.panel.has_taken(500) and not alone.panel.has_taken(501)
+    alone.now_us = alone.panel.mask
+    alone.begin(0)
+    alone.free_until_us = 99  # of the next period
+    assert alone.panel.is_undisturbed(100) and not alone.panel.is_undisturbed(101)
+
+
+def test_what_is_said_stands_for_three_seconds():
+    alone = ByItself()
+    mask = alone.panel.mask
+    for said_ms in (20_000, mask - 500):
+        alone.panel.say(said_ms, b"SO IT IS")
+        for ms, stands in ((0, True), (2_999, True), (3_000, False)):
+            for _ in range(8):  # one thing in each step
+                alone.begin(0, said_ms + ms & mask)
+            assert (alone.panel.message is not None) == stands, ms

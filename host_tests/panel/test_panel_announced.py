@@ -970,6 +970,12 @@ def test_what_came_late_is_made_up_for():
         teller = Teller(step_ms=step_ms)
         teller.said(30_000)
         assert teller.announcer.page_turns == turns, (step_ms, teller.announcer.page_turns)
+    teller = Teller()  # the first turn is over a second and a half after the first picture
+    turns = []
+    for ms in (1_500, 50, 1_450, 50):
+        teller.said(ms)
+        turns.append(teller.announcer.page_turns)
+    assert turns == [0, 1, 1, 2], turns
 
 
 def test_a_page_that_has_come_has_a_turn_at_once_but_not_again_and_again():
@@ -1047,10 +1053,14 @@ def test_what_its_page_tells_is_not_said_of_the_drive_shown():
     for trouble, alone, _ in TROUBLES[2:6]:
         teller.told = False
         shown.trouble(**trouble)
-        row = alone.replace("A3", "A1")
-        is_said = "RUN," not in alone
-        assert (row in rows_said(teller, 4_000)) == is_said, trouble
+        rows = [] if "RUN," in alone else [alone.replace("A3", "A1")] * 2
+        assert rows_said(teller, 4_000)[:2] == rows, trouble
         shown.trouble(**{name: getattr(Told, name) for name in trouble})
+    # What was changed matters as long as it is on and runs.
+    for is_on, zsw in ((True, 0), (False, pzd.ZSW_RUNNING)):
+        shown.trouble(is_on=lambda on=is_on: on, zsw=zsw, remark=texts.RUNS_LONG)
+        assert rows_said(teller, 4_000) == [], is_on
+    shown.trouble(is_on=shown.runs, zsw=0, remark=texts.NOTHING)
     shown.trouble(notice=texts.LINE_FAILED, phase=ASKING)  # the question says why
     assert rows_said(teller, 4_000) == []
     shown.trouble(phase=JOGGING)  # which acknowledges nothing
@@ -1067,6 +1077,9 @@ def test_what_its_page_tells_is_not_said_of_the_drive_shown():
 
 def test_stop_has_acknowledged_a_drive_that_was_never_heard():
     assert rows_said(Teller(Told(3, contacts=0, absence_known=True)), 5_000) == []
+    # Nor is one that has not been silent for long yet, or that was in contact before.
+    assert rows_said(Teller(Told(3, contacts=0, is_unheard=lambda: False)), 5_000) == []
+    assert rows_said(Teller(Told(3, is_unheard=lambda: True)), 5_000) == []
 
 
 def test_a_fault_counts_as_shown_as_long_as_it_stands_there():
