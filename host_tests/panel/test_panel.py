@@ -537,6 +537,9 @@ class ByItself:
     def is_undisturbed(self, until_us):
         return until_us <= self.free_until_us
 
+    def is_line_in_use(self):
+        return False
+
     def begin(self, taken_us, now_ms=0):
         """A step has begun, so long ago."""
         self.panel.step(0, now_ms, self.now_us - taken_us & self.panel.mask)
@@ -584,3 +587,56 @@ def test_what_is_said_stands_for_three_seconds():
             for _ in range(8):  # one thing in each step
                 alone.begin(0, said_ms + ms & mask)
             assert (alone.panel.message is not None) == stands, ms
+
+
+class Busy:
+    """A page that covers the home page and has something long to do, again and again."""
+
+    is_busy = True
+    modules = ()
+
+    def __init__(self, alone, work_us=0):
+        self.alone = alone
+        self.work_us = work_us  # what it does before it asks for time
+        self.put_off = self.begun = 0
+        alone.panel.cover(self)
+
+    def is_ready(self):
+        return False
+
+    def step(self, _keys, _now_ms):
+        pass
+
+    def work(self, _now_ms):
+        self.alone.now_us += self.work_us
+        if self.alone.panel.has_time():
+            self.begun += 1
+        else:
+            self.put_off += 1
+
+    def steps(self, count):
+        """What each step of the panel made of it: begun, put off, or neither."""
+        found = ""
+        for _ in range(count):
+            put_off, begun = self.put_off, self.begun
+            self.alone.begin(0)
+            found += "-" * (self.put_off - put_off) + "B" * (self.begun - begun) or "."
+        return found
+
+
+def test_what_was_put_off_has_the_next_step_that_nothing_disturbs():
+    alone = ByItself()
+    page = Busy(alone)
+    while not page.put_off:
+        page.steps(1)
+    alone.free_until_us = 2_000
+    assert page.steps(12) == "BB.....B.B.."
+    alone.free_until_us = 1_999
+    assert page.steps(36) == "...-.-.." * 3 + "...-.B.." + "...-"
+
+
+def test_what_is_too_late_again_and_again_begins_after_sixteen_times():
+    alone = ByItself()
+    page = Busy(alone, work_us=900)
+    alone.free_until_us = 1 << 29
+    assert page.steps(34) == ".." + "-" * 15 + "B" + "-" * 15 + "B"

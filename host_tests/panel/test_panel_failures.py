@@ -357,6 +357,28 @@ def test_a_start_while_the_settings_are_being_saved_is_not_lost():
     world.check()
 
 
+def test_flash_is_not_written_while_a_motor_runs_and_the_line_goes_on_meanwhile():
+    """Also where the line had paused for it already when the motor was started."""
+    world = running()
+    app, done = world.app, []
+    paused_us = world.clock.now_us
+    app.bus.pause()
+    app.panel.errand = lambda: done.append(world.drives[1].hz())
+    app.settings.accept_unsupervised(1)
+    world.run(3_000)
+    assert world.drives[1].state == "running" and not done and app.settings.dirty
+    sent_us = [at_us for at_us, _ in telegrams(world, paused_us, 1)]
+    gaps_us = [later - earlier for earlier, later in zip([paused_us] + sent_us, sent_us)]
+    assert max(gaps_us) < 200_000, gaps_us
+    world.press("STOP", 300)
+    world.run(6_000)
+    assert done == [0] and app.panel.errand is None and not app.settings.dirty
+    world.press("START")
+    world.run(2_000)
+    assert world.drives[1].state == "running"
+    world.check()
+
+
 def test_a_panel_that_the_watchdog_restarted_says_so():
     world = panel()
     assert not world.reads("WATCHDOG")
