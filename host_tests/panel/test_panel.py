@@ -640,3 +640,38 @@ def test_what_is_too_late_again_and_again_begins_after_sixteen_times():
     page = Busy(alone, work_us=900)
     alone.free_until_us = 1 << 29
     assert page.steps(34) == ".." + "-" * 15 + "B" + "-" * 15 + "B"
+
+
+def test_what_does_not_wait_any_more_leaves_no_haste_to_the_next():
+    alone = ByItself()
+    page = Busy(alone)
+    while not page.put_off:
+        page.steps(1)
+    page.is_busy = False
+    alone.free_until_us = 2_000
+    assert page.steps(8) == "........"
+    alone.free_until_us = 0
+    assert alone.tries(1) == [7]
+
+
+class Pictures:
+    """Counts the pictures that are begun, as the warning of the drive shown."""
+
+    active = False
+    begun = number = digits = 0
+
+    def step(self, _now_us):
+        self.begun += 1
+
+
+def test_a_picture_is_begun_45_ms_after_the_one_before():
+    alone = ByItself()
+    pictures = alone.panel.warning = Pictures()
+
+    def begun(ms):
+        before = pictures.begun
+        for _ in range(160):  # enough to draw it to its end
+            alone.begin(0, 50_000 + ms)
+        return pictures.begun - before
+
+    assert [begun(ms) for ms in (0, 44, 45, 89, 90, 400)] == [1, 0, 1, 0, 1, 1]
