@@ -6,9 +6,11 @@ START asks, STOP promises, and becomes of it when something fails is in the file
 """
 
 import main
+import on_demand
 import settings_file as settings
 from boards.sim.world import World
 from panel.pages import splash
+from panel.pages.table import PAGES, PARAMETER
 from panel_bench import (
     LOOP_US,
     OFF1,
@@ -652,6 +654,26 @@ def test_what_does_not_wait_any_more_leaves_no_haste_to_the_next():
     assert page.steps(8) == "........"
     alone.free_until_us = 0
     assert alone.tries(1) == [7]
+
+
+def test_a_page_comes_a_module_at_a_time_and_on_a_busy_line_every_eighth():
+    modules = PAGES[PARAMETER][2]
+    alone = ByItself()
+    on_demand.drop(*modules)
+    on_demand.flush()
+    alone.panel.turn_page(0, PARAMETER)
+
+    def come(steps):
+        before = len(on_demand.missing(modules))
+        for _ in range(steps):
+            alone.begin(0)
+        return before - len(on_demand.missing(modules))
+
+    assert len(on_demand.missing(modules)) >= 10
+    come(1)  # it has every second step
+    assert [come(14), come(2), come(14), come(2)] == [0, 1, 0, 1]
+    alone.free_until_us = 2_000
+    assert [come(2) for _ in range(6)] == [1] * 6
 
 
 class Pictures:
