@@ -425,7 +425,7 @@ def test_where_eight_are_silent_other_process_data_are_tried_in_every_ninth_turn
         bench = Search({address: (3, 2) for address in range(2, 2 + silent)})
         for address in range(2, 2 + silent):
             bench.nodes[address].plugged = False
-        bench.run(60_000_000)
+        bench.run(80_000_000)
         assert bench.mirrors(2)[: len(lengths)] == lengths, (silent, bench.mirrors(2))
 
 

@@ -33,7 +33,7 @@ class Drive:
         family: type[GENERIC],
         scale: Scale | None,
         unsupervised: bool,
-        control: bool = True,
+        control: bool,
     ) -> None: ...
     def run(
         self, hertz: float | None = None, percent: float | None = None, rpm: float | None = None
