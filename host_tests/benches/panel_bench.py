@@ -146,6 +146,13 @@ def unsupervised(*addresses):
     }
 
 
+def take_commands_elsewhere_in_second_set(drive):
+    """r0050 of a MICROMASTER 440: its second data set is active, with commands of terminals."""
+    readings = drive.readings.value
+    drive.parameters.reading = lambda *place: 1 if place[0] == 50 else readings(*place)
+    drive.write(700, 1, 2)
+
+
 def row_1(world):
     return world.lcd()[0]
 

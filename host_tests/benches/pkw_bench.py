@@ -46,6 +46,33 @@ def refused(error, act, *arguments):
     return False
 
 
+class AskedDrive:
+    """A drive, and its channel, as far as somebody asks it. It answers when it is told to."""
+
+    contact = tells_status = True
+    full = False
+    zsw = 0
+
+    def __init__(self):
+        self.channel = self
+        self.asked = []
+
+    def is_full(self):
+        return self.full
+
+    def ask(self, job):
+        job.state = pkw.PENDING
+        self.asked.append(job)
+
+    def answer(self, low=0, state=pkw.DONE):
+        """The last one that was asked."""
+        self.asked[-1].low = low
+        self.asked[-1].state = state
+
+    def numbers(self):
+        return [job.number for job in self.asked]
+
+
 class Line:
     """A channel and the telegrams that go to and fro."""
 

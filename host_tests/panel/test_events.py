@@ -10,6 +10,7 @@ from panel.menu.events import age
 from panel.reports.fault import DriveWarning, Fault
 from panel.reports.journal import EVENTS, NOBODY, Journal
 from panel_bench import row_1, row_2, wait_until_known
+from pkw_bench import AskedDrive
 from uss import pkw, pzd
 from uss.families import GENERIC, MM3, MM440, V20
 
@@ -193,29 +194,6 @@ def test_a_second_has_gone_when_a_thousand_milliseconds_have():
 # --- the number of a fault or a warning, by itself -----------------------------------------------
 
 
-class Told:
-    """A drive that is asked, as far as a report asks it. It answers when it is told to."""
-
-    contact = tells_status = True
-    full = False
-    zsw = 0
-
-    def __init__(self):
-        self.channel = self
-        self.asked = []
-
-    def is_full(self):
-        return self.full
-
-    def ask(self, job):
-        job.state = pkw.PENDING
-        self.asked.append(job)
-
-    def answer(self, low=0, state=pkw.DONE):
-        self.asked[-1].low = low
-        self.asked[-1].state = state
-
-
 def stepped(report, *times_ms):
     for now_ms in times_ms:
         report.step(now_ms * 1_000 & 0x3FFFFFF)
@@ -223,7 +201,7 @@ def stepped(report, *times_ms):
 
 
 def test_the_number_of_a_fault_is_asked_for_twice_a_second_as_long_as_it_is_there():
-    drive = Told()
+    drive = AskedDrive()
     fault = Fault(drive, 0x3FFFFFF, MM440)
     assert stepped(fault, 67_000) == (False, 0) and drive.asked == []
     drive.zsw = pzd.ZSW_FAULT
@@ -256,7 +234,7 @@ def test_the_number_of_a_fault_is_asked_for_twice_a_second_as_long_as_it_is_ther
 
 def test_a_fault_that_is_over_has_no_number_and_an_answer_about_it_does_not_count():
     for over in ({"zsw": 0}, {"contact": False}, {"tells_status": False}):
-        drive = Told()
+        drive = AskedDrive()
         drive.zsw = pzd.ZSW_FAULT
         fault = Fault(drive, 0x3FFFFFF, MM440)
         assert stepped(fault, 0) == (True, 0)
@@ -277,7 +255,7 @@ def test_a_fault_that_is_over_has_no_number_and_an_answer_about_it_does_not_coun
 
 
 def test_a_fault_was_shown_when_it_has_been_there_for_a_second():
-    drive = Told()
+    drive = AskedDrive()
     fault = Fault(drive, 0x3FFFFFF, MM440)
     fault.show(5_000)
     assert not fault.was_shown()  # it is none yet
@@ -293,7 +271,7 @@ def test_a_fault_was_shown_when_it_has_been_there_for_a_second():
 
 
 def test_a_warning_is_that_of_the_drive_that_is_shown():
-    first, second = Told(), Told()
+    first, second = AskedDrive(), AskedDrive()
     warning = DriveWarning(first, 0x3FFFFFF, MM440)
     first.zsw = pzd.ZSW_WARNING
     assert stepped(warning, 0) == (True, 0) and first.asked[0].number == 2110

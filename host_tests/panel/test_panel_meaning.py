@@ -16,6 +16,7 @@ from panel_bench import (
     running,
     settled_row_2,
     starts,
+    take_commands_elsewhere_in_second_set,
     telegrams,
     unsupervised,
     wait_until_known,
@@ -166,13 +167,9 @@ def test_nothing_is_shown_in_hertz_before_its_meaning_is_read():
 
 
 def test_a_drive_with_data_sets_is_asked_for_the_active_one():
-    """r0050 of an MM440: the second set takes its commands from elsewhere."""
     world = panel(kinds={1: {"family": mm440}})
     wait_until_known(world)
-    drive = world.drives[1]
-    readings = drive.readings.value
-    drive.parameters.reading = lambda *place: 1 if place[0] == 50 else readings(*place)
-    drive.write(700, 1, 2)
+    take_commands_elsewhere_in_second_set(world.drives[1])
     world.run(5000)
     assert settled_row_2(world) == "LOCAL        A1"
     since_us = world.clock.now_us

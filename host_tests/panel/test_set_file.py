@@ -11,6 +11,7 @@ from panel import texts
 from panel.menu.sets import words
 from panel.pages.parameter_words import NO_ANSWER
 from panel.sets import pump, saving, set_file, work, writing
+from pkw_bench import AskedDrive
 from sets_bench import made
 from uss import families, pkw
 from uss.pkw import NUMBER_MAX
@@ -293,26 +294,6 @@ def test_a_value_is_written_with_the_task_that_the_family_has_for_it():
         assert pump.reads(family, 1120, index) == (task, 1120, index), (family, index)
 
 
-class Told:
-    """A drive that is asked, and answers when it is told to."""
-
-    full = False
-
-    def __init__(self):
-        self.channel = self
-        self.asked = []
-
-    def is_full(self):
-        return self.full
-
-    def ask(self, job):
-        job.state = pkw.PENDING
-        self.asked.append(job)
-
-    def numbers(self):
-        return [job.number for job in self.asked]
-
-
 def of(*numbers):
     """Tasks about these parameters; 0: a step is over."""
     return iter([((pkw.READ, number), -number) if number else None for number in numbers])
@@ -327,7 +308,7 @@ def is_over(steps):
 
 
 def test_two_readings_are_on_their_way_and_taken_in_order():
-    drive, taken = Told(), []
+    drive, taken = AskedDrive(), []
     steps = pump.run(drive, of(1, 2, 3, 4), lambda job, tag: taken.append((job.number, tag)))
     assert not is_over(steps) and not is_over(steps) and drive.numbers() == [1, 2]
     first, second = drive.asked
@@ -344,7 +325,7 @@ def test_two_readings_are_on_their_way_and_taken_in_order():
 
 
 def test_one_write_is_on_its_way_at_a_time():
-    drive, taken = Told(), []
+    drive, taken = AskedDrive(), []
     steps = pump.run(drive, of(1, 2), lambda job, tag: taken.append(tag), 1)
     for count in (1, 2):
         assert not is_over(steps) and not is_over(steps) and len(drive.asked) == count
@@ -353,7 +334,7 @@ def test_one_write_is_on_its_way_at_a_time():
 
 
 def test_a_task_that_is_to_be_tried_again_is_asked_again():
-    drive, taken = Told(), []
+    drive, taken = AskedDrive(), []
 
     def take(job, tag):
         taken.append(tag)
@@ -367,7 +348,7 @@ def test_a_task_that_is_to_be_tried_again_is_asked_again():
 
 
 def test_what_takes_long_has_a_step_of_its_own():
-    drive, taken = Told(), []
+    drive, taken = AskedDrive(), []
     steps = pump.run(drive, of(1, 0, 2, 0, 3), lambda job, tag: taken.append(tag))
     assert not is_over(steps) and drive.numbers() == [1]
     assert not is_over(steps) and [job.number for job in drive.asked[1:]] == [2]
@@ -377,7 +358,7 @@ def test_what_takes_long_has_a_step_of_its_own():
     for job in drive.asked[1:]:
         job.state = pkw.DONE
     assert not is_over(steps) and is_over(steps) and taken == [-1, -2, -3]
-    drive = Told()
+    drive = AskedDrive()
     steps = pump.run(drive, of(1, 0, 2), lambda job, tag: taken.append(tag))
     assert not is_over(steps) and drive.numbers() == [1]
     drive.asked[0].state = pkw.DONE
@@ -386,7 +367,7 @@ def test_what_takes_long_has_a_step_of_its_own():
 
 
 def test_nothing_is_asked_nor_taken_where_there_is_no_room():
-    drive, taken = Told(), []
+    drive, taken = AskedDrive(), []
     steps = pump.run(drive, of(1, 2, 3), lambda job, tag: taken.append(tag))
     drive.full = True
     assert not is_over(steps) and drive.asked == []

@@ -2,7 +2,14 @@
 """The operator's manual, a drive that obeys somebody else: START offers to set it up."""
 
 from boards.sim.drives.families import mm3, mm440
-from panel_bench import panel, row_2, settled, starts, wait_until_known
+from panel_bench import (
+    panel,
+    row_2,
+    settled,
+    starts,
+    take_commands_elsewhere_in_second_set,
+    wait_until_known,
+)
 
 LOCAL = {700: 2, 1000: 2, 2014: 1000}  # as delivered, but for the line
 INTO_EEPROM = {"A1: P0700=5", "INTO ITS EEPROM:", "PANEL COMMANDS", "THE DRIVE THEN"}
@@ -71,9 +78,7 @@ def test_what_is_set_up_is_the_data_set_that_is_active():
     world = panel(kinds={1: {"family": mm440}})
     wait_until_known(world)
     drive = world.drives[1]
-    readings = drive.readings.value
-    drive.parameters.reading = lambda *place: 1 if place[0] == 50 else readings(*place)
-    drive.write(700, 1, 2)
+    take_commands_elsewhere_in_second_set(drive)
     world.run(5000)
     press(world, "START")
     world.run(3500)

@@ -2,8 +2,8 @@
 """Which 32-bit parameters are integers: connectors, serial numbers, voltages, fault values.
 
 The others of these families are floating-point numbers. A table has pairs: the first number of
-some, and the one behind the last. No double word between them is another in the catalogue. One
-table is for all families that are like a MICROMASTER 420. Loaded when somebody asks.
+some, and the one behind the last. Between the two the catalogue has no double word of another
+kind. One table is for all families that are like a MICROMASTER 420. Loaded when somebody asks.
 """
 
 TABLES = {  # by `integer_doubles` of a family
