@@ -23,6 +23,7 @@ _DURATION_US = const(5)  # of the telegram
 _IDLE_US = const(6)
 _MASK = const(7)
 _FIGURES = const(8)
+_REQUEST = const(9)  # of what else it needs
 
 
 class Rp2GoingOnLink(Rp2Link):
@@ -32,10 +33,9 @@ class Rp2GoingOnLink(Rp2Link):
 
     def __init__(self, uart, registers, state_machine, dma, tx_pin, driver_enable, clock, baud):
         self._figures = array("i", bytes(4 * _FIGURES))
-        self._request = b""
         self._figures[_MASK] = clock.ticks_mask
-        # What else it needs; an element of a tuple is found faster.
-        self._hands = (clock.ticks_us,)
+        # What else it needs; an element of a list is found faster.
+        self._hands = [clock.ticks_us]
         Rp2Link.__init__(
             self, uart, registers, state_machine, dma, tx_pin, driver_enable, clock, baud
         )
@@ -47,15 +47,15 @@ class Rp2GoingOnLink(Rp2Link):
 
     def instruct(self, buffer, says_nothing_new, plan, attention):
         uart = self._uart
-        self._hands = (
+        self._hands = [
             self._ticks_us, uart.any, uart.readinto, buffer, says_nothing_new, self._registers,
-            plan, attention, self._channel,
-        )  # fmt: skip
+            plan, attention, self._channel, None,
+        ]  # fmt: skip
 
     def prepare(self, request, size, buffer, count, after_us):
         figures = self._figures
         figures[_EXPECTED] = 0
-        self._request = request
+        self._hands[_REQUEST] = request
         figures[_COUNT] = count
         figures[_DURATION_US] = (count * self._sixty_four_us >> 6) + self._lead_us
         # Not the sum, as in `send`.
@@ -109,7 +109,7 @@ class Rp2GoingOnLink(Rp2Link):
                 half = figures[7] >> 1
                 registers = ptr32(hands[5])
                 if (ended_us - figures[3]) & figures[7] <= half and hands[4](
-                    reply, size, self._request, hands[6], hands[7]
+                    reply, size, hands[9], hands[6], hands[7]
                 ):
                     if registers[6] & 0x10 != 0:  # UARTFR, RXFE: else somebody goes on talking
                         words = self._next_words

@@ -10,15 +10,17 @@ def says_nothing_new(reply: ptr8, count: int, request: ptr8, plan: ptr16, attent
     if reply[0] != 0x02 or reply[1] != count - 2 or reply[2] != request[2]:
         return False
     check = 0
-    differs = 0
-    index = 0
-    while index < count:
-        character = reply[index]
-        check ^= character
-        differs |= character ^ request[index]
-        index += 1
-    if check != 0 or differs == 0:
+    index = count
+    while index:
+        index -= 1
+        check ^= reply[index]
+    if check != 0:
         return False
+    last = count - 1
+    while reply[last] == request[last]:  # an echo? Mostly the BCC differs
+        if last == 0:
+            return False
+        last -= 1
     answers = plan[0]  # plan.AK
     if answers != 0:
         answer = reply[3] >> 4
