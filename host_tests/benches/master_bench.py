@@ -80,13 +80,26 @@ class Bus:
     def run(self, us, refresh=True):
         until = self.now + us
         while self.now < until:
-            if refresh:
-                self.master.refresh(self.now & MASK)
-            wait_us = self.master.poll(self.now & MASK)
-            assert wait_us >= 1
-            if self.reply:
-                wait_us = min(wait_us, max(1, self.reply_at - self.now))
-            self.now += min(wait_us, 5_000)
+            self.now += self._step(refresh)
+
+    def run_until(self, condition):
+        """Let time pass up to the instant at which the engine makes `condition()` true."""
+        for _ in range(1_000):
+            step_us = self._step(True)
+            if condition():
+                return
+            self.now += step_us
+        raise AssertionError("it did not come so far")
+
+    def _step(self, refresh):
+        """Enter the engine; how long it is until that is due again."""
+        if refresh:
+            self.master.refresh(self.now & MASK)
+        wait_us = self.master.poll(self.now & MASK)
+        assert wait_us >= 1
+        if self.reply:
+            wait_us = min(wait_us, max(1, self.reply_at - self.now))
+        return min(wait_us, 5_000)
 
     def addresses(self, since=0):
         return [characters[2] for _, characters in self.sent[since:]]

@@ -3,7 +3,7 @@
 
 from master_bench import MASK, REPLY_DELAY_US, TIMING, Bus, parameters
 from uss import pkw, pzd
-from uss.drive import Drive
+from uss.drive import ANY, Drive
 from uss.layout import VARIABLE, Layout
 from uss.master import (
     AWAITING,
@@ -902,3 +902,264 @@ def test_while_it_sends_it_wants_to_be_entered_at_the_end_or_when_the_reply_is_l
         assert bus.master.phase == SENDING
         bus.run(60_000)
         assert bus.drives[0].silent == 0 and bus.drives[0].contact
+
+
+# --- to the microsecond -------------------------------------------------------------------------
+
+
+def at_rest(bus):
+    """An exchange is over, and the start interval has begun."""
+    bus.run_until(lambda: bus.master.phase == AWAITING)
+    bus.run_until(lambda: bus.master.phase == RESTING)
+    return bus.now
+
+
+def test_it_listens_for_100_ms_to_the_microsecond():
+    """From its first look on, or from the last character that it hears."""
+    bus = Bus()
+    bus.master.refresh(7)
+    assert bus.master.poll(7) == 100_000
+    assert bus.master.poll(40_007) == 60_000
+    bus.reply, bus.reply_at, bus.now = b"\x00", 50_000, 60_000
+    assert bus.master.poll(60_000) == 90_000
+    assert bus.master.poll(149_999) == 1 and bus.master.phase == LISTENING
+    bus.now = 150_000
+    bus.master.poll(150_000)
+    assert [at for at, _ in bus.sent] == [150_000]
+
+
+def test_the_loop_counts_as_dead_after_300_ms_to_the_microsecond():
+    """Whether the engine is entered in between or only the loop comes back."""
+    for enter in (Master.poll, Master.refresh):
+        bus = Bus()
+        bus.run(300_000)
+        master, drive = bus.master, bus.drives[0]
+        for trips in (0, 1, 2):
+            now = bus.now
+            master.refresh(now)
+            drive.start(0x1000)
+            assert drive.is_on() and master.dead_man_trips == trips
+            enter(master, now + 300_000)
+            assert drive.is_on() and master.dead_man_trips == trips
+            master.refresh(now)
+            enter(master, now + 300_001)
+            assert not drive.is_on() and master.dead_man_trips == trips + 1
+            bus.now = now + 300_001
+            bus.run(50_000)
+
+
+def test_while_the_loop_is_dead_that_is_counted_once_and_nothing_can_be_started():
+    bus = Bus()
+    bus.run(300_000)
+    for later_us in (300_001, 400_000, 500_000):
+        bus.drives[0].start(0x1000)
+        bus.master.poll(bus.now + later_us)
+        assert not bus.drives[0].is_on() and bus.master.dead_man_trips == 1
+
+
+def test_its_counters_have_16_bits():
+    bus = Bus()
+    master = bus.master
+    master.foreign = master.progress = 0xFFFF
+    bus.reply = b"\x00"
+    master.poll(0)
+    assert master.foreign == master.progress == 0
+    bus.run(300_000)
+    for _ in range(2):
+        master.progress = 0xFFFF
+        at_rest(bus)
+        assert master.progress == 0
+    master.failures = master.dead_man_trips = 0xFFFF
+    master.recover(bus.now)
+    bus.run(400_000, refresh=False)
+    assert master.failures == master.dead_man_trips == 0
+
+
+def test_a_line_that_is_never_silent_is_sent_on_after_half_a_second_to_the_microsecond():
+    bus = Bus()
+    bus.run(300_000)
+    rested_at = at_rest(bus)
+    sent = len(bus.sent)
+
+    def babble(buffer, at):
+        bus.received_at = bus.now & MASK
+        return 1
+
+    bus.receive = babble
+    for passed_us in (100, 1_000, 300_000, 499_999):
+        bus.now = rested_at + passed_us
+        bus.master.refresh(bus.now)
+        assert bus.master.poll(bus.now) == TIMING.start_interval_us
+    assert len(bus.sent) == sent
+    bus.now = rested_at + 500_000
+    bus.master.poll(bus.now)
+    assert len(bus.sent) == sent + 1
+
+
+def test_a_telegram_is_given_up_50_ms_after_it_should_have_left_to_the_microsecond():
+    bus = Bus()
+    bus.run(300_000)
+    sent = len(bus.sent)
+    bus.run_until(lambda: len(bus.sent) > sent)
+    bus.sending_us = lambda now: 1
+    begun, drive = bus.now, bus.drives[0]
+    last_us = 16 * TIMING.character_us + 50_000
+    progress = bus.master.progress
+    for passed_us in (9_000, last_us):
+        bus.now = begun + passed_us
+        bus.master.poll(bus.now)
+        assert bus.master.phase == SENDING and len(bus.sent) == sent + 1 and drive.silent == 0
+    bus.now += 1
+    bus.master.poll(bus.now)
+    assert drive.silent == 1 and drive.counters[5] == 1 and bus.master.progress == progress
+    assert bus.master.phase == SENDING and len(bus.sent) == sent + 2  # it tries again at once
+
+
+def test_a_pause_lasts_a_second_to_the_microsecond_and_is_looked_at_every_5_ms():
+    bus = Bus()
+    bus.run(300_000)
+    bus.master.pause()
+    bus.run_until(lambda: bus.master.paused)
+    began, sent = bus.now, len(bus.sent)
+    for passed_us in (0, 5_000, 200_000, 600_000, 999_999):
+        bus.now = began + passed_us
+        bus.master.refresh(bus.now)
+        assert bus.master.poll(bus.now) == 5_000 and bus.master.paused
+    assert len(bus.sent) == sent
+    bus.now = began + 1_000_000
+    bus.master.poll(bus.now)
+    assert not bus.master.paused and len(bus.sent) == sent + 1
+
+
+def test_after_an_exception_it_waits_for_the_reply_that_may_come_and_no_longer():
+    """Behind a telegram, or in the rest after it, as long as a reply may take; before the first
+    telegram two characters."""
+    reply_us = TIMING.reply_timeout_us + 32 * TIMING.character_us
+    for phase in (SENDING, AWAITING, RESTING):
+        bus = Bus()
+        bus.run(300_000)
+        bus.run_until(lambda phase=phase: bus.master.phase == phase)
+        bus.receive = lambda buffer, at: 0
+        began, sent = bus.now, len(bus.sent)
+        bus.master.recover(began)
+        assert bus.master.phase == RESTING
+        assert bus.master.poll(began) == reply_us
+        bus.now = began + reply_us - 1
+        assert bus.master.poll(bus.now) == 1 and len(bus.sent) == sent
+        bus.now += 1
+        bus.master.poll(bus.now)
+        assert len(bus.sent) == sent + 1
+
+
+def test_exceptions_count_in_a_row_until_an_exchange_is_over():
+    bus = Bus()
+    bus.run(300_000)
+    for _ in range(5):
+        for _ in range(2):
+            bus.master.recover(bus.now)
+        assert bus.drives[0].contact
+        at_rest(bus)
+    for contact in (True, True, False):
+        bus.master.recover(bus.now)
+        assert bus.drives[0].contact == contact
+
+
+def test_a_command_that_the_engine_had_taken_up_when_it_failed_is_sent_all_the_same():
+    bus = Bus((1, 2, 3, 4))
+    bus.run(600_000)
+    bus.run_until(lambda: bus.addresses()[-1] == 1)
+    attention = bus.master.turns.attention
+    bus.drives[3].stop()
+    attention[4] = attention[ANY] = 0
+    bus.master.recover(bus.now)
+    sent = len(bus.sent)
+    bus.run_until(lambda: len(bus.sent) > sent)
+    assert bus.addresses(sent) == [4]
+
+
+def test_another_master_is_shared_with_for_1000_exchanges_after_its_last_telegram():
+    bus = Bus()
+    bus.run(300_000)
+    master = bus.master
+    for begins in (7, 0xFF00):  # the counter of exchanges goes round
+        at_rest(bus)
+        master.turns.exchanges = begins
+        bus.reply, bus.reply_at = b"\x02\x0e\x07", bus.now
+        master.poll(bus.now)
+        assert master.is_line_shared()
+        for passed, shared in ((1, True), (999, True), (1_000, False)):
+            master.turns.exchanges = (begins + passed) & 0xFFFF
+            master.deadlines.looked_at = (bus.now - 4_000) & MASK
+            master.refresh(bus.now)
+            assert master.is_line_shared() == shared, (begins, passed)
+
+
+def test_the_drives_are_looked_after_every_4_ms_if_the_loop_has_time():
+    bus = Bus()
+    bus.run(300_000)
+    master, since = bus.master, bus.now
+    master.deadlines.looked_at = since
+    for passed_us, looks, looked_at in (
+        (3_999, True, since),
+        (4_000, False, since),
+        (4_000, True, since + 4_000),
+        (7_999, True, since + 4_000),
+        (8_100, True, since + 8_100),
+    ):
+        master.refresh(since + passed_us, looks)
+        assert master.deadlines.looked_at == looked_at, (passed_us, looks)
+    master.refresh(since + 12_100)  # without a word about it
+    assert master.deadlines.looked_at == since + 12_100
+
+
+def test_a_bus_that_is_off_or_closed_wants_to_be_entered_every_300_ms():
+    for leave, phase in ((Master.off, OFF), (Master.close, CLOSED)):
+        for listened_us in (50_000, 300_000):
+            bus = Bus()
+            bus.run(listened_us)
+            leave(bus.master)
+            waits = []
+            for _ in range(50):
+                waits.append(bus.master.poll(bus.now))
+                if bus.master.phase == phase:
+                    break
+                bus.now += min(waits[-1], 1_000)
+            bus.run(300_000)
+            assert bus.master.phase == phase and bus.master.poll(bus.now) == 300_000
+
+
+def test_how_long_nothing_may_move_is_half_a_second_and_50_ms_and_an_exchange():
+    bus = Bus()
+    assert bus.master.patience_us() == 550_000 + bus.master.turns.longest_exchange_us
+
+
+def test_where_nobody_is_listed_it_looks_for_somebody_every_5_ms():
+    bus = Bus(())
+    bus.run(200_000)
+    for _ in range(3):
+        progress = bus.master.progress
+        bus.master.refresh(bus.now)
+        assert bus.master.poll(bus.now) == 5_000
+        assert bus.master.progress == progress + 1
+        bus.now += 5_000
+
+
+def test_the_wait_for_the_next_round_is_as_long_as_its_cycle_time_leaves():
+    """At most 5 ms at a time, so that a command is noticed; to the microsecond at its end."""
+    bus = Bus()
+    bus.run(300_000)
+    bus.master.turns.cycle_us = 50_000
+    bus.run(200_000)
+    sent = len(bus.sent)
+    bus.run_until(lambda: len(bus.sent) > sent)
+    begun = bus.now
+    bus.run_until(lambda: bus.master.phase == RESTING)
+    bus.now = begun + 42_000
+    waits = []
+    while len(bus.sent) == sent + 1:
+        bus.master.refresh(bus.now)
+        wait_us = bus.master.poll(bus.now)
+        if len(bus.sent) == sent + 1:
+            waits.append(wait_us)
+            bus.now += wait_us
+    assert waits == [5_000, 3_000] and bus.now == begun + 50_000
