@@ -3,7 +3,8 @@
 
 from round_bench import Bench, Node, framed
 from uss import pkw, pzd
-from uss.master import CLOSED, DEAD_MAN_US, LISTEN_US, LISTENING, OFF
+from uss.leave import leave, persist
+from uss.master import CLOSED, DEAD_MAN_US, LISTEN_US, LISTENING, OFF, RESTING
 
 FOREIGN = framed(7, bytes(12))  # somebody else's request
 
@@ -113,6 +114,99 @@ def test_a_bus_that_is_given_up_waits_for_no_drive_any_more():
     bench.run(50_000)
     assert bench.master.phase == CLOSED and len(bench.sent) == sent
     assert bench.drives[1].counters[0] == good + 1  # the exchange was not cut off
+
+
+# --- leaving ------------------------------------------------------------------------------------
+
+
+class Leaving:
+    """A bus whose round takes 40 ms, and which is closed after so long; its clock; and a program
+    that does something for 1 ms each time. interrupts: at these of its steps Ctrl-C strikes."""
+
+    ticks_mask = (1 << 30) - 1
+
+    def __init__(self, closes_after_us, began=0, interrupts=()):
+        self.turns = self
+        self.phase = RESTING
+        self.calls = []  # (what, microseconds since the beginning)
+        self._us = 0
+        self._closes_after_us = closes_after_us
+        self._began = began
+        self._interrupts = interrupts
+
+    def longest_cycle_us(self):
+        return 40_000
+
+    def ticks_us(self):
+        return (self._began + self._us) & self.ticks_mask
+
+    def close(self):
+        self._do("close", 0)
+
+    def give_up(self):
+        self._do("give up", 0)
+
+    def go_on(self):
+        self._do("go on", 1_000)
+
+    def _do(self, what, duration_us):
+        self.calls.append((what, self._us))
+        self._us += duration_us
+        if self._us >= self._closes_after_us:
+            self.phase = CLOSED
+        if len(self.calls) in self._interrupts:
+            raise KeyboardInterrupt
+
+    def leave(self):
+        """Instants of each kind of call, when the program has left."""
+        leave(self, self, self.go_on)
+        return [
+            [at for what, at in self.calls if what == kind]
+            for kind in ("close", "give up", "go on")
+        ]
+
+
+def test_whoever_leaves_goes_on_until_the_bus_is_closed_and_no_longer():
+    assert Leaving(0).leave() == [[0], [], []]
+    assert Leaving(3_000).leave() == [[0], [], [0, 1_000, 2_000]]
+
+
+def test_whoever_leaves_waits_a_second_and_a_round_for_the_drives_then_as_long_for_the_bus():
+    """Also where the counter of the clock begins anew meanwhile."""
+    for began in (0, -1_500_000):
+        closed, given_up, went_on = Leaving(10_000_000, began).leave()
+        assert closed == [0]
+        assert went_on == list(range(0, 2_080_000, 1_000))
+        assert given_up == list(range(1_040_000, 2_080_000, 1_000))
+
+
+def test_ctrl_c_does_not_keep_anybody_from_leaving():
+    """It strikes in the closing, which is begun anew, in the program and in the giving up."""
+    assert Leaving(3_000, interrupts=(1, 3)).leave() == [[0, 0], [], [0, 1_000, 2_000]]
+    closed, given_up, went_on = Leaving(10_000_000, interrupts=(1_042, 1_500)).leave()
+    assert given_up[:2] == [1_040_000] * 2 and went_on[-1] == 2_079_000
+
+
+def test_what_must_not_be_cut_short_is_begun_anew_until_it_is_done():
+    strikes = [KeyboardInterrupt] * 3
+    began = []
+
+    def action(*arguments):
+        began.append(arguments)
+        if strikes:
+            raise strikes.pop()
+        return "done"
+
+    assert persist(action, 1, "two") == "done" and began == [(1, "two")] * 4
+
+    def fail():
+        raise ValueError("on purpose")
+
+    try:
+        persist(fail)
+    except ValueError:
+        return
+    raise AssertionError("another exception was kept in")
 
 
 # --- on -----------------------------------------------------------------------------------------
