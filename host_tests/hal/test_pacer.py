@@ -143,6 +143,15 @@ def test_an_interrupt_that_finds_no_stack_puts_the_engine_off():
     assert bench.pacer.put_off == 2 and bench.engine.recovered == 0
 
 
+def test_the_engine_has_2800_bytes_of_the_stack_for_itself():
+    for deep_bytes, entries in ((0, 2), (5_135, 2), (5_136, 2), (5_137, 1), (7_936, 1)):
+        bench = Bench(stack_bytes=7_936)
+        with Depth(deep_bytes):
+            bench.link.on_activity()
+        assert bench.engine.entries == entries, deep_bytes
+        assert bench.pacer.put_off == 2 - entries
+
+
 def test_an_interrupt_that_is_put_off_is_served_a_millisecond_later_though_nothing_else_is_due():
     bench = Bench(stack_bytes=STACK_BYTES)
     bench.engine.due_us = 20 * WAKE_US
@@ -206,6 +215,32 @@ def test_a_timer_that_will_come_early_enough_is_not_set_again():
     assert bench.engine.entries == 4 and bench.timer.period == 500  # nothing was due yet
     bench.let_timer_fire()
     assert bench.engine.entries == 5 and bench.timer.period == 700
+
+
+def test_a_timer_that_comes_when_it_is_wanted_is_not_set_again_and_one_a_microsecond_later_is():
+    for due_us, sets in ((700, False), (600, False), (599, True), (601, False)):
+        bench = Bench()
+        bench.timer.period = None
+        bench.clock.now += 100
+        bench.engine.due_us = due_us
+        bench.link.on_activity()
+        assert bench.timer.period == (due_us if sets else None), due_us
+    for passed_us, sets in ((699, False), (700, True)):  # it comes in this microsecond
+        bench = Bench()
+        bench.timer.period = None
+        bench.clock.now += passed_us
+        bench.link.on_activity()
+        assert bench.timer.period == (700 if sets else None), passed_us
+
+
+def test_a_timer_that_comes_too_early_is_set_to_what_is_left_to_the_microsecond():
+    for passed_us, entries, period in ((698, 1, 20), (600, 1, 100), (699, 1, 20), (700, 2, 700)):
+        bench = Bench()
+        runs = bench.pacer.runs
+        bench.clock.now += passed_us
+        bench.timer.callback(bench.timer)
+        assert (bench.engine.entries, bench.timer.period) == (entries, period), passed_us
+        assert bench.pacer.runs == runs + entries - 1
 
 
 def test_a_timer_that_would_come_too_late_is_set_again():
@@ -546,6 +581,22 @@ def test_an_exception_is_kept_in_and_the_engine_begins_anew():
     assert bench.engine.entries == 3
 
 
+def test_an_engine_that_failed_is_entered_again_after_a_millisecond():
+    bench = Bench()
+    bench.engine.due_us = 20_000
+    bench.let_timer_fire()
+
+    def fail():
+        raise ValueError("on purpose")
+
+    bench.engine.meanwhile = fail
+    bench.pacer.run()
+    bench.engine.meanwhile = None
+    assert bench.timer.period == 1_000
+    bench.let_timer_fire()
+    assert bench.engine.entries == 4 and bench.engine.recovered == 1
+
+
 def test_where_it_cannot_even_begin_anew_that_is_kept_and_the_main_loop_tries_again():
     for thrown in (ValueError, KeyboardInterrupt):
         bench = Bench()
@@ -572,13 +623,27 @@ def test_where_it_cannot_even_begin_anew_that_is_kept_and_the_main_loop_tries_ag
 
 
 def test_a_timer_that_never_comes_is_noticed_by_the_main_loop():
+    for early_us in (0, 1_000_000):  # the counter of the clock begins anew meanwhile
+        bench = Bench()
+        bench.clock.now = -early_us
+        bench.link.on_activity()
+        bench.clock.now += 700 + 50_000
+        assert bench.pacer.tend() is False and bench.engine.entries == 2
+        bench.clock.now += 1
+        assert bench.pacer.tend() is True and bench.engine.entries == 3
+        assert bench.pacer.tend() is False and bench.engine.entries == 3
+
+
+def test_the_main_loop_enters_the_engine_that_is_overtaken():
     bench = Bench()
-    bench.clock.now += 700 + 50_000 - 1
-    bench.pacer.tend()
-    assert bench.engine.entries == 1
-    bench.clock.now += 2
-    bench.pacer.tend()
-    assert bench.engine.entries == 2
+    asked = []
+    bench.engine.is_overtaken = lambda now: asked.append(now) or bench.engine.overtaken
+    bench.clock.now = 17
+    assert bench.pacer.tend() is False and bench.engine.entries == 1
+    bench.engine.overtaken = True
+    for entries in (2, 3):
+        assert bench.pacer.tend() is True and bench.engine.entries == entries
+    assert asked == [17] * 3
 
 
 def test_without_a_timer_every_turn_of_the_main_loop_enters_the_engine():
