@@ -123,6 +123,7 @@ class Bench:
     refreshing  False: the main loop hangs
     entries     instants at which the engine was entered
     went_on     how often the link has sent a telegram by itself
+    plan        by which it looks at a reply before that
     """
 
     def __init__(
@@ -203,6 +204,7 @@ class Bench:
         return reports_at
 
     def instruct(self, buffer, says_nothing_new, plan, attention):
+        self.plan = plan
         self._instructions = buffer, says_nothing_new, plan, attention
 
     def prepare(self, request, size, buffer, count, after_us):

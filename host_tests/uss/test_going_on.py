@@ -16,7 +16,9 @@ from uss.going_on import master as going_on
 from uss.going_on import plan as plans
 from uss.going_on import python
 from uss.layout import Layout
+from uss.master import DEAD_MAN_US
 from uss.outside import Mirror
+from uss.receiver import Receiver
 from uss.tasks.change_reports import Reports
 from uss.telegram import GOOD
 
@@ -194,6 +196,30 @@ def test_a_witness_sees_each_reply_that_the_link_has_gone_on_from():
         assert abs(longest_us - least_us) < 2 * LATE_US, (place, longest_us)
 
 
+def test_a_drive_that_falls_silent_is_waited_for_to_the_microsecond():
+    """Behind a telegram that the link has sent by itself; also where the clock begins anew."""
+    for foreseen in (True, False):
+        for mask in (MASK, (1 << 20) - 1):
+            bench = going([Node(1), Node(2), Node(3)], foreseen=foreseen, mask=mask)
+            while mask != MASK and bench.now & mask < mask - 30_000:
+                bench.run(10_000)
+            bench.run_until(lambda: bench.sent[-1].address == 1)
+            went_on = bench.went_on
+            bench.nodes[2].plugged = False
+            bench.run_until(lambda: bench.sent[-1].address == 3)
+            assert bench.went_on == went_on + 1
+            silent, behind = bench.sent[-2:]
+            window_us = Receiver(bench.timing, mask).window_us
+            assert behind.at - silent.at == bench.timing.telegram_us(12) + window_us
+
+
+def test_the_engine_is_entered_once_for_each_telegram_if_its_end_is_foreseen():
+    bench = going([Node(1), Node(2)])
+    entries, sent = len(bench.entries), len(bench.sent)
+    assert goes_on_always(bench, 500_000)
+    assert len(bench.entries) - entries == len(bench.sent) - sent
+
+
 def test_a_silent_drive_is_waited_for_and_the_others_go_on():
     nodes = [Node(1), Node(2), Node(3)]
     bench = going(nodes)
@@ -203,6 +229,89 @@ def test_a_silent_drive_is_waited_for_and_the_others_go_on():
     went_on = bench.went_on
     bench.run(1_000_000)
     assert bench.went_on > went_on
+
+
+# --- what the link is told -----------------------------------------------------------------------
+
+
+def told(bench):
+    """What the link is told from now on, which does not send by itself: (the telegram on the line,
+    the request, the size of its reply, the next telegram, not before)."""
+    calls = []
+
+    def prepare(request, size, buffer, count, after_us):
+        call = bench.sent[-1], bytes(request[:size]), size, bytes(buffer[:count]), after_us
+        calls.append(call)
+
+    bench.prepare = prepare
+    return calls
+
+
+def test_the_link_is_told_what_to_send_behind_which_reply_and_how_soon_that_can_be_over():
+    """After two characters of silence and the reply, less what rounding and the link may take."""
+    bench = going([Node(1), Node(2, pkw_words=3, pzd_words=4), Node(3, pkw_words=0)])
+    calls = told(bench)
+    first = len(bench.sent)
+    bench.run(300_000)
+    assert len(calls) > 6
+    sent = bench.sent[first:]
+    for on_line, request, size, following, after_us in calls:
+        characters = on_line.characters
+        assert request == characters and size == len(characters)
+        assert after_us == 1_146 - 2 - IDLE_US + size * 9_166 // 16
+        behind = sent[sent.index(on_line) + 1 :] if on_line in sent else []
+        if behind:
+            assert following == behind[0].characters
+    assert {size for _, _, size, _, _ in calls} == {8, 16, 18}
+
+
+def test_nothing_is_made_ready_unless_the_loop_was_there_lately_enough_for_a_whole_exchange():
+    bench = going([Node(1), Node(2)])
+    begin_of_a_telegram(bench)
+    calls = told(bench)
+    left_us = DEAD_MAN_US - bench.master.turns.longest_exchange_us
+    for passed_us, ready in ((0, True), (left_us, True), (left_us + 1, False)):
+        calls.clear()
+        bench.master.refresh(bench.now - passed_us, False)
+        bench.master.poll(bench.now)
+        assert bool(calls) == ready, passed_us
+        assert not bench.master.is_overtaken(bench.now)
+        bench.drives[1].stop()
+        assert bench.master.is_overtaken(bench.now) == ready
+        bench.master.turns.attention[ANY] = 0
+
+
+def test_what_a_reply_must_not_say_depends_on_what_the_drive_was_asked_and_told():
+    node = Telling(1)
+    bench = going([node])
+    drive, plan = bench.drives[1], bench.plan
+    begin_of_a_telegram(bench)
+    assert plan[plans.AK] == plan[plans.ZSW_AT] == 0
+    drive.start(0x2000)
+    bench.run(300_000)
+    begin_of_a_telegram(bench)
+    assert plan[plans.AK] == 0 and plan[plans.ZSW_AT] == 11
+    assert plan[plans.ZSW] == RUNNING & pzd.ZSW_RUNNING and plan[plans.NEAR] == 0
+    node.hiw = 0x2000
+    bench.run(300_000)
+    begin_of_a_telegram(bench)
+    assert plan[plans.NEAR] == drive.near > 0  # it has arrived
+    bench.nodes[1].deaf = True
+    ask(bench, 1, (700,))
+    bench.run(100_000)
+    begin_of_a_telegram(bench)
+    assert plan[plans.AK] == pkw.FITTING[pkw.READ] and plan[plans.ZSW_AT] == 11
+    drive.stop()
+    bench.run(100_000)
+    begin_of_a_telegram(bench)
+    assert plan[plans.ZSW_AT] == 0
+
+
+def test_the_status_word_is_looked_at_where_the_layout_has_it():
+    for pkw_words, pzd_words, at in ((4, 2, 11), (3, 4, 9), (0, 2, 3), (4, 6, 11)):
+        bench = running(Node(1, pkw_words=pkw_words, pzd_words=pzd_words))
+        begin_of_a_telegram(bench)
+        assert bench.plan[plans.ZSW_AT] == at, (pkw_words, pzd_words)
 
 
 # --- what the reply says -------------------------------------------------------------------------
@@ -626,9 +735,10 @@ def test_a_call_overtakes_what_is_ready_if_there_is_time_to_make_another_ready()
         assert not master.is_overtaken(bench.now)
         bench.drives[2].stop()
         assert master.is_overtaken(bench.now)
-        last_at = bench.sent[-1].at + 2 * timing.telegram_us(12) + timing.start_interval_us
-        assert master.is_overtaken(last_at - 1_500 - LATE_US)
-        assert not master.is_overtaken(last_at - 1_500 + LATE_US)
+        last_at = bench.sent[-1].at + timing.telegram_us(12) + timing.start_interval_us
+        last_at += 16 * timing.character_us
+        assert master.is_overtaken(last_at - 1_501)
+        assert not master.is_overtaken(last_at - 1_500)
     bench = Bench([Node(1)], idle_us=IDLE_US, goes_on=True, foreseen=True, echo=True)
     bench.contact()
     begin_of_a_telegram(bench)

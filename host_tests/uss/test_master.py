@@ -783,6 +783,24 @@ def test_a_link_that_foresees_the_end_of_sending_is_not_asked_again():
         assert bus.stws(drive.address)[-1] == pzd.ON
 
 
+def test_where_the_end_of_sending_is_foreseen_it_wants_to_be_entered_when_the_reply_is_late():
+    """Also where the counter of the clock begins anew meanwhile. Before that nothing is over."""
+    window_us = Receiver(TIMING, MASK).window_us
+    for start_at in (0, MASK - 105_000, MASK - 115_000):
+        bus = ForeseeingBus(start_at=start_at)
+        poll, waits = bus.master.poll, []
+        bus.master.poll = lambda now: waits.append(poll(now)) or waits[-1]
+        bus.silent.add(1)
+        bus.run_until(lambda: bus.sent)
+        for silent in range(3):
+            assert waits[-1] == TIMING.telegram_us(12) + window_us
+            bus.now += waits[-1] - 1
+            assert bus.master.poll(bus.now & MASK) == 1 and bus.drives[0].silent == silent
+            bus.now += 1
+            bus.master.poll(bus.now & MASK)
+            assert bus.drives[0].silent == silent + 1 and len(bus.sent) == silent + 2
+
+
 def test_a_silent_drive_costs_the_response_delay_on_such_a_link_too():
     bus = ForeseeingBus()
     bus.silent.add(1)
