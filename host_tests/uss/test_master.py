@@ -16,6 +16,7 @@ from uss.master import (
     SENDING,
     Master,
 )
+from uss.outside import Mirror
 from uss.receiver import COMING, Receiver
 from uss.timing import BAUD_RATES, Timing
 
@@ -867,7 +868,8 @@ def test_the_loop_is_undisturbed_while_a_telegram_goes_out_and_until_a_reply_may
     assert soonest_us <= bus.reply_at
     assert bus.master.is_undisturbed(bus.now & MASK)
     assert bus.master.is_undisturbed(soonest_us - 1 & MASK)
-    assert not bus.master.is_undisturbed(soonest_us & MASK)
+    for passed_us in (0, 1, 10_000):
+        assert not bus.master.is_undisturbed(soonest_us + passed_us & MASK)
 
 
 def test_a_list_that_is_emptied_ends_the_telegrams_and_nothing_else():
@@ -1181,3 +1183,38 @@ def test_the_wait_for_the_next_round_is_as_long_as_its_cycle_time_leaves():
             waits.append(wait_us)
             bus.now += wait_us
     assert waits == [5_000, 3_000] and bus.now == begun + 50_000
+
+
+def test_the_next_telegram_follows_at_once_if_the_reply_is_reported_after_the_start_interval():
+    for late_us in (TIMING.start_interval_us - 1, TIMING.start_interval_us, 100_000):
+        bus = Bus()
+        bus.run(300_000)
+        bus.run_until(lambda: bus.master.phase == AWAITING)
+        bus.now, sent = bus.reply_at + late_us, len(bus.sent)
+        bus.master.refresh(bus.now)
+        wait_us = bus.master.poll(bus.now)
+        if late_us < TIMING.start_interval_us:
+            assert wait_us == 1 and bus.master.phase == RESTING and len(bus.sent) == sent
+        else:
+            assert bus.master.phase == SENDING and len(bus.sent) == sent + 1
+
+
+def test_a_silence_is_charged_with_its_exchange_where_there_is_no_contact_or_no_drive():
+    """The request and the silence before it, and how long the reply was waited for."""
+    bus = Bus((1, 2))
+    bus.silent.add(2)
+    bus.run(300_000)
+    charges = []
+    bus.master.deadlines.silence.charge = lambda who, spent_us: charges.append((who, spent_us))
+    whole_us = TIMING.start_interval_us + 16 * TIMING.character_us
+    whole_us += Receiver(TIMING, MASK).window_us
+    bus.run_until(lambda: charges)
+    assert charges == [(bus.drives[1], whole_us)]
+    charges.clear()
+    bus.silent.add(1)
+    bus.run_until(lambda: bus.drives[0].silent)
+    probe = Mirror(9, bytes(12))
+    bus.master.turns.post(probe)
+    bus.run_until(lambda: probe.state != pkw.PENDING)
+    assert (probe, whole_us) in charges  # and not the one that is in contact
+    assert [who for who, _ in charges].count(bus.drives[0]) == 0 and bus.drives[0].contact
