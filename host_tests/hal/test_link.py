@@ -5,6 +5,8 @@ from boards.sim.board import HardTimer, clear_fifo
 from boards.sim.chip.machine import UART, Chip, Pin
 from boards.sim.clock import Clock
 from boards.sim.line.wire import Transceiver, Wire
+from hal.link.rp2_check import DRIVER, LINE, find
+from hal.link.rp2_check import UART as UART_DEFECT
 from hal.link.rs485 import Rs485Link
 from hal.link.self_directed import SelfDirectedLink
 
@@ -475,3 +477,134 @@ def test_a_line_that_finds_its_direction_is_let_go_of_as_a_whole():
     link.close()
     assert uart.handler is None and not uart.is_on
     assert link.sending_us(clock.ticks_us()) == 0
+
+
+# --- what a board finds wrong with its bus -------------------------------------------------------
+
+UART_AT = 0x40038000
+DATA, FLAGS, WHOLE, FRACTION, FORMAT, CONTROL, MASK, CLEAR = (
+    0x00, 0x18, 0x24, 0x28, 0x2C, 0x30, 0x38, 0x44,
+)  # fmt: skip
+OPEN = {WHOLE: 406, FRACTION: 16, FORMAT: 0x76, CONTROL: 0x301, MASK: 0x50, CLEAR: 0}
+
+
+class Pl011:
+    """The registers of an open UART. waiting: characters in its FIFO. busy: it sends for so many
+    looks at its flags. spoil(character): what comes back of it in loopback; None for nothing."""
+
+    def __init__(self, waiting=0, busy=3, spoil=lambda character: character):
+        self.registers = dict(OPEN)
+        self.fifo = [0xA5] * waiting
+        self.written = []
+        self.sent = 0
+        self._acts = OPEN[WHOLE], OPEN[FRACTION]
+        self._busy = busy
+        self._spoil = spoil
+
+    def __getitem__(self, address):
+        offset = address - UART_AT
+        if offset == DATA:
+            return self.fifo.pop(0)
+        if offset != FLAGS:
+            return self.registers[offset]
+        busy = self.sent and self._busy > 0
+        self._busy -= bool(busy)
+        return (0x08 if busy else 0) | (0 if self.fifo else 0x10) | 0x80
+
+    def __setitem__(self, address, value):
+        offset = address - UART_AT
+        self.written.append(offset)
+        if offset == FORMAT:
+            self._acts = self.registers[WHOLE], self.registers[FRACTION]
+        if offset != DATA:
+            self.registers[offset] = value
+            return
+        assert self.registers[CONTROL] == 0x381, "it leaves the chip, or goes nowhere"
+        assert self.registers[MASK] == 0, "MicroPython takes it"
+        assert self._acts == (4, 0) and self.registers[FORMAT] == OPEN[FORMAT]
+        self.sent += 1
+        back = self._spoil(value)
+        if back is not None:
+            self.fifo.append(back)
+
+    def is_as_before(self):
+        """Set up as it was, at its old rate, with nothing in it."""
+        self.registers[CLEAR] = 0
+        return self.registers == OPEN and self._acts == (406, 16) and not self.fifo
+
+
+class Level:
+    """A pin that is low up to an instant. To look at it takes 2 us."""
+
+    def __init__(self, clock, high_from=0):
+        self.clock = clock
+        self.high_from = high_from
+
+    def value(self):
+        self.clock.now += 2
+        return int(self.clock.now >= self.high_from)
+
+
+class Watch:
+    ticks_mask = (1 << 30) - 1
+
+    def __init__(self, began=0):
+        self.now = 0
+        self.began = began
+
+    def ticks_us(self):
+        return (self.began + self.now) & self.ticks_mask
+
+    def sleep_us(self, us):
+        self.now += us
+
+
+def looked(uart, drives=False, low_us=0, baud=19200, began=0):
+    clock = Watch(began)
+    driver_enable = Level(clock, 0 if drives else 1 << 29)
+    return find(uart, UART_AT, driver_enable, Level(clock, low_us), clock, baud), clock
+
+
+def test_a_sound_uart_gets_all_back_and_is_as_it_was_before():
+    for waiting in (0, 1, 31, 32):  # what was heard before is dropped
+        for busy in (0, 1, 49):
+            uart = Pl011(waiting, busy)
+            assert looked(uart)[0] == "" and uart.sent == 8
+            assert uart.registers[CLEAR] == 0x7FF and uart.is_as_before()
+            assert uart.written.index(MASK) < uart.written.index(CONTROL)
+            assert uart.written[-3:] == [CLEAR, CONTROL, MASK]  # no old interrupt comes then
+
+
+def test_a_uart_that_does_not_get_all_back_is_found():
+    """Each of the characters may come wrong or not at all, or it sends for over a millisecond."""
+    sent = []
+    looked(Pl011(spoil=sent.append))
+    assert sent == [0x00, 0xFF, 0x55, 0xAA, 0x01, 0x80, 0x7F, 0xFE]
+    for place in range(8):
+        for wrong in (None, sent[place] ^ 0x01, sent[place] ^ 0x80):
+            come = iter(sent[:place] + [wrong] + sent[place + 1 :])
+            uart = Pl011(spoil=lambda character, come=come: next(come))
+            assert looked(uart)[0] == UART_DEFECT, (place, wrong)
+            assert uart.is_as_before()
+    uart = Pl011(busy=50)
+    found, clock = looked(uart)
+    assert found == UART_DEFECT and uart.is_as_before() and 1_000 <= clock.now < 1_100
+
+
+def test_a_driver_that_is_on_is_found_before_anything_is_touched():
+    uart = Pl011(busy=99)
+    assert looked(uart, drives=True, low_us=99_000)[0] == DRIVER
+    assert uart.written == [] and uart.sent == 0
+
+
+def test_a_line_that_is_low_for_longer_than_any_character_is_found():
+    """For 3 ms at the least; at a rate so slow that it took over 11 ms nobody looks."""
+    for began in (0, -500):
+        for baud, low_us, wanted in (
+            (187500, 2_950, ""), (187500, 3_300, LINE), (19200, 2_950, ""), (19200, 3_300, LINE),
+            (1200, 9_950, ""), (1200, 10_300, LINE), (1091, 11_300, LINE), (1090, 99_000, ""),
+        ):  # fmt: skip
+            found, clock = looked(Pl011(), low_us=low_us, baud=baud, began=began)
+            assert found == wanted, (baud, low_us)
+            assert clock.now <= 11_300
+    assert looked(Pl011())[1].now < 100  # it is high: that is seen at once
