@@ -1218,3 +1218,56 @@ def test_a_silence_is_charged_with_its_exchange_where_there_is_no_contact_or_no_
     bus.run_until(lambda: probe.state != pkw.PENDING)
     assert (probe, whole_us) in charges  # and not the one that is in contact
     assert [who for who, _ in charges].count(bus.drives[0]) == 0 and bus.drives[0].contact
+
+
+def test_contact_is_lost_after_a_second_unless_it_is_told_otherwise():
+    assert Master(Bus(), TIMING, MASK).turns.lost_us == 1_000_000
+    assert Master(Bus(), TIMING, MASK, 2_500_000).turns.lost_us == 2_500_000
+
+
+def test_what_the_loop_starts_when_it_has_come_back_is_not_taken_back_by_its_refresh():
+    bus = Bus()
+    bus.run(400_000, refresh=False)
+    bus.drives[0].start(0x1000)
+    bus.master.refresh(bus.now)
+    assert bus.drives[0].is_on() and bus.master.dead_man_trips == 0
+    bus.run(50_000)
+    assert bus.stws(1)[-1] == pzd.ON
+
+
+def test_an_exception_makes_no_miss_of_what_is_over_or_of_a_drive_in_the_list():
+    for phase in (SENDING, AWAITING, RESTING):
+        bus = Bus()
+        bus.run(300_000)
+        bus.run_until(lambda phase=phase: bus.master.phase == phase)
+        counters = list(bus.drives[0].counters)
+        bus.master.recover(bus.now)
+        assert list(bus.drives[0].counters) == counters and bus.drives[0].silent == 0
+
+    def echo(address, request):
+        bus.reply = request
+        bus.reply_at = bus.now + 2 * TIMING.telegram_us(12) + REPLY_DELAY_US
+
+    bus.zsw[0x41] = 0  # somebody answers there
+    bus.answer = echo
+    probe = Mirror(1, bytes(12))
+    bus.master.turns.post(probe)
+    bus.run_until(lambda: probe.state != pkw.PENDING)
+    assert probe.state == pkw.DONE and bus.master.phase == RESTING
+    bus.master.recover(bus.now)
+    assert probe.state == pkw.DONE
+
+
+def test_a_bus_that_is_closed_while_it_listens_tells_every_drive_unless_the_line_is_anothers():
+    for foreign, gives_up, sent in ((0, False, [1, 2]), (1, False, []), (0, True, [])):
+        bus = Bus((1, 2))
+        if foreign:
+            bus.reply = b"\x02\x06\x01"
+        bus.run(50_000)
+        bus.master.close()
+        if gives_up:
+            bus.master.give_up()
+        assert bus.master.phase == LISTENING
+        bus.run(500_000)
+        assert bus.master.phase == CLOSED and bus.master.foreign == foreign
+        assert bus.addresses()[:2] == sent and set(bus.stws(1)) <= {pzd.OFF1}
