@@ -978,21 +978,41 @@ def test_while_the_loop_is_dead_that_is_counted_once_and_nothing_can_be_started(
 
 
 def test_its_counters_have_16_bits():
+    for before, after in ((0x7FFF, 0x8000), (0xFFFF, 0)):
+        bus = Bus()
+        master = bus.master
+        master.foreign = master.progress = before
+        bus.reply = b"\x00"
+        master.poll(0)
+        assert master.foreign == master.progress == after
+        bus.run(300_000)
+        for _ in range(2):
+            master.progress = before
+            at_rest(bus)
+            assert master.progress == after
+        master.failures = master.dead_man_trips = before
+        master.recover(bus.now)
+        bus.run(400_000, refresh=False)
+        assert master.failures == master.dead_man_trips == after
+
+
+def test_in_the_rest_a_reply_of_the_drive_that_was_asked_is_no_other_master():
+    """Its ADR says so, whatever stands behind it."""
     bus = Bus()
-    master = bus.master
-    master.foreign = master.progress = 0xFFFF
-    bus.reply = b"\x00"
-    master.poll(0)
-    assert master.foreign == master.progress == 0
     bus.run(300_000)
-    for _ in range(2):
-        master.progress = 0xFFFF
+    for characters, foreign in (
+        (b"\x02\x0e\x01\x00", 0),
+        (b"\x02\x0e\x02\x01", 1),
+        (b"\x02\x0e\x01\x02", 1),
+        (b"\x02\x0e\x21\x01", 2),
+        (b"\x02\x0e\x00", 3),
+    ):
         at_rest(bus)
-        assert master.progress == 0
-    master.failures = master.dead_man_trips = 0xFFFF
-    master.recover(bus.now)
-    bus.run(400_000, refresh=False)
-    assert master.failures == master.dead_man_trips == 0
+        bus.reply, bus.reply_at = characters, bus.now
+        assert bus.master.poll(bus.now) == TIMING.start_interval_us  # the silence begins anew
+        assert bus.master.foreign == foreign, characters
+        assert bus.master.is_line_shared() == (foreign > 0)
+        bus.run(30_000)
 
 
 def test_a_line_that_is_never_silent_is_sent_on_after_half_a_second_to_the_microsecond():
@@ -1162,6 +1182,22 @@ def test_where_nobody_is_listed_it_looks_for_somebody_every_5_ms():
         assert bus.master.poll(bus.now) == 5_000
         assert bus.master.progress == progress + 1
         bus.now += 5_000
+
+
+def test_whoever_is_listed_after_a_wait_of_any_length_is_asked_in_the_next_step():
+    """Also where the clock has gone half of its way round, or begun anew, meanwhile."""
+    for start_at in (0, MASK // 4, MASK * 3 // 4, MASK - 150_000):
+        for steps in (1, 2, 7):
+            bus = Bus((), start_at)
+            bus.run(200_000)
+            for _ in range(steps):
+                bus.now += MASK // 10
+                bus.master.refresh(bus.now & MASK)
+                assert bus.master.poll(bus.now & MASK) == 5_000
+            bus.master.turns.add(1)
+            bus.now += 5_000
+            bus.master.poll(bus.now & MASK)
+            assert bus.addresses() == [1], (start_at, steps)
 
 
 def test_the_wait_for_the_next_round_is_as_long_as_its_cycle_time_leaves():
