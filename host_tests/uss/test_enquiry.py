@@ -168,6 +168,41 @@ def test_whoever_wants_the_layout_alone_asks_for_nothing_else():
     assert repr(node.layout) == "Layout(3, 3)" and node.confirmed and node.off_time_ms is None
 
 
+def test_what_is_not_known_yet_is_taken_for_the_most_usual_layout_of_its_length():
+    for net_count, variable, words in (
+        (4, False, (0, 2)), (12, False, (4, 2)), (16, False, (4, 4)), (34, False, (4, 13)),
+        (10, True, (VARIABLE, 2)),
+    ):  # fmt: skip
+        node = Node(ADDRESS, net_count, variable)
+        assert (node.layout.pkw_words, node.layout.pzd_words) == words, net_count
+        assert (node.address, node.net_count, node.variable) == (ADDRESS, net_count, variable)
+    # And it stays that where none of the layouts has a parameter channel, and none may lack it.
+    node = asked(dict.fromkeys([(number, 0) for number in range(4000)], NO_CHANNEL), 34)
+    assert repr(node.layout) == "Layout(4, 13)" and not node.confirmed
+
+
+def test_a_question_is_an_ordinary_telegram_with_off1_or_with_the_off_that_is_owed():
+    """Its task stands in front as in any other telegram, the control word where its layout says,
+    and all else is 0."""
+    off2 = 0x047D
+    for layout, number, index, net in (
+        (FOUR_AND_TWO, 2013, 0, b"\x10\x0d\x80\x00\x00\x00\x00\x00STW\x00\x00"),
+        (Layout(4, 1), 700, 1, b"\x12\xbc\x00\x01\x00\x00\x00\x00STW"),
+        (Layout(3, 3), 93, 0, b"\x10\x5d\x00\x00\x00\x00STW\x00\x00\x00\x00"),
+        (Layout(VARIABLE, 2), 2012, 1, b"\x10\x0c\x80\x01\x00\x00STW\x00\x00"),
+        (Layout(4, 0), 2013, 0, b"\x10\x0d\x80\x00\x00\x00\x00\x00"),
+        (FOUR_AND_TWO, None, 0, bytes(8) + b"STW\x00\x00"),
+        (Layout(0, 2), None, 0, b"STW\x00\x00"),
+    ):
+        for off, stw in (((), b"\x04\x7e"), ((off2,), b"\x04\x7d")):
+            question = Question(ADDRESS, layout, number, index, *off)
+            assert question.request == framed(ADDRESS, net.replace(b"STW", stw)), (layout, off)
+            assert question.address == ADDRESS and question.size == len(question.request)
+    enquirer = Enquirer(ADDRESS, FOUR_AND_TWO.net_count, False)
+    for off, stw in (((), b"\x04\x7e"), ((off2,), b"\x04\x7d")):
+        assert enquirer.question(*off).request[11:13] == stw
+
+
 def test_the_answer_to_a_question_says_its_value_and_the_status():
     for layout, number, net, value in (
         (FOUR_AND_TWO, 2013, b"\x10\x0d\x80\x00\x00\x00\x00\x03\xfb\x31\x00\x00", 3),

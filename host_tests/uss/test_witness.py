@@ -80,6 +80,17 @@ def test_what_was_not_seen_is_not_measured():
     assert line.times(START_DELAY) == (2, 2)
 
 
+def test_before_the_first_telegram_there_was_no_other():
+    """Whatever the clock shows when somebody begins to look: no start delay, and no cycle."""
+    for now in (0, 5_000, MASK >> 2, MASK - 1_000):
+        line = Line()
+        line.now = now
+        line.exchange(1)
+        assert line.times(START_DELAY) == line.times(CYCLE) == (NEVER, NEVER), now
+        line.exchange(1)
+        assert line.times(START_DELAY) == (2, 2) and line.times(CYCLE) == (33, 33), now
+
+
 def test_a_time_of_zero_counts_and_one_below_zero_does_not():
     """The clock and the link tell instants a little too late, or too soon."""
     line = Line()
