@@ -125,20 +125,21 @@ def test_a_drive_without_process_data_that_answers_alike_makes_no_line_with_an_e
 
 
 def test_two_nodes_of_one_address_are_told_from_none():
-    """Their replies lie on top of each other."""
-    bench = Bench([Node(3)], listed=False)
-    answer = bench.nodes[3].answer
+    """Their replies lie on top of each other. They are asked three times, first of all or not."""
+    for addresses in (range(3, 8), (2, 3, 4)):
+        bench = Bench([Node(3)], listed=False)
+        answer = bench.nodes[3].answer
 
-    def both(characters):
-        reply = answer(characters)
-        return reply and bytes(each | 0x11 for each in reply)
+        def both(characters, answer=answer):
+            reply = answer(characters)
+            return reply and bytes(each | 0x11 for each in reply)
 
-    bench.nodes[3].answer = both
-    scan = Scan(bench.master, MASK, range(3, 8))
-    bench.run_until(lambda: scan.step(bench.now), 60_000_000)
-    assert scan.found == {} and set(scan.unclear) == {3}
-    asked = [telegram.address for telegram in bench.sent].count(MIRROR | 3)
-    assert asked == 3 + len(NET_COUNTS) - 1, asked  # silent but at its own length
+        bench.nodes[3].answer = both
+        scan = Scan(bench.master, MASK, addresses)
+        bench.run_until(lambda bench=bench, scan=scan: scan.step(bench.now), 60_000_000)
+        assert scan.found == {} and set(scan.unclear) == {3}
+        asked = [telegram.address for telegram in bench.sent].count(MIRROR | 3)
+        assert asked == 3 + len(NET_COUNTS) - 1, asked  # silent but at its own length
 
 
 def test_a_reply_that_was_spoilt_once_is_asked_for_again():

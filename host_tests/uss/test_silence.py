@@ -9,6 +9,7 @@ to one of them are less than a third of its telegram-off time apart.
 from round_bench import Bench, Node
 from uss import pkw
 from uss.outside import Mirror
+from uss.silence import SPENT_MASK
 from uss.timing import Timing
 
 TIMEOUTS_MS = (20, 60, 500)
@@ -243,6 +244,115 @@ def test_a_drive_that_was_removed_holds_up_nobody_any_more():
         waits.append(bench.master.deadlines.silence_wait_us())
         bench.run(1_000_000)
     assert 0 < max(waits) < 10 * silence_us(bench), waits
+
+
+def test_what_a_silence_costs_is_charged_to_who_has_not_answered():
+    """All of it is counted; but the share pays nothing for a drive that may run, except for
+    telegrams outside the list."""
+    bench = bench_of(20, listed=4)
+    bench.run(1_000_000)
+    silence, running, silent = bench.master.deadlines.silence, bench.drives[1], bench.drives[3]
+    running.was_running = True
+    beside = Mirror(1, bytes(12))
+    mask = SPENT_MASK
+    silence.count, silence.spent_us, silence.shared_us = 0xFFFD, mask - 2_000, mask - 1_500
+    for drive, us, count, spent, shared in (
+        (silent, 500, 0xFFFE, mask - 1_500, mask - 1_000),
+        (running, 700, 0xFFFF, mask - 800, mask - 1_000),
+        (beside, 801, 0, 0, mask - 199),
+        (silent, 199, 1, 199, mask),
+        (silent, 40_001, 2, 40_200, 40_000),
+    ):
+        silence.charge(drive, us)
+        counted = silence.count, silence.spent_us, silence.shared_us
+        assert counted == (count, spent, shared), (drive, counted)
+
+
+def test_what_is_owed_for_a_silence_is_five_times_what_it_took_and_two_silences_at_the_most():
+    """Room that was not used counts, as much as two silences take, and no more."""
+    bench = bench_of(20, listed=4)
+    bench.run(1_000_000)
+    silence, drive = bench.master.deadlines.silence, bench.drives[3]
+    one_us = silence_us(bench)
+    assert silence.silent_exchange_us == one_us
+    for each in bench.drives.values():
+        each.silent = 3
+    for before_us, spent_us, wait_us in (
+        (0, 1_000, 5_000), (7, 1_000, 5_007), (-7, 1_000, 4_993), (0, 0, 0),
+        (-2 * one_us, 1_000, 5_000 - 2 * one_us), (-2 * one_us - 1, 1_000, 5_000 - 2 * one_us),
+        (1 - 2 * one_us, 1_000, 5_001 - 2 * one_us), (-9_000_000, 1_000, 5_000 - 2 * one_us),
+        (-2 * one_us, one_us, 3 * one_us), (0, 2 * one_us - 1, 10 * one_us - 5),
+        (0, 2 * one_us, 10 * one_us), (0, 2 * one_us + 1, 10 * one_us),
+        (9 * one_us, one_us, 10 * one_us), (0, 1 << 29, 10 * one_us),
+    ):  # fmt: skip
+        for charged_us in (0, SPENT_MASK, SPENT_MASK - 500):
+            silence.charged_us = silence.shared_us = charged_us
+            silence.charge(drive, spent_us)
+            silence.wait_us = before_us
+            silence.settle()
+            assert silence.wait_us == wait_us, (before_us, spent_us, silence.wait_us)
+            assert silence.charged_us == silence.shared_us
+
+
+def test_few_that_stay_silent_are_asked_once_in_seven_tenths_of_a_second():
+    """All of them together; one that is silent for the first times does not wait for that."""
+    for listed in (3, 4, 6, 31):
+        bench = bench_of(20, listed=listed)
+        bench.run(5_000_000)
+        silence = bench.master.deadlines.silence
+        assert silence.resting == listed - PRESENT
+        for silent, wait_us in ((3, 5_000), (4, max(700_000 // (listed - PRESENT), 5_000))):
+            for address in range(PRESENT + 1, listed + 1):
+                bench.drives[address].silent = silent
+            silence.wait_us = 0
+            silence.charged_us = silence.shared_us
+            silence.charge(bench.drives[3], 1_000)
+            silence.settle()
+            assert silence.wait_us == wait_us, (listed, silent, silence.wait_us)
+
+
+def test_nothing_is_owed_where_nobody_loses_time_by_it():
+    """The last one that answers does, and one that may run; and it begins with nothing again."""
+    for contact, was_running, wait_us in (
+        (True, False, 5_500), (False, True, 5_500), (True, True, 5_500), (False, False, 0),
+    ):  # fmt: skip
+        bench = bench_of(20, present=2, listed=2)
+        silence = bench.master.deadlines.silence
+        for address in (1, 2):
+            one, other = bench.drives[address], bench.drives[3 - address]
+            other.contact = other.was_running = False
+            one.contact, one.was_running = contact, was_running
+            silence.wait_us = 500
+            silence.charged_us = silence.shared_us
+            silence.charge(Mirror(9, bytes(12)), 1_000)
+            silence.settle()
+            assert silence.wait_us == wait_us, (contact, was_running, address)
+            assert silence.charged_us == silence.shared_us
+
+
+def test_a_drive_that_was_never_asked_has_a_turn_before_it_rests_unless_time_is_owed():
+    for wait_us, silent, contact, was_running, rests in (
+        (0, 0, False, False, 0), (-1, 0, False, False, 0), (1, 0, False, False, 1),
+        (0, 1, False, False, 1), (1, 1, True, False, 0), (1, 1, False, True, 0),
+    ):  # fmt: skip
+        bench = bench_of(20)
+        silence = bench.master.deadlines.silence
+        drive = bench.master.turns.add(0)
+        resting = silence.resting
+        drive.silent, drive.contact, drive.was_running = silent, contact, was_running
+        silence.wait_us = wait_us
+        for _ in range(2):
+            silence.look_after(drive)
+            assert silence.rests[0] == rests, (wait_us, silent, contact, was_running)
+            assert silence.resting == resting + rests
+        silence.wait_us = 0
+        drive.silent = 0
+        silence.look_after(drive)
+        assert silence.rests[0] == rests, "one that rests goes on until something changes"
+        for other in bench.master.turns.drives:
+            other.contact = other.was_running = False
+        silence.look_after(drive)
+        assert not silence.rests[0], "where nobody answers, nobody rests"
 
 
 # --- drives that run ----------------------------------------------------------------------------
