@@ -4,7 +4,7 @@
 How tasks are repeated, and told apart, is in test_channel.py; arrays and texts have their own.
 """
 
-from pkw_bench import FOUR, THREE, VARIABLE, answered, asked, refused
+from pkw_bench import FOUR, THREE, VARIABLE, answered, asked, characters, refused
 from uss import pkw
 from uss.bus import pkw_errors
 
@@ -41,6 +41,7 @@ def test_numbers_with_a_sign_are_written_in_two_s_complement():
     assert asked(pkw.write_word(1005, -0x8000))[3] == 0x8000
     assert asked(pkw.write_double(1005, -2))[2:] == (0xFFFF, 0xFFFE)
     assert asked(pkw.write_double(1005, 0xFFFFFFFF))[2:] == (0xFFFF, 0xFFFF)
+    assert asked(pkw.write_double(1005, -0x80000000))[2:] == (0x8000, 0)
     assert asked(pkw.write_float(1005, -10.0))[2:] == (0xC120, 0)
 
 
@@ -95,6 +96,53 @@ def test_what_cannot_be_asked_is_refused_at_once():
         assert refused(TypeError, pkw.write_word, 700, value), value
 
 
+def test_a_task_says_whether_it_writes_and_how_many_characters_it_needs():
+    """Only what carries a double word needs a channel of four words."""
+    for task, writes, size in (
+        (pkw.READ, False, 6), (pkw.WRITE_WORD, True, 6), (pkw.WRITE_DOUBLE, True, 8),
+        (pkw.READ_ELEMENT, False, 6), (pkw.WRITE_ELEMENT_WORD, True, 6),
+        (pkw.WRITE_ELEMENT_DOUBLE, True, 8), (pkw.COUNT_ELEMENTS, False, 6),
+        (pkw.WRITE_ELEMENT_DOUBLE_EEPROM, True, 8), (pkw.WRITE_ELEMENT_WORD_EEPROM, True, 6),
+        (pkw.WRITE_DOUBLE_EEPROM, True, 8), (pkw.WRITE_WORD_EEPROM, True, 6),
+    ):  # fmt: skip
+        job = pkw.Job(task, 700)
+        assert (job.writes(), job.size()) == (writes, size), task
+        for form, room in ((THREE, 6), (FOUR, 8), (VARIABLE, 20), (pkw.VARIABLE_LENGTH | 6, 6)):
+            assert job.fits(form) == (size <= room), (task, form)
+        assert asked(pkw.Job(task, 700, 0, 1, 2))[2:] == ((1, 2) if writes else (0, 0)), task
+    numbers = [pkw.WRITE_WORD, pkw.WRITE_DOUBLE, pkw.WRITE_WORD_EEPROM, pkw.WRITE_DOUBLE_EEPROM]
+    made = [pkw.write_word(1, 2), pkw.write_double(1, 2)]
+    made += [pkw.write_word(1, 2, 3, True), pkw.write_double(1, 2, 3, True)]
+    assert [job.task for job in made] == numbers
+    assert [(job.number, job.index, job.low) for job in made] == [(1, 0, 2)] * 2 + [(1, 3, 2)] * 2
+    assert [pkw.write_float(1, 1.0, 3, eeprom).task for eeprom in (False, True)] == [3, 13]
+
+
+def test_a_job_shows_what_it_is_and_what_has_become_of_it():
+    job = pkw.read(13, 7)
+    for state, text in (
+        (pkw.NEW, "new"), (pkw.PENDING, "pending"), (pkw.DONE, "done"), (pkw.REFUSED, "refused"),
+        (pkw.TIMED_OUT, "timed out"), (pkw.UNANSWERED, "unanswered"),
+    ):  # fmt: skip
+        job.state = state
+        assert repr(job) == "<AK1 P0013[7] %s>" % text
+    assert pkw.name(700) == "P0700[0]" and pkw.name(12345, 1) == "P12345[1]"
+    assert refused_with(pkw.read, 700, 255) == "index 255 of P0700[0]"
+    assert refused_with(pkw.read, 128000) == "parameter number 128000"
+    assert refused_with(pkw.Job, 10, 700) == "task 10"
+    assert (job.since, job.tries, job.silences, job.lags, job.tag) == (0,) * 5
+    job.refuse(17)
+    assert (job.state, job.error) == (pkw.REFUSED, 17)
+
+
+def refused_with(make, *arguments):
+    try:
+        make(*arguments)
+    except ValueError as error:
+        return str(error)
+    raise AssertionError("taken: %r" % (arguments,))
+
+
 # --- replies ------------------------------------------------------------------------------------
 
 
@@ -114,6 +162,34 @@ def test_a_value_stands_where_the_length_says():
         assert (job.high, job.low) == (value >> 16, value & 0xFFFF), words
 
 
+def test_an_answer_is_taken_from_where_it_stands_among_others():
+    """Behind the head of a telegram, before its process data; each character has its place."""
+    for form, words, high, low in (
+        (THREE, (0x13E8, 0, 0x1234), 0, 0x1234),
+        (VARIABLE, (0x13E8, 0, 0x1234), 0, 0x1234),
+        (FOUR, (0x13E8, 0, 0x1234, 0x5678), 0x1234, 0x5678),
+        (FOUR, (0x23E8, 0, 0x1234, 0x5678), 0x1234, 0x5678),
+        (VARIABLE, (0x23E8, 0, 0x1234, 0x5678), 0x1234, 0x5678),
+    ):
+        net = b"\xaa\xbb\xcc" + characters(*words) + b"\xdd\xee\xff\x99\x88\x77"
+        job = pkw.read(1000)
+        assert job.answer(net, 3, 2 * len(words), form), words
+        assert (job.high, job.low, job.width) == (high, low, words[0] >> 12), words
+    for form, words, refusal in (
+        (THREE, (0x73E8, 0, 0x0234), (0x0234, None, None)),
+        (FOUR, (0x73E8, 0, 0x1234, 0x0156), (0x0156, None, None)),
+        (VARIABLE, (0x73E8, 0, 0x0234), (0x0234, None, None)),
+        (VARIABLE, (0x73E8, 0, 2, 0x1234), (2, 0x1234, None)),
+        (VARIABLE, (0x73E8, 0, 2, 0x1234, 0x5678), (2, 0x1234, 0x5678)),
+        (VARIABLE, (0x73E8, 0, 0, 0x1234, 0x5678), (0, 0x1234, 0x5678)),
+    ):
+        net = b"\xaa\xbb\xcc" + characters(*words) + b"\xdd\xee\xff\x99\x88\x77"
+        job = pkw.read(1000)
+        assert job.answer(net, 3, 2 * len(words), form), words
+        assert (job.error, job.next, job.previous) == refusal, words
+        assert job.state == pkw.REFUSED
+
+
 def test_the_same_bits_as_unsigned_as_signed_and_as_float():
     job = pkw.read(1000)
     answered(job, (0x13E8, 0, 0, 0xF448))
@@ -124,6 +200,9 @@ def test_the_same_bits_as_unsigned_as_signed_and_as_float():
     answered(job, (0x23E8, 0, 0xC120, 0))
     assert job.integer_value() == 0xC1200000 and job.signed_value() == 0xC1200000 - (1 << 32)
     assert job.float_value() == -10.0
+    for high, value in ((0x7FFF, 0x7FFF0001), (0x8000, 0x80000001 - (1 << 32))):
+        answered(job, (0x23E8, 0, high, 1))
+        assert job.integer_value() == high << 16 | 1 and job.signed_value() == value
 
 
 def test_what_was_offered_instead_is_forgotten_when_a_job_is_refused_again():
