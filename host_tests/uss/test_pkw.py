@@ -66,6 +66,10 @@ def test_every_page_can_be_told_from_every_other():
         word = sum(1 << bit for weight, bit in places if page & weight)
         assert pkw.ind(2000 * page + 1999, 254) == word | 254, page
         assert asked(pkw.read(2000 * page + 7, 9))[:2] == (0x1007, word | 9), page
+    some = [(page, pnu, index) for page in range(64) for pnu in (0, 1, 2, 3, 1998, 1999)
+            for index in (0, 1, 254)]  # fmt: skip
+    keys = {pkw.read(2000 * page + pnu, index).key for page, pnu, index in some}
+    assert len(keys) == len(some), "each of them has a key of its own"
 
 
 def test_a_micromaster_3_never_sees_an_index():

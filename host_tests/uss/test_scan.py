@@ -276,6 +276,38 @@ def test_nodes_that_have_fallen_silent_since_take_no_more_of_the_line_than_the_s
     assert 0.79 * alone < beside < 0.87 * alone, (beside, alone)
 
 
+def test_beside_a_drive_that_answers_it_waits_until_a_silence_has_been_charged():
+    """10 ms from the step that has seen it; not behind an answer, nor where nobody answers."""
+    for address, listed, waits in ((7, True, True), (7, False, False), (2, True, False)):
+        bench = Bench([Node(1), Node(2)], listed=False)
+        if listed:
+            bench.drives[1] = bench.master.turns.add(1)
+            bench.contact()
+        bench.run(200_000)
+        bench.master.deadlines.silence_wait_us = lambda longer_us=0: 0
+        scan = Scan(bench.master, MASK, (address, 8, 9), (12,), enquire=False)
+        now = MASK - 5_000
+        assert not scan.step(now) and scan.asked == 1
+        bench.run(200_000)
+        for later_us in (0, 1, 9_999, 10_000):
+            assert not scan.step(now + later_us & MASK)
+            assert scan.asked == (1 if waits and later_us < 10_000 else 2), (address, later_us)
+
+
+def test_nobody_is_kept_who_was_not_found_when_it_was_ended():
+    """Not the one whose telegram was under way, either."""
+    bench = Bench([Node(1)], listed=False)
+    scan = Scan(bench.master, MASK, (1, 5), (12,), enquire=False)
+    bench.run_until(lambda: scan.step(bench.now) or bench.addresses()[-1:] == [5 | MIRROR])
+    assert not scan.over
+    scan.end()
+    sent = len(bench.sent)
+    bench.loop = lambda: scan.keep(bench.now)
+    bench.run(1_000_000)
+    asked = bench.addresses(sent)
+    assert set(asked) == {1 | MIRROR} and 7 < len(asked) < 11, asked
+
+
 def test_it_is_over_when_it_said_beside_drives_too():
     bench = Bench([Node(1)])
     bench.contact()
