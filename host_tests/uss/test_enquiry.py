@@ -152,6 +152,43 @@ def test_a_drive_without_a_parameter_channel_has_process_data_alone():
     assert node.layout is layout and not node.confirmed and node.family is families.GENERIC
 
 
+def test_one_that_tells_nothing_has_the_first_layout_in_which_it_has_a_parameter_channel():
+    """The last telegram without a task stops it in that; if there is none, in PZD words alone."""
+    for net_count, variable, with_channel, words in (
+        (12, False, {(4, 2), (3, 3)}, (4, 2)), (12, False, {(3, 3)}, (3, 3)),
+        (12, False, {(4, 2)}, (4, 2)), (12, False, set(), (0, 6)), (4, False, set(), (0, 2)),
+        (34, False, {(3, 14)}, (3, 14)), (34, False, set(), (4, 13)),
+        (10, True, {(VARIABLE, 2), (VARIABLE, 3)}, (VARIABLE, 2)),
+        (10, True, {(VARIABLE, 16), (VARIABLE, 3)}, (VARIABLE, 3)),
+    ):  # fmt: skip
+        node = Node(ADDRESS, net_count, variable)
+        questions = enquiry(node)
+        layout, number, _ = next(questions)
+        while number is not None:
+            has_channel = (layout.pkw_words, layout.pzd_words) in with_channel
+            layout, number, _ = questions.send(None if has_channel else NO_CHANNEL)
+        assert (layout.pkw_words, layout.pzd_words) == words, (net_count, with_channel, layout)
+        assert node.layout is layout and not node.confirmed
+        assert refused_to_go_on(questions)
+
+
+def refused_to_go_on(questions):
+    try:
+        questions.send(None)
+    except StopIteration:
+        return True
+    return False
+
+
+def test_one_that_does_not_tell_when_it_trips_is_known_all_the_same():
+    for told in (None, NO_CHANNEL):
+        for number, values in ((2014, {(2013, 0): 4, (2012, 0): 2, (2009, 0): 0}),
+                               (2040, {(2023, 0): 4, (2022, 0): 2})):  # fmt: skip
+            node = asked(values | {(number, 0): told})
+            assert node.confirmed and node.off_time_ms is None, (told, number)
+            assert node.family is (families.MM4 if number == 2014 else families.G120)
+
+
 def test_whoever_wants_the_layout_alone_asks_for_nothing_else():
     enquirer = Enquirer(ADDRESS, 16, False, False)
     for number, value in ((2013, 4), (2012, 4)):

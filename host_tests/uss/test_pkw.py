@@ -175,9 +175,9 @@ def test_an_answer_is_taken_from_where_it_stands_among_others():
         (FOUR, (0x23E8, 0, 0x1234, 0x5678), 0x1234, 0x5678),
         (VARIABLE, (0x23E8, 0, 0x1234, 0x5678), 0x1234, 0x5678),
     ):
-        net = b"\xaa\xbb\xcc" + characters(*words) + b"\xdd\xee\xff\x99\x88\x77"
+        net = b"\xaa\xbb\xcc\xab\xba" + characters(*words) + b"\xdd\xee\xff\x99\x88\x77"
         job = pkw.read(1000)
-        assert job.answer(net, 3, 2 * len(words), form), words
+        assert job.answer(net, 5, 2 * len(words), form), words
         assert (job.high, job.low, job.width) == (high, low, words[0] >> 12), words
     for form, words, refusal in (
         (THREE, (0x73E8, 0, 0x0234), (0x0234, None, None)),
@@ -187,9 +187,9 @@ def test_an_answer_is_taken_from_where_it_stands_among_others():
         (VARIABLE, (0x73E8, 0, 2, 0x1234, 0x5678), (2, 0x1234, 0x5678)),
         (VARIABLE, (0x73E8, 0, 0, 0x1234, 0x5678), (0, 0x1234, 0x5678)),
     ):
-        net = b"\xaa\xbb\xcc" + characters(*words) + b"\xdd\xee\xff\x99\x88\x77"
+        net = b"\xaa\xbb\xcc\xab\xba" + characters(*words) + b"\xdd\xee\xff\x99\x88\x77"
         job = pkw.read(1000)
-        assert job.answer(net, 3, 2 * len(words), form), words
+        assert job.answer(net, 5, 2 * len(words), form), words
         assert (job.error, job.next, job.previous) == refusal, words
         assert job.state == pkw.REFUSED
 
