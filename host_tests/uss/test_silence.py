@@ -222,6 +222,65 @@ def test_a_drive_that_the_list_spares_keeps_no_turn_from_the_silent_ones_and_com
     assert 2 in bench.addresses()[-3:]
 
 
+def test_whom_the_list_spares_rests_at_once_unless_it_may_run_and_comes_back_at_once():
+    bench = bench_of(20, listed=4)
+    bench.run(3_000_000)
+    turns, drives = bench.master.turns, bench.drives
+    silence = bench.master.deadlines.silence
+
+    def resting():
+        asked = turns.round[: turns.round_count]
+        assert [drive for drive in turns.list if not silence.rests[drive.address]] == asked
+        assert silence.resting == sum(silence.rests)
+        return [address for address in range(32) if silence.rests[address]]
+
+    assert resting() == [3, 4]
+    for spared, wanted in ((1, [1, 3, 4]), (1, [1, 3, 4]), (2, [2, 3, 4]), (None, [3, 4])):
+        silence.spare(drives.get(spared))
+        assert resting() == wanted and silence.spared is drives.get(spared)
+    drives[1].start(0x1000)
+    silence.spare(drives[1])
+    assert resting() == [3, 4]
+    silence.spare(drives[2])
+    turns.remove(drives[2])  # and another one gets its address
+    turns.add(2)
+    drives[2].contact, drives[2].silent = False, 5
+    assert resting() == [3, 4]
+    silence.spare(None)
+    assert resting() == [3, 4]
+
+
+def test_those_that_rest_are_asked_in_turn_when_there_is_room():
+    """One at a time: the next one when that telegram is over, by its silence or by an answer."""
+    bench = bench_of(20, present=1, listed=5)
+    bench.run(3_000_000)
+    turns, silence = bench.master.turns, bench.master.deadlines.silence
+    silent = [bench.drives[address] for address in (2, 3, 4, 5)]
+    bench.refreshing = False  # nobody else gives turns
+    bench.run(100_000)
+
+    def given():
+        return [drive.address for drive in silent if drive.insist]
+
+    order = []
+    for _ in range(8):
+        silence.wait_us = 1
+        silence.give_turn()
+        assert given() == [], "time is owed"
+        silence.wait_us = 0
+        silence.give_turn()
+        for _ in range(2):
+            silence.give_turn()
+            assert len(given()) == 1, given()
+        order += given()
+        bench.run(200_000)
+        assert given() == [] and not turns.is_under_way(silent[0])
+        silence.give_turn()  # this one sees that it is over
+        assert given() == []
+    first = order.index(2)
+    assert order[first : first + 5] == [2, 3, 4, 5, 2] and set(order) == {2, 3, 4, 5}, order
+
+
 def test_a_drive_that_was_removed_holds_up_nobody_any_more():
     """Not in the middle of its turn either; and who asks addresses that are not listed waits for
     their share, not for its next turn."""
