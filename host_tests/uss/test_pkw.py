@@ -239,6 +239,13 @@ def test_every_task_is_answered_by_its_own_replies():
             assert job.state == (state if ends else pkw.PENDING), (task, reply)
 
 
+def test_descriptions_and_texts_are_answered_by_their_own_replies_too():
+    """Which `tasks.long_jobs` asks for; and what is no task is answered by none."""
+    for task, fitting in ((4, [3, 7]), (5, [3, 7, 8]), (15, [7, 8, 15]), (0, []), (10, [])):
+        assert [one for one in range(32) if pkw.FITTING[task] >> one & 1] == fitting, task
+    assert len(pkw.FITTING) == 16
+
+
 def test_a_reply_of_the_wrong_length_is_none():
     """With variable length the AK says how many words there have to be."""
     for words in (
