@@ -17,7 +17,7 @@ from uss.finding.finder import Finder
 from uss.layout import STANDARD, VARIABLE, Layout
 from uss.master import CLOSED, LISTENING, OFF
 from uss.outside import Mirror
-from uss.receiver import OTHER_LENGTH
+from uss.receiver import OTHER_LENGTH, SILENT
 
 # --- simulated drives ---------------------------------------------------------------------------
 
@@ -427,6 +427,74 @@ def test_where_eight_are_silent_other_process_data_are_tried_in_every_ninth_turn
             bench.nodes[address].plugged = False
         bench.run(80_000_000)
         assert bench.mirrors(2)[: len(lengths)] == lengths, (silent, bench.mirrors(2))
+
+
+def asked_in_turn(layouts, count):
+    """The next so many mirror telegrams, (address, net characters), to silent drives that the list
+    has in these layouts, from address 2 on: each is over at once, and there is always room."""
+    nodes = [Node(address, *layout) for address, layout in enumerate(layouts, 2)]
+    for node in nodes:
+        node.plugged = False
+    bench = Bench([Node(1)] + nodes)
+    bench.contact()
+    bench.run(100_000)
+    silence = bench.master.deadlines.silence
+    silence.wait_us, silence.charged_us = -1_000_000, silence.shared_us
+    silence.resting = len(nodes)
+    for node in nodes:
+        bench.drives[node.address].silent = finding.SILENT_MIN
+    asked = []
+
+    def post(telegram):
+        asked.append((telegram.node, telegram.size - 4))
+        telegram.miss(SILENT, 0, 0, 0)
+        silence.count = silence.count + 1 & 0xFFFF
+
+    bench.master.turns.post = post
+    bench.master.deadlines.silence_wait_us = lambda longer_us=0: 0
+    search = Finder(bench.master, MASK)
+    for step in range(40 * count):
+        assert search.step(step) is None
+        if len(asked) >= count:
+            return asked[:count]
+    raise AssertionError("only %d were asked" % len(asked))
+
+
+def usual_and_further(pkw_words, pzd_words):
+    """The lengths that a drive of this layout may have besides: those with its PZD words, and the
+    others from 2 to 12 words."""
+    usual = [2 * (words + pzd_words) for words in (3, 4, 0)]
+    own = 2 * ((3 if pkw_words == VARIABLE else pkw_words) + pzd_words)
+    further = [length for length in range(4, 26, 2) if length not in usual]
+    return [length for length in usual if length not in (own, 0)], further
+
+
+def test_each_turn_of_a_drive_has_the_usual_lengths_and_one_more_which_is_the_next_each_time():
+    for layout in (
+        (4, 2), (3, 2), (0, 2), (VARIABLE, 2), (3, 0), (4, 0), (VARIABLE, 0), (0, 1), (0, 6),
+        (4, 8), (3, 9), (4, 12), (0, 16),
+    ):  # fmt: skip
+        usual, further = usual_and_further(*layout)
+        expected = []
+        for length in further * 2:
+            expected += usual + [length]
+        asked = [length for _, length in asked_in_turn([layout], len(expected))]
+        assert asked == expected, (layout, asked)
+
+
+def test_eight_silent_drives_have_their_turns_in_the_order_of_the_list_and_nine_for_one_more():
+    """Each goes on with the further lengths where it was; one of seven has one in each turn."""
+    layouts = [(4, 2), (3, 2), (4, 6), (VARIABLE, 2), (3, 6), (4, 8), (4, 4), (3, 4)]
+    for silent, every in ((7, 1), (8, 9)):
+        expected = []
+        for turn in range(1, 19):
+            for address, layout in enumerate(layouts[:silent], 2):
+                usual, further = usual_and_further(*layout)
+                if turn % every == 0:
+                    usual.append(further[(turn // every - 1) % len(further)])
+                expected += [(address, length) for length in usual]
+        asked = asked_in_turn(layouts[:silent], len(expected))
+        assert asked == expected, (silent, asked[:20])
 
 
 def test_one_that_was_running_when_it_was_lost_is_told_to_stop_before_it_is_looked_for():
