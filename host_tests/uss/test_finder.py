@@ -429,35 +429,55 @@ def test_where_eight_are_silent_other_process_data_are_tried_in_every_ninth_turn
         assert bench.mirrors(2)[: len(lengths)] == lengths, (silent, bench.mirrors(2))
 
 
-def asked_in_turn(layouts, count):
-    """The next so many mirror telegrams, (address, net characters), to silent drives that the list
-    has in these layouts, from address 2 on: each is over at once, and there is always room."""
-    nodes = [Node(address, *layout) for address, layout in enumerate(layouts, 2)]
-    for node in nodes:
-        node.plugged = False
-    bench = Bench([Node(1)] + nodes)
-    bench.contact()
-    bench.run(100_000)
-    silence = bench.master.deadlines.silence
-    silence.wait_us, silence.charged_us = -1_000_000, silence.shared_us
-    silence.resting = len(nodes)
-    for node in nodes:
-        bench.drives[node.address].silent = finding.SILENT_MIN
-    asked = []
+class Silent(Bench):
+    """Silent drives that the list has in these layouts, from address 2 on. Each telegram to them
+    is over at once, and there is always room for the next one."""
 
-    def post(telegram):
-        asked.append((telegram.node, telegram.size - 4))
+    def __init__(self, layouts):
+        nodes = [Node(address, *layout) for address, layout in enumerate(layouts, 2)]
+        for node in nodes:
+            node.plugged = False
+        Bench.__init__(self, [Node(1)] + nodes)
+        self.contact()
+        self.run(100_000)
+        self.silence = silence = self.master.deadlines.silence
+        self.unused_us = 4 * silence.silent_exchange_us
+        silence.wait_us, silence.charged_us = -self.unused_us, silence.shared_us
+        silence.resting, silence.count = len(nodes), 0xFFFE
+        for node in nodes:
+            self.drives[node.address].silent = finding.SILENT_MIN
+        self.asked = []  # (address, net characters) of each mirror telegram
+        self.longer_us = None  # by so much the last one that was asked for was too long
+        self.master.turns.post = self.post
+        self.master.deadlines.silence_wait_us = self.room
+        self.finder = Finder(self.master, MASK)
+
+    def post(self, telegram):
+        self.asked.append((telegram.node, telegram.size - 4))
         telegram.miss(SILENT, 0, 0, 0)
-        silence.count = silence.count + 1 & 0xFFFF
+        self.silence.count = self.silence.count + 1 & 0xFFFF
 
-    bench.master.turns.post = post
-    bench.master.deadlines.silence_wait_us = lambda longer_us=0: 0
-    search = Finder(bench.master, MASK)
-    for step in range(40 * count):
-        assert search.step(step) is None
-        if len(asked) >= count:
-            return asked[:count]
-    raise AssertionError("only %d were asked" % len(asked))
+    def room(self, longer_us=0):
+        self.longer_us = longer_us
+        return 0
+
+    def next(self, count):
+        """The next so many that are asked."""
+        since = len(self.asked)
+        for step in range(60 * count):
+            assert self.finder.step(step) is None
+            if len(self.asked) == since + count:
+                return self.asked[since:]
+        raise AssertionError("only %d were asked" % (len(self.asked) - since))
+
+    def asks_another(self):
+        """Whether another one is asked."""
+        since = len(self.asked)
+        for step in range(60):
+            self.finder.step(step)
+            if len(self.asked) > since:
+                return True
+        return False
 
 
 def usual_and_further(pkw_words, pzd_words):
@@ -478,7 +498,7 @@ def test_each_turn_of_a_drive_has_the_usual_lengths_and_one_more_which_is_the_ne
         expected = []
         for length in further * 2:
             expected += usual + [length]
-        asked = [length for _, length in asked_in_turn([layout], len(expected))]
+        asked = [length for _, length in Silent([layout]).next(len(expected))]
         assert asked == expected, (layout, asked)
 
 
@@ -493,8 +513,67 @@ def test_eight_silent_drives_have_their_turns_in_the_order_of_the_list_and_nine_
                 if turn % every == 0:
                     usual.append(further[(turn // every - 1) % len(further)])
                 expected += [(address, length) for length in usual]
-        asked = asked_in_turn(layouts[:silent], len(expected))
+        asked = Silent(layouts[:silent]).next(len(expected))
         assert asked == expected, (silent, asked[:20])
+
+
+def test_whoever_answers_in_another_length_is_next_once_and_then_waits_like_the_others():
+    line = Silent([(4, 2)] * 9)
+
+    def turns(count):
+        asked = [address for address, _ in line.next(2 * count)]
+        assert asked[::2] == asked[1::2], asked
+        return asked[::2]
+
+    assert turns(2) == [2, 3]
+    for _ in range(2):
+        line.drives[7].trouble = OTHER_LENGTH
+        assert turns(10) == [7, 4, 5, 6, 7, 8, 9, 10, 2, 3]
+        line.drives[7].trouble = 0
+        assert turns(9) == [4, 5, 6, 7, 8, 9, 10, 2, 3]
+
+
+def test_when_there_is_room_for_a_telegram_that_perhaps_nobody_answers():
+    """The list has asked a silent one meanwhile, of eight two, or has left room for four; what the
+    last one took is charged; no command waits; and no drive that runs would be late."""
+    for resting, needed in ((7, 1), (8, 2)):
+        line = Silent([(4, 2), (4, 2)])
+        silence, turns, deadlines = line.silence, line.master.turns, line.master.deadlines
+        silence.resting = resting
+        line.next(1)
+        for _ in range(4):
+            for wait_us, meanwhile, is_asked in (
+                (0, 0, False), (0, needed - 1, False), (1 - line.unused_us, 0, False),
+                (0, needed, True), (-line.unused_us, 0, True), (0, needed + 1, True),
+                (-1 - line.unused_us, 0, True),
+            ):  # fmt: skip
+                silence.wait_us = 0
+                assert not line.asks_another()
+                before, silence.wait_us = silence.count, wait_us
+                silence.count = silence.count + meanwhile & 0xFFFF
+                assert line.asks_another() == is_asked, (resting, wait_us, meanwhile)
+                if not is_asked:
+                    silence.count = before
+        silence.wait_us = -line.unused_us
+        turns.has_command = lambda: True
+        assert not line.asks_another()
+        turns.has_command = lambda: False
+        silence.shared_us += 1
+        assert not line.asks_another()
+        silence.charged_us = silence.shared_us
+        deadlines.silence_wait_us = lambda longer_us: 1
+        assert not line.asks_another()
+        deadlines.silence_wait_us = line.room
+        assert line.asks_another()
+
+
+def test_room_is_asked_for_what_a_telegram_takes_longer_than_those_of_the_list():
+    """A telegram that is not answered: none of them is longer than one of 12 characters."""
+    line = Silent([(4, 2), (0, 6), (4, 0)])
+    own_us = line.timing.telegram_us(12)
+    for _ in range(30):
+        ((_, net_count),) = line.next(1)
+        assert line.longer_us == max(line.timing.telegram_us(net_count) - own_us, 0), net_count
 
 
 def test_one_that_was_running_when_it_was_lost_is_told_to_stop_before_it_is_looked_for():
