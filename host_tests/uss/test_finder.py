@@ -944,6 +944,23 @@ def test_room_that_the_list_does_not_use_is_taken_after_four_silent_telegrams():
         assert len(notes) > 2 and all([-3_000 < late_us <= 0 for late_us in notes]), notes
 
 
+def test_one_that_is_doubted_while_it_may_run_is_asked_as_soon_as_it_stands():
+    """Though nothing else happens meanwhile that would make the finder look; and not again."""
+    bench = Search(present=(1, 2))
+    bench.contact()
+    bench.drives[2].start(0x1000)
+    bench.run(300_000)
+    bench.drives[2].doubt()
+    bench.run(700_000)
+    assert bench.mirrors() == [] and bench.drives[2].doubted
+    bench.drives[2].stop()
+    bench.run(700_000)
+    assert bench.mirrors() == [14, 14] and bench.mirrors(2) == [14, 14]
+    bench.run_until(lambda: not bench.drives[2].doubted, 30_000_000)
+    bench.run(700_000)
+    assert bench.mirrors() == [14, 14] and not bench.found
+
+
 def test_the_longest_telegram_that_a_drive_can_take_is_one_word_longer_than_any_of_the_list():
     """4 + 16 words, from a drive that is doubted: perhaps it takes any length."""
     for words, net_count in (((4, 16), 42), ((3, 16), 40)):
