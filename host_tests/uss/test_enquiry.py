@@ -205,6 +205,33 @@ def test_whoever_wants_the_layout_alone_asks_for_nothing_else():
     assert repr(node.layout) == "Layout(3, 3)" and node.confirmed and node.off_time_ms is None
 
 
+def test_whoever_does_not_say_what_he_wants_learns_everything():
+    """The layout, which link it is on, the family, and when it trips, in this order."""
+    values = MM4 | {(2013, 1): 3}
+    enquirer = Enquirer(ADDRESS, FOUR_AND_TWO.net_count, False)
+    asked_for, is_over = [], False
+    while not is_over:
+        question = enquirer.question()
+        number, index = question.job.number, question.job.index
+        asked_for.append((number, index))
+        value = values[number, index]
+        net = bytes((0x10, number - 2000, 0x80, index, 0, 0, value >> 8, value & 0xFF))
+        question.take(bytearray(framed(ADDRESS, net + b"\xfb\x31\x00\x00")), 16, 0)
+        is_over = enquirer.take(question)
+    assert asked_for == [(2013, 0), (2012, 0), (2013, 1), (2009, 0), (2014, 0)]
+    node = enquirer.node
+    assert node.family is families.MM4 and node.off_time_ms == 1500 and node.confirmed
+    node = Node(ADDRESS, FOUR_AND_TWO.net_count, False)
+    questions, numbers = enquiry(node), []
+    try:
+        _, number, index = next(questions)
+        while True:
+            numbers.append((number, index))
+            _, number, index = questions.send(values[number, index])
+    except StopIteration:
+        assert numbers == asked_for and node.family is families.MM4
+
+
 def test_what_is_not_known_yet_is_taken_for_the_most_usual_layout_of_its_length():
     for net_count, variable, words in (
         (4, False, (0, 2)), (12, False, (4, 2)), (16, False, (4, 4)), (34, False, (4, 13)),
