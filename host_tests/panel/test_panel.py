@@ -5,6 +5,8 @@ Everything runs on the virtual board, in virtual time, with the same firmware as
 START asks, STOP promises, and becomes of it when something fails is in the files beside this one.
 """
 
+import sys
+
 import main
 import on_demand
 import settings_file as settings
@@ -23,6 +25,7 @@ from panel_bench import (
     starts,
     telegrams,
 )  # fmt: skip
+from uss.drive import Drive
 from version import VERSION
 
 # --- switching on --------------------------------------------------------------------------------
@@ -517,6 +520,212 @@ class Counted:
 
     def show(self, _picture):
         self._done.append("show")
+
+
+class Steps:
+    """The main loop of a panel whose page takes so long in each step, and then says whether the
+    step may go on. Nothing else takes any time.
+
+    done: what the last step has done besides, one letter each: l(ook at the silent drives),
+    e(nter the engine), s(how a piece), f(eed the watchdog), h(ear the logger), i(dle).
+    """
+
+    def __init__(self, **options):
+        self.world = panel(**options)
+        self.app = app = self.world.app
+        self.clock = self.world.clock
+        self.done = ""
+        self.look_us = self.enter_us = 0
+        self.wants_engine = False
+        self.refresh, app.refresh_bus = app.refresh_bus, self.look
+        app.step_panel = self.step_panel
+        app.board.display = self
+        app.board.idle = lambda: self.note("i")
+        app.board.watchdog.feed = lambda: self.note("f")
+        app.bus.is_overtaken = lambda _now: self.wants_engine
+        if app.board.serial():
+            app.board.serial().hear = lambda: self.note("h")
+
+    def note(self, letter):
+        self.done += letter
+
+    def look(self, now_us, looks=True):
+        self.refresh(now_us, looks)
+        if looks:
+            self.note("l")
+            self.clock.advance(self.look_us)
+
+    def poll(self, _now_us):
+        """The engine is entered, by the loop or by an interrupt meanwhile."""
+        if self.done[-1:] != "e":
+            self.note("e")
+            self.clock.advance(self.enter_us)
+        return 1_000_000
+
+    def have_engine(self):
+        """The engine is that of the test, and wants to be entered."""
+        self.app.bus.poll = self.poll
+        self.clock.advance(60_000)  # what was set before is over
+        self.wants_engine = True
+
+    def show(self, _picture):
+        self.note("s")
+        return True
+
+    def step_panel(self, *_):
+        self.clock.advance(self.taken_us)
+        return self.goes_on
+
+    def step(self, taken_us=0, goes_on=True):
+        self.taken_us, self.goes_on, self.done = taken_us, goes_on, ""
+        self.app.step()
+        assert self.done[-1] == "i"
+        return self.done[:-1]
+
+    def fed(self):
+        """The watchdog has just been fed, and the look and the display have had their turn."""
+        self.clock.advance(-self.clock.now_us % 1_000)
+        while self.step(0, False) != "f":
+            self.clock.advance(1_000)
+        while self.step() not in ("s", "ls"):
+            pass
+        return self
+
+    def fed_after(self, ms, taken_us=0):
+        """Whether a step that begins then, and of which the page leaves nothing, feeds it."""
+        self.clock.advance(ms * 1_000)
+        return "f" in self.step(taken_us, False)
+
+
+def test_a_step_in_which_the_page_took_long_is_over():
+    """1.5 ms leave no time for anything; half a millisecond leaves it for one of two."""
+    steps = Steps().fed()
+    for taken_us, does in (
+        (0, "ls"), (500, "ls"), (501, "l"), (1_500, "s"), (501, "l"), (501, "s"), (1_500, "l"),
+        (1_501, ""), (1_501, ""), (0, "s"), (0, "ls"),
+    ):  # fmt: skip
+        assert steps.step(taken_us) == does, taken_us
+    for steps.look_us, does in ((500, "ls"), (501, "l"), (501, "s")):
+        assert steps.step() == does, steps.look_us
+
+
+def test_a_step_that_has_entered_the_engine_for_long_shows_nothing():
+    steps = Steps().fed()
+    steps.have_engine()
+    for steps.enter_us, does in ((500, "les"), (501, "le"), (0, "s"), (0, "les")):
+        assert steps.step() == does, steps.enter_us
+    assert steps.step(501) == "l"  # for the engine it is too late as well
+    steps.wants_engine = False
+    assert steps.step() == "s" and steps.step() == "ls"
+
+
+def test_a_step_of_which_the_page_left_nothing_enters_the_engine_all_the_same():
+    """If that has just asked for it, and the step has not taken long."""
+    steps = Steps().fed()
+    steps.have_engine()
+    for taken_us, does in ((0, "e"), (500, "e"), (501, "")):
+        assert steps.step(taken_us, False) == does, taken_us
+    steps.wants_engine = False
+    assert steps.step(0, False) == ""
+
+
+def test_the_watchdog_is_fed_each_100_ms_by_a_step_that_has_time_and_each_500_by_any():
+    steps = Steps()
+    for ms, taken_us, is_fed in (
+        (99, 0, False), (100, 0, True), (100, 1_999, True), (100, 2_000, False),
+        (499, 1_999, True), (499, 2_000, False), (500, 2_000, True),
+    ):  # fmt: skip
+        assert steps.fed().fed_after(ms, taken_us) is is_fed, (ms, taken_us)
+
+
+def test_the_watchdog_is_fed_only_as_long_as_the_engine_gets_on():
+    for patience_us, times in ((299_999, 2), (300_000, 2), (300_001, 3)):
+        steps = Steps().fed()
+        steps.have_engine()
+        steps.wants_engine = False
+        bus = steps.app.bus
+        bus.patience_us = lambda patience_us=patience_us: patience_us
+        for _ in range(2):
+            bus.progress += 1
+            assert steps.fed_after(100)
+            fed = [steps.fed_after(100) for _ in range(6)]
+            assert fed == [True] * times + [False] * (6 - times), patience_us
+
+
+def test_the_log_has_its_turn_in_a_step_that_has_taken_less_than_700_us():
+    steps = Steps(settings={"log": "JSON"}).fed()
+    for taken_us, heard in ((0, True), (699, True), (700, False)):
+        found = ""
+        for _ in range(8):  # it does one thing in each
+            found += steps.step(taken_us, False)
+        assert ("h" in found) is heard and "e" not in found, taken_us
+
+
+def test_settings_that_could_not_be_saved_are_tried_again_ten_seconds_later():
+    """What else wants to write meanwhile does not wait for that."""
+    steps = Steps(addresses=(1, 2))
+    app, tried, done = steps.app, [], []
+
+    def replace(_data):
+        tried.append(steps.clock.now_us)
+        raise OSError(28)
+
+    app.board.store.replace = replace
+    app.bus.pause = lambda: setattr(app.bus, "paused", True)  # at once
+    app.settings.accept_unsupervised(1)
+    steps.step()
+    assert len(tried) == 1 and app.settings.dirty and app.panel.message is not None
+    for ms, count in ((9_999, 1), (10_000, 2), (19_999, 2), (20_000, 3)):
+        steps.clock.advance(tried[0] + ms * 1_000 - steps.clock.now_us)
+        app.panel.errand = lambda: done.append("errand")
+        steps.step()
+        assert done.pop() == "errand" and app.panel.errand is None
+        steps.step()
+        assert len(tried) == count, ms
+    steps.clock.advance(10_000_000)
+    del app.board.store.replace
+    steps.step()
+    assert not app.settings.dirty and not app.bus.paused
+    app.settings.accept_unsupervised(2)
+    steps.step()
+    assert not app.settings.dirty
+
+
+FINDER = ("uss.finding", "uss.finding.mirror", "uss.finding.finder")
+
+
+def test_what_finds_another_layout_is_loaded_after_three_silences_or_a_doubt():
+    """A module in each step, which does nothing else."""
+
+    def silent_again(steps):
+        steps.app.bus.deadlines.silence.count = 3
+
+    def in_doubt(_steps):
+        Drive.doubts += 1
+
+    for happens in (silent_again, in_doubt):
+        steps = Steps().fed()
+        for name in FINDER:  # of which some are kept where there is room
+            sys.modules.pop(name, None)
+        steps.app.bus.deadlines.silence.count = 2
+        assert [steps.step() for _ in range(3)] == ["ls"] * 3
+        assert len(on_demand.missing(FINDER)) == 3
+        happens(steps)
+        for left in (2, 1, 0, 0):
+            assert steps.step() == "" and len(on_demand.missing(FINDER)) == left
+        assert [steps.step() for _ in range(3)] == ["ls"] * 3
+
+
+def test_a_display_that_does_not_show_the_farewell_is_given_up_after_100_pieces():
+    for pieces, shown in ((3, "sisis"), (100, "si" * 99 + "s"), (101, "si" * 100)):
+        steps = Steps()
+        answers = [False] * (pieces - 1) + [True]
+        steps.show = lambda _picture, steps=steps, answers=answers: (
+            steps.note("s") or answers.pop(0)
+        )
+        steps.app.board.idle = lambda steps=steps: steps.note("i") or steps.clock.advance(1_000)
+        steps.app.close()
+        assert steps.done[steps.done.index("s") :] == shown, pieces
 
 
 # --- the time of a step --------------------------------------------------------------------------
