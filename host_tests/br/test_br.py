@@ -183,6 +183,16 @@ def test_leaving_with_stops_the_motor_whatever_happens():
     assert plc.drives[1].hz() == 0 and plc.status.Ready and not plc.told().Status.Receive
 
 
+def test_close_looks_at_the_bus_each_tenth_of_a_millisecond():
+    plc = Plc()
+    plc.start()
+    rests = []
+    sleep_us = plc.clock.sleep_us
+    plc.clock.sleep_us = lambda us: rests.append(us) or sleep_us(us)
+    plc.controller.close()
+    assert len(rests) > 10 and set(rests) == {100}
+
+
 def test_a_controller_that_was_never_started_leaves_at_once():
     plc = Plc()
     plc.run(100)

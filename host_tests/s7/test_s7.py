@@ -254,6 +254,21 @@ def test_a_uss_ctrl_that_is_not_called_stops_its_motor_and_no_other():
     assert plc.drive(1).state == "ready" and control.RUN_VOID
 
 
+def test_a_uss_ctrl_has_300_ms_until_it_is_called_again():
+    plc = Plc()
+    plc.start()
+    plc.scan()
+    called_us = plc.clock.now_us
+    drive = plc.port.drives[1]
+    for later_us in list(range(2_000, 300_000, 10_000)) + [300_000]:
+        plc.clock.advance(called_us + later_us - plc.clock.now_us)
+        plc.port.scan()
+    assert plc.port.controls[1] is plc.outputs() and drive.wanted
+    plc.clock.advance(1)
+    plc.port.scan()
+    assert plc.port.controls[1] is None and not drive.wanted
+
+
 def test_for_a_uss_ctrl_that_is_called_again_what_is_on_has_no_edge():
     for has_tripped in (False, True):
         plc = Plc()
@@ -779,6 +794,16 @@ def test_close_waits_until_the_drive_has_answered():
     plc.clock.schedule(Event(plc.drive().plug), plc.clock.now_us + 300_000)
     plc.port.close()
     assert plc.drive().state == "stopping"
+
+
+def test_close_looks_at_the_bus_each_tenth_of_a_millisecond():
+    plc = Plc()
+    plc.start()
+    rests = []
+    sleep_us = plc.clock.sleep_us
+    plc.clock.sleep_us = lambda us: rests.append(us) or sleep_us(us)
+    plc.port.close()
+    assert len(rests) > 10 and set(rests) == {100}
 
 
 def test_close_gives_up_where_nobody_answers():
