@@ -89,7 +89,7 @@ def pulses_of(word):
     the next E rises) for each pulse that the state machine makes of the word."""
     steps, labels = program()
     registers = {"pins": 0, "x": 0, "y": 0}
-    at = cycle = changed = 0
+    at = cycle = changed = shifted = 0
     was_high, rises, found = 0, 0, []
     while at < len(steps):
         step = steps[at]
@@ -101,10 +101,12 @@ def pulses_of(word):
             found[-1][2] = cycle - rises
         was_high = step.level
         cycle += step.cycles
-        if step.operation == "out":
+        if step.operation == "pull":
+            shifted = word
+        elif step.operation == "out":
             name, bits = step.arguments
-            registers[name] = word & (1 << bits) - 1
-            word >>= bits
+            registers[name] = shifted & (1 << bits) - 1
+            shifted >>= bits
             if name == "pins":
                 changed = cycle - step.cycles
                 assert not step.level and not registers[name] & E
