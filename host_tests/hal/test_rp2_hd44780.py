@@ -19,6 +19,7 @@ class Step:
         self.level, self.cycles = 0, 1
 
     def side(self, level):
+        assert level in (0, 1), "it has one pin"
         self.level = level
         return self
 
