@@ -283,6 +283,25 @@ def test_a_backpack_that_is_unplugged_does_not_stop_the_panel():
     assert 9 <= bench.display.failures <= 11 and bench.made == bench.display.failures + 1
 
 
+def test_it_is_looked_for_half_a_second_after_each_failure_and_then_has_40_ms():
+    """What comes first is one byte, the light: it shows whether the backpack is there."""
+    bench = running()
+    backpack, display, clock = bench.chip_of_backpack, bench.display, bench.clock
+    backpack.plugged = False
+    assert not display.show(READY) and display.failures == 1
+    for failures in (2, 3):
+        clock.advance(500_000)
+        assert not display.show(READY) and display.failures == failures - 1
+        clock.advance(1)
+        assert not display.show(READY) and display.failures == failures
+    backpack.plugged = True
+    before = taken(bench)
+    for wait_us, count in ((500_000, 0), (1, 1), (40_000, 1), (1, 4)):
+        clock.advance(wait_us)
+        assert not display.show(READY) and taken(bench) - before == count, (wait_us, count)
+    assert bench.run(READY, START_MS) and display.failures == 3
+
+
 def test_it_is_set_up_anew_when_it_is_plugged_in_again():
     """It had no power meanwhile, and the display neither."""
     for away_ms in (AGAIN_MS - 10, 3_000):
