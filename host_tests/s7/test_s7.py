@@ -65,6 +65,13 @@ def test_dir_and_a_negative_setpoint_turn_the_motor_round_and_cancel_each_other(
         assert plc.outputs().D_DIR == (hertz > 0) and not plc.outputs().RUN_VOID
 
 
+def test_a_uss_ctrl_says_nothing_of_a_drive_that_it_has_not_heard():
+    control = USS_CTRL(Port(None, Clock()))
+    outputs = (control.RESP_R, control.RUN_EN, control.D_DIR, control.INHIBIT, control.FAULT)
+    assert outputs == (False,) * 5 and control.RUN_VOID is False
+    assert (control.STATUS, control.SPEED, control.ERROR, control.STATUS_WORD) == (0, 0.0, 0, 0)
+
+
 def test_resp_r_is_on_for_one_scan_with_each_reply():
     plc = Plc()
     plc.run(300)
