@@ -9,6 +9,8 @@ from panel.commission.step import Step
 from panel.lookup.value import Form
 from panel_bench import row_1, row_2, settled_row_2, wait_until_known
 from uss import pkw
+from uss.families import MM3, MM440, V20
+from uss.families.bop import on_bop
 
 PLATE = (  # of the motor: number, what is typed over what is there, what is read then
     (304, "400", 400),
@@ -467,3 +469,119 @@ def test_in_german():
     go_to_step(world, 2011)
     assert "Adresse" in lines(world), world.lcd()
     world.check()
+
+
+# --- a step by itself ----------------------------------------------------------------------------
+
+
+class Told:
+    """What a step asks of its drive, the survey of that, and a reading."""
+
+    contact = has_room = True
+    pkw_words = 127
+
+    def __init__(self, family):
+        self.drive = self.survey = self.layout = self
+        self.family = family
+        self.asked = []
+
+    def ask(self, drive, number, index, task):
+        assert drive is self
+        self.asked.append((number, index, task))
+        return self.has_room
+
+
+def step_of(told, number, needs, index=0, is_done=False):
+    row = [b"S207", b"", b"", b"%d" % number, b"%d" % index, needs]
+    return Step(row, told, is_done)
+
+
+def job_with(bits, width=pkw.WORD):
+    job = pkw.read(0)
+    job.width, job.high, job.low = width, bits >> 16, bits & 0xFFFF
+    return job
+
+
+def test_a_person_tells_that_a_step_is_done_where_no_reading_does():
+    """A value of the motor's plate, and what starts something, which reads 0 again."""
+    told = Told(MM440)
+    for number, needs, is_typed, is_told in (
+        (304, b"?", True, True), (10, b"?", True, True), (10, b"1", False, True),
+        (10, b"0", False, False), (970, b"1", False, True), (971, b"1", False, True),
+        (1910, b"1", False, True), (3900, b"1", False, True), (700, b"5", False, False),
+    ):  # fmt: skip
+        for is_done in (False, True):
+            step = step_of(told, number, needs, is_done=is_done)
+            assert (step.is_typed, step.is_told) == (is_typed, is_told), (number, needs)
+            assert step.is_done == (is_told and is_done) and step.key == 207
+    for number in (9, 11, 969, 972, 1909, 1911, 3899, 3901):
+        assert not step_of(told, number, b"1").is_told, number
+
+
+def test_a_step_is_asked_about_with_the_index_that_its_family_and_its_link_have():
+    for family, number, index, asked in (
+        (MM440, 700, 0, (700, 0, pkw.READ)),
+        (MM440, 1120, 2, (1120, 2, pkw.READ)),  # its tasks take an index as they are
+        (V20, 1120, 2, (1120, 2, pkw.READ_ELEMENT)),
+        (V20, 1120, 0, (1120, 0, pkw.READ)),
+        (MM440, 2010, 0, (2010, 0, pkw.READ)),
+        (on_bop(MM440), 2010, 0, (2010, 1, pkw.READ)),
+        (on_bop(MM440), 1120, 2, (1120, 2, pkw.READ)),
+    ):
+        told = Told(family)
+        step = step_of(told, number, b"1", index)
+        assert (step.number, step.index) == asked[:2]
+        for has_room in (True, False):
+            told.has_room = has_room
+            assert step.ask(told) == has_room and told.asked.pop() == asked
+        told.contact = False
+        assert not step.ask(told) and told.asked == []
+
+
+def test_a_step_needs_what_stands_in_the_catalogue_or_what_the_panel_knows():
+    """Some are right with whatever answers, or with any time after which the drive trips."""
+    bop, third, second = on_bop(MM440), Told(MM3), Told(V20)
+    for told, number, needs, has, needed, is_right in (
+        (Told(MM440), 700, b"5", 2, 5, False), (Told(MM440), 700, b"5", 5, 5, True),
+        (Told(MM440), 1000, b"5", 4, 5, False), (Told(bop), 1000, b"5", 4, 4, True),
+        (Told(bop), 700, b"5", 5, 4, False), (Told(bop), 701, b"5", 5, 5, True),
+        (second, 2010, b"@baud", 0, 0, True), (second, 2011, b"@address", 31, 31, True),
+        (second, 2013, b"@pkw", 4, 127, False), (second, 2013, b"@pkw", 127, 127, True),
+        (second, 2014, b"@off", 0, 2_000, False), (second, 2014, b"@off", 1, 1, True),
+        (third, 93, b"@off", 0, 2, False), (third, 93, b"@off", 240, 240, True),
+    ):  # fmt: skip
+        step = step_of(told, number, needs)
+        row = number, needs, has
+        assert step.needed(step.form(None, job_with(has)), has) == needed, row
+        assert step.is_right(job_with(has)) == is_right, row
+
+    class Slow(MM3):
+        off_time_unit_ms = 3_000
+
+    step = step_of(Told(Slow), 93, b"@off")
+    assert step.needed(step.form(None, job_with(0)), 0) == 1  # the least that is no 0
+
+
+def test_a_number_of_two_words_is_right_as_a_whole_one_or_with_a_point():
+    """What the drive has says how it is meant; what is written is as the catalogue says."""
+    step = step_of(Told(MM440), 1120, b"10")
+    point = 0x41200000  # 10.0
+    for bits, width, is_right in (
+        (point, pkw.DOUBLE, True), (10, pkw.DOUBLE, True), (10, pkw.WORD, True),
+        (point + 1, pkw.DOUBLE, False), (11, pkw.DOUBLE, False), (0x1000A, pkw.DOUBLE, False),
+        (9, pkw.WORD, False),
+    ):  # fmt: skip
+        assert step.is_right(job_with(bits, width)) == is_right, (bits, width)
+    row = catalogue.find("mm440", 1120)
+    assert step.needed(step.form(row, job_with(0, pkw.DOUBLE)), 0) == point
+    assert step.needed(step.form(row, job_with(0)), 0) == 10
+
+
+def test_a_step_asks_first_where_another_value_gives_the_setpoint_another_meaning():
+    for family, number, rescales in (
+        (MM440, 2000, True), (MM440, 2010, False), (MM440, 1120, False), (MM3, 94, True),
+        (MM3, 93, False),
+    ):  # fmt: skip
+        step = step_of(Told(family), number, b"?")
+        assert step.rescales(5, 4) == step.rescales(4, 5) == rescales, number
+        assert not step.rescales(5, 5), number
