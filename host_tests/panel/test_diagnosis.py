@@ -5,8 +5,13 @@ import main
 from boards.sim.drives.families import mm440
 from boards.sim.drives.kinds import listed_drives, simulated
 from boards.sim.world import World
+from panel import texts
+from panel.keys import Acts, Keys
+from panel.menu.diagnosis import counters as counter_list
+from panel.menu.diagnosis import health, off
 from panel.menu.diagnosis import mirror as mirror_test
 from panel.menu.diagnosis import telegrams as telegram_list
+from panel.menu.diagnosis import words as diagnosis_words
 from panel_bench import (
     OFF1,
     comes_to,
@@ -30,6 +35,7 @@ from spoilt_bench import (
 )
 from uss import pkw
 from uss.drive import COUNTERS
+from uss.families import MM440
 from uss.finding.witness import CYCLE, RESPONSE_DELAY
 from uss.master import LISTENING, OFF
 from uss.tasks.descriptions import NAME, read_description
@@ -665,6 +671,172 @@ def test_to_count_the_memory_waits_for_no_motor():
     world.press("SET")
     world.run(100)
     assert world.reads("STOP ALL FIRST"), world.lcd()
+
+
+# --- its lists by themselves: to the millisecond ------------------------------------------------
+
+
+class Told:
+    """A drive and the survey of it, as the lists ask for them."""
+
+    net_count, pzd_words, pzd_count = 12, 2, 4
+    family = MM440
+
+    def __init__(self, address):
+        self.drive = self.survey = self.layout = self
+        self.address = address
+        self.counters = [100 * address + row for row in range(len(COUNTERS))]
+
+
+class Line:
+    """A panel with two drives, its bus, and what they do."""
+
+    mask = 0xFFFFF
+    exchanges, foreign, failures, dead_man_trips = 11, 22, 33, 44
+    phase = LISTENING
+    has_other = has_motor = reset_cause = False
+    wait_us = 0
+
+    def __init__(self):
+        self.bus = self.turns = self.deadlines = self.board = self
+        self.controls = [Told(3), Told(12)]
+        self.selected = self.controls[0]
+        self.did = []
+
+    def any_runs(self):
+        return self.has_motor
+
+    def say(self, now_ms, text):
+        self.did.append((now_ms, text))
+
+    def has_command(self):
+        return self.has_other
+
+    def silence_wait_us(self):
+        return self.wait_us
+
+    def post(self, telegram):
+        telegram.state = pkw.PENDING
+        self.did.append(telegram)
+
+    def off(self):
+        self.did.append("off")
+
+    def on(self):
+        self.did.append("on")
+
+
+def test_a_rate_is_that_of_the_time_since_its_entry_was_chosen_two_seconds_at_the_least():
+    line = Line()
+    drive = line.controls[1]
+    shown = counter_list.List(line, drive)
+    begin_ms = line.mask - 999  # the clock begins anew meanwhile
+    for at_ms, counted, told in (
+        (0, 60_000, "60000   .../min"), (1_999, 60_020, "60020   .../min"),
+        (2_000, 60_020, "60020   600/min"), (2_001, 60_020, "60020   599/min"),
+        (30_000, 60_020, "60020    40/min"), (30_000, 34_464, "34464 80000/min"),
+        (60_000, 34_464, "34464 40000/min"), (60_000, 14_464, "14464 20000/min"),
+    ):  # fmt: skip
+        drive.counters[3] = counted
+        shown.step(3, begin_ms + at_ms & line.mask)
+        assert shown.words(3) == told.encode(), (at_ms, shown.words(3))
+    assert shown.words(2) == b" 1202   .../min"  # that entry is not chosen
+    for row, at_ms, told in ((2, 90_000, " 1202"), (3, 95_000, "14464")):  # each begins anew
+        shown.step(row, begin_ms + at_ms & line.mask)
+        assert shown.words(row) == told.encode() + b"   .../min"
+        shown.step(row, begin_ms + at_ms + 2_000 & line.mask)
+        assert shown.words(row) == told.encode() + b"     0/min"
+
+
+def test_each_counter_of_a_drive_and_of_the_bus_stands_at_its_own_name():
+    line = Line()
+    of_drive, of_bus = counter_list.List(line, line.controls[1]), counter_list.List(line, None)
+    assert (of_drive.count(), of_bus.count()) == (7, 11)
+    assert of_drive.control_at(0) is line.controls[1] and of_bus.control_at(0) is None
+    for row, name in enumerate(diagnosis_words.COUNTERS):
+        assert of_drive.heading(row) == b"A12 " + name and of_bus.heading(row) == b"BUS " + name
+        assert of_drive.words(row) == b"%5d   .../min" % (1_200 + row)
+        assert of_bus.words(row) == b"%5d   .../min" % (300 + 1_200 + 2 * row)
+    told = [(of_bus.heading(row), of_bus.words(row)[:5]) for row in range(7, 11)]
+    names = (b"BUS SENT", b"BUS FOREIGN", b"BUS FAILED", b"BUS HUNG")
+    assert told == list(zip(names, (b"   11", b"   22", b"   33", b"   44"))), told
+
+
+def test_a_mirror_goes_every_250_ms_and_the_next_when_the_last_is_over():
+    """Behind a task for a drive, and when silent drives have had their share of the line."""
+    line = Line()
+    shown = mirror_test.List(line, line.controls[1])
+    assert shown.heading(0) == b"A12 MIRROR TEST" and shown.control_at(0) is line.controls[1]
+    begin_ms = line.mask - 400
+    for at_ms, state, changes, sent, told in (
+        (0, None, {}, 1, "0 OK OF 0"), (900, None, {}, 1, "0 OK OF 0"),
+        (901, pkw.DONE, {}, 2, "1 OK OF 1"), (905, pkw.TIMED_OUT, {}, 2, "1 OK OF 2"),
+        (1_150, None, {}, 2, "1 OK OF 2"), (1_151, None, {"wait_us": 1}, 2, "1 OK OF 2"),
+        (1_160, None, {"wait_us": 0, "has_other": True}, 2, "1 OK OF 2"),
+        (1_170, None, {"has_other": False}, 3, "1 OK OF 2"),
+        (1_171, pkw.DONE, {}, 3, "2 OK OF 3"), (1_419, None, {}, 3, "2 OK OF 3"),
+        (1_420, None, {}, 4, "2 OK OF 3"),
+    ):  # fmt: skip
+        for name in changes:
+            setattr(line, name, changes[name])
+        if state is not None:
+            line.did[-1].state = state
+        shown.step(0, begin_ms + at_ms & line.mask)
+        assert (len(line.did), shown.words(0)) == (sent, told.encode()), at_ms
+    shown.choose(0, 0)
+    assert shown.words(0) == b"0 OK OF 0"
+
+
+def test_the_line_is_left_once_and_taken_back_once():
+    line = Line()
+    keys = Keys(("STOP", "START"), line.mask)
+    shown = off.List(line)
+
+    def reads():
+        return shown.heading(0), shown.words(0), shown.is_busy()
+
+    asks = (b"P2014 MAY TRIP", b"SET=LEAVE LINE", False)
+    line.has_motor = True
+    shown.choose(0, 77)
+    assert line.did == [(77, texts.STOP_FIRST)] and reads() == asks
+    line.has_motor, line.did = False, []
+    shown.end()
+    assert line.did == []
+    for way_back in ("STOP", "PARAM"):
+        for _ in range(2):  # a second SET does nothing
+            shown.choose(0, 77)
+            assert line.did == ["off"] and reads() == (b"BUS OFF", b"STOPS DRIVES", True)
+        line.phase = OFF
+        assert reads() == (b"PARAM=BACK", b"LINE IS FREE", True)
+        acts = Acts(keys)
+        acts.pressed = keys.bit("START")
+        assert not shown.take_keys(acts) and line.did == ["off"]
+        if way_back == "STOP":
+            acts.pressed = keys.bit("STOP")
+            assert not shown.take_keys(acts)  # the menu has it, too
+        for _ in range(2):
+            shown.end()
+        assert line.did == ["off", "on"] and reads() == asks
+        line.phase, line.did = LISTENING, []
+
+
+def test_memory_is_counted_by_set_on_its_own_entry_beside_no_motor():
+    line = Line()
+    shown = health.List(line)
+    assert shown.count() == 2
+    line.has_motor = True
+    for position, did in ((0, []), (1, [(77, texts.STOP_FIRST)])):
+        shown.choose(position, 77)
+        assert line.did == did and shown.words(1) == b"SET=COUNT"
+    line.has_motor = False
+    shown.choose(0, 77)
+    assert shown.words(1) == b"SET=COUNT"
+    shown.choose(1, 77)
+    count, unit = shown.words(1).split()
+    assert int(count) > 0 and unit == b"BYTES" and len(line.did) == 1
+    for cause, told in ((False, b"POWER OR RESET"), (True, b"WATCHDOG")):
+        line.reset_cause = cause
+        assert shown.words(0) == told
 
 
 # --- bus off ------------------------------------------------------------------------------------
