@@ -13,6 +13,12 @@ from panel import texts
 from panel.keys import NAMES as ALL
 from panel.keys import Acts, Keys
 from panel.menu import BACK, PAGE, Entries
+from panel.menu import accepted as accepted_list
+from panel.menu import address as address_list
+from panel.menu import code as code_page
+from panel.menu import order as order_list
+from panel.menu import turns as turns_list
+from panel.menu import words as menu_words
 from panel.menu.engine import Menu
 from panel_bench import (
     LOOP_US,
@@ -28,6 +34,9 @@ from panel_bench import (
     wait_until_known,
 )  # fmt: skip
 from spoilt_bench import spoil, with_a_wrong_check
+from uss import pkw
+from uss.families import MM440
+from uss.finding.mirror import Mirror
 from uss.telegram import MIRROR
 from version import VERSION
 
@@ -1664,3 +1673,307 @@ def test_a_menu_that_closes_ends_each_list_once_whatever_was_to_come():
     assert [own.did.count("end") for own in panel.lists] == [1, 1]
     assert not opened.menu.is_busy and not opened.menu.is_ready()
     assert opened.rows() == ("." * 16, "." * 16)
+
+
+# --- its lists by themselves ---------------------------------------------------------------------
+
+
+class Drive(Machine):
+    """One that has told all, and what a list makes of it."""
+
+    contact = complete = True
+    off_ms, family, actual, in_percent = 0, MM440, None, False
+
+    def __init__(self, address):
+        Machine.__init__(self, address)
+        self.survey = self
+
+    def off_time_ms(self):
+        return self.off_ms
+
+    def actual_centihertz(self):
+        return self.actual
+
+    def is_percent(self):
+        return self.in_percent
+
+
+class Whole(Told):
+    """A panel with its settings and its bus, on which an exchange takes 10 ms."""
+
+    runs = has_other = is_full = False
+    lock_code, wait_us = 2_046, 0
+
+    def __init__(self, *addresses):
+        Told.__init__(self)
+        self.settings = self.bus = self.turns = self.deadlines = self.guard = self
+        self.drives = addresses
+        self.controls = self.list = [Drive(address) for address in addresses]
+        self.selected = self.controls[0]
+        self.repeats, self.unsupervised = {}, addresses
+
+    def say(self, now_ms, text, *values):
+        self.did.append(texts.of(text, *values))
+
+    def any_runs(self):
+        return self.runs
+
+    def change(self, name, value):
+        setattr(self, name, value)
+        self.did.append(name)
+
+    def begin_anew(self):
+        self.did.append("anew")
+
+    def heed_settings(self):
+        self.did.append("heed")
+
+    def unlock(self):
+        self.did.append("unlock")
+
+    def longest_cycle_us(self, entries):
+        return 10_000 * len(entries) - 1
+
+    def at(self, address):
+        return ([drive for drive in self.controls if drive.address == address] or [None])[0]
+
+    def has_command(self):
+        return self.has_other
+
+    def silence_wait_us(self):
+        return self.wait_us
+
+    def post(self, telegram):
+        telegram.state = pkw.PENDING
+        self.telegram = telegram
+        self.did.append((telegram.node, telegram.size - 4))
+
+    def add(self, address, kind):
+        if self.is_full:
+            raise ValueError
+        self.did.append((address, kind))
+
+    def close_menu(self):
+        self.did.append("closed")
+
+
+def test_a_drive_that_is_carried_goes_round_in_both_directions_and_is_kept_when_that_is_left():
+    panel = Whole(3, 12, 7)
+    shown = order_list.List(panel, None)
+    assert not shown.change(0, -1)  # nothing is carried
+    assert [shown.words(at) for at in range(shown.count())] == [b"A3", b"A12", b"A7"]
+    assert shown.heading(0) == b"ORDER" and shown.control_at(1) is panel.controls[1]
+    shown.choose(0, 0)
+    for at, steps, order_of in (
+        (0, -1, (12, 3, 7)), (1, -1, (12, 7, 3)), (2, -1, (3, 12, 7)), (0, 1, (12, 7, 3)),
+        (2, 1, (12, 3, 7)), (1, 1, (3, 12, 7)), (0, -100, (12, 3, 7)),
+    ):  # fmt: skip
+        assert not shown.change(at, steps)  # the menu walks with it
+        assert shown.words(0) == b"A3  UP DOWN" and shown.heading(0) == b"SET=KEEP"
+        assert tuple([shown.control_at(place).address for place in range(3)]) == order_of
+    shown.choose(1, 0)
+    assert [shown.words(at) for at in range(3)] == [b"A12", b"A3", b"A7"] and panel.did == []
+    shown.leave(0)
+    assert panel.did == ["drives", "anew"] and panel.drives == (12, 3, 7)
+    shown.leave(0)
+    assert panel.did == ["drives", "anew"]  # it is that already
+    panel.runs = True
+    shown.choose(0, 0)
+    assert panel.did[2:] == [texts.STOP_FIRST] and shown.heading(0) == b"ORDER"
+    panel.drives = (3, 12, 7)
+    shown.leave(0)
+    assert panel.did[2:] == [texts.STOP_FIRST] * 2 and panel.drives == (3, 12, 7)
+
+
+def test_the_turns_of_a_drive_are_kept_where_three_rounds_fit_into_each_telegram_off_time():
+    """A round of six turns is taken for 60 ms here."""
+    for off_ms, changes, told in (
+        (0, {}, None), (1, {}, b"A12: P2014 SHORT"), (179, {}, b"A12: P2014 SHORT"),
+        (180, {}, None), (180, {"complete": False}, texts.REFUSED_CHECKING),
+        (180, {"complete": False, "contact": False}, None),
+    ):  # fmt: skip
+        panel = Whole(3, 12, 7)
+        second = panel.controls[1]
+        second.off_ms = off_ms
+        for name in changes:
+            setattr(second, name, changes[name])
+        shown = turns_list.List(panel, None)
+        assert not shown.change(0, 1) and shown.words(0) == b"A3  x1"
+        shown.choose(0, 0)
+        assert shown.heading(0) == b"SET=KEEP"
+        for steps, times in ((1, 2), (1, 3), (100, 4), (1, 4), (-1, 3), (-9, 2), (-1, 1), (-1, 1)):
+            assert shown.change(0, steps) and shown.words(0) == b"A3  x%d" % times
+        for _ in range(3):
+            shown.change(0, 1)
+        shown.choose(0, 0)
+        assert shown.heading(0) == b"TURNS"
+        kept_ones = {} if told else {"3": 4}
+        assert panel.did == ([told] if told else ["repeats", "anew"]), (off_ms, panel.did)
+        assert panel.repeats == kept_ones and shown.words(0) == (b"A3  x1" if told else b"A3  x4")
+    panel.did, panel.list = [], [None] * 6
+    second.off_ms, second.contact = 1, True
+    taken = ["repeats", "anew"]
+    for key_steps, kept_ones, did in (
+        (0, {"3": 4}, []), (-1, {"3": 3}, taken), (-9, {"3": 2}, taken), (-1, {}, taken),
+        (0, {}, []),
+    ):  # fmt: skip
+        panel.did = []
+        shown.choose(0, 0)
+        if key_steps:
+            shown.change(0, key_steps)
+        shown.choose(0, 0)  # a shorter round is never worse
+        assert (panel.repeats, panel.did) == (kept_ones, did), key_steps
+    panel.runs, panel.did = True, []
+    for _ in range(2):
+        shown.choose(1, 0)
+        shown.change(1, 1)
+    assert panel.did == [texts.STOP_FIRST] and panel.repeats == {}
+
+
+def typed(shown, digits):
+    """Type a code: what is read before each SET, and where that leads to."""
+    rows, leads = [], []
+    for digit in digits:
+        for _ in range(int(digit)):
+            assert shown.change(0, 100)  # by one, however long the key is held
+        rows.append(shown.words(0).decode())
+        leads.append(shown.choose(0, 77))
+    return rows, leads
+
+
+def test_a_code_is_typed_digit_by_digit_and_read_only_where_it_is_new():
+    panel = Whole(3)
+    shown = code_page.List(panel, False)
+    for steps, digit in ((-1, 9), (1, 0), (-9, 9), (1, 0)):
+        assert shown.change(0, steps) and shown.words(0) == b"CODE %d___" % digit
+    rows, leads = typed(shown, "2047")
+    assert rows == ["CODE 2___", "CODE *0__", "CODE **4_", "CODE ***7"]
+    assert leads == [None] * 4 and panel.did == [b"WRONG CODE"]
+    rows, leads = typed(shown, "2046")  # it begins with the first digit again
+    assert rows[0] == "CODE 2___" and leads == [None] * 3 + [BACK]
+    assert panel.did[1:] == ["unlock", b"UNLOCKED"]
+    for digits, lock_code, said_then in (("0310", 310, b"KEPT"), ("0000", 0, b"NO LOCK")):
+        panel.did = []
+        rows, leads = typed(code_page.List(panel, True), digits)
+        assert rows == [("NEW CODE " + digits[:at] + "___")[:13] for at in range(1, 5)]
+        assert leads == [None] * 3 + [BACK] and panel.lock_code == lock_code
+        assert panel.did == ["lock_code", "heed", said_then]
+
+
+def test_each_drive_that_was_accepted_is_taken_back_by_itself():
+    panel = Whole(3, 12, 7)
+    shown = accepted_list.List(panel, None)
+    for place, left in ((1, (3, 7)), (1, (3,)), (0, ()), (0, ())):
+        rows = [shown.words(at) for at in range(shown.count())]
+        was = panel.unsupervised
+        assert rows == ([b"A%d  SET=ASK" % one for one in was] or [b"NO DRIVE"])
+        panel.did = []
+        assert shown.choose(place, 0) is None
+        assert panel.unsupervised == left
+        assert panel.did == (["unsupervised", b"KEPT"] if was else [])
+
+
+def test_a_speed_has_two_decimals_its_sign_and_its_unit():
+    for actual, in_percent, row in (
+        (None, False, texts.UNKNOWN_VALUE), (0, False, b"0.00 Hz"), (-5, False, b"-0.05 Hz"),
+        (-1, True, b"-0.01 %"), (1_284, False, b"12.84 Hz"), (-10_099, True, b"-100.99 %"),
+        (100, False, b"1.00 Hz"), (-99, False, b"-0.99 Hz"),
+    ):  # fmt: skip
+        drive = Drive(3)
+        drive.actual, drive.in_percent = actual, in_percent
+        assert menu_words.speed(drive) == row, (actual, row)
+
+
+class Enquirer:
+    """Asks a drive that answers what it is, in two telegrams."""
+
+    made = None
+
+    def __init__(self, *node):
+        Enquirer.made = node
+        self.node = self
+        self.family, self.layout = MM440, MM440.layout
+        self.taken = 0
+
+    def question(self):
+        return Mirror(7, bytes(26))
+
+    def take(self, telegram):
+        self.taken += 1
+        return self.taken > 1
+
+
+LENGTHS = [10, 12, 4, 16, 14, 8, 6, 18, 20, 22, 24]  # net characters that are tried
+
+
+def test_an_address_is_asked_in_all_lengths_round_and_round_until_somebody_answers():
+    panel = Whole(3, 12)
+    shown = address_list.List(panel, None)
+    assert (shown.first(), shown.count()) == (3, 32)
+    shown.step(3, 0)
+    shown.step(3, 0)
+    assert panel.did == [] and shown.words(3) == b"A3  IN THE LIST"
+    assert shown.control_at(12) is panel.controls[1] and shown.control_at(13) is None
+    for name, value in (("wait_us", 1), ("has_other", True)):  # first what must not wait
+        setattr(panel, name, value)
+        shown.step(7, 0)
+        assert panel.did == []
+        setattr(panel, name, getattr(Whole, name))
+    for asked_so_far in range(1, 15):
+        shown.step(7, 0)
+        assert len(panel.did) == asked_so_far
+        shown.step(7, 0)  # it is under way
+        assert len(panel.did) == asked_so_far
+        row = b"A7  NOBODY" if asked_so_far > 11 else b"A7  ..."
+        assert shown.words(7) == row, asked_so_far
+        shown.choose(7, 0)  # nobody is there to be taken
+        assert shown.words(8) == b"A8  ..."
+        panel.telegram.state = pkw.TIMED_OUT
+    shown.step(7, 0)
+    assert panel.did == [(7, length) for length in (LENGTHS + LENGTHS)[:15]]
+    panel.telegram.state = pkw.DONE
+    for _ in range(3):  # who answers is not asked any more
+        shown.step(7, 0)
+        assert len(panel.did) == 15 and shown.words(7) == b"A7  ANSWERS"
+    shown.step(8, 0)  # another one begins with the first
+    assert panel.did[15:] == [(8, 10)]
+    assert shown.words(8) == b"A8  ..." and shown.words(7) == b"A7  ..."
+    panel.telegram.state = pkw.TIMED_OUT
+    shown.step(12, 0)
+    assert len(panel.did) == 16 and shown.words(12) == b"A12 IN THE LIST"
+
+
+def test_who_answers_is_asked_what_it_is_when_set_wants_it_and_taken_as_that():
+    """It takes one length only if it is silent twice on another."""
+    for silences, is_answered, is_full in (
+        (0, True, False), (1, True, False), (2, False, False), (2, False, True)
+    ):  # fmt: skip
+        panel = Whole(3)
+        panel.is_full = is_full
+        shown = address_list.List(panel, None)
+        shown.step(7, 0)
+        panel.telegram.state = pkw.TIMED_OUT
+        shown.step(7, 0)
+        panel.telegram.state = pkw.DONE
+        shown.step(7, 0)
+        shown.choose(8, 0)  # nobody was found there
+        shown.step(7, 0)
+        assert panel.did == [(7, 10), (7, 12)] and shown.words(7) == b"A7  ANSWERS"
+        shown.choose(7, 0)
+        assert shown.words(7) == b"A7  ..."
+        sys.modules["uss.finding.enquiry"] = enquiry = type(Module)("Enquiry", (), {})
+        enquiry.Enquirer = Enquirer
+        shown.step(7, 0)
+        for is_last in [False] * (silences - 1 if silences == 2 else silences) + [True]:
+            assert panel.did[-1] == (7, 14)  # a word more
+            panel.telegram.state = pkw.DONE if is_last and is_answered else pkw.TIMED_OUT
+            shown.step(7, 0)
+        sys.modules.pop("uss.finding.enquiry", None)
+        assert Enquirer.made == (7, 12, is_answered), (silences, Enquirer.made)
+        for _ in range(2):
+            assert panel.did[-1] == (7, 26)
+            panel.telegram.state = pkw.DONE
+            asked_so_far = len(panel.did)
+            shown.step(7, 0)
+        added = [b"A7 NOT ADDED"] if is_full else [(7, "mm440"), b"A7 ADDED"]
+        assert panel.did[asked_so_far:] == ["closed"] + added
