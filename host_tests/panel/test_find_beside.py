@@ -2,10 +2,13 @@
 """The operator's manual: further drives are found at the rate of the panel, beside its own."""
 
 import json
+import sys
 
 import main
 from boards.sim.drives.kinds import listed_drives, simulated
 from boards.sim.world import World
+from panel import texts
+from panel.menu import beside
 from panel_bench import (
     comes_to,
     row_1,
@@ -15,6 +18,8 @@ from panel_bench import (
     telegrams,
     wait_until_known,
 )
+from uss.families import MM440
+from uss.layout import Layout
 
 OFF1 = 0x047E
 
@@ -244,3 +249,131 @@ def test_where_nobody_else_is_it_says_so_and_a_minute_without_a_key_closes_it():
     world.run(62_000)
     assert row_2(world) == "READY        A1", world.lcd()
     world.check()
+
+
+# --- the list by itself --------------------------------------------------------------------------
+
+
+class Node:
+    """What was found at an address."""
+
+    family = MM440
+
+    def __init__(self, zsw=0xFB31, layout=MM440.layout):
+        self.zsw, self.layout = zsw, layout
+
+
+class Scan:
+    """Looks for drives as far as it is told; it notes when."""
+
+    over, percent = False, 0
+
+    def __init__(self, bus, mask):
+        bus.scan = self
+        self.mask = mask
+        self.nodes, self.stepped, self.kept = [], [], []
+
+    def progress(self, whole):
+        assert whole == 100
+        return self.percent
+
+    def asked_nodes(self):
+        return self.nodes
+
+    def step(self, now_us):
+        self.stepped.append(now_us)
+
+    def keep(self, now_us):
+        self.kept.append(now_us)
+
+
+class Told:
+    """A panel with drive 3, and room for some more."""
+
+    def __init__(self, room=9):
+        self.bus = self.turns = self
+        self.selected = "A3"
+        self.room = room
+        self.did = []
+
+    def at(self, address):
+        return self if address == 3 else None
+
+    def say(self, now_ms, text, *values):
+        self.did.append(texts.of(text, *values))
+
+    def add(self, address, kind):
+        if not self.room:
+            raise ValueError
+        self.room -= 1
+        self.selected = "another"
+        self.did.append((address, kind))
+
+    def show(self, control):
+        self.did.append(control)
+
+    def close_menu(self):
+        self.did.append("closed")
+
+
+class FindModule:
+    """Where the scan stands."""
+
+    Scan = Scan
+
+
+def begun(**told):
+    panel = Told(**told)
+    shown = beside.List(panel, None)
+    sys.modules["uss.finding.scan"] = FindModule
+    shown.choose(0, 0)
+    sys.modules.pop("uss.finding.scan", None)
+    return panel, shown, panel.scan
+
+
+def test_a_search_is_shown_from_its_question_to_the_drives_that_are_new():
+    panel = Told()
+    shown = beside.List(panel, None)
+    shown.step(0, 5)
+    assert (shown.heading(0), shown.words(0), shown.count()) == (b"STOPS FOUND", b"SET=BEGIN", 1)
+    assert not shown.is_busy() and panel.did == []
+    panel, shown, scan = begun()
+    assert shown.is_busy() and scan.mask == 0x3FFFFFF
+    for percent, row in ((0, b"SEARCH 0%"), (41, b"SEARCH 41%"), (101, b"SEARCH 100%")):
+        scan.percent = percent
+        assert (shown.heading(0), shown.words(0), shown.count()) == (row, b"0 FOUND", 1)
+    scan.nodes = [(3, Node()), (7, Node()), (9, Node(0xFB34, Layout(127, 6)))]
+    assert (shown.words(0), shown.count()) == (b"2 FOUND", 3)  # drive 3 was there already
+    rows = [(shown.heading(at), shown.words(at)) for at in (1, 2)]
+    assert rows == [(b"A7 READY", b"MM440 4+2"), (b"A9 RUNS", b"MM440 127+6")], rows
+    scan.over = True
+    assert (shown.heading(0), shown.words(0)) == (b"FOUND", b"TAKE ALL 2") and not shown.is_busy()
+    scan.nodes = scan.nodes[:1]
+    assert (shown.heading(0), shown.words(0), shown.count()) == (b"FOUND", b"NOBODY", 1)
+    shown.choose(0, 0)
+    assert panel.did == []
+
+
+def test_the_time_of_a_search_goes_on_when_the_clock_of_the_panel_begins_anew():
+    _, shown, scan = begun()
+    for now_ms in (1, 0xFFFF, 0x10000, 0x3FFFFFFF):
+        shown.step(0, now_ms)
+    assert scan.stepped == [0x400, 0x3FFFC00, 0, 0x3FFFC00] and scan.kept == []
+    scan.over = True  # from now on whoever was found is kept from tripping
+    shown.step(0, 2)
+    assert scan.kept == [0x800] and len(scan.stepped) == 4
+
+
+def test_set_takes_one_that_was_found_at_any_time_and_all_when_the_search_is_over():
+    nodes = [(3, Node()), (7, Node()), (9, Node(layout=Layout(127, 6))), (11, Node())]
+    added = [(7, "mm440"), (9, "mm440/127+6"), (11, "mm440")]
+    for room, over, position, did in (
+        (9, False, 0, []), (9, False, 2, [added[1], b"A9 ADDED", "A3"]),
+        (9, True, 3, [added[2], b"A11 ADDED", "A3"]), (0, False, 1, [b"A7 NOT ADDED", "A3"]),
+        (9, True, 0, added + [b"3 ADDED", "A3", "closed"]),
+        (2, True, 0, added[:2] + [b"A11 NOT ADDED", "A3", "closed"]),
+    ):  # fmt: skip
+        panel, shown, scan = begun(room=room)
+        scan.nodes, scan.over = nodes, over
+        shown.choose(position, 0)
+        assert panel.did == did, (room, over, position, panel.did)

@@ -6,9 +6,13 @@ import json
 import main
 from boards.sim.drives.families import generic
 from boards.sim.world import World
+from panel.menu import contact
+from panel.menu.words import SETTINGS
 from panel_bench import panel, row_1, row_2, settled, telegrams, wait_until_known
 from spoilt_bench import TROUBLES, shorter, silent, spoil
 from uss.drive import COUNTERS
+from uss.families import GENERIC, MM440
+from uss.receiver import NOISE, OTHER_ADDRESS, OTHER_LENGTH, SILENCE, WRONG_CHECK
 
 OFF1 = 0x047E
 
@@ -301,3 +305,111 @@ def press_stop(world, where):
     offs = [at_us for at_us, stw in telegrams(world, pressed_us, 1) if stw == OFF1]
     assert offs and offs[0] - pressed_us < 150_000, (where, world.lcd())
     assert row_2(world) == ">A1: STOP", (where, world.lcd())
+
+
+# --- the list by itself --------------------------------------------------------------------------
+
+
+class Told:
+    """A drive, its control, and a panel that shows it beside another one."""
+
+    address = 3
+    contact = in_use = False
+    trouble = SILENCE
+    baud = 19_200
+
+    def __init__(self, family=MM440, **told):
+        self.drive = self.survey = self.selected = self.settings = self
+        self.family, self.layout = family, family.layout
+        self.counters = [0] * len(COUNTERS)
+        self.controls = [self]
+        for name in told:
+            setattr(self, name, told[name])
+
+    def line_in_use(self):
+        return self.in_use
+
+
+def checks(shown):
+    return [shown.words(place).decode() for place in range(2, shown.count())]
+
+
+def test_what_was_heard_has_its_steps_the_most_likely_one_first():
+    other, masters = Told(contact=True), "NO OTHER MASTER"
+    for told, heard, number, first, last in (
+        ({}, "NO DRIVE AT ALL", 7, "PLUG AND WIRES", "FIND DRIVES"),
+        ({"controls": [other]}, "NOTHING", 7, "DRIVE HAS MAINS", "FIND DRIVES"),
+        ({"trouble": NOISE}, "LINE NOISE", 6, "ONLY ONE IS A3", masters),
+        ({"trouble": OTHER_LENGTH}, "OTHER LENGTH", 3, "P2013 = 4", "ONLY ONE IS A3"),
+        ({"trouble": OTHER_ADDRESS}, "WRONG DRIVE", 3, masters, "ONLY ONE IS A3"),
+        ({"trouble": WRONG_CHECK}, "WRONG CHECK", 3, "SHIELD, GROUND", "ONLY ONE IS A3"),
+        ({"in_use": True}, "LINE IN USE", 1, masters, masters),
+        ({"in_use": True, "trouble": NOISE}, "LINE IN USE", 1, masters, masters),
+    ):
+        panel = Told(**told)
+        shown = contact.List(panel, None)
+        found = checks(shown)
+        assert (len(found), found[0]) == (number, first) and found[-1] == last, found
+        assert shown.words(0).decode() == heard
+        assert [shown.heading(at) for at in range(3)] == [b"A3 HEARD", b"A3 HEARD", b"CHECK"]
+        panel.contact = True
+        assert shown.words(0) == b"IT ANSWERS NOW"
+
+
+def test_what_is_heard_now_counts_at_the_first_two_entries():
+    panel = Told(trouble=NOISE)
+    shown = contact.List(panel, None)
+    panel.trouble = OTHER_LENGTH
+    shown.step(2, 0)
+    assert shown.count() == 8
+    for position in (1, 0):
+        shown.step(position, 0)
+        assert shown.count() == 5
+        panel.trouble = NOISE
+        shown.step(7, 0)
+        assert shown.count() == 5
+        shown.step(position, 0)
+        assert shown.count() == 8
+        panel.trouble = OTHER_LENGTH
+
+
+def test_answers_are_counted_among_all_telegrams_to_9999_of_both():
+    panel = Told()
+    shown = contact.List(panel, None)
+    good, bad = COUNTERS.index("good"), COUNTERS.index("bcc")
+    for goods, bads, row in (
+        (0, 0, b"0 OK OF 0"), (5, 7, b"5 OK OF 12"), (9_998, 1, b"9998 OK OF 9999"),
+        (9_999, 0, b"9999 OK OF 9999"), (10_000, 1, b"9999 OK OF 9999"),
+        (3, 9_997, b"3 OK OF 9999"),
+    ):  # fmt: skip
+        panel.counters[good], panel.counters[bad] = goods, bads
+        assert shown.words(1) == row, row
+
+
+def test_a_step_has_the_number_of_its_parameter_where_the_family_has_one():
+    """And the code of the rate, where that is one of the family's."""
+    of_mm4 = ["PLUG AND WIRES", "A AND B SWAPPED", "P2010=7 19200", "DRIVE HAS MAINS", "P2011 = 3",
+              "ENDS TERMINATED", "FIND DRIVES"]  # fmt: skip
+    assert checks(contact.List(Told(), None)) == of_mm4
+    of_mm4[2] = "P2010 = 12345"
+    assert checks(contact.List(Told(baud=12_345), None)) == of_mm4
+    of_any = checks(contact.List(Told(GENERIC), None))
+    assert of_any[2] == "RATE 19200" and of_any[4] == "ADDRESS 3", of_any
+    lengths = checks(contact.List(Told(trouble=OTHER_LENGTH), None))
+    assert lengths == ["P2013 = 4", "P2012 = 2", "ONLY ONE IS A3"], lengths
+    of_any = Told(GENERIC, trouble=OTHER_LENGTH)
+    words = of_any.layout.pkw_words, of_any.layout.pzd_words
+    assert checks(contact.List(of_any, None))[:2] == ["PKW WORDS %d" % words[0],
+                                                      "PZD WORDS %d" % words[1]]  # fmt: skip
+
+
+def test_set_on_a_step_leads_to_what_is_changed_there():
+    panel = Told()
+    shown = contact.List(panel, None)
+    rate, address, find = ("value", SETTINGS[0]), ("address", None), ("find", None)
+    leads = [shown.choose(at, 0) for at in range(shown.count())]
+    assert leads == [None, None, None, None, rate, None, address, None, find], leads
+    panel = Told(trouble=OTHER_LENGTH)
+    shown = contact.List(panel, None)
+    leads = [shown.choose(at, 0) for at in range(shown.count())]
+    assert leads == [None, None, ("kind", (panel, 1)), ("kind", (panel, 2)), None], leads
