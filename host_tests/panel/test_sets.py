@@ -4,12 +4,17 @@
 What is cut off in the middle is tried in test_sets_cut_off.py.
 """
 
+import sys
+
 import catalogue
 import on_demand
 from boards.sim.drives import parameters
 from boards.sim.drives.families import g110, mm3
 from boards.sim.drives.parameters import rows_like
 from lookup_bench import world_of
+from panel import texts
+from panel.keys import NAMES, Acts, Keys
+from panel.menu import BACK
 from panel.menu.sets import words
 from panel.menu.sets.write import value
 from panel.sets.writing import BUS_AND_SOURCES, CHECKS, COMPARES, VERIFIES, WRITES, Write
@@ -42,6 +47,7 @@ from sets_bench import (
     write,
 )  # fmt: skip
 from uss import pkw
+from uss.families import MM3, MM440
 
 OTHER_RATING = [(206, b"41700000"), (207, b"42000000"), (208, b"000001F4")]
 
@@ -1257,3 +1263,242 @@ def test_a_file_with_the_line_ends_of_windows_counts():
     put(world)
     world.flash.files["pump.set"] = made(ROWS).replace(b"\n", b"\r\n")
     assert write(world, "A1 MADE") == "WRITTEN, EQUAL"
+
+
+# --- the lists by themselves ---------------------------------------------------------------------
+
+
+class Told:
+    """A panel, the drive that it shows, and its flash with some sets in it."""
+
+    address = 3
+    is_half = runs = is_gone = False
+    page_turns = 0
+    errand = None
+
+    def __init__(self, family=MM440, sets_kept=()):
+        self.drive = self.survey = self.selected = self.board = self.store = self
+        self.announcer = self.settings = self
+        self.family = family
+        self.kept = list(sets_kept)
+        self.remembered, self.did = {}, []
+
+    def is_half_written(self):
+        return self.is_half
+
+    def any_runs(self):
+        return self.runs
+
+    def say(self, now_ms, text, *values):
+        self.did.append(texts.of(text, *values))
+
+    def note_set(self, address):
+        self.did.append(address)
+
+    def names(self, ending):
+        return list(self.kept)
+
+    def remove(self, name):
+        if self.is_gone:
+            raise OSError(2)
+        self.kept.remove(name)
+
+
+def set_list(name, panel, argument=None):
+    return on_demand.load("panel.menu.sets." + name).List(panel, argument)
+
+
+def rows_shown(shown):
+    return [shown.words(place).decode() for place in range(shown.count())]
+
+
+def test_the_list_of_sets_begins_with_what_can_be_done_and_reads_one_head_at_a_time():
+    panel = Told(sets_kept=("1.set", "2.set"))
+    shown = set_list("overview", panel)
+    assert rows_shown(shown) == ["SAVE A3", "...", "..."]
+    files_of = on_demand.load("panel.menu.sets.overview").set_file
+    head, files_of.read_head = files_of.read_head, head_of
+    try:
+        for rows in (["A7 PUMP 1", "..."], ["A7 PUMP 1", "? 2.set"]):
+            assert shown.is_searching()
+            shown.search()
+            assert rows_shown(shown)[1:] == rows
+        assert not shown.is_searching()
+        shown.step(0, 0)
+        assert not shown.is_searching()  # there is nothing new
+        assert shown.choose(1, 0) == ("sets.one", ("1.set", b"PUMP 1"))
+        assert shown.choose(0, 0) == ("sets.save", panel)
+        panel.runs = True
+        assert shown.choose(0, 0) is None and panel.did == [texts.STOP_FIRST]
+        assert shown.choose(2, 0) == ("sets.one", ("2.set", b"2.set"))
+        panel.is_half = True
+        shown.step(0, 0)
+        assert rows_shown(shown) == ["GIVE UP A3", "SAVE A3", "...", "..."]
+        panel.runs = False
+        assert shown.choose(1, 0) == ("sets.save", panel)
+        assert shown.choose(3, 0) == ("sets.one", ("2.set", b"..."))
+        name, (stakes, values, does) = shown.choose(0, 0)
+        assert (name, stakes, values) == ("sets.ask", words.ASK_GIVE_UP, (3,))
+        does(0)
+        assert panel.did[1:] == [3]
+        panel.is_half = False
+        panel.kept = ["2.set"]
+        shown.step(0, 0)
+        panel.remembered["panel.menu.sets.overview"] = "2.set"  # one was deleted
+        panel.kept = []
+        shown.step(0, 0)
+        assert rows_shown(shown) == ["SAVE A3"]
+    finally:
+        files_of.read_head = head
+
+
+def head_of(store, name):
+    if name != "1.set":
+        raise ValueError
+
+    class Head:
+        address = 7
+        name = b"PUMP 1"
+
+    return Head
+
+
+def test_a_set_can_be_written_where_the_family_of_the_drive_keeps_values():
+    for family, ways in (
+        (MM440, (("COMPARE A3", None), ("INTO A3 RAM", False), ("INTO A3 EEPROM", True))),
+        (MM3, (("COMPARE A3", None), ("INTO A3", False))),
+    ):
+        panel = Told(family, ("1.set",))
+        shown = set_list("one", panel, ("1.set", b"0123456789AB"))
+        assert shown.title == b"0123456789"
+        assert rows_shown(shown) == [row for row, _ in ways] + ["DELETE IT"]
+        for place, (_, eeprom) in enumerate(ways):
+            assert shown.choose(place, 0) == ("sets.write", (panel, "1.set", eeprom))
+        panel.runs = True
+        for place in range(shown.count()):
+            assert shown.choose(place, 0) is None
+        assert panel.did == [texts.STOP_FIRST] * shown.count()
+        panel.runs = False
+        for is_gone in (False, True):
+            panel.is_gone, panel.errand, panel.remembered = is_gone, None, {}
+            name, (stakes, values, does) = shown.choose(len(ways), 0)
+            assert (name, stakes, values) == ("sets.ask", words.ASK_DELETE, ())
+            assert panel.errand is None
+            does(0)
+            assert is_gone or panel.kept == ["1.set"]  # in a step of its own
+            panel.errand()
+            assert panel.kept == [] and len(panel.remembered) == 1
+
+
+def test_a_question_about_a_set_says_in_turn_what_is_at_stake_and_set_is_yes():
+    panel = Told()
+    shown = set_list("ask", panel, (words.ASK_GIVE_UP, (3,), panel.did.append))
+    rows = []
+    for panel.page_turns in range(4):
+        rows.append(shown.heading(0))
+    assert rows == [b"A3: SET IS HALF", b"WRITTEN. ALLOW", b"START, JOG?", b"A3: SET IS HALF"]
+    assert shown.words(0) == words.YES_OR_NO
+    assert shown.choose(0, 77) is BACK and panel.did == [77]
+
+
+class Work:
+    """What saves a set; the panel has it."""
+
+    outcome = left_s = None
+
+    def __init__(self, panel, control, name):
+        panel.work = self
+        self.name, self.did = name, []
+
+    def percent(self):
+        return 41
+
+    def step(self, now_ms):
+        self.did.append(now_ms)
+
+    def search(self):
+        self.did.append("search")
+
+    def end(self, text):
+        self.did.append(text)
+
+
+class SavingModule:
+    """Where that stands."""
+
+    Save = Work
+    refusal = texts.NOTHING
+
+    @staticmethod
+    def why_not(panel, control):
+        return SavingModule.refusal
+
+
+def with_keys(*pressed):
+    acts = Acts(Keys(NAMES, 0xFFFFF))
+    acts.pressed = sum([acts.bit(key) for key in pressed])
+    return acts
+
+
+def naming():
+    panel = Told()
+    return panel, set_list("save", panel, panel)
+
+
+def test_a_letter_goes_round_the_alphabet_and_the_place_round_the_name():
+    panel, shown = naming()
+    assert shown.heading(0) == b"NAME, SET=SAVE" and shown.words(0) == b"[S]ET 1"
+    for steps, letter in ((100, b"T"), (-100, b"S"), (-1, b"R")):
+        assert shown.change(0, steps) and shown.words(0) == b"[%s]ET 1" % letter
+    letters = []
+    for _ in range(38):
+        shown.change(0, 1)
+        letters.append(shown.words(0)[1:2])
+    assert b"".join(letters) == b"STUVWXYZ0123456789- ABCDEFGHIJKLMNOPQR"
+    assert not shown.take_keys(with_keys("SET")) and shown.take_keys(with_keys("NEXT"))
+    assert shown.words(0) == b"R[E]T 1"
+    for key, row in (("PREVIOUS", b"[R]ET 1"), ("PREVIOUS", b"RET 1    [ ]"),
+                     ("NEXT", b"[R]ET 1")):  # fmt: skip
+        assert shown.take_keys(with_keys(key)) and shown.words(0) == row
+
+
+def test_a_set_is_saved_under_its_name_unless_something_is_against_it():
+    loaded = sys.modules.get("panel.sets.saving")
+    sys.modules["panel.sets.saving"] = SavingModule
+    try:
+        panel, shown = naming()
+        SavingModule.refusal = words.TOO_MANY
+        shown.choose(0, 0)
+        SavingModule.refusal = texts.NOTHING
+        assert panel.did == [words.TOO_MANY] and not shown.is_busy()
+        shown.step(0, 5)
+        shown.leave(0)
+        shown.choose(0, 0)
+        work = panel.work
+        assert work.name == b"SET 1" and shown.is_busy() and shown.is_searching()
+        assert shown.heading(0) == b"A3 SAVE 41%" and shown.change(0, 1)
+        for work.left_s, row in (
+            (None, b"..."), (0, b"0:00 LEFT"), (59, b"0:59 LEFT"), (60, b"1:00 LEFT"),
+            (3_601, b"60:01 LEFT"),
+        ):  # fmt: skip
+            assert shown.words(0) == row
+        shown.step(0, 6)
+        shown.search()
+        shown.choose(0, 0)  # it is being saved already
+        assert panel.work is work and work.did == [6, "search"]
+        assert shown.take_keys(with_keys("SET")) is None
+        shown.leave(0)
+        assert work.did[2:] == [words.NOTHING_WRITTEN]
+        work.outcome = words.SAVED, 422
+        shown.step(0, 7)
+        shown.leave(0)
+        assert shown.words(0) == b"SAVED: 422" and not shown.is_busy() and len(work.did) == 3
+        assert shown.take_keys(with_keys("UP")) is None
+        assert shown.take_keys(with_keys("SET")) is BACK
+        before = dict(panel.remembered)
+        shown.end()
+        assert before == {} and list(panel.remembered) == ["panel.menu.sets.overview"]
+    finally:
+        sys.modules.pop("panel.sets.saving", None)
+        if loaded:
+            sys.modules["panel.sets.saving"] = loaded
