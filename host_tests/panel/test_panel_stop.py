@@ -3,6 +3,8 @@
 
 import main
 from boards.sim.world import World
+from panel import texts
+from panel.keys.stop_key import StopKey
 from panel.stop_watch import StopWatch
 from panel_bench import (
     LOOP_US,
@@ -489,3 +491,125 @@ def test_a_watch_that_has_ended_says_nothing():
     assert stopped.after(5_000) == OVER
     stopped.watch.begin()
     assert stopped.after(0) == GOES_ON and stopped.after(1_000) == ALARM
+
+
+# --- the STOP key by itself: to the millisecond --------------------------------------------------
+
+
+class Commanded:
+    """A control that notes what it is told."""
+
+    def __init__(self, active=False):
+        self.active = active
+        self.told = []
+
+    def is_active(self):
+        return self.active
+
+    def stop(self):
+        self.told.append("stop")
+
+    def second_stop(self):
+        self.told.append("second")
+
+    def stop_unseen(self):
+        self.told.append("unseen")
+
+
+class Held:
+    """The key of a panel with three drives, the second of which is shown."""
+
+    BIT = 4
+    down = pressed = 0
+
+    def __init__(self, second_stop="OFF3"):
+        self.controls = [Commanded(), Commanded(), Commanded(True)]
+        self.said = []
+        self.key = StopKey(self.BIT, self.controls, second_stop, 0xFFFF, self.say)
+        self.now_ms = 0xFFFF - 700  # the clock begins anew meanwhile
+
+    def say(self, now_ms, text):
+        self.said.append((now_ms, text))
+
+    def step(self, ms=0, down=None, pressed=0, shown=1):
+        """What the display is to say, and whether nothing may start."""
+        self.now_ms = self.now_ms + ms & 0xFFFF
+        self.down = self.down if down is None else down
+        self.pressed = pressed
+        self.key.step(self, self.controls[shown], self.now_ms)
+        return self.key.text, self.key.is_down
+
+    def press(self):
+        return self.step(0, 7, self.BIT)  # other keys may be down as well
+
+    def told(self):
+        return [control.told for control in self.controls]
+
+
+def test_a_stop_that_is_held_sends_the_second_stop_after_1500_ms_and_stops_all_after_4000():
+    for second_stop, before, after in (
+        ("OFF3", texts.HOLD_FOR_OFF3, texts.OFF3_HOLD_FOR_ALL),
+        ("OFF2", texts.HOLD_FOR_OFF2, texts.OFF2_HOLD_FOR_ALL),
+        ("none", texts.HOLD_FOR_ALL, texts.HOLD_FOR_ALL),
+    ):
+        held = Held(second_stop)
+        assert held.press() == (texts.NOTHING, True) and held.told() == [[], ["stop"], []]
+        for ms, text in ((299, texts.NOTHING), (1, before), (1_199, before)):
+            assert held.step(ms) == (text, True) and held.told()[1] == ["stop"]
+        # It is for the drive that was shown when the key went down.
+        for ms, text in ((1, after), (2_499, after)):
+            assert held.step(ms, shown=0) == (text, True)
+            assert held.told() == [[], ["stop", "second"], []]
+        assert held.key.left == 0 and held.said == []
+        for ms in (1, 10, 3_000):
+            assert held.step(ms) == (texts.ALL_STOPPED, True)
+            assert held.key.left == 6 and len(held.said) == 1
+        assert held.said[0][1] == texts.ALL_STOPPED
+        assert held.step(10, 3) == (texts.NOTHING, False)
+        assert held.told() == [[], ["stop", "second"], []]
+
+
+def test_a_slow_step_leaves_nothing_out_of_what_a_held_stop_does():
+    held = Held()
+    held.press()
+    assert held.step(4_000) == (texts.ALL_STOPPED, True)
+    assert held.told()[1] == ["stop", "second"] and held.key.left == 6
+
+
+def test_each_press_of_stop_begins_anew():
+    held = Held()
+    for _ in range(2):
+        held.press()
+        held.step(1_499)
+        assert held.step(1, 0) == (texts.NOTHING, False)
+    held.press()
+    held.step(1_000)
+    held.press()  # it went up and down in one step
+    assert held.step(1_499)[0] == texts.HOLD_FOR_OFF3
+    assert held.told()[1] == ["stop"] * 4
+
+
+def test_a_stop_that_was_down_at_power_on_sends_nothing_and_forbids_to_start():
+    held = Held()
+    for ms in (0, 1_500, 4_000, 9_000):
+        assert held.step(ms, held.BIT) == (texts.STOP_IS_DOWN, True)
+    assert held.told() == [[], [], []] and held.key.left == 0
+    assert held.step(9, 0) == (texts.NOTHING, False)
+    assert held.step(9, 3) == (texts.NOTHING, False)  # other keys
+    held.press()
+    assert held.told() == [[], ["stop"], []]
+
+
+def test_of_all_drives_those_that_run_are_stopped_first_and_then_each():
+    held = Held()
+    held.press()
+    held.step(4_000)
+    held.key.stop_next()
+    assert [told[-1:] for told in held.told()] == [[], ["second"], ["unseen"]]
+    for _ in range(2):  # these do not run
+        held.key.stop_next()
+    assert [told.count("unseen") for told in held.told()] == [0, 0, 1] and held.key.left == 3
+    for counts in ([0, 0, 2], [0, 1, 2], [1, 1, 2]):
+        held.key.stop_next()
+        assert [told.count("unseen") for told in held.told()] == counts
+    assert held.key.left == 0
