@@ -16,7 +16,7 @@ from panel_bench import (
     telegrams,
     unsupervised,
 )  # fmt: skip
-from uss import pkw
+from uss import pkw, pzd
 from uss.drive import Drive
 from uss.families import MM4
 
@@ -616,3 +616,90 @@ def test_the_number_of_an_earlier_fault_is_not_shown_for_the_next():
     asked[-1].state, asked[-1].low = pkw.DONE, 30
     fault.step(3000)
     assert len(asked) == 2 and fault.number == 30
+
+
+# --- the jog keys by themselves ------------------------------------------------------------------
+
+
+class Jogging:
+    """A control that may jog or refuse to, and notes what it is told."""
+
+    def __init__(self, refuses=False):
+        self.phase, self.refuses, self.told = IDLE, refuses, []
+
+    def jog(self, stw):
+        self.told.append(stw)
+        if not self.refuses:
+            self.phase = JOGGING
+
+    def end_jog(self):
+        self.told.append("end")
+        self.phase = IDLE
+
+
+class Pair:
+    """The two keys of a panel, besides others that are down now and then."""
+
+    RIGHT, LEFT, OTHER = 2, 8, 5
+
+    def __init__(self, **options):
+        self.shown = Jogging(**options)
+        self.keys = JogKeys(self.RIGHT, self.LEFT)
+        self.down = self.pressed = 0
+
+    def step(self, down, allowed=True, shown=None, other=0):
+        self.pressed = (down | other) & ~self.down
+        self.down = down | other
+        self.keys.step(self, shown or self.shown, allowed)
+        return self.shown.told[-1:], self.shown.phase == JOGGING
+
+
+def test_a_jog_begins_with_a_press_of_one_key_alone_and_ends_with_anything_else():
+    for key, stw, other_stw in (
+        (Pair.RIGHT, pzd.JOG_RIGHT, pzd.JOG_LEFT), (Pair.LEFT, pzd.JOG_LEFT, pzd.JOG_RIGHT)
+    ):  # fmt: skip
+        both, ends = Pair.RIGHT | Pair.LEFT, (["end"], False)
+        for ending in (
+            {"down": 0}, {"down": both}, {"down": both - key}, {"down": key, "allowed": False},
+            {"down": key, "shown": Jogging()}, {"down": 0, "other": Pair.OTHER},
+        ):  # fmt: skip
+            pair = Pair()
+            assert pair.step(0, other=Pair.OTHER) == ([], False)
+            for _ in range(2):  # the other keys may go up and down
+                assert pair.step(key, other=Pair.OTHER) == pair.step(key) == ([stw], True)
+            assert pair.shown.told == [stw]
+            jogged = pair.step(**ending)
+            if ending["down"] == both - key:  # the other key was pressed in the same moment
+                assert jogged[1] and pair.shown.told[1:] == ["end", other_stw]
+                continue
+            assert jogged == ends, ending
+            assert not ending.get("shown") or ending["shown"].told == []
+            for _ in range(2):  # it has to go up first
+                assert ending["down"] != key or pair.step(key) == ends, ending
+            pair.step(0)
+            assert pair.shown.told == [stw, "end"]
+            assert pair.step(key) == ([stw], True)
+
+
+def test_a_jog_key_that_is_pressed_where_it_may_not_is_none_later_either():
+    pair = Pair()
+    assert pair.step(Pair.RIGHT, allowed=False) == ([], False)
+    assert pair.step(Pair.RIGHT) == ([], False)
+    pair.step(0)
+    assert pair.step(Pair.RIGHT | Pair.LEFT) == pair.step(Pair.LEFT) == ([], False)
+    refusing = Pair(refuses=True)
+    for _ in range(3):
+        assert refusing.step(Pair.LEFT) == ([pzd.JOG_LEFT], False)
+    refusing.step(0)
+    assert refusing.shown.told == [pzd.JOG_LEFT]
+
+
+def test_a_jog_that_something_else_has_ended_needs_another_press():
+    """It is not ended a second time: nobody knows what the drive does by then."""
+    pair = Pair()
+    pair.step(Pair.LEFT)
+    pair.shown.phase = IDLE
+    for down in (Pair.LEFT, Pair.LEFT, 0):
+        pair.step(down)
+        assert pair.shown.told == [pzd.JOG_LEFT], down
+    assert pair.step(Pair.LEFT) == ([pzd.JOG_LEFT], True) and len(pair.shown.told) == 2
