@@ -16,6 +16,9 @@ from panel.menu import BACK, PAGE, Entries
 from panel.menu import accepted as accepted_list
 from panel.menu import address as address_list
 from panel.menu import code as code_page
+from panel.menu import drive as drive_list
+from panel.menu import find as find_list
+from panel.menu import kind as kind_list
 from panel.menu import order as order_list
 from panel.menu import turns as turns_list
 from panel.menu import words as menu_words
@@ -34,9 +37,11 @@ from panel_bench import (
     wait_until_known,
 )  # fmt: skip
 from spoilt_bench import spoil, with_a_wrong_check
-from uss import pkw
-from uss.families import MM440
+from uss import families, pkw
+from uss.families import MM440, V20
+from uss.families.bop import on_bop
 from uss.finding.mirror import Mirror
+from uss.layout import Layout
 from uss.telegram import MIRROR
 from version import VERSION
 
@@ -1977,3 +1982,115 @@ def test_who_answers_is_asked_what_it_is_when_set_wants_it_and_taken_as_that():
             shown.step(7, 0)
         added = [b"A7 NOT ADDED"] if is_full else [(7, "mm440"), b"A7 ADDED"]
         assert panel.did[asked_so_far:] == ["closed"] + added
+
+
+class Kinds(Whole):
+    """A panel whose drive 3 is of a kind."""
+
+    def __init__(self, family, layout, contact=True):
+        Whole.__init__(self, 3, 12)
+        drive = self.controls[0]
+        drive.family, drive.layout, drive.contact = family, layout, contact
+
+    def set_kind(self, address, kind):
+        self.did.append((address, kind))
+
+    def show(self, control):
+        self.selected = control
+
+    def remove(self):
+        if self.runs:
+            raise ValueError
+        self.controls.remove(self.selected)
+
+
+FAMILY, PKW, PZD, LINK = range(4)
+
+
+def test_each_part_of_what_a_drive_is_can_be_chosen_as_its_family_has_it():
+    bop = on_bop(MM440)
+    for family, layout, row, first, count in (
+        (MM440, Layout(4, 2), FAMILY, "FAMILY MM440", len(families.NAMES)),
+        (bop, Layout(4, 2), FAMILY, "FAMILY MM440", len(families.NAMES)),
+        (MM440, Layout(127, 2), PKW, "PKW 127 WORDS", len(MM440.pkw_choices)),
+        (MM440, Layout(4, 3), PZD, "PZD 3 WORDS", len(MM440.pzd_choices) - 2),  # not 0, not 1
+        (MM440, Layout(4, 2), LINK, "LINK RS-485", 2), (bop, Layout(4, 2), LINK, "LINK BOP", 2),
+        (V20, Layout(4, 2), LINK, "LINK RS-485", 1),
+    ):  # fmt: skip
+        panel = Kinds(family, layout)
+        drive = panel.controls[0]
+        shown = kind_list.List(panel, (drive, row))
+        assert shown.words(shown.first()).decode() == first and shown.count() == count, first
+        assert shown.control_at(0) is drive
+        assert texts.of(shown.title) == menu_words.KIND_TITLES[row]
+        assert shown.choose(shown.first(), 0) is BACK and panel.did == []  # it is that
+    panel = Kinds(MM440, Layout(4, 16))
+    wrong = kind_list.List(panel, (panel.selected, PZD))
+    assert wrong.first() == 0 and wrong.words(0) == b"PZD 2 WORDS"
+
+
+def test_what_is_chosen_keeps_the_rest_as_far_as_that_can_be():
+    bop, short = on_bop(MM440), Layout(127, 3, short=True)
+    for family, layout, contact, row, wanted, kind in (
+        (MM440, Layout(4, 2), True, PKW, "PKW 127 WORDS", "mm440/127"),
+        (MM440, short, True, PKW, "PKW 3 WORDS", "mm440/3+3"),
+        (MM440, short, True, PZD, "PZD 4 WORDS", "mm440/127s+4"),
+        (bop, Layout(127, 2), True, PKW, "PKW 4 WORDS", "mm440-bop"),
+        (MM440, Layout(127, 3), True, LINK, "LINK BOP", "mm440-bop/127+3"),
+        (bop, Layout(127, 3), True, LINK, "LINK RS-485", "mm440/127+3"),
+        (bop, Layout(127, 3), True, FAMILY, "FAMILY MM420", "mm420-bop/127+3"),
+        (bop, Layout(127, 3), False, FAMILY, "FAMILY MM420", "mm420-bop"),
+        (bop, Layout(127, 3), True, FAMILY, "FAMILY V20", "v20/127+3"),
+        (MM440, Layout(4, 2), True, FAMILY, "FAMILY MM3", "mm3"),
+    ):
+        panel = Kinds(family, layout, contact)
+        shown = kind_list.List(panel, (panel.selected, row))
+        rows = [shown.words(place).decode() for place in range(shown.count())]
+        panel.runs = True
+        assert shown.choose(rows.index(wanted), 0) is None and panel.did == [texts.STOP_FIRST]
+        panel.runs = False
+        assert shown.choose(rows.index(wanted), 0) is None
+        assert panel.did[1:] == [(3, kind), "anew"], (kind, panel.did)
+
+
+def test_a_drive_of_the_list_is_shown_removed_or_told_what_it_is():
+    panel = Kinds(MM440, Layout(127, 3))
+    third, twelfth = panel.controls
+    twelfth.actual = -5
+    shown = drive_list.List(panel, third)
+    rows = [shown.words(place).decode() for place in range(shown.count())]
+    assert rows[:6] == ["SHOW IT", "REMOVE IT", "FAMILY MM440", "PKW 127 WORDS", "PZD 3 WORDS",
+                        "LINK RS-485"] and len(rows) == 7  # fmt: skip
+    assert shown.title == b"A3" and shown.control_at(5) is third
+    leads = [shown.choose(place, 0) for place in range(2, 7)]
+    assert leads == [("kind", (third, row)) for row in range(4)] + [None] and panel.did == []
+    panel.selected = twelfth
+    assert shown.choose(0, 0) is None and panel.selected is third and panel.did == ["closed"]
+    panel.selected, panel.did, panel.runs = twelfth, [], True
+    shown.choose(1, 0)
+    assert panel.did == ["closed", b"A3 NOT REMOVED"] and panel.controls == [third, twelfth]
+    panel.selected, panel.did, panel.runs = twelfth, [], False
+    shown.choose(1, 0)
+    assert panel.did == ["closed", b"A3 REMOVED"] and panel.selected is twelfth
+    panel.did = []
+    for place in (0, 1):  # it has gone already
+        assert shown.choose(place, 0) is None and panel.did == []
+    assert drive_list.List(panel, twelfth).words(6) == b"-0.05 Hz"
+
+
+def test_drives_are_looked_for_at_all_rates_first_where_none_answers():
+    panel = Whole(3, 12)
+    panel.line_in_use = lambda: panel.has_other
+    panel.offer_search = panel.did.append
+    shown = find_list.List(panel, None)
+    assert [shown.words(place) for place in range(shown.count())] == [
+        b"AT THIS RATE", b"AT ALL RATES"
+    ]  # fmt: skip
+    for contacts, first in (((True, False), 0), ((False, True), 0), ((False, False), 1)):
+        for drive, contact in zip(panel.controls, contacts):
+            drive.contact = contact
+        assert shown.first() == first, contacts
+    assert shown.choose(0, 5) == ("beside", None) and panel.did == []
+    assert shown.choose(1, 6) is None and panel.did == [6]
+    panel.has_other = True  # another master talks: nobody is looked for beside it
+    assert shown.choose(0, 7) is None and panel.did == [6, 7]
