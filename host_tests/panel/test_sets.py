@@ -17,7 +17,16 @@ from panel.keys import NAMES, Acts, Keys
 from panel.menu import BACK
 from panel.menu.sets import words
 from panel.menu.sets.write import value
-from panel.sets.writing import BUS_AND_SOURCES, CHECKS, COMPARES, VERIFIES, WRITES, Write
+from panel.sets.writing import (
+    ASKS,
+    ASKS_CUT,
+    BUS_AND_SOURCES,
+    CHECKS,
+    COMPARES,
+    VERIFIES,
+    WRITES,
+    Write,
+)
 from panel_bench import LOOP_US, panel, row_1, row_2, said, settled, starts, wait_until_known
 from sets_bench import (
     BAUD,
@@ -1477,11 +1486,9 @@ def test_a_set_is_saved_under_its_name_unless_something_is_against_it():
         work = panel.work
         assert work.name == b"SET 1" and shown.is_busy() and shown.is_searching()
         assert shown.heading(0) == b"A3 SAVE 41%" and shown.change(0, 1)
-        for work.left_s, row in (
-            (None, b"..."), (0, b"0:00 LEFT"), (59, b"0:59 LEFT"), (60, b"1:00 LEFT"),
-            (3_601, b"60:01 LEFT"),
-        ):  # fmt: skip
-            assert shown.words(0) == row
+        assert shown.words(0) == b"..."
+        work.left_s = 21
+        assert shown.words(0) == b"0:21 LEFT"
         shown.step(0, 6)
         shown.search()
         shown.choose(0, 0)  # it is being saved already
@@ -1502,3 +1509,88 @@ def test_a_set_is_saved_under_its_name_unless_something_is_against_it():
         sys.modules.pop("panel.sets.saving", None)
         if loaded:
             sys.modules["panel.sets.saving"] = loaded
+
+
+class Writing(Work):
+    """What compares and writes a set, as far as its list asks for that."""
+
+    asks = opens = answer = None
+    differs, cutting = 3, 2
+    listed = ((1120, 0, b"Float", 0x4020, 0, 0x4120, 0), (731, 1, b"BICO", 52, 3, None, None))
+    cutters = ((2010, 0, b"U16", 0, 7, 0, 6),)
+    family = MM440
+
+    def __init__(self, panel, control, name, eeprom):
+        Work.__init__(self, panel, control, name)
+        self.eeprom, self.phase = eeprom, ASKS
+
+    def end(self, *told):
+        self.did.append(told)
+
+
+def being_written():
+    panel = Told()
+    module = on_demand.load("panel.sets.writing")
+    usual, module.Write = module.Write, Writing
+    try:
+        return panel, set_list("write", panel, (panel, "1.set", True)), panel.work
+    finally:
+        module.Write = usual
+
+
+def test_the_question_about_a_set_is_its_first_entry_and_what_differs_are_the_others():
+    panel, shown, work = being_written()
+    assert (work.name, work.eeprom) == ("1.set", True) and shown.control_at(0) is panel
+    work.asks = True
+    opens = words.OPENS % MM440.access
+    for work.opens, turns in ((False, [b"SET=WRITE A3"] * 3),
+                              (True, [opens, b"SET=WRITE A3", opens])):  # fmt: skip
+        rows = []
+        for panel.page_turns in range(3):
+            rows.append(shown.words(0))
+        assert rows == turns and shown.heading(0) == b"3 DIFFER", rows
+    assert [(shown.heading(place), shown.words(place)) for place in range(1, shown.count())] == [
+        (b"P1120[0]", b"10>2.5"), (b"P0731[1]", b"--->52:3")
+    ]  # fmt: skip
+    assert not shown.is_busy() and not shown.is_searching()
+    shown.choose(1, 0)
+    assert shown.take_keys(with_keys("PARAM")) is None and work.answer is None
+    shown.choose(0, 0)
+    assert work.answer is True
+
+
+def test_what_cuts_the_bus_off_is_asked_about_by_itself_and_param_leaves_it_as_it_is():
+    panel, shown, work = being_written()
+    work.asks, work.phase = True, ASKS_CUT
+    rows = []
+    for panel.page_turns in range(4):
+        rows.append(shown.words(0))
+    assert rows == list(words.ASK_CUT) + [words.ASK_CUT[0]]
+    assert (shown.heading(0), shown.count()) == (b"2 MAY CUT", 2)
+    assert (shown.heading(1), shown.words(1)) == (b"P2010[0]", b"6>7")
+    assert shown.take_keys(with_keys("UP", "SET")) is None and work.answer is None
+    shown.choose(0, 0)
+    assert work.answer is True
+    assert shown.take_keys(with_keys("PARAM")) is True and work.answer is False
+    work.asks = False
+    assert shown.take_keys(with_keys("PARAM")) is None and shown.count() == 1
+    work.answer = None
+    shown.choose(0, 0)  # nothing is asked any more
+    assert work.answer is None
+
+
+def test_whoever_leaves_a_set_that_is_not_done_is_told_what_that_has_left():
+    for is_half, told in ((False, (words.NOTHING_WRITTEN,)), (True, (words.HALF_WRITTEN, 3))):
+        panel, shown, work = being_written()
+        panel.is_half = is_half
+        assert shown.is_busy() and shown.is_searching() and shown.count() == 1
+        shown.step(0, 5)
+        shown.search()
+        shown.leave(0)
+        assert work.did == [5, "search", told] and panel.did == [texts.of(*told)]
+        assert shown.take_keys(with_keys("SET")) is None
+        work.outcome = (words.DIFFER, 2)
+        shown.leave(0)
+        assert len(work.did) == 3 and shown.count() == 3 and shown.heading(0) == b"A3"
+        assert shown.take_keys(with_keys("SET")) is BACK and not shown.is_busy()
+        assert shown.take_keys(with_keys("DOWN")) is None
