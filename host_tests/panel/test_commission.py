@@ -5,8 +5,12 @@ step, until its motor turns.
 
 import catalogue
 from lookup_bench import choose, go_to, press, settled_heading, speak, wait, world_of
+from panel import texts
+from panel.commission import course
 from panel.commission.step import Step
+from panel.keys import NAMES, Acts, Keys
 from panel.lookup.value import Form
+from panel.pages import parameter_words
 from panel_bench import row_1, row_2, settled_row_2, wait_until_known
 from uss import pkw
 from uss.families import MM3, MM440, V20
@@ -585,3 +589,183 @@ def test_a_step_asks_first_where_another_value_gives_the_setpoint_another_meanin
         step = step_of(Told(family), number, b"?")
         assert step.rescales(5, 4) == step.rescales(4, 5) == rescales, number
         assert not step.rescales(5, 5), number
+
+
+# --- the steps of a procedure by themselves ------------------------------------------------------
+
+
+class Front(Told):
+    """A panel, and a drive that answers at once with what it has."""
+
+    address, pkw_words = 3, 4
+    page_turns = 0
+    runs = can_write = True
+
+    def __init__(self, has):
+        Told.__init__(self, MM440)
+        self.announcer = self.channel = self
+        self.has, self.remembered, self.did = has, {}, []
+        self.runs, self.outcome, self.done = False, None, False
+
+    def is_active(self):
+        return self.runs
+
+    def is_full(self):
+        return False
+
+    def ask(self, job):
+        job.state, job.width, job.high = pkw.DONE, pkw.WORD, 0
+        if job.number in self.has:
+            job.low = self.has[job.number]
+        else:
+            job.state = pkw.UNANSWERED
+
+    def say(self, now_ms, text, *values):
+        self.did.append(texts.of(text, *values))
+
+    def write(self, now_ms, *what):
+        self.did.append(what[1:])
+        return self if self.can_write else None
+
+
+class Course:
+    """The list of a procedure, at one of its steps."""
+
+    def __init__(self, front, procedure=1):
+        self.front, self.at = front, 0
+        self.list = course.List(front, (front, procedure))
+        self.turns()
+
+    def turns(self, count=600):
+        for _ in range(count):
+            if self.list.is_searching():
+                self.list.search()
+            self.list.step(self.at, 0)
+
+    def go_to(self, number):
+        places = range(self.list.count())
+        (self.at,) = [at for at in places if self.heading(at)[:5] == "P%04d" % number]
+        self.turns()
+
+    def heading(self, at=None):
+        return self.list.heading(self.at if at is None else at).decode()
+
+    def says(self):
+        """What it says in turn, once each."""
+        rows = []
+        for self.front.page_turns in range(9):
+            row = self.list.words(self.at).decode()
+            if row not in rows:
+                rows.append(row)
+        self.front.page_turns = 0
+        return rows
+
+    def press(self, key):
+        acts = Acts(Keys(NAMES, 0xFFFFF))
+        acts.pressed = acts.bit(key)
+        taken = self.list.take_keys(acts)
+        if key == "SET" and not taken:
+            self.list.choose(self.at, 0)
+        return taken
+
+    def is_written(self, done=True):
+        self.front.outcome, self.front.done = (b"",), done
+        self.turns()
+        self.front.outcome = None
+
+
+HAS = {3: 3, 10: 0, 2010: 6, 2011: 3, 2012: 2, 2013: 4, 2009: 0, 2000: 50, 700: 2, 1000: 5,
+       2014: 0, 971: 0}  # fmt: skip
+
+
+def test_each_step_is_asked_about_and_what_is_right_has_a_star():
+    front = Front(dict(HAS))
+    steps = Course(front)
+    assert steps.list.count() == 13 and steps.list.control_at(0) is front
+    done = [at for at in range(12) if steps.heading(at).endswith("*")]
+    assert done == [0, 1, 2, 3, 4, 5, 6, 9], done  # not P2000, P0700, P2014, P0971
+    steps.at = 12
+    steps.turns()
+    assert steps.heading() == "A3" and steps.says() == ["4 LEFT", "FIRST P2000"]
+    steps.list.leave(0)
+    assert front.did == [b"A3: 4 LEFT"]
+    for number, says in ((700, "2 NEEDS 5"), (1000, "IS 5"), (2014, "0ms NEEDS 2000")):
+        steps.go_to(number)
+        assert says in steps.says(), steps.says()
+    del front.has[700]
+    steps.go_to(700)
+    assert parameter_words.NO_REPLY_TO_IT.decode() in steps.says(), steps.says()
+    steps.press("SET")
+    assert len(front.did) == 1 and not steps.list.is_busy()  # what it has is not known
+
+
+def test_set_asks_about_a_value_of_the_catalogue_and_writes_it_with_the_second_set():
+    front = Front(dict(HAS))
+    steps = Course(front)
+    steps.go_to(1000)
+    steps.press("SET")
+    assert front.did.pop() == b"IT IS RIGHT"
+    steps.go_to(700)
+    front.runs = True
+    steps.press("SET")
+    assert front.did.pop() == b"STOP A3 FIRST" and "2 NEEDS 5" in steps.says()
+    front.runs = False
+    for key in ("PARAM", "STOP"):
+        steps.press("SET")
+        assert steps.says() == ["5 SET=YES"]
+        assert steps.press("EDIT") is True and steps.says() == ["5 SET=YES"]
+        assert steps.press(key) is True and "2 NEEDS 5" in steps.says()
+        assert not steps.press("EDIT")  # the keys are the menu's again
+    front.can_write = False
+    for can_write in (False, True):
+        front.can_write = can_write
+        steps.press("SET")
+        steps.press("SET")
+        assert front.did == [(700, 0, 5, False, pkw.WORD)]
+        assert steps.list.is_busy() == can_write
+        front.did.clear()
+    assert steps.says() == ["WRITING ..."]
+    assert not steps.press("SET") and not steps.press("PARAM") and front.did == []
+    front.has.update({700: 5, 2014: 100})  # to write one may change others
+    steps.is_written()
+    assert steps.heading() == "P0700*" and not steps.list.is_busy() and "IS 5" in steps.says()
+    steps.at = 12
+    steps.turns()
+    assert steps.says() == ["2 LEFT", "FIRST P2000"]
+
+
+def test_what_starts_something_is_done_when_it_was_written_and_stays_so_for_who_comes_back():
+    front = Front(dict(HAS))
+    for done, star in ((False, ""), (True, "*"), (None, "*")):
+        steps = Course(front)
+        steps.go_to(971)
+        if done is not None:
+            steps.press("SET")
+            steps.press("SET")
+            steps.is_written(done)
+        assert steps.heading() == "P0971" + star, done
+    assert front.did == [(971, 0, 1, False, pkw.WORD)] * 2
+
+
+def test_what_stands_on_the_plate_is_typed_and_what_rescales_is_asked_about():
+    front = Front(dict(HAS))
+    steps = Course(front)
+    steps.go_to(2000)
+    steps.press("SET")
+    for key, row in (
+        (None, "05[0]"), ("UP", "05[1]"), ("PREVIOUS", "0[5]1"), ("DOWN", "0[4]1"),
+        ("UP", "0[5]1"), ("NEXT", "05[1]"), ("NEXT", "[0]51"), ("PREVIOUS", "05[1]"),
+    ):  # fmt: skip
+        assert key is None or steps.press(key) is True
+        assert steps.says() == [row], (key, steps.says())
+    steps.press("SET")
+    assert steps.says()[0].endswith(" SET=YES") and "RESCALES SPEED" in steps.says()
+    assert front.did == []
+    steps.press("SET")
+    assert front.did == [(2000, 0, 51, False, pkw.WORD)] and steps.says() == ["WRITING ..."]
+    steps.is_written()
+    assert steps.heading() == "P2000*"
+    front.did.clear()
+    steps.press("SET")  # it may be typed again; what is as it was asks nothing
+    steps.press("SET")
+    assert front.did == [(2000, 0, 50, False, pkw.WORD)]
