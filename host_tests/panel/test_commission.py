@@ -614,9 +614,11 @@ class Front(Told):
         return False
 
     def ask(self, job):
-        job.state, job.width, job.high = pkw.DONE, pkw.WORD, 0
+        job.state = pkw.DONE
         if job.number in self.has:
-            job.low = self.has[job.number]
+            has = self.has[job.number]
+            job.high, job.low = has >> 16, has & 0xFFFF
+            job.width = pkw.DOUBLE if job.high else pkw.WORD
         else:
             job.state = pkw.UNANSWERED
 
@@ -769,3 +771,24 @@ def test_what_stands_on_the_plate_is_typed_and_what_rescales_is_asked_about():
     steps.press("SET")  # it may be typed again; what is as it was asks nothing
     steps.press("SET")
     assert front.did == [(2000, 0, 50, False, pkw.WORD)]
+
+
+def test_a_value_is_read_typed_and_asked_about_with_all_its_bits():
+    """The places that its unit and its decimals have are those of the catalogue."""
+    for has, reads, types, asks, writes, width in (
+        (50_000, "IS 50000Hz", "5000[0]", "50001Hz", 50_001, pkw.WORD),
+        (0x42480000, "IS 50.00Hz", "05[0].00", "51.00Hz", 0x424C0000, pkw.DOUBLE),
+        (0x4248CCCD, "IS 50.20Hz", "05[0].20", "51.20Hz", 0x424CCCCD, pkw.DOUBLE),
+    ):
+        front = Front(dict(HAS))
+        front.has[2000] = has
+        steps = Course(front)
+        steps.go_to(2000)
+        assert reads in steps.says(), steps.says()
+        steps.press("SET")
+        assert steps.says() == [types], steps.says()
+        steps.press("UP")
+        steps.press("SET")
+        assert steps.says() == [asks + " SET=YES", "RESCALES SPEED"], steps.says()
+        steps.press("SET")
+        assert front.did == [(2000, 0, writes, False, width)], front.did
