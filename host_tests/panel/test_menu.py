@@ -1908,6 +1908,12 @@ class Enquirer:
         return self.taken > 1
 
 
+class EnquiryModule:
+    """Where that stands."""
+
+    Enquirer = Enquirer
+
+
 LENGTHS = [10, 12, 4, 16, 14, 8, 6, 18, 20, 22, 24]  # net characters that are tried
 
 
@@ -1966,8 +1972,7 @@ def test_who_answers_is_asked_what_it_is_when_set_wants_it_and_taken_as_that():
         assert panel.did == [(7, 10), (7, 12)] and shown.words(7) == b"A7  ANSWERS"
         shown.choose(7, 0)
         assert shown.words(7) == b"A7  ..."
-        sys.modules["uss.finding.enquiry"] = enquiry = type(Module)("Enquiry", (), {})
-        enquiry.Enquirer = Enquirer
+        sys.modules["uss.finding.enquiry"] = EnquiryModule
         shown.step(7, 0)
         for is_last in [False] * (silences - 1 if silences == 2 else silences) + [True]:
             assert panel.did[-1] == (7, 14)  # a word more
