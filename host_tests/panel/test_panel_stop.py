@@ -613,3 +613,16 @@ def test_of_all_drives_those_that_run_are_stopped_first_and_then_each():
         held.key.stop_next()
         assert [told.count("unseen") for told in held.told()] == counts
     assert held.key.left == 0
+
+
+def test_a_stop_that_is_down_again_without_a_press_does_not_go_on_with_the_last_one():
+    """Such as one that could not be told in between: it has to be pressed to send anything."""
+    for held_ms in (100, 2_000, 5_000):
+        held = Held()
+        held.press()
+        held.step(held_ms)
+        told = [list(one) for one in held.told()]
+        held.step(10, 0)
+        for ms in (1, 1_500, 4_000):
+            assert held.step(ms, held.BIT) == (texts.STOP_IS_DOWN, True)
+        assert held.told() == told, held_ms
