@@ -212,6 +212,7 @@ class Finder:
             net_count = self._net_count()
             if not net_count or net_count == self._layout.net_count:
                 self._row += 1  # the list asks it in that
+                self._choose_further(net_count)
                 return
         if not self._has_room(net_count):
             return
