@@ -5,6 +5,8 @@ NEW 010.00Hz A1: NEXT and PREVIOUS go to another digit, which blinks; UP and DOW
 SET puts it into force.
 """
 
+from panel.keys import Acts, Keys
+from panel.pages.digits import Digits
 from panel_bench import (
     LOOP_US,
     OFF1,
@@ -154,6 +156,88 @@ def test_half_a_minute_without_a_key_ends_it():
     assert world.lcd() == ("S: 10.0 F:  0.00", "READY        A1 ")
     press(world, "SET")
     assert row_1(world) == "S: 10.0 F:  0.00"
+
+
+# --- the page by itself --------------------------------------------------------------------------
+
+
+class Alone:
+    """The page of the digits, whose keys and whose time are those of the test."""
+
+    def __init__(self, shown, began_ms=0):
+        self.shown, self.began_ms = shown, began_ms
+        self.page = Digits(shown)
+        self.is_over = False
+        shown.uncover = self.end
+
+    def end(self):
+        self.is_over = True
+
+    def press(self, ms, *names):
+        keys = Keys(self.shown.board.keypad.names, self.shown.mask)
+        keys.pressed = keys.bits(names)
+        self.page.take_keys(Acts(keys), self.began_ms + ms & self.shown.mask)
+
+    def lasts(self, ms):
+        """Whether it is still shown, so long after it began."""
+        self.page.step(None, self.began_ms + ms & self.shown.mask)
+        return not self.is_over
+
+    def row(self, ms):
+        self.page.draw(self.shown.screen, self.began_ms + ms & self.shown.mask)
+        return self.shown.screen.rows()[1][:13]
+
+
+def test_the_half_minute_begins_with_the_page_and_anew_with_each_key():
+    shown = ready().app.panel
+    for began_ms in (0, shown.mask - 9_000):  # the clock begins anew meanwhile
+        alone = Alone(shown, began_ms)
+        assert alone.lasts(0) and alone.lasts(29_999) and not alone.lasts(30_000)
+        alone = Alone(shown, began_ms)
+        assert alone.lasts(0)
+        alone.press(20_000, "NEXT")
+        assert alone.lasts(49_999) and not alone.lasts(50_000)
+
+
+def test_the_digit_is_away_for_the_last_250_of_800_ms_after_a_key():
+    alone = Alone(ready().app.panel, 70_000)
+    away, there = "NEW 01_.00Hz ", "NEW 010.00Hz "
+    assert alone.row(700) == there  # it has not begun
+    alone.lasts(0)
+    for ms, row in ((0, there), (549, there), (550, away), (799, away), (800, there),
+                    (1_349, there), (1_350, away)):  # fmt: skip
+        assert alone.row(ms) == row, ms
+    alone.press(1_400, "UP")
+    assert alone.row(1_400) == alone.row(1_949) == "NEW 011.00Hz "
+    assert alone.row(1_950) == "NEW 01_.00Hz "
+
+
+def test_the_places_are_those_of_a_setpoint_of_three_digits_and_two_decimals():
+    alone = Alone(ready().app.panel)
+    for keys, row in (
+        (("UP",), "011.00"), (("NEXT", "UP"), "011.10"), (("NEXT", "DOWN"), "011.19"),
+        (("NEXT", "UP"), "111.19"), (("NEXT", "DOWN"), "101.19"), (("PREVIOUS",), "101.19"),
+        (("DOWN",), "001.19"), (("PREVIOUS", "UP"), "001.10"),
+    ):  # fmt: skip
+        for key in keys:
+            alone.press(0, key)
+        assert alone.row(0)[4:10] == row, keys
+
+
+def test_a_limit_that_has_just_been_read_counts_at_set():
+    """The motor stands: what the operator sees is below that limit, and is raised to it."""
+    world = ready()
+    shown = world.app.panel
+    control = shown.selected
+    survey = control.survey
+    lowest = survey.lowest()
+    alone = Alone(shown)
+    survey.lowest = lambda: 1_500
+    survey.version += 1
+    alone.press(0, "UP")
+    alone.press(0, "SET")
+    assert alone.is_over and control.setpoint.centihertz == 1_500 > lowest
+    assert shown.message == b"LIMIT: 15.00"
 
 
 def test_param_that_leaves_it_and_is_held_opens_no_menu():

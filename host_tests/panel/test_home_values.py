@@ -6,6 +6,8 @@ Percent of the reference, and what the drive tells by parameters: Hz, 1/min, A, 
 
 import sys
 
+from panel.phases import CHECKING, IDLE
+from panel.screen import Screen
 from panel_bench import (
     LOOP_US,
     OFF1,
@@ -18,6 +20,8 @@ from panel_bench import (
     wait_until,
     wait_until_known,
 )
+from uss import pkw
+from uss.families import MM3, MM440
 
 
 def runs(kind="mm420", **more):
@@ -476,6 +480,150 @@ def test_a_value_that_is_told_again_is_there_ten_seconds_later():
     world.run(10_300)
     assert float(row_1(world)[7:13]) > 0, world.lcd()
     world.check()
+
+
+# --- by themselves -------------------------------------------------------------------------------
+
+
+class Told:
+    """A panel with one drive, which is asked, and answers what and when the test says."""
+
+    mask = 0xFFFF
+    contact = True
+    phase = IDLE
+    unchecked = 0
+    pkw_words = 4
+    full = False
+    percent = False
+    scaling = None
+
+    def __init__(self, unit, family=MM440):
+        from panel.pages.values import Values
+
+        self.selected = self.drive = self.survey = self.layout = self.channel = self
+        self.family = family
+        self.remembered = {}
+        self.screen = Screen()
+        self.jobs = []
+        self.values = Values(self)
+        while not self.row().rstrip().endswith(unit):
+            assert self.values.turn(1)
+
+    def is_percent(self):
+        return self.percent
+
+    def actual_is_beyond(self):
+        return False
+
+    def actual_centihertz(self):
+        return None
+
+    def is_full(self):
+        return self.full
+
+    def ask(self, job):
+        job.state = pkw.PENDING
+        self.jobs.append(job)
+
+    def row(self):
+        self.screen.put(0, 0, 16, b"")
+        return self.screen.rows()[0][7:] if self.values.draw(self.screen) else "frequency"
+
+    def asks(self, now_ms):
+        """Whether it is asked in the step at this time."""
+        before = len(self.jobs)
+        assert self.values.step(now_ms & self.mask)
+        return len(self.jobs) > before
+
+    def answer(self, now_ms, value=None, state=pkw.DONE, width=pkw.DOUBLE):
+        """The drive answers; what is shown then."""
+        job = self.jobs[-1]
+        job.state, job.width = state, width if state == pkw.DONE else 0
+        if value is not None and width == pkw.DOUBLE:
+            job.high, job.low = pkw.float_to_words(value)
+        elif value is not None:
+            job.low = value
+        self.is_shown = self.values.step(now_ms & self.mask)
+        return self.row().strip()
+
+
+def test_the_next_question_follows_300_ms_after_an_answer_and_10_s_after_a_refusal():
+    for began_ms in (20, 0xFFFF - 200):  # the clock begins anew meanwhile
+        told = Told("A")
+        assert told.asks(began_ms) and not told.asks(began_ms + 9)
+        assert told.answer(began_ms + 10, 1.25) == "1.25A"
+        answered_ms = began_ms + 10
+        for state, wait_ms in (
+            (pkw.DONE, 300), (pkw.TIMED_OUT, 300), (pkw.REFUSED, 10_000), (pkw.UNANSWERED, 10_000),
+        ):  # fmt: skip
+            assert not told.asks(answered_ms + 299) and told.asks(answered_ms + 300)
+            row = told.answer(answered_ms + 320, 1.25, state)
+            assert row == ("1.25A" if state == pkw.DONE else "-----A"), state
+            answered_ms += 320
+            assert not told.asks(answered_ms + wait_ms - 1) and told.asks(answered_ms + wait_ms)
+            assert told.answer(answered_ms + wait_ms + 5, 2.0) == "2.00A"
+            answered_ms += wait_ms + 5
+
+
+def test_a_value_is_shown_until_3_s_after_it_was_told():
+    told = Told("V")
+    told.asks(0)
+    assert told.answer(50, 230.4) == "230V" and told.asks(350)
+    for now_ms, row in ((3_049, "230V"), (3_050, "?V"), (9_000, "?V")):
+        assert not told.asks(now_ms) and told.row().strip() == row
+
+
+def test_a_start_and_a_drive_that_is_not_known_yet_go_first():
+    told = Told("A")
+    told.phase = CHECKING
+    assert not told.asks(0)
+    told.phase, told.unchecked = IDLE, 1
+    assert not told.asks(10)
+    told.unchecked, told.full = 0, True
+    assert not told.asks(20)
+    told.full = False
+    assert told.asks(30)
+
+
+def test_only_what_next_has_just_come_to_is_left_out_when_it_is_refused():
+    told = Told("rpm")
+    told.asks(0)
+    assert told.answer(10, state=pkw.REFUSED).endswith("?A") and told.is_shown
+    told.asks(20)
+    assert told.answer(30, 1.0) == "1.00A"
+    told.asks(330)
+    assert told.answer(340, state=pkw.REFUSED) == "-----A"  # it is told some other time
+    for direction, unit in ((-1, "Hz"), (1, "A"), (1, "V")):
+        assert told.values.turn(direction) and told.row().strip() == "?" + unit
+    told = Told("Hz")
+    told.values.turn(-1)
+    told.values.turn(1)
+    told.asks(0)
+    assert told.answer(10, state=pkw.TIMED_OUT) == "-----Hz"  # it was not refused
+    told.asks(310)
+    assert told.answer(320, state=pkw.UNANSWERED).endswith("?rpm")
+    told = Told("C I")
+    told.asks(0)
+    assert told.answer(10, state=pkw.UNANSWERED) == "frequency" and not told.is_shown
+
+
+def test_a_floating_point_number_is_shown_to_the_nearest_hundredth_up_to_131071():
+    told, now_ms = Told("A"), 0
+    for value, row in (
+        (0.0049, "0.00A"), (0.0051, "0.01A"), (0.0149, "0.01A"), (0.0151, "0.02A"),
+        (0.0078, "0.01A"), (0.25, "0.25A"), (1.005001, "1.01A"), (1.9951, "2.00A"),
+        (131071.0, "131071A"), (131072.0, "-----A"), (-0.0051, "-0.01A"), (-131071.0, "999999A"),
+    ):  # fmt: skip
+        assert told.asks(now_ms)
+        assert told.answer(now_ms, value) == row, value
+        now_ms += 300
+    told.asks(now_ms)
+    assert told.answer(now_ms, 5, width=pkw.WORD) == "-----A"  # nobody knows what it means
+    told = Told("A", MM3)
+    told.asks(0)
+    assert told.answer(0, 25, width=pkw.WORD) == "2.50A"
+    told.asks(300)
+    assert told.answer(300, 25.0) == "-----A"
 
 
 def test_it_leaves_the_memory_with_the_frequency():

@@ -2,8 +2,13 @@
 """The operator's manual, parameter mode: look at parameters and change them."""
 
 from boards.sim.drives.kinds import listed_drives, simulated
+from panel import texts
+from panel.keys import NAMES as KEY_NAMES
+from panel.keys import Acts, Keys
+from panel.pages import parameter_words as words
 from panel.pages.parameter_words import failure
 from panel.pages.question import Question
+from panel.pages.writing import ASK, Writing
 from panel_bench import (
     LOOP_US,
     OFF1,
@@ -32,6 +37,8 @@ from parameter_bench import (
     writes,
 )
 from uss import pkw
+from uss.families import MM3, MM440
+from uss.families.generic import CUTS_OFF
 
 KEYS = ("START", "REVERSE", "JOG_RIGHT", "JOG_LEFT", "UP", "DOWN", "ADDRESS_UP", "ADDRESS_DOWN",
         "PARAM", "NEXT", "PREVIOUS", "EDIT")  # fmt: skip
@@ -1012,6 +1019,254 @@ def test_a_question_beside_an_alarm_tells_both_in_turn_all_that_is_at_stake():
     assert [row for _, row in told] == [ASKED] * 8
     assert [row for row, _ in told[::2]] == ["ONE", "TWO", "THREE", "ONE"]
     assert {row for row, _ in told[1::2]} == {"A1 LOST,MAY RUN"}, told
+
+
+# --- a question by itself ------------------------------------------------------------------------
+
+
+class Shown:
+    """What a question asks of its panel, whose keys and whose time are those of the test."""
+
+    mask = 0xFFFF
+    message = None
+    alarm = False
+
+    def __init__(self, began_ms=0, deaf_ms=0, **answers):
+        self.selected = self
+        self.began_ms = began_ms
+        self.happened = []
+        for key in answers:
+            answers[key] = lambda now_ms, said=answers[key]: self.happened.append((said, now_ms))
+        self.question = Question(self, ((b"ONE",), b"SET=DO"), (), answers, deaf_ms)
+
+    def needs_attention(self):
+        return self.alarm
+
+    def uncover(self):
+        self.happened.append("gone")
+
+    def press(self, ms, *names, repeats=False):
+        keys = Keys(KEY_NAMES, self.mask)
+        bits = keys.bits(names)
+        keys.pressed, keys.repeated = (0, bits) if repeats else (bits, 0)
+        return self._new(lambda now_ms: self.question.take_keys(Acts(keys), now_ms), ms)
+
+    def step(self, ms):
+        return self._new(lambda now_ms: self.question.step(None, now_ms), ms)
+
+    def _new(self, act, ms):
+        """What has come of that."""
+        self.happened = []
+        act(self.began_ms + ms & self.mask)
+        return self.happened
+
+
+def test_one_key_alone_answers_a_question_and_each_other_one_ends_it():
+    for keys, come_of_it in (
+        (("SET",), ["gone", ("done", 9)]), (("START",), ["gone", ("gone on", 9)]),
+        (("SET", "START"), ["gone"]), (("SET", "UP"), ["gone"]), (("STOP",), ["gone"]), ((), []),
+    ):  # fmt: skip
+        shown = Shown(SET="done", START="gone on")
+        shown.step(0)
+        assert shown.press(5, "SET", repeats=True) == []  # it was down before
+        assert shown.press(9, *keys) == come_of_it, keys
+
+
+def test_a_question_lasts_half_a_minute_from_when_it_was_shown():
+    for began_ms in (0, 0xFFFF - 9_000):  # the clock begins anew meanwhile
+        shown = Shown(began_ms, SET="done")
+        assert shown.step(0) == shown.step(29_999) == [] and shown.step(30_000) == ["gone"]
+
+
+def test_an_answer_counts_once_the_question_can_have_been_read():
+    for began_ms in (0, 0xFFFF - 500):
+        shown = Shown(began_ms, 1_000, SET="done")
+        assert shown.press(0, "SET") == []  # it has not even been shown
+        shown.step(0)
+        assert shown.press(999, "SET") == []
+        assert shown.press(1_000, "SET")[0] == "gone" and len(shown.happened) == 2
+        shown = Shown(began_ms, 1_000, SET="done")
+        shown.step(0)
+        assert shown.press(1, "PARAM") == ["gone"]  # a no may come as soon as it likes
+
+
+def test_an_answer_counts_half_a_second_after_what_has_hidden_the_keys_of_it():
+    for began_ms in (0, 0xFFFF - 800):
+        shown = Shown(began_ms, SET="done")
+        shown.message = b"WRITTEN"
+        shown.step(0)
+        shown.step(700)
+        shown.message = None
+        shown.step(750)
+        assert shown.press(760, "SET") == []
+        shown.step(1_199)
+        assert shown.press(1_199, "SET") == []
+        shown.step(1_200)
+        assert shown.press(1_200, "SET")[0] == "gone" and len(shown.happened) == 2
+
+
+def test_only_an_alarm_that_comes_takes_a_question_away():
+    shown = Shown(SET="done")
+    assert shown.step(0) == []
+    shown.alarm = True
+    assert shown.step(10) == ["gone"]
+    Shown.alarm = True
+    try:
+        shown = Shown(SET="done")
+    finally:
+        Shown.alarm = False
+    shown.alarm = True  # it was there before
+    assert shown.step(0) == shown.step(10) == []
+    shown.alarm = False
+    assert shown.step(20) == []
+    shown.alarm = True
+    assert shown.step(30) == ["gone"]
+
+
+# --- SET by itself -------------------------------------------------------------------------------
+
+
+class Desk:
+    """What SET on a page of parameters asks of its panel and of the drive."""
+
+    mask = 0xFFFF
+    runs = starting = False
+    taken = ()
+    tries = True
+
+    def __init__(self, family=MM440):
+        self.family = family
+        self.survey = self.selected = self
+        self.said, self.wrote, self.covers = [], [], []
+        self.writing = Writing(self)
+
+    def any_runs(self):
+        return self.runs
+
+    def is_starting(self):
+        return self.starting
+
+    def needs_attention(self):
+        return False
+
+    def is_taken(self, address):
+        return address in self.taken
+
+    def say(self, _now_ms, *said):
+        self.said.append(said)
+
+    def cover(self, page):
+        self.covers.append(page)
+
+    def write(self, now_ms, _control, *what):
+        self.wrote.append((now_ms,) + what)
+        self.outcome, self.done = None, False
+        return self if self.tries else None
+
+    def set(self, now_ms, number, value, risk=None):
+        self.writing.set(now_ms, (self, number, 0, value), risk, (1, 2, 3))
+
+    def end(self, is_done):
+        self.outcome, self.done = (words.WRITTEN,), is_done
+
+    def steps(self, *times_ms, down=1):
+        """What was written in these steps."""
+        before = len(self.wrote)
+        for now_ms in times_ms:
+            self.writing.step(down, now_ms & self.mask)
+        return self.wrote[before:]
+
+
+def test_a_set_that_is_held_for_1500_ms_alone_writes_the_eeprom_after_the_ram():
+    for began_ms in (0, 0xFFFF - 700):  # the clock begins anew meanwhile
+        desk = Desk()
+        desk.set(began_ms, 1000, 5)
+        assert desk.wrote == [(began_ms, 1000, 0, 5, False)]
+        assert desk.steps(began_ms + 100, began_ms + 1_600) == []  # the drive has not said so
+        desk.end(True)
+        assert desk.writing.step(1, began_ms + 100 & desk.mask) is desk
+        assert desk.writing.step(1, began_ms + 200 & desk.mask) is None
+        assert desk.steps(began_ms + 1_499) == []
+        at_ms = began_ms + 1_500
+        assert desk.steps(at_ms) == [(at_ms & desk.mask, 1000, 0, 5, True)]
+        desk.end(True)
+        assert desk.steps(at_ms + 10, at_ms + 1_500, at_ms + 9_000) == []  # once
+
+
+def test_what_ends_a_held_set_makes_nothing_permanent():
+    def let_go(desk):
+        desk.writing.let_go()
+
+    def up(desk):
+        desk.steps(200, down=0)
+
+    def forget(desk):
+        desk.writing.forget()
+
+    for what in (let_go, up, forget):
+        desk = Desk()
+        desk.set(0, 1000, 5)
+        desk.end(True)
+        desk.steps(100)
+        what(desk)
+        assert desk.steps(300, 1_500, 5_000) == [], what
+    desk = Desk()
+    desk.set(0, 1000, 5)
+    desk.end(False)
+    assert desk.steps(100, 1_500, 5_000) == []  # it was not written
+    desk = Desk(MM3)
+    desk.set(0, 5, 5)  # no family of those has a task for the EEPROM
+    desk.end(True)
+    assert desk.steps(100, 1_500, 5_000) == [] and desk.wrote == [(0, 5, 0, 5, False)]
+    desk = Desk()
+    desk.tries = False
+    desk.set(0, 1000, 5)
+    assert desk.steps(100, 1_500, 5_000) == []  # it could not be tried
+    desk = Desk()
+    desk.set(0, MM440.address_number, 7)
+    assert desk.wrote == [(0, MM440.address_number, 0, 7, True)]  # at once: it always lasts
+    desk.end(True)
+    assert desk.steps(100, 1_500, 5_000) == []
+
+
+def test_an_address_is_written_where_all_stands_and_nobody_has_it():
+    number = MM440.address_number
+    for field, value, reason in (
+        ("runs", True, texts.STOP_FIRST), ("starting", True, texts.STOP_FIRST),
+        ("taken", (7,), words.ADDRESS_TAKEN), ("taken", (8,), None),
+    ):  # fmt: skip
+        for risk in (None, CUTS_OFF):
+            desk = Desk()
+            setattr(desk, field, value)
+            desk.set(0, number, 7, risk)
+            if reason is None and risk == CUTS_OFF:
+                assert len(desk.covers) == 1 and not desk.said and not desk.wrote
+            else:
+                assert desk.covers == []
+                assert desk.said == ([(reason,)] if reason else [])
+                assert len(desk.wrote) == (0 if reason else 1)
+        desk = Desk()
+        setattr(desk, field, value)
+        desk.set(0, number + 1, 7)  # any other parameter
+        assert desk.said == [] and len(desk.wrote) == 1
+
+
+def test_what_has_come_about_while_a_question_was_open_counts():
+    desk = Desk()
+    desk.set(0, MM440.address_number, 7, CUTS_OFF)
+    desk.runs = True
+    keys = Keys(KEY_NAMES, desk.mask)
+    keys.pressed = keys.bit("SET")
+    desk.uncover = lambda: None
+    desk.covers[0].take_keys(Acts(keys), 50)
+    assert desk.said == [(texts.STOP_FIRST,)] and desk.wrote == []
+
+
+def test_each_risk_has_its_question():
+    for risk in ASK:
+        stakes, choice = ASK[risk]
+        assert stakes[0] % (1, 700, 2) == b"A1: P0700=2" and choice == ASKED.encode()
+    assert len({ASK[risk] for risk in ASK}) == len(ASK) == 2
 
 
 def test_an_alarm_of_another_drive_is_not_hidden_by_a_question():
