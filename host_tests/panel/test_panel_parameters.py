@@ -9,6 +9,7 @@ from panel.pages import parameter_words as words
 from panel.pages.parameter_words import failure
 from panel.pages.question import Question
 from panel.pages.writing import ASK, Writing
+from panel.screen import Screen
 from panel_bench import (
     LOOP_US,
     OFF1,
@@ -1019,6 +1020,186 @@ def test_a_question_beside_an_alarm_tells_both_in_turn_all_that_is_at_stake():
     assert [row for _, row in told] == [ASKED] * 8
     assert [row for row, _ in told[::2]] == ["ONE", "TWO", "THREE", "ONE"]
     assert {row for row, _ in told[1::2]} == {"A1 LOST,MAY RUN"}, told
+
+
+# --- parameter mode by itself --------------------------------------------------------------------
+
+
+class Mode:
+    """Parameter mode of one drive, which is asked, and answers what and when the test says."""
+
+    mask = 0xFFFF
+    contact, pkw_words = True, 4
+    active = full = False
+    page_turns = 1
+    off_time_ms, off_time_unit_ms, off_time_number = 1_001, 100, 2014
+    link_index, linked = 3, (2014,)
+    address_number, address = 2011, 1
+    has_eeprom_tasks, permanent = True, ()
+    shown = ((700, 100), (1000, 101), (2014, 9_999), (2024, None))
+
+    def __init__(self, row=0):
+        from panel.pages.parameters import Parameters
+
+        self.drive = self.survey = self.layout = self.family = self.channel = self.desk = self
+        self.selected = self.warning = self.announcer = self
+        self.ask_first = {}
+        self.remembered = {"panel.pages.parameters": row}
+        self.screen = Screen()
+        self.keys = Keys(KEY_NAMES, self.mask)
+        self.jobs, self.said, self.wrote = [], [], []
+        self.page = Parameters(self)
+        while not self.asks(0):
+            assert len(self.row()) <= 13
+
+    def is_full(self):
+        return self.full
+
+    def ask(self, job):
+        job.state = pkw.PENDING
+        self.jobs.append(job)
+
+    def say(self, _now_ms, *said):
+        self.said.append(said)
+
+    def write(self, _now_ms, _control, *what):
+        self.wrote.append(what)
+        self.outcome, self.done = None, False
+        return self
+
+    def asks(self, now_ms):
+        """Whether it is asked in the step at this time."""
+        before = len(self.jobs)
+        self.page.step(self.keys, now_ms & self.mask)
+        return len(self.jobs) > before
+
+    def asked(self):
+        return self.jobs[-1].number, self.jobs[-1].index
+
+    def answer(self, now_ms, value=0, state=pkw.DONE):
+        self.jobs[-1].state, self.jobs[-1].low = state, value
+        return self.asks(now_ms)
+
+    def press(self, *names, repeats=0):
+        """The keys go down, or the one that is held repeats for so many times by now."""
+        bits = self.keys.bits(names)
+        self.keys.pressed, self.keys.repeated = (0, bits) if repeats else (bits, 0)
+        self.keys.repeats = repeats
+        self.page.take_keys(Acts(self.keys), 0)
+        return self.row()
+
+    def row(self):
+        self.screen.put(1, 0, 16, b"")
+        self.page.draw(self.screen, 0)
+        return self.screen.rows()[1].rstrip()
+
+
+EDITED = "P%04d:%6d\x01"
+
+
+def editing(row, value):
+    """A value was told, and EDIT was pressed."""
+    mode = Mode(row)
+    mode.answer(5, value)
+    assert mode.press("EDIT") == EDITED % (mode.shown[row][0], value)
+    return mode
+
+
+def test_a_parameter_is_asked_for_500_ms_after_its_answer_and_another_one_at_once():
+    mode = Mode()
+    assert mode.asked() == (700, 0) and mode.row() == "P0700:     ?"
+    for at_ms in (10, 0xFFFF - 300, 1_000):  # the clock begins anew meanwhile
+        assert not mode.answer(at_ms, 6) and mode.row() == "P0700:     6"
+        assert not mode.asks(at_ms + 499) and mode.asks(at_ms + 500)
+        assert not mode.asks(at_ms + 1_200)  # one question at a time
+    mode.answer(2_000, 7)
+    assert mode.press("NEXT") == "P1000:     ?"
+    assert mode.remembered == {"panel.pages.parameters": 1}
+    assert mode.asks(2_001) and mode.asked() == (1000, 0)
+    mode.answer(2_002, 1)
+    mode.press("NEXT")
+    assert mode.asks(2_003) and mode.asked() == (2014, 3)  # it has a value for each link
+    mode.answer(2_004, 1)
+    assert mode.press("NEXT") == "r2024:     ?" and mode.press("NEXT") == "P0700:     ?"
+    mode.full = True
+    assert not mode.asks(2_005)
+    mode.full = False
+    assert mode.asks(2_006)
+
+
+def test_a_drive_out_of_contact_tells_no_value_and_is_asked_as_soon_as_it_is_back():
+    mode = Mode()
+    mode.answer(10, 6)
+    mode.contact = False
+    assert not mode.asks(20) and not mode.asks(600) and mode.row() == "P0700:     ?"
+    mode.contact = True
+    assert mode.asks(601)
+
+
+def test_a_refusal_is_said_when_it_begins_and_again_after_a_value():
+    mode = Mode()
+    now_ms, said = 0, 0
+    for state, more, row in (
+        (pkw.UNANSWERED, 1, "P0700: -----"), (pkw.UNANSWERED, 0, "P0700: -----"),
+        (pkw.DONE, 0, "P0700:     0"), (pkw.UNANSWERED, 1, "P0700: -----"),
+        (pkw.TIMED_OUT, 0, "P0700:     ?"), (pkw.REFUSED, 1, "P0700: -----"),
+    ):  # fmt: skip
+        mode.jobs[-1].error = 0
+        mode.answer(now_ms, 0, state)
+        said += more
+        assert len(mode.said) == said and mode.row() == row, state
+        now_ms += 500
+        assert mode.asks(now_ms)
+
+
+def test_a_key_that_is_held_moves_a_range_of_more_than_100_by_more_than_ones():
+    for row, values in ((0, (1, 2, 1)), (1, (100, 101, 100))):
+        mode, number = editing(row, 0), Mode.shown[row][0]
+        for key, repeats, value in zip(("UP", "UP", "DOWN"), (17, 17, 0), values):
+            assert mode.press(key, repeats=repeats) == EDITED % (number, value)
+    mode = editing(0, 99)
+    assert [mode.press("UP")[6:12].strip() for _ in range(2)] == ["100", "100"]
+    mode = editing(0, 1)
+    assert [mode.press("DOWN")[6:12].strip() for _ in range(2)] == ["0", "0"]
+
+
+def test_a_telegram_off_time_is_0_or_as_long_as_the_bus_needs():
+    """1001 ms in tenths of a second: 11 of them."""
+    mode = editing(2, 0)
+    assert mode.press("UP") == EDITED % (2014, 11)
+    assert mode.press("UP") == EDITED % (2014, 12)
+    assert mode.press("DOWN") == EDITED % (2014, 11)
+    assert mode.press("DOWN") == EDITED % (2014, 0)
+
+
+def test_edit_and_set_are_refused_with_the_reason():
+    for row, value, keys, reason in (
+        (3, 5, ("EDIT",), words.READ_ONLY), (3, 5, ("UP",), words.READ_ONLY),
+        (0, None, ("EDIT",), words.NOT_READ_YET), (0, 5, ("UP",), words.EDIT_FIRST),
+        (0, 5, ("SET",), words.EDIT_FIRST), (0, 5, ("SET", "STOP"), None), (0, 5, (), None),
+    ):  # fmt: skip
+        mode = Mode(row)
+        if value is not None:
+            mode.answer(5, value)
+        row = mode.row()
+        assert mode.press(*keys) == row and mode.wrote == []
+        assert mode.said == ([(reason,)] if reason else []), keys
+
+
+def test_set_writes_what_is_edited_which_ends_when_it_is_written():
+    for is_done in (True, False):
+        mode = editing(2, 50)
+        mode.press("UP")
+        assert mode.press("SET") == "P2014:    51\x00"  # an hourglass
+        assert mode.wrote == [(2014, 3, 51, False)]
+        mode.outcome, mode.done = (words.WRITTEN,), is_done
+        assert mode.asks(20)  # at once: it was asked 15 ms ago
+        assert mode.row() == ("P2014:    50" if is_done else EDITED % (2014, 51))
+    mode = editing(2, 50)
+    mode.press("UP")
+    mode.press("SET", "UP")
+    assert mode.wrote == []  # with another key it is no clear wish
+    assert mode.press("EDIT") == "P2014:    50"  # it is let go
 
 
 # --- a question by itself ------------------------------------------------------------------------
