@@ -11,6 +11,8 @@ import main
 import on_demand
 import settings_file as settings
 from boards.sim.world import World
+from panel import texts
+from panel.keys import NAMES, Acts, Keys
 from panel.pages import splash
 from panel.pages.table import PAGES, PARAMETER
 from panel_bench import (
@@ -458,6 +460,73 @@ def test_a_key_that_the_panel_does_not_know_is_named():
     world.run(3000)
     assert row_2(world) == "READY        A1"
     world.check()
+
+
+# --- the splash by itself ------------------------------------------------------------------------
+
+
+class Begun:
+    """What the splash asks of its panel, and what has come of it."""
+
+    mask = 0xFFFF
+
+    def __init__(self, began_ms):
+        self.began_ms = began_ms
+        self.happened = []
+        self.page = splash.Splash(self)
+
+    def uncover(self):
+        self.happened.append("gone")
+
+    def say(self, now_ms, text):
+        self.happened.append((now_ms, text))
+
+    def step(self, ms):
+        self.page.step(None, self.began_ms + ms & self.mask)
+        return self.happened
+
+    def press(self, *names, repeats=False):
+        keys = Keys(NAMES, self.mask)
+        bits = keys.bits(names)
+        keys.pressed, keys.repeated = (0, bits) if repeats else (bits, 0)
+        self.page.take_keys(Acts(keys), 55)
+        return self.happened
+
+
+def test_the_splash_is_there_for_800_ms_or_until_a_key_is_pressed():
+    for began_ms in (0, 0xFFFF - 300):  # the clock begins anew meanwhile
+        begun = Begun(began_ms)
+        assert begun.step(0) == begun.step(799) == [] and begun.step(800) == ["gone"]
+    for keys, come_of_it in (
+        ((), []), (("UP",), ["gone"]), (("STOP",), ["gone"]),
+        (("START",), ["gone", (55, texts.REFUSED_EARLY)]),
+        (("START", "UP"), ["gone", (55, texts.REFUSED_EARLY)]),
+    ):  # fmt: skip
+        begun = Begun(0)
+        assert begun.press("START", repeats=True) == [] and begun.press(*keys) == come_of_it
+
+
+class Complaint:
+    def __init__(self, complaint=None, suspect=None):
+        self.complaint, self.suspect = complaint, suspect
+
+
+def test_what_is_said_after_the_splash_fits_the_row_and_has_its_order():
+    fine = Complaint()
+    assert splash.notices(fine, NAMES, ()) == []
+    assert splash.notices(fine, NAMES, (texts.NOTHING,)) == []
+    keys = ("START", "START_STOP", "FN", 17)
+    first = (texts.WATCHDOG_RESTART, texts.NOTHING, texts.PANEL_HUNG)
+    for suspect, said in (
+        ("lowest_centihertz", (splash.SETTING, b"lowest_centihert")),
+        ("too big", (b"FILE TOO BIG",)), ("no JSON", (b"FILE IS NO JSON",)),
+        ("unreadable", (b"FILE UNREADABLE",)),
+    ):  # fmt: skip
+        found = splash.notices(Complaint("it is wrong", suspect), keys, first)
+        assert found == [
+            (texts.WATCHDOG_RESTART,), (texts.PANEL_HUNG,), (splash.SETTINGS_DAMAGED,), said,
+            (splash.KEY_UNKNOWN, b"START_STO"), (splash.KEY_UNKNOWN, b"17"),
+        ]  # fmt: skip
 
 
 # --- other worlds --------------------------------------------------------------------------------

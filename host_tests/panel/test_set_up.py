@@ -2,6 +2,9 @@
 """The operator's manual, a drive that obeys somebody else: START offers to set it up."""
 
 from boards.sim.drives.families import mm3, mm440
+from panel.keys import NAMES, Acts, Keys
+from panel.pages import set_up
+from panel.screen import Screen
 from panel_bench import (
     panel,
     row_2,
@@ -10,6 +13,9 @@ from panel_bench import (
     take_commands_elsewhere_in_second_set,
     wait_until_known,
 )
+from uss import families
+from uss.families import rows
+from uss.pzd import ZSW_RUNNING
 
 LOCAL = {700: 2, 1000: 2, 2014: 1000}  # as delivered, but for the line
 INTO_EEPROM = {"A1: P0700=5", "INTO ITS EEPROM:", "PANEL COMMANDS", "THE DRIVE THEN"}
@@ -194,3 +200,113 @@ def test_a_value_that_the_access_level_forbids_is_offered_again_after_p0003():
     assert world.drives[1].state == "running", world.lcd()
     assert world.drives[1].parameters.ram[2014][0] > 0
     world.check()
+
+
+# --- what is offered, with a drive that tells what the test says ---------------------------------
+
+
+class Told:
+    """What is asked of a panel and of the drive that it shows."""
+
+    mask = 0xFFFF
+    address, zsw, contact, page_turns = 7, 0, True, 0
+    message = None
+
+    def __init__(self, family=families.MM440):
+        self.selected = self.survey = self.drive = self.announcer = self
+        self.family = family
+        self.values = [rows.UNKNOWN] * rows.COUNT_OF_ROWS
+        self.wrong = list(rows.NOTHING_WRONG)
+        self.screen = Screen()
+        self.question = None
+        self.wrote = []
+
+    def needs_attention(self):
+        return False
+
+    def cover(self, page):
+        self.question = page
+
+    def uncover(self):
+        pass
+
+    def write(self, now_ms, control, *what):
+        assert control is self
+        self.wrote.append(what)
+
+    def asked(self, what=set_up.offer):
+        """What row 1 says in turn; None: nothing is offered."""
+        self.question = None
+        what(self)
+        if self.question is None:
+            return None
+        said = []
+        for self.page_turns in range(4):
+            self.question.draw(self.screen, 0)
+            said.append(self.screen.rows()[0].rstrip())
+        return said
+
+    def set(self):
+        """What SET writes."""
+        keys = Keys(NAMES, self.mask)
+        keys.pressed = keys.bit("SET")
+        self.wrote.clear()
+        self.question.take_keys(Acts(keys), 0)
+        return self.wrote
+
+
+def test_the_first_source_that_is_wrong_and_can_be_put_right_is_offered():
+    command, setpoint = rows.COMMAND, rows.SETPOINT
+    for wrong, offered in (
+        ({}, None),
+        ({command: rows.COMMAND_SOURCE}, (700, 5)),
+        ({setpoint: rows.SETPOINT_SOURCE}, (1000, 5)),
+        ({command: rows.COMMAND_SOURCE, setpoint: rows.SETPOINT_SOURCE}, (700, 5)),
+        ({command: rows.SELECTION, setpoint: rows.SETPOINT_SOURCE}, (719, 0)),
+        ({setpoint: rows.SELECTION}, (719, 0)),
+        ({command: rows.ON_SOURCE}, None),  # whoever has wired that wanted it so
+        ({command: rows.ON_SOURCE, setpoint: rows.SETPOINT_SOURCE}, (1000, 5)),
+        ({rows.STATUS: rows.STATUS_SENT, rows.ACTUAL: rows.ACTUAL_SENT}, None),
+    ):
+        told = Told()
+        for subject in wrong:
+            told.wrong[subject] = wrong[subject]
+        said = told.asked()
+        if offered is None:
+            assert said is None, wrong
+        else:
+            assert said[0] == "A7: P%04d=%d" % offered and said[1] == "INTO ITS EEPROM:", said
+            assert told.set() == [(offered[0], 0, offered[1], True)]
+
+
+def test_a_family_without_tasks_for_the_eeprom_is_set_up_in_its_ram():
+    told = Told(families.MM3)
+    told.wrong[rows.COMMAND] = rows.COMMAND_SOURCE
+    assert told.asked() == ["A7: P0910=1", "PANEL COMMANDS", "THE DRIVE THEN", "A7: P0910=1"]
+    assert told.set() == [(910, 0, 1, False)]
+
+
+def test_the_access_level_is_raised_in_the_ram_where_the_family_has_one():
+    for family, number in ((families.MM440, 3), (families.MM3, 9), (families.GENERIC, None)):
+        told = Told(family)
+        said = told.asked(set_up.unlock)
+        if number is None:
+            assert said is None
+        else:
+            assert said[:3] == ["A7: P%04d=3" % number, "PANEL MAY WRITE", "MORE THEN"]
+            assert told.set() == [(number, 0, 3, False)]
+
+
+def test_nothing_is_offered_nor_written_while_the_motor_runs_or_the_drive_is_silent():
+    for field, value in (("zsw", ZSW_RUNNING), ("contact", False)):
+        told = Told()
+        told.wrong[rows.COMMAND] = rows.COMMAND_SOURCE
+        for what in (set_up.offer, set_up.unlock):
+            told.asked(what)
+            assert told.question is not None
+            question = told.question
+            setattr(told, field, value)
+            assert told.asked(what) is None
+            told.question = question
+            assert len(told.set()) == (1 if field == "contact" else 0)
+            setattr(told, field, getattr(Told, field))
