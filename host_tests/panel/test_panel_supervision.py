@@ -6,6 +6,10 @@ without its operator's word.
 import json
 
 from panel import risks, texts
+from panel.keys import NAMES, Acts, Keys
+from panel.pages.risk import RiskQuestion
+from panel.phases import ASKING, CHECKING
+from panel.screen import Screen
 from panel.supervision import longest_off_time_ms, off_time_ms
 from panel_bench import (
     LOOP_US,
@@ -798,3 +802,142 @@ def test_a_question_has_the_values_of_its_risk():
             control.pkw_words = 0
         text, values, can_fix, value = risks.ask(control, SUPERVISION)
         assert (text, values, value) == (texts.ASK_UNTOLD, (), control.ms) and not can_fix
+
+
+# --- the question by itself ----------------------------------------------------------------------
+
+
+class Asked(Told):
+    """What the question asks of its panel as well, whose keys and whose time the test has."""
+
+    mask = 0xFFFF
+    message = None
+    page_turns = 0
+    is_down = False
+    must_supervise = False
+
+    def __init__(self, ms=0, restart=1, risk=SUPERVISION, **panel):
+        Told.__init__(self, ms, restart)
+        for name in panel:
+            setattr(self, name, panel[name])
+        self.selected = self.stop_key = self.board = self.announcer = self
+        self.phase, self.risk = ASKING, risk
+        self.happened = []
+        self.page = RiskQuestion(self)
+        self.screen = Screen()
+
+    def question(self):
+        return self.risk
+
+    def needs_attention(self):
+        return False
+
+    def drop_question(self):
+        self.happened.append("dropped")
+
+    def uncover(self):
+        self.happened.append("gone")
+
+    def cover(self, page):
+        self.happened.append(page)
+
+    def accept_risk(self, risk, value):
+        self.happened.append(("accepted", risk, value))
+
+    def say(self, _now_ms, text):
+        self.happened.append(text)
+
+    def write(self, _now_ms, control, *what):
+        self.happened.append(what)
+
+    def step(self, now_ms):
+        self.happened.clear()
+        self.page.step(None, now_ms)
+        return self.happened
+
+    def press(self, now_ms, key):
+        keys = Keys(NAMES, self.mask)
+        keys.pressed = keys.bit(key)
+        self.happened.clear()
+        self.page.take_keys(Acts(keys), now_ms)
+        return self.happened
+
+    def choice(self):
+        self.page.draw(self.screen, 0)
+        return self.screen.rows()[1].rstrip()
+
+
+class Desk:
+    """That of a drive: its telegram-off time on this bus."""
+
+    longest_off_time_ms = 2_000
+
+    def __init__(self, least_ms):
+        self.off_time_ms = least_ms
+
+
+GONE = ["dropped", "gone"]
+
+
+def test_start_takes_a_risk_that_was_there_to_be_read_for_a_second():
+    for risk, ms, restart, value in ((SUPERVISION, 0, 1, 0), (RESTART, 1_000, 3, 3)):
+        control = Asked(ms, restart, risk)
+        assert control.press(9, "START") == [] and control.step(10) == []
+        assert control.press(1_009, "START") == []
+        assert control.press(1_010, "START") == GONE + [("accepted", risk, value)]
+    control = Asked()
+    control.step(0)
+    control.is_down = True
+    assert control.press(1_000, "START") == GONE + [texts.REFUSED_STOP]
+    control = Asked()
+    control.step(0)
+    assert control.press(5, "PARAM") == GONE
+
+
+def test_set_writes_the_least_time_that_the_bus_bears_in_the_steps_of_the_drive():
+    for family, least_ms, value in (
+        (MM440, 1_000, 1_000), (MM440, 1_001, 1_001), (MM3, 1_000, 1), (MM3, 1_001, 2),
+    ):  # fmt: skip
+        control = Asked(family=family)
+        control.desk = Desk(least_ms)
+        control.step(0)
+        assert control.choice() == "SET=FIX START=GO"
+        what = (family.off_time_number, family.link_index, value)
+        assert control.press(1_000, "SET") == GONE + [what]
+    control = Asked(1_000, 3, RESTART)
+    control.step(0)
+    assert control.choice() == "START=GO STOP=NO"
+    assert control.press(1_000, "SET") == GONE  # it puts nothing right there
+
+
+def test_where_a_drive_must_be_supervised_start_takes_that_risk_never():
+    for pkw_words, choice in ((4, "SET=FIX STOP=NO"), (0, "IT CANNOT START")):
+        control = Asked(must_supervise=True, pkw_words=pkw_words)
+        control.step(0)
+        assert control.choice() == choice
+        assert control.press(1_000, "START") == GONE + [texts.REFUSED_UNWATCHED]
+    control = Asked(1_000, 3, RESTART, must_supervise=True)
+    control.step(0)
+    assert control.choice() == "START=GO STOP=NO"
+    assert control.press(1_000, "START") == GONE + [("accepted", RESTART, 3)]
+
+
+def test_a_question_goes_with_what_it_asks_about_and_is_asked_anew_about_another_value():
+    control = Asked(5_000)
+    assert control.step(0) == []
+    control.ms = 6_000
+    (page,) = control.step(10)
+    assert page is not control.page and isinstance(page, RiskQuestion)
+    control.ms = 5_000
+    assert control.step(20) == []
+    control.ms = 1_000
+    assert control.step(30) == GONE
+    control.ms = 5_000
+    control.accepted = {SUPERVISION: 5_000}
+    assert control.step(40) == GONE
+    control.accepted = {}
+    assert control.step(50) == []
+    control.phase = CHECKING
+    assert control.step(60) == GONE
+    control.phase = ASKING
+    assert control.step(29_999) == [] and control.step(30_000) == GONE
