@@ -23,13 +23,15 @@ from lookup_bench import (
     wait_for_value,
     world_of,
 )
-from panel.keys import Acts, Keys
+from panel.keys import NAMES, Acts, Keys
 from panel.lookup import Search, groups, memory, value, what
 from panel.lookup import name_of as table_of
-from panel.lookup.answers import FIRST
+from panel.lookup.answers import FIRST, TYPED
 from panel.lookup.editing import Editing
 from panel.lookup.parameter import Parameter
 from panel.lookup.sight import Sight
+from panel.lookup.words import IS_FAVOURITE
+from panel.pages.parameter_words import EDIT_FIRST, REFUSALS
 from panel.pages.table import PAGES, PARAMETER
 from panel.reading import Reading
 from panel.screen import Screen
@@ -1288,6 +1290,196 @@ def test_a_question_that_finds_no_room_is_not_on_its_way():
     while not drive.channel.is_full():
         drive.ask(pkw.read(1000))
     assert not reading.ask(drive, 700) and not reading.asked and reading.take() is None
+
+
+# --- the page by itself --------------------------------------------------------------------------
+
+
+class Alone:
+    """The page of a drive, which is asked, and answers what and when the test says."""
+
+    mask = 0x3FFFFFFF
+    contact, pkw_words, address, page_turns = True, 4, 7, 0
+    off_time_ms = 1_500
+    full = False
+
+    def __init__(self, number, numbers=catalogue.ALL, family=families.MM440, began_ms=0):
+        self.selected = self.drive = self.survey = self.layout = self.channel = self.desk = self
+        self.announcer = self.settings = self
+        self.family, self.favourites, self.began_ms = family, {}, began_ms
+        self.remembered = {"panel.lookup.parameter": (numbers, number)}
+        self.keys = Keys(NAMES, self.mask)
+        self.jobs, self.said, self.covers = [], [], []
+        self.page = Parameter(self)
+        self.look_on()
+
+    def look_on(self):
+        """Whatever is looked for in the catalogue is found."""
+        while self.page.is_busy:
+            self.page.work(self.began_ms)
+
+    def is_undisturbed(self, _for_us):
+        return True
+
+    def has_taken(self, _us):
+        return False
+
+    def is_full(self):
+        return self.full
+
+    def ask(self, job):
+        job.state = pkw.PENDING
+        self.jobs.append(job)
+
+    def say(self, _now_ms, *said):
+        self.said.append(said[0])
+
+    def change(self, name, value):
+        setattr(self, name, value)
+
+    def needs_attention(self):
+        return False
+
+    def cover(self, page):
+        self.covers.append(page)
+
+    def asks(self, ms, *down):
+        """Whether the drive is asked in the step at this time; down: keys that are down."""
+        before = len(self.jobs)
+        self.keys.down = self.keys.bits(down)
+        self.page.step(self.keys, self.began_ms + ms & self.mask)
+        self.look_on()
+        return len(self.jobs) > before
+
+    def asked(self):
+        job = self.jobs[-1]
+        return job.task, job.number, job.index
+
+    def answer(self, ms, value=0, state=pkw.DONE, width=pkw.WORD):
+        job = self.jobs[-1]
+        job.state, job.width, job.error = state, width, 0
+        if width == pkw.DOUBLE:
+            job.high, job.low = pkw.float_to_words(value)
+        else:
+            job.low = value
+        return self.asks(ms)
+
+    def press(self, ms, *names):
+        self.keys.pressed = self.keys.bits(names)
+        self.page.take_keys(Acts(self.keys), self.began_ms + ms & self.mask)
+        self.look_on()
+        return self.row(ms)
+
+    def row(self, ms=0):
+        screen = Screen()
+        self.page.draw_row_2(screen, self.began_ms + ms & self.mask)
+        return screen.rows()[1].rstrip()
+
+
+def told(number, number_told, **options):
+    """Its drive has told a value at once."""
+    alone = Alone(number, **options)
+    assert alone.asks(0) and not alone.answer(0, number_told)
+    return alone
+
+
+def test_the_next_question_follows_500_ms_after_an_answer_and_one_of_another_index_at_once():
+    alone = Alone(700, began_ms=Alone.mask - 600)  # the clock begins anew meanwhile
+    assert alone.row() == "P0700[0]       ?"
+    assert alone.asks(0) and alone.asked() == (pkw.READ, 700, 0) and not alone.asks(400)
+    for ms in (500, 1_100):
+        assert not alone.answer(ms, 5) and alone.row() == "P0700[0]       5"
+        assert not alone.asks(ms + 499) and alone.asks(ms + 500)
+    alone.answer(1_700, 5)
+    assert alone.press(1_701, "UP") == "P0700[1]       ?"
+    assert alone.asks(1_702) and alone.asked() == (pkw.READ, 700, 1)
+    assert alone.press(1_703, "DOWN") == "P0700[0]       ?" and alone.asks(1_704)
+    assert alone.press(1_705, "DOWN") == "P0700[2]       ?"  # it has three
+    alone.full = True
+    assert not alone.asks(1_706)
+    alone.full = False
+    assert alone.asks(1_707) and alone.asked() == (pkw.READ, 700, 2)
+
+
+def test_what_is_typed_is_dropped_a_minute_after_the_last_key():
+    for began_ms in (1, Alone.mask - 70_000):
+        alone = Alone(TYPED, began_ms=began_ms)
+        assert alone.press(0, "UP") == "P01000"
+        alone.asks(59_999)
+        assert alone.row() == "P01000"
+        alone.asks(60_000)
+        assert alone.row() == "r0000          ?", alone.row()
+        alone = told(2010, 6, began_ms=began_ms)
+        alone.press(10, "EDIT")
+        alone.press(20, "EDIT")
+        alone.press(30_000, "UP")
+        alone.asks(89_999)
+        assert alone.row(89_999).startswith("NEW"), alone.row()
+        alone.asks(90_000)
+        assert alone.row(90_000).startswith("P2010"), alone.row()
+
+
+def test_the_digit_is_away_for_the_last_250_of_800_ms():
+    alone = Alone(TYPED, began_ms=70_000)
+    for since_ms in (0, 1_000):
+        alone.press(since_ms, "NEXT")
+        alone.press(since_ms, "PREVIOUS")
+        for ms, row in ((0, "P00000"), (549, "P00000"), (550, "P0_000"), (799, "P0_000"),
+                        (800, "P00000"), (1_349, "P00000"), (1_350, "P0_000")):  # fmt: skip
+            assert alone.row(since_ms + ms) == row, ms
+
+
+def test_a_set_that_is_held_for_1500_ms_alone_makes_a_favourite():
+    for began_ms in (0, Alone.mask - 700):
+        alone = told(1120, 5, began_ms=began_ms)
+        alone.press(10, "SET")
+        assert alone.said == [EDIT_FIRST]
+        alone.asks(20, "SET")
+        alone.asks(1_509, "SET")
+        assert alone.favourites == {}
+        alone.asks(1_510, "SET")
+        alone.asks(9_000, "SET")
+        assert alone.said[1:] == [IS_FAVOURITE]
+        assert alone.favourites["mm440"][-1] == 1120
+        alone.press(9_010, "SET")
+        alone.asks(9_020)  # it was let go
+        alone.asks(9_030, "SET")
+        alone.asks(20_000, "SET")
+        alone.press(20_010, "SET")
+        alone.press(20_020, "STOP")
+        alone.asks(30_000, "SET")
+        alone.press(30_010, "SET", "STOP")
+        alone.asks(40_000, "SET")
+        assert alone.favourites["mm440"][-1] == 1120
+        alone.press(40_010, "SET")
+        alone.asks(41_510, "SET")
+        assert 1120 not in alone.favourites["mm440"]
+
+
+def test_a_telegram_off_time_shorter_than_the_bus_needs_is_not_asked_about():
+    for least_ms, refused in ((5, False), (6, True)):
+        alone = told(2014, 4)
+        alone.off_time_ms = least_ms
+        alone.press(10, "EDIT")
+        assert alone.press(20, "UP") == "NEW 00005ms"
+        alone.press(30, "SET")
+        assert alone.said == [REFUSALS[200]] * refused
+        assert len(alone.covers) == (0 if refused else 1)  # the question about it
+
+
+def test_a_refusal_is_said_when_it_begins():
+    alone = told(2010, 6)
+    ms = 500
+    for state, more, row in (
+        (pkw.UNANSWERED, 1, "P2010[0]   -----"), (pkw.UNANSWERED, 0, "P2010[0]   -----"),
+        (pkw.DONE, 0, "P2010[0]       6"), (pkw.TIMED_OUT, 0, "P2010[0]       ?"),
+        (pkw.REFUSED, 1, "P2010[0]   -----"),
+    ):  # fmt: skip
+        assert alone.asks(ms)
+        before = len(alone.said)
+        alone.answer(ms, 6, state)
+        assert len(alone.said) - before == more and alone.row() == row, (state, alone.row())
+        ms += 500
 
 
 # --- memory --------------------------------------------------------------------------------------
