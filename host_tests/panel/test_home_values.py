@@ -626,6 +626,17 @@ def test_a_floating_point_number_is_shown_to_the_nearest_hundredth_up_to_131071(
     assert told.answer(300, 25.0) == "-----A"
 
 
+def test_each_value_has_its_unit_and_its_decimals():
+    for units_of, number in ((("Hz", "A", "kW"), " 12.35"),
+                             (("rpm", "V", "Vdc", "C M", "C I"), "    12")):  # fmt: skip
+        for unit in units_of:
+            told = Told(unit)
+            assert told.row() == "     ?%-3s" % unit
+            told.asks(0)
+            told.answer(0, 12.346)
+            assert told.row() == "%s%-3s" % (number, unit)
+
+
 def test_it_leaves_the_memory_with_the_frequency():
     world = show(panel(), "Hz")
     assert "panel.pages.values" in sys.modules and "uss.families.readings" not in sys.modules
