@@ -626,6 +626,17 @@ def test_a_floating_point_number_is_shown_to_the_nearest_hundredth_up_to_131071(
     assert told.answer(300, 25.0) == "-----A"
 
 
+def test_a_drive_that_is_lost_tells_nothing_and_is_asked_as_soon_as_it_is_back():
+    for state, row in ((pkw.DONE, "1.25A"), (pkw.TIMED_OUT, "-----A")):
+        told = Told("A")
+        told.asks(0)
+        assert told.answer(10, 1.25, state) == row
+        told.contact = False
+        assert not told.asks(20) and told.row().strip() == "-----A" and not told.asks(2_000)
+        told.contact = True
+        assert told.row().strip() == "?A" and told.asks(2_010)
+
+
 def test_each_value_has_its_unit_and_its_decimals():
     for units_of, number in ((("Hz", "A", "kW"), " 12.35"),
                              (("rpm", "V", "Vdc", "C M", "C I"), "    12")):  # fmt: skip

@@ -566,3 +566,232 @@ def test_a_reading_that_says_nothing_is_repeated_three_times():
     ):  # fmt: skip
         job.state = state
         assert steps.is_to_be_repeated(job) == repeated
+
+
+# --- a set and a drive that answers at once ------------------------------------------------------
+
+
+class Answers(Panel):
+    """A panel and its drive: values by number and index, each (width, high, low).
+
+    settings: `marked` is what they were told of the half-written set.
+    """
+
+    dirty = False
+    address = 2
+    scaled = 0  # how often what the drive means was to be read anew
+
+    def __init__(self, values, text, family=families.MM440, **half_written):
+        Panel.__init__(self)
+        self.family, self.values = family, values
+        self.settings = self.channel = self
+        self.store = store_with(one=text)
+        self.half_written = half_written
+        self.marked, self.wrote, self.reads = [], [], []
+        self.errors = {}  # by number: with which a reading is refused; None: it is not answered
+        self.bad = {}  # by number: with which a write is refused, as often as it is listed here
+
+    def is_full(self):
+        return False
+
+    def recheck(self):
+        self.scaled += 1
+
+    def note_set(self, address, check=None):
+        assert address == self.address
+        self.marked.append(check)
+
+    def ask(self, job):
+        place = job.number, job.index
+        job.state = pkw.DONE
+        if not job.writes():
+            self.reads.append(place)
+            if job.number in self.errors and self.errors[job.number] is None:
+                job.state = pkw.TIMED_OUT
+            elif job.number in self.errors or place not in self.values:
+                job.refuse(self.errors.get(job.number, pkw.NO_PARAMETER))
+            else:
+                job.width, job.high, job.low = self.values[place]
+            return
+        self.wrote.append((job.task,) + place + (job.low,))
+        if self.bad.get(job.number):
+            job.refuse(self.bad[job.number].pop(0))
+            return
+        self.values[place] = (pkw.WORD, 0, job.low)
+
+
+def drive_of(*places, **more):
+    """Its values are 1, and the set says 2 of each of these; of the others likewise 1."""
+    values = {(number, 0): (pkw.WORD, 0, 1) for number in (3, 1120, 1121, 1200)}
+    values.update({(number, 0): (pkw.WORD, 0, 1) for number in places})
+    rows = [place + (b"U16", b"%04X" % (1 + (place[0] in places))) for place in sorted(values)]
+    text = made(rows, address=2)
+    for number in (206, 207, 208):
+        more.setdefault("errors", {})[number] = pkw.NO_PARAMETER
+    drive = Answers(values, text, more.pop("family", families.MM440), **more.pop("half", {}))
+    for name in more:
+        setattr(drive, name, more[name])
+    drive.check = text.split(b" ")[-1].strip().decode()
+    return drive
+
+
+def ended(drive, eeprom=False, answers=(), most=2_000):
+    """The work that writes the set, at its end or where nobody answers it any more."""
+    one, answers, drive.phases = writing.Write(drive, drive, "one.set", eeprom), list(answers), []
+    for now_ms in range(most):
+        if one.phase not in drive.phases[-1:]:
+            drive.phases.append(one.phase)
+        if one.outcome is not None or one.asks and not answers:
+            break
+        if one.asks:
+            one.answer = answers.pop(0)
+        one.step(now_ms)
+    return one
+
+
+RAM, EEPROM = pkw.WRITE_WORD, pkw.WRITE_WORD_EEPROM
+
+
+def test_a_set_that_is_equal_ends_its_own_mark_and_no_other():
+    for eeprom in (None, False, True):
+        drive = drive_of()
+        assert ended(drive, eeprom).outcome == (words.ALL_EQUAL,)
+        assert drive.marked == drive.wrote == [] and drive.scaled == 0
+        for check, marked in ((drive.check, [None]), ("00000000", [])):
+            drive.half_written = {"2": check}
+            assert ended(drive, eeprom).outcome == (words.ALL_EQUAL,) and drive.marked == marked
+            drive.marked = []
+
+
+def test_what_differs_is_counted_and_the_first_twenty_are_listed():
+    numbers = tuple(range(1201, 1222))
+    drive = drive_of(700, *numbers)
+    work = ended(drive, None)
+    assert work.outcome == (words.DIFFER, 22) and (work.differs, work.cutting) == (22, 1)
+    assert [row[0] for row in work.listed] == [700] + list(numbers[:19])
+    assert work.listed[0] == (700, 0, b"U16", 0, 2, 0, 1) and work.cutters == work.listed[:1]
+    assert drive.wrote == [] and (work.done, work.total) == (26, 26)
+
+
+def test_a_value_that_the_drive_lacks_or_has_in_another_width_differs():
+    drive = drive_of()
+    drive.errors[1120] = pkw.NO_PARAMETER
+    drive.values[1121, 0] = (pkw.DOUBLE, 0, 1)
+    work = ended(drive, None)
+    assert work.outcome == (words.DIFFER, 2)
+    assert [row[-2:] for row in work.listed] == [(None, None), (0, 1)]
+
+
+def test_a_reading_without_an_answer_ends_it_after_four_and_a_hidden_value_at_once():
+    for error, asked, outcome in ((None, 4, NO_ANSWER), (204, 1, texts.ACCESS_TOO_LOW)):
+        drive = drive_of()
+        drive.errors[1120] = error
+        assert ended(drive, None).outcome == (outcome,)
+        assert drive.reads.count((1120, 0)) == asked
+
+
+def test_only_what_differs_is_written_once_somebody_has_agreed():
+    for eeprom, task in ((False, RAM), (True, EEPROM)):
+        drive = drive_of(1120, 1200)
+        work = ended(drive, eeprom, [False])
+        assert work.outcome == (words.NOTHING_WRITTEN,) and drive.wrote == drive.marked == []
+        drive.dirty = True  # until the mark is in the flash nothing is written
+        work = ended(drive, eeprom, [True])
+        assert work.outcome is None and drive.wrote == [] and drive.marked == [drive.check]
+        drive = drive_of(1120, 1200)
+        work = ended(drive, eeprom, [True])
+        assert work.outcome == (words.WRITTEN_EQUAL,)
+        assert drive.wrote == [  # it is opened for that
+            (RAM, 3, 0, 3), (task, 1120, 0, 2), (task, 1200, 0, 2), (RAM, 3, 0, 1),
+        ]  # fmt: skip
+        assert drive.marked == [drive.check, None] and drive.scaled == 1
+        assert (work.done, work.total) == (6, 6)
+        assert drive.phases == [
+            writing.CHECKS, writing.COMPARES, writing.ASKS, writing.WRITES, writing.VERIFIES
+        ]  # fmt: skip
+
+
+def test_an_access_level_that_is_high_enough_is_left_alone():
+    for level, opens in ((1, True), (2, True), (3, False), (4, False)):
+        drive = drive_of(1120)
+        text = drive.store.open("one.set").read().replace(b"P0003 0 U16 0001\n", b"")
+        text = text[: text.index(b"end")]
+        drive.store = store_with(one=sealed(text, 3))
+        drive.values[3, 0] = (pkw.WORD, 0, level)
+        work = ended(drive, False, [True])
+        assert work.outcome == (words.WRITTEN_EQUAL,) and work.opens == opens
+        levels = [row[1:] for row in drive.wrote if row[1] == 3]
+        assert levels == ([(3, 0, 3), (3, 0, level)] if opens else []), level
+
+
+def test_the_access_level_of_a_set_is_written_last():
+    drive = drive_of(3, 1120, 700)
+    work = ended(drive, True, [True, True])
+    assert work.outcome == (words.WRITTEN_EQUAL,)
+    assert drive.wrote == [
+        (RAM, 3, 0, 3), (EEPROM, 1120, 0, 2), (EEPROM, 700, 0, 2), (EEPROM, 3, 0, 2)
+    ]  # fmt: skip
+    drive = drive_of(3, 1120)  # which asks, too: nobody has agreed to it
+    work = ended(drive, True, [True, False])
+    assert [row[1:] for row in drive.wrote] == [(3, 0, 3), (1120, 0, 2), (3, 0, 1)]
+    assert work.outcome == (words.WRITTEN_EQUAL,)
+
+
+def test_what_cuts_the_bus_off_is_written_last_and_asked_about_once():
+    drive = drive_of(700, 1120)
+    work = ended(drive, False, [True])
+    assert work.phase == writing.ASKS_CUT and work.outcome is None
+    assert [row[1] for row in drive.wrote] == [3, 1120]
+    drive = drive_of(700, 1120)
+    assert ended(drive, False, [True, True]).outcome == (words.WRITTEN_EQUAL,)
+    assert [row[1] for row in drive.wrote] == [3, 1120, 700, 3]
+    assert drive.phases[-4:-1] == [writing.WRITES, writing.ASKS_CUT, writing.WRITES]
+    drive = drive_of(700, 1120)
+    work = ended(drive, False, [True, False])
+    assert work.outcome == (words.WRITTEN_EQUAL,) and drive.values[700, 0][-1] == 1
+    assert [row[1] for row in drive.wrote] == [3, 1120, 3]
+    drive = drive_of(700)  # nothing else differs
+    assert ended(drive, False, [True, True]).outcome == (words.WRITTEN_EQUAL,)
+    assert [row[1] for row in drive.wrote] == [3, 700, 3]
+
+
+def test_what_still_differs_is_written_once_more_and_then_counted():
+    for refusals, times, outcome in (
+        ([pkw.BEYOND_LIMITS], 2, (words.WRITTEN_EQUAL,)),
+        ([pkw.BEYOND_LIMITS] * 9, 2, (words.STILL_DIFFER, 1)),
+    ):
+        drive = drive_of(1120, 1200)
+        drive.bad = {1120: list(refusals)}
+        work = ended(drive, False, [True])
+        assert work.outcome == outcome
+        assert [row[1] for row in drive.wrote].count(1120) == times
+        assert [row[1] for row in drive.wrote].count(1200) == 1
+        assert drive.marked == [drive.check] + [None] * (outcome[0] == words.WRITTEN_EQUAL)
+        assert drive.scaled == 1
+
+
+def test_what_wants_commissioning_is_written_in_it():
+    """Whatever else is refused before or after it; error 17 alone says so."""
+    for refused, commissioned in (
+        ({1120: [17]}, True), ({1120: [17], 1200: [2]}, True), ({1120: [2], 1200: [17]}, True),
+        ({1120: [2]}, False), ({1120: [18]}, False),
+    ):  # fmt: skip
+        drive = drive_of(1120, 1121, 1200)
+        drive.values[10, 0] = (pkw.WORD, 0, 0)
+        drive.bad = refused
+        assert ended(drive, False, [True]).outcome == (words.WRITTEN_EQUAL,)
+        modes = [row for row in drive.wrote if row[1] == 10]
+        assert modes == ([(RAM, 10, 0, 1), (RAM, 10, 0, 0)] if commissioned else []), refused
+        if commissioned:
+            first, last = [place for place, row in enumerate(drive.wrote) if row[1] == 10]
+            again = [row[1] for row in drive.wrote[first + 1 : last]]
+            assert again == [number for number in (1120, 1200) if number in refused]
+
+
+def test_a_drive_that_is_not_opened_or_not_commissioned_says_why():
+    for number, place in ((3, 0), (10, 2)):
+        drive = drive_of(1120)
+        drive.bad = {number: [1], 1120: [17]}
+        work = ended(drive, False, [True])
+        assert work.outcome == (b"READ ONLY",) and drive.marked == [drive.check]
+        assert len(drive.wrote) == place + 1
