@@ -795,3 +795,72 @@ def test_a_drive_that_is_not_opened_or_not_commissioned_says_why():
         work = ended(drive, False, [True])
         assert work.outcome == (b"READ ONLY",) and drive.marked == [drive.check]
         assert len(drive.wrote) == place + 1
+
+
+def of_mm3(**told):
+    """A MICROMASTER 3 that has these parameters, P5=(width, high, low), and no others."""
+    values = {(int(name[1:]), 0): told[name] for name in told}
+    return Answers(values, b"", families.MM3)
+
+
+def saved(drive, name=b"PUMP"):
+    """The work that saves it, at its end; drive.errands counts what was written into the flash."""
+    one, drive.errands = saving.Save(drive, drive, name), 0
+    for now_ms in range(5_000):
+        if one.outcome is not None:
+            return one
+        one.step(now_ms)
+        one.search()
+        if drive.errand is not None:
+            errand, drive.errand = drive.errand, None
+            errand()
+            drive.errands += 1
+    raise AssertionError(one.done)
+
+
+def file_of(drive, name="1.set"):
+    return [row[1:] for row in set_file.rows(drive.store, name) if row]
+
+
+def test_what_a_drive_tells_is_saved_as_wide_as_it_tells_it():
+    """P5 is a word by the catalogue, as all of them are. What it lacks is left out."""
+    drive = of_mm3(
+        P5=(pkw.WORD, 0, 7), P6=(pkw.DOUBLE, 1, 2), P111=(pkw.WORD, 9, 75),
+        P112=(pkw.DOUBLE, 3, 4), P971=(pkw.WORD, 0, 1), P944=(pkw.WORD, 0, 1),
+    )  # fmt: skip
+    work = saved(drive)
+    rows = file_of(drive)
+    assert rows[:2] == [(5, 0, b"U16", 0, 7), (6, 0, b"U32", 1, 2)], rows
+    assert not [row for row in rows if row[0] in work.never] and work.untold == 0
+    assert work.outcome == (words.SAVED, len(rows)) and work.done == work.total
+    head = set_file.read_head(drive.store, "1.set")
+    assert (head.family, head.address, head.name) == ("mm3", 2, b"PUMP")
+    assert head.ratings == {111: (0, 75), 112: (3, 4)}
+    for number in work.never:
+        assert (number, 0) not in drive.reads
+    assert drive.errands == 2  # it begins, and the rest has room in one piece
+
+
+def test_a_file_is_written_in_pieces_of_half_a_kilobyte():
+    told = {"P%d" % number: (pkw.WORD, 0, number) for number in range(1, 60)}
+    drive = of_mm3(**told)
+    work = saved(drive)
+    data = drive.store.open("1.set").read()
+    assert work.outcome[0] == words.SAVED and len(data) > 512
+    assert drive.errands == 2 + len(data) // 520, (drive.errands, len(data))
+
+
+def test_what_is_not_told_is_counted_unless_the_drive_lacks_or_hides_it():
+    for error, untold, outcome in (
+        (pkw.NO_PARAMETER, 0, (words.SAVED, 1)), (pkw.NO_INDEX, 0, (words.SAVED, 1)),
+        (4, 0, (words.SAVED, 1)), (5, 1, (words.SAVED_UNTOLD, 1)), (1, 1, (words.SAVED_UNTOLD, 1)),
+        (None, 1, (words.SAVED_UNTOLD, 1)), (204, 0, (texts.ACCESS_TOO_LOW,)),
+        (102, 0, (b"REPLY TOO LONG",)),
+    ):  # fmt: skip
+        drive = of_mm3(P5=(pkw.WORD, 0, 7))
+        drive.errors = {6: error}
+        work = saved(drive)
+        assert (work.untold, work.outcome) == (untold, outcome), error
+        names = drive.store.names(set_file.ENDING)
+        assert "1.set" in names if len(outcome) == 2 else "1.set" not in names
+        assert drive.reads.count((6, 0)) == (4 if error is None else 1)
