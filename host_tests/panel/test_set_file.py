@@ -737,6 +737,20 @@ def test_the_access_level_of_a_set_is_written_last():
     assert work.outcome == (words.WRITTEN_EQUAL,)
 
 
+def test_p3_of_a_micromaster_3_is_a_value_like_others_and_p9_its_access_level():
+    text = made(
+        [(3, 0, b"U16", b"0002"), (9, 0, b"U16", b"0002")], b"mm3", 2, ratings=[(111, b"00000001")]
+    )
+    values = {(number, 0): (pkw.WORD, 0, 1) for number in (3, 9, 111)}
+    for level in (1, 2):  # the set says 2
+        drive = Answers(dict(values), text, families.MM3)
+        drive.values[9, 0] = (pkw.WORD, 0, level)
+        work = ended(drive, True, [True, True])
+        assert work.outcome == (words.WRITTEN_EQUAL,), level
+        assert [row[1:] for row in drive.wrote] == [(9, 0, 3), (3, 0, 2), (9, 0, 2)]
+        assert {row[0] for row in drive.wrote} == {RAM}  # it has no other task
+
+
 def test_what_cuts_the_bus_off_is_written_last_and_asked_about_once():
     drive = drive_of(700, 1120)
     work = ended(drive, False, [True])
