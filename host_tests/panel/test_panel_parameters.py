@@ -1202,6 +1202,23 @@ def test_set_writes_what_is_edited_which_ends_when_it_is_written():
     assert mode.press("EDIT") == "P2014:    50"  # it is let go
 
 
+def test_a_set_that_is_held_makes_permanent_what_it_wrote_as_long_as_there_is_contact():
+    for lost_ms, made in ((None, [False, True]), (700, [False]), (1_499, [False])):
+        mode = editing(1, 5)
+        mode.press("SET")  # at 0
+        mode.keys.down = mode.keys.bit("SET")
+        mode.outcome, mode.done = (words.WRITTEN,), True
+        mode.asks(100)
+        if lost_ms is not None:
+            mode.contact = False
+            mode.asks(lost_ms)
+            mode.contact = True
+        mode.asks(1_499)
+        assert [what[-1] for what in mode.wrote] == [False]
+        mode.asks(1_500)
+        assert [what[-1] for what in mode.wrote] == made, lost_ms
+
+
 # --- a question by itself ------------------------------------------------------------------------
 
 
