@@ -1049,8 +1049,7 @@ class Mode:
         self.keys = Keys(KEY_NAMES, self.mask)
         self.jobs, self.said, self.wrote = [], [], []
         self.page = Parameters(self)
-        while not self.asks(0):
-            assert len(self.row()) <= 13
+        assert [self.asks(0) for _ in range(3)] == [False, False, True]  # it prepares itself
 
     def is_full(self):
         return self.full
@@ -1203,7 +1202,11 @@ def test_set_writes_what_is_edited_which_ends_when_it_is_written():
 
 
 def test_a_set_that_is_held_makes_permanent_what_it_wrote_as_long_as_there_is_contact():
-    for lost_ms, made in ((None, [False, True]), (700, [False]), (1_499, [False])):
+    """And as long as no other key is pressed."""
+    for lost_ms, key, made in (
+        (None, None, [False, True]), (700, None, [False]), (1_499, None, [False]),
+        (None, "STOP", [False]), (None, "START", [False]),
+    ):  # fmt: skip
         mode = editing(1, 5)
         mode.press("SET")  # at 0
         mode.keys.down = mode.keys.bit("SET")
@@ -1213,6 +1216,8 @@ def test_a_set_that_is_held_makes_permanent_what_it_wrote_as_long_as_there_is_co
             mode.contact = False
             mode.asks(lost_ms)
             mode.contact = True
+        if key is not None:
+            mode.press(key)
         mode.asks(1_499)
         assert [what[-1] for what in mode.wrote] == [False]
         mode.asks(1_500)
