@@ -1448,10 +1448,22 @@ def test_an_address_is_written_where_all_stands_and_nobody_has_it():
                 assert desk.covers == []
                 assert desk.said == ([(reason,)] if reason else [])
                 assert len(desk.wrote) == (0 if reason else 1)
-        desk = Desk()
-        setattr(desk, field, value)
-        desk.set(0, number + 1, 7)  # any other parameter
-        assert desk.said == [] and len(desk.wrote) == 1
+        for other in (number - 1, number + 1):
+            desk = Desk()
+            setattr(desk, field, value)
+            desk.set(0, other, 7)
+            assert desk.said == [] and len(desk.wrote) == 1
+
+
+def test_a_value_of_two_words_is_written_as_wide_as_it_is():
+    desk = Desk()
+    desk.writing.set(0, (desk, 1120, 1, 1 << 17, pkw.DOUBLE), None, ())
+    desk.end(True)
+    desk.steps(100, 1_500)
+    assert desk.wrote == [
+        (now_ms, 1120, 1, 1 << 17, eeprom, pkw.DOUBLE)
+        for now_ms, eeprom in ((0, False), (1_500, True))
+    ]
 
 
 def test_what_has_come_about_while_a_question_was_open_counts():
