@@ -1275,6 +1275,24 @@ def test_one_key_alone_answers_a_question_and_each_other_one_ends_it():
         assert shown.press(9, *keys) == come_of_it, keys
 
 
+def test_a_question_of_an_operator_is_answered_as_soon_as_it_is_there():
+    shown = Shown(SET="done")
+    shown.step(0)
+    assert shown.press(0, "SET") == ["gone", ("done", 0)]
+    assert shown.question.whole and not shown.question.obeys
+
+
+def test_what_is_at_stake_is_told_in_turn_for_as_long_as_the_question_is_there():
+    shown, screen, told = Shown(), Screen(), []
+    shown.announcer = shown
+    shown.question = Question(shown, ((b"ONE %d", b"TWO", b"THREE"), b"SET=DO"), (7,), {})
+    for shown.page_turns in range(20):
+        shown.question.draw(screen, 0)
+        told.append([row.rstrip() for row in screen.rows()])
+    rows = ("ONE 7", "TWO", "THREE")
+    assert told == [[rows[turn % 3], "SET=DO"] for turn in range(20)]
+
+
 def test_a_question_lasts_half_a_minute_from_when_it_was_shown():
     for began_ms in (0, 0xFFFF - 9_000):  # the clock begins anew meanwhile
         shown = Shown(began_ms, SET="done")
