@@ -769,6 +769,16 @@ def test_what_cuts_the_bus_off_is_written_last_and_asked_about_once():
     assert [row[1] for row in drive.wrote] == [3, 700, 3]
 
 
+def test_another_drive_takes_its_reference_of_what_asks_and_keeps_the_rest():
+    """P2000; not the access level, nor what the bus and the sources are."""
+    for address, takes, level in ((2, [1120, 700, 2000, 2009], 2), (3, [1120, 2000], 1)):
+        drive = drive_of(3, 700, 1120, 2000, 2009)
+        drive.address = address
+        assert ended(drive, False, [True, True]).outcome == (words.WRITTEN_EQUAL,)
+        assert [row[1] for row in drive.wrote] == [3] + takes + [3], address
+        assert drive.wrote[-1] == (RAM, 3, 0, level)
+
+
 def test_what_still_differs_is_written_once_more_and_then_counted():
     for refusals, times, outcome in (
         ([pkw.BEYOND_LIMITS], 2, (words.WRITTEN_EQUAL,)),
