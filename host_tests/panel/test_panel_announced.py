@@ -1115,6 +1115,21 @@ def test_a_drive_that_is_added_or_removed_moves_what_is_said_of_the_others():
     assert not teller.announcer.has_alarm() and rows_said(teller, 4_000) == []
 
 
+def test_a_drive_that_is_added_or_removed_begins_the_page_anew():
+    teller = Teller()
+    for is_added in (True, False):
+        while teller.announcer.page_turns < 2:
+            teller.step()
+        if is_added:
+            teller.controls.append(Told(9))
+            teller.announcer.make_room()
+        else:
+            del teller.controls[1]
+            teller.announcer.close_up(1)
+        teller.step()
+        assert teller.announcer.page_turns == 0, is_added
+
+
 # --- the drives that are not shown: what is done with each in its turn ---------------------------
 
 
