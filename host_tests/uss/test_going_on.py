@@ -826,6 +826,27 @@ def test_an_exception_in_the_engine_takes_on_back_though_the_link_has_gone_on():
     assert bench.master.foreign == 0
 
 
+def test_after_an_exception_what_was_made_ready_is_taken_back_before_anything_else():
+    """The reply may come at any time: nobody would know of a telegram that follows it then."""
+    bench = running(Node(1))
+    told = []
+
+    def tell(name):
+        act = getattr(bench, name)
+
+        def tells():
+            told.append(name)
+            return act()
+
+        setattr(bench, name, tells)
+
+    for name in ("follow", "take_back"):
+        tell(name)
+    bench.drives[1].revoke = lambda: told.append("revoke")
+    bench.master.recover(bench.now)
+    assert told == ["take_back", "follow", "revoke"]
+
+
 def test_an_exception_gives_nobody_a_second_turn():
     """The drive that the link has gone on to has had its own, and what comes is its reply."""
 
