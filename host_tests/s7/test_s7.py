@@ -156,6 +156,28 @@ def test_f_ack_acknowledges_by_its_edge_only():
     assert plc.outputs().FAULT
 
 
+def test_an_input_that_is_left_out_is_off():
+    """But for EN. The drive is a MICROMASTER 4, its setpoint 0 %."""
+    plc = Plc()
+    motor, inputs = plc.controls.pop(1), {}
+    plc.others.append(lambda: motor(DRIVE=1, **inputs))
+    plc.run(500)
+    assert motor.ERROR == 0 and not motor.RUN_EN and plc.drive().starts == 0
+    plc.drive().fault(1)
+    plc.run(500)
+    assert motor.FAULT  # nobody has acknowledged it
+    inputs["F_ACK"] = True
+    plc.run(500)
+    assert not motor.FAULT
+    inputs["RUN"] = True
+    plc.run(1_500)
+    assert plc.drive().state == "running" and plc.drive().hz() == motor.SPEED == 0
+    inputs["SPEED_SP"] = 50.0
+    plc.run(1_500)
+    assert motor.SPEED > 0  # the usual direction
+    plc.check()
+
+
 def test_a_line_that_comes_back_starts_nothing():
     plc = Plc()
     plc.start()
