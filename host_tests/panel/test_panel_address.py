@@ -658,6 +658,47 @@ def test_a_drive_is_given_an_address_that_nobody_has():
     same = Told()
     same.write(2011, MM440.link_index, 1)  # it has that already
     assert not same.moving and not same.writer.takes(1)
+    other = Told()
+    other.write(2011, MM440.link_index + 1, 9)  # of its other link
+    assert not other.moving and other.address == 1 and not other.writer.takes(9)
+    assert moving(0).writer.takes(0)  # a lower one is another one as well
+
+
+def test_telegrams_to_a_new_address_are_counted_though_their_counter_begins_anew():
+    told = moving(counters=[0xFFFE, 0])
+    told.counters[0] = 0  # two more
+    told.silent = 2
+    assert told.step() is None and told.aims == []
+    told.counters[0] = 1
+    assert told.step() is None and len(told.aims) == 1
+    assert told.address == 1
+
+
+def test_a_drive_that_refuses_its_new_address_is_not_looked_for_there():
+    told = moving()
+    told.probe()
+    told.job.error = 2
+    assert told.silent and told.answer(state=pkw.REFUSED) == failure(told.job)
+    assert (told.address, told.kept) == (1, []) and not told.moving and not told.moved
+    assert not told.written.done and told.rechecks == 1
+    # An answer of the old address is none of the new one, however soon it comes.
+    told = moving()
+    told.probe()
+    assert told.answer(state=pkw.TIMED_OUT) is None and told.address == 9
+    told.silent = 0
+    assert told.step(1_999) is None and told.address == 9 and told.moving
+    assert told.step(1) == (words.NO_ANSWER,) and told.address == 1 and not told.moving
+
+
+def test_a_drive_is_looked_for_no_longer_than_a_quarter_of_the_period_of_the_clock():
+    told = moving(cycle_us=10_000_000)
+    told.probe()
+    assert told.answer(state=pkw.TIMED_OUT) is None
+    quarter_us = 0x3FFFFFF >> 2
+    told.now_us += quarter_us - 1
+    assert told.step() is None
+    told.now_us += 1
+    assert told.step() == (words.NO_ANSWER,) and told.address == 1
 
 
 def test_a_drive_that_falls_silent_on_its_new_address_is_looked_for():
