@@ -1143,6 +1143,31 @@ def test_a_drive_is_quiet_until_something_changes():
     assert not drive.control.is_quiet()
 
 
+def test_a_drive_of_which_something_may_still_come_is_not_quiet():
+    for told in (
+        {"zsw": 0x0239},  # a fault,
+        {"zsw": 0x0235, "tells_status": False},  # it runs, perhaps,
+        {"wanted": ON},
+        {"off": pzd.OFF3},  # which nobody has heard yet,
+        {"may": True},  # ON was sent, and its answer is still to come
+        {"contact": False, "was_running": True},
+    ):
+        drive = Machine()
+        drive.turns_of_loop()
+        assert drive.control.is_quiet()
+        for name in told:
+            setattr(drive, name, told[name])
+        for _ in range(3):
+            drive.control.watch(drive.now_us)
+            assert not drive.control.is_quiet(), told
+    drive = Machine(contact=False)  # it was lost while it stood
+    drive.turns_of_loop()
+    assert drive.control.is_quiet()
+    drive = Machine()
+    drive.control.jog(pzd.JOG_LEFT)
+    assert not drive.control.is_quiet()
+
+
 def test_while_it_runs_its_settings_are_read_again_the_sooner_the_more_it_is_shown():
     drive = started()
     for asked_us, reread_us in ((None, 200_000), (2_000_000, 330_000)):
