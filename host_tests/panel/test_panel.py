@@ -13,7 +13,7 @@ import settings_file as settings
 from boards.sim.world import World
 from panel import texts
 from panel.keys import NAMES, Acts, Keys
-from panel.pages import splash
+from panel.pages import Page, splash
 from panel.pages.table import PAGES, PARAMETER
 from panel_bench import (
     LOOP_US,
@@ -975,3 +975,91 @@ def test_a_picture_is_begun_45_ms_after_the_one_before():
         return pictures.begun - before
 
     assert [begun(ms) for ms in (0, 44, 45, 89, 90, 400)] == [1, 0, 1, 0, 1, 1]
+
+
+class Coming(Page):
+    """A page that is reached through the menu, and that has still to look for what it shows."""
+
+    is_there = False
+    is_busy = True
+    worked = 0
+
+    def is_coming(self):
+        return not self.is_there
+
+    def work(self, _now_ms):
+        self.worked += 1
+
+    def draw(self, screen, _now_ms):
+        screen.put(1, 0, 13, b"COMES")
+
+
+def test_a_page_that_is_coming_has_the_time_of_the_picture_for_300_ms():
+    alone = ByItself()
+    alone.free_until_us = 1 << 29
+    pictures = alone.panel.warning = Pictures()
+    modules = PAGES[PARAMETER][2]
+    for name in modules:
+        module = on_demand.load(name)
+    pages, its_own = [], module.Parameter
+
+    def make(front):
+        pages.append(Coming(front))
+        return pages[-1]
+
+    def begun(ms):
+        before = pictures.begun
+        for _ in range(160):
+            alone.begin(0, 50_000 + ms)
+        return pictures.begun - before
+
+    assert begun(0) == 1
+    module.Parameter = make
+    try:
+        alone.panel.turn_page(0, PARAMETER)
+        assert begun(299) == 0 and pages[0].worked > 100
+        alone.free_until_us = 0
+        assert [begun(ms) for ms in (300, 301, 599, 600, 610)] == [1, 0, 0, 1, 0]
+        pages[0].is_there = True  # what was drawn before is not of this page
+        assert [begun(ms) for ms in (611, 655, 656)] == [1, 0, 1]
+        pages[0].is_there = False
+        alone.panel.cover(Coming(alone.panel))  # it is this one that is shown
+        assert [begun(ms) for ms in (700, 701, 746)] == [0, 1, 1]
+    finally:
+        module.Parameter = its_own
+        on_demand.drop(*modules)
+
+
+def test_keys_that_bounce_put_off_every_other_step_of_what_can_wait():
+    """Which is the display, and drives that are silent or wait too long."""
+    alone = ByItself()
+    front = alone.panel
+    for _ in range(160):  # until there is nothing to draw
+        alone.begin(0, 50_000)
+
+    def leaves(raw):
+        return [front.step(raw, 50_001, 0) for _ in range(16)].count(True)
+
+    assert [leaves(0), leaves(4), leaves(0), leaves(0)] == [8, 4, 7, 8]  # one step settles them
+
+
+def test_the_bus_knows_the_telegram_off_time_of_a_drive_that_has_told_all():
+    alone = ByItself()
+    supervised = []
+
+    class Told:
+        complete = False
+
+        def off_time_ms(self):
+            return 1_500
+
+        def supervise(self, drive, ms):
+            supervised.append((drive, ms))
+
+    told = Told()
+    told.survey = told.drive = alone.deadlines = told
+    alone.panel.heed(told)
+    assert supervised == []
+    told.complete = True
+    alone.panel.heed(told)
+    assert supervised == [(told, 1_500)]
