@@ -907,6 +907,11 @@ def test_a_floating_point_number_is_typed_with_as_many_decimals_as_there_is_room
         shown = form.typed(*pkw.float_to_words(number))
         assert (bytes(shown[0]), shown[1]) == (typed, place), shown
     row = catalogue.find("mm440", 1120)
+    row[catalogue.FORM] = b"0"  # without a point
+    form = value.Form(row, pkw.DOUBLE)
+    for number, typed in ((10.0, b"010"), (12345.6, b"12346"), (-5.0, b"-005")):
+        shown = form.typed(*pkw.float_to_words(number))
+        assert (bytes(shown[0]), shown[1]) == (typed, len(typed) - 1), shown
     row[catalogue.FORM] = b"6"
     shown = value.Form(row, pkw.DOUBLE).typed(*pkw.float_to_words(123456792.0))
     assert (bytes(shown[0]), shown[1]) == (b"123456792.00", 8), shown
@@ -1375,6 +1380,16 @@ class Alone:
         self.page.draw_row_2(screen, self.began_ms + ms & self.mask)
         return screen.rows()[1].rstrip()
 
+    def lines(self):
+        """What row 1 says in its first three turns."""
+        found, screen = [], Screen()
+        for turn in (0, 1, 2):
+            self.page_turns = turn
+            self.page.draw(screen, 0)
+            found.append(screen.rows()[0].rstrip())
+        self.page_turns = 0
+        return found
+
 
 def told(number, number_told, **options):
     """Its drive has told a value at once."""
@@ -1480,6 +1495,74 @@ def test_a_refusal_is_said_when_it_begins():
         alone.answer(ms, 6, state)
         assert len(alone.said) - before == more and alone.row() == row, (state, alone.row())
         ms += 500
+
+
+def test_another_index_has_nothing_of_the_one_before():
+    alone = told(700, 5)
+    unnamed = ["Command source", "A7 0...6", "Command source"]
+    named = ["Command source", "USS on COM link", "A7 0...6"]
+    assert alone.lines() == named
+    assert alone.asks(500) and not alone.answer(510, state=pkw.REFUSED)
+    assert alone.row() == "P0700[0]   -----" and len(alone.said) == 1
+    assert alone.press(520, "UP") == "P0700[1]       ?" and alone.lines() == unnamed
+    assert alone.asks(521) and not alone.answer(530, state=pkw.REFUSED)
+    assert alone.row() == "P0700[1]   -----" and len(alone.said) == 2
+    assert alone.asks(1_030) and not alone.answer(1_040, 5)
+    assert alone.row() == "P0700[1]       5" and alone.lines() == named
+    assert alone.press(1_050, "DOWN") == "P0700[0]       ?" and alone.lines() == unnamed
+    assert alone.asks(1_051)
+    alone.press(1_052, "UP")
+    assert alone.answer(1_053, 2) and alone.row() == "P0700[1]       ?"  # that was asked before
+    assert alone.asked() == (pkw.READ, 700, 1) and alone.lines() == unnamed
+
+
+def test_while_the_next_parameter_is_looked_for_an_answer_is_taken_and_nothing_is_asked():
+    alone = told(700, 5)
+    assert alone.asks(500)
+    look_on, alone.look_on = alone.look_on, lambda: None  # that takes long
+    alone.press(510, "NEXT")
+    assert not alone.answer(520, 2) and alone.row() == "P0700[0]       2"
+    assert not alone.asks(5_000)
+    alone.look_on = look_on
+    look_on()
+    assert alone.row().startswith("P0701[0]") and alone.asks(5_001)
+    assert alone.asked() == (pkw.READ, 701, 0)
+
+
+def test_a_step_that_has_taken_long_looks_for_one_piece_and_one_that_a_reply_may_end_sooner():
+    look, pieces = Search.step, []
+
+    def count(search):
+        pieces[-1] += 1
+        return look(search)
+
+    for free_us, taken_us, most in (
+        (4_000, 1_999, 6), (4_000, 2_000, 1), (3_999, 899, 6), (3_999, 900, 1)
+    ):  # fmt: skip
+        alone = told(700, 5)
+        alone.is_undisturbed = lambda for_us, free_us=free_us: for_us <= free_us
+        alone.has_taken = lambda us, taken_us=taken_us: us <= taken_us
+        alone.look_on = lambda: None
+        alone.press(10, "PREVIOUS")
+        Search.step = count
+        pieces.clear()
+        try:
+            while alone.page.is_busy:
+                pieces.append(0)
+                alone.page.work(10)
+        finally:
+            Search.step = look
+        assert max(pieces) == most, (free_us, taken_us, pieces)
+
+
+def test_thirteen_characters_that_are_typed_leave_no_place_in_front_of_them():
+    for number, row in (
+        (-999999936.0, "NEW-999999936.00"), (-1234567.0, "NEW -1234567.000"),
+        (0.5, "NEW +000000.500"),
+    ):  # fmt: skip
+        alone = Alone(1120, family=families.GENERIC)
+        assert alone.asks(0) and not alone.answer(0, number, width=pkw.DOUBLE)
+        assert alone.press(10, "EDIT") == row, alone.row()
 
 
 # --- memory --------------------------------------------------------------------------------------
