@@ -1209,8 +1209,10 @@ def test_where_no_status_is_told_it_may_run_for_forty_seconds():
     drive.spin(False)
     drive.off_answers += 3
     drive.turns_of_loop(39, 1_000)
-    assert not drive.control.is_active() and not drive.control.is_quiet()
-    drive.turns_of_loop(3, 1_000)
+    assert not drive.control.is_active()
+    drive.turn_of_loop(999)
+    assert not drive.control.is_quiet()
+    drive.turn_of_loop(1)
     assert drive.control.is_quiet()
 
 
