@@ -804,6 +804,8 @@ class ByItself:
     """A panel whose clock and line are those of the test: when its step began, how late it is now,
     and until when nothing disturbs."""
 
+    dead_man_trips = 0
+
     def __init__(self, now_us=0):
         self.panel = panel().app.panel
         self.now_us = now_us
@@ -1028,6 +1030,98 @@ def test_a_page_that_is_coming_has_the_time_of_the_picture_for_300_ms():
     finally:
         module.Parameter = its_own
         on_demand.drop(*modules)
+
+
+def test_a_page_that_is_coming_has_each_step_that_nothing_disturbs():
+    alone = ByItself()
+    alone.free_until_us = 1 << 29
+    modules = PAGES[PARAMETER][2]
+    for name in modules:
+        module = on_demand.load(name)
+    pages, its_own = [], module.Parameter
+
+    def make(front):
+        pages.append(Coming(front))
+        return pages[-1]
+
+    module.Parameter = make
+    try:
+        alone.panel.turn_page(0, PARAMETER)
+        while not pages:
+            alone.begin(0)
+        worked = []
+        for _ in range(12):
+            alone.begin(0)
+            worked.append(pages[0].worked)
+        assert worked == list(range(1, 13))
+        alone.free_until_us = 0
+        for _ in range(16):
+            alone.begin(0)
+        assert 16 <= pages[0].worked < 24, pages[0].worked
+    finally:
+        module.Parameter = its_own
+        on_demand.drop(*modules)
+
+
+def test_a_key_that_is_pressed_has_a_picture_at_once_and_one_that_repeats_has_not():
+    alone = ByItself()
+    front, pictures = alone.panel, Pictures()
+    front.warning = pictures
+    up = 1 << front.board.keypad.names.index("UP")
+
+    def begun(ms, raw=up):
+        before = pictures.begun
+        for _ in range(160):
+            front.step(raw, 50_000 + ms, 0)
+        return pictures.begun - before
+
+    setpoint = front.selected.setpoint.centihertz
+    assert [begun(0, 0), begun(1), begun(20)] == [1, 0, 0]
+    assert begun(21) == 1  # it counts after 20 ms
+    assert front.selected.setpoint.centihertz > setpoint
+    assert [begun(65), begun(66)] == [0, 1]
+    setpoint = front.selected.setpoint.centihertz
+    delay_ms = 21 + front.settings.key_delay_ms
+    assert [begun(delay_ms - 1), begun(delay_ms), begun(delay_ms + 43)] == [1, 0, 0]
+    assert front.selected.setpoint.centihertz > setpoint and begun(delay_ms + 44) == 1
+
+
+def test_in_eight_steps_the_drive_shown_is_asked_three_times_and_watched_once():
+    """And the bus learns what it has told."""
+    alone = ByItself()
+    front, calls = alone.panel, []
+    control = front.selected
+    ask, watch, ask_on, heed = control.ask, control.watch, control.ask_on, front.heed
+
+    def asked(now_us):
+        calls.append("ask")
+        ask(now_us)
+        return control.news
+
+    def on(now_us):
+        calls.append("ask on")
+        ask_on(now_us)
+
+    def watched(now_us):
+        calls.append("watch")
+        watch(now_us)
+
+    def heeded(whose):
+        assert whose is control
+        calls.append("heed")
+        heed(whose)
+
+    control.ask, control.ask_on, control.watch, front.heed = asked, on, watched, heeded
+    once = ["ask", "watch", "ask on", "ask"]
+    for control.news, wanted in (
+        (False, once), (True, ["ask", "heed", "watch", "ask on", "ask", "heed"])
+    ):  # fmt: skip
+        del calls[:]
+        for _ in range(16):
+            alone.begin(0)
+        seen = calls * 2
+        assert len(calls) == 2 * len(wanted), calls
+        assert any([seen[at : at + len(wanted)] == wanted for at in range(len(calls))]), calls
 
 
 def test_keys_that_bounce_put_off_every_other_step_of_what_can_wait():
