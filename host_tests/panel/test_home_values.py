@@ -626,6 +626,27 @@ def test_a_floating_point_number_is_shown_to_the_nearest_hundredth_up_to_131071(
     assert told.answer(300, 25.0) == "-----A"
 
 
+def test_percent_is_the_nearest_to_what_the_reference_says():
+    told = Told("%")
+    for reference, actual, row in (
+        (6_500, 3, "0.1%"), (6_500, 2, "0.0%"), (6_500, -3, "-0.1%"), (6_500, 6_500, "100.0%"),
+        (6_500, -13_000, "-200%"), (5_000, 65_000, "1300%"), (65_000, 32_500, "50.0%"),
+        (65_000, 195_000, "300.0%"), (6_500, None, "-----%"),
+    ):  # fmt: skip
+        told.scaling, told.reference_centihertz = told, reference
+        told.actual_centihertz = lambda actual=actual: actual
+        assert told.row().strip() == row, (reference, actual, told.row())
+    told.actual_centihertz = lambda: 6_500
+    told.scaling = None  # it has not told its reference so far
+    assert told.row().strip() == "-----%"
+    told.actual_is_beyond = lambda: True
+    assert told.row() == " >>>>>%  "
+    told.actual_centihertz = lambda: None  # of a drive that is silent
+    assert told.row().strip() == "-----%" and not told.asks(0)
+    told.percent = True
+    assert told.row() == "frequency"
+
+
 def test_a_drive_that_is_lost_tells_nothing_and_is_asked_as_soon_as_it_is_back():
     for state, row in ((pkw.DONE, "1.25A"), (pkw.TIMED_OUT, "-----A")):
         told = Told("A")
