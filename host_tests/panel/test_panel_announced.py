@@ -978,6 +978,48 @@ def test_what_came_late_is_made_up_for():
     assert turns == [0, 1, 1, 2], turns
 
 
+def test_a_turn_that_is_499_ms_late_shortens_the_next_and_one_of_500_does_not():
+    for times, turns in (
+        ((0, 1_499, 1_500, 2_999, 3_000), [0, 0, 1, 1, 2]),
+        ((0, 1_999, 2_999, 3_000), [0, 1, 1, 2]),
+        ((0, 2_000, 3_000, 3_499, 3_500), [0, 1, 1, 1, 2]),
+    ):
+        announcer, page = Announcer([Told(1)], 0xFFFF), Told(0)
+        found = []
+        for now_ms in times:
+            announcer.begin(0, page, True, 0xFF00 + now_ms & 0xFFFF)
+            found.append(announcer.page_turns)
+        assert found == turns, (times, found)
+    # And so with the page between two announcements of 1300 ms, which has 600.
+    for late_ms, page_ms in ((0, 600), (499, 101), (500, 600)):
+        teller = Teller(Told(2, **RUNS))
+        teller.until("A2 RUN,HOLD=ALL")
+        began_ms = teller.now_ms - teller.step_ms & 0xFFFF
+        found = []
+        for ms in (1_299, 1_300 + late_ms, late_ms + 1_300 + page_ms - 1, 0):
+            teller.now_ms = began_ms + (ms or late_ms + 1_300 + page_ms) & 0xFFFF
+            teller.step()
+            found.append(teller.row() != "")
+        assert found == [True, False, False, True], (late_ms, found)
+
+
+def test_an_address_and_a_count_have_one_digit_up_to_nine_and_every_text_has_room():
+    for address, trouble, row in (
+        (9, {"active": True, "number": 11}, "A9 FAULT F0011"),
+        (10, {"active": True, "number": 7}, "A10 FAULT F0007"),
+        (9, {"notice": texts.DID_NOT_START}, "A9 NOT STARTED"),
+        (10, {"notice": texts.STOPPED_ITSELF}, "A10 STOPPED SELF"),
+        (9, dict(RUNS, remark=texts.RUNS_LONG), "A9 P2014 LONG"),
+        (10, dict(RUNS, remark=texts.RUNS_LONG), "A10 P2014 LONG"),
+        (10, {"lost_running": True}, "A10 LOST,MAY RUN"),
+    ):  # fmt: skip
+        rows = rows_said(Teller(Told(address, **trouble)), 1_000)
+        assert rows == [row], rows
+    for count, row in ((9, "DRIVES FAULT: 9"), (10, "DRIVES FAULT: 10")):
+        tripped = [Told(2 + place, active=True) for place in range(count)]
+        assert rows_said(Teller(*tripped), 1_000) == [row]
+
+
 def test_a_page_that_has_come_has_a_turn_at_once_but_not_again_and_again():
     teller = Teller(*[Told(2 + place, **RUNS) for place in range(5)])
     teller.said(1_300 + 6_000)  # said, and the page has had most of its turn
