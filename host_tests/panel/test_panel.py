@@ -15,6 +15,7 @@ from panel import texts
 from panel.keys import NAMES, Acts, Keys
 from panel.pages import Page, splash
 from panel.pages.table import PAGES, PARAMETER
+from panel.phases import CHECKING, IDLE, JOGGING, RUNNING
 from panel_bench import (
     LOOP_US,
     OFF1,
@@ -1122,6 +1123,18 @@ def test_in_eight_steps_the_drive_shown_is_asked_three_times_and_watched_once():
         seen = calls * 2
         assert len(calls) == 2 * len(wanted), calls
         assert any([seen[at : at + len(wanted)] == wanted for at in range(len(calls))]), calls
+
+
+def test_what_there_is_to_say_of_a_drive_waits_while_its_start_is_checked():
+    alone = ByItself()
+    control, looked = alone.panel.selected, []
+    control.ask = control.ask_on = control.watch = lambda now_us: None
+    alone.panel.announcer.look = looked.append
+    for control.phase, looks in ((IDLE, [0]), (CHECKING, []), (RUNNING, [0]), (JOGGING, [0])):
+        looked.clear()
+        for _ in range(8):
+            alone.begin(0)
+        assert looked == looks, control.phase
 
 
 def test_keys_that_bounce_put_off_every_other_step_of_what_can_wait():
