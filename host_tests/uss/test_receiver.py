@@ -233,6 +233,15 @@ def test_a_telegram_that_follows_a_stray_character_without_a_pause_is_data():
     assert line.come(REPLY, TCH) == WAITING
 
 
+def test_behind_the_echo_as_well_a_stray_character_must_be_followed_by_a_pause():
+    for pause_us, finding in ((TCH, WAITING), (3 * TCH, GOOD)):
+        line = Line()
+        echo = echo_of(line)
+        assert line.come(echo, -len(echo) * TCH) == WAITING and line.receiver.echo
+        assert line.come(b"\x00", 3 * TCH) == WAITING and line.receiver.stray
+        assert line.come(REPLY, pause_us) == finding, pause_us
+
+
 def test_a_02h_inside_the_data_starts_nothing():
     """A foreign telegram full of 02h, one character a burst, without pauses."""
     line = Line()
@@ -398,6 +407,18 @@ def test_what_is_still_coming_when_a_reply_is_given_up_keeps_the_line_from_being
     given_up_us = 3 * TCH + LINE.residual_us(12) + 2
     assert line.silence(given_up_us) == CUT_OFF
     assert line.receiver.heard_at == SENT_AT + given_up_us
+
+
+def test_a_telegram_of_another_length_that_is_still_coming_is_waited_for_as_long_as_it_may_take():
+    line = coming()
+    line.come(b"\x02\x06\x01", 3 * TCH)
+    receiver = line.receiver
+    last = receiver.heard_at - (3 * receiver.sixteen_us >> 4) + LINE.residual_us(4)
+    behind = receiver.heard_at + 3 * TCH  # over, if the link did not say that more is coming
+    assert receiver.take(line.link, behind) == WAITING
+    assert receiver.due_us(line.link, behind) == last + 1 - behind
+    assert receiver.take(line.link, last) == WAITING
+    assert receiver.take(line.link, last + 1) == GARBLED and receiver.heard_at == last + 1
 
 
 def test_a_reply_that_the_link_has_judged_by_itself_counts_as_taken():

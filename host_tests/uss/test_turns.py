@@ -72,6 +72,39 @@ def test_a_round_that_is_over_early_waits_for_its_cycle_time():
     assert table.asked(7) == [None, None, 1, 2, None, None, None]
 
 
+def test_a_round_that_begins_late_keeps_in_step_unless_it_is_late_by_a_whole_one():
+    """To the microsecond, also where the counter of the clock begins anew."""
+    for began in (0, MASK - 50_000, MASK - 150_000, MASK - 450_000):
+        turns = Table(1).turns
+        turns.cycle_us = 100_000
+        for at, wait_us in (
+            (0, 0),
+            (99_999, 1),
+            (130_000, 0),  # the second round, 30 ms late
+            (199_999, 1),
+            (200_000, 0),
+            (399_999, 0),  # the fourth has begun in step, so the fifth begins
+            (400_000, 0),
+            (600_000, 0),  # one is left out
+            (699_999, 1),
+            (750_000, 0),
+            (799_999, 1),
+            (800_000, 0),
+        ):
+            drive = turns.choose((began + at) & MASK)
+            assert (drive is None) == (wait_us > 0), (began, at)
+            assert turns.wait_us() == wait_us, (began, at)
+
+
+def test_a_cycle_time_is_a_quarter_of_what_the_clock_can_tell_at_the_most():
+    for cycle_us in (MASK >> 2, 1 << 28, 1 << 29, MASK):
+        turns = Table(1).turns
+        turns.cycle_us = cycle_us
+        assert turns.choose(0)
+        assert turns.choose((MASK >> 2) - 1) is None and turns.wait_us() == 1
+        assert turns.choose(MASK >> 2)
+
+
 def test_a_stop_goes_before_other_commands_and_these_before_the_list():
     table = Table(1, 2, 3, 4)
     table.asked(4)
