@@ -146,6 +146,16 @@ def test_a_bus_that_is_closed_again_and_again_is_closed_all_the_same():
     assert bus.master.phase == CLOSED
 
 
+def test_a_bus_that_is_closed_while_it_goes_off_is_closed_and_off_no_more():
+    for calls in ((Master.off, Master.close), (Master.close, Master.off)):
+        bus = Bus()
+        bus.run(200_000)
+        for call in calls:
+            call(bus.master)
+        bus.run(50_000)
+        assert bus.master.phase == CLOSED and bus.drives[0].contact
+
+
 # --- commands -----------------------------------------------------------------------------------
 
 
@@ -872,6 +882,29 @@ def test_the_loop_is_undisturbed_while_a_telegram_goes_out_and_until_a_reply_may
         assert not bus.master.is_undisturbed(soonest_us + passed_us & MASK)
 
 
+def test_where_the_end_of_sending_is_foreseen_the_loop_is_undisturbed_as_long():
+    bus = ForeseeingBus()
+    bus.run(300_000)
+    sent = len(bus.sent)
+    bus.run_until(lambda: len(bus.sent) > sent)
+    soonest_us = bus.sent_at + TIMING.start_interval_us + 16 * TIMING.character_us
+    for until, undisturbed in ((bus.now, True), (soonest_us - 1, True), (soonest_us, False)):
+        assert bus.master.is_undisturbed(until) == undisturbed, until
+
+
+def test_a_link_that_foresees_the_end_but_reports_no_reply_is_looked_at_all_the_same():
+    class LookedAt(ForeseeingBus):
+        interrupts = False
+
+    bus = LookedAt()
+    bus.run_until(lambda: bus.sent)
+    assert bus.master.phase == SENDING
+    bus.now += TIMING.telegram_us(12)
+    assert bus.master.poll(bus.now) <= TIMING.start_interval_us + 16 * TIMING.character_us
+    bus.run(30_000)
+    assert bus.drives[0].contact
+
+
 def test_a_list_that_is_emptied_ends_the_telegrams_and_nothing_else():
     bus = Bus()
     bus.run(300_000)
@@ -968,6 +1001,19 @@ def test_the_loop_counts_as_dead_after_300_ms_to_the_microsecond():
             bus.run(50_000)
 
 
+def test_an_instant_that_was_read_just_before_the_loop_came_round_stops_nobody():
+    """An interrupt may have read the clock, and then another one the loop's part."""
+    for start_at in (0, MASK - 300_000):  # also where the counter of the clock begins anew
+        bus = Bus(start_at=start_at)
+        bus.run(300_000)
+        master, drive = bus.master, bus.drives[0]
+        drive.start(0x1000)
+        for early_us in (1, 5, 100_000):
+            master.refresh(bus.now + early_us & MASK)
+            master.poll(bus.now & MASK)
+            assert drive.is_on() and master.dead_man_trips == 0, early_us
+
+
 def test_while_the_loop_is_dead_that_is_counted_once_and_nothing_can_be_started():
     bus = Bus()
     bus.run(300_000)
@@ -994,6 +1040,29 @@ def test_its_counters_have_16_bits():
         master.recover(bus.now)
         bus.run(400_000, refresh=False)
         assert master.failures == master.dead_man_trips == after
+
+
+def test_what_is_only_announced_while_it_listens_is_no_other_master():
+    """It may be a spike; but the 100 ms begin anew. What then comes is one."""
+    bus = Bus()
+    receive, bus.receive = bus.receive, lambda buffer, at: COMING
+    for now in (7, 50_000, 120_000):
+        assert bus.master.poll(now) == 100_000
+    assert bus.master.foreign == 0
+    bus.receive, bus.reply = receive, b"\x02\x0e\x01"
+    bus.now = bus.reply_at = 120_000
+    bus.master.poll(120_000)
+    assert bus.master.foreign == 1
+    assert bus.master.is_line_in_use() and not bus.master.is_line_shared()
+
+
+def test_where_nobody_was_asked_so_far_each_telegram_is_another_masters():
+    bus = Bus(())
+    bus.run(200_000)
+    for foreign in (1, 2):
+        bus.reply, bus.reply_at = b"\x02\x0e\x01", bus.now
+        bus.master.poll(bus.now)
+        assert bus.master.foreign == foreign and bus.master.is_line_shared()
 
 
 def test_in_the_rest_a_reply_of_the_drive_that_was_asked_is_no_other_master():
@@ -1034,6 +1103,49 @@ def test_a_line_that_is_never_silent_is_sent_on_after_half_a_second_to_the_micro
     bus.now = rested_at + 500_000
     bus.master.poll(bus.now)
     assert len(bus.sent) == sent + 1
+
+
+def test_the_half_second_of_a_line_that_is_never_silent_begins_behind_a_pause_or_a_wait():
+    """A character in the last moment of it has its silence after it, as always."""
+
+    def pause(bus):
+        bus.master.pause()
+        bus.run(700_000)
+        assert bus.master.paused
+        bus.master.resume()
+
+    def wait_for_the_next_round(bus):
+        bus.master.turns.cycle_us = 900_000
+        bus.run(700_000)
+        bus.master.turns.cycle_us = 0
+
+    for rest in (pause, wait_for_the_next_round):
+        bus = Bus()
+        bus.run(300_000)
+        rest(bus)
+        sent = len(bus.sent)
+        bus.reply, bus.reply_at = b"\x00", bus.now
+        assert bus.master.poll(bus.now) == TIMING.start_interval_us
+        assert len(bus.sent) == sent
+        bus.now += TIMING.start_interval_us
+        bus.master.poll(bus.now)
+        assert len(bus.sent) == sent + 1
+
+
+def test_a_reply_that_ended_after_the_clock_was_read_has_its_silence_after_it():
+    bus = Bus()
+    bus.run(300_000)
+    bus.run_until(lambda: bus.master.phase == AWAITING)
+    receive = bus.receive
+
+    def receive_later(buffer, at):
+        count = receive(buffer, at)
+        bus.received_at = bus.now + 3
+        return count
+
+    bus.receive, bus.now, sent = receive_later, bus.reply_at, len(bus.sent)
+    assert bus.master.poll(bus.now) == TIMING.start_interval_us
+    assert bus.drives[0].silent == 0 and len(bus.sent) == sent
 
 
 def test_a_telegram_is_given_up_50_ms_after_it_should_have_left_to_the_microsecond():
@@ -1089,6 +1201,14 @@ def test_after_an_exception_it_waits_for_the_reply_that_may_come_and_no_longer()
         bus.now += 1
         bus.master.poll(bus.now)
         assert len(bus.sent) == sent + 1
+
+
+def test_after_an_exception_before_the_first_telegram_it_waits_for_two_characters():
+    bus = Bus(())
+    bus.run(200_000)
+    bus.master.recover(bus.now)
+    assert bus.master.phase == RESTING
+    assert bus.master.poll(bus.now) == TIMING.start_interval_us
 
 
 def test_exceptions_count_in_a_row_until_an_exchange_is_over():
