@@ -307,6 +307,45 @@ def test_what_a_reply_must_not_say_depends_on_what_the_drive_was_asked_and_told(
     assert plan[plans.ZSW_AT] == 0
 
 
+def test_the_answer_to_each_task_must_fit_and_behind_no_task_there_must_be_none():
+    """From the first telegram with a task on; before it any answer may come."""
+    bench = going([Telling(1)])
+    prepare, steps = bench.prepare, []
+
+    def note(*arguments):
+        step = bench.sent[-1].task(), bench.plan[plans.AK]
+        if step not in steps[-1:]:
+            steps.append(step)
+        prepare(*arguments)
+
+    bench.prepare = note
+    ask(bench, 1, (700, 700))
+    bench.run(200_000)
+    asked = pkw.READ, pkw.FITTING[pkw.READ]
+    none = 0, 1 << 0
+    assert steps == [(0, 0), asked, none, asked, none, (0, 0)], steps
+
+
+def test_a_link_has_nothing_to_send_behind_a_part_of_the_reply_or_a_stray_character():
+    """What was made ready before is taken back."""
+    reply = framed(1, bytes(8) + b"\xfb\x31\x00\x00")
+    for first, second in ((reply[:7], reply[7:]), (b"\x55", reply)):
+        bench = going([Node(1), Node(2)])
+        bench.run_until(lambda bench=bench: bench.sent[-1].address == 2)
+        bench.nodes[1].plugged = False  # the test answers in its place
+        begin_of_a_telegram(bench)
+        calls, entries, went_on = told(bench), len(bench.entries), bench.went_on
+        begin = bench.sent[-1].at + bench.timing.telegram_us(12) + 1_719
+        bench.talk(first, begin)
+        bench.talk(second, begin + bench.timing.telegram_us(len(first) - 4) + 2_000)
+        bench.run_until(lambda: len(bench.entries) > entries)
+        assert calls == []
+        good = bench.drives[1].counters[0]
+        begin_of_a_telegram(bench)
+        assert bench.drives[1].counters[0] == good + 1 and bench.went_on == went_on
+        assert len(calls) == 1 and bench.sent[-1].address == 2
+
+
 def test_the_status_word_is_looked_at_where_the_layout_has_it():
     for pkw_words, pzd_words, at in ((4, 2, 11), (3, 4, 9), (0, 2, 3), (4, 6, 11)):
         bench = running(Node(1, pkw_words=pkw_words, pzd_words=pzd_words))
@@ -845,6 +884,32 @@ def test_after_an_exception_what_was_made_ready_is_taken_back_before_anything_el
     bench.drives[1].revoke = lambda: told.append("revoke")
     bench.master.recover(bench.now)
     assert told == ["take_back", "follow", "revoke"]
+
+
+def test_behind_an_exception_the_link_sends_nothing_by_itself():
+    """Not even if the engine is entered only when the reply is there."""
+    node = Node(1)
+    bench = running(node)
+    begin_of_a_telegram(bench)
+    went_on, sent = bench.went_on, len(bench.sent)
+    bench.master.recover(bench.now)
+    bench.run(20_000)
+    assert bench.went_on == went_on and len(bench.sent) == sent
+    assert next_stw(bench) == pzd.OFF1
+
+
+def test_a_telegram_that_the_link_sent_by_itself_is_given_up_50_ms_after_it_should_have_left():
+    bench = going([Node(1), Node(2)], foreseen=False)
+    went_on = bench.went_on
+    bench.run_until(lambda: bench.went_on > went_on)
+    begun, sent = bench.sent[-1].at, len(bench.sent)
+    bench.sending_us = lambda now: 1
+    drive = bench.drives[bench.sent[-1].address]
+    last_us = 16 * bench.timing.character_us + 50_000
+    for passed_us, given_up in ((9_000, 0), (last_us, 0), (last_us + 1, 1)):
+        bench.now = begun + passed_us
+        bench.master.poll(bench.now)
+        assert drive.silent == given_up and len(bench.sent) == sent + given_up, passed_us
 
 
 def test_an_exception_gives_nobody_a_second_turn():
