@@ -824,6 +824,18 @@ def test_a_pause_begins_after_the_telegram_that_was_ready():
     assert len(bench.sent) - count > 2
 
 
+def test_a_pause_that_the_engine_sees_before_the_reply_begins_behind_that():
+    bench = going([Node(1), Node(2)])
+    begin_of_a_telegram(bench)
+    bench.run(5_000)
+    count, good = len(bench.sent), sum(drive.counters[0] for drive in bench.drives.values())
+    bench.master.pause()
+    bench.due = bench.now  # the engine is entered, and takes back what was ready
+    bench.run(100_000)
+    assert bench.master.paused and len(bench.sent) == count
+    assert sum(drive.counters[0] for drive in bench.drives.values()) == good + 1
+
+
 def test_close_tells_every_drive_to_stop():
     nodes = [Node(1), Node(2)]
     bench = going(nodes)
