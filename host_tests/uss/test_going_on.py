@@ -16,7 +16,7 @@ from uss.going_on import master as going_on
 from uss.going_on import plan as plans
 from uss.going_on import python
 from uss.layout import Layout
-from uss.master import DEAD_MAN_US
+from uss.master import AWAITING, DEAD_MAN_US, SENDING
 from uss.outside import Mirror
 from uss.receiver import Receiver
 from uss.tasks.change_reports import Reports
@@ -279,6 +279,34 @@ def test_nothing_is_made_ready_unless_the_loop_was_there_lately_enough_for_a_who
         bench.drives[1].stop()
         assert bench.master.is_overtaken(bench.now) == ready
         bench.master.turns.attention[ANY] = 0
+
+
+def test_only_while_a_reply_is_awaited_is_anything_made_ready():
+    for foreseen in (True, False):
+        bench = going([Node(1), Node(2)], foreseen=foreseen)
+        bench.nodes[2].plugged = False  # behind it nothing of a reply is left
+        phases = set()
+        bench.prepare = lambda *arguments: phases.add(bench.master.phase)
+        for _ in range(100):
+            bench.run(1_000)
+            bench.due = bench.now  # the engine is entered in each phase
+        assert phases == {AWAITING}
+
+
+def test_while_a_telegram_goes_out_there_is_nothing_ready_that_a_call_could_overtake():
+    """Neither behind a telegram that the link sent by itself nor behind an exception."""
+    bench = going([Node(1), Node(2)], foreseen=False)
+    for fails in (False, True):
+        if fails:
+            bench.run(200_000)
+            begin_of_a_telegram(bench)
+            bench.run(10_500)  # the reply is awaited
+            bench.master.recover(bench.now)
+            bench.due = bench.now
+        begin_of_a_telegram(bench)
+        assert bench.master.phase == SENDING
+        bench.drives[1].stop()
+        assert not bench.master.is_overtaken(bench.now)
 
 
 def test_what_a_reply_must_not_say_depends_on_what_the_drive_was_asked_and_told():
@@ -912,9 +940,12 @@ def test_behind_an_exception_the_link_sends_nothing_by_itself():
 
 def test_a_telegram_that_the_link_sent_by_itself_is_given_up_50_ms_after_it_should_have_left():
     bench = going([Node(1), Node(2)], foreseen=False)
-    went_on = bench.went_on
+    went_on, poll, waits = bench.went_on, bench.master.poll, []
+    bench.master.poll = lambda now: waits.append(poll(now)) or waits[-1]
     bench.run_until(lambda: bench.went_on > went_on)
     begun, sent = bench.sent[-1].at, len(bench.sent)
+    window_us = Receiver(bench.timing, MASK).window_us
+    assert waits[-1] == bench.timing.telegram_us(12) + window_us  # else when the reply is late
     bench.sending_us = lambda now: 1
     drive = bench.drives[bench.sent[-1].address]
     last_us = 16 * bench.timing.character_us + 50_000
