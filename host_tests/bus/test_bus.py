@@ -10,6 +10,7 @@ from spoilt_bench import TROUBLES, spoil
 from tools.examples.simulation import Stage
 from uss import bits, pkw, pzd
 from uss.bus import MAY_RUN, NO_CONTACT, Master
+from uss.drive import COUNTERS
 from uss.errors import FallsSilent, NoContact, NotStarted, Refused, TimedOut, UssError
 from uss.families import G110, G120, GENERIC, MM3, MM420, MM440, V20, on_bop
 from uss.families.rows import WORD
@@ -148,6 +149,22 @@ def test_a_motor_that_runs_does_not_jog():
     bench.bus.wait(1)
     assert "is running" in refusal(NotStarted, bench.drive.jog_left)
     assert bench.drive.is_on()
+    bench.end()
+
+
+def test_a_jog_sends_no_setpoint_whatever_the_motor_ran_at_before():
+    bench = Bench()
+    drive = bench.drive
+    drive.run(10.0)
+    drive.stop()
+    bench.bus.wait(1)
+    for jog in (drive.jog_right, drive.jog_left):
+        jog()
+        bench.bus.wait(0.1)
+        sent = [row[2] for row in bench.wire.log.last(4) if row[1]]
+        assert [characters[-3:-1] for characters in sent] == [b"\0\0"] * 2, sent
+        drive.stop()
+        bench.bus.wait(1)
     bench.end()
 
 
@@ -1133,6 +1150,41 @@ def test_a_drive_that_was_away_is_asked_anew():
     bench.end()
 
 
+def test_the_counters_of_a_silent_drive_may_wrap_while_somebody_waits_for_it():
+    bench = Bench()
+    bench.motor().unplug()
+    refusal(NoContact, bench.drive.read, 700)
+    no_reply = COUNTERS.index("no_reply")
+    bench.drive.counters[no_reply] = 0xFFFE
+    silent = bench.drive.silent
+    assert took_s(bench, refusal, NoContact, bench.drive.read, 700) < 0.5
+    assert bench.drive.silent == silent + 3 and bench.drive.counters[no_reply] == 1
+
+
+def test_nobody_waits_for_contact_with_a_drive_that_is_taken_off_meanwhile():
+    bench = Bench((1, 2))
+    bench.motor().unplug()
+    bench.bus.wait(1)
+    bench.at(0.01, lambda: bench.bus.remove(drive))
+    drive = bench.drive
+    since_us = bench.clock.now_us
+    assert refusal(NoContact, drive.read, 700) == "drive 1 is not on the bus"
+    assert bench.clock.now_us - since_us < 15_000
+    bench.end()
+
+
+def test_a_start_of_a_silent_drive_takes_back_no_off2_or_off3():
+    bench = Bench()
+    bench.bus.wait(0.5)
+    bench.drive.off3()
+    bench.bus.wait(0.2)
+    bench.motor().unplug()
+    bench.bus.wait(1.5)
+    stops = bench.drive.engine.stops
+    refusal(NoContact, bench.drive.run, 10.0)
+    assert bench.drive.engine.off == pzd.OFF3 and bench.drive.engine.stops == stops
+
+
 def test_one_of_many_silent_drives_is_asked_at_once_when_somebody_waits_for_it():
     bench = Bench(tuple(range(1, 31)))
     bench.bus.wait(1)
@@ -1307,6 +1359,9 @@ def test_the_bus_has_the_sums_of_the_counters_and_all_the_bits():
     figures = zip(*[drive.counters for drive in bench.bus.drives])
     assert bench.bus.counters() == [sum(pair) for pair in figures] and bench.bus.counters()[5] > 5
     assert bench.bus.status() == bench.bus.drives[1].status == 0x80
+    for drive, status in zip(bench.bus.drives, (0x88, 0x90)):
+        drive.engine.status = status
+    assert bench.bus.status() == 0x98
     bench.end()
 
 
@@ -1664,6 +1719,7 @@ def test_the_link_has_a_clock_and_the_rate_is_one_of_uss():
     bus = Master(link)
     assert bus.clock is bench.board.clock
     assert bus.engine.timing.baud == 19200 and bus.engine.timing.reply_timeout_us == 20_000
+    assert bus.engine.turns.lost_us == 1_000_000
     assert "12345" in refusal(ValueError, Master, link, baud=12345)
 
 

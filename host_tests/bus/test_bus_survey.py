@@ -6,9 +6,12 @@ Parameters are changed behind the bus's back, as somebody at the drive does.
 
 from boards.sim.drives.families import g120, mm440
 from bus_bench import QUICK, Bench, refusal
+from uss import pkw
 from uss.bus import NotStarted, Refused, TimedOut
+from uss.errors import FallsSilent
 from uss.families import G120, MM420, MM440
-from uss.families.rows import COMMAND_SOURCE, DRIVE_SET, SUPERVISION, WORD
+from uss.families.rows import COMMAND_SOURCE, DRIVE_SET, SUPERVISION, UNKNOWN, WORD
+from uss.layout import Layout
 from uss.scaling import Scale
 
 USS = "is not under USS control: "
@@ -163,4 +166,78 @@ def test_a_drive_that_falls_silent_on_what_it_lacks_is_started_all_the_same():
     bench.motor().switches.silent_refusals = True
     bench.drive.run(10.0)
     assert bench.drive.is_running
+    bench.end()
+
+
+def test_a_row_that_silences_the_drive_refuses_a_start_where_its_value_must_be_known():
+    bench = Bench(family=with_row(COMMAND_SOURCE, (999, 0, WORD, None)))
+    bench.motor().switches.silent_refusals = True
+    assert "P0999[0]" in refusal(FallsSilent, bench.drive.run, 10.0)
+    assert not bench.motor().starts and not bench.drive.engine.wanted
+    bench.end()
+
+
+def asked_for(bench):
+    """The parameters that were read, (number, index), in the order of the first telegrams."""
+    asked = []
+    for _, from_panel, characters in bench.wire.log.last(1000):
+        if from_panel and characters[3] >> 4 == pkw.READ:
+            number = (characters[3] & 0x07) << 8 | characters[4]
+            place = number + (2000 if characters[5] & 0x80 else 0), characters[6]
+            if place not in asked[-2:]:
+                asked.append(place)
+    return asked
+
+
+def test_a_start_reads_each_setting_once_and_first_what_the_others_depend_on():
+    """The counter, and what happens after the mains were away, are no matter of the library."""
+    bench = Bench()
+    bench.drive.survey.ask()
+    asked = asked_for(bench)
+    assert asked[:3] == [(2009, 0), (50, 0), (51, 1)]
+    assert asked[3:] == [
+        (700, 0), (1000, 0), (2000, 0), (1080, 0), (1082, 0), (2014, 0), (2019, 0), (2019, 1),
+        (719, 0), (840, 0), (1070, 0), (2200, 0),
+    ]  # fmt: skip
+    bench.end()
+
+
+def test_a_start_that_could_not_ask_leaves_nothing_known():
+    bench = Bench()
+    survey = bench.drive.survey
+    assert survey.known_scale().reference_hertz == 50.0
+    bench.motor().stale_replies = 10_000
+    refusal(TimedOut, survey.ask)
+    bench.motor().stale_replies = 0
+    bench.motor().write(2000, 0, 100.0)
+    assert survey.known_scale().reference_hertz == 100.0
+    bench.end()
+
+
+def test_what_a_drive_told_before_is_not_kept_when_it_tells_it_no_more():
+    bench = Bench()
+    survey = bench.drive.survey
+    survey.ask()
+    assert survey.off_time_ms() == 2_000
+    bench.drive.family = with_row(SUPERVISION, (1999, 0, WORD, 0))
+    survey.ask()
+    assert survey.values[SUPERVISION] == UNKNOWN and survey.off_time_ms() is None
+    bench.end()
+
+
+def test_a_jog_needs_no_scale():
+    mute = {2013: 0, 1058: 5.0, 1060: 1.0}
+    bench = Bench(parameters=mute, layout=Layout(0, 2), unsupervised=True)
+    assert "scale=Scale" in refusal(NotStarted, bench.drive.run, percent=10)
+    bench.drive.jog_right()
+    assert bench.drive.is_running
+    bench.end()
+
+
+def test_a_limit_holds_in_either_direction():
+    bench = Bench(parameters={2014: 2_000, 1080: 5.0, 1082: 40.0, 1120: 1.0})
+    assert "5.00 Hz" in refusal(ValueError, bench.drive.run, -4.0)
+    assert "40.00 Hz" in refusal(ValueError, bench.drive.run, -41.0)
+    for hertz in (-5.0, -40.0):
+        bench.drive.run(hertz)
     bench.end()
