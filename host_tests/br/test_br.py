@@ -5,7 +5,7 @@ import random
 
 from boards.sim.drives.families import mm3, mm440
 from br_bench import QUICK, SCAN_US, Plc
-from uss import families
+from uss import families, pzd
 from uss.br import DriveController, codes
 from uss.br.structures import STATUS_WORD
 from uss.master import OFF
@@ -88,6 +88,20 @@ def test_a_jog_goes_on_as_long_as_it_is_wanted_and_two_are_none():
     plc.run(1_500)
     assert plc.drives[1].hz() == 0
     plc.check()
+
+
+def test_a_jog_has_no_setpoint():
+    plc = Plc()
+    plc.run(500)
+    plc.wanted().Run = True
+    plc.run(100)
+    plc.wanted().Run = False
+    plc.run(500)
+    assert plc.controller.bus.turns.at(1).hsw == 0x2000
+    plc.wanted().JOGRight = True
+    plc.run(10)
+    assert plc.controller.bus.turns.at(1).wanted == pzd.JOG_RIGHT
+    assert plc.controller.bus.turns.at(1).hsw == 0
 
 
 def test_a_jog_does_not_become_a_run():
