@@ -451,6 +451,52 @@ def test_an_input_that_is_not_connected_is_0():
         assert wanted in tasks and all([task in (wanted, [0] * 4) for task in tasks]), tasks
 
 
+def test_an_input_of_uss_init_that_is_not_connected_is_uss_at_9600_baud_without_drives():
+    plant = Plant()
+    opened = []
+    port = Port(lambda baud: opened.append(baud) or plant.line.master, LineClock(plant.line))
+    init = USS_INIT(port)
+    init()
+    assert not init.DONE and port.bus is None  # EN is one of them
+    init(EN=True)
+    assert (init.DONE, init.ERROR, opened) == (True, 0, [9600])
+    assert port.bus is plant.line.master and port.drives == [None] * 32
+
+
+def test_an_input_of_uss_ctrl_that_is_not_connected_is_0_and_en_and_type_are_1():
+    plant = Plant(active=1)
+    plant.inputs = {}
+    plant.run()
+    assert plant.port.controls[0] is plant.motor and plant.port.families[0] is MM4
+    assert words_of(plant.line.requests[-1]) == [0, 0, 0, 0, 0x047E, 0]
+    plant.inputs["F_ACK"] = True  # it was off until now
+    since = len(plant.line.requests)
+    plant.run(100)
+    assert [request for request in plant.line.requests[since:] if words_of(request)[-2] & 0x80]
+    plant.inputs = {"RUN": True}
+    plant.run()
+    assert plant.motor.RUN_EN and words_of(plant.line.requests[-1])[-2:] == [0x047F, 0]
+    plant.inputs = {}
+    plant.run(100)
+    assert words_of(plant.line.requests[-1])[-2] == 0x047E and not plant.motor.RUN_VOID
+
+
+def test_a_drive_that_no_uss_ctrl_has_named_is_of_type_1_or_of_the_only_one():
+    for types, family in ((TYPES, MM4), (TYPES + (Fan,), MM4), ((Pump,), Pump)):
+        assert Port(None, Clock(), types).families == [family] * 32
+
+
+def test_what_was_wrong_with_one_drive_is_not_said_of_the_next():
+    plant = Plant(lambda request: None, active=0b11 << NODE)
+    plant.run()
+    assert plant.motor.ERROR == 1
+    plant.inputs["DRIVE"] = NODE + 1
+    plant.motor(**plant.inputs)
+    assert plant.motor.ERROR == 0  # until its next telegram
+    plant.run()
+    assert plant.motor.ERROR == 1
+
+
 # --- what is no value of its pin ----------------------------------------------------------------
 
 NO_INTEGERS = (None, "1", "x", b"1", 1.0, 2.5, float("nan"), [], {}, (1,), object())
