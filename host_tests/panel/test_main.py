@@ -77,6 +77,30 @@ def test_a_display_that_fails_does_not_keep_the_panel_from_ending():
     assert switch.world.wire.log.count == sent
 
 
+class SlowDisplay:
+    """It shows all of a picture with the piece of this number."""
+
+    def __init__(self, pieces):
+        self.pieces, self.shown = pieces, 0
+
+    def show(self, _picture):
+        self.shown += 1
+        return self.shown == self.pieces
+
+
+def test_the_last_picture_is_given_a_hundred_pieces_and_no_more_than_it_needs():
+    for pieces, shown in ((1, 1), (7, 7), (100, 100), (101, 100)):
+        world = World(main.start)
+        world.app.board.display = display = SlowDisplay(pieces)
+        rests = []
+        idle = world.app.board.idle
+        world.app.board.idle = lambda: rests.append(display.shown) or idle()
+        world.app.close()
+        assert display.shown == shown
+        # Between two of them is a turn of the loop.
+        assert [rest for rest in rests if rest] == list(range(1, shown + (pieces > 100)))
+
+
 def test_ctrl_c_ends_in_a_maintenance_mode_without_watchdog():
     switch = Switch()
     bites = []
