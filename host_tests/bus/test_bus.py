@@ -1512,6 +1512,14 @@ def test_mirror_tells_who_is_there():
     bench.end()
 
 
+def test_a_mirror_telegram_is_given_up_where_the_bus_is_put_off_before_its_turn():
+    bench = Bench()
+    bench.bus.wait(0.5)
+    bench.bus.off()
+    assert refusal(NoContact, bench.bus.mirror, 1) == "the bus is off"
+    bench.end()
+
+
 def scanned(drives, addresses=range(32), **options):
     """A line on which nobody is known, address -> (family, parameters); the stage, the bus, what a
     scan has found."""
