@@ -10,7 +10,9 @@ from panel.keys import Acts, Keys
 from panel.menu.diagnosis import counters as counter_list
 from panel.menu.diagnosis import health, off
 from panel.menu.diagnosis import mirror as mirror_test
+from panel.menu.diagnosis import overview as overview_list
 from panel.menu.diagnosis import telegrams as telegram_list
+from panel.menu.diagnosis import times as time_list
 from panel.menu.diagnosis import words as diagnosis_words
 from panel_bench import (
     OFF1,
@@ -39,7 +41,7 @@ from uss.families import MM440
 from uss.finding.witness import CYCLE, RESPONSE_DELAY
 from uss.master import LISTENING, OFF
 from uss.tasks.descriptions import NAME, read_description
-from uss.telegram import MIRROR, NET
+from uss.telegram import GOOD, MIRROR, NET
 
 FOUR = (1, 2, 3, 4)
 PARAMETER_CHANGED = 0x0800  # bit 11 of PKE, which is no part of the number
@@ -681,10 +683,16 @@ class Told:
 
     net_count, pzd_words, pzd_count = 12, 2, 4
     family = MM440
+    contact = True
+    trouble = 0
+
+    defect = b""
 
     def __init__(self, address):
-        self.drive = self.survey = self.layout = self
+        self.drive = self.survey = self.layout = self.desk = self
         self.address = address
+        self.request = bytes((2, 14, address)) + bytes(13)
+        self.size = len(self.request)
         self.counters = [100 * address + row for row in range(len(COUNTERS))]
 
 
@@ -696,9 +704,12 @@ class Line:
     phase = LISTENING
     has_other = has_motor = reset_cause = False
     wait_us = 0
+    character_us = 573
+    count, buffer = 16, bytes(16)  # of a reply
+    witness = None
 
     def __init__(self):
-        self.bus = self.turns = self.deadlines = self.board = self
+        self.bus = self.turns = self.deadlines = self.board = self.timing = self
         self.controls = [Told(3), Told(12)]
         self.selected = self.controls[0]
         self.did = []
@@ -724,6 +735,60 @@ class Line:
 
     def on(self):
         self.did.append("on")
+
+
+def test_the_first_list_has_four_entries_of_the_line_and_one_of_each_drive():
+    line = Line()
+    third, twelfth = line.controls
+    third.contact, third.trouble = False, 1
+    twelfth.contact, twelfth.defect = False, texts.LINE_LOW
+    shown = overview_list.List(line, None)
+    assert [(shown.words(row), shown.control_at(row), shown.choose(row, 0))
+            for row in range(shown.count())] == [
+        (b"BUS COUNTERS", None, ("diagnosis.counters", None)),
+        (b"BUS TIMES", None, ("diagnosis.times", None)),
+        (b"BUS OFF", None, ("diagnosis.off", None)),
+        (b"THE PANEL", None, ("diagnosis.health", None)),
+        (b"A3  LINE NOISE", third, ("diagnosis.overview", third)),
+        (b"A12 " + texts.LINE_LOW, twelfth, ("diagnosis.overview", twelfth)),
+    ]  # fmt: skip
+    assert shown.heading(0) == shown.heading(5) == b"DIAGNOSIS"
+    of_drive = overview_list.List(line, twelfth)
+    names = ("counters", "times", "telegrams", "mirror")
+    told = (b"COUNTERS", b"TIMES", b"TELEGRAMS", b"MIRROR TEST")
+    assert of_drive.count() == 4
+    for row in range(4):
+        assert (of_drive.heading(row), of_drive.words(row)) == (b"A12", told[row])
+        assert of_drive.control_at(row) is twelfth
+        assert of_drive.choose(row, 0) == ("diagnosis." + names[row], twelfth)
+
+
+def test_the_times_are_those_of_one_drive_or_of_all():
+    """The cycle of all is that of the drive that comes first."""
+    line = Line()
+    third, twelfth = line.controls
+    telegram_us = 16 * line.character_us
+    for argument, who, told in (
+        (None, b"BUS", (b"55.3-55.3 ms", b"2.0-20.0 ms", b"1.6-7.0 ms")),
+        (third, b"A3", (b"55.3-55.3 ms", b"2.0-2.0 ms", b"1.6-1.8 ms")),
+        (twelfth, b"A12", (b"65.5-65.5 ms", b"10.0-20.0 ms", b"5.0-7.0 ms")),
+    ):
+        shown = time_list.List(line, argument)
+        assert shown.count() == 3 and shown.control_at(1) is argument
+        assert [shown.words(row) for row in range(3)] == [b"NONE YET"] * 3
+        line.heard_at = line.mask - 50_000  # the clock begins anew meanwhile
+        for drive, start_us, reply_us in (
+            (third, 5_000, 1_600), (twelfth, 10_000, 5_000),
+            (third, 2_000, 1_800), (twelfth, 20_000, 7_000),
+        ):  # fmt: skip
+            line.sent_at = line.heard_at + start_us + telegram_us & line.mask
+            line.heard_at = line.sent_at + reply_us + telegram_us & line.mask
+            line.witness.note(drive, GOOD, line)
+        names = [who + name for name in (b" CYCLE", b" START", b" REPLY")]
+        assert [shown.heading(row) for row in range(3)] == names
+        assert tuple([shown.words(row) for row in range(3)]) == told, who
+        shown.end()
+        assert line.witness is None
 
 
 def test_a_rate_is_that_of_the_time_since_its_entry_was_chosen_two_seconds_at_the_least():

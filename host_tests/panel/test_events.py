@@ -6,6 +6,7 @@ from boards.sim.drives.families import mm3, mm440
 from boards.sim.world import World
 from lookup_bench import entries, go_to, press, settled_heading, wait, world_of
 from panel import texts
+from panel.menu import events as event_list
 from panel.menu.events import age
 from panel.reports.fault import DriveWarning, Fault
 from panel.reports.journal import EVENTS, NOBODY, Journal
@@ -189,6 +190,42 @@ def test_a_second_has_gone_when_a_thousand_milliseconds_have():
         assert journal.event(0)[3] == age_s, now_ms
     journal.note(b"PANEL HUNG")
     assert journal.event(0) == (b"PANEL HUNG", NOBODY, 0, 0) and journal.event(1)[3] == 6
+
+
+class Told:
+    """A drive of this family, and a panel that shows it beside others."""
+
+    def __init__(self, address, family):
+        self.drive = self.survey = self.selected = self
+        self.address, self.family = address, family
+        self.controls = [self]
+        self.journal = Journal(0xFFFF)
+
+
+def test_an_event_has_the_drive_its_words_and_what_set_leads_to():
+    """Who is not in the list any more has the words of the drive that is shown."""
+    panel = Told(3, MM440)
+    other = Told(12, MM3)
+    panel.controls.append(other)
+    shown = event_list.List(panel)
+    assert (shown.count(), shown.heading(0), shown.words(0)) == (1, b"EVENTS", b"NONE YET")
+    assert shown.control_at(0) is None and shown.choose(0, 0) is None
+    what = "lookup.what", ("F", 11, b"F0011")
+    for event, heading, words, control, leads in (
+        ((texts.FAULT, 3, 11), b"A3 0:00", b"FAULT F0011", panel, what),
+        ((texts.FAULT, 12, 2), b"A12 0:00", b"FAULT F002", other, None),
+        ((texts.FAULT, 7, 52), b"A7 0:00", b"FAULT F0052", None, None),
+        ((texts.UNSUPERVISED, 3), b"A3 0:00", b"P2014=0", panel, None),
+        ((texts.UNSUPERVISED, 12), b"A12 0:00", b"P0093=0", other, None),
+        ((texts.UNSUPERVISED, 0), b"A0 0:00", b"P2014=0", None, None),
+        ((b" OF SIXTEEN WORDS", 3), b"A3 0:00", b"OF SIXTEEN WORD", panel, None),
+        ((texts.PANEL_HUNG,), b"P 0:00", b"PANEL HUNG", None, None),
+    ):
+        panel.journal.note(*event)
+        assert (shown.heading(0), shown.words(0)) == (heading, words), event
+        assert (shown.control_at(0), shown.choose(0, 0)) == (control, leads), event
+    assert shown.count() == 8 and shown.words(7) == b"FAULT F0011"
+    assert shown.choose(7, 0) == what
 
 
 # --- the number of a fault or a warning, by itself -----------------------------------------------

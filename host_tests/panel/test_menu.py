@@ -19,7 +19,9 @@ from panel.menu import code as code_page
 from panel.menu import drive as drive_list
 from panel.menu import find as find_list
 from panel.menu import kind as kind_list
+from panel.menu import main as main_list
 from panel.menu import order as order_list
+from panel.menu import settings as setting_list
 from panel.menu import turns as turns_list
 from panel.menu import words as menu_words
 from panel.menu.engine import Menu
@@ -2099,3 +2101,113 @@ def test_drives_are_looked_for_at_all_rates_first_where_none_answers():
     assert shown.choose(1, 6) is None and panel.did == [6]
     panel.has_other = True  # another master talks: nobody is looked for beside it
     assert shown.choose(0, 7) is None and panel.did == [6, 7]
+
+
+class Begun:
+    """A panel with one drive, as the first list of the menu asks for it."""
+
+    contact, pkw_words, family = True, 4, MM440
+    lock_code = 0
+
+    def __init__(self, **told):
+        self.selected = self.drive = self.layout = self.survey = self.settings = self
+        self.controls = [self]
+        self.fault, self.warning = Alarm(), Alarm()
+        self.locked_ms = []
+        for name in told:
+            setattr(self, name, told[name])
+
+    def lock(self, now_ms):
+        self.locked_ms.append(now_ms)
+
+
+class Alarm:
+    """A fault or a warning with this number; 0: nobody knows it yet."""
+
+    def __init__(self, number=None, digits=4):
+        self.active, self.number, self.digits = number is not None, number or 0, digits
+
+
+def test_the_first_list_has_what_the_panel_and_its_drive_have_what_is_urgent_first():
+    drives = ("DRIVES", "ANY ADDRESS", "FIND DRIVES", "SETTINGS", "SETS")
+    several, diagnosis = ("ORDER", "TURNS"), ("DIAGNOSIS",)
+    parameters, last = ("PARAMETERS", "COMMISSION", "FAULT MEMORY"), ("EVENTS", "ABOUT")
+    usual = drives + diagnosis + parameters + last
+    for told, wanted in (
+        ({}, usual),
+        ({"controls": [None] * 2}, drives + several + diagnosis + parameters + last),
+        ({"pkw_words": 0}, drives + diagnosis + last),
+        ({"contact": False}, ("WHY NO CONTACT",) + usual),
+        ({"lock_code": 1}, usual + ("LOCK",)),
+        ({"fault": Alarm(2)}, ("WHAT IS F0002",) + usual),
+        ({"fault": Alarm(2), "family": families.MM3}, ("WHAT IS F002",) + usual),
+        ({"fault": Alarm(0)}, usual),
+        ({"warning": Alarm(501)}, ("WHAT IS A0501",) + usual),
+        ({"warning": Alarm(5, 3)}, ("WHAT IS A005",) + usual),
+        ({"warning": Alarm(0)}, usual),
+        ({"fault": Alarm(2), "warning": Alarm(501)}, ("WHAT IS F0002",) + usual),
+        ({"fault": Alarm(0), "warning": Alarm(501)}, ("WHAT IS A0501",) + usual),
+        (
+            {"fault": Alarm(1), "contact": False, "lock_code": 9_999},
+            ("WHY NO CONTACT", "WHAT IS F0001") + usual + ("LOCK",),
+        ),
+    ):
+        shown = main_list.List(Begun(**told), None)
+        found = tuple([shown.words(row).decode() for row in range(shown.count())])
+        assert found == wanted, (told, found)
+        assert shown.heading(0) == b"MENU"
+
+
+def test_set_in_the_first_list_leads_to_the_list_of_its_entry_or_locks():
+    panel = Begun(controls=[None] * 2, contact=False, lock_code=7, fault=Alarm(12))
+    shown = main_list.List(panel, None)
+    leads = [shown.choose(row, 500) for row in range(shown.count() - 1)]
+    names = (
+        "drives", "address", "find", "settings", "sets.overview", "order", "turns",
+        "diagnosis.overview", "lookup.groups", "commission.overview", "lookup.memory", "events",
+        "about",
+    )  # fmt: skip
+    what = ("lookup.what", ("F", 12, b"F0012"))
+    assert leads == [("contact", None), what] + [(name, None) for name in names], leads
+    assert panel.locked_ms == []
+    assert shown.choose(shown.count() - 1, 500) is None and panel.locked_ms == [500]
+    shown = main_list.List(Begun(warning=Alarm(501)), None)
+    assert shown.choose(0, 0) == ("lookup.what", ("A", 501, b"A0501"))
+
+
+def test_the_settings_are_those_that_the_board_has_use_for_each_with_its_value():
+    """A light that can be switched, and a plug for the log."""
+
+    class Board:
+        name = "SIMULATED"
+
+    values = {
+        "baud": 38_400, "second_stop": "none", "reply_timeout_ms": 20, "lost_ms": 1_000,
+        "setpoint_centihertz": 1_005, "setpoint_step_centihertz": 10, "lowest_centihertz": 0,
+        "highest_centihertz": 65_000, "key_delay_ms": 400, "key_repeat_ms": 120,
+        "light_minutes": 1, "language": "de", "log": "JSON",
+    }  # fmt: skip
+    told = [
+        "BAUD 38400", "2ND STOP none", "REPLY 20 ms", "LOST 1000 ms", "START 10.05 Hz",
+        "STEP 0.10 Hz", "LOW 0.00 Hz", "HIGH 650.00 Hz", "KEY WAIT 400 ms", "KEY RATE 120 ms",
+        "LIGHT 1 min", "LANG. Deutsch", "LOG JSON",
+    ]  # fmt: skip
+    more = [("code", True), ("accepted", None), ("keys", None)]
+    panel = Begun(board=Board(), **values)
+    for backlight, serial, lacks in (
+        (True, True, ()), (None, True, ("LIGHT 1 min",)), (True, None, ("LOG JSON",)),
+        (None, None, ("LIGHT 1 min", "LOG JSON")),
+    ):  # fmt: skip
+        panel.board.backlight, panel.board.serial = backlight, serial
+        shown = setting_list.List(panel, None)
+        found = [shown.words(row).decode() for row in range(shown.count())]
+        wanted = [row for row in told if row not in lacks]
+        assert found == wanted + ["LOCK CODE", "P2014=0 OK", "KEY TEST"], found
+        leads = [shown.choose(row, 0) for row in range(shown.count())]
+        assert leads[-3:] == more and shown.heading(0) == b"SETTINGS"
+        for (name, row), words in zip(leads[:-3], wanted):
+            assert name == "value" and words.startswith(row[1].decode().split("%")[0]), row
+    panel.light_minutes = 0
+    panel.board.backlight = True
+    shown = setting_list.List(panel, None)
+    assert shown.words(10) == b"LIGHT STAYS ON"
