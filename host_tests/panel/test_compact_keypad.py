@@ -7,6 +7,7 @@ FN gives the next key its second function, FN twice its third; ^ or ^^ on the di
 from boards.sim.board import COMPACT_KEYS
 from panel.keys import NAMES, Keys, keys_of, unknown
 from panel.keys.compact import FUNCTIONS
+from panel.texts import REFUSED_FN
 from panel_bench import LOOP_US, OFF1, ON, panel, row_1, row_2, starts, telegrams, wait_until_known
 
 MASK = 0x3FFFFFFF
@@ -501,6 +502,113 @@ def test_behind_a_closed_lock_the_setpoint_can_be_typed_in():
     assert row_2(world) == "LOCK: HOLD PARAM" and world.drives[1].hz() == 0
     stops_at_once(world)
     world.check()
+
+
+# --- by themselves: to the millisecond -----------------------------------------------------------
+
+
+class Told:
+    """A panel whose drive turns to the left, or to the right; what it says."""
+
+    reversed = False
+
+    def __init__(self):
+        self.selected = self
+        self.said = []
+
+    def say(self, now_ms, text):
+        self.said.append((now_ms, text))
+
+
+class Hand:
+    """Presses keys, each for 60 ms, and notes what comes of it."""
+
+    def __init__(self, panel=None, begin_ms=0):
+        self.keys = keys_of(COMPACT_KEYS, MASK, (), panel)
+        self.now_ms = begin_ms
+        self.wait(100)
+
+    def wait(self, ms, *down):
+        raw, pressed = sum([1 << COMPACT_KEYS.index(name) for name in down]), 0
+        for _ in range(ms):
+            self.keys.update(raw, self.now_ms & MASK)
+            pressed |= self.keys.pressed
+            self.now_ms += 1
+        return pressed
+
+    def press(self, *keys):
+        pressed = self.wait(60, *keys)
+        self.wait(60)
+        return pressed
+
+
+def test_each_key_has_its_functions_behind_fn_and_one_without_says_so():
+    panel = Told()
+    hand = Hand(panel)
+    bit = hand.keys.bit
+    for key in COMPACT_KEYS:
+        functions = FUNCTIONS.get(key, (key,) * 3)
+        for shifts in range(3) if key != "FN" else ():
+            for _ in range(shifts):
+                assert hand.press("FN") == 0
+            assert hand.keys.shift == shifts
+            del panel.said[:]
+            pressed_ms = hand.now_ms
+            function = functions[shifts]
+            assert hand.press(key) == (bit(function) if function else 0), (key, shifts)
+            assert hand.keys.shift == 0
+            assert [text for _, text in panel.said] == ([] if function else [REFUSED_FN])
+            assert all([pressed_ms < at_ms < pressed_ms + 60 for at_ms, _ in panel.said])
+    hand = Hand()  # no panel is there yet, to which it could be said
+    assert hand.press("FN") == 0 and hand.press("START") == 0 and hand.keys.shift == 0
+
+
+def test_jog_has_the_side_that_it_had_when_it_went_down():
+    panel = Told()
+    hand = Hand(panel)
+    right, left = hand.keys.bit("JOG_RIGHT"), hand.keys.bit("JOG_LEFT")
+    assert right and left and right != left
+    for turns, side in ((False, right), (True, left)):
+        panel.reversed = turns
+        assert hand.wait(60, "JOG") == side
+        panel.reversed = not turns
+        hand.wait(60, "JOG")
+        assert hand.keys.down == side
+        panel.reversed = turns
+        assert hand.press("UP") == hand.keys.bit("UP")  # the other keys have one side
+        hand.wait(60)
+    assert Hand().press("JOG") == right
+
+
+def test_fn_ends_three_seconds_after_its_last_press_though_the_clock_begins_anew():
+    for begin_ms in (0, MASK - 1_500):
+        hand = Hand(begin_ms=begin_ms)
+        hand.press("FN")
+        hand.wait(1_000)
+        while hand.keys.shift < 2:
+            pressed_ms = hand.now_ms
+            hand.wait(1, "FN")
+        while hand.keys.shift:
+            assert hand.keys.shift == 2 and not hand.keys.at_rest
+            ended_ms = hand.now_ms
+            hand.wait(1)
+        assert ended_ms - pressed_ms == 3_000 and hand.keys.at_rest
+
+
+def test_a_key_that_is_held_repeats_as_the_settings_say():
+    for delay_ms, repeat_ms, repeats_in_a_second in ((400, 120, 6), (250, 50, 16)):
+        hand = Hand()
+        hand.keys.pace(delay_ms, repeat_ms)
+        assert hand.keys.held_repeats == repeats_in_a_second
+        repeated, down_ms = [], None
+        for _ in range(delay_ms + 3 * repeat_ms + 60):
+            if hand.wait(1, "UP"):
+                down_ms = hand.now_ms
+            if hand.keys.repeated:
+                assert hand.keys.repeated == hand.keys.bit("UP")
+                repeated.append(hand.now_ms - down_ms)
+        assert repeated == [delay_ms + repeat_ms * at for at in range(len(repeated))], repeated
+        assert len(repeated) >= 3
 
 
 # --- a board with other keys ---------------------------------------------------------------------
