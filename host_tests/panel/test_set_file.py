@@ -14,6 +14,7 @@ from panel.sets import pump, saving, set_file, work, writing
 from pkw_bench import AskedDrive
 from sets_bench import made
 from uss import families, pkw
+from uss.families.bop import on_bop
 from uss.pkw import NUMBER_MAX
 
 FILE_SYSTEM_BYTES = 1408 * 1024  # of a Pico with the firmware file: nothing else is in it
@@ -149,6 +150,56 @@ def test_a_line_has_64_characters_at_the_most_without_its_remark():
             data = b"USS SET 1 #" + b"-" * before + b"\nfamily mm440\naddress 1\nname A\n" + line
             texts.append(error_of(data))
         assert (words.NO_SET in texts) == (length > 64), texts
+
+
+def test_each_type_has_its_width():
+    for kind in (b"U16", b"I16"):
+        assert set_file.row_line(1120, 1, kind, 0, 0xAB) == b"P1120 1 %s 00AB" % kind
+        assert error_of(made([(1120, 1, kind, b"00AB")])) == [(0, 1120, 1, kind, 0, 0xAB)]
+        assert error_of(made([(1120, 1, kind, b"000000AB")])) == words.DAMAGED, kind
+    for kind in (b"U32", b"I32", b"Float", b"BICO"):
+        assert set_file.row_line(3, 0, kind, 0x1F, 0xAB) == b"P0003 0 %s 001F00AB" % kind
+        assert error_of(made([(3, 0, kind, b"001F00AB")])) == [(0, 3, 0, kind, 0x1F, 0xAB)]
+        assert error_of(made([(3, 0, kind, b"00AB")])) == words.DAMAGED, kind
+
+
+def test_a_head_is_written_as_it_is_read():
+    ratings = {207: (0, 0x1234), 206: (0x3F40, 0)}
+    assert set_file.head_lines(b"mm440", 31, b"PUMP 1", b"1.0", ratings) == [
+        b"USS SET 1", b"family mm440", b"address 31", b"name PUMP 1", b"panel 1.0",
+        b"rating 206 3F400000", b"rating 207 00001234",
+    ]  # fmt: skip
+
+
+def test_whoever_reads_a_file_gives_way_behind_every_second_row_and_is_told_its_check():
+    rows = [(3, index, b"U16", b"0003") for index in range(5)]
+    data = made(rows)
+    told = []
+    found = set_file.rows(store_with(one=data), "one.set")
+
+    def read():
+        told.append((yield from found))
+
+    places = [row and row[0] for row in read()]
+    assert places == [0, 1, None, 2, 3, None, 4], places
+    assert told == [crc32(data[: data.index(b"end ")])] and b"%08X" % told[0] in data
+
+
+def test_a_file_that_ends_too_soon_says_so_and_one_that_goes_on_is_damaged():
+    rows, ratings = [(3, 0, b"U16", b"0003"), (4, 0, b"U16", b"0003")], [(206, b"3F400000")]
+    whole = made(rows, ratings=ratings)
+    lines = whole.split(b"\n")[:-1]
+    assert len(lines) == 9
+    for count in range(9):
+        cut = b"".join([line + b"\n" for line in lines[:count]])
+        assert error_of(cut) == words.CUT_SHORT, cut
+    for more in (b"\n", b"P0005 0 U16 0003\n", lines[-1] + b"\n", b" "):
+        assert error_of(whole + more) == words.DAMAGED, more
+    for more in (b"# as it was delivered\n", b"   # so\n#\n"):
+        assert len(error_of(whole + more)) == 2, more
+    for at in range(1, 9):
+        blank = lines[:at] + [b""] + lines[at:]
+        assert error_of(b"\n".join(blank)) == words.DAMAGED, at
 
 
 class Store:
@@ -433,6 +484,30 @@ def stepped(panel, steps, *times_ms):
     for now_ms in times_ms:
         steps.step(now_ms & panel.mask)
     return steps.outcome
+
+
+def test_what_belongs_to_a_motor_and_what_is_no_value_is_known_of_each_family():
+    """Power, current and voltage; operations and passwords. The BOP link changes neither."""
+    of_mm4 = (10, 11, 12, 40, 340, 952, 970, 971, 1900, 1910, 1960, 2111, 3900)
+    usual = [(206, 0x3F40, 5), (207, 0, 7), (208, 0, 7)]
+    for family, ratings, never in (
+        (families.MM440, usual, of_mm4),
+        (on_bop(families.MM440), usual, of_mm4),
+        (families.MM3, [(111, 0, 75), (112, 0, 7)], (944, 971)),
+    ):
+        panel, taken = Panel(), []
+        panel.family = family
+        steps = Steps(panel)
+        assert steps.never == never
+        steps.drive = drive = AskedDrive()
+        reads = steps.read_ratings(lambda *told: taken.append(told))
+        values = {111: (pkw.WORD, 75), 206: (pkw.DOUBLE, 5)}
+        while not is_over(reads):
+            for job in drive.asked:
+                if job.state == pkw.PENDING:  # the high word of a single one is no matter
+                    job.width, job.low = values.get(job.number, (pkw.WORD, 7))
+                    job.high, job.state = 0x3F40, pkw.DONE
+        assert taken == ratings, family
 
 
 def test_a_work_ends_with_what_went_wrong():
