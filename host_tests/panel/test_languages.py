@@ -413,6 +413,11 @@ def test_the_last_twenty_four_words_are_kept_and_need_no_table():
     try:
         for text in found:
             assert german.get(text, text) == spoken[text], text
+        del module.open
+        german.get(b"RUNNING 25", b"")  # one more: what was kept makes room for it
+        module.open = missing
+        assert german.get(found[0], b"") == found[0]
+        assert german.get(b"RUNNING 25", b"") == b"RUNNING 25"
     finally:
         del module.open
 
