@@ -354,6 +354,27 @@ def test_a_search_is_shown_from_its_question_to_the_drives_that_are_new():
     assert panel.did == []
 
 
+def test_without_memory_for_a_search_it_says_so_and_can_be_begun_again():
+    """What was loaded for it leaves the memory in any case."""
+
+    class Full:
+        @staticmethod
+        def Scan(bus, mask):
+            raise MemoryError
+
+    panel = Told()
+    shown = beside.List(panel, None)
+    for module in (Full, FindModule):
+        sys.modules["uss.finding.scan"] = module
+        sys.modules["uss.finding.enquiry"] = module
+        shown.choose(0, 0)
+        assert "uss.finding.scan" not in sys.modules
+        assert "uss.finding.enquiry" not in sys.modules
+        assert panel.did == [texts.NO_MEMORY]
+        assert shown.is_busy() == (module is FindModule)
+        assert (shown.words(0) == b"SET=BEGIN") == (module is Full)
+
+
 def test_the_time_of_a_search_goes_on_when_the_clock_of_the_panel_begins_anew():
     _, shown, scan = begun()
     for now_ms in (1, 0xFFFF, 0x10000, 0x3FFFFFFF):

@@ -356,6 +356,20 @@ def test_what_was_heard_has_its_steps_the_most_likely_one_first():
         assert shown.words(0) == b"IT ANSWERS NOW"
 
 
+def test_between_the_first_step_and_the_last_each_has_its_place():
+    plug, mains, swapped = "PLUG AND WIRES", "DRIVE HAS MAINS", "A AND B SWAPPED"
+    ends, shield, masters = "ENDS TERMINATED", "SHIELD, GROUND", "NO OTHER MASTER"
+    rate, address, length, twins = "P2010=7 19200", "P2011 = 3", "P2013 = 4", "ONLY ONE IS A3"
+    for told, steps in (
+        ({"controls": [Told(contact=True)]},
+         [mains, plug, address, rate, swapped, length, "FIND DRIVES"]),
+        ({"trouble": NOISE}, [twins, rate, ends, swapped, shield, masters]),
+        ({"trouble": OTHER_ADDRESS}, [masters, address, twins]),
+        ({"trouble": WRONG_CHECK}, [shield, ends, twins]),
+    ):  # fmt: skip
+        assert checks(contact.List(Told(**told), None)) == steps, told
+
+
 def test_what_is_heard_now_counts_at_the_first_two_entries():
     panel = Told(trouble=NOISE)
     shown = contact.List(panel, None)
