@@ -25,6 +25,7 @@ from panel_bench import (
     starts,
     telegrams,
 )
+from pkw_bench import characters
 from round_bench import framed
 from spoilt_bench import (
     cut_off,
@@ -39,7 +40,9 @@ from uss import pkw
 from uss.drive import COUNTERS
 from uss.families import MM440
 from uss.finding.witness import CYCLE, RESPONSE_DELAY
+from uss.layout import Layout
 from uss.master import LISTENING, OFF
+from uss.receiver import SILENT
 from uss.tasks.descriptions import NAME, read_description
 from uss.telegram import GOOD, MIRROR, NET
 
@@ -787,6 +790,52 @@ def test_the_times_are_those_of_one_drive_or_of_all():
         names = [who + name for name in (b" CYCLE", b" START", b" REPLY")]
         assert [shown.heading(row) for row in range(3)] == names
         assert tuple([shown.words(row) for row in range(3)]) == told, who
+        shown.end()
+        assert line.witness is None
+
+
+def test_a_telegram_is_told_in_as_many_words_as_it_has():
+    """A reply that is not good has its characters alone."""
+    line = Line()
+    drive = line.controls[1]
+    net = (0x13E8, 0x0001, 0x0000, 0x0041, 0x047F, 0x4000, 0x1111)
+    task, value, control = b"READ P1000[1]", b"PWE 0000 0041", b"STW 047F ON"
+    for layout, told, rows in (
+        (Layout(4, 2), (task, value, control, b"HSW 4000 100%"), 3),
+        (Layout(3, 2), (task, b"PWE 0041 0000", control, b"HSW 4000 100%"), 2),
+        (Layout(4, 3), (task, value, control, b"HSW 4000 100%"), 3),
+        (Layout(4, 1), (task, value, control), 2),
+        (Layout(4, 0), (task, value), 2),
+        (Layout(0, 2), (control, b"HSW 4000 100%"), 2),
+    ):
+        words = list(net[: 4 + layout.pzd_words])
+        if layout.pkw_words == 3:
+            del words[2]
+        if layout.pkw_words == 0:
+            del words[:4]
+        telegram = framed(12, characters(*words))
+        drive.layout = layout
+        shown = telegram_list.List(line, drive)
+        assert shown.control_at(0) is drive and shown.words(0) == b"NONE YET"
+        drive.request, drive.size = telegram, len(telegram)
+        line.buffer, line.count = telegram, len(telegram)
+        for finding, found, more in ((SILENT, b"NO REPLY", 0), (GOOD, b"GOOD", len(told))):
+            line.sent_at = line.heard_at = 0
+            line.witness.note(drive, finding, line)
+            entries = [shown.words(row) for row in range(shown.count())]
+            assert len(entries) == len(told) + rows + 1 + more + rows, entries
+            assert tuple(entries[: len(told)]) == told and entries[len(told) + rows] == found
+            for at in (len(told), len(entries) - rows):
+                assert bytes.fromhex(b"".join(entries[at : at + rows]).decode()) == telegram
+            sent = len(told) + rows
+            headings = [shown.heading(row) for row in range(len(entries))]
+            assert headings == [b"A12 SENT"] * sent + [b"A12 HEARD"] * (len(entries) - sent)
+        shown.choose(0, 0)
+        line.witness.note(drive, SILENT, line)
+        assert shown.heading(0) == b"A12 HELD" and shown.count() == len(entries)
+        shown.choose(5, 0)
+        line.witness.note(drive, SILENT, line)
+        assert shown.heading(0) == b"A12 SENT" and shown.words(len(told) + rows) == b"NO REPLY"
         shown.end()
         assert line.witness is None
 
