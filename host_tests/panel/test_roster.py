@@ -148,6 +148,30 @@ def test_a_drive_that_is_asked_twice_in_a_round_is_asked_half_a_round_later_agai
         assert in_turn == asked, (repeats, in_turn)
 
 
+def test_the_turns_are_arranged_anew_with_each_drive_that_comes_or_goes():
+    """So is the time for which a drive may be without a telegram: it grows with the round."""
+    world = panel(addresses=(1, 2, 3), baud=1200, settings={"repeats": {"1": 2}})
+    app = world.app
+    roster, desk = app.panel.roster, app.panel.controls[0].desk
+
+    def in_turn():
+        return [drive.address for drive in app.bus.turns.list]
+
+    assert in_turn() == [1, 2, 1, 3]
+    off_times = [desk.longest_off_time_ms]
+    control = roster.add(9, "mm440")
+    assert in_turn() == [1, 2, 1, 3, 9] and roster.controls[-1] is control
+    off_times.append(desk.longest_off_time_ms)
+    roster.remove(roster.controls[1])
+    assert in_turn() == [1, 3, 1, 9]
+    off_times.append(desk.longest_off_time_ms)
+    roster.remove(control)
+    assert in_turn() == [1, 1, 3] and app.settings.drives == (1, 3)
+    off_times.append(desk.longest_off_time_ms)
+    four, five, four_again, three = off_times
+    assert three < four == four_again < five, off_times
+
+
 def test_drives_come_and_go_31_times():
     world = World(main.start, tuple(range(31)), settings={"drives": [0]})
     world.run(2000)
