@@ -268,6 +268,18 @@ def test_remarks_count_as_nothing():
     assert error_of(first + b"\n" + 300 * b"x" + b"# no line is as long") == words.NO_SET
 
 
+def test_a_line_may_end_with_carriage_return_and_line_feed():
+    rows = [(3, 0, b"U16", b"0003"), (1120, 0, b"Float", b"41200000")]
+    bare = made(rows, ratings=[(206, b"3F400000")])
+    ended = bare.replace(b"\n", b"\r\n")
+    for text in (ended, ended[:-2]):
+        assert error_of(text) == error_of(bare) and len(error_of(text)) == 2
+        head = set_file.read_head(store_with(one=text), "one.set")
+        assert (head.family, head.name) == ("mm440", b"MADE")
+    for end in (b"\r\r\n", b" \n", b" \r\n"):
+        assert error_of(bare.replace(b"0003\n", b"0003" + end)) == words.DAMAGED, end
+
+
 def test_a_file_that_is_cut_anywhere_is_none():
     whole = made([(3, 0, b"U16", b"0003"), (1120, 0, b"Float", b"41200000")])
     for length in range(len(whole) - 1):  # the last line feed is no matter
