@@ -607,8 +607,26 @@ def test_a_key_that_is_held_repeats_as_the_settings_say():
             if hand.keys.repeated:
                 assert hand.keys.repeated == hand.keys.bit("UP")
                 repeated.append(hand.now_ms - down_ms)
+                assert hand.keys.repeats == len(repeated)
         assert repeated == [delay_ms + repeat_ms * at for at in range(len(repeated))], repeated
         assert len(repeated) >= 3
+
+
+def test_what_is_withheld_repeats_nothing_and_what_is_left_goes_on():
+    """STOP that makes light goes on to the second stop; FN is as good as not pressed."""
+    for key, goes_on in (("STOP", True), ("UP", False), ("FN", False)):
+        hand = Hand()
+        while not hand.wait(1, key) and not hand.keys.shift:
+            pass
+        hand.keys.withhold(~hand.keys.bit("STOP"))
+        assert hand.keys.shift == 0 and hand.keys.pressed == (hand.keys.bit(key) if goes_on else 0)
+        repeats = 0
+        for _ in range(1_500):
+            hand.wait(1, key)
+            repeats += hand.keys.repeated != 0
+        assert (repeats > 0) == goes_on, key
+        hand.wait(60)
+        assert hand.press("UP") == hand.keys.bit("UP")
 
 
 # --- a board with other keys ---------------------------------------------------------------------
