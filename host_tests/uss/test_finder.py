@@ -13,11 +13,13 @@ from round_bench import MASK, MIRROR, RUNNING, Bench, Node, framed
 from uss import pzd
 from uss.finding import finder as finding
 from uss.finding.enquiry import NO_CHANNEL, Question
+from uss.finding.enquiry import Node as Asked
 from uss.finding.finder import Finder
 from uss.layout import STANDARD, VARIABLE, Layout
 from uss.master import CLOSED, LISTENING, OFF
 from uss.outside import Mirror
 from uss.receiver import OTHER_LENGTH, SILENT
+from uss.telegram import BAD_BCC, GOOD
 
 # --- simulated drives ---------------------------------------------------------------------------
 
@@ -574,6 +576,212 @@ def test_room_is_asked_for_what_a_telegram_takes_longer_than_those_of_the_list()
     for _ in range(30):
         ((_, net_count),) = line.next(1)
         assert line.longer_us == max(line.timing.telegram_us(net_count) - own_us, 0), net_count
+
+
+class Told:
+    """In place of an `Enquirer`: it makes the finder ask so many questions, and knows `node`."""
+
+    def __init__(self, layout, confirmed=True, variable=True, questions=1):
+        self.node = Asked(2, 12, variable)
+        self.node.layout = Layout(*layout)
+        self.node.confirmed = confirmed
+        self.questions = questions
+        self.asked_for = None
+
+    def begin(self, *asked_for):
+        self.asked_for = asked_for
+        return self
+
+    def question(self, off):
+        return Question(2, STANDARD, None, 0, off)
+
+    def take(self, question):
+        self.questions -= 1
+        return self.questions <= 0
+
+
+class Willing(Silent):
+    """A line on which drive 2 sends back mirror telegrams of the lengths `takes`, or of any, and
+    tells what `told` says. doubted: it is in contact. why: the finding where nothing comes."""
+
+    def __init__(self, layouts, told=None, takes=None, doubted=False):
+        Silent.__init__(self, layouts)
+        if told:
+            self.finder = Finder(self.master, MASK, told.begin)
+        self.takes = takes
+        self.why = SILENT
+        self.answers = True  # it answers questions
+        self.drive = self.drives[2]
+        if doubted:
+            self.drive.contact = True
+            self.drive.silent = 0
+            self.drive.doubt()
+
+    def post(self, telegram):
+        if not isinstance(telegram, Mirror):
+            if not self.answers:
+                telegram.miss(self.why, 0, 0, 0)
+                return
+        else:
+            net_count = telegram.size - 4
+            self.asked.append((telegram.node, net_count))
+            if self.takes is not None and net_count not in self.takes:
+                telegram.miss(self.why, 0, 0, 0)
+                self.silence.count = self.silence.count + 1 & 0xFFFF
+                return
+        telegram.state = finding.DONE
+
+    def steps(self, count):
+        """The drive that has got another layout in so many steps, or None."""
+        for step in range(count):
+            drive = self.finder.step(step)
+            if drive:
+                return drive
+        return None
+
+
+def test_what_a_drive_tells_is_its_layout_unless_it_could_not_be_commanded_in_that():
+    """Two PZD words at the least, if the list says that it has them; where nothing was told, what
+    is likely. One in contact keeps what it has, if the other one is not likelier."""
+    for listed, told, confirmed, variable, doubted, found in (
+        ((4, 2), (3, 3), True, False, False, True), ((4, 2), (0, 16), True, True, False, True),
+        ((4, 2), (VARIABLE, 16), True, True, False, True),
+        ((4, 2), (4, 1), True, True, False, False),
+        ((4, 2), (3, 0), True, True, False, False), ((4, 2), (3, 2), True, True, False, True),
+        ((4, 3), (4, 1), True, True, False, False), ((4, 3), (4, 2), True, True, False, True),
+        ((4, 1), (3, 1), True, True, False, True), ((4, 1), (3, 0), True, True, False, True),
+        ((4, 0), (3, 1), True, True, False, True), ((4, 2), (4, 2), True, True, False, False),
+        ((3, 4), (3, 2), True, True, False, True), ((4, 2), (4, 4), False, False, False, True),
+        ((4, 2), (3, 3), True, False, True, True), ((4, 2), (4, 2), True, True, True, False),
+        ((4, 2), (3, 3), False, False, True, False), ((4, 2), (0, 6), False, False, True, True),
+    ):  # fmt: skip
+        line = Willing([listed], Told(told, confirmed, variable), doubted=doubted)
+        drive = line.steps(60)
+        assert (drive is line.drive) == found, (listed, told, doubted)
+        assert layout_of(line.drive) == (told if found else listed), (listed, told, doubted)
+        assert not line.drive.doubted and line.drive.contact == (doubted and not found)
+    # Variable length, and it does not tell its PZD words: those of the list.
+    line = Willing([(4, 4)], Told((VARIABLE, 2), False, True))
+    assert line.steps(60) is line.drive and layout_of(line.drive) == (VARIABLE, 4)
+
+
+def test_it_is_asked_for_its_layout_alone_and_with_the_length_that_it_takes():
+    for doubted, takes, asked, asked_for in (
+        (False, None, [10, 12], (2, 10, True, False)),
+        (False, (6,), [10, 4, 6, 8, 8], (2, 6, False, False)),
+        (True, None, [14], (2, 12, True, False)),
+        (True, (), [14, 14], (2, 12, False, False)),
+    ):
+        told = Told((4, 4))
+        line = Willing([(4, 2)], told, takes, doubted)
+        assert line.steps(60) is line.drive
+        assert [length for _, length in line.asked] == asked, (doubted, takes, line.asked)
+        assert told.asked_for == asked_for
+
+
+def test_the_list_leaves_a_drive_that_answers_late_to_the_questions_until_contact_is_at_stake():
+    """A silence is not late; who was late once is late until all is told. A third of the time
+    after which it is lost is left to them, and any time if it is not in contact."""
+    for doubted in (True, False):
+        told, passed_us = Told((3, 3), questions=8), [0]
+        line = Willing([(4, 2)], told, doubted=doubted)
+        silence = line.silence
+        line.drive.silent_us = lambda now, mask, passed_us=passed_us: passed_us[0]
+        bound_us = line.master.deadlines.bound_us(line.drive)
+        assert bound_us == 333_333
+        for answers, why, us, is_left in (
+            (True, GOOD, 0, False), (False, SILENT, 0, False), (False, GOOD, 0, True),
+            (False, SILENT, bound_us - 1, True), (False, GOOD, bound_us, not doubted),
+            (True, GOOD, bound_us - 1, True), (False, SILENT, bound_us + 1, not doubted),
+        ):  # fmt: skip
+            line.answers, line.why, passed_us[0] = answers, why, us
+            left = told.questions
+            while told.questions == left:
+                assert line.steps(1) is None
+            assert (silence.spared is line.drive) == is_left, (doubted, answers, why, us)
+            assert is_left or silence.spared is None
+        line.answers = True
+        assert line.steps(60) is line.drive and silence.spared is None
+
+
+def test_it_waits_while_too_many_telegrams_wait_and_then_asks_what_it_was_about_to():
+    line = Silent([(4, 2)])
+    turns, refused = line.master.turns, []
+
+    def refuse(telegram):
+        refused.append(telegram.size - 4)
+        raise RuntimeError("too many wait")
+
+    turns.post = refuse
+    assert not line.asks_another() and len(refused) > 3 and set(refused) == {10}
+    turns.post = line.post
+    assert line.next(2) == [(2, 10), (2, 4)]
+
+
+def test_a_drive_that_is_changed_in_its_turn_begins_anew_with_the_next():
+    """Its new layout has other lengths. One that answers has no turn, one that is removed neither;
+    one that was moved goes on at its new address."""
+    line = Silent([(4, 2), (4, 2)])
+    turns, drive = line.master.turns, line.drives[2]
+    assert line.next(1) == [(2, 10)]
+    turns.relayout(drive, Layout(4, 6))
+    drive.silent = finding.SILENT_MIN
+    line.silence.wait_us = -4 * line.silence.silent_exchange_us  # it takes longer now
+    assert line.next(5) == [(3, 10), (3, 4), (3, 6), (2, 18), (2, 12)]
+    turns.readdress(drive, 9)
+    assert line.next(3) == [(9, 4), (3, 10), (3, 4)]
+    drive.silent = 0
+    assert line.next(5) == [(3, 8), (3, 10), (3, 4), (3, 14), (3, 10)]
+    drive.silent = finding.SILENT_MIN
+    turns.remove(line.drives[3])
+    assert line.next(3) == [(9, 18), (9, 12), (9, 6)]
+
+
+def test_what_came_back_from_the_address_where_it_was_tells_nothing_of_a_drive():
+    line = Silent([(4, 2), (4, 2)])
+    waiting = []
+
+    def keep(telegram):
+        telegram.state = finding.PENDING
+        waiting.append(telegram)
+
+    turns = line.master.turns
+    turns.post = keep
+    while not waiting:
+        assert line.finder.step(0) is None
+    turns.readdress(line.drives[2], 9)
+    waiting[0].state = finding.DONE
+    turns.post = line.post
+    assert line.next(4) == [(3, 10), (3, 4), (3, 6), (9, 10)]
+
+
+def test_replies_that_were_spoilt_in_an_earlier_turn_do_not_count():
+    line = Willing([(4, 2)], takes=())
+    line.why = BAD_BCC
+    assert line.next(2) == [(2, 10)] * 2
+    line.drive.silent = 0
+    assert not line.asks_another()
+    line.drive.silent = finding.SILENT_MIN
+    line.silence.count = 7
+    assert line.next(4) == [(2, 10)] * 3 + [(2, 4)]
+
+
+def test_it_looks_for_silent_drives_when_a_telegram_was_not_answered_or_one_is_doubted():
+    """And else it takes no time. The count of silences has 16 bits."""
+    line = Silent([(4, 2), (4, 2)])
+    line.drives[2].silent = line.drives[3].silent = 0
+    for count in (5, 0xFFFF, 0):
+        line.silence.count = count
+        assert not line.asks_another()
+        line.drives[2].silent = finding.SILENT_MIN
+        assert not line.asks_another()
+        line.silence.count = count + 1 & 0xFFFF
+        assert line.asks_another()
+        line.drives[2].silent = 0
+        assert not line.asks_another()
+    line.drives[3].contact = True
+    line.drives[3].doubt()
+    assert line.asks_another() and line.asked[-1] == (3, 14)
 
 
 def test_one_that_was_running_when_it_was_lost_is_told_to_stop_before_it_is_looked_for():

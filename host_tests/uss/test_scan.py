@@ -7,7 +7,7 @@ from round_bench import MASK, MIRROR, READY, RUNNING, Bench, Node, framed
 from uss.errors import NoContact, UssError
 from uss.finding import scan as scanning
 from uss.finding.scan import EVERY_NET_COUNT, NET_COUNTS, RATES, RateScan, Scan
-from uss.master import CLOSED, OFF
+from uss.master import CLOSED, LISTENING, OFF
 from uss.outside import DONE, Mirror
 from uss.timing import BAUD_RATES
 
@@ -294,6 +294,52 @@ def test_beside_a_drive_that_answers_it_waits_until_a_silence_has_been_charged()
             assert scan.asked == (1 if waits and later_us < 10_000 else 2), (address, later_us)
 
 
+def test_silences_of_a_node_that_was_found_are_charged_like_those_of_others():
+    """Of a telegram that keeps it from tripping, and of a question: 10 ms before the next one."""
+    for enquire, address in ((False, 2 | MIRROR), (True, 2)):
+        bench = Bench([Node(1), Node(2)], listed=False)
+        bench.drives[1] = bench.master.turns.add(1)
+        bench.contact()
+        bench.master.deadlines.silence_wait_us = lambda longer_us=0: 0
+        scan = Scan(bench.master, MASK, (2, 8), (12,), enquire=enquire)
+        bench.run_until(lambda bench=bench, scan=scan: scan.step(bench.now) or scan.found)
+        if enquire:
+            bench.run_until(lambda bench=bench, scan=scan: scan.step(bench.now) or scan.nodes)
+        bench.nodes[2].plugged = False
+        if not enquire:
+            bench.run(200_000)
+            scan.step(bench.now)
+        bench.run(200_000)
+        own = [each for each in bench.addresses() if each != 1]
+        assert own[-1] == address, own
+        now = bench.now
+        for later_us, count in ((0, 0), (9_999, 0), (10_000, 1)):
+            scan.step(now + later_us)
+            bench.run(50_000)
+            asked = [each for each in bench.addresses() if each != 1]
+            assert len(asked) - len(own) == count, (enquire, later_us)
+
+
+def test_a_node_that_is_asked_what_it_is_hears_mirror_telegrams_when_no_question_has_room():
+    """100 ms after the last question: what layout it has is not known yet."""
+    bench = Bench([Node(2)], listed=False)
+    room = [0]
+    bench.master.deadlines.silence_wait_us = lambda longer_us=0: room[0]
+    scan = Scan(bench.master, MASK, (2,), (12,))
+    bench.run_until(lambda: scan.step(bench.now) or scan.nodes)
+    room[0] = 1
+    bench.run(50_000)
+    now, sent = bench.now, len(bench.sent)
+    for later_us, count in ((0, 0), (99_999, 0), (100_000, 1)):
+        assert not scan.step(now + later_us)
+        bench.run(50_000)
+        assert len(bench.sent) - sent == count, later_us
+    assert bench.addresses(sent) == [2 | MIRROR] and len(bench.sent[sent].characters) == 16
+    room[0] = 0
+    bench.run_until(lambda: scan.step(bench.now))
+    assert scan.asked_nodes() == [(2, scan.nodes[2])]
+
+
 def test_nobody_is_kept_who_was_not_found_when_it_was_ended():
     """Not the one whose telegram was under way, either."""
     bench = Bench([Node(1)], listed=False)
@@ -334,6 +380,28 @@ def test_a_stop_does_not_wait_for_the_scan_and_ends_it():
         assert bench.addresses(sent)[0] == 1, step
         assert scan.over and scan.stopped, step
         assert len([each for each in bench.addresses(sent) if each & MIRROR]) <= 1
+
+
+def test_a_stop_ends_it_when_the_count_of_stops_begins_again_too():
+    bench = Bench([Node(1)])
+    drive = bench.drives[1]
+    drive.stops = drive.stops_sent = 0xFFFF
+    bench.contact()
+    scan = Scan(bench.master, MASK, (2,), (12,))
+    assert not scan.step(bench.now)
+    drive.stop()
+    assert drive.stops == 0 and scan.step(bench.now) and scan.stopped
+
+
+def test_nothing_stops_a_scan_that_is_over_already():
+    bench = Bench([Node(1), Node(2)])
+    bench.contact()
+    scan = Scan(bench.master, MASK, (1, 2))
+    bench.run_until(lambda: scan.step(bench.now))
+    bench.drives[1].stop()
+    assert scan.step(bench.now) and not scan.stopped
+    scan.end()
+    assert not scan.stopped
 
 
 def test_the_program_may_end_it():
@@ -416,6 +484,29 @@ def test_a_node_is_kept_from_tripping_and_one_that_never_trips_is_left_alone():
     assert fleet.motors[4].state == "ready", fleet.motors[4].state
 
 
+def test_while_the_bus_listens_nobody_is_kept():
+    """What was posted would be the first thing on the line."""
+    bench = Bench([Node(1)], listed=False)
+    scan = Scan(bench.master, MASK, (1,), (12,), enquire=False)
+    bench.run_until(lambda: scan.step(bench.now))
+    bench.master.off()
+    bench.run_until(lambda: bench.master.phase == OFF)
+    bench.run(200_000)
+    bench.master.on()
+    post, phases = bench.master.turns.post, []
+
+    def noting(telegram):
+        phases.append(bench.master.phase)
+        post(telegram)
+
+    bench.master.turns.post = noting
+    bench.loop = lambda: scan.keep(bench.now)
+    bench.run(90_000)
+    assert bench.master.phase == LISTENING and phases == []
+    bench.run_until(lambda: phases)
+    assert LISTENING not in phases
+
+
 def test_when_a_node_is_asked_again():
     """After a third of its P2014, but not within 100 ms, and then also where it is not known.
     It counts from the step that has seen the end of the telegram before."""
@@ -480,6 +571,23 @@ def test_a_scan_that_is_to_look_no_further_asks_what_it_has_found_not_for_long()
     # The questions keep it from tripping: mirror telegrams are not needed for that.
     assert bench.addresses().count(MIRROR | 3) == 2
     assert scan.will_trip == {3: None}
+
+
+def test_a_scan_that_is_to_look_no_further_still_sees_whether_any_length_will_do():
+    """That telegram waits for room when the program has seen enough."""
+    bench = Bench([Node(3, 127, 2), Node(4)], listed=False)
+    room = [0]
+    bench.master.deadlines.silence_wait_us = lambda longer_us=0: room[0]
+    scan = Scan(bench.master, MASK, (3, 4), (12,), enquire=False)
+    assert not scan.step(bench.now)
+    bench.run_until(lambda: scan.step(bench.now) or scan.asked)
+    room[0] = 1
+    bench.run_until(lambda: scan.step(bench.now) or scan.found)
+    scan.finish()
+    assert not scan.step(bench.now) and scan.asked == 1
+    room[0] = 0
+    bench.run_until(lambda: scan.step(bench.now))
+    assert scan.asked == 2 and scan.found == {3: 12} and scan.variable == {3}
 
 
 def test_a_scan_that_is_to_look_no_further_stops_whom_it_has_found():
@@ -626,6 +734,37 @@ def test_no_rate_is_tried_unless_every_drive_of_the_list_is_seen_to_stand():
         assert "drive 1 is not seen to stand" in str(error)
         return
     raise AssertionError("tried")
+
+
+def test_a_bus_without_drives_is_put_off_too_before_another_rate_is_tried():
+    bench = Bench([], listed=False)
+    phases = []
+
+    def open_bus(baud):
+        phases.append(bench.master.phase)
+        return Lines(None, []).open(baud)
+
+    scan = RateScan(open_bus, MASK, nothing_runs=True, rates=(9600,), bus=bench.master)
+    bench.loop = lambda: scan.step(bench.now)
+    bench.run_until(lambda: phases)
+    assert phases == [OFF] and not scan.over
+    bench.talk(framed(3, bytes(12)))  # on the bus before, which is off: that is all the same now
+    bench.run(20_000)
+    assert not scan.over and len(phases) == 1
+
+
+def test_a_bus_without_drives_that_hears_another_master_is_not_left():
+    bench = Bench([], listed=False)
+    scan = RateScan(None, MASK, nothing_runs=True, bus=bench.master)
+    bench.talk(framed(3, bytes(12)))
+    bench.run(20_000)
+    try:
+        scan.step(bench.now)
+    except UssError as error:
+        assert "another master is on the line" in str(error), error
+        assert bench.master.phase == LISTENING and not scan.over
+        return
+    raise AssertionError("left")
 
 
 def test_every_rate_is_tried_once():
