@@ -7,8 +7,8 @@ Control words as in USS.md 4.8 of the protocol notes: r0054 of a MICROMASTER 4.
 from array import array
 
 from master_bench import Bus
-from uss import bits, pzd
-from uss.drive import Drive
+from uss import bits, pkw, pzd
+from uss.drive import ATTENTION, Drive
 from uss.fast import frame
 from uss.layout import STANDARD, Layout
 from uss.receiver import OTHER_LENGTH, SILENCE, SILENT, TROUBLES
@@ -676,3 +676,102 @@ def test_each_finding_has_its_counter_and_its_bit_of_the_error_status_word():
         counters = [1, 0, 0, 0, 0, 0, 0]
         counters[row] += 1
         assert list(alone.drive.counters) == counters, finding
+
+
+def test_what_a_drive_calls_for_stands_at_its_address_and_in_the_two_words_for_all():
+    """Rows of 32 for commands, for turns that would be too late, and for more than its turn; then
+    whether any of the first, or of the others, is to be looked at."""
+    for address in (0, 31):
+        attention = bytearray(ATTENTION)
+        drive = Drive(address, MASK, attention)
+        command, overdue, wants, any_of_them, soon = address, 32 + address, 64 + address, 96, 97
+        reply = bytes((2, 14, address)) + bytes(13)
+
+        def exchange(drive=drive, reply=reply):
+            drive.fill(0)
+            drive.take(reply, 16, 0)
+
+        def start(drive=drive, exchange=exchange):
+            drive.start(0x1000)
+            exchange()  # a stop that is owed goes first
+            exchange()
+
+        exchange()
+        for before, call, told in (
+            (None, drive.hurry, {command: 3, any_of_them: 1}),
+            (drive.hurry, lambda: drive.fill(0), {}),
+            (None, drive.acknowledge, {command: 3, any_of_them: 1}),
+            (exchange, drive.stop, {command: 3, any_of_them: 1}),
+            (None, lambda: drive.fill(0), {wants: 1, soon: 1}),  # it is repeated
+            (exchange, lambda: drive.start(0x1000), {command: 2, any_of_them: 1}),
+            (exchange, drive.stop, {command: 4, any_of_them: 1}),
+            (exchange, drive.revoke, {}),
+            (start, drive.revoke, {command: 4, any_of_them: 1}),
+            (start, drive.lose, {command: 4, any_of_them: 1}),
+            (exchange, lambda: drive.want_turns(True), {wants: 1, soon: 1}),
+            (None, lambda: drive.want_turns(False), {}),
+            (exchange, lambda: drive.ask(pkw.read(700)), {soon: 1}),
+            (exchange, drive.ask_soon, {wants: 1, soon: 1}),
+            (exchange, drive.press, {overdue: 2, soon: 1}),
+            (None, lambda: drive.press(1), {overdue: 1, soon: 1}),
+            (None, lambda: drive.control(0x2000, True), {}),
+            (exchange, drive.call, {}),
+            (exchange, drive.call_again, {wants: 1, any_of_them: 1, soon: 1}),
+            (drive.stop, lambda: drive.move(5), {5: 3, 64 + 5: 1, any_of_them: 1, soon: 1}),
+        ):  # fmt: skip
+            if before:
+                before()
+            is_there = attention[command]
+            for index in range(ATTENTION):
+                attention[index] = 0
+            attention[command] = is_there if before == drive.hurry else 0
+            call()
+            stands = {index: value for index, value in enumerate(attention) if value}
+            assert stands == told, (address, call, stands, told)
+    assert len(attention) == 98
+
+
+def test_each_bit_of_the_control_word_may_be_changed_or_is_refused():
+    for bit in range(16):
+        for on in (True, False):
+            alone = Alone()
+            drive, mask = alone.drive, 1 << bit
+            try:
+                drive.control(mask, on)
+            except ValueError as error:
+                assert bit not in (3, 4, 5, 6, 13, 14, 15), bit
+                assert str(error) == "STW bits %04Xh are no matter of control()" % mask
+                assert alone.exchange()[0] == pzd.OFF1
+                continue
+            assert bit in (3, 4, 5, 6, 13, 14, 15), bit
+            changed = pzd.OFF1 | mask if on else pzd.OFF1 & ~mask
+            assert alone.exchange()[0] == changed == alone.exchange()[0]
+            drive.control(0xE078, True)
+            assert alone.exchange()[0] == pzd.OFF1 | 0xE078
+            drive.control(mask, False)
+            assert alone.exchange()[0] == (pzd.OFF1 | 0xE078) & ~mask
+    alone = Alone()
+    try:
+        alone.drive.control(0x0401 | 0x0010, False)
+    except ValueError as error:
+        assert "0401h" in str(error)  # what was wrong about it
+    else:
+        raise AssertionError
+    for word in (0, pzd.ON, pzd.OFF1 | 1, None):
+        stops, urgency = alone.drive.stops, alone.drive.urgency()
+        try:
+            alone.drive.stop(word)
+        except ValueError:
+            assert (alone.drive.stops, alone.drive.urgency()) == (stops, urgency)
+            continue
+        raise AssertionError(word)
+
+
+def test_two_percent_of_the_speed_are_near_it_and_an_even_count():
+    drive = Drive(1, MASK)
+    for full_scale, near in ((0x4000, 326), (100, 2), (99, 0), (199, 2), (200, 4), (0, 0)):
+        drive.tell_speed(full_scale)
+        assert drive.near == near, full_scale
+    for pzd_words in (0, 1, 2):  # only without a status word its reply may be like the request
+        drive = Drive(1, MASK, None, Layout(4, pzd_words))
+        assert drive.may_reply_alike() is (pzd_words == 0)

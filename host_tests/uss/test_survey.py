@@ -4,6 +4,7 @@
 import struct
 
 from boards.sim.dice import Dice
+from uss import pkw
 from uss.drive import Drive
 from uss.families import G120, MM3, MM4, rows
 from uss.layout import Layout
@@ -95,10 +96,11 @@ def test_frequencies_are_what_a_floating_point_number_says():
 
 
 def test_what_is_no_frequency_of_a_drive_is_unknown():
-    nothing = ((0x7FC0, 0), (0x7F80, 0), (0xFF80, 0), (0x8000, 1), words(-0.01), words(650.1))
+    nothing = ((0x7FC0, 0), (0x7F80, 0), (0xFF80, 0), (0x8000, 1), words(-0.01), words(650.01))
     for high, low in nothing + (words(1e30), words(-1e30), (0xFFFF, 0xFFFF)):
         assert centihertz(high, low) == -1, (high, low)
     assert centihertz(0x8000, 0) == 0  # minus nothing
+    assert centihertz(*words(0.006)) == 1
     assert centihertz(0, 1) == centihertz(*words(1e-30)) == 0
 
 
@@ -264,6 +266,64 @@ def test_it_gets_more_turns_while_somebody_waits_and_with_contact_all_is_forgott
     assert not survey.complete and survey.scaling is None and max(survey.values) <= 0
     survey.recheck()  # of a drive without contact nothing is asked
     assert not survey.unchecked
+
+
+def test_a_drive_that_is_not_shown_is_read_at_the_pace_that_is_asked_for():
+    """To the microsecond; and nobody waits for it when contact is made."""
+    for pace_us, waits in ((100_000, True), (1_000_000, False), (99_999, False)):
+        line = Line((1,))
+        survey, drive = line.surveys[0], line.drives[0]
+        line.exchange(0)
+        survey.step(line.now, pace_us)
+        assert (survey.unchecked, drive.asking) == ((ROWS, True) if waits else (0, False))
+        for _ in range(60):
+            for _ in range(4):
+                survey.step(line.now, pace_us)
+            line.exchange(0)
+        assert survey.complete
+        for later_us in (0, 0, 0, pace_us):
+            survey.step(line.now + later_us, pace_us)
+        for _ in range(4):
+            line.exchange(0)
+        now = line.now
+        for _ in range(3):
+            survey.step(now, pace_us)  # the answer is taken
+        assert drive.channel.idle
+        survey.step(now + pace_us - 1, pace_us)
+        assert drive.channel.idle
+        survey.step(now + pace_us, pace_us)
+        assert not drive.channel.idle
+
+
+def test_where_the_queue_is_full_it_asks_when_there_is_room():
+    line = Line((1,))
+    survey, drive = line.surveys[0], line.drives[0]
+    line.exchange(0)
+    survey.step(line.now)
+    others = [pkw.read(number) for number in range(300, 308)]
+    for other in others:
+        drive.ask(other)
+    for _ in range(5):
+        survey.step(line.now)
+    assert len(line.spares) == len(spare_jobs()) == 4 and not line.asked
+    let_pass(line, 40)
+    assert all([other.state == pkw.DONE for other in others]) and survey.complete
+
+
+def test_limits_that_nobody_can_be_asked_for_are_none():
+    """With no PKW words; and with three, which carry no frequency."""
+    for pkw_words, off_time_ms in ((0, 0), (3, 2000)):
+        line = Line((1,))
+        survey, drive = line.surveys[0], line.drives[0]
+        drive.become(Drive(1, MASK, None, Layout(pkw_words, 2)))
+        line.told[task(2009)], line.told[task(2014)] = whole(0), whole(2000)
+        survey.step(line.now)
+        line.exchange(0)
+        drive.lose()
+        line.exchange(0)
+        let_pass(line, 60)
+        assert survey.lowest() == 0 and survey.own_highest() == 65_000, pkw_words
+        assert survey.off_time_ms() == off_time_ms, survey.off_time_ms()
 
 
 def test_while_it_runs_every_other_question_is_for_its_count_and_its_limits():
