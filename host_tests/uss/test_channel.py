@@ -125,6 +125,35 @@ def test_a_drive_without_pkw_words_cannot_be_asked():
     assert line.send() == ()
 
 
+def test_a_request_without_a_task_has_as_many_words_as_its_form_and_tells_of_the_reports():
+    """None in a short telegram, unless change reports are followed: then its first bit counts."""
+    for pkw_words, short, count in (
+        (3, False, 3), (4, False, 4), (VARIABLE, False, 3), (VARIABLE, True, 0),
+    ):  # fmt: skip
+        line = Line(pkw_words)
+        line.channel = channel = Channel(MASK, pkw_words, 20, short)
+        assert line.send() == (0,) * count and channel.idle
+        reports = Reports(channel)
+        assert not channel.idle
+        for bit in (0, 8, 0):
+            reports.bit = bit
+            assert line.send() == (bit << 8,) + (0,) * (max(count, 3) - 1)
+            assert not channel.idle
+        reports.bit = 8
+        job = line.ask(pkw.write_word(700, 5))
+        value = (0, 5) if pkw_words == 4 else (5,)
+        assert line.send() == (0x2ABC, 0) + value
+        reports.close()
+        assert line.send() == (0x22BC, 0) + value
+        line.answer(0x12BC, 0, *value)
+        assert job.state == pkw.DONE
+        assert line.send() == (0,) * count and not channel.idle
+        line.answer(*(0,) * count)
+        assert line.send() == (0,) * count and channel.idle
+        line.channel.become(Channel(MASK, 4))
+        assert line.send() == NO_TASK and not channel.idle
+
+
 # --- a task and its end -------------------------------------------------------------------------
 
 

@@ -766,6 +766,29 @@ def test_replies_that_were_spoilt_in_an_earlier_turn_do_not_count():
     assert line.next(4) == [(2, 10)] * 3 + [(2, 4)]
 
 
+def test_spoilt_replies_to_one_length_do_not_count_against_the_longer_one_or_the_next():
+    """Two silences, or three telegrams that came back spoilt."""
+    for why, times in ((SILENT, 2), (BAD_BCC, 3)):
+        for spoilt in (0, 1, 2):
+            line = Willing([(4, 2)], takes=())
+            line.why = BAD_BCC
+            if spoilt:
+                assert line.next(spoilt) == [(2, 10)] * spoilt
+            line.takes = (10,)
+            assert line.next(1) == [(2, 10)]
+            line.why = why
+            assert line.steps(60) is line.drive and layout_of(line.drive) == (3, 2)
+            assert line.asked[spoilt + 1 :] == [(2, 12)] * times, (why, spoilt)
+            line = Willing([(4, 2)], takes=())
+            line.why = BAD_BCC
+            if spoilt:
+                line.next(spoilt)
+            line.why = SILENT
+            assert line.next(1) == [(2, 10)]
+            line.why = BAD_BCC
+            assert line.next(4) == [(2, 4)] * 3 + [(2, 6)], spoilt
+
+
 def test_it_looks_for_silent_drives_when_a_telegram_was_not_answered_or_one_is_doubted():
     """And else it takes no time. The count of silences has 16 bits."""
     line = Silent([(4, 2), (4, 2)])
