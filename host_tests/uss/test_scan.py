@@ -382,15 +382,16 @@ def test_a_stop_does_not_wait_for_the_scan_and_ends_it():
         assert len([each for each in bench.addresses(sent) if each & MIRROR]) <= 1
 
 
-def test_a_stop_ends_it_when_the_count_of_stops_begins_again_too():
-    bench = Bench([Node(1)])
-    drive = bench.drives[1]
-    drive.stops = drive.stops_sent = 0xFFFF
-    bench.contact()
-    scan = Scan(bench.master, MASK, (2,), (12,))
-    assert not scan.step(bench.now)
-    drive.stop()
-    assert drive.stops == 0 and scan.step(bench.now) and scan.stopped
+def test_a_stop_ends_it_in_the_next_step_and_when_the_count_of_stops_begins_again_too():
+    for before, behind in ((5, 6), (0xFFFF, 0)):
+        bench = Bench([Node(1)])
+        drive = bench.drives[1]
+        drive.stops = drive.stops_sent = before
+        bench.contact()
+        scan = Scan(bench.master, MASK, (2,), (12,))
+        assert not scan.step(bench.now)
+        drive.stop()
+        assert drive.stops == behind and scan.step(bench.now) and scan.stopped
 
 
 def test_nothing_stops_a_scan_that_is_over_already():
