@@ -666,6 +666,7 @@ def test_what_a_drive_tells_is_its_layout_unless_it_could_not_be_commanded_in_th
 
 
 def test_it_is_asked_for_its_layout_alone_and_with_the_length_that_it_takes():
+    """And not at all if it takes one of the usual lengths, and none that is longer."""
     for doubted, takes, asked, asked_for in (
         (False, None, [10, 12], (2, 10, True, False)),
         (False, (6,), [10, 4, 6, 8, 8], (2, 6, False, False)),
@@ -677,6 +678,11 @@ def test_it_is_asked_for_its_layout_alone_and_with_the_length_that_it_takes():
         assert line.steps(60) is line.drive
         assert [length for _, length in line.asked] == asked, (doubted, takes, line.asked)
         assert told.asked_for == asked_for
+    for takes, asked, words in (((10,), [10, 12, 12], (3, 2)), ((4,), [10, 4, 6, 6], (0, 2))):
+        told = Told((4, 4))
+        line = Willing([(4, 2)], told, takes)
+        assert line.steps(60) is line.drive and layout_of(line.drive) == words
+        assert [length for _, length in line.asked] == asked and told.asked_for is None
 
 
 def test_the_list_leaves_a_drive_that_answers_late_to_the_questions_until_contact_is_at_stake():
