@@ -490,6 +490,32 @@ def test_stop_beats_a_start_that_still_waits():
     bench.end()
 
 
+def test_stop_beats_a_start_that_reads_the_rating_of_the_motor():
+    bench = Bench()
+    bench.bus.wait(0.5)
+    for step in range(1, 24):
+        bench.at(0.02 * step, bench.drive.stop)
+        told = refusal(NotStarted, bench.drive.run, None, None, 300)
+        assert "told to stop meanwhile" in told, (step, told)
+        bench.bus.wait(0.5)
+        assert not bench.drive.is_running and not bench.motor().starts, step
+    bench.end()
+
+
+def test_stop_beats_a_start_that_waits_for_an_answer():
+    bench = Bench()
+    bench.bus.wait(0.5)
+    bench.motor().unplug()
+    bench.bus.wait(2)
+    assert not bench.drive.contact
+    bench.at(0.01, bench.drive.stop)
+    bench.at(0.02, bench.motor().plug)
+    assert "told to stop meanwhile" in refusal(NotStarted, bench.drive.run, 10.0)
+    bench.bus.wait(1)
+    assert not bench.drive.is_running and not bench.motor().starts
+    bench.end()
+
+
 def test_a_start_wants_room_in_the_telegrams():
     bench = Bench(parameters={2014: 2_000, 2012: 1}, layout=Layout(4, 1))
     assert "Layout(4, 1)" in refusal(NotStarted, bench.drive.run, 10.0)

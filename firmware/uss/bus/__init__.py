@@ -90,9 +90,9 @@ class Drive:
         """
         if self.set(hertz, percent, rpm):
             return
-        self._check_start(True)
+        stops = self._check_start(True)
         stw, hsw = run_words(self.family, self.survey.setpoint(hertz, percent, rpm))
-        self._start(hsw, stw)
+        self._start(hsw, stw, stops)
 
     def set(self, hertz=None, percent=None, rpm=None):
         """Set a new speed, as run() takes it, if this bus has told the motor to run.
@@ -447,8 +447,7 @@ class Drive:
             raise NotStarted("a %s has no jog" % self.family.name)
         if self.is_running and self.engine.wanted not in self._jogs():
             self._refuse("is running")
-        self._check_start(False)
-        self._start(0, stw)
+        self._start(0, stw, self._check_start(False))
 
     def _jogs(self):
         return self.family.jog_right, self.family.jog_left
@@ -459,7 +458,10 @@ class Drive:
         return not self._why_not_asked() and engine.is_on() and engine.wanted not in self._jogs()
 
     def _check_start(self, needs_setpoint):
-        """Read what must be known of the drive; raise NotStarted if it must not be started now."""
+        """Read what must be known of the drive; raise NotStarted if it must not be started now.
+
+        Returns how many stops it had been told when that began.
+        """
         self._raise_unless_asked()
         if not self.has_control:
             raise NotStarted(NOT_CONTROLLED % self.engine.address)
@@ -470,12 +472,14 @@ class Drive:
             )
         if self.engine.layout.pzd_words < (2 if needs_setpoint else 1):
             self._refuse("has no room for it in its telegrams: %r" % self.engine.layout)
+        stops = self.engine.stops
         self._wait_for_contact()
+        self._raise_if_stopped(stops)
         if self.engine.off != pzd.OFF1:  # OFF2 and OFF3 inhibit it until OFF1 follows
             if self.is_running:
                 self._refuse("is still stopping")
             self.engine.stop()
-        stops = self.engine.stops
+            stops = self.engine.stops
         survey = self.survey
         survey.ask()
         wrong = survey.what_is_wrong(STATUS)
@@ -493,14 +497,18 @@ class Drive:
         if obstacle:
             self._refuse(obstacle)
         self.keep_within(survey.off_time_ms())
+        return stops
+
+    def _raise_if_stopped(self, stops):
         if self.engine.stops != stops:
             self._refuse("was told to stop meanwhile")
 
-    def _start(self, hsw, stw):
-        """Start the drive and wait until it runs. If it does not start soon, stop it again, so
-        that it cannot start later."""
+    def _start(self, hsw, stw, stops):
+        """Start the drive, unless it has been told more stops, and wait until it runs. If it does
+        not start soon, stop it again, so that it cannot start later."""
         engine = self.engine
         self._raise_unless_asked()
+        self._raise_if_stopped(stops)
         engine.start(hsw, stw)
         self.bus.wait(
             START_S, lambda: self.is_running or not engine.wanted or engine.stopped_by_engine()
