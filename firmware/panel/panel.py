@@ -31,7 +31,7 @@ from uss.timing import elapsed
 _DRAW_MS = const(45)
 _MESSAGE_MS = const(3_000)
 _LAST_TURN = const(7)
-_UNSEEN_MS = const(300)  # so long a page that is coming may go before the picture
+_UNSEEN_MS = const(300)  # so long a page that is coming goes before the next picture
 _WAITS_MAX = const(8)  # turns until what takes long does not wait for a telegram any more,
 _WAITS_MOST = const(16)  # and until it does not wait for a step that has just begun
 _LONG_US = const(2_000)  # it takes up to so long, and is not to be interrupted
@@ -112,7 +112,7 @@ class Panel:
         self._view = View(self, screen, keys)
         self._view.begin(self._cover)
         self._drawn_at_ms = None  # when the picture was begun; None: a new one at once
-        self._is_unseen = False  # the page shown was coming, and was not drawn
+        self._is_unseen = False  # the page shown is coming, and goes before the picture
         self._position = 0  # of the selected one in the controls
         self._neighbours = Neighbours(controls, self.announcer, self)
         self._put_off = 0  # what can wait, in the turn before
@@ -322,13 +322,15 @@ class Panel:
     def _draw(self, now_ms, now_us):
         # In a slow loop a picture takes longer than _DRAW_MS: it is drawn to its end all the same.
         view, drawn_at_ms = self._view, self._drawn_at_ms
-        if self._page.is_coming() and self._cover is None and drawn_at_ms is not None:
+        is_coming = self._page.is_coming() and self._cover is None and drawn_at_ms is not None
+        if is_coming and (view.is_done() or not self._is_unseen):
             if elapsed(now_ms, drawn_at_ms, self.mask) < _UNSEEN_MS:
+                view.drop()
                 self._is_unseen = True
                 self._waits = 1  # the other turns work on it as well, when nothing disturbs
                 self._page.work(now_ms)
                 return False
-        if self._is_unseen:  # it has come: what was drawn before is of another page
+        if self._is_unseen and not is_coming:  # what was drawn before is of another page
             self._is_unseen = False
             drawn_at_ms = None
         if drawn_at_ms is None or (

@@ -50,8 +50,12 @@ class View:
         self._page = page
         self._next = WHOLE if page.whole else SETPOINT
 
+    def drop(self):
+        """Leave the rest of it undrawn."""
+        self._next = DONE
+
     def is_done(self):
-        """Whether all of it is drawn."""
+        """Whether nothing of it is left to be drawn."""
         return self._next == DONE
 
     def step(self, now_ms):

@@ -1033,6 +1033,37 @@ def test_a_page_that_is_coming_has_the_time_of_the_picture_for_300_ms():
         on_demand.drop(*modules)
 
 
+def test_a_message_is_shown_though_a_page_is_still_coming():
+    """As soon as the 300 ms are over; the page has the rest of its time."""
+    alone = ByItself()
+    modules = PAGES[PARAMETER][2]
+    for name in modules:
+        module = on_demand.load(name)
+    pages, its_own = [], module.Parameter
+
+    def make(front):
+        pages.append(Coming(front))
+        return pages[-1]
+
+    def row_2_at(ms):
+        for _ in range(160):
+            alone.begin(0, ms)
+        return alone.panel.screen.rows()[1].rstrip()
+
+    row_2_at(50_000)
+    module.Parameter = make
+    try:
+        alone.panel.turn_page(0, PARAMETER)
+        alone.panel.say(50_001, texts.NO_MEMORY)
+        assert row_2_at(50_299) != "NO MEMORY LEFT" and row_2_at(50_300) == "NO MEMORY LEFT"
+        worked = pages[0].worked
+        row_2_at(50_301)
+        assert pages[0].worked > worked
+    finally:
+        module.Parameter = its_own
+        on_demand.drop(*modules)
+
+
 def test_a_page_that_is_coming_has_each_step_that_nothing_disturbs():
     alone = ByItself()
     alone.free_until_us = 1 << 29

@@ -43,7 +43,8 @@ _UNIT_COLUMN = const(13)
 _UNIT_WIDTH = const(3)
 _FIELD_COLUMN = const(7)
 _FIELD_WIDTH = const(6)
-_WIDE = const(1_000_000)  # hundredths: from here on, with a minus, the whole field is needed
+_WIDE = const(999_950)  # hundredths, 10000: from here on a minus needs the whole field
+_WIDEST = const(9_999_950)  # 100000: a number without a minus does
 
 _SHIFT = const(21)  # of 23 bits behind the point: 2 go into the factor 100 = 25 << 2
 _EXPONENT_MAX = const(16)  # above 131071 nothing is believed
@@ -130,7 +131,7 @@ class Values:
             text = texts.UNKNOWN_VALUE if known else texts.UNREAD_VALUE
             screen.put(0, _FIELD_COLUMN, _FIELD_WIDTH, texts.of(text))
         else:
-            short = 0 if value <= -_WIDE or value >= 10 * _WIDE else 1
+            short = 0 if value <= -_WIDE or value >= _WIDEST else 1
             screen.put(0, _FIELD_COLUMN, 1, b"")
             column, width = _FIELD_COLUMN + short, _FIELD_WIDTH - short
             screen.number(0, column, width, value, decimals)
