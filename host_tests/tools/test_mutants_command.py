@@ -145,6 +145,28 @@ def test_a_test_that_waits_for_what_its_file_shares_does_not_hang(tree):
     assert status == 1 and "SURVIVED, tests that run it: 5" in told, told
 
 
+FAILS_LATER = """
+
+import sys
+
+
+def test_a_valve_shuts():
+    assert opens(51) and "noting" in sys.argv[0]
+"""
+
+
+@needs_cosmic_ray
+def test_a_test_that_fails_without_the_mutant_as_well_has_not_found_it(tree):
+    """This one passed when its lines were noted; it may fail behind another one alone."""
+    tests = ITS_TESTS.replace("opens(51) and not opens(50)", "opens(51)") + FAILS_LATER
+    (tree / "host_tests/valve/test_valve.py").write_text(tests)
+    status, told, trouble = of(tree, OPENS_AT_THE_HALF)
+    assert status == 1 and "SURVIVED, tests that run it: 2" in told, told + trouble
+    (tree / "host_tests/valve/test_valve.py").write_text(ITS_TESTS + FAILS_LATER)
+    status, told, trouble = of(tree, OPENS_AT_THE_HALF)
+    assert status == 0 and "test_a_valve_opens_above_the_half" in told, told + trouble
+
+
 @needs_cosmic_ray
 def test_a_line_that_no_test_runs_is_told(tree):
     status, told, _ = of(tree, SPARE)

@@ -9,6 +9,7 @@ built with the mutant in it.
 """
 
 import subprocess
+from contextlib import contextmanager
 from itertools import groupby
 from typing import NamedTuple
 
@@ -51,29 +52,53 @@ class Trials:
         self.reach = reach
         self.copy = scratch(tree, folder)
         self.patience_s = patience_s
+        self.passing = {}  # test that has found something -> whether it passes without
 
     def of(self, mutant):
+        verdict = self._on_unix(mutant)
+        if not verdict.by and self.reach.is_for_the_chip(mutant.path, mutant.line):
+            with self._planted(mutant):
+                verdict = self._on_chip(mutant)
+        return verdict
+
+    @contextmanager
+    def _planted(self, mutant):
         path = self.copy / mutant.path
         source = read(path)
         path.write_text(mutant.applied(source), encoding="utf-8")
         try:
-            functions = self.reach.functions(mutant.path, mutant.line)
-            verdict = self._on_unix(functions)
-            if not verdict.by and self.reach.is_for_the_chip(mutant.path, mutant.line):
-                verdict = self._on_chip(mutant)
-            return verdict
+            yield
         finally:
             path.write_text(source, encoding="utf-8")
 
-    def _on_unix(self, functions):
+    def _on_unix(self, mutant):
+        functions = self.reach.functions(mutant.path, mutant.line)
         for path, some in in_turns(functions):
-            longest_s = self.reach.longest_s(path)
             names = [function.name for function in some]
-            tier = tier_of(self.tree / path, TIERS_TRIED)
-            found = self._failure(tier, path, names, TIMES * longest_s + self.patience_s)
-            if found:
-                return Verdict(*found, len(functions))
+            while names:
+                with self._planted(mutant):
+                    found = self._failure_on_unix(path, names)
+                if found is None:
+                    break
+                test, reason = found
+                if self._passes(test, names):
+                    return Verdict(test, reason, len(functions))
+                names.remove(test.partition("::")[2])
         return Verdict("", "", len(functions))
+
+    def _passes(self, test, names):
+        """Whether it passes without a mutant, behind those of its file that ran before it."""
+        path, _, name = test.partition("::")
+        if name in names and test not in self.passing:
+            names = names[: names.index(name) + 1]
+            found = self._failure_on_unix(path, names)
+            self.passing[test] = found is None or found[0] != test
+        return self.passing.get(test, True)
+
+    def _failure_on_unix(self, path, names):
+        tier = tier_of(self.tree / path, TIERS_TRIED)
+        timeout_s = TIMES * self.reach.longest_s(path) + self.patience_s
+        return self._failure(tier, path, names, timeout_s)
 
     def _on_chip(self, mutant):
         if not (self.copy / "tools" / "fetch" / "pico.sh").exists():
