@@ -399,7 +399,7 @@ class Master:
         A late reply of the drive that was asked last does not count, nor does an echo.
         """
         buffer = self._receiver.buffer
-        if count < 3 or buffer[0] != telegram.STX or buffer[1] & 1 or not 4 <= buffer[1] <= 254:
+        if count < 3 or buffer[0] != telegram.STX or buffer[1] & 1 or buffer[1] < 4:
             return False
         return self._drive is None or buffer[2] != self._drive.address
 

@@ -472,6 +472,7 @@ def test_in_german():
     world.run(3000)
     go_to_step(world, 2011)
     assert "Adresse" in lines(world), world.lcd()
+    speak(world, "en")
     world.check()
 
 

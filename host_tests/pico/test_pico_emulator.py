@@ -437,7 +437,7 @@ def disturbed(is_often):
     world = running(baud=115200, addresses=(1, 2))
     stops(world, is_often)
     talker, drive = Talker(world), world.drives[1]
-    again(world, 53_170, lambda: talker.say(b"\x02\x0e\x41"))
+    again(world, 41_170, lambda: talker.say(b"\x02\x0e\x41"))
     again(world, 17_730, lambda: world.wire.silence(drive))
     world.run(150)
     world.press("UP")

@@ -474,8 +474,8 @@ class Drive:
             self._refuse("has no room for it in its telegrams: %r" % self.engine.layout)
         stops = self.engine.stops
         self._wait_for_contact()
-        self._raise_if_stopped(stops)
-        if self.engine.off != pzd.OFF1:  # OFF2 and OFF3 inhibit it until OFF1 follows
+        # OFF2 and OFF3 inhibit it until OFF1 follows, unless it was told so just now.
+        if self.engine.off != pzd.OFF1 and self.engine.stops == stops:
             if self.is_running:
                 self._refuse("is still stopping")
             self.engine.stop()
@@ -499,16 +499,12 @@ class Drive:
         self.keep_within(survey.off_time_ms())
         return stops
 
-    def _raise_if_stopped(self, stops):
-        if self.engine.stops != stops:
-            self._refuse("was told to stop meanwhile")
-
     def _start(self, hsw, stw, stops):
         """Start the drive, unless it has been told more stops, and wait until it runs. If it does
         not start soon, stop it again, so that it cannot start later."""
         engine = self.engine
-        self._raise_unless_asked()
-        self._raise_if_stopped(stops)
+        if engine.stops != stops:
+            self._refuse("was told to stop meanwhile")
         engine.start(hsw, stw)
         self.bus.wait(
             START_S, lambda: self.is_running or not engine.wanted or engine.stopped_by_engine()

@@ -38,4 +38,4 @@ def watch(plan, drive):
     if drive._sent_stw & STW_RUN:
         plan[ZSW_AT] = drive.size - drive.layout.pzd_count - 1
         plan[ZSW] = drive.zsw & ZSW_RUNNING  # and neither fault nor inhibit, old or new
-        plan[NEAR] = drive.near if drive._arrived and drive._order >= 0 else 0
+        plan[NEAR] = drive.near if drive._arrived else 0
