@@ -325,7 +325,7 @@ class Panel:
         is_coming = self._page.is_coming() and self._cover is None and drawn_at_ms is not None
         if is_coming and (view.is_done() or not self._is_unseen):
             if elapsed(now_ms, drawn_at_ms, self.mask) < _UNSEEN_MS:
-                view.drop()
+                view.begin(None)
                 self._is_unseen = True
                 self._waits = 1  # the other turns work on it as well, when nothing disturbs
                 self._page.work(now_ms)

@@ -46,13 +46,9 @@ class View:
         self._next = DONE  # the field that is drawn next
 
     def begin(self, page):
-        """A new picture, of this page."""
+        """A new picture, of this page; None: the rest of the present one is left undrawn."""
         self._page = page
-        self._next = WHOLE if page.whole else SETPOINT
-
-    def drop(self):
-        """Leave the rest of it undrawn."""
-        self._next = DONE
+        self._next = DONE if page is None else WHOLE if page.whole else SETPOINT
 
     def is_done(self):
         """Whether nothing of it is left to be drawn."""
