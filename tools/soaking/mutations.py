@@ -1192,8 +1192,7 @@ MUTATIONS = (
         ),
         (
             "uss/going_on/python.py",
-            "    if not is_reply(reply, count, request) or"
-            " agreeing(reply, 0, request, 0, count) == count:\n        return False\n",
+            "    if not is_reply(reply, count, request):\n        return False\n",
             "",
         ),
     ),
