@@ -22,6 +22,7 @@ from panel.menu import main as main_list
 from panel.menu import order as order_list
 from panel.menu import settings as setting_list
 from panel.menu import turns as turns_list
+from panel.menu import value as value_list
 from panel.menu import words as menu_words
 from panel.menu.engine import Menu
 from panel_bench import (
@@ -219,6 +220,26 @@ def test_every_setting_is_shown_with_its_value_and_its_unit():
         "BAUD 19200", "2ND STOP OFF3", "REPLY 20 ms", "LOST 1000 ms", "START 10.00 Hz",
         "STEP 0.10 Hz", "LOW 0.00 Hz", "HIGH 87.65 Hz", "KEY WAIT 400 ms", "KEY RATE 120 ms",
         "LIGHT STAYS ON",
+    ]  # fmt: skip
+
+
+def test_the_panel_begins_anew_with_a_setting_that_the_bus_or_the_setpoint_begins_with():
+    """The others act at once."""
+    world = panel()
+    wait_until_known(world)
+    front, anew = world.app.panel, []
+    front.begin_anew = lambda: anew.append(row[0])
+    for row in menu_words.SETTINGS:
+        shown = value_list.List(front, row)
+        before = shown.words(0)
+        for steps in (1, -1):
+            if shown.words(0) == before:
+                shown.change(0, steps)
+        assert shown.choose(0, 0) == BACK and shown.words(0) != before, row
+    texts.speak("en")
+    assert anew == [
+        "baud", "second_stop", "reply_timeout_ms", "lost_ms", "setpoint_centihertz",
+        "lowest_centihertz", "highest_centihertz",
     ]  # fmt: skip
 
 
