@@ -517,6 +517,17 @@ def test_stop_beats_a_start_that_waits_for_an_answer():
         bench.end()
 
 
+def test_a_drive_that_leaves_the_bus_while_its_start_is_prepared_is_not_told_to_run():
+    for step in range(30, 46):  # the last of what it reads comes at 0.45 s
+        bench = Bench()
+        bench.bus.wait(0.5)
+        drive = bench.drive
+        bench.at(0.01 * step, lambda: bench.bus.remove(drive))
+        assert "not on the bus" in refusal(NoContact, drive.run, None, None, 300)
+        assert not drive.engine.wanted, step
+        bench.bus.close()
+
+
 def test_a_start_wants_room_in_the_telegrams():
     bench = Bench(parameters={2014: 2_000, 2012: 1}, layout=Layout(4, 1))
     assert "Layout(4, 1)" in refusal(NotStarted, bench.drive.run, 10.0)

@@ -462,24 +462,25 @@ class Drive:
 
         Returns how many stops it had been told when that began.
         """
+        engine = self.engine
         self._raise_unless_asked()
         if not self.has_control:
-            raise NotStarted(NOT_CONTROLLED % self.engine.address)
-        if self.engine.stopped_by_engine():
+            raise NotStarted(NOT_CONTROLLED % engine.address)
+        if engine.stopped_by_engine():
             self._refuse(
                 "was stopped: it was lost, tripped, switched itself off, or step() was not called "
                 "for too long. stop() says that you know of it"
             )
-        if self.engine.layout.pzd_words < (2 if needs_setpoint else 1):
-            self._refuse("has no room for it in its telegrams: %r" % self.engine.layout)
-        stops = self.engine.stops
+        if engine.layout.pzd_words < (2 if needs_setpoint else 1):
+            self._refuse("has no room for it in its telegrams: %r" % engine.layout)
+        stops = engine.stops
         self._wait_for_contact()
         # OFF2 and OFF3 inhibit it until OFF1 follows, unless it was told so just now.
-        if self.engine.off != pzd.OFF1 and self.engine.stops == stops:
+        if engine.off != pzd.OFF1 and engine.stops == stops:
             if self.is_running:
                 self._refuse("is still stopping")
-            self.engine.stop()
-            stops = self.engine.stops
+            engine.stop()
+            stops = engine.stops
         survey = self.survey
         survey.ask()
         wrong = survey.what_is_wrong(STATUS)
@@ -503,6 +504,7 @@ class Drive:
         """Start the drive, unless it has been told more stops, and wait until it runs. If it does
         not start soon, stop it again, so that it cannot start later."""
         engine = self.engine
+        self._raise_unless_asked()
         if engine.stops != stops:
             self._refuse("was told to stop meanwhile")
         engine.start(hsw, stw)
