@@ -997,18 +997,31 @@ class Coming(Page):
         screen.put(1, 0, 13, b"COMES")
 
 
+class ComingParameters:
+    """Meanwhile the page of parameters is `Coming`: a list of those that were made."""
+
+    def __enter__(self):
+        self.modules = PAGES[PARAMETER][2]
+        for name in self.modules:
+            self.module = on_demand.load(name)
+        self.its_own = self.module.Parameter
+        self.module.Parameter = self.made
+        self.pages = []
+        return self.pages
+
+    def made(self, front):
+        self.pages.append(Coming(front))
+        return self.pages[-1]
+
+    def __exit__(self, *_):
+        self.module.Parameter = self.its_own
+        on_demand.drop(*self.modules)
+
+
 def test_a_page_that_is_coming_has_the_time_of_the_picture_for_300_ms():
     alone = ByItself()
     alone.free_until_us = 1 << 29
     pictures = alone.panel.warning = Pictures()
-    modules = PAGES[PARAMETER][2]
-    for name in modules:
-        module = on_demand.load(name)
-    pages, its_own = [], module.Parameter
-
-    def make(front):
-        pages.append(Coming(front))
-        return pages[-1]
 
     def begun(ms):
         before = pictures.begun
@@ -1017,8 +1030,7 @@ def test_a_page_that_is_coming_has_the_time_of_the_picture_for_300_ms():
         return pictures.begun - before
 
     assert begun(0) == 1
-    module.Parameter = make
-    try:
+    with ComingParameters() as pages:
         alone.panel.turn_page(0, PARAMETER)
         assert begun(299) == 0 and pages[0].worked > 100
         alone.free_until_us = 0
@@ -1028,22 +1040,11 @@ def test_a_page_that_is_coming_has_the_time_of_the_picture_for_300_ms():
         pages[0].is_there = False
         alone.panel.cover(Coming(alone.panel))  # it is this one that is shown
         assert [begun(ms) for ms in (700, 701, 746)] == [0, 1, 1]
-    finally:
-        module.Parameter = its_own
-        on_demand.drop(*modules)
 
 
 def test_a_message_is_shown_though_a_page_is_still_coming():
     """As soon as the 300 ms are over; the page has the rest of its time."""
     alone = ByItself()
-    modules = PAGES[PARAMETER][2]
-    for name in modules:
-        module = on_demand.load(name)
-    pages, its_own = [], module.Parameter
-
-    def make(front):
-        pages.append(Coming(front))
-        return pages[-1]
 
     def row_2_at(ms):
         for _ in range(160):
@@ -1051,33 +1052,19 @@ def test_a_message_is_shown_though_a_page_is_still_coming():
         return alone.panel.screen.rows()[1].rstrip()
 
     row_2_at(50_000)
-    module.Parameter = make
-    try:
+    with ComingParameters() as pages:
         alone.panel.turn_page(0, PARAMETER)
         alone.panel.say(50_001, texts.NO_MEMORY)
         assert row_2_at(50_299) != "NO MEMORY LEFT" and row_2_at(50_300) == "NO MEMORY LEFT"
         worked = pages[0].worked
         row_2_at(50_301)
         assert pages[0].worked > worked
-    finally:
-        module.Parameter = its_own
-        on_demand.drop(*modules)
 
 
 def test_a_page_that_is_coming_has_each_step_that_nothing_disturbs():
     alone = ByItself()
     alone.free_until_us = 1 << 29
-    modules = PAGES[PARAMETER][2]
-    for name in modules:
-        module = on_demand.load(name)
-    pages, its_own = [], module.Parameter
-
-    def make(front):
-        pages.append(Coming(front))
-        return pages[-1]
-
-    module.Parameter = make
-    try:
+    with ComingParameters() as pages:
         alone.panel.turn_page(0, PARAMETER)
         while not pages:
             alone.begin(0)
@@ -1090,9 +1077,6 @@ def test_a_page_that_is_coming_has_each_step_that_nothing_disturbs():
         for _ in range(16):
             alone.begin(0)
         assert 16 <= pages[0].worked < 24, pages[0].worked
-    finally:
-        module.Parameter = its_own
-        on_demand.drop(*modules)
 
 
 def test_a_key_that_is_pressed_has_a_picture_at_once_and_one_that_repeats_has_not():
