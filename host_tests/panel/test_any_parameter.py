@@ -36,6 +36,7 @@ from panel.pages.table import PAGES, PARAMETER
 from panel.reading import Reading
 from panel.screen import Screen
 from panel_bench import row_1, row_2, running, settled_row_2, starts
+from pkw_bench import AskedDrive
 from uss import families, pkw
 from uss.drive import Drive
 
@@ -1300,21 +1301,21 @@ def test_a_question_that_finds_no_room_is_not_on_its_way():
 # --- the page by itself --------------------------------------------------------------------------
 
 
-class Alone:
+class Alone(AskedDrive):
     """The page of a drive, which is asked, and answers what and when the test says."""
 
     mask = 0x3FFFFFFF
-    contact, pkw_words, address, page_turns = True, 4, 7, 0
+    pkw_words, address, page_turns = 4, 7, 0
     off_time_ms = 1_500
-    full = False
 
     def __init__(self, number, numbers=catalogue.ALL, family=families.MM440, began_ms=0):
-        self.selected = self.drive = self.survey = self.layout = self.channel = self.desk = self
+        AskedDrive.__init__(self)
+        self.selected = self.drive = self.survey = self.layout = self.desk = self
         self.announcer = self.settings = self
         self.family, self.favourites, self.began_ms = family, {}, began_ms
         self.remembered = {"panel.lookup.parameter": (numbers, number)}
         self.keys = Keys(NAMES, self.mask)
-        self.jobs, self.said, self.covers = [], [], []
+        self.said, self.covers = [], []
         self.page = Parameter(self)
         self.look_on()
 
@@ -1328,13 +1329,6 @@ class Alone:
 
     def has_taken(self, _us):
         return False
-
-    def is_full(self):
-        return self.full
-
-    def ask(self, job):
-        job.state = pkw.PENDING
-        self.jobs.append(job)
 
     def say(self, _now_ms, *said):
         self.said.append(said[0])
@@ -1350,18 +1344,18 @@ class Alone:
 
     def asks(self, ms, *down):
         """Whether the drive is asked in the step at this time; down: keys that are down."""
-        before = len(self.jobs)
+        before = len(self.asked)
         self.keys.down = self.keys.bits(down)
         self.page.step(self.keys, self.began_ms + ms & self.mask)
         self.look_on()
-        return len(self.jobs) > before
+        return len(self.asked) > before
 
-    def asked(self):
-        job = self.jobs[-1]
+    def question(self):
+        job = self.asked[-1]
         return job.task, job.number, job.index
 
     def answer(self, ms, value=0, state=pkw.DONE, width=pkw.WORD):
-        job = self.jobs[-1]
+        job = self.asked[-1]
         job.state, job.width, job.error = state, width, 0
         if width == pkw.DOUBLE:
             job.high, job.low = pkw.float_to_words(value)
@@ -1401,19 +1395,19 @@ def told(number, number_told, **options):
 def test_the_next_question_follows_500_ms_after_an_answer_and_one_of_another_index_at_once():
     alone = Alone(700, began_ms=Alone.mask - 600)  # the clock begins anew meanwhile
     assert alone.row() == "P0700[0]       ?"
-    assert alone.asks(0) and alone.asked() == (pkw.READ, 700, 0) and not alone.asks(400)
+    assert alone.asks(0) and alone.question() == (pkw.READ, 700, 0) and not alone.asks(400)
     for ms in (500, 1_100):
         assert not alone.answer(ms, 5) and alone.row() == "P0700[0]       5"
         assert not alone.asks(ms + 499) and alone.asks(ms + 500)
     alone.answer(1_700, 5)
     assert alone.press(1_701, "UP") == "P0700[1]       ?"
-    assert alone.asks(1_702) and alone.asked() == (pkw.READ, 700, 1)
+    assert alone.asks(1_702) and alone.question() == (pkw.READ, 700, 1)
     assert alone.press(1_703, "DOWN") == "P0700[0]       ?" and alone.asks(1_704)
     assert alone.press(1_705, "DOWN") == "P0700[2]       ?"  # it has three
     alone.full = True
     assert not alone.asks(1_706)
     alone.full = False
-    assert alone.asks(1_707) and alone.asked() == (pkw.READ, 700, 2)
+    assert alone.asks(1_707) and alone.question() == (pkw.READ, 700, 2)
 
 
 def test_what_is_typed_is_dropped_a_minute_after_the_last_key():
@@ -1513,7 +1507,7 @@ def test_another_index_has_nothing_of_the_one_before():
     assert alone.asks(1_051)
     alone.press(1_052, "UP")
     assert alone.answer(1_053, 2) and alone.row() == "P0700[1]       ?"  # that was asked before
-    assert alone.asked() == (pkw.READ, 700, 1) and alone.lines() == unnamed
+    assert alone.question() == (pkw.READ, 700, 1) and alone.lines() == unnamed
 
 
 def test_while_the_next_parameter_is_looked_for_an_answer_is_taken_and_nothing_is_asked():
@@ -1526,7 +1520,7 @@ def test_while_the_next_parameter_is_looked_for_an_answer_is_taken_and_nothing_i
     alone.look_on = look_on
     look_on()
     assert alone.row().startswith("P0701[0]") and alone.asks(5_001)
-    assert alone.asked() == (pkw.READ, 701, 0)
+    assert alone.question() == (pkw.READ, 701, 0)
 
 
 def test_a_step_that_has_taken_long_looks_for_one_piece_and_one_that_a_reply_may_end_sooner():

@@ -37,6 +37,7 @@ from parameter_bench import (
     write_eeprom,
     writes,
 )
+from pkw_bench import AskedDrive
 from uss import pkw
 from uss.families import MM3, MM440
 from uss.families.generic import CUTS_OFF
@@ -1025,12 +1026,12 @@ def test_a_question_beside_an_alarm_tells_both_in_turn_all_that_is_at_stake():
 # --- parameter mode by itself --------------------------------------------------------------------
 
 
-class Mode:
+class Mode(AskedDrive):
     """Parameter mode of one drive, which is asked, and answers what and when the test says."""
 
     mask = 0xFFFF
-    contact, pkw_words = True, 4
-    active = full = False
+    pkw_words = 4
+    active = False
     page_turns = 1
     off_time_ms, off_time_unit_ms, off_time_number = 1_001, 100, 2014
     link_index, linked = 3, (2014,)
@@ -1041,22 +1042,16 @@ class Mode:
     def __init__(self, row=0):
         from panel.pages.parameters import Parameters
 
-        self.drive = self.survey = self.layout = self.family = self.channel = self.desk = self
+        AskedDrive.__init__(self)
+        self.drive = self.survey = self.layout = self.family = self.desk = self
         self.selected = self.warning = self.announcer = self
         self.ask_first = {}
         self.remembered = {"panel.pages.parameters": row}
         self.screen = Screen()
         self.keys = Keys(KEY_NAMES, self.mask)
-        self.jobs, self.said, self.wrote = [], [], []
+        self.said, self.wrote = [], []
         self.page = Parameters(self)
         assert [self.asks(0) for _ in range(3)] == [False, False, True]  # it prepares itself
-
-    def is_full(self):
-        return self.full
-
-    def ask(self, job):
-        job.state = pkw.PENDING
-        self.jobs.append(job)
 
     def say(self, _now_ms, *said):
         self.said.append(said)
@@ -1068,15 +1063,15 @@ class Mode:
 
     def asks(self, now_ms):
         """Whether it is asked in the step at this time."""
-        before = len(self.jobs)
+        before = len(self.asked)
         self.page.step(self.keys, now_ms & self.mask)
-        return len(self.jobs) > before
+        return len(self.asked) > before
 
-    def asked(self):
-        return self.jobs[-1].number, self.jobs[-1].index
+    def question(self):
+        return self.asked[-1].number, self.asked[-1].index
 
     def answer(self, now_ms, value=0, state=pkw.DONE):
-        self.jobs[-1].state, self.jobs[-1].low = state, value
+        AskedDrive.answer(self, value, state)
         return self.asks(now_ms)
 
     def press(self, *names, repeats=0):
@@ -1106,7 +1101,7 @@ def editing(row, value):
 
 def test_a_parameter_is_asked_for_500_ms_after_its_answer_and_another_one_at_once():
     mode = Mode()
-    assert mode.asked() == (700, 0) and mode.row() == "P0700:     ?"
+    assert mode.question() == (700, 0) and mode.row() == "P0700:     ?"
     for at_ms in (10, 0xFFFF - 300, 1_000):  # the clock begins anew meanwhile
         assert not mode.answer(at_ms, 6) and mode.row() == "P0700:     6"
         assert not mode.asks(at_ms + 499) and mode.asks(at_ms + 500)
@@ -1114,10 +1109,10 @@ def test_a_parameter_is_asked_for_500_ms_after_its_answer_and_another_one_at_onc
     mode.answer(2_000, 7)
     assert mode.press("NEXT") == "P1000:     ?"
     assert mode.remembered == {"panel.pages.parameters": 1}
-    assert mode.asks(2_001) and mode.asked() == (1000, 0)
+    assert mode.asks(2_001) and mode.question() == (1000, 0)
     mode.answer(2_002, 1)
     mode.press("NEXT")
-    assert mode.asks(2_003) and mode.asked() == (2014, 3)  # it has a value for each link
+    assert mode.asks(2_003) and mode.question() == (2014, 3)  # it has a value for each link
     mode.answer(2_004, 1)
     assert mode.press("NEXT") == "r2024:     ?" and mode.press("NEXT") == "P0700:     ?"
     mode.full = True
@@ -1143,7 +1138,7 @@ def test_a_refusal_is_said_when_it_begins_and_again_after_a_value():
         (pkw.DONE, 0, "P0700:     0"), (pkw.UNANSWERED, 1, "P0700: -----"),
         (pkw.TIMED_OUT, 0, "P0700:     ?"), (pkw.REFUSED, 1, "P0700: -----"),
     ):  # fmt: skip
-        mode.jobs[-1].error = 0
+        mode.asked[-1].error = 0
         mode.answer(now_ms, 0, state)
         said += more
         assert len(mode.said) == said and mode.row() == row, state
