@@ -314,6 +314,58 @@ def test_a_timer_fires_when_it_should():
     close_to((fell_ns - rose_ns) / 1000, 10_000, 250)
 
 
+# A state machine with the LED, in steps of 10 ms, and where it is when somebody looks.
+STEPS = """
+import machine, rp2, time
+@rp2.asm_pio(set_init=rp2.PIO.OUT_LOW)
+def steps():
+    set(pins, 1)
+    set(x, 2)[19]
+    label("turn")
+    mov(y, x)[19]
+    jmp(x_dec, "turn")[19]
+    set(pins, 0)
+    label("end")
+    jmp("end")
+stepper = rp2.StateMachine(4, steps, freq=2_000, set_base=machine.Pin(25))
+ADDRESS = 0x5030_00D4
+first = machine.mem32[ADDRESS]
+def look(ms):
+    found = []
+    stepper.active(0)
+    stepper.restart()
+    stepper.active(1)
+    began = time.ticks_us()
+    while time.ticks_diff(time.ticks_us(), began) < ms * 1000:
+        found.append((time.ticks_us() - began, machine.mem32[ADDRESS] - first))
+    return found
+def is_good(looked):  # the next instruction
+    for us, place in looked:
+        step, rest = divmod(us, 10_000)
+        if 1_500 < rest < 9_500 and place != (2, 3, 2, 3, 2, 3, 4, 5, 5)[step]:
+            return us, place
+    return len(looked) > 100
+def count():
+    stepper.exec("mov(isr, x)")
+    stepper.exec("push()")
+    return stepper.get()
+"""
+
+
+def test_a_state_machine_is_where_it_should_be_whenever_somebody_looks():
+    """What only the machine notices is executed before its time, and taken back."""
+    world = stock(STEPS)
+    for looks in ("look(90)", "look(0), time.sleep_ms(90)"):
+        world.led.clear()
+        does(world, looks)
+        (on_us, on), (off_us, off) = world.led
+        assert on and not off
+        close_to(off_us - on_us, 70_500, 2)
+    assert does(world, "print(is_good(look(90)))") == "True"
+    for ms, left in ((5, 2), (15, 2), (25, 1), (45, 0)):
+        assert number(world, "look(%d)\nprint(count())" % ms) == left, ms
+
+
 def test_the_keys_are_wires_to_ground_and_stop_is_closed():
     world = stock()
     levels = "print([Pin(gpio, Pin.IN, Pin.PULL_UP)() for gpio in (13, 14)])"

@@ -106,6 +106,7 @@ class Server {
     this.pending = []; // records not yet due, in order of time
     this.run = null; // the R that is being answered
     this.parent = process.ppid;
+    this.slices = 0; // run so far
   }
 
   get now() {
@@ -177,9 +178,9 @@ class Server {
       this.idleNanos = Math.min(instant, report.until);
       return;
     }
-    for (let slice = 0; this.now < Math.min(instant, report.until); slice++) {
+    while (this.now < Math.min(instant, report.until)) {
       if (terminal.on) this.pico.send(terminal.read());
-      if (slice % ORPHAN_SLICES === 0 && process.ppid !== this.parent) process.exit(0);
+      if (++this.slices % ORPHAN_SLICES === 0 && process.ppid !== this.parent) process.exit(0);
       this.pico.run(Math.min(instant, this.now + SLICE_NANOS));
     }
   }

@@ -4,7 +4,8 @@
 //
 // rp2040js knows the instructions but lets the machines run free on the host's time. A machine
 // that waits costs nothing: what it waits for (a FIFO written by the CPU or by DMA, a pin, an
-// interrupt flag) wakes it at the next edge.
+// interrupt flag) wakes it at the next edge. Nor does an alarm go off for an instruction that nobody
+// outside of the machine would notice: it is executed early, and taken back if somebody looks.
 import { FIFO, RPPIO, StateMachine } from './library.mjs';
 
 const CYCLE_NANOS = 8;
@@ -13,6 +14,10 @@ const CLKDIV = 0x00, INSTR = 0x10;
 const JOIN_RX = 1 << 31, JOIN_TX = 1 << 30;
 const INSTRUCTIONS = 0x048; // from here on, registers tell or change how far a machine is
 const FIFO_WORDS = 4;
+const JMP = 0, OUT = 3, MOV = 5, SET = 7; // the first three bits of an instruction
+const ON_PIN = 6, FROM_PINS = 0, FROM_STATUS = 5, TO_EXEC = 4, OUT_EXEC = 7; // and what some have
+const AUTOPULL = 1 << 17;
+const MOST_EARLY = 32; // instructions: a program may go round for ever
 const COUNTED = { 2: 'x', 4: 'y' }; // by the condition of a JMP: the register that it counts down
 const FRACTION = 256;
 
@@ -25,6 +30,7 @@ class TimedMachine extends StateMachine {
     this.edge = 0; // the number of the edge that the alarm is set to
     this.executing = false;
     this.spun = null; // { register, turns, cycles of each, edge of the first }
+    this.before = null; // how it was before it executed instructions early
   }
 
   get period() { // in cycles / FRACTION
@@ -65,7 +71,7 @@ class TimedMachine extends StateMachine {
   }
 
   execute() {
-    this.spun = null;
+    this.spun = this.before = null;
     if (!this.enabled) return;
     this.executing = true;
     const { pc, cycles: before } = this;
@@ -74,16 +80,59 @@ class TimedMachine extends StateMachine {
       super.checkWait();
       spent = 1; // the edge at which the wait ended; its delay is in this.cycles
     } else {
-      this.updatePC = true;
-      this.executeInstruction(this.pio.instructions[this.pc]);
-      if (this.updatePC) this.nextPC();
+      super.step();
     }
     this.executing = false;
     this.pio.checkChangedPins();
     if (this.waiting) return;
     this.edge += spent + this.cycles - before;
     if (this.pc === pc && !spent) this.spin(this.cycles - before);
+    else this.goAhead();
     this.alarm.at(this.instant(this.edge));
+  }
+
+  // Executes the instructions that come next as long as they are of the machine alone.
+  goAhead() {
+    const { pio } = this, { pinValues, pinDirections } = pio;
+    for (let count = 0; count < MOST_EARLY && this.isOwn(pio.instructions[this.pc]); count++) {
+      const before = this.copy();
+      this.stepEarly();
+      if (pio.pinValues !== pinValues || pio.pinDirections !== pinDirections) {
+        Object.assign(pio, { pinValues, pinDirections });
+        Object.assign(this, before);
+        return;
+      }
+      this.before ??= before;
+    }
+  }
+
+  stepEarly() {
+    const { cycles } = this;
+    this.executing = true;
+    super.step();
+    this.executing = false;
+    this.edge += this.cycles - cycles;
+  }
+
+  // What such an instruction may change.
+  copy() {
+    const { pc, x, y, cycles, edge, outPinValues, outPinDirection } = this;
+    const { inputShiftReg, inputShiftCount, outputShiftReg, outputShiftCount } = this;
+    return { pc, x, y, cycles, edge, outPinValues, outPinDirection,
+      inputShiftReg, inputShiftCount, outputShiftReg, outputShiftCount };
+  }
+
+  // Whether it has to do with nothing outside but the pins that it drives, which no other machine
+  // drives. One that jumps to itself is for `spin`.
+  isOwn(opcode) {
+    const operand = (opcode >> 5) & 7, source = opcode & 7;
+    switch (opcode >> 13) {
+      case JMP: return operand !== ON_PIN && (opcode & 0x1f) !== this.pc;
+      case OUT: return operand !== OUT_EXEC && !(this.shiftCtrl & AUTOPULL);
+      case MOV: return operand !== TO_EXEC && source !== FROM_PINS && source !== FROM_STATUS;
+      case SET: return true;
+    }
+    return false;
   }
 
   // It has jumped to where it was. If it counts down meanwhile, it waits: all turns but the last are
@@ -99,6 +148,12 @@ class TimedMachine extends StateMachine {
 
   // As far as it is by now.
   catchUp() {
+    if (this.before !== null) {
+      Object.assign(this, this.before);
+      this.before = null;
+      while (this.edge < this.nextEdge) this.stepEarly();
+      this.alarm.at(this.instant(this.edge));
+    }
     if (this.spun === null) return;
     const { register, turns, cycles, edge } = this.spun;
     const done = Math.min(turns, Math.max(0, Math.ceil((this.nextEdge - edge) / cycles)));
