@@ -67,7 +67,7 @@ def steps(phase_ms, phases, collect_ms, tasks=False, settled_ms=0, apart=None):
     ticks_us, ticks_ms, since = time.ticks_us, time.ticks_ms, time.ticks_diff
     last = (apart or phases) - 1
     tables = [array("H", bytes(2 * BUCKETS)) for _ in range(last + 1)]
-    longer = [array("H") for _ in range(last + 1)]
+    longer = [array("H") for _ in range(last + 1)]  # half of what a list takes
     collections = array("I")
     board.idle = idle
     app = main.start(board)

@@ -30,7 +30,7 @@ class TimedMachine extends StateMachine {
     this.edge = 0; // the number of the edge that the alarm is set to
     this.executing = false;
     this.spun = null; // { register, turns, cycles of each, edge of the first }
-    this.before = null; // how it was before it executed instructions early
+    this.onTime = null; // how it was when it began to execute instructions early
   }
 
   get period() { // in cycles / FRACTION
@@ -71,7 +71,7 @@ class TimedMachine extends StateMachine {
   }
 
   execute() {
-    this.spun = this.before = null;
+    this.spun = this.onTime = null;
     if (!this.enabled) return;
     this.executing = true;
     const { pc, cycles: before } = this;
@@ -102,7 +102,7 @@ class TimedMachine extends StateMachine {
         Object.assign(this, before);
         return;
       }
-      this.before ??= before;
+      this.onTime ??= before;
     }
   }
 
@@ -139,7 +139,7 @@ class TimedMachine extends StateMachine {
   // taken at once.
   spin(cycles) {
     const opcode = this.pio.instructions[this.pc], register = COUNTED[(opcode >> 5) & 7];
-    if (opcode >> 13 !== 0 || !register) return;
+    if (opcode >> 13 !== JMP || !register) return;
     const turns = this[register];
     this.spun = { register, turns, cycles, edge: this.edge };
     this[register] = 0;
@@ -148,9 +148,9 @@ class TimedMachine extends StateMachine {
 
   // As far as it is by now.
   catchUp() {
-    if (this.before !== null) {
-      Object.assign(this, this.before);
-      this.before = null;
+    if (this.onTime !== null) {
+      Object.assign(this, this.onTime);
+      this.onTime = null;
       while (this.edge < this.nextEdge) this.stepEarly();
       this.alarm.at(this.instant(this.edge));
     }
