@@ -107,6 +107,22 @@ def test_a_character_has_arrived_when_its_stop_bit_is_over():
         assert burst.arrived(burst.end_us + 10**9) == 256
 
 
+def test_its_exclusive_or_is_that_of_its_characters_whatever_was_said_before():
+    clock, wire, one, _ = line()
+    for said, check in (
+        (b"\x01\x02\x04", 0x07),
+        (b"\x01\x02\x04", 0x07),
+        (b"\x01\x02\x08", 0x0B),
+        (b"\x01\x02", 0x03),
+        (b"\x01\x02\x08", 0x0B),
+        (b"\x01\x02\x08\x00\x10", 0x1B),
+        (b"\x01\x02\x08\x00", 0x0B),
+    ):
+        burst = wire.talk(one, said, len(said))
+        assert burst.exclusive_or() == check, said
+        clock.advance(10_000)
+
+
 def test_everybody_but_the_talker_hears():
     clock, wire, one, two = line()
     three = Listener()

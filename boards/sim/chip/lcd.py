@@ -103,6 +103,8 @@ class Lcd:
         self._rose_us = -CYCLE_US
         self._complained = 0
         self._book = [[0, None] for _ in range(COMPLAINT_LIMIT)]
+        self._looked_at = [None, None]  # in each row: what its text depends on, and the text
+        self._read = [None, None]
         self._instructions = (
             (0x80, self._set_ddram_address),
             (0x40, self._set_cgram_address),
@@ -312,11 +314,15 @@ class Lcd:
         if not self.is_on or (row and not self.two_lines):
             return " " * COLUMNS
         length = ROW_LENGTH if self.two_lines else 2 * ROW_LENGTH
-        first = row * ROW_LENGTH
-        return "".join(
-            self._look(self.ddram[first + (self.first_column + column) % length])
-            for column in range(COLUMNS)
-        )
+        cells = self.ddram[row * ROW_LENGTH :][:length]
+        column = self.first_column % length
+        codes = (cells + cells)[column : column + COLUMNS]
+        # Who waits for a text looks at the same one again and again.
+        looked_at = (self.rom, bytes(codes), bytes(self.cgram))
+        if looked_at != self._looked_at[row]:
+            self._looked_at[row] = looked_at
+            self._read[row] = "".join([self._look(code) for code in codes])
+        return self._read[row]
 
     def _look(self, code):
         if self.rom == "A02" and code >= A02_ACCENTED:

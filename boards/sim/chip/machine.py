@@ -20,7 +20,7 @@ import sys
 from micropython import const
 
 from boards.sim.clock import Event
-from boards.sim.line.wire import BURST_LIMIT
+from boards.sim.line.wire import BURST_LIMIT, copy
 
 try:
     from micropython import heap_lock, heap_unlock
@@ -283,11 +283,13 @@ class UART:
     def _hand_over(self, buffer, count):
         data = self._buffer
         at = self._head
-        for i in range(count):
-            buffer[i] = data[at]
-            at += 1
-            if at == RX_LIMIT:
-                at = 0
+        if not at and count <= BURST_LIMIT:
+            copy(data, count, buffer, 0)
+            at = count
+        else:
+            for i in range(count):
+                buffer[i] = data[at]
+                at = at + 1 if at + 1 < RX_LIMIT else 0
         self._head = at
         self._count -= count
 
@@ -335,15 +337,18 @@ class UART:
         room = RX_FIFO - self._in_fifo if masked else RX_LIMIT - self._count
         if stop - first > room:
             stop = first + room
+        if not self._count:
+            self._head = 0  # so that mostly all is copied at one go
         at = (self._head + self._count) % RX_LIMIT
         self._count += stop - first
         self._in_fifo += stop - first
-        while first < stop:
-            buffer[at] = data[first]
-            first += 1
-            at += 1
-            if at == RX_LIMIT:
-                at = 0
+        if not first and at + stop <= RX_LIMIT:
+            copy(data, stop, buffer, at)
+        else:
+            while first < stop:
+                buffer[at] = data[first]
+                first += 1
+                at = at + 1 if at + 1 < RX_LIMIT else 0
         if self._in_fifo >= FULL_FIFO and not masked:
             self._serve_full()
 

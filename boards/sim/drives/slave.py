@@ -13,6 +13,8 @@ A burst without errors and gaps is judged at one go, any other character by char
 the same. What the specification leaves open is a switch (switches.py).
 """
 
+from struct import unpack_from
+
 from boards.sim.drives.switches import Switches
 from boards.sim.line.wire import FRAME as FRAME_ERROR
 from boards.sim.line.wire import OVERRUN as OVERRUN_ERROR
@@ -35,6 +37,7 @@ STATUS_BITS = (0, 0, 0x01, 0x02, 0x04, 0x08, 0x10, 0x40, 0x20, 0x80)
 
 VARIABLE = 127  # PKW length that says: as many words as a task needs
 NET_MAX = 252
+WORDS = tuple([">%dH" % count for count in range(NET_MAX // 2 + 1)])  # in the words of `struct`
 ROUNDING_US = 2  # instants are whole microseconds, and a gap lies between two of them
 
 
@@ -46,22 +49,9 @@ def xor_of(data, count):
     return bcc
 
 
-def put_words(buffer, at, words):
-    """`words` into `buffer`, two characters each, from place `at` on."""
-    for word in words:
-        buffer[at] = word >> 8
-        at += 1
-        buffer[at] = word & 0xFF
-        at += 1
-
-
 def words_of(telegram, at, end):
     """The words in telegram[at:end]."""
-    words = []
-    while at < end:
-        words.append(telegram[at] << 8 | telegram[at + 1])
-        at += 2
-    return words
+    return list(unpack_from(WORDS[(end - at) // 2], telegram, at))
 
 
 def kind_of(errors):
@@ -138,7 +128,13 @@ class Slave:
             return self._hear_characters(burst)
         self._skipping = False
         self._errors = 0
-        self._is_mine = self._form(data[2]) is not None
+        adr = data[2]
+        if adr < BROADCAST_BIT and adr != self.address:  # most are for another drive, or from one
+            self._is_mine = False
+            if not (self._switches.counts_all or burst.exclusive_or()):
+                return None
+        else:
+            self._is_mine = self._form(adr) is not None
         return self._judge(data, count, burst.exclusive_or())
 
     def frame(self, buffer, words):
@@ -146,10 +142,15 @@ class Slave:
         buffer[0] = STX
         buffer[1] = 2 * len(words) + 2
         buffer[2] = self.address
-        put_words(buffer, 3, words)
-        count = buffer[1] + 1
-        buffer[count] = xor_of(buffer, count)
-        return count + 1
+        check = STX ^ buffer[1] ^ self.address
+        at = 3
+        for word in words:
+            buffer[at] = word >> 8
+            buffer[at + 1] = word & 0xFF
+            at += 2
+            check ^= word
+        buffer[at] = (check >> 8 ^ check) & 0xFF
+        return at + 1
 
     # A telegram
 

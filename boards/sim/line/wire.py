@@ -30,7 +30,9 @@ one, the wire judges only the panel, by what it could hear; breaches that faults
 are noted apart, in `weather`.
 """
 
+import sys
 from array import array
+from struct import pack_into
 
 from boards.sim.clock import Event
 
@@ -88,11 +90,19 @@ def ends_of_characters(baud):
     return array("i", [(i + 1) * 11_000_000 // baud for i in range(BURST_LIMIT)])
 
 
-def copy(data, count, into, at):
-    """Copy data[:count] to into[at:]."""
-    for i in range(count):
-        into[at] = data[i]
-        at += 1
+if sys.implementation.name == "micropython":
+    # So many characters, in the words of `struct`. To make such a text, or a slice, takes heap.
+    _CHARACTERS = tuple(["%ds" % count for count in range(BURST_LIMIT + 1)])
+
+    def copy(data, count, into, at):
+        """Copy data[:count] to into[at:], without heap."""
+        pack_into(_CHARACTERS[count], into, at, data)
+
+else:
+
+    def copy(data, count, into, at):
+        """Copy data[:count] to into[at:]. `struct` takes no memoryview here."""
+        into[at : at + count] = data[:count]
 
 
 class Burst:
@@ -132,6 +142,9 @@ class Burst:
         self._flags = bytearray(BURST_LIMIT)
         self._original = bytearray(BURST_LIMIT)
         self._check = -1
+        self._checked = bytearray(BURST_LIMIT)  # the characters that were looked through last
+        self._checked_count = 0
+        self._last_check = 0
 
     def begin(self, now_us, silence_us):
         """Begin anew, empty."""
@@ -190,12 +203,20 @@ class Burst:
         """The exclusive or of all characters, computed once for all stations that hear them."""
         check = self._check
         if check < 0:
-            check = 0
-            data = self.data
-            for i in range(self.count):
-                check ^= data[i]
-            self._check = check
+            if self.count != self._checked_count or self.data != self._checked:
+                self._look_through()
+            self._check = check = self._last_check
         return check
+
+    def _look_through(self):
+        # Mostly a station says again what it has said last, and this is not needed.
+        check = 0
+        data = self.data
+        for i in range(self.count):
+            check ^= data[i]
+        self._last_check = check
+        self._checked_count = self.count
+        copy(data, BURST_LIMIT, self._checked, 0)
 
     def heard_us(self):
         """The end of the last character that can be heard; the burst's start if there is none."""
