@@ -853,7 +853,7 @@ MUTATIONS = (
     LookingUp(
         "low word lost",
         "the page of a parameter shows 0 for whole numbers",
-        ("SHOWN",), 86,
+        ("SHOWN",), 161,
         (
             "panel/lookup/answers.py",
             "self.high, self.low = job.high, job.low",
