@@ -15,8 +15,9 @@ import * as processor from '../../tools/emulator/rp2040/processor.mjs';
 const { flash, interpret, jumps, lines, ram, registers, state, times } = processor;
 
 const PROGRAMS = 800, DEALS = 16, LONGEST = 6, SHOWN = 10;
-const RAM = 0x20000000, FLASH = 0x10000000;
+const RAM = 0x20000000, FLASH = 0x10000000, ROM = 0;
 const CODE = 0x4000, SPACE = 64; // where programs begin, bytes for each; in RAM and in the flash
+const ROM_CODE = 0x400, SHARE_OF_ROM = 5; // one of so many is in the ROM
 const DATA = 0x1000, DATA_BYTES = 1024;
 const NEAR = [0xd0000000, 0xd0000060, 0xd0000100, 0x40054024]; // core, divider, locks, timer
 const END = 0xbe00; // a breakpoint, which is a rare instruction
@@ -50,11 +51,16 @@ function put(address, halves) {
   halves.forEach((half, at) => codeAt(address + 2 * at, 2).set([half & 0xff, half >> 8]));
 }
 
+function place(index) {
+  if (index % SHARE_OF_ROM === 0) return ROM + ROM_CODE + SPACE * index / SHARE_OF_ROM;
+  return (index % 2 ? RAM : FLASH) + CODE + SPACE * index;
+}
+
 function programs() {
   const starts = [];
   for (let index = 0; index < PROGRAMS; index++) {
     // Some begin in the midst of a line of the cache.
-    const start = (index % 2 ? RAM : FLASH) + CODE + SPACE * index + 2 * draw(4);
+    const start = place(index) + 2 * draw(4);
     const length = 1 + draw(LONGEST);
     put(start, [...Array.from({ length }, instruction).flat(), END]);
     jumps[halfOf(start)] = 65535;

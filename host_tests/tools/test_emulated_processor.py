@@ -4,7 +4,10 @@ beside rp2040js, which knows nothing of it; its divider; the waiting for the fla
 out; and what it does in this machine's own code (tools/emulator/rp2040/blocks)."""
 
 import json
+import os
+import shutil
 import subprocess
+import sys
 
 import pytest
 
@@ -20,6 +23,7 @@ WAITS = TOP / "host_tests/benches/waits_for_flash.mjs"
 DRAWN = TOP / "host_tests/benches/blocks_beside_interpreter.mjs"
 BOTH_WAYS = TOP / "host_tests/benches/panel_beside_itself.mjs"
 BLOCKS = TOP / "build/blocks/panel.node"
+LAUNCH = TOP / "tools/emulator/launch.py"
 PANEL = TOP / "build/pico/panel.uf2"
 SEED = 2040
 
@@ -68,3 +72,25 @@ def test_a_panel_does_with_blocks_what_it_does_without_to_the_nanosecond():
     with_blocks, without = json.loads(done)
     assert with_blocks["digest"] == without["digest"]
     assert with_blocks["runs"] > 10_000 and without["runs"] == 0
+
+
+# Instead of the chip: at the end of the program it takes long to write, in place of the blocks.
+WRITES_LATE = """
+import fs from 'node:fs';
+while (fs.readSync(Number(process.argv[2]), Buffer.alloc(1)) > 0);
+setTimeout(() => fs.writeFileSync(process.env.USS_EMULATOR_BLOCKS, 'all'), 1_500);
+"""
+
+
+def test_blocks_are_written_to_their_end_on_a_slow_machine_too(tmp_path):
+    needs(NODE)
+    folder = tmp_path / "tools/emulator"
+    folder.mkdir(parents=True)
+    shutil.copy(LAUNCH, folder)
+    (folder / "main.mjs").write_text(WRITES_LATE)
+    (tmp_path / "build").mkdir()
+    (tmp_path / "build/node").symlink_to(NODE.parent)
+    blocks = tmp_path / "blocks"
+    command = [sys.executable, folder / LAUNCH.name, "true"]
+    subprocess.run(command, env={**os.environ, "USS_EMULATOR_BLOCKS": str(blocks)}, check=True)
+    assert blocks.read_text() == "all"

@@ -29,7 +29,8 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 SERVER = os.path.join(HERE, "main.mjs")
 NODE = os.path.join(HERE, "..", "..", "build", "node", "node")  # else the one that is installed
 NOT_FOUND = 127  # the exit status of a shell whose command is not there
-NODE_ENDS_S = 1.0  # after this it is killed
+NODE_ENDS_S = 1.0  # after this it is killed,
+MAKES_BLOCKS = "USS_EMULATOR_BLOCKS"  # but not while it writes them: often.py
 
 PASSED_ON = {signal.SIGINT, signal.SIGQUIT, signal.SIGTERM, signal.SIGHUP}
 PASSED_ON |= {signal.SIGUSR1, signal.SIGUSR2}
@@ -114,7 +115,7 @@ def _accompany(program):
 def _end(chip):
     """The pipe to node has ended. It is alone with that, unless it is deep in a long run."""
     try:
-        chip.wait(NODE_ENDS_S)
+        chip.wait(None if MAKES_BLOCKS in os.environ else NODE_ENDS_S)
     except subprocess.TimeoutExpired:
         chip.kill()
         chip.wait()

@@ -20,10 +20,10 @@ PROGRAMS_MS = 5_000
 SAVED_MS = 60_000
 KEY_MS = 400  # from key to key
 
-# What plain MicroPython does: its bytecode, compiler, heap, files, timer and UART.
+# What plain MicroPython does: its bytecode, compiler, heap, files, timer, UART and I2C.
 MAIN = """
 import gc, json, os, struct, sys, time
-from machine import Pin, Timer, UART
+from machine import I2C, Pin, Timer, UART
 
 SOURCE = '''
 class Counter:
@@ -52,6 +52,7 @@ def tick(timer):
     ticks += 1
 timer = Timer(period=2, callback=tick)
 uart = UART(1, 19200, parity=0, tx=Pin(4), rx=Pin(5))
+i2c = I2C(0, sda=Pin(0), scl=Pin(1))
 while True:
     names = {}
     exec(SOURCE, names)
@@ -71,9 +72,15 @@ while True:
     os.listdir("/")
     uart.write(packed)
     uart.read()
+    i2c.scan()
     gc.collect()
     time.sleep_ms(5)
 """
+
+# What a PC asks at the prompt, and how long it then says nothing.
+WRITE = "file = open('written', 'wb')\nfor _ in range(8): print(file.write(%r))\nfile.close()"
+WRITTEN = bytes(range(256))
+WRITES, SILENT_MS = 8, 500
 
 
 def tap(world, key, ms=100):
@@ -105,12 +112,22 @@ def let_panel_work():
     choose(world, "SETS", "SAVE A1")
     tap(world, "SET")
     assert world.run_until(lambda: world.reads("SAVED"), SAVED_MS), world.lcd()
+    let_prompt_work(world)
 
 
 def let_programs_work():
     world = emulated.PicoWorld("stock", addresses=(), files={"main.py": MAIN.encode()})
     world.run(PROGRAMS_MS)
     assert b"Error" not in world.usb, bytes(world.usb)
+    let_prompt_work(world)
+
+
+def let_prompt_work(world):
+    world.repl.open()
+    for _ in range(WRITES):
+        _, error = world.repl.execute(WRITE % WRITTEN)
+        assert not error, error
+        world.run(SILENT_MS)
 
 
 def main(name):

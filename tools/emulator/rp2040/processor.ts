@@ -41,9 +41,9 @@ const CODE_BYTES: usize = STATE + 64;
 const BUDGET: usize = STATE + 68; // the cycles of the stretch
 const SPINLOCKS: usize = STATE + 72; // bit n: number n is taken
 
-// By halfword of RAM and then of the flash: the number of the block that begins there, or 0, and how
-// many jumps have led to where none is, up to MOST_JUMPS.
-const HALVES: usize = (RAM_BYTES + FLASH_BYTES) / 2;
+// By halfword of RAM, then of the flash, then of the ROM: the number of the block that begins there,
+// or 0, and how many jumps have led to where none is, up to MOST_JUMPS.
+const HALVES: usize = (RAM_BYTES + FLASH_BYTES + ROM_BYTES) / 2;
 const MOST_JUMPS = 65535;
 const CODE_SHIFT = 5; // of an offset in RAM, to its part in CODE_MAP
 const LEAST = 64; // cycles that must be left, so that a block is worth while
@@ -278,7 +278,10 @@ const BEQ_OR_BNE = 0xd000, BEQ_OR_BNE_MASK = 0xfe00, IS_BNE = 0x100, IN_LINE_MAS
   let half = <u32>(pc - RAM) >> 1;
   if (half >= RAM_BYTES / 2) {
     half = <u32>(pc - FLASH) >> 1;
-    if (half >= FLASH_BYTES / 2) return 0;
+    if (half >= FLASH_BYTES / 2) {
+      if (<u32>pc >= ROM_BYTES) return 0;
+      half = FLASH_BYTES / 2 + (<u32>pc >> 1);
+    }
     half += RAM_BYTES / 2;
   }
   const block = <i32>load<u16>(half << 1, BLOCKS);

@@ -6,28 +6,42 @@
 //
 // The blocks of a firmware are good as long as its code is there: those in the flash while it has
 // each of them, those in RAM from when the program has copied them there until something changes one.
+// Those in the boot ROM, which copies and clears memory for the firmware, are good with the flash's.
 import fs from 'node:fs';
 import { createRequire } from 'node:module';
 import { isDeepStrictEqual } from 'node:util';
 import {
-  addresses, blockAt, CODE, CODE_BYTES, codeMap, flash, memory, ram, state,
+  addresses, blockAt, CODE, CODE_BYTES, codeMap, flash, memory, ram, rom, state,
 } from '../processor.mjs';
 
-export const RAM = 0x20000000, FLASH = 0x10000000;
+const RAM = 0x20000000, FLASH = 0x10000000, ROM = 0;
 const FOLDER = new URL('../../../../build/blocks/', import.meta.url);
 const CODE_SHIFT = 5; // as in processor.ts
 
-// Halves of instructions are counted through RAM and then through the flash, as in processor.ts.
+// Where code may be: where each memory begins, and how many halves of instructions come before its
+// own, as in processor.ts.
+const romBytes = new Uint8Array(rom.buffer, rom.byteOffset, rom.byteLength);
+export const memories = {
+  ram: { start: RAM, bytes: ram, halvesBefore: 0 },
+  flash: { start: FLASH, bytes: flash, halvesBefore: ram.length / 2 },
+  rom: { start: ROM, bytes: romBytes, halvesBefore: (ram.length + flash.length) / 2 },
+};
+
+export const memoryAt = (address) =>
+  Object.values(memories).find(({ start }) => address >= start);
+
 export function halfOf(address) {
-  return address >= RAM ? (address - RAM) >>> 1 : (ram.length + address - FLASH) >>> 1;
+  const { start, halvesBefore } = memoryAt(address);
+  return halvesBefore + (address - start) / 2;
 }
 
-export function codeAt(address, bytes) {
-  const [area, offset] = address >= RAM ? [ram, address - RAM] : [flash, address - FLASH];
-  return area.subarray(offset, offset + bytes);
+// Less, or nothing, where the memory ends.
+export function codeAt(address, count) {
+  const { start, bytes } = memoryAt(address);
+  return bytes.subarray(address - start, address - start + count);
 }
 
-// The blocks of a firmware in one of the two; list: where each begins, and its code in base64.
+// The blocks of a firmware in one memory; list: where each begins, and its code in base64.
 class Area {
   constructor(list, firstNumber) {
     this.blocks = list.map(([start, coded], index) => {
@@ -51,15 +65,16 @@ class Area {
 // Those that were made for this processor.
 export function firmwaresIn(folder) {
   const names = fs.existsSync(folder) ? fs.readdirSync(folder) : [];
-  return names.filter((name) => name.endsWith('.json')).map((name) => {
-    const told = JSON.parse(fs.readFileSync(new URL(name, folder)));
-    return {
-      addresses: told.addresses,
-      library: new URL(name.replace(/json$/, 'node'), folder).pathname,
-      inFlash: new Area(told.flash, 1),
-      inRam: new Area(told.ram, 1 + told.flash.length),
-    };
-  }).filter((firmware) => isDeepStrictEqual(firmware.addresses, addresses));
+  return names.filter((name) => name.endsWith('.json')).map((name) => ({
+    library: new URL(name.replace(/json$/, 'node'), folder).pathname,
+    ...JSON.parse(fs.readFileSync(new URL(name, folder))),
+  })).filter((told) => isDeepStrictEqual(told.addresses, addresses))
+    .map(({ library, flash: inFlash, ram: inRam, rom: inRom }) => ({
+      library,
+      inFlash: new Area(inFlash, 1),
+      inRam: new Area(inRam, 1 + inFlash.length),
+      inRom: new Area(inRom, 1 + inFlash.length + inRam.length),
+    }));
 }
 
 export class Blocks {
@@ -80,6 +95,7 @@ export class Blocks {
     this.run = native.run;
     this.firmware = firmware;
     firmware.inFlash.put(true);
+    firmware.inRom.put(firmware.inRom.isThere);
     this.waits = firmware.inRam.blocks.length > 0;
   }
 

@@ -12,6 +12,7 @@ typedef uint8_t *memory;
 #define RAM_BYTES (264u * 1024)
 #define FLASH 0x10000000u
 #define FLASH_BYTES (2u * 1024 * 1024)
+#define ROM_BYTES (16u * 1024) // from 0 on
 #define STACK_ROOM 36u // bytes that PUSH, POP, STMIA and LDMIA move at the most
 
 // What is at an address of the chip, and what processor.ts keeps beside it.
@@ -61,7 +62,10 @@ static word dispatch(STATE)
     word place = (PC - RAM) >> 1;
     if (place >= RAM_BYTES / 2) {
         place = (PC - FLASH) >> 1;
-        if (place >= FLASH_BYTES / 2) GO nowhere(GIVEN);
+        if (place >= FLASH_BYTES / 2) {
+            if (PC >= ROM_BYTES) GO nowhere(GIVEN);
+            place = FLASH_BYTES / 2 + (PC >> 1);
+        }
         place += RAM_BYTES / 2;
     }
     GO blocks[HALF(BLOCKS + 2 * place)](GIVEN);
