@@ -7,6 +7,7 @@ the tests read what a person would. They wait for what they expect, and give up 
 
 import os
 import signal
+import sys
 import time
 
 import pytest
@@ -310,6 +311,30 @@ def test_a_small_terminal_shows_what_fits_and_says_so(terminal):
     panel.shows("telegrams:")
     panel.shows("READY        A1")
     panel.shows_no_more("too small")
+
+
+def test_a_terminal_that_was_smaller_for_a_moment_is_drawn_again(terminal):
+    panel = terminal()
+    panel.shows("time 0:00:02")  # what a start draws more than once has been drawn
+    panel.resize(24, 18)
+    panel.resize(24, 80)  # at once: the panel may see nothing of the other size
+    panel.shows("space: STOP")
+    panel.shows("READY        A1")
+
+
+# As `perf record` starts its program.
+DEAF = """
+import os, signal, sys
+signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGWINCH])
+os.execv(sys.argv[1], sys.argv[1:])
+"""
+
+
+def test_a_new_size_is_heard_of_though_its_signal_was_blocked(terminal):
+    panel = terminal(rows=12, columns=60, program=[sys.executable, "-c", DEAF, PANEL])
+    panel.shows("READY        A1")
+    panel.resize(24, 80)
+    panel.shows("space: STOP")
 
 
 @pytest.mark.parametrize("columns", [79, 80, 200])

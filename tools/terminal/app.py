@@ -257,6 +257,12 @@ class PanelApp(App):
     def on_gone(self, _):
         self._leave("interrupt")
 
+    def on_resize(self, _):
+        """Draw everything. Textual would not, where the size is that of before again; but what a
+        smaller terminal had no room for, even for a moment, is lost.
+        """
+        self.refresh()
+
     def on_app_blur(self, _):
         """Another window has the keyboard now, and gets the key's repeats."""
         if self.hand.held or self.hand.pressed:

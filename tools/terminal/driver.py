@@ -9,6 +9,7 @@ It differs from Textual's own driver in this:
 * It draws on standard output, so that standard error can be led elsewhere.
 * It can ask the terminal whether it is still there: `ask()`, and then `Answered` comes.
 * Ctrl-Z does nothing: a panel that stands still stops nothing.
+* It hears of a new size also where the program that started it has blocked that signal.
 * A terminal that has gone ends the program: `Gone`.
 * A terminal without UTF-8 is sent ASCII alone.
 
@@ -87,6 +88,7 @@ class TerminalDriver(LinuxDriver):
         self._is_plain = not understands_utf_8(os.environ.get)
         self._mouse_parser = XTermParser()
         signal.signal(signal.SIGTSTP, signal.SIG_IGN)
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, [signal.SIGWINCH])
 
     def write(self, data):
         super().write(in_ascii(data) if self._is_plain else data)
