@@ -10,9 +10,11 @@ get_server() {
     fill server has_server make_server
 }
 
+# It is looked for, and not loaded: every start of the panel would wait for that.
 has_server() {
     cmp -s "$web_sources/requirements.txt" "$1/requirements.txt" &&
-        "$1/bin/python" -c 'import aiohttp' 2>/dev/null
+        "$1/bin/python" -c 'import importlib.util, sys
+sys.exit(importlib.util.find_spec("aiohttp") is None)' 2>/dev/null
 }
 
 make_server() {

@@ -9,7 +9,7 @@ from pathlib import Path
 TOP = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(TOP))
 
-from tools.web import server, static  # noqa: E402
+from tools.web import static  # noqa: E402
 from tools.web.options import Misused, options  # noqa: E402
 
 PANEL = [str(TOP / "tools/panel"), "--lines"]
@@ -27,6 +27,8 @@ def main(words):
         if chosen.static is not None:
             static.build(Path(chosen.static), rest)
             return 0
+        from tools.web import server  # its library is not loaded where nothing is served
+
         return asyncio.run(server.serve(chosen, [*PANEL, *rest]))
     except Misused as error:
         return complain(error, NOT_UNDERSTOOD)
