@@ -10,12 +10,13 @@ from boards.sim.world import World
 from panel_bench import row_1, row_2, settled_row_2, wait_until_known
 
 
-def world_of(kind="mm440", settings=None, addresses=(1,), known=None):
+def world_of(kind="mm440", settings=None, addresses=(1,), known=None, **options):
     """A panel with drives of a kind; known: what its settings call them."""
     listed = ",".join(["%d=%s" % (address, kind) for address in addresses])
     stored = {"kinds": {str(address): known or kind for address in addresses}}
     stored.update(settings or {})
-    world = World(main.start, addresses, kinds=simulated(listed_drives(listed)), settings=stored)
+    kinds = simulated(listed_drives(listed))
+    world = World(main.start, addresses, kinds=kinds, settings=stored, **options)
     world.run(1000)
     wait_until_known(world)
     return world

@@ -414,6 +414,34 @@ def test_the_ramp_is_set_to_2_5_seconds_in_the_eeprom():
     world.check()
 
 
+def typing(**options):
+    world = world_of(**options)
+    go_to(world, "PARAMETERS", "BY NUMBER")
+    wait(world, "P0")
+    return world
+
+
+def test_the_digit_blinks_also_if_its_key_was_pressed_when_the_clock_showed_0():
+    world, pressed_ms = typing(), []
+    inspection = sys.modules["panel.lookup.inspection"].Inspection  # that of this world
+    take_keys = inspection.take_keys
+
+    def noting(page, acts, now_ms):
+        pressed_ms.append(now_ms)
+        take_keys(page, acts, now_ms)
+
+    inspection.take_keys = noting
+    press(world, "UP")
+    inspection.take_keys = take_keys
+    world = typing(ticks_start=-1000 * pressed_ms[0])
+    press(world, "UP")
+    rows = set()
+    for _ in range(80):
+        rows.add(settled_row_2(world))
+        world.run(10)
+    assert rows == {"P01000", "P0_000"}, rows
+
+
 def test_the_digit_that_would_change_blinks():
     world = world_of()
     go_to(world, "PARAMETERS", "BY NUMBER")

@@ -5,6 +5,8 @@ NEW 010.00Hz A1: NEXT and PREVIOUS go to another digit, which blinks; UP and DOW
 SET puts it into force.
 """
 
+import sys
+
 from panel.keys import Acts, Keys
 from panel.pages.digits import Digits
 from panel_bench import (
@@ -88,6 +90,34 @@ def test_the_digit_that_would_change_blinks():
         assert set(seen) == {shown, "010.00"}, seen
         assert 400 <= seen[shown] <= 600, seen  # for a quarter of a second of 0.8
         seen.clear()
+
+
+def pressing_next(world):
+    """When NEXT had its effect, by the clock; the page is that of this world alone."""
+    digits_page = sys.modules["panel.pages.digits"].Digits
+    take_keys, pressed_ms = digits_page.take_keys, []
+
+    def noting(page, acts, now_ms):
+        pressed_ms.append(now_ms)
+        take_keys(page, acts, now_ms)
+
+    digits_page.take_keys = noting
+    try:
+        press(world, "NEXT")
+    finally:
+        digits_page.take_keys = take_keys
+    return pressed_ms
+
+
+def test_it_blinks_also_if_the_key_was_pressed_when_the_clock_showed_0():
+    (pressed_ms,) = pressing_next(editing(ready()))
+    world = editing(ready(ticks_start=-1000 * pressed_ms))
+    assert pressing_next(world) == [0]
+    rows = set()
+    for _ in range(80):
+        world.run(20)
+        rows.add(row_2(world)[4:10])
+    assert rows == {"010.00", "010._0"}, rows
 
 
 def test_a_digit_goes_round_and_repeats_while_its_key_is_held():

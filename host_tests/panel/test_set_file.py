@@ -103,6 +103,11 @@ def test_the_first_line_and_the_names_of_the_head_are_those_of_a_set():
         (b"address", b"addresr", words.DAMAGED),
         (b"name", b"namf", words.DAMAGED),
         (b"panel", b"pamel", words.DAMAGED),
+        (b"family ", b"family:", words.DAMAGED),
+        (b"panel 0.0", b"panel", words.DAMAGED),
+        (b"address 1", b"address 01", words.DAMAGED),
+        (b"address 1", b"address +1", words.DAMAGED),
+        (b"address 1", b"address one", words.DAMAGED),
     ):
         assert error_of(sealed(text.replace(old, new), 1)) == outcome, new
 

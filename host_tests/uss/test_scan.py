@@ -97,6 +97,10 @@ def test_on_request_it_sends_mirror_telegrams_and_nothing_else():
     bench.run_until(lambda: scan.step(bench.now), 60_000_000)
     assert scan.found == {1: 12, 2: 10} and only_mirrors(bench)
     assert scan.nodes == scan.will_trip == {}
+    scan = Scan(bench.master, MASK, range(4), enquire=False)
+    bench.run_until(lambda: scan.step(bench.now) or scan.found)
+    scan.end()
+    assert scan.nodes == scan.will_trip == {}
 
 
 def test_the_unusual_lengths_are_found_when_asked_for():
@@ -485,23 +489,24 @@ def test_a_node_is_kept_from_tripping_and_one_that_never_trips_is_left_alone():
     assert fleet.motors[4].state == "ready", fleet.motors[4].state
 
 
-def test_while_the_bus_listens_nobody_is_kept():
+def test_while_the_bus_is_off_or_listens_nobody_is_kept():
     """What was posted would be the first thing on the line."""
     bench = Bench([Node(1)], listed=False)
     scan = Scan(bench.master, MASK, (1,), (12,), enquire=False)
     bench.run_until(lambda: scan.step(bench.now))
-    bench.master.off()
-    bench.run_until(lambda: bench.master.phase == OFF)
-    bench.run(200_000)
-    bench.master.on()
     post, phases = bench.master.turns.post, []
 
     def noting(telegram):
         phases.append(bench.master.phase)
         post(telegram)
 
+    bench.master.off()
+    bench.run_until(lambda: bench.master.phase == OFF)
     bench.master.turns.post = noting
     bench.loop = lambda: scan.keep(bench.now)
+    bench.run(200_000)
+    assert phases == []
+    bench.master.on()
     bench.run(90_000)
     assert bench.master.phase == LISTENING and phases == []
     bench.run_until(lambda: phases)
@@ -574,6 +579,26 @@ def test_a_scan_that_is_to_look_no_further_asks_what_it_has_found_not_for_long()
     assert scan.will_trip == {3: None}
 
 
+def test_the_last_questions_are_those_that_were_sent():
+    """For many others there was no room, beside eight telegrams of somebody else."""
+    bench = Bench([Node(3)], listed=False)
+    scan = Scan(bench.master, MASK)
+    bench.run_until(lambda: scan.step(bench.now) or scan.nodes, 60_000_000)
+    scan.finish()
+    post, full = bench.master.turns.post, [0]
+
+    def post_at_times(telegram):
+        full[0] += 1
+        if full[0] % 3:
+            raise RuntimeError("8 telegrams wait already")
+        post(telegram)
+
+    bench.master.turns.post = post_at_times
+    bench.run_until(lambda: scan.step(bench.now))
+    questions = [each for each in bench.sent if each.address == 3]
+    assert len(questions) == 1 + 20 + 1 and full[0] >= 3 * 20, (len(questions), full)
+
+
 def test_a_scan_that_is_to_look_no_further_still_sees_whether_any_length_will_do():
     """That telegram waits for room when the program has seen enough."""
     bench = Bench([Node(3, 127, 2), Node(4)], listed=False)
@@ -589,6 +614,7 @@ def test_a_scan_that_is_to_look_no_further_still_sees_whether_any_length_will_do
     room[0] = 0
     bench.run_until(lambda: scan.step(bench.now))
     assert scan.asked == 2 and scan.found == {3: 12} and scan.variable == {3}
+    assert scan.progress(1000) == 1000, "more than all is done"
 
 
 def test_a_scan_that_is_to_look_no_further_stops_whom_it_has_found():

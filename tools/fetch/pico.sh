@@ -154,6 +154,8 @@ pico_flags() {
 pico_omitted() {
     [[ $1 == stock* ]] || echo MICROPY_VFS_FAT MICROPY_PY_{FRAMEBUF,UCTYPES,CMATH,RE} \
         MICROPY_PY_{CRYPTOLIB,HASHLIB_SHA1,ONEWIRE,MACHINE_BITSTREAM}
+    # The later MicroPython is larger. The panel computes no logarithms.
+    [[ $1 != panel_hard ]] || echo MICROPY_PY_MATH_SPECIAL_FUNCTIONS
 }
 
 # pico_configuration NAME FOLDER: writes that header, and the options with which it is found.

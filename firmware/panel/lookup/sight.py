@@ -55,7 +55,8 @@ class Sight:
             return texts.NOTHING
         if self._typed is None and self._editing is None:
             return self._value_row()
-        away_ms = elapsed(now_ms, self._used_at_ms or now_ms, self.panel.mask) % _BLINK_MS
+        used_at_ms = now_ms if self._used_at_ms is None else self._used_at_ms
+        away_ms = elapsed(now_ms, used_at_ms, self.panel.mask) % _BLINK_MS
         is_away = away_ms >= _BLINK_MS - _AWAY_MS
         if self._typed is None:
             return self._editing.row(is_away)

@@ -46,7 +46,7 @@ class List(Entries):
             return b"A%d %s" % (address, texts.of(texts.FOUND_STATES[pzd.state(node.zsw)]))
         if self._scan.over:
             return texts.of(words.FOUND)
-        return texts.of(words.SEARCH_PERCENT, min(self._scan.progress(_PERCENT), _PERCENT))
+        return texts.of(words.SEARCH_PERCENT, self._scan.progress(_PERCENT))
 
     def count(self):
         return 1 + len(self._nodes())

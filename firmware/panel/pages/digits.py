@@ -113,7 +113,8 @@ class Digits(Page):
     def draw(self, screen, now_ms):
         screen.put(1, 0, _SIGN_COLUMN, texts.of(NEW_SETPOINT))
         screen.put(1, _SIGN_COLUMN, 1, b"-" if self._control.reversed else b" ")
-        since_ms = elapsed(now_ms, self._used_at_ms or now_ms, self.panel.mask)
+        used_at_ms = now_ms if self._used_at_ms is None else self._used_at_ms
+        since_ms = elapsed(now_ms, used_at_ms, self.panel.mask)
         away = self._place if since_ms % _BLINK_MS >= _BLINK_MS - _AWAY_MS else -1
         for place in range(len(_PLACES)):
             if place == away:

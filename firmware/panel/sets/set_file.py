@@ -72,17 +72,23 @@ def read_head(store, name):
 
 def _head(lines):
     """The head, the first line behind it, and the check so far."""
-    check, values = 0, []
+    values = []
     try:
-        for expected in (FIRST,) + FIELDS:
+        line = next(lines)
+        if line != FIRST:
+            raise ValueError(words.NO_SET)
+        check = checked(line, 0)
+        for field in FIELDS:
             line = next(lines)
-            if line[: len(expected)] != expected or expected == FIRST != line:
-                raise ValueError(words.DAMAGED if values else words.NO_SET)
-            values.append(line[len(expected) + 1 :])
+            if line[: len(field) + 1] != field + b" ":
+                raise ValueError(words.DAMAGED)
+            values.append(line[len(field) + 1 :])
             check = checked(line, check)
-        _, family, address, name, _ = values
+        family, address, name, _ = values
         head = Head(family.decode(), int(address), name)
-        if not 0 <= head.address <= 31 or not 0 < len(name) <= NAME_MAX or min(name) < 32:
+        if b"%d" % head.address != address or not 0 <= head.address <= 31:
+            raise ValueError(words.DAMAGED)
+        if not 0 < len(name) <= NAME_MAX or min(name) < 32:
             raise ValueError(words.DAMAGED)
         for line in lines:
             if line[: len(RATING)] != RATING:

@@ -110,7 +110,8 @@ class Scan:
 
     def progress(self, whole):
         """How much of `whole` is done, without the questions to nodes that are found."""
-        return whole * self._position // (len(self._addresses) * len(self._net_counts))
+        places = len(self._addresses) * len(self._net_counts)
+        return whole * min(self._position, places) // places
 
     def asked_nodes(self):
         """A list of (address, `enquiry.Node`) of those that have told what they are."""
@@ -149,8 +150,10 @@ class Scan:
             self._kept_in_a_row = 0
             if telegram.address & NODE_MAX in self._kept:
                 self._note(telegram, now)
-        if self._bus.phase != LISTENING and not self._bus.deadlines.silence_wait_us():
-            self._keep(now)
+        phase = self._bus.phase
+        if phase == LISTENING or phase in WHY_SILENT or self._bus.deadlines.silence_wait_us():
+            return
+        self._keep(now)
 
     def finish(self):
         """Look for no more nodes: the scan is over as soon as those it has found were told OFF1
@@ -160,11 +163,12 @@ class Scan:
 
     def end(self):
         """End the scan at once. A node that was found and not asked what it is may trip."""
-        if not self.over:
-            for address in self._kept:
-                if address not in self.nodes or address == self._enquiring:
-                    self.will_trip.setdefault(address, None)
-            self.over = self.stopped = True
+        if self.over:
+            return
+        self.over = self.stopped = True
+        for address in self._kept if self._enquires else ():
+            if address not in self.nodes or address == self._enquiring:
+                self.will_trip.setdefault(address, None)
 
     def _go_on(self, now):
         """Send the next telegram: to a node that was found, or to look for others."""
@@ -305,13 +309,11 @@ class Scan:
             enquirer = Enquirer(address, self.found[address], address in self.variable)
             self._enquirer = enquirer
             self.nodes[address] = enquirer.node
-        if self.stopped:
+        if not self._last_questions:  # what it is sent last is OFF1 in its usual form
+            node = self._enquirer.node
+            self._send(Question(node.address, node.layout, None), self._give_up)
+        elif self._send(self._enquirer.question(), self._take_answer) and self.stopped:
             self._last_questions -= 1
-            if self._last_questions < 0:  # what it was sent last is OFF1 in its usual form
-                node = self._enquirer.node
-                self._send(Question(node.address, node.layout, None), self._give_up)
-                return True
-        self._send(self._enquirer.question(), self._take_answer)
         return True
 
     def _give_up(self, question, now):
