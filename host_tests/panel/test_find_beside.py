@@ -340,7 +340,7 @@ def test_a_search_is_shown_from_its_question_to_the_drives_that_are_new():
     assert not shown.is_busy() and panel.did == []
     panel, shown, scan = begun()
     assert shown.is_busy() and scan.mask == 0x3FFFFFF
-    for percent, row in ((0, b"SEARCH 0%"), (41, b"SEARCH 41%"), (101, b"SEARCH 100%")):
+    for percent, row in ((0, b"SEARCH 0%"), (41, b"SEARCH 41%"), (100, b"SEARCH 100%")):
         scan.percent = percent
         assert (shown.heading(0), shown.words(0), shown.count()) == (row, b"0 FOUND", 1)
     scan.nodes = [(3, Node()), (7, Node()), (9, Node(0xFB34, Layout(127, 6)))]
