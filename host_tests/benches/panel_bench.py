@@ -38,6 +38,22 @@ def _drop_what_is_not_at_hand(*names):
 main.start = start_with_modules
 
 
+def taken_at_ms(page_class, press):
+    """When a page of this class took keys while `press()` ran: readings of the clock."""
+    take_keys, taken_ms = page_class.take_keys, []
+
+    def noting(page, acts, now_ms):
+        taken_ms.append(now_ms)
+        take_keys(page, acts, now_ms)
+
+    page_class.take_keys = noting
+    try:
+        press()
+    finally:
+        page_class.take_keys = take_keys
+    return taken_ms
+
+
 class SlowWorld(World):
     """A step of the main loop may take as long as it does where it has much to do."""
 

@@ -35,7 +35,7 @@ from panel.pages.parameter_words import EDIT_FIRST, REFUSALS
 from panel.pages.table import PAGES, PARAMETER
 from panel.reading import Reading
 from panel.screen import Screen
-from panel_bench import row_1, row_2, running, settled_row_2, starts
+from panel_bench import row_1, row_2, running, settled_row_2, starts, taken_at_ms
 from pkw_bench import AskedDrive
 from uss import families, pkw
 from uss.drive import Drive
@@ -421,20 +421,15 @@ def typing(**options):
     return world
 
 
+def up_taken_at_ms(world):
+    inspection = sys.modules["panel.lookup.inspection"].Inspection  # loaded anew for each world
+    return taken_at_ms(inspection, lambda: press(world, "UP"))
+
+
 def test_the_digit_blinks_also_if_its_key_was_pressed_when_the_clock_showed_0():
-    world, pressed_ms = typing(), []
-    inspection = sys.modules["panel.lookup.inspection"].Inspection  # that of this world
-    take_keys = inspection.take_keys
-
-    def noting(page, acts, now_ms):
-        pressed_ms.append(now_ms)
-        take_keys(page, acts, now_ms)
-
-    inspection.take_keys = noting
-    press(world, "UP")
-    inspection.take_keys = take_keys
-    world = typing(ticks_start=-1000 * pressed_ms[0])
-    press(world, "UP")
+    (now_ms,) = up_taken_at_ms(typing())
+    world = typing(ticks_start=-1000 * now_ms)
+    assert up_taken_at_ms(world) == [0]
     rows = set()
     for _ in range(80):
         rows.add(settled_row_2(world))

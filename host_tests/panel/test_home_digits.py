@@ -17,6 +17,7 @@ from panel_bench import (
     row_2,
     running,
     starts,
+    taken_at_ms,
     telegrams,
     wait_until_known,
 )  # fmt: skip
@@ -92,27 +93,15 @@ def test_the_digit_that_would_change_blinks():
         seen.clear()
 
 
-def pressing_next(world):
-    """When NEXT had its effect, by the clock; the page is that of this world alone."""
-    digits_page = sys.modules["panel.pages.digits"].Digits
-    take_keys, pressed_ms = digits_page.take_keys, []
-
-    def noting(page, acts, now_ms):
-        pressed_ms.append(now_ms)
-        take_keys(page, acts, now_ms)
-
-    digits_page.take_keys = noting
-    try:
-        press(world, "NEXT")
-    finally:
-        digits_page.take_keys = take_keys
-    return pressed_ms
+def next_taken_at_ms(world):
+    digits_page = sys.modules["panel.pages.digits"].Digits  # it is loaded anew for each world
+    return taken_at_ms(digits_page, lambda: press(world, "NEXT"))
 
 
 def test_it_blinks_also_if_the_key_was_pressed_when_the_clock_showed_0():
-    (pressed_ms,) = pressing_next(editing(ready()))
-    world = editing(ready(ticks_start=-1000 * pressed_ms))
-    assert pressing_next(world) == [0]
+    (now_ms,) = next_taken_at_ms(editing(ready()))
+    world = editing(ready(ticks_start=-1000 * now_ms))
+    assert next_taken_at_ms(world) == [0]
     rows = set()
     for _ in range(80):
         world.run(20)

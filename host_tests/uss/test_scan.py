@@ -585,18 +585,18 @@ def test_the_last_questions_are_those_that_were_sent():
     scan = Scan(bench.master, MASK)
     bench.run_until(lambda: scan.step(bench.now) or scan.nodes, 60_000_000)
     scan.finish()
-    post, full = bench.master.turns.post, [0]
+    post, tries = bench.master.turns.post, [0]
 
     def post_at_times(telegram):
-        full[0] += 1
-        if full[0] % 3:
+        tries[0] += 1
+        if tries[0] % 3:
             raise RuntimeError("8 telegrams wait already")
         post(telegram)
 
     bench.master.turns.post = post_at_times
     bench.run_until(lambda: scan.step(bench.now))
     questions = [each for each in bench.sent if each.address == 3]
-    assert len(questions) == 1 + 20 + 1 and full[0] >= 3 * 20, (len(questions), full)
+    assert len(questions) == 1 + 20 + 1 and tries[0] >= 3 * 20, (len(questions), tries)
 
 
 def test_a_scan_that_is_to_look_no_further_still_sees_whether_any_length_will_do():

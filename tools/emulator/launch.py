@@ -29,8 +29,8 @@ HERE = os.path.dirname(os.path.abspath(__file__))
 SERVER = os.path.join(HERE, "main.mjs")
 NODE = os.path.join(HERE, "..", "..", "build", "node", "node")  # else the one that is installed
 NOT_FOUND = 127  # the exit status of a shell whose command is not there
-NODE_ENDS_S = 1.0  # after this it is killed,
-MAKES_BLOCKS = "USS_EMULATOR_BLOCKS"  # but not while it writes them: often.py
+NODE_ENDS_S = 1.0  # after this it is killed
+MAKES_BLOCKS = "USS_EMULATOR_BLOCKS"  # in the environment: node ends by writing blocks
 
 PASSED_ON = {signal.SIGINT, signal.SIGQUIT, signal.SIGTERM, signal.SIGHUP}
 PASSED_ON |= {signal.SIGUSR1, signal.SIGUSR2}

@@ -154,7 +154,7 @@ pico_flags() {
 pico_omitted() {
     [[ $1 == stock* ]] || echo MICROPY_VFS_FAT MICROPY_PY_{FRAMEBUF,UCTYPES,CMATH,RE} \
         MICROPY_PY_{CRYPTOLIB,HASHLIB_SHA1,ONEWIRE,MACHINE_BITSTREAM}
-    # The later MicroPython is larger. The panel computes no logarithms.
+    # The later MicroPython is larger. This leaves out log2, log10, hyperbolic functions and gamma.
     [[ $1 != panel_hard ]] || echo MICROPY_PY_MATH_SPECIAL_FUNCTIONS
 }
 
