@@ -93,11 +93,14 @@ def tiers_that_may_run(config):
 
 
 def pytest_ignore_collect(collection_path, config):
-    """A file whose tests -k cannot mean is not read. One that is named is."""
+    """A file whose tests -k cannot mean is not read. One that is named is; with --only no other,
+    for pytest looks at all that is in its folder."""
     chosen = config.stash[SELECTION]
-    if chosen is None or collection_path.suffix != ".py" or _is_named(collection_path, config):
+    if collection_path.suffix != ".py" or _is_named(collection_path, config):
         return None
-    return not chosen.may_run(collection_path) or None
+    if config.option.only:
+        return True
+    return chosen is not None and not chosen.may_run(collection_path) or None
 
 
 def _is_named(path, config):

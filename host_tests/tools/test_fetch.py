@@ -52,7 +52,7 @@ def run_pytest(tmp_path):
         ours = ("CI", "USS_STRICT", "USS_COVERAGE")  # of the run that this test is part of
         inherited = {k: v for k, v in os.environ.items() if k not in ours}
         return subprocess.run(
-            [sys.executable, "-B", "-m", "pytest", "-c", HOST_TESTS / "pytest.ini"]
+            [sys.executable, "-BX", tiers.CACHES, "-m", "pytest", "-c", HOST_TESTS / "pytest.ini"]
             + ["--rootdir", tmp_path, "-p", "no:cacheprovider", "-p", "conftest", *arguments],
             cwd=tmp_path,
             env={**inherited, "PYTHONPATH": f"{HOST_TESTS}:{tmp_path}", **environment},

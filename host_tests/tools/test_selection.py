@@ -8,7 +8,7 @@ import pytest
 
 import selection
 from selection import CHIP, Selection, expression_of, files_of, needs
-from tiers import TIERS, TOP
+from tiers import CACHES, TIERS, TOP
 
 INTERPRETERS = "host"
 
@@ -123,7 +123,7 @@ def test_pytest_finds_the_same_with_and_without(tmp_path):
     told = []
     for environment in ({}, {"USS_STRICT": "1"}):
         run = subprocess.run(
-            [sys.executable, "-B", "-m", "pytest", "-c", TOP / "host_tests/pytest.ini"]
+            [sys.executable, "-BX", CACHES, "-m", "pytest", "-c", TOP / "host_tests/pytest.ini"]
             + ["--rootdir", TOP / "host_tests", "-p", "no:cacheprovider", "-p", "without_pico"]
             + ["-q", "--collect-only", "-k", expression, TOP / "host_tests" / "uss"],
             env={"PYTHONPATH": f"{TOP / 'host_tests'}:{tmp_path}", **environment},

@@ -10,7 +10,7 @@ import choose_lines
 import pytest
 
 import shares
-from tiers import ENVIRONMENT, TOP, interpreters, said
+from tiers import CACHES, ENVIRONMENT, TOP, interpreters, said
 
 INTERPRETERS = "host"
 
@@ -130,7 +130,7 @@ def collected(tmp_path, tables):
     def collect(*arguments, **written):
         tables(**written)
         run = subprocess.run(
-            [sys.executable, "-B", "-m", "pytest", "-c", TOP / "host_tests/pytest.ini"]
+            [sys.executable, "-BX", CACHES, "-m", "pytest", "-c", TOP / "host_tests/pytest.ini"]
             + ["--rootdir", tmp_path, "-p", "no:cacheprovider", "-p", "conftest", "-p", "tables"]
             + ["-q", "--collect-only", tmp_path, *arguments],
             env={**ENVIRONMENT, **ANYBODY, "PYTHONPATH": f"{TOP / 'host_tests'}:{tmp_path}"},
