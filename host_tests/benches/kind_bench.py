@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: MIT
 """A panel with drives of any family, layout and link: `panel_of("1=g110/0,2=mm440-bop")`."""
 
-import main
 from boards.sim.drives.kinds import expected, listed_drives, simulated
-from boards.sim.world import World
-from panel_bench import starts, wait_until_known
+from panel_bench import starts, switched_on, wait_until_known
 
 
 def is_untold(kind):
@@ -17,7 +15,7 @@ def panel_of(text, **more):
     listed = listed_drives(text)
     settings = dict(more.pop("settings", {}), kinds=expected(listed))
     addresses = [one.address for one in listed]
-    world = World(main.start, addresses, settings=settings, kinds=simulated(listed), **more)
+    world = switched_on(addresses, settings=settings, kinds=simulated(listed), **more)
     world.run(1000)
     wait_until_known(world)
     return world

@@ -3,11 +3,9 @@
 
 import sys
 
-import main
 import on_demand
 from boards.sim.drives.kinds import listed_drives, simulated
-from boards.sim.world import World
-from panel_bench import row_1, row_2, settled_row_2, wait_until_known
+from panel_bench import hold, press, row_1, row_2, settled_row_2, switched_on, wait_until_known
 
 
 def world_of(kind="mm440", settings=None, addresses=(1,), known=None, **options):
@@ -16,7 +14,7 @@ def world_of(kind="mm440", settings=None, addresses=(1,), known=None, **options)
     stored = {"kinds": {str(address): known or kind for address in addresses}}
     stored.update(settings or {})
     kinds = simulated(listed_drives(listed))
-    world = World(main.start, addresses, kinds=kinds, settings=stored, **options)
+    world = switched_on(addresses, kinds=kinds, settings=stored, **options)
     world.run(1000)
     wait_until_known(world)
     return world
@@ -27,19 +25,6 @@ def speak(world, language):
     panel = world.app.panel
     panel.settings.change("language", language)
     panel.heed_settings()
-
-
-def press(world, *keys):
-    for key in keys:
-        world.press(key)
-        world.run(200)
-
-
-def hold(world, key, ms):
-    world.down(key)
-    world.run(ms)
-    world.up(key)
-    world.run(200)
 
 
 def go_to(world, *entries):

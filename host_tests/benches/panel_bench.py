@@ -16,6 +16,8 @@ from strict_screen import StrictScreen
 
 panel.panel.Screen = StrictScreen
 
+QUICK_TAP_MS, LOOK_MS = 60, 100  # of a hand that is used to the panel: less virtual time
+
 _start, _drop = main.start, on_demand.drop
 
 
@@ -72,14 +74,19 @@ class SlowClock(Clock):
         return super().ticks_us()
 
 
-def panel(**options):
-    """A panel that was switched on a second ago.
+def switched_on(*arguments, **options):
+    """A `World` with a panel that has just been switched on.
 
     Its main loop takes steps as long as the longest on the chip, for so the tests of the panel
     take an eighth less. One that looks sooner than such steps can show says loop_us=LOOP_US.
     """
     options.setdefault("loop_us", LONG_LOOP_US)
-    world = World(main.start, **options)
+    return World(main.start, *arguments, **options)
+
+
+def panel(**options):
+    """A panel that was switched on a second ago."""
+    world = switched_on(**options)
     world.run(1000)
     return world
 
@@ -167,6 +174,19 @@ def take_commands_elsewhere_in_second_set(drive):
     readings = drive.readings.value
     drive.parameters.reading = lambda *place: 1 if place[0] == 50 else readings(*place)
     drive.write(700, 1, 2)
+
+
+def press(world, *keys):
+    """Press keys one after the other, and look what each has done."""
+    for key in keys:
+        world.press(key, QUICK_TAP_MS)
+        world.run(LOOK_MS)
+
+
+def hold(world, key, ms=1500):
+    """PARAM held this long opens the menu."""
+    world.press(key, ms)
+    world.run(LOOK_MS)
 
 
 def row_1(world):

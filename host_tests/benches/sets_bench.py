@@ -9,7 +9,7 @@ from boards.sim.board import LONG_LOOP_US
 from boards.sim.drives import parameters
 from boards.sim.drives.families import mm3, mm440
 from panel.sets import work
-from panel_bench import panel, row_2, said, settled, starts, wait_until_known
+from panel_bench import panel, press, row_2, said, settled, starts, wait_until_known
 
 BAUD = 57600  # for the tests' sake: a set takes a minute at 19200
 ENDING = ".set"
@@ -37,12 +37,6 @@ def small():
     world = panel(kinds={1: {"family": mm3}}, settings={"kinds": {"1": "mm3"}})
     wait_until_known(world)
     return world
-
-
-def press(world, *keys):
-    for key in keys:
-        world.press(key)
-        world.run(200)
 
 
 def walk_to(world, entry, key="DOWN"):

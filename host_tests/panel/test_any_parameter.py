@@ -35,7 +35,7 @@ from panel.pages.parameter_words import EDIT_FIRST, REFUSALS
 from panel.pages.table import PAGES, PARAMETER
 from panel.reading import Reading
 from panel.screen import Screen
-from panel_bench import row_1, row_2, running, settled_row_2, starts, taken_at_ms
+from panel_bench import LOOP_US, row_1, row_2, running, settled_row_2, starts, taken_at_ms
 from pkw_bench import AskedDrive
 from uss import families, pkw
 from uss.drive import Drive
@@ -438,7 +438,7 @@ def test_the_digit_blinks_also_if_its_key_was_pressed_when_the_clock_showed_0():
 
 
 def test_the_digit_that_would_change_blinks():
-    world = world_of()
+    world = world_of(loop_us=LOOP_US)
     go_to(world, "PARAMETERS", "BY NUMBER")
     wait(world, "P0")
     for keys, rows in (
@@ -627,7 +627,7 @@ def test_edit_again_types_a_choice_that_has_no_text():
 
 def test_the_texts_are_walked_from_their_ends_where_the_value_has_none():
     """And only once all of them are there; UP and DOWN walk them, no other key."""
-    world = world_of()
+    world = world_of(loop_us=LOOP_US)
     look_up(world, 1300)
     world.app.panel.has_taken = lambda us: True  # so each step looks for one piece
     for key, rows in (
@@ -1160,7 +1160,7 @@ def test_the_elements_of_a_g120_go_with_the_tasks_for_arrays():
             assert row_2(world).startswith("r%04d[%d] " % (number, index)), world.lcd()
             tasks = {
                 sent[3] >> 4
-                for _, from_panel, sent in world.wire.log.last(40)
+                for _, from_panel, sent in world.wire.log.last(100)
                 if from_panel and sent[3] & 7 == number >> 8
                 and sent[4] == number & 0xFF and sent[6] == index
             }  # fmt: skip

@@ -11,7 +11,7 @@ from panel.commission.step import Step
 from panel.keys import NAMES, Acts, Keys
 from panel.lookup.value import Form
 from panel.pages import parameter_words
-from panel_bench import row_1, row_2, settled_row_2, wait_until_known
+from panel_bench import LOOP_US, row_1, row_2, settled_row_2, wait_until_known
 from uss import pkw
 from uss.families import MM3, MM440, V20
 from uss.families.bop import on_bop
@@ -88,6 +88,7 @@ def type_over(world, digits):
 def leave(world):
     """Back to the home page; what is said when the list is left."""
     press(world, "PARAM")
+    world.run(200)
     said = settled_row_2(world).rstrip()
     press(world, "PARAM", "PARAM")
     world.run(4000)
@@ -169,7 +170,7 @@ def in_turn(world, ms=12_000):
 
 
 def test_a_step_says_in_turn_its_name_what_the_drive_has_and_what_to_know_about_it():
-    world = world_of("mm420", known="mm440")  # an MM420 has no P0205
+    world = world_of("mm420", known="mm440", loop_us=LOOP_US)  # an MM420 has no P0205
     begin(world, "THE MOTOR")
     rows = catalogue.steps("mm440", 3)
     steps = {catalogue.value(row[catalogue.STEP_NUMBER]): row for row in rows}

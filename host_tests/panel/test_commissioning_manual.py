@@ -4,12 +4,10 @@ delivered, which gets their values one by one, shows what they say and turns its
 """
 
 import catalogue
-import main
 from boards.sim.drives.families import named as simulated_family
 from boards.sim.drives.families import v20
-from boards.sim.world import World
 from panel.supervision import off_time_ms
-from panel_bench import settled, starts, wait_until_known
+from panel_bench import settled, starts, switched_on, wait_until_known
 from uss import families
 
 INTERPRETERS = "unix64"
@@ -131,7 +129,7 @@ def as_delivered(family):
     if family != "mm420":
         stored["kinds"] = {str(ADDRESS): family}
     kinds = {ADDRESS: {"family": simulated_family(family), "factory": True}}
-    world = World(main.start, (ADDRESS,), BAUD, settings=stored, kinds=kinds)
+    world = switched_on((ADDRESS,), BAUD, settings=stored, kinds=kinds)
     world.run(4000)
     return world
 
@@ -208,6 +206,6 @@ def test_the_macro_of_a_v20_is_as_it_is_told():
 
 def test_fifteen_drives_have_time_enough_at_2000_ms():
     for count, suits in ((15, True), (16, False)):
-        world = World(main.start, tuple(range(1, count + 1)), BAUD)
+        world = switched_on(tuple(range(1, count + 1)), BAUD)
         longest_us = world.app.bus.turns.longest_cycle_us()
         assert (off_time_ms(longest_us) <= OFF_TIME_MS) == suits, (count, longest_us)

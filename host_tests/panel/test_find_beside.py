@@ -4,18 +4,18 @@
 import json
 import sys
 
-import main
 import on_demand
 from boards.sim.drives.kinds import listed_drives, simulated
-from boards.sim.world import World
 from panel import texts
 from panel.menu import beside
 from panel_bench import (
     comes_to,
+    press,
     row_1,
     row_2,
     settled,
     starts,
+    switched_on,
     telegrams,
     wait_until_known,
 )
@@ -29,17 +29,11 @@ def line_of(text, drives, **more):
     """A panel with these drives, on a line with more."""
     listed = listed_drives(text)
     addresses = [one.address for one in listed]
-    world = World(
-        main.start, addresses, settings={"drives": list(drives)}, kinds=simulated(listed), **more
+    world = switched_on(
+        addresses, settings={"drives": list(drives)}, kinds=simulated(listed), **more
     )
     world.run(3000)
     return world
-
-
-def press(world, *keys):
-    for key in keys:
-        world.press(key)
-        world.run(300)
 
 
 def title(world):

@@ -31,7 +31,7 @@ from panel.menu.diagnosis import words as diagnosis_words
 from panel.menu.sets import words as set_words
 from panel.pages import digits, parameter_words, set_up, splash, writing
 from panel.screen import GLYPHS, Screen
-from panel_bench import LOOP_US, panel, row_1, row_2, running, said, starts, unsupervised
+from panel_bench import LOOP_US, panel, press, row_1, row_2, running, said, starts, unsupervised
 from search import words as search_words
 from text_bench import columns, named, parts, rows
 from tools.live.plain import in_ascii
@@ -447,12 +447,6 @@ def german(**options):
             return world
         world.run(20)
     raise AssertionError(world.lcd())
-
-
-def press(world, *keys):
-    for key in keys:
-        world.press(key)
-        world.run(300)
 
 
 def menu(world):

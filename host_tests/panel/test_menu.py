@@ -17,6 +17,7 @@ from panel_bench import (
     SlowClock,
     comes_to,
     panel,
+    press,
     row_1,
     row_2,
     running,
@@ -40,12 +41,6 @@ def menu(world):
     world.up("PARAM")
     world.run(300)
     assert row_2(world) == ">DRIVES", world.lcd()
-
-
-def press(world, *keys):
-    for key in keys:
-        world.press(key)
-        world.run(300)
 
 
 def entries(world):
@@ -81,7 +76,7 @@ def test_it_opens_and_its_lists_do_however_slow_the_chip_is():
         world.clock.reading_us = reading_us
         menu(world)
         press(world, "UP", "UP", "UP", "UP", "UP", "SET")
-        world.run(1000)
+        world.run(1200)
         assert row_1(world) == "PARAMETERS  1/22", (reading_us, world.lcd())
         press(world, "SET")
         world.run(1000)

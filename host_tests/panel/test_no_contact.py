@@ -8,19 +8,13 @@ from boards.sim.drives.families import generic
 from boards.sim.world import World
 from panel.menu import contact
 from panel.menu.words import SETTINGS
-from panel_bench import panel, row_1, row_2, settled, telegrams, wait_until_known
+from panel_bench import panel, press, row_1, row_2, settled, telegrams, wait_until_known
 from spoilt_bench import TROUBLES, shorter, silent, spoil
 from uss.drive import COUNTERS
 from uss.families import GENERIC, MM440
 from uss.receiver import NOISE, OTHER_ADDRESS, OTHER_LENGTH, SILENCE, WRONG_CHECK
 
 OFF1 = 0x047E
-
-
-def press(world, *keys):
-    for key in keys:
-        world.press(key)
-        world.run(300)
 
 
 def title(world):

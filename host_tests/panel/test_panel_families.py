@@ -4,12 +4,10 @@
 A kind is written as --drives has it: g110, or mm440/4+4 with the PKW and PZD words.
 """
 
-import main
 from boards.sim.drives.families import mm440
 from boards.sim.drives.kinds import listed_drives, simulated
-from boards.sim.world import World
 from kind_bench import is_untold, panel_of, start
-from panel_bench import row_1, row_2, starts, wait_until_known
+from panel_bench import row_1, row_2, starts, switched_on, wait_until_known
 
 HERTZ = (
     "mm420", "mm440", "mm440/127", "mm420/4+4", "mm440/4+8", "g110", "g110/4", "v20", "v20/4+6",
@@ -52,7 +50,7 @@ def test_every_family_in_every_layout_runs_turns_round_trips_and_stops():
 
 def test_a_drive_with_short_telegrams_runs_and_shows_its_parameters():
     kinds = {1: {"family": mm440, "parameters": {2013: 127, 2014: 2_000}}}
-    world = World(main.start, kinds=kinds, settings={"kinds": {"1": "mm440/127s"}})
+    world = switched_on(kinds=kinds, settings={"kinds": {"1": "mm440/127s"}})
     world.run(1000)
     wait_until_known(world)
     world.press("START")
@@ -222,7 +220,7 @@ def test_drives_of_several_families_stand_in_one_list():
 def test_a_drive_of_another_layout_than_the_settings_say_is_found():
     """The panel tries the others with telegrams that no drive obeys, and keeps what it finds."""
     for kind in ("mm440/127", "mm440/3", "mm440/0", "mm440/4"):
-        world = World(main.start, [2], kinds=simulated(listed_drives("2=" + kind)))
+        world = switched_on([2], kinds=simulated(listed_drives("2=" + kind)))
         world.run(6000)
         assert row_2(world) == "READY        A2", (kind, world.lcd())
         found = {} if kind.endswith("/4") else {"2": kind.replace("mm440", "mm420")}
@@ -259,7 +257,7 @@ def test_a_drive_whose_answers_make_no_sense_is_asked_for_its_layout():
 def found_as_it_is(real, told):
     """A panel whose settings say `told`, on a line with a drive that is `real`."""
     settings = {"kinds": {"1": told}}
-    world = World(main.start, [1], kinds=simulated(listed_drives("1=" + real)), settings=settings)
+    world = switched_on([1], kinds=simulated(listed_drives("1=" + real)), settings=settings)
     for _ in range(250):
         world.run(100)
         if row_2(world) == "READY        A1" and world.app.settings.kinds == {"1": real}:

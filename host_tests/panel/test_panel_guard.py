@@ -3,12 +3,20 @@
 
 import json
 
-import main
-from boards.sim.world import World
 from panel.keys import Acts, Keys
 from panel.keys.guard import Guard
 from panel.pages import Page
-from panel_bench import OFF1, row_1, row_2, starts, telegrams, wait_until_known
+from panel_bench import (
+    OFF1,
+    hold,
+    press,
+    row_1,
+    row_2,
+    starts,
+    switched_on,
+    telegrams,
+    wait_until_known,
+)
 
 LOCKED = "LOCK: HOLD PARAM"
 MASK = 0x3FFFFFFF
@@ -16,23 +24,10 @@ BAUD = 4_800  # minutes pass in these tests, and the fewer telegrams in them the
 
 
 def panel(addresses=(1,), **settings):
-    world = World(main.start, addresses, BAUD, settings)
+    world = switched_on(addresses, BAUD, settings)
     world.run(1500)
     wait_until_known(world)
     return world
-
-
-def press(world, *keys):
-    for key in keys:
-        world.press(key)
-        world.run(200)
-
-
-def hold(world, key, ms=1500):
-    world.down(key)
-    world.run(ms)
-    world.up(key)
-    world.run(200)
 
 
 def enter(world, code):
@@ -233,7 +228,7 @@ def test_the_least_code_locks_like_any_other():
 
 
 def test_a_question_takes_start_and_stop_while_the_lock_is_closed_and_writes_nothing():
-    world = World(main.start, (1,), parameters={2014: 0}, settings={"lock_code": 5})
+    world = switched_on((1,), parameters={2014: 0}, settings={"lock_code": 5})
     world.run(1500)
     wait_until_known(world)
     press(world, "START")
@@ -409,7 +404,7 @@ def test_the_key_test_names_each_key_and_stop_acts():
 def accepted(*addresses):
     """A panel that shows the drives which were accepted with P2014 = 0: all that it has."""
     settings = {"unsupervised": list(addresses)}
-    world = World(main.start, addresses, parameters={2014: 0}, settings=settings)
+    world = switched_on(addresses, parameters={2014: 0}, settings=settings)
     world.run(1500)
     wait_until_known(world)
     open_settings(world)

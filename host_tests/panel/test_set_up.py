@@ -7,6 +7,7 @@ from panel.pages import set_up
 from panel.screen import Screen
 from panel_bench import (
     panel,
+    press,
     row_2,
     settled,
     starts,
@@ -19,12 +20,6 @@ from uss.pzd import ZSW_RUNNING
 
 LOCAL = {700: 2, 1000: 2, 2014: 1000}  # as delivered, but for the line
 INTO_EEPROM = {"A1: P0700=5", "INTO ITS EEPROM:", "PANEL COMMANDS", "THE DRIVE THEN"}
-
-
-def press(world, *keys):
-    for key in keys:
-        world.press(key)
-        world.run(400)
 
 
 def asked(world):

@@ -302,7 +302,7 @@ def test_a_name_is_given_letter_by_letter():
     world = two()
     sets(world)
     press(world, "SET")
-    assert world.lcd() == ("NAME, SET=SAVE  ", ">[S]ET 1        "), world.lcd()
+    assert settled(world) == ("NAME, SET=SAVE  ", ">[S]ET 1        "), world.lcd()
     press(world, "DOWN", "DOWN", "DOWN", "NEXT", "UP")
     assert row_2(world) == ">P[F]T 1", world.lcd()
     press(world, "PREVIOUS", "PREVIOUS")

@@ -165,7 +165,7 @@ def test_the_fault_memory_has_the_last_faults_with_their_texts():
         press(world, key)
         assert world.lcd() == ("A1 FAULTS    %s" % place, ">...            "), world.lcd()
     drive.stale_replies = 0
-    world.run(1500)
+    world.run(4000)
     told_us = world.clock.now_us
     there = entries(world)
     assert not asks_for(world, 947, told_us), "each is asked for once"

@@ -4,10 +4,8 @@
 import json
 import sys
 
-import main
 from boards.sim.drives.kinds import listed_drives, simulated
-from boards.sim.world import World
-from panel_bench import panel, row_1, row_2, running, starts
+from panel_bench import panel, row_1, row_2, running, starts, switched_on
 
 
 def line_of(text, drives=(1,), **more):
@@ -15,7 +13,7 @@ def line_of(text, drives=(1,), **more):
     listed = listed_drives(text)
     settings = dict(more.pop("settings", {}), drives=list(drives))
     addresses = [one.address for one in listed]
-    world = World(main.start, addresses, settings=settings, kinds=simulated(listed), **more)
+    world = switched_on(addresses, settings=settings, kinds=simulated(listed), **more)
     world.run(3000)
     return world
 
