@@ -10,7 +10,7 @@ Then it runs by itself each slow one, and each test of the panel, which is a pro
 MicroPython and has its tests there. Of these it chooses, for lines_once.json, those that together
 run each line that nothing else runs. The next test is always the one that adds the most lines a
 second. One of the panel that takes longer than LONGEST_S is given up, with its lines. A file that
-says INTERPRETERS itself stays as it is. All takes some 20 minutes.
+says INTERPRETERS itself stays as it is. All takes eight to twenty minutes.
 """
 
 import ast
@@ -28,7 +28,7 @@ from shares import CPYTHON, LINES_ONCE, SLOW_ONCE, TESTS  # noqa: E402
 from tiers import ENVIRONMENT, TIERS, FileRun, interpreters, said  # noqa: E402
 
 PANEL = "panel"
-SLOW_S = 0.5
+SLOW_S = 0.1
 LONGEST_S = 6
 START_S = 0.3  # of a process: nothing is won by a test that takes less
 TIMEOUT_S = 120
