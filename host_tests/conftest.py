@@ -93,8 +93,9 @@ def tiers_that_may_run(config):
 
 
 def pytest_ignore_collect(collection_path, config):
-    """A file whose tests -k cannot mean is not read. One that is named is; with --only no other,
-    for pytest looks at all that is in its folder."""
+    """A file whose tests -k cannot mean is not read. One that is named is. With --only that is
+    all: pytest would read each file of its folder.
+    """
     chosen = config.stash[SELECTION]
     if collection_path.suffix != ".py" or _is_named(collection_path, config):
         return None

@@ -5,7 +5,6 @@ import json
 from binascii import crc32
 
 import catalogue
-from boards.sim.board import LONG_LOOP_US
 from boards.sim.drives import parameters
 from boards.sim.drives.families import mm3, mm440
 from panel.sets import work
@@ -26,7 +25,6 @@ def two(**options):
         kinds.setdefault(address, {}).setdefault("family", mm440)
     settings = {"kinds": {"1": "mm440", "2": "mm440"}}
     settings.update(options.pop("settings", {}))
-    options.setdefault("loop_us", LONG_LOOP_US)  # which takes four fifths of the time
     world = panel(addresses=(1, 2), baud=BAUD, kinds=kinds, settings=settings, **options)
     wait_until_known(world)
     return world

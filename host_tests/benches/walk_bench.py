@@ -9,10 +9,7 @@ Where ways part, the process forks, and its twin goes one of them: nobody walks 
 the start. So this is for CPython.
 """
 
-import main
-from boards.sim.board import LONG_LOOP_US
-from boards.sim.world import World
-from panel_bench import row_1, row_2, settled, wait_until_known
+from panel_bench import row_1, row_2, settled, switched_on, wait_until_known
 from sets_bench import made
 from twin import twin
 
@@ -29,9 +26,7 @@ COMPACT = {
 
 def standing(keys="direct"):
     settings = {"unsupervised": [2]}
-    world = World(
-        main.start, (1, 2), settings=settings, keys=keys, parameters=QUICK, loop_us=LONG_LOOP_US
-    )
+    world = switched_on((1, 2), settings=settings, keys=keys, parameters=QUICK)
     world.flash.files["1.set"] = made([(1120, 0, b"Float", b"3F800000")], family=b"mm420")
     world.run(500)
     wait_until_known(world)
