@@ -14,7 +14,7 @@ import time
 from tools.emulator.world import temporary
 
 SILENT_S = 100  # of the host: a command that says nothing for so long hangs
-STEP_MS = 5
+STEP_MS = 10
 ASLEEP_US = 1_000  # of the host, for a step; a chip that works takes more
 REST_MS = 1
 SPEAK_FIRST = ("deploy", "settings")  # before they do anything at the port; deploy compiles first
@@ -33,6 +33,7 @@ class AtPort:
 
     def __init__(self, world, command, *arguments):
         self.world = world
+        self.said = ""
         self._output = temporary()
         world.tell("S", 1)
         os.system(
@@ -42,21 +43,17 @@ class AtPort:
         if command in SPEAK_FIRST:
             self._until(lambda: self.said, time.sleep_ms, 10 * REST_MS)
 
-    @property
-    def said(self):
-        return read(self._output)
-
     def goes_on_until(self, condition):
         self._until(condition, self._step)
 
     def _until(self, condition, act, *arguments):
-        heard, before = time.time(), ""
+        heard = time.time()
         while not condition():
-            said = self.said
-            if said != before:
-                heard, before = time.time(), said
-            assert time.time() - heard < SILENT_S, said
             act(*arguments)
+            said = read(self._output)
+            if said != self.said:
+                self.said, heard = said, time.time()
+            assert time.time() - heard < SILENT_S, said
 
     def _step(self):
         began = time.ticks_us()

@@ -6,6 +6,7 @@
 import fs from 'node:fs';
 
 const WAITING_BYTES = 65536;
+const WAITS = new Set(['EAGAIN', 'EIO']); // EIO: nobody has opened the other side
 
 export class Terminal {
   constructor(descriptor) {
@@ -18,13 +19,8 @@ export class Terminal {
   // What was typed by now; it may be nothing.
   read() {
     this.pass();
-    try {
-      const count = fs.readSync(this.descriptor, this.buffer, 0, this.buffer.length);
-      return this.buffer.subarray(0, count);
-    } catch (error) {
-      if (error.code === 'EAGAIN' || error.code === 'EIO') return this.buffer.subarray(0, 0);
-      throw error;
-    }
+    const { descriptor, buffer } = this;
+    return buffer.subarray(0, ifReady(() => fs.readSync(descriptor, buffer)) ?? 0);
   }
 
   write(bytes) {
@@ -34,13 +30,24 @@ export class Terminal {
 
   pass() {
     while (this.waiting.length) {
-      try {
-        const count = fs.writeSync(this.descriptor, this.waiting);
-        this.waiting = this.waiting.subarray(count);
-      } catch (error) {
-        if (error.code === 'EAGAIN' || error.code === 'EIO') return;
-        throw error;
-      }
+      const count = ifReady(() => fs.writeSync(this.descriptor, this.waiting));
+      if (count === undefined) return;
+      this.waiting = this.waiting.subarray(count);
     }
+  }
+}
+
+// What `call` returns; undefined where it would have to wait. Of that node makes an error, here each
+// millisecond, and does it sooner when it need not write the stack into it.
+function ifReady(call) {
+  const { stackTraceLimit } = Error;
+  Error.stackTraceLimit = 0;
+  try {
+    return call();
+  } catch (error) {
+    if (WAITS.has(error.code)) return undefined;
+    throw error;
+  } finally {
+    Error.stackTraceLimit = stackTraceLimit;
   }
 }
