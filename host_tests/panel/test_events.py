@@ -9,7 +9,7 @@ from panel import texts
 from panel.menu import events as event_list
 from panel.menu.events import age
 from panel.reports.fault import DriveWarning, Fault
-from panel.reports.journal import EVENTS, NOBODY, Journal
+from panel.reports.journal import NOBODY, Journal
 from panel_bench import row_1, row_2, wait_until_known
 from pkw_bench import AskedDrive
 from uss import pkw, pzd
@@ -166,16 +166,16 @@ def test_the_journal_keeps_the_last_events_and_counts_on_when_the_clock_wraps():
     journal = Journal(0xFFFF)
     now_ms = 0xFF00
     journal.tick(now_ms)
-    for number in range(1, EVENTS + 4):
+    for number in range(1, 20):
         journal.note(b"FAULT", 3, number)
         for _ in range(10):
             now_ms += 1_000
             journal.tick(now_ms & 0xFFFF)
-    assert journal.count == EVENTS
-    assert journal.event(0)[:3] == (b"FAULT", 3, EVENTS + 3)
-    assert journal.event(EVENTS - 1)[:3] == (b"FAULT", 3, 4)
-    ages = [journal.event(place)[3] for place in range(EVENTS)]
-    assert ages == list(range(10, 10 * EVENTS + 1, 10)), ages
+    assert journal.count == 16
+    assert journal.event(0)[:3] == (b"FAULT", 3, 19)
+    assert journal.event(15)[:3] == (b"FAULT", 3, 4)
+    ages = [journal.event(place)[3] for place in range(16)]
+    assert ages == list(range(10, 161, 10)), ages
     journal.note(b"PANEL HUNG")
     assert journal.event(0)[1] == NOBODY
 

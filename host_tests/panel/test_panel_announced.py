@@ -935,6 +935,12 @@ def test_the_most_dangerous_trouble_is_said_first_and_then_all_in_turn():
     assert rows[:13] == order + order[:1], rows
 
 
+def test_after_many_that_share_a_text_a_drive_at_the_end_of_the_list_has_its_turn_as_well():
+    many = [Told(2 + place, **RUNS) for place in range(5)]
+    rows = rows_said(Teller(*many, Told(7, active=True, number=11)), 10_000)
+    assert rows[:3] == ["RUN,HOLD=ALL: 5", "A7 FAULT F0011", "RUN,HOLD=ALL: 5"], rows
+
+
 def test_an_announcement_has_1300_ms_and_the_page_what_the_round_leaves_it():
     """At least 600 ms, and no more than that where one of them is an alarm."""
     for count, trouble, page_ms in (

@@ -2,13 +2,14 @@
 """The rules of the RS-485 line on the chip, at every usual baud rate and while the panel has
 other things to do: collections, the display, saving. Figures are nanoseconds of its clock."""
 
-from pico_bench import says, scripted, set_off, stands, start
+from pico_bench import running, says, scripted, set_off, stands, start
 from tools.emulator.world import PicoWorld
 
 INTERPRETERS = "pico pico_hard_again"
 
 RATES = (2_400, 9_600, 19_200, 38_400, 57_600, 115_200)
 TELEGRAMS = 40
+AT_ONCE_NS = 400_000  # after the start interval
 TELEGRAM_NS = 16 * 11_000_000_000 // 19_200  # of the panel, uncut
 
 # What a panel may be busy with: lines that take the place of the main loop.
@@ -54,6 +55,16 @@ def test_whatever_the_panel_is_busy_with():
         world.figures.clear()
         enough(world)
         judge(world)
+
+
+def test_the_next_telegram_follows_a_reply_at_once():
+    """The interrupt that tells of a reply sends what is ready. The engine would take 1 ms."""
+    world = running(baud=115_200)
+    world.figures.clear()
+    enough(world)
+    judge(world)
+    late_ns = sorted([ns - 2 * character_ns(115_200) for ns in world.figures.idle_ns])
+    assert late_ns[len(late_ns) * 9 // 10] < AT_ONCE_NS, late_ns
 
 
 def test_while_it_saves_its_settings():

@@ -3,6 +3,7 @@
 
 import struct
 
+import micropython
 from boards.sim.dice import Dice
 from uss import pkw
 from uss.drive import Drive
@@ -112,6 +113,19 @@ def test_speeds_are_what_a_floating_point_number_says():
     nothing = ((0x7FC0, 0), (0x7F80, 0), (0xFF80, 0), (0x8000, 1), (0x8001, 0), words(-0.5))
     for high, low in nothing + (words(-3000.0), words(210_001.0), words(262_144.0), words(1e30)):
         assert rpm(high, low) == -1, (high, low)
+
+
+def test_to_tell_either_takes_no_memory_though_it_be_next_to_nothing():
+    if not hasattr(micropython, "heap_lock"):
+        return  # CPython
+    values = [words(value) for value in (0.0, 1e-30, 1e-18, 0.004, 50.0, 649.0, 2e5, 1e30)]
+    micropython.heap_lock()
+    try:
+        for high, low in values:
+            centihertz(high, low)
+            rpm(high, low)
+    finally:
+        micropython.heap_unlock()
 
 
 def words(hertz):
