@@ -4,6 +4,7 @@
 import struct
 
 import micropython
+
 from boards.sim.dice import Dice
 from uss import pkw
 from uss.drive import Drive
