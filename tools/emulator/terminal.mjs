@@ -37,8 +37,8 @@ export class Terminal {
   }
 }
 
-// What `call` returns; undefined where it would have to wait. Of that node makes an error, here each
-// millisecond, and does it sooner when it need not write the stack into it.
+// What `call` returns; undefined where it would have to wait. Node throws an error then, here once a
+// millisecond: without the stack in it, that costs less.
 function ifReady(call) {
   const { stackTraceLimit } = Error;
   Error.stackTraceLimit = 0;
