@@ -162,7 +162,7 @@ def test_an_hour_is_an_hour():
     assert journal.event(0)[3] == 3_600
 
 
-def test_the_journal_keeps_the_last_events_and_counts_on_when_the_clock_wraps():
+def test_the_journal_keeps_the_last_16_events_and_counts_on_when_the_clock_wraps():
     journal = Journal(0xFFFF)
     now_ms = 0xFF00
     journal.tick(now_ms)

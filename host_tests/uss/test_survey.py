@@ -116,7 +116,7 @@ def test_speeds_are_what_a_floating_point_number_says():
         assert rpm(high, low) == -1, (high, low)
 
 
-def test_to_tell_either_takes_no_memory_though_it_be_next_to_nothing():
+def test_neither_conversion_takes_memory_not_even_of_next_to_nothing():
     if not hasattr(micropython, "heap_lock"):
         return  # CPython
     values = [words(value) for value in (0.0, 1e-30, 1e-18, 0.004, 50.0, 649.0, 2e5, 1e30)]
